@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Farm steps a second, one thread, random actions, episodes restarting as they end. Reference for
+// the ratios: the same farm with the tabular index on 25 × 25 cells.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/farm_batch.h"
+#include "aquafarm/scenario_yaml.h"
+#include "metric_reporter.h"
+
+namespace aquafarm {
+namespace {
+
+constexpr std::int32_t kFarms = 64;
+
+enum class Wanted { kNothing, kIndex, kFeatures, kPlanes };
+
+Scenario Paper() { return LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"); }
+
+// Steps `kFarms` farms; items are farm steps.
+void StepFarms(benchmark::State& state, Scenario scenario, Wanted wanted,
+               std::int32_t farms = kFarms) {
+  FarmBatch batch(std::make_shared<const Scenario>(std::move(scenario)), farms);
+  const auto agents = static_cast<std::size_t>(batch.farms() * batch.agents());
+  std::vector<float> rewards(agents);
+  std::vector<std::uint8_t> reasons(static_cast<std::size_t>(farms));
+  std::vector<std::uint32_t> index(agents);
+  std::vector<float> features(agents * static_cast<std::size_t>(batch.encoder().feature_count()));
+  std::vector<std::uint8_t> planes(
+      wanted == Wanted::kPlanes ? agents * batch.encoder().planes_size() : 0);
+  BatchOutput output;
+  output.rewards = rewards.data();
+  output.reasons = reasons.data();
+  if (wanted == Wanted::kIndex) output.index = index.data();
+  if (wanted == Wanted::kFeatures) output.features = features.data();
+  if (wanted == Wanted::kPlanes) output.planes = planes.data();
+  // Random actions, drawn beforehand; 257 joint actions, so that farms do not fall into step.
+  constexpr std::size_t kDrawn = 257;
+  std::vector<std::uint8_t> actions(kDrawn * agents);
+  RandomStream chance({1, 0, Purpose::kExploration, 0});
+  for (std::uint8_t& action : actions) {
+    action = static_cast<std::uint8_t>(chance.Below(kActionCount));
+  }
+  batch.Reset(1, 0, output);
+  std::size_t step = 0;
+  for (auto _ : state) {
+    batch.Step(actions.data() + (step++ % kDrawn) * agents, output);
+    benchmark::DoNotOptimize(rewards.data());
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * farms);
+}
+
+void Index(benchmark::State& state) { StepFarms(state, Paper(), Wanted::kIndex); }
+void Features(benchmark::State& state) { StepFarms(state, Paper(), Wanted::kFeatures); }
+void Planes(benchmark::State& state) { StepFarms(state, Paper(), Wanted::kPlanes); }
+void OneFarm(benchmark::State& state) { StepFarms(state, Paper(), Wanted::kIndex, 1); }
+
+void Side(benchmark::State& state) {
+  Scenario scenario = Paper();
+  scenario.islands.clear();
+  scenario.ports.cells.clear();
+  scenario.ports.count = 4;
+  scenario.width = scenario.height = static_cast<std::int32_t>(state.range(0));
+  StepFarms(state, scenario, Wanted::kIndex);
+}
+
+void Ships(benchmark::State& state) {
+  Scenario scenario = Paper();
+  scenario.ships.count = static_cast<std::int32_t>(state.range(0));
+  StepFarms(state, scenario, Wanted::kNothing);
+}
+
+void Disasters(benchmark::State& state) {
+  Scenario scenario = Paper();
+  scenario.disasters.assign(static_cast<std::size_t>(state.range(0)), scenario.disasters[0]);
+  StepFarms(state, scenario, Wanted::kNothing);
+}
+
+BENCHMARK(Index);
+BENCHMARK(Features);
+BENCHMARK(Planes);
+BENCHMARK(OneFarm);
+BENCHMARK(Side)->Arg(25)->Arg(100)->Arg(1000);
+BENCHMARK(Ships)->Arg(1)->Arg(4)->Arg(16)->Arg(64);
+BENCHMARK(Disasters)->Arg(1)->Arg(4)->Arg(16);
+
+void PrintMetrics(const bench::MetricReporter& reporter) {
+  using bench::PrintMetric;
+  const auto rate = [&](const std::string& name) { return reporter.median(name); };
+  PrintMetric("farm_steps_tabular", rate("Index"), "steps/s");
+  PrintMetric("farm_steps_features", rate("Features"), "steps/s");
+  PrintMetric("farm_steps_planes", rate("Planes"), "steps/s");
+  PrintMetric("farm_steps_tabular_one_farm", rate("OneFarm"), "steps/s");
+  PrintMetric("cost_1000x1000_to_25x25", rate("Side/25") / rate("Side/1000"), "ratio");
+  PrintMetric("cost_100x100_to_25x25", rate("Side/25") / rate("Side/100"), "ratio");
+  // Cost of one more: flat when it stays below 1.5.
+  const auto per_one_more = [&](const std::string& what, double few, double many) {
+    const double cost_one = 1.0 / rate(what + "/1");
+    const double cost_few = 1.0 / rate(what + "/" + std::to_string(static_cast<int>(few)));
+    const double cost_many = 1.0 / rate(what + "/" + std::to_string(static_cast<int>(many)));
+    return ((cost_many - cost_one) / (many - 1)) / ((cost_few - cost_one) / (few - 1));
+  };
+  PrintMetric("cost_per_ship_64_to_4", per_one_more("Ships", 4, 64), "ratio");
+  PrintMetric("cost_per_ship_64_to_1", rate("Ships/1") / (64 * rate("Ships/64")), "ratio");
+  PrintMetric("cost_per_disaster_16_to_4", per_one_more("Disasters", 4, 16), "ratio");
+  PrintMetric("farm_state",
+              static_cast<double>(sizeof(Farm) + sizeof(Ship) + 3 * sizeof(Device) +
+                                  sizeof(Disaster) + sizeof(Track)),
+              "bytes");
+}
+
+}  // namespace
+}  // namespace aquafarm
+
+int main(int argc, char** argv) {
+  std::vector<char*> arguments(argv, argv + argc);
+  // Medians of five, unless the caller says otherwise (the last of a repeated flag counts).
+  std::string repetitions = "--benchmark_repetitions=5";
+  std::string aggregates = "--benchmark_report_aggregates_only=true";
+  std::string interleave = "--benchmark_enable_random_interleaving=true";
+  std::string time = "--benchmark_min_time=0.2";
+  arguments.insert(arguments.begin() + 1,
+                   {repetitions.data(), aggregates.data(), interleave.data(), time.data()});
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+  aquafarm::bench::MetricReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  aquafarm::PrintMetrics(reporter);
+  return 0;
+}

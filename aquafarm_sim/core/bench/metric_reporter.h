@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Google Benchmark's own table, then one line `metric value unit` a figure, so that anyone can
+/// compare: medians over the repetitions of a run.
+
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <map>
+#include <string>
+
+namespace aquafarm::bench {
+
+/// Collects the median items per second of each benchmark while it prints the usual table.
+class MetricReporter : public benchmark::ConsoleReporter {
+ public:
+  MetricReporter() : ConsoleReporter(OO_None) {}
+  void ReportRuns(const std::vector<Run>& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (const Run& run : runs) {
+      const auto rate = run.counters.find("items_per_second");
+      if (run.aggregate_name == "median" && rate != run.counters.end()) {
+        median_[run.run_name.function_name + Argument(run.run_name.args)] = rate->second;
+      }
+    }
+  }
+  double median(const std::string& name) const {
+    const auto found = median_.find(name);
+    return found == median_.end() ? 0.0 : found->second;
+  }
+
+ private:
+  static std::string Argument(const std::string& args) { return args.empty() ? "" : "/" + args; }
+  std::map<std::string, double> median_;
+};
+
+inline void PrintMetric(const std::string& name, double value, const char* unit) {
+  std::printf("%s %.6g %s\n", name.c_str(), value, unit);
+}
+
+}  // namespace aquafarm::bench

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What the ROS-free cores share: warnings, the library, its tests, and the check that keeps ROS out.
+
+set(AQUAFARM_CORE_CMAKE_DIR ${CMAKE_CURRENT_LIST_DIR})
+
+function(aquafarm_set_warnings target)
+  # No contraction of a*b+c into one rounding: the same bits on every machine.
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off)
+endfunction()
+
+# A shared library with C++17, all warnings and no symbol left open.
+function(aquafarm_add_core_library target)
+  add_library(${target} SHARED ${ARGN})
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  target_link_options(${target} PRIVATE LINKER:--no-undefined)
+  aquafarm_set_warnings(${target})
+endfunction()
+
+# Fails the build of `target` when a file of this core includes ROS.
+function(aquafarm_check_no_ros target)
+  add_custom_target(${target}_no_ros ALL
+    COMMAND ${CMAKE_COMMAND} -DCORE_DIR=${CMAKE_CURRENT_SOURCE_DIR}
+            -P ${AQUAFARM_CORE_CMAKE_DIR}/CheckNoRos.cmake
+    COMMENT "Checking that ${target} includes no ROS header")
+  add_dependencies(${target} ${target}_no_ros)
+endfunction()
+
+# test/<name>.cpp as a ctest, or as a catkin test where catkin has set one up.
+function(aquafarm_add_core_test name)
+  add_executable(${name} test/${name}.cpp)
+  target_link_libraries(${name} PRIVATE ${ARGN} GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    AQUAFARM_CORE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")
+  aquafarm_set_warnings(${name})
+  add_test(NAME ${name} COMMAND ${name}
+           --gtest_output=xml:${CMAKE_BINARY_DIR}/test_results/${PROJECT_NAME}/${name}.xml)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+endfunction()

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Disasters that move over the farm (§2.1).
+///
+///      . . r2 . .        risk at a cell = the risk of the smallest ring whose radius is at least
+///    .   . r1 .   .      the Euclidean distance from the centre to the cell's centre; 0 outside.
+///   .  .   c--->.  .     Several disasters: the worst. O(disasters) per look-up, no grid.
+///    .   . . .   .
+///
+/// Where we differ: the centre moves by a real number of cells along a heading in whole degrees,
+/// and is reflected at the border of the farm enlarged by the largest radius.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "aquafarm/grid.h"
+#include "aquafarm/rng.h"
+#include "aquafarm/scenario.h"
+
+namespace aquafarm {
+
+/// (east, north) parts of a unit vector along a compass bearing; the same bits on every machine.
+/// @param heading_deg in [0, 359]
+std::array<float, 2> HeadingVector(std::int32_t heading_deg);
+
+/// What a bulletin last said of a disaster (partial view).
+struct Bulletin {
+  float x{};
+  float y{};
+  float speed{};
+  std::int32_t heading_deg{};
+  std::int32_t step{kNone};  ///< when it was issued; kNone: none yet
+};
+
+/// One disaster in play: everything that may change in an episode, as plain data.
+struct Disaster {
+  DisasterKind kind{};
+  Border border{};
+  std::int32_t grade{};
+  std::int32_t rings{};
+  std::array<float, kMaxRings> radius{};
+  std::array<float, kMaxRings> radius_squared{};
+  std::array<float, kMaxRings> risk{};
+  float x{};  ///< centre [cells]
+  float y{};
+  float dx{};  ///< displacement in a step [cells]
+  float dy{};
+  float speed{};
+  std::int32_t heading_deg{};
+  std::uint32_t turn_threshold{};  ///< a step turns when a 31-bit draw is below it
+  float radius_growth{};
+  float margin{};                ///< by which the map is enlarged: the largest radius at the start
+  std::int32_t steps_left{};     ///< 0: over, no risk any more
+  std::int32_t waypoint{kNone};  ///< index of the last waypoint passed; kNone: no track
+  std::array<std::uint32_t, 4> draws{};  ///< of the present four steps
+  Bulletin bulletin;
+
+  bool active() const { return steps_left > 0; }
+  /// Largest radius, or 0 when it has no ring.
+  float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
+};
+
+/// A disaster's waypoints; shared, never changed in play.
+using Track = std::shared_ptr<const std::vector<Waypoint>>;
+
+/// Places a disaster at an episode's start, drawing what its spec leaves open.
+Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t seed,
+                       std::uint64_t episode, std::int32_t width, std::int32_t height);
+
+/// Moves a disaster into step `step` (the first move of an episode is into step 1): turns, moves,
+/// grows, ages. A disaster that is over does not move.
+void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_key,
+                  std::int32_t step, std::int32_t width, std::int32_t height);
+
+/// Puts a tracked disaster where its track says it is at `step`.
+void FollowTrack(Disaster& disaster, const std::vector<Waypoint>& track, std::int32_t step);
+
+/// Risk of one disaster at a point [cells]; 0 outside or when it is over, else negative.
+inline float RiskOf(const Disaster& disaster, float x, float y) {
+  const float dx = disaster.x - x;
+  const float dy = disaster.y - y;
+  const float distance_squared = dx * dx + dy * dy;
+  if (!disaster.active()) return 0.0F;
+  for (std::int32_t ring = 0; ring < disaster.rings; ++ring) {
+    const auto k = static_cast<std::size_t>(ring);
+    if (distance_squared <= disaster.radius_squared[k]) return disaster.risk[k];
+  }
+  return 0.0F;
+}
+
+/// Worst risk of several disasters at a cell.
+inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
+  float worst = 0.0F;
+  for (const Disaster& disaster : disasters) {
+    const float risk = RiskOf(disaster, static_cast<float>(cell.x), static_cast<float>(cell.y));
+    worst = risk < worst ? risk : worst;
+  }
+  return worst;
+}
+
+/// Fills the whole risk grid [H, W]; for those who draw or publish it.
+void FillRisk(const std::vector<Disaster>& disasters, Grid<float>& risk);
+
+}  // namespace aquafarm

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// A view as numbers: a tabular index, a feature vector, or H × W planes.
+///
+/// Tabular index: status_rank · W·H + cell, over the ship's own cell and the status of every
+/// device that can be fetched, each deployed, aboard this ship, or gone (delivered or aboard
+/// another ship). With capacity C only sets with at most C aboard are counted: for C = 1 and D
+/// devices 2^D + D·2^(D−1) sets. The disaster is not part of it, as in the paper, whose
+/// |S| = 25·25·2³·4 is 20,000 (printed: 128,000) and |O| = 25·25·2³ is 5,000 (printed: 32,000).
+///
+/// Features and planes: feature_names() and plane_names() state the exact order.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aquafarm/view.h"
+
+namespace aquafarm {
+
+class Encoder {
+ public:
+  /// @param scenario must outlive the encoder
+  explicit Encoder(const Scenario& scenario);
+
+  /// Number of tabular states, or 0 when they are more than kMaxStates.
+  std::uint32_t state_count() const { return state_count_; }
+  inline static constexpr std::uint64_t kMaxStates = 1ULL << 28U;
+  std::int32_t feature_count() const { return feature_count_; }
+  std::int32_t plane_count() const { return kPlaneCount; }
+  /// Bytes of all planes of one ship: plane_count · H · W.
+  std::size_t planes_size() const { return planes_size_; }
+  std::vector<std::string> feature_names() const;
+  static std::vector<std::string> plane_names();
+  inline static constexpr std::int32_t kPlaneCount = 8;
+
+  /// In [0, state_count()). The same in full and partial view: chart, places and status are known.
+  std::uint32_t Index(const Farm& farm, std::int32_t ship) const;
+  /// The ship's cell and the status of each device that can be fetched, back from an index.
+  struct TabularState {
+    Cell cell{};
+    std::vector<DeviceStatus> status;  ///< kDelivered stands for gone
+  };
+  TabularState Decode(std::uint32_t index) const;
+
+  /// @param out [feature_count()]
+  void Features(const View& view, float* out) const;
+  /// @param out [plane_count(), H, W] row-major from the south; 255 stands for 1
+  void Planes(const View& view, std::uint8_t* out) const;
+
+ private:
+  const Scenario& scenario_;
+  std::vector<std::int32_t> status_rank_;  // by base-3 code; kNone: more aboard than capacity
+  std::vector<std::int32_t> status_code_;  // by rank
+  std::uint32_t state_count_{};
+  std::int32_t feature_count_{};
+  std::int32_t fetchable_{};  // devices that are not self-propelled
+  std::size_t planes_size_{};
+  float scale_{};  // 1 / longer side
+};
+
+}  // namespace aquafarm

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// One episode on one farm (Algorithm 1; rules in docs/model.md). A step, in this order:
+///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Reward →
+///   Finish. Nothing here allocates after construction but Reset of a track set from outside.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/disaster.h"
+#include "aquafarm/layout.h"
+#include "aquafarm/reward.h"
+#include "aquafarm/scenario.h"
+#include "aquafarm/types.h"
+
+namespace aquafarm {
+
+/// A rescue ship, or a self-propelled device acting as a ship of its own.
+struct Ship {
+  Cell cell{};
+  std::int32_t own_device{kNone};  ///< the self-propelled device that it is; kNone: rescue ship
+  std::int32_t aboard{};           ///< devices aboard
+  bool in_play{true};              ///< false once a self-propelled device is delivered
+  Action action{Action::kHold};    ///< of the last step
+  Outcome outcome{Outcome::kHeld};
+  RewardTerms terms;       ///< of the last step, its own
+  float reward{};          ///< of the last step, after sharing
+  float episode_return{};  ///< sum of rewards
+};
+
+/// A device in play.
+struct Device {
+  Cell cell{};  ///< where it was deployed or delivered; Farm::CellOf says where it is now
+  float value{};
+  float health{1.0F};
+  std::int32_t carrier{kNone};  ///< ship it is aboard; kNone unless status is kAboard
+  DeviceKind kind{};
+  DeviceStatus status{DeviceStatus::kDeployed};
+  bool self_propelled{};
+};
+
+/// What an episode came to, kept as it goes.
+struct EpisodeRecord {
+  std::uint64_t seed{};
+  std::uint64_t episode{};
+  std::int32_t steps{};
+  float episode_return{};  ///< sum over ships of their own terms
+  std::int32_t delivered{};
+  std::int32_t devices{};
+  float delivered_health{};  ///< sum of health over delivered devices
+  std::int32_t crashes{};
+  std::int32_t collisions{};
+  std::int32_t steps_in_disaster{};  ///< ship-steps spent at a risk
+  EndReason reason{};
+  bool Success() const { return reason == EndReason::kAllRetrieved; }
+};
+
+/// One farm; stepping after the end is a programmer's mistake.
+class Farm {
+ public:
+  /// @param scenario must have passed ValidateScenario and must outlive the farm
+  explicit Farm(std::shared_ptr<const Scenario> scenario);
+  /// Shares a fixed layout between farms instead of drawing it again.
+  Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layout> fixed_layout);
+
+  /// Starts episode `episode` of the sequence `seed`.
+  void Reset(std::uint64_t seed, std::uint64_t episode);
+
+  /// Takes one step. @param actions one per agent, [AgentCount()], each an Action incl. kHold
+  void Step(const std::uint8_t* actions);
+
+  const Scenario& scenario() const { return *scenario_; }
+  const Layout& layout() const { return *layout_; }
+  const std::shared_ptr<const Layout>& shared_layout() const { return layout_; }
+  const std::vector<Ship>& ships() const { return ships_; }
+  const std::vector<Device>& devices() const { return devices_; }
+  const std::vector<Disaster>& disasters() const { return disasters_; }
+  const EpisodeRecord& record() const { return record_; }
+  std::uint64_t seed() const { return record_.seed; }
+  std::uint64_t episode() const { return record_.episode; }
+  std::int32_t step() const { return record_.steps; }
+  EndReason reason() const { return record_.reason; }
+  bool over() const { return record_.reason != EndReason::kNone; }
+
+  /// Where a device is now: its own cell, or its carrier's.
+  Cell CellOf(std::int32_t device) const;
+
+  /// Which actions would not be ILLEGAL for a ship now. All moves for one out of play.
+  ActionMask LegalActions(std::int32_t ship) const;
+
+  /// Hash of the whole state that decides the future and what agents see; equal states give equal
+  /// hashes on any machine.
+  std::uint64_t Hash() const;
+
+  /// Writes an episode in progress as CBOR bytes.
+  std::string Save() const;
+  /// Continues a saved episode, bit for bit.
+  /// @throws InputError when the bytes are damaged, of another version or of another scenario;
+  ///         the farm is then as it was
+  void Load(const std::string& bytes);
+
+  /// Replaces disaster `id`, or adds one when id is their number: a bulletin arrives. A spec
+  /// without start keeps the present centre (a new one needs a start or a track).
+  /// @throws InputError on an id or spec out of range; the farm is then as it was
+  void SetDisaster(std::int32_t id, const DisasterSpec& spec);
+  inline static constexpr std::int32_t kMaxDisasters = 64;
+
+ private:
+  void MoveDisasters();
+  void IssueBulletins();
+  void Act(std::int32_t id, Action action);
+  void Move(Ship& ship, std::int32_t id, Action action);
+  void PickUp(Ship& ship, std::int32_t id);
+  void DropOff(Ship& ship, std::int32_t id);
+  void Damage();
+  void Reward();
+  void Finish();
+  void CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits);
+  void ResetTracks();
+  void CheckConsistent() const;
+  bool Occupied(std::int32_t index) const;
+  void IndexShips();
+  std::int32_t DeviceToPickUp(const Ship& ship) const;
+
+  std::shared_ptr<const Scenario> scenario_;
+  std::shared_ptr<Layout> own_layout_;  // null when the layout is shared
+  std::shared_ptr<const Layout> layout_;
+  std::unique_ptr<LayoutGenerator> generator_;
+  std::vector<Ship> ships_;
+  std::vector<std::int32_t> ship_index_;  // each ship's linear cell; kNone: out of play
+  std::vector<Device> devices_;
+  std::vector<Disaster> disasters_;
+  std::vector<Track> tracks_;
+  bool tracks_changed_{};  // by SetDisaster or Load, in this episode
+  EpisodeRecord record_;
+  std::int32_t remaining_{};  // devices not yet delivered
+};
+
+/// Rock or island crashes cost a device aboard this share of its health.
+float CrashDamage(const Scenario& scenario, std::uint8_t bits, float crash_reward);
+
+}  // namespace aquafarm

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Where the grid lies on the globe: the tangent plane (ENU) at the centre of cell (0, 0) on the
+/// WGS 84 ellipsoid, x east and y north, in cells.
+
+#include <array>
+
+#include "aquafarm/scenario.h"
+
+namespace aquafarm {
+
+/// Turns WGS 84 positions into grid coordinates and back.
+class GeoFrame {
+ public:
+  /// @param cell_size_m above 0
+  GeoFrame(GeoPoint origin, double cell_size_m) : origin_(origin), cell_size_m_(cell_size_m) {}
+
+  /// Returns (x, y) of a point of the ellipsoid [cells]; its height over the plane is dropped.
+  std::array<double, 2> ToGrid(GeoPoint point) const;
+  /// Returns the position of a point of the plane [cells]; its height over the ellipsoid is
+  /// dropped.
+  GeoPoint ToGeo(double x, double y) const;
+
+ private:
+  GeoPoint origin_;
+  double cell_size_m_;
+};
+
+}  // namespace aquafarm

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Chance, keyed by (seed, episode, purpose, stream): counter-based, so that no order of calls, no
+/// number of threads and no compiler changes a draw. Philox4x32-10 of Random123 (Salmon et al.,
+/// "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
+
+#include <array>
+#include <cstdint>
+
+namespace aquafarm {
+
+/// What a draw is for; every purpose has streams of its own.
+enum class Purpose : std::uint8_t {
+  kLayout,
+  kStart,
+  kDisasterSpawn,
+  kDisasterTurn,
+  kDamage,
+  kSensors,
+  kExploration,  ///< an agent's own choices
+  kLearner,      ///< initial weights, replay samples
+};
+
+/// Identifies an independent sequence of draws.
+struct StreamKey {
+  std::uint64_t seed{};
+  std::uint64_t episode{};
+  Purpose purpose{};
+  std::uint32_t stream{};  ///< ship, disaster, …; below 2^24
+};
+
+/// Returns four 32-bit draws, a pure function of key and index.
+std::array<std::uint32_t, 4> Draw(const StreamKey& key, std::uint32_t index);
+
+/// Maps a draw to [0, 1) with 24 bits, exactly.
+constexpr float ToUnit(std::uint32_t draw) {
+  return static_cast<float>(draw >> 8U) * (1.0F / 16777216.0F);
+}
+/// Maps a draw to [0, count); count > 0.
+constexpr std::uint32_t ToBelow(std::uint32_t draw, std::uint32_t count) {
+  return static_cast<std::uint32_t>((static_cast<std::uint64_t>(draw) * count) >> 32U);
+}
+
+/// Walks along one stream; its position is plain data, so it is saved by copying.
+class RandomStream {
+ public:
+  RandomStream() = default;
+  explicit RandomStream(const StreamKey& key) : key_(key) {}
+
+  std::uint32_t Next() {
+    if (used_ == 4) {
+      block_ = Draw(key_, index_++);
+      used_ = 0;
+    }
+    return block_[used_++];
+  }
+  /// Uniform in [0, 1).
+  float Unit() { return ToUnit(Next()); }
+  /// Uniform in [min, max).
+  float Uniform(float min, float max) { return min + (max - min) * Unit(); }
+  /// Uniform in [0, count).
+  std::uint32_t Below(std::uint32_t count) { return ToBelow(Next(), count); }
+
+  const StreamKey& key() const { return key_; }
+  /// Number of draws taken so far.
+  std::uint64_t position() const { return static_cast<std::uint64_t>(index_) * 4 - (4 - used_); }
+  /// Continues as if `position` draws had been taken.
+  void Seek(std::uint64_t position) {
+    index_ = static_cast<std::uint32_t>(position / 4);
+    used_ = 4;
+    for (std::uint64_t i = 0; i < position % 4; ++i) Next();
+  }
+
+ private:
+  StreamKey key_{};
+  std::uint32_t index_{};
+  std::uint32_t used_{4};
+  std::array<std::uint32_t, 4> block_{};
+};
+
+}  // namespace aquafarm

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Every number of a farm, as plain structs with the defaults of the paper or, where it is silent,
+/// of docs/model.md. scenario_yaml.h is the only reader and writer of these as files.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "aquafarm/types.h"
+
+namespace aquafarm {
+
+/// Most rings (radius and risk pairs) that one disaster may have.
+inline constexpr int kMaxRings = 4;
+/// Largest farm on a side [cells].
+inline constexpr int kMaxSide = 4096;
+
+/// An inclusive range that a number is drawn from.
+template <typename T>
+struct Range {
+  T min{};
+  T max{};
+};
+
+/// A place on the globe, WGS 84 [degrees].
+struct GeoPoint {
+  double latitude{};
+  double longitude{};
+};
+
+enum class LayoutMode : std::uint8_t { kFixed, kPerEpisode };
+enum class DevicePlacement : std::uint8_t { kUniform, kLinear, kRandom, kExplicit };
+enum class Border : std::uint8_t { kReflect, kWrap, kLeave };
+enum class ViewMode : std::uint8_t { kFull, kPartial };
+enum class RewardSharing : std::uint8_t { kIndividual, kTeam };
+std::string_view ToString(LayoutMode value);
+std::string_view ToString(DevicePlacement value);
+std::string_view ToString(Border value);
+std::string_view ToString(ViewMode value);
+std::string_view ToString(RewardSharing value);
+
+/// A block of island cells.
+struct IslandBlock {
+  Cell south_west{};
+  std::int32_t width{1};
+  std::int32_t height{1};
+};
+
+/// Rocks: `count` drawn ones, or exactly the cells of `cells`; each with its own fixed reward.
+struct RockSpec {
+  Range<std::int32_t> count{20, 40};  // [decided]
+  Range<float> reward{-5.0F, -1.0F};  // §2.5
+  std::vector<Cell> cells;            ///< explicit rocks; then count is not used
+};
+
+/// Ports: `count` drawn water cells at a shore, or exactly `cells`.
+struct PortSpec {
+  std::int32_t count{4};  // §2.4
+  std::vector<Cell> cells;
+};
+
+struct ShipSpec {
+  std::int32_t count{1};
+  std::int32_t capacity{1};  ///< devices aboard at most [decided]
+};
+
+/// One device of an explicit placement.
+struct DeviceSite {
+  Cell cell{};
+  DeviceKind kind{};
+  std::optional<float> value;  ///< none: drawn from DeviceSpec::value
+  bool self_propelled{};
+};
+
+/// Devices: `count` placed by `placement`, kinds taken in turn from `kinds`; or `sites`.
+struct DeviceSpec {
+  DevicePlacement placement{DevicePlacement::kRandom};
+  std::int32_t count{3};
+  std::vector<DeviceKind> kinds{DeviceKind::kTemporaryBreeding, DeviceKind::kMonitoring,
+                                DeviceKind::kBreedingRelease, DeviceKind::kDeepWaterBreeding};
+  Range<float> value{50.0F, 100.0F};
+  float health{1.0F};  ///< at the start, in (0, 1]
+  std::int32_t self_propelled{
+      0};                         ///< so many of the drawn devices, the last ones, drive themselves
+  std::vector<DeviceSite> sites;  ///< for DevicePlacement::kExplicit
+  std::int32_t Total() const {
+    return placement == DevicePlacement::kExplicit ? static_cast<std::int32_t>(sites.size())
+                                                   : count;
+  }
+};
+
+/// A timed waypoint of a disaster; between two of them everything but grade is interpolated.
+struct Waypoint {
+  float step{};  ///< steps since the episode's start; may lie before it
+  float x{};     ///< [cells]
+  float y{};
+  std::int32_t grade{1};
+  std::vector<float> radii;  ///< [cells], ascending; as many as the disaster has risks
+  std::vector<float> risks;  ///< as radii
+};
+
+/// DisasterInfo of §2.1, with how it moves.
+struct DisasterSpec {
+  DisasterKind kind{DisasterKind::kTyphoon};
+  std::int32_t grade{3};                            ///< 1 blue … 4 red
+  std::vector<float> radii{2.0F, 4.0F, 6.0F};       ///< [cells], ascending
+  std::vector<float> risks{-20.0F, -10.0F, -5.0F};  ///< each in [-20, -5], worst first
+  float speed{0.5F};                                ///< [cells/step]
+  std::optional<std::int32_t> heading_deg;  ///< compass bearing it moves towards; none: drawn
+  float turn_probability{0.1F};             ///< each step, by +-45 degrees
+  float radius_growth{0.0F};                ///< [cells/step], added to every radius
+  Border border{Border::kReflect};
+  std::int32_t duration{1000};                ///< [steps] [decided]
+  std::optional<std::array<float, 2>> start;  ///< centre (x, y) [cells]; none: drawn
+  std::vector<Waypoint> track;                ///< if not empty, it moves along this instead
+};
+
+/// The rewards of §2.5.
+struct RewardSpec {
+  float island_crash{-20.0F};
+  float pickup{20.0F};
+  float drop_off{20.0F};
+  float illegal{-10.0F};
+  float collision{-5.0F};  // [decided]
+  float step{-1.0F};
+  RewardSharing sharing{RewardSharing::kIndividual};
+};
+
+struct DamageSpec {
+  float crash_probability{1.0F};
+  float island_damage{0.2F};      ///< health lost aboard in a crash on an island
+  float exposure_damage{0.001F};  ///< health lost per step and unit of |risk|
+};
+
+/// What an agent sees (§2.3).
+struct ViewSpec {
+  ViewMode mode{ViewMode::kFull};
+  float sensor_radius{5.0F};
+  std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
+  float bulletin_noise{0.0F};        ///< centre off by up to this on each axis [cells]
+};
+
+/// A whole farm.
+struct Scenario {
+  std::string name{"unnamed"};
+  std::string description;
+  std::int32_t width{25};
+  std::int32_t height{25};
+  double cell_size_m{1000.0};
+  double step_duration_s{180.0};
+  std::optional<GeoPoint> origin;          ///< the centre of the south-west cell (0, 0)
+  std::optional<std::int64_t> start_time;  ///< UTC of step 0 [s since 1970]
+  std::int32_t step_limit{5000};           // §4.2
+
+  LayoutMode layout{LayoutMode::kFixed};
+  std::uint64_t layout_seed{1};
+  std::vector<IslandBlock> islands;
+  RockSpec rocks;
+  PortSpec ports;
+  ShipSpec ships;
+  DeviceSpec devices;
+  std::vector<DisasterSpec> disasters;
+  RewardSpec rewards;
+  DamageSpec damage;
+  ViewSpec view;
+
+  /// Hash of the canonical file text; set by the reader, the same for files that mean the same.
+  std::uint64_t hash{};
+
+  std::int32_t CellCount() const { return width * height; }
+  /// Devices that are agents of their own.
+  std::int32_t SelfPropelledCount() const;
+  /// Ships and self-propelled devices: the number of actions a step takes. Rescue ships come first.
+  std::int32_t AgentCount() const { return ships.count + SelfPropelledCount(); }
+};
+
+/// Checks one disaster on its own: numbers finite and in range, radii ascending, as many risks as
+/// radii. Serves scenario files and set_disaster alike.
+/// @throws InputError "radii[1]: got 2, expected more than radii[0] = 4"
+void ValidateDisaster(const DisasterSpec& disaster);
+
+/// Checks what a reader of single keys cannot see: cells on the map, things not on one another,
+/// counts that fit. A Scenario made in code must pass it before a Farm is built.
+/// @throws InputError with the key path first
+void ValidateScenario(const Scenario& scenario);
+
+}  // namespace aquafarm

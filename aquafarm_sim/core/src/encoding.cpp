@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/encoding.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+
+#include "aquafarm/check.h"
+
+namespace aquafarm {
+namespace {
+
+constexpr std::int32_t kSelfFeatures = 5;
+constexpr std::int32_t kDeviceFeatures = 5;
+constexpr std::int32_t kPortFeatures = 2;
+constexpr std::int32_t kDisasterFeatures = 7;
+constexpr std::int32_t kShipFeatures = 3;
+// Scales: devices' highest paper value, the worst risk of §2.1.
+constexpr float kValueScale = 1.0F / 100.0F;
+constexpr float kRiskScale = 1.0F / 20.0F;
+// Steps that the forecast plane looks ahead.
+constexpr float kForecastSteps = 10.0F;
+
+// The painted planes come first, so that a run past a plane's end stays inside the buffer.
+enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, kCargo, kOthers };
+
+std::uint8_t ToByte(float part) {
+  return static_cast<std::uint8_t>(std::min(std::max(part, 0.0F), 1.0F) * 255.0F + 0.5F);
+}
+
+// The part of an episode's time that is left.
+float TimeLeft(const View& view) {
+  std::int32_t horizon = 0;
+  for (const DisasterSpec& disaster : view.scenario->disasters) {
+    horizon = std::max(horizon, disaster.duration);
+  }
+  horizon = horizon == 0 ? view.scenario->step_limit : std::min(horizon, view.scenario->step_limit);
+  return 1.0F - static_cast<float>(view.step) / static_cast<float>(horizon);
+}
+
+// The cells [x0, x1) × [y0, y1) that a disaster may reach.
+struct Box {
+  std::int32_t x0, x1, y0, y1;
+};
+
+Box ReachedBox(float cx, float cy, float reach, std::int32_t width, std::int32_t height) {
+  const auto clamp = [](float value, std::int32_t limit) {
+    return static_cast<std::int32_t>(std::min(std::max(value, 0.0F), static_cast<float>(limit)));
+  };
+  return {clamp(cx - reach, width), clamp(cx + reach + 1.0F, width), clamp(cy - reach, height),
+          clamp(cy + reach + 1.0F, height)};
+}
+
+// Columns painted at once. A row's last run may pass its end, and so the plane's, by less than
+// this; cells there get level 0, which leaves them as they are.
+constexpr std::int32_t kRun = 16;
+
+// Paints a disaster's footprint, the worse kept where one lies already: per cell the same float
+// comparisons as RiskOf, written in runs of fixed length that compilers turn into vector code.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#endif
+void PaintRings(float cx, float cy, const float* ring_squared, const std::int32_t* levels, Box box,
+                std::int32_t width, std::uint8_t* plane) {
+  const float r0 = ring_squared[0];
+  const float r1 = ring_squared[1];
+  const float r2 = ring_squared[2];
+  const float r3 = ring_squared[3];
+  const std::int32_t l0 = levels[0];
+  const std::int32_t l1 = levels[1];
+  const std::int32_t l2 = levels[2];
+  const std::int32_t l3 = levels[3];
+  for (std::int32_t x0 = box.x0; x0 < box.x1; x0 += kRun) {
+    float dx_squared[kRun];
+    for (std::int32_t i = 0; i < kRun; ++i) {
+      const float dx = cx - static_cast<float>(x0 + i);
+      dx_squared[i] = x0 + i < width ? dx * dx : std::numeric_limits<float>::infinity();
+    }
+    for (std::int32_t y = box.y0; y < box.y1; ++y) {
+      const float dy = cy - static_cast<float>(y);
+      const float dy_squared = dy * dy;
+      std::uint8_t* row = plane + static_cast<std::ptrdiff_t>(y) * width + x0;
+      for (std::int32_t i = 0; i < kRun; ++i) {
+        const float d2 = dx_squared[i] + dy_squared;
+        std::int32_t level = d2 <= r3 ? l3 : 0;
+        level = d2 <= r2 ? l2 : level;
+        level = d2 <= r1 ? l1 : level;
+        level = d2 <= r0 ? l0 : level;
+        row[i] = static_cast<std::uint8_t>(std::max<std::int32_t>(level, row[i]));
+      }
+    }
+  }
+}
+
+// Paints a disaster `ahead` steps along its present heading.
+void PaintDisaster(const Disaster& disaster, float ahead, std::int32_t width, std::int32_t height,
+                   std::uint8_t* plane) {
+  if (!disaster.active() || disaster.rings == 0) return;
+  const float cx = disaster.x + ahead * disaster.dx;
+  const float cy = disaster.y + ahead * disaster.dy;
+  const Box box = ReachedBox(cx, cy, disaster.reach(), width, height);
+  if (box.x0 >= box.x1 || box.y0 >= box.y1) return;
+  std::array<float, kMaxRings> ring_squared;
+  std::array<std::int32_t, kMaxRings> levels{};
+  ring_squared.fill(-1.0F);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
+    ring_squared[k] = disaster.radius_squared[k];
+    levels[k] = ToByte(-disaster.risk[k] * kRiskScale);
+  }
+  PaintRings(cx, cy, ring_squared.data(), levels.data(), box, width, plane);
+}
+
+}  // namespace
+
+Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
+  const std::int32_t devices = scenario.devices.Total();
+  fetchable_ = devices - scenario.SelfPropelledCount();
+  scale_ = 1.0F / static_cast<float>(std::max(scenario.width, scenario.height));
+  planes_size_ =
+      static_cast<std::size_t>(kPlaneCount) * static_cast<std::size_t>(scenario.CellCount());
+  const auto ports = scenario.ports.cells.empty()
+                         ? scenario.ports.count
+                         : static_cast<std::int32_t>(scenario.ports.cells.size());
+  feature_count_ = kSelfFeatures + kMoveCount + devices * kDeviceFeatures + ports * kPortFeatures +
+                   static_cast<std::int32_t>(scenario.disasters.size()) * kDisasterFeatures +
+                   (scenario.AgentCount() - 1) * kShipFeatures;
+
+  // Base-3 codes grow as 3^D: beyond this many devices no table would fit anyway.
+  constexpr std::int32_t kMostDevices = 14;
+  if (fetchable_ > kMostDevices) return;
+  std::size_t codes = 1;
+  for (std::int32_t i = 0; i < fetchable_; ++i) codes *= 3;
+  status_rank_.assign(codes, kNone);
+  for (std::size_t code = 0; code < codes; ++code) {
+    std::int32_t aboard = 0;
+    for (std::size_t rest = code; rest > 0; rest /= 3) aboard += rest % 3 == 1 ? 1 : 0;
+    if (aboard > scenario.ships.capacity) continue;
+    status_rank_[code] = static_cast<std::int32_t>(status_code_.size());
+    status_code_.push_back(static_cast<std::int32_t>(code));
+  }
+  const std::uint64_t states = static_cast<std::uint64_t>(status_code_.size()) *
+                               static_cast<std::uint64_t>(scenario.CellCount());
+  state_count_ = states <= kMaxStates ? static_cast<std::uint32_t>(states) : 0;
+}
+
+std::uint32_t Encoder::Index(const Farm& farm, std::int32_t ship) const {
+  std::int32_t code = 0;
+  for (const Device& device : farm.devices()) {
+    if (device.self_propelled) continue;
+    const std::int32_t status = device.status == DeviceStatus::kDeployed ? 0
+                                : device.carrier == ship                 ? 1
+                                                                         : 2;
+    code = code * 3 + status;
+  }
+  const std::int32_t rank = status_rank_[static_cast<std::size_t>(code)];
+  const Cell cell = farm.ships()[static_cast<std::size_t>(ship)].cell;
+  return static_cast<std::uint32_t>(rank * scenario_.CellCount() +
+                                    LinearIndex(cell, scenario_.width));
+}
+
+Encoder::TabularState Encoder::Decode(std::uint32_t index) const {
+  AQUAFARM_CHECK_LT(index, state_count_);
+  const auto cells = static_cast<std::uint32_t>(scenario_.CellCount());
+  TabularState state;
+  const auto cell = static_cast<std::int32_t>(index % cells);
+  state.cell = {cell % scenario_.width, cell / scenario_.width};
+  state.status.resize(static_cast<std::size_t>(fetchable_));
+  std::int32_t code = status_code_[index / cells];
+  for (std::size_t device = state.status.size(); device-- > 0; code /= 3) {
+    state.status[device] = static_cast<DeviceStatus>(code % 3);
+  }
+  return state;
+}
+
+void Encoder::Features(const View& view, float* out) const {
+  const Layout& layout = *view.layout;
+  const auto east = [&](Cell cell) { return static_cast<float>(cell.x - view.self.x) * scale_; };
+  const auto north = [&](Cell cell) { return static_cast<float>(cell.y - view.self.y) * scale_; };
+  *out++ = 2.0F * static_cast<float>(view.self.x) * scale_ - 1.0F;
+  *out++ = 2.0F * static_cast<float>(view.self.y) * scale_ - 1.0F;
+  *out++ = TimeLeft(view);
+  *out++ = static_cast<float>(view.capacity - view.aboard) / static_cast<float>(view.capacity);
+  *out++ = KnownRiskAt(view, view.self) * kRiskScale;
+  for (const Cell move : kMoves) {
+    const Cell to{view.self.x + move.x, view.self.y + move.y};
+    const bool off =
+        static_cast<std::uint32_t>(to.x) >= static_cast<std::uint32_t>(scenario_.width) ||
+        static_cast<std::uint32_t>(to.y) >= static_cast<std::uint32_t>(scenario_.height);
+    *out++ = off || (layout.bits(to) & kBlockedBits) != 0 ? 1.0F : 0.0F;
+  }
+  for (const KnownDevice& device : view.devices) {
+    *out++ = east(device.cell);
+    *out++ = north(device.cell);
+    *out++ = device.status == DeviceStatus::kDeployed ? 1.0F : 0.0F;
+    *out++ = device.aboard_self ? 1.0F : 0.0F;
+    *out++ = device.health * device.value * kValueScale;
+  }
+  for (const Cell port : layout.ports) {
+    *out++ = east(port);
+    *out++ = north(port);
+  }
+  for (std::size_t id = 0; id < scenario_.disasters.size(); ++id) {
+    const KnownDisaster& known = view.disasters[id];
+    if (!known.known || !known.belief.active()) {
+      out = std::fill_n(out, kDisasterFeatures, 0.0F);
+      continue;
+    }
+    const Disaster& disaster = known.belief;
+    *out++ = 1.0F;
+    *out++ = (disaster.x - static_cast<float>(view.self.x)) * scale_;
+    *out++ = (disaster.y - static_cast<float>(view.self.y)) * scale_;
+    *out++ = disaster.dx;
+    *out++ = disaster.dy;
+    *out++ = disaster.reach() * scale_;
+    *out++ = known.age == 0 ? 0.0F
+                            : static_cast<float>(known.age) /
+                                  static_cast<float>(view.scenario->view.bulletin_period);
+  }
+  for (const KnownShip& other : view.others) {
+    *out++ = other.visible ? 1.0F : 0.0F;
+    *out++ = other.visible ? east(other.cell) : 0.0F;
+    *out++ = other.visible ? north(other.cell) : 0.0F;
+  }
+}
+
+void Encoder::Planes(const View& view, std::uint8_t* out) const {
+  const Layout& layout = *view.layout;
+  const auto cells = static_cast<std::size_t>(scenario_.CellCount());
+  const auto plane = [&](Plane which) { return out + which * cells; };
+  const auto at = [&](Plane which, Cell cell) -> std::uint8_t& {
+    return plane(which)[LinearIndex(cell, scenario_.width)];
+  };
+  std::memset(out, 0, kObstacle * cells);
+  std::memcpy(plane(kObstacle), layout.obstacle.data(), cells);
+  std::memset(plane(kPort), 0, (kPlaneCount - kPort) * cells);
+  for (const Cell port : layout.ports) at(kPort, port) = 255;
+  float cargo = 0.0F;
+  for (const KnownDevice& device : view.devices) {
+    const float worth = device.health * device.value * kValueScale;
+    if (device.aboard_self) cargo += worth;
+    if (device.status == DeviceStatus::kDeployed) at(kDevice, device.cell) = ToByte(worth);
+  }
+  if (view.in_play) at(kSelf, view.self) = 255;
+  if (view.aboard > 0) at(kCargo, view.self) = ToByte(cargo / static_cast<float>(view.capacity));
+  for (const KnownShip& other : view.others) {
+    if (other.visible) at(kOthers, other.cell) = 255;
+  }
+  for (const KnownDisaster& known : view.disasters) {
+    if (!known.known) continue;
+    PaintDisaster(known.belief, 0.0F, scenario_.width, scenario_.height, plane(kRisk));
+    PaintDisaster(known.belief, static_cast<float>(known.age) + kForecastSteps, scenario_.width,
+                  scenario_.height, plane(kForecast));
+  }
+}
+
+std::vector<std::string> Encoder::feature_names() const {
+  std::vector<std::string> names{"self.x", "self.y", "time_left", "free_capacity", "risk_here"};
+  for (int move = 0; move < kMoveCount; ++move) {
+    names.push_back("blocked." + std::string(ToString(static_cast<Action>(move))));
+  }
+  const auto add = [&names](const std::string& thing, std::int32_t id,
+                            std::initializer_list<const char*> parts) {
+    for (const char* part : parts) names.push_back(thing + std::to_string(id) + '.' + part);
+  };
+  for (std::int32_t i = 0; i < scenario_.devices.Total(); ++i) {
+    add("device", i, {"east", "north", "deployed", "aboard", "worth"});
+  }
+  const auto ports = scenario_.ports.cells.empty()
+                         ? scenario_.ports.count
+                         : static_cast<std::int32_t>(scenario_.ports.cells.size());
+  for (std::int32_t i = 0; i < ports; ++i) add("port", i, {"east", "north"});
+  for (std::size_t i = 0; i < scenario_.disasters.size(); ++i) {
+    add("disaster", static_cast<std::int32_t>(i),
+        {"known", "east", "north", "motion_east", "motion_north", "reach", "age"});
+  }
+  for (std::int32_t i = 0; i + 1 < scenario_.AgentCount(); ++i) {
+    add("other", i, {"visible", "east", "north"});
+  }
+  return names;
+}
+
+std::vector<std::string> Encoder::plane_names() {
+  return {"risk", "forecast", "obstacle", "port", "device", "self", "cargo", "others"};
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/scenario.h"
+
+#include <algorithm>
+
+#include "scenario_keys.h"
+
+namespace aquafarm {
+namespace {
+
+using internal::At;
+using internal::FieldError;
+using internal::Format;
+
+template <typename Enum, std::size_t N>
+std::string_view NameOf(Enum value, const std::array<std::string_view, N>& names) {
+  static_assert(N == internal::kNameCount<Enum>);
+  const auto i = static_cast<std::size_t>(value);
+  AQUAFARM_CHECK_LT(i, N);
+  return names[i];
+}
+
+// Free disasters: every ring wider than the one inside it. Waypoints: never narrower, and 0 where a
+// ring is absent at that time.
+void CheckRings(const std::string& path, const std::vector<float>& radii,
+                const std::vector<float>& risks, std::size_t rings, bool waypoint) {
+  const std::string radii_path = internal::Join(path, "radii");
+  if (radii.size() != rings) {
+    throw FieldError(radii_path,
+                     "got " + std::to_string(radii.size()) +
+                         " entries, expected as many as risks: " + std::to_string(rings));
+  }
+  if (risks.size() != rings) {
+    throw FieldError(
+        internal::Join(path, "risks"),
+        "got " + std::to_string(risks.size()) +
+            " entries, expected as many as risks of the disaster: " + std::to_string(rings));
+  }
+  for (std::size_t i = 0; i < rings; ++i) {
+    const float inner = i == 0 ? 0.0F : radii[i - 1];
+    if (!waypoint && radii[i] <= inner) {
+      throw FieldError(At(radii_path, i), "got " + Format(radii[i]) + ", expected more than " +
+                                              (i == 0 ? "0" : At("radii", i - 1) + " = ") +
+                                              (i == 0 ? "" : Format(inner)));
+    }
+    if (radii[i] < inner) {
+      throw FieldError(At(radii_path, i), "got " + Format(radii[i]) + ", expected at least " +
+                                              At("radii", i - 1) + " = " + Format(inner));
+    }
+    if (i > 0 && risks[i] < risks[i - 1]) {
+      throw FieldError(At(internal::Join(path, "risks"), i),
+                       "got " + Format(risks[i]) + ", expected at least " + At("risks", i - 1) +
+                           " = " + Format(risks[i - 1]) + ", the worst first");
+    }
+  }
+}
+
+// What the ranges of single keys do not say.
+void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
+  const std::size_t rings = disaster.risks.size();
+  CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
+  for (std::size_t i = 0; i < disaster.track.size(); ++i) {
+    const Waypoint& waypoint = disaster.track[i];
+    const std::string here = At(internal::Join(path, "track"), i);
+    CheckRings(here, waypoint.radii, waypoint.risks, rings, true);
+    if (i == 0 || waypoint.step > disaster.track[i - 1].step) continue;
+    throw FieldError(internal::Join(here, "step"),
+                     "got " + Format(waypoint.step) + ", expected more than that of " +
+                         At("track", i - 1) + ", " + Format(disaster.track[i - 1].step));
+  }
+}
+
+// Marks what stands where and refuses a second thing on a cell.
+class Occupancy {
+ public:
+  explicit Occupancy(const Scenario& scenario)
+      : scenario_(scenario), what_(static_cast<std::size_t>(scenario.CellCount()), nullptr) {}
+
+  void PutIsland(const std::string& path, const IslandBlock& block) {
+    const Cell first = block.south_west;
+    const Cell last{first.x + block.width - 1, first.y + block.height - 1};
+    CheckOnMap(path, first);
+    CheckOnMap(path, last);
+    for (std::int32_t y = first.y; y <= last.y; ++y) {
+      for (std::int32_t x = first.x; x <= last.x; ++x) At({x, y}) = "an island";
+    }
+  }
+
+  void Put(const std::string& path, Cell cell, const char* what) {
+    CheckOnMap(path, cell);
+    if (At(cell) != nullptr) {
+      throw FieldError(path, "got " + Name(cell) + ", expected a free cell; there is " + At(cell));
+    }
+    At(cell) = what;
+  }
+
+  std::int32_t FreeCells() const {
+    return static_cast<std::int32_t>(std::count(what_.begin(), what_.end(), nullptr));
+  }
+
+ private:
+  static std::string Name(Cell cell) { return "(" + Format(cell.x) + ", " + Format(cell.y) + ")"; }
+  void CheckOnMap(const std::string& path, Cell cell) const {
+    if (cell.x >= 0 && cell.x < scenario_.width && cell.y >= 0 && cell.y < scenario_.height) return;
+    throw FieldError(path, "got " + Name(cell) + ", expected a cell of the map, (0, 0) to " +
+                               Name({scenario_.width - 1, scenario_.height - 1}));
+  }
+  const char*& At(Cell cell) {
+    return what_[static_cast<std::size_t>(cell.y * scenario_.width + cell.x)];
+  }
+
+  const Scenario& scenario_;
+  std::vector<const char*> what_;
+};
+
+void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const char* of_what) {
+  if (wanted > free) {
+    throw FieldError(path, "got " + Format(wanted) + ", expected at most the " + Format(free) +
+                               " free water cells" + of_what);
+  }
+  free -= wanted;
+}
+
+void CheckPlaces(const Scenario& scenario) {
+  Occupancy occupancy(scenario);
+  const auto put_all = [&occupancy](const std::string& path, const auto& cells, const char* what) {
+    for (std::size_t i = 0; i < cells.size(); ++i) occupancy.Put(At(path, i), cells[i], what);
+  };
+  for (std::size_t i = 0; i < scenario.islands.size(); ++i) {
+    occupancy.PutIsland(At("layout.islands", i), scenario.islands[i]);
+  }
+  put_all("layout.rocks.cells", scenario.rocks.cells, "a rock");
+  put_all("layout.ports.cells", scenario.ports.cells, "a port");
+  const DeviceSpec& devices = scenario.devices;
+  const bool chosen = devices.placement == DevicePlacement::kExplicit;
+  for (std::size_t i = 0; chosen && i < devices.sites.size(); ++i) {
+    occupancy.Put(At("layout.devices.sites", i) + ".cell", devices.sites[i].cell, "a device");
+  }
+  std::int32_t free = occupancy.FreeCells();
+  const bool drawn_ports = scenario.ports.cells.empty();
+  CheckFits("layout.ports.count", drawn_ports ? scenario.ports.count : 0, free, "");
+  CheckFits("layout.devices.count", chosen ? 0 : devices.count, free, " beside the ports");
+  CheckFits("layout.rocks.count[1]", scenario.rocks.cells.empty() ? scenario.rocks.count.max : 0,
+            free, " beside the ports and devices");
+}
+
+void CheckAgents(const Scenario& scenario) {
+  const DeviceSpec& devices = scenario.devices;
+  if (devices.Total() == 0) {
+    throw FieldError("layout.devices.sites", "got 0 entries, expected at least 1");
+  }
+  if (devices.placement != DevicePlacement::kExplicit && devices.self_propelled > devices.count) {
+    throw FieldError("layout.devices.self_propelled",
+                     "got " + Format(devices.self_propelled) +
+                         ", expected at most layout.devices.count = " + Format(devices.count));
+  }
+  const std::int32_t fetched = devices.Total() - scenario.SelfPropelledCount();
+  if (scenario.ships.count == 0 && fetched > 0) {
+    throw FieldError("ships.count", "got 0, expected at least 1: " + Format(fetched) +
+                                        " devices do not drive themselves");
+  }
+}
+
+}  // namespace
+
+std::string_view ToString(LayoutMode value) {
+  static constexpr std::array<std::string_view, 2> kNames{"fixed", "per_episode"};
+  return NameOf(value, kNames);
+}
+
+std::string_view ToString(DevicePlacement value) {
+  static constexpr std::array<std::string_view, 4> kNames{"uniform", "linear", "random",
+                                                          "explicit"};
+  return NameOf(value, kNames);
+}
+
+std::string_view ToString(Border value) {
+  static constexpr std::array<std::string_view, 3> kNames{"reflect", "wrap", "leave"};
+  return NameOf(value, kNames);
+}
+
+std::string_view ToString(ViewMode value) {
+  static constexpr std::array<std::string_view, 2> kNames{"full", "partial"};
+  return NameOf(value, kNames);
+}
+
+std::string_view ToString(RewardSharing value) {
+  static constexpr std::array<std::string_view, 2> kNames{"individual", "team"};
+  return NameOf(value, kNames);
+}
+
+std::int32_t Scenario::SelfPropelledCount() const {
+  if (devices.placement != DevicePlacement::kExplicit) return devices.self_propelled;
+  return static_cast<std::int32_t>(
+      std::count_if(devices.sites.begin(), devices.sites.end(),
+                    [](const DeviceSite& site) { return site.self_propelled; }));
+}
+
+void ValidateDisaster(const DisasterSpec& disaster) {
+  internal::FieldChecker checker;
+  internal::VisitDisaster(checker, disaster, nullptr);
+  CheckDisaster("", disaster);
+}
+
+void ValidateScenario(const Scenario& scenario) {
+  internal::FieldChecker checker;
+  internal::WorldFrame unused;
+  internal::VisitScenario(checker, scenario, unused);
+  for (std::size_t i = 0; i < scenario.disasters.size(); ++i) {
+    CheckDisaster(At("disasters", i), scenario.disasters[i]);
+  }
+  CheckAgents(scenario);
+  CheckPlaces(scenario);
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/scenario_yaml.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "aquafarm/hash.h"
+#include "yaml_reader.h"
+#include "yaml_writer.h"
+
+namespace aquafarm {
+namespace internal {
+
+void YamlWriter::Line(const char* key, const std::string& value) {
+  text_.append(dash_ ? depth_ - 2 : depth_, ' ');
+  if (dash_) text_ += "- ";
+  dash_ = false;
+  text_ += key;
+  text_ += value.empty() ? ":" : ": " + value;
+  text_ += '\n';
+}
+
+std::string YamlWriter::Value(const std::string& value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    if (c == '"' || c == '\\') text += '\\';
+    if (c == '\n') {
+      text += "\\n";
+    } else {
+      text += c;
+    }
+  }
+  return text + '"';
+}
+
+void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path,
+             Waypoint& waypoint) {
+  if (frame == nullptr || !frame->grid) {
+    throw FieldError(Join(path, "latitude"), "needs grid.origin, which is missing");
+  }
+  if (!frame->start_time)
+    throw FieldError(Join(path, "time"), "needs time.start, which is missing");
+  const std::array<double, 2> place = frame->grid->ToGrid(fix.point);
+  const double seconds = static_cast<double>(fix.time - *frame->start_time);
+  waypoint.step = static_cast<float>(seconds / frame->step_duration_s);
+  waypoint.x = static_cast<float>(place[0]);
+  waypoint.y = static_cast<float>(place[1]);
+  waypoint.radii.clear();
+  for (const float radius : fix.radii_km) {
+    waypoint.radii.push_back(static_cast<float>(radius * 1000.0 / frame->cell_size_m));
+  }
+}
+
+}  // namespace internal
+
+namespace {
+
+constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints are under 2 MiB
+
+std::string Place(const std::string& origin_name, int line) {
+  return line > 0 ? origin_name + ":" + std::to_string(line) + ": " : origin_name + ": ";
+}
+
+void CheckText(const std::string& text, const std::string& origin_name) {
+  if (text.size() > kMaxFileBytes) {
+    throw InputError(origin_name + ": got more than " + std::to_string(kMaxFileBytes) +
+                     " bytes, expected a scenario file");
+  }
+  int line = 1;
+  for (const char c : text) {
+    if (c == '\n') ++line;
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20U || c == '\n' || c == '\t' || c == '\r') continue;
+    throw InputError(Place(origin_name, line) + "got byte " + std::to_string(byte) +
+                     ", expected text (is this a binary file?)");
+  }
+}
+
+YAML::Node ParseDocument(const std::string& text, const std::string& origin_name) {
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() == 1) return documents[0];
+    throw InputError(origin_name + ": got " + std::to_string(documents.size()) +
+                     " YAML documents, expected 1");
+  } catch (const YAML::Exception& error) {
+    throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
+  }
+}
+
+std::string Write(const Scenario& scenario) {
+  internal::YamlWriter writer;
+  internal::WorldFrame unused;
+  internal::VisitScenario(writer, scenario, unused);
+  return writer.text();
+}
+
+}  // namespace
+
+Scenario LoadScenario(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kMaxFileBytes + 1, '\0');
+  if (file) file.read(&text[0], static_cast<std::streamsize>(text.size()));
+  if (!file.eof() && file.fail()) {
+    throw InputError(path +
+                     ": cannot read: " + (errno != 0 ? std::strerror(errno) : "not a plain file"));
+  }
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return ParseScenario(text, path);
+}
+
+Scenario ParseScenario(const std::string& text, const std::string& origin_name) {
+  CheckText(text, origin_name);
+  const YAML::Node document = ParseDocument(text, origin_name);
+  internal::LineMap lines;
+  lines.Put("", document);
+  try {
+    Scenario scenario;
+    internal::WorldFrame frame;
+    internal::YamlReader reader(document, "", lines);
+    internal::VisitScenario(reader, scenario, frame);
+    reader.Finish();
+    ValidateScenario(scenario);
+    scenario.hash = HashScenario(scenario);
+    return scenario;
+  } catch (const internal::FieldError& error) {
+    throw InputError(Place(origin_name, lines.Find(error.path)) + error.what());
+  } catch (const YAML::Exception& error) {
+    throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
+  }
+}
+
+std::string ToYaml(const Scenario& scenario) { return Write(scenario); }
+
+std::uint64_t HashScenario(const Scenario& scenario) {
+  Scenario rules = scenario;
+  rules.name.clear();
+  rules.description.clear();
+  return HashBytes(Write(rules));
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/view.h"
+
+#include <algorithm>
+
+namespace aquafarm {
+namespace {
+
+float SquaredDistance(Cell a, float x, float y) {
+  const float dx = static_cast<float>(a.x) - x;
+  const float dy = static_cast<float>(a.y) - y;
+  return dx * dx + dy * dy;
+}
+
+bool Within(Cell a, Cell b, float radius) {
+  return SquaredDistance(a, static_cast<float>(b.x), static_cast<float>(b.y)) <= radius * radius;
+}
+
+void ObserveDisaster(const Farm& farm, const Disaster& disaster, bool full, Cell self,
+                     KnownDisaster& known) {
+  const ViewSpec& view = farm.scenario().view;
+  known.belief = disaster;
+  known.age = 0;
+  // A ship senses a disaster when its edge is within the sensors' range [decided].
+  const float range = view.sensor_radius + disaster.reach();
+  known.visible = full || SquaredDistance(self, disaster.x, disaster.y) <= range * range;
+  known.known = known.visible || disaster.bulletin.step != kNone;
+  if (known.visible || !known.known) return;
+  const Bulletin& bulletin = disaster.bulletin;
+  known.age = farm.step() - bulletin.step;
+  known.belief.x = bulletin.x;
+  known.belief.y = bulletin.y;
+  known.belief.speed = bulletin.speed;
+  known.belief.heading_deg = bulletin.heading_deg;
+  const auto direction = HeadingVector(bulletin.heading_deg);
+  known.belief.dx = direction[0] * bulletin.speed;
+  known.belief.dy = direction[1] * bulletin.speed;
+}
+
+}  // namespace
+
+void Observe(const Farm& farm, std::int32_t ship, View& view) {
+  const Scenario& scenario = farm.scenario();
+  const std::vector<Ship>& ships = farm.ships();
+  const Ship& self = ships[static_cast<std::size_t>(ship)];
+  const bool full = scenario.view.mode == ViewMode::kFull;
+  const float radius = scenario.view.sensor_radius;
+  view.ship = ship;
+  view.self = self.cell;
+  view.in_play = self.in_play;
+  view.step = farm.step();
+  view.aboard = self.aboard;
+  view.capacity = scenario.ships.capacity;
+  view.scenario = &scenario;
+  view.layout = &farm.layout();
+
+  view.others.resize(ships.size() - 1);
+  for (std::size_t id = 0, k = 0; id < ships.size(); ++id) {
+    if (static_cast<std::int32_t>(id) == ship) continue;
+    KnownShip& known = view.others[k++];
+    known.id = static_cast<std::int32_t>(id);
+    known.cell = ships[id].cell;
+    known.visible = ships[id].in_play && (full || Within(self.cell, known.cell, radius));
+  }
+
+  view.devices.resize(farm.devices().size());
+  for (std::size_t id = 0; id < view.devices.size(); ++id) {
+    const Device& device = farm.devices()[id];
+    KnownDevice& known = view.devices[id];
+    const Cell cell = farm.CellOf(static_cast<std::int32_t>(id));
+    const bool visible = full || Within(self.cell, cell, radius);
+    // Out of sight, where another ship has carried it is not known, only where it was deployed.
+    known.cell = visible ? cell : view.layout->devices[id].cell;
+    known.status = device.status;
+    known.aboard_self = device.carrier == ship;
+    known.self_propelled = device.self_propelled;
+    known.health_known = visible;
+    known.health = known.health_known ? device.health : 1.0F;
+    known.value = device.value;
+  }
+
+  view.disasters.resize(farm.disasters().size());
+  for (std::size_t id = 0; id < view.disasters.size(); ++id) {
+    ObserveDisaster(farm, farm.disasters()[id], full, self.cell, view.disasters[id]);
+  }
+}
+
+float KnownRiskAt(const View& view, Cell cell) {
+  float worst = 0.0F;
+  for (const KnownDisaster& known : view.disasters) {
+    if (!known.known) continue;
+    const float risk = RiskOf(known.belief, static_cast<float>(cell.x), static_cast<float>(cell.y));
+    worst = std::min(worst, risk);
+  }
+  return worst;
+}
+
+}  // namespace aquafarm

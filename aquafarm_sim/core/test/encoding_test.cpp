@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/encoding.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <vector>
+
+#include "tiny_farms.h"
+
+namespace aquafarm {
+namespace {
+
+using test::CrowdedScenario;
+using test::MakeFarm;
+using test::StepOne;
+using test::StillDisaster;
+using test::TinyScenario;
+
+TEST(TabularIndex, CountsTheStatusSetsOfTheRules) {
+  Scenario scenario;  // 25 × 25, 3 devices, capacity 1
+  EXPECT_EQ(Encoder(scenario).state_count(), 625U * (8 + 3 * 4));
+  scenario.ships.capacity = 3;
+  EXPECT_EQ(Encoder(scenario).state_count(), 625U * 27);
+  scenario.devices.count = 14;
+  scenario.width = scenario.height = 1000;
+  EXPECT_EQ(Encoder(scenario).state_count(), 0U) << "too many for a table";
+  scenario.devices.count = 40;
+  EXPECT_EQ(Encoder(scenario).state_count(), 0U);
+}
+
+TEST(TabularIndex, ThePapersCountsAreMisprints) {
+  EXPECT_EQ(25 * 25 * 8 * 4, 20000);  // |S| = 25·25·2³·4, printed as 128,000
+  EXPECT_EQ(25 * 25 * 8, 5000);       // |O| = 25·25·2³, printed as 32,000
+}
+
+TEST(TabularIndex, ATinyFarmReachesExactlyItsStates) {
+  // 3 × 3, an island in a corner, two devices: 8 water cells, 2² + 2·2 = 8 status sets.
+  Scenario scenario = TinyScenario();
+  scenario.width = scenario.height = 3;
+  scenario.islands = {{{0, 0}, 1, 1}};
+  scenario.rocks.count = {0, 0};
+  scenario.rocks.cells.clear();
+  scenario.ports.cells = {{1, 0}};
+  scenario.devices.sites = {{{2, 2}, DeviceKind::kMonitoring, 80.0F, false},
+                            {{0, 2}, DeviceKind::kMonitoring, 70.0F, false}};
+  scenario.step_limit = 2000;
+  Farm farm = MakeFarm(scenario);
+  const Encoder encoder(farm.scenario());
+  EXPECT_EQ(encoder.state_count(), 9U * 8);
+  std::set<std::uint32_t> seen;
+  RandomStream chance({1, 0, Purpose::kExploration, 0});
+  for (std::uint64_t episode = 0; episode < 200; ++episode) {
+    farm.Reset(1, episode);
+    seen.insert(encoder.Index(farm, 0));
+    while (!farm.over()) {
+      StepOne(farm, static_cast<Action>(chance.Below(kActionCount)));
+      const std::uint32_t index = encoder.Index(farm, 0);
+      ASSERT_LT(index, encoder.state_count());
+      const Encoder::TabularState state = encoder.Decode(index);
+      EXPECT_EQ(state.cell, farm.ships()[0].cell);
+      for (std::size_t d = 0; d < 2; ++d) EXPECT_EQ(state.status[d], farm.devices()[d].status);
+      seen.insert(index);
+    }
+  }
+  // Everything delivered happens at the port alone: 8 cells × 7 sets and one.
+  EXPECT_EQ(seen.size(), 8U * 7 + 1);
+}
+
+TEST(TabularIndex, WhatAnotherShipHasIsGone) {
+  Scenario scenario = TinyScenario();
+  scenario.ships.count = 2;
+  Farm farm = MakeFarm(scenario);
+  const Encoder encoder(farm.scenario());
+  for (const Action action : {Action::kNorth, Action::kNorth, Action::kPickup}) {
+    const std::uint8_t codes[] = {test::Act(action), test::Act(Action::kHold)};
+    farm.Step(codes);
+  }
+  EXPECT_EQ(encoder.Decode(encoder.Index(farm, 0)).status[0], DeviceStatus::kAboard);
+  EXPECT_EQ(encoder.Decode(encoder.Index(farm, 1)).status[0], DeviceStatus::kDelivered);
+}
+
+std::vector<float> FeaturesOf(const Farm& farm, std::int32_t ship) {
+  const Encoder encoder(farm.scenario());
+  View view;
+  Observe(farm, ship, view);
+  constexpr float kGuard = -777.0F;
+  std::vector<float> features(static_cast<std::size_t>(encoder.feature_count()) + 1, kGuard);
+  encoder.Features(view, features.data());
+  EXPECT_EQ(features.back(), kGuard) << "wrote past feature_count";
+  features.pop_back();
+  EXPECT_EQ(std::count(features.begin(), features.end(), kGuard), 0) << "left one unwritten";
+  EXPECT_EQ(encoder.feature_names().size(), features.size());
+  return features;
+}
+
+float Feature(const Farm& farm, const std::string& name, std::int32_t ship = 0) {
+  const Encoder encoder(farm.scenario());
+  const std::vector<std::string> names = encoder.feature_names();
+  const auto at = std::find(names.begin(), names.end(), name);
+  EXPECT_NE(at, names.end()) << name;
+  return FeaturesOf(farm, ship)[static_cast<std::size_t>(at - names.begin())];
+}
+
+TEST(Features, AreAsManyAsNamedOnEveryFarm) {
+  EXPECT_EQ(FeaturesOf(MakeFarm(TinyScenario()), 0).size(), 5U + 8 + 5 + 2);
+  Farm crowded = MakeFarm(CrowdedScenario(3, 2));
+  EXPECT_EQ(FeaturesOf(crowded, 4).size(), 5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 3);
+}
+
+TEST(Features, SayWhereThingsAre) {
+  Scenario scenario = TinyScenario();
+  scenario.disasters = {StillDisaster(4, 2, {1}, {-10})};
+  Farm farm = MakeFarm(scenario);
+  EXPECT_FLOAT_EQ(Feature(farm, "device0.north"), 2.0F / 5.0F);
+  EXPECT_EQ(Feature(farm, "device0.east"), 0.0F);
+  EXPECT_EQ(Feature(farm, "device0.deployed"), 1.0F);
+  EXPECT_FLOAT_EQ(Feature(farm, "device0.worth"), 0.8F);
+  EXPECT_EQ(Feature(farm, "blocked.south"), 1.0F);
+  EXPECT_EQ(Feature(farm, "blocked.west"), 1.0F);
+  EXPECT_EQ(Feature(farm, "blocked.north"), 0.0F);
+  EXPECT_FLOAT_EQ(Feature(farm, "disaster0.east"), 2.0F / 5.0F);
+  EXPECT_EQ(Feature(farm, "free_capacity"), 1.0F);
+  for (const Action action : {Action::kNorth, Action::kNorth, Action::kPickup}) {
+    StepOne(farm, action);
+  }
+  EXPECT_EQ(Feature(farm, "device0.aboard"), 1.0F);
+  EXPECT_EQ(Feature(farm, "free_capacity"), 0.0F);
+  EXPECT_FLOAT_EQ(Feature(farm, "time_left"), 1.0F - 3.0F / 1000.0F);
+}
+
+// What the planes must say, cell by cell, from look-ups.
+std::vector<std::uint8_t> SlowPlanes(const View& view) {
+  const Layout& layout = *view.layout;
+  const int width = view.scenario->width;
+  const int height = view.scenario->height;
+  const auto byte = [](float part) {
+    return static_cast<std::uint8_t>(std::min(std::max(part, 0.0F), 1.0F) * 255.0F + 0.5F);
+  };
+  std::vector<std::uint8_t> planes;
+  for (int plane = 0; plane < Encoder::kPlaneCount; ++plane) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        const Cell cell{x, y};
+        float part = 0.0F;
+        if (plane == 2) part = -layout.crash_reward(y, x) / 20.0F;
+        if (plane == 3) part = (layout.bits(cell) & kPortBit) != 0 ? 1.0F : 0.0F;
+        for (const KnownDevice& device : view.devices) {
+          const bool here = device.cell == cell && device.status == DeviceStatus::kDeployed;
+          if (plane == 4 && here) part = device.health * device.value * (1.0F / 100.0F);
+          if (plane == 6 && device.aboard_self && view.self == cell) {
+            part += device.health * device.value * (1.0F / 100.0F);
+          }
+        }
+        if (plane == 6) part /= static_cast<float>(view.capacity);
+        if (plane == 5) part = view.in_play && view.self == cell ? 1.0F : 0.0F;
+        for (const KnownShip& other : view.others) {
+          if (plane == 7 && other.visible && other.cell == cell) part = 1.0F;
+        }
+        for (const KnownDisaster& known : view.disasters) {
+          if (plane > 1 || !known.known) continue;
+          Disaster disaster = known.belief;
+          const float ahead = static_cast<float>(known.age) + 10.0F;
+          if (plane == 1) {
+            disaster.x += ahead * disaster.dx;
+            disaster.y += ahead * disaster.dy;
+          }
+          const float risk =
+              RiskOf(disaster, static_cast<float>(cell.x), static_cast<float>(cell.y));
+          part = std::max(part, -risk * (1.0F / 20.0F));
+        }
+        planes.push_back(byte(part));
+      }
+    }
+  }
+  return planes;
+}
+
+TEST(Planes, AgreeWithTheSlowOracleOnRandomFarms) {
+  for (const bool partial : {false, true}) {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      Scenario scenario = CrowdedScenario(2, 1);
+      scenario.width = seed % 2 == 0 ? 12 : 90;  // also wider than a block of columns
+      scenario.disasters[0].radii = {1.0F, 3.5F, 6.0F, 30.0F};
+      scenario.disasters[0].risks = {-20.0F, -15.0F, -10.0F, -5.0F};
+      if (partial) scenario.view = {ViewMode::kPartial, 2.0F, 7, 1.5F};
+      Farm farm = MakeFarm(scenario);
+      farm.Reset(seed, 0);
+      RandomStream chance({seed, 0, Purpose::kExploration, 0});
+      const Encoder encoder(farm.scenario());
+      View view;
+      std::vector<std::uint8_t> planes(encoder.planes_size(), 99);
+      while (!farm.over()) {
+        std::vector<std::uint8_t> codes(farm.ships().size());
+        for (auto& code : codes) code = static_cast<std::uint8_t>(chance.Below(kActionCount));
+        farm.Step(codes.data());
+        if (farm.step() % 9 != 0) continue;
+        const auto ship = static_cast<std::int32_t>(chance.Below(3));
+        Observe(farm, ship, view);
+        encoder.Planes(view, planes.data());
+        ASSERT_EQ(planes, SlowPlanes(view)) << "seed " << seed << " step " << farm.step();
+      }
+    }
+  }
+}
+
+TEST(Planes, HaveANameEach) {
+  EXPECT_EQ(Encoder::plane_names().size(), static_cast<std::size_t>(Encoder::kPlaneCount));
+}
+
+}  // namespace
+}  // namespace aquafarm

@@ -56,39 +56,37 @@ Box ReachedBox(float cx, float cy, float reach, std::int32_t width, std::int32_t
 // this; cells there get level 0, which leaves them as they are.
 constexpr std::int32_t kRun = 16;
 
+// Runs as vectors of GCC and Clang, which each target below turns into its widest registers.
+using FloatRun = float __attribute__((vector_size(kRun * sizeof(float))));
+using IntRun = std::int32_t __attribute__((vector_size(kRun * sizeof(std::int32_t))));
+using ByteRun = std::uint8_t __attribute__((vector_size(kRun)));
+
 // Paints a disaster's footprint, the worse kept where one lies already: per cell the same float
-// comparisons as RiskOf, written in runs of fixed length that compilers turn into vector code.
+// comparisons as RiskOf.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #endif
 void PaintRings(float cx, float cy, const float* ring_squared, const std::int32_t* levels, Box box,
                 std::int32_t width, std::uint8_t* plane) {
-  const float r0 = ring_squared[0];
-  const float r1 = ring_squared[1];
-  const float r2 = ring_squared[2];
-  const float r3 = ring_squared[3];
-  const std::int32_t l0 = levels[0];
-  const std::int32_t l1 = levels[1];
-  const std::int32_t l2 = levels[2];
-  const std::int32_t l3 = levels[3];
   for (std::int32_t x0 = box.x0; x0 < box.x1; x0 += kRun) {
-    float dx_squared[kRun];
+    FloatRun dx_squared;
     for (std::int32_t i = 0; i < kRun; ++i) {
       const float dx = cx - static_cast<float>(x0 + i);
       dx_squared[i] = x0 + i < width ? dx * dx : std::numeric_limits<float>::infinity();
     }
     for (std::int32_t y = box.y0; y < box.y1; ++y) {
       const float dy = cy - static_cast<float>(y);
-      const float dy_squared = dy * dy;
-      std::uint8_t* row = plane + static_cast<std::ptrdiff_t>(y) * width + x0;
-      for (std::int32_t i = 0; i < kRun; ++i) {
-        const float d2 = dx_squared[i] + dy_squared;
-        std::int32_t level = d2 <= r3 ? l3 : 0;
-        level = d2 <= r2 ? l2 : level;
-        level = d2 <= r1 ? l1 : level;
-        level = d2 <= r0 ? l0 : level;
-        row[i] = static_cast<std::uint8_t>(std::max<std::int32_t>(level, row[i]));
+      const FloatRun distance_squared = dx_squared + dy * dy;
+      IntRun level = {};
+      for (std::int32_t k = kMaxRings; k-- > 0;) {
+        level = distance_squared <= ring_squared[k] ? IntRun{} + levels[k] : level;
       }
+      const ByteRun painted = __builtin_convertvector(level, ByteRun);
+      std::uint8_t* const row = plane + static_cast<std::ptrdiff_t>(y) * width + x0;
+      ByteRun present;
+      std::memcpy(&present, row, sizeof(present));
+      present = painted > present ? painted : present;
+      std::memcpy(row, &present, sizeof(present));
     }
   }
 }

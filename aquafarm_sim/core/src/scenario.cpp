@@ -58,7 +58,6 @@ void CheckRings(const std::string& path, const std::vector<float>& radii,
 // What the ranges of single keys do not say.
 void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
   const std::size_t rings = disaster.risks.size();
-  CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
   for (std::size_t i = 0; i < disaster.track.size(); ++i) {
     const Waypoint& waypoint = disaster.track[i];
     const std::string here = At(internal::Join(path, "track"), i);
@@ -68,13 +67,16 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
                      "got " + Format(waypoint.step) + ", expected more than that of " +
                          At("track", i - 1) + ", " + Format(disaster.track[i - 1].step));
   }
+  CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
 }
 
 // Marks what stands where and refuses a second thing on a cell.
 class Occupancy {
  public:
+  enum Thing : std::uint8_t { kNothing, kIsland, kRock, kPort, kDevice };
+
   explicit Occupancy(const Scenario& scenario)
-      : scenario_(scenario), what_(static_cast<std::size_t>(scenario.CellCount()), nullptr) {}
+      : scenario_(scenario), what_(static_cast<std::size_t>(scenario.CellCount()), kNothing) {}
 
   void PutIsland(const std::string& path, const IslandBlock& block) {
     const Cell first = block.south_west;
@@ -82,20 +84,23 @@ class Occupancy {
     CheckOnMap(path, first);
     CheckOnMap(path, last);
     for (std::int32_t y = first.y; y <= last.y; ++y) {
-      for (std::int32_t x = first.x; x <= last.x; ++x) At({x, y}) = "an island";
+      for (std::int32_t x = first.x; x <= last.x; ++x) At({x, y}) = kIsland;
     }
   }
 
-  void Put(const std::string& path, Cell cell, const char* what) {
+  void Put(const std::string& path, Cell cell, Thing what) {
     CheckOnMap(path, cell);
-    if (At(cell) != nullptr) {
-      throw FieldError(path, "got " + Name(cell) + ", expected a free cell; there is " + At(cell));
+    if (At(cell) != kNothing) {
+      constexpr std::array<const char*, 5> kNames{"nothing", "an island", "a rock", "a port",
+                                                  "a device"};
+      throw FieldError(
+          path, "got " + Name(cell) + ", expected a free cell; there is " + kNames[At(cell)]);
     }
     At(cell) = what;
   }
 
   std::int32_t FreeCells() const {
-    return static_cast<std::int32_t>(std::count(what_.begin(), what_.end(), nullptr));
+    return static_cast<std::int32_t>(std::count(what_.begin(), what_.end(), kNothing));
   }
 
  private:
@@ -105,12 +110,12 @@ class Occupancy {
     throw FieldError(path, "got " + Name(cell) + ", expected a cell of the map, (0, 0) to " +
                                Name({scenario_.width - 1, scenario_.height - 1}));
   }
-  const char*& At(Cell cell) {
+  Thing& At(Cell cell) {
     return what_[static_cast<std::size_t>(cell.y * scenario_.width + cell.x)];
   }
 
   const Scenario& scenario_;
-  std::vector<const char*> what_;
+  std::vector<Thing> what_;
 };
 
 void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const char* of_what) {
@@ -123,18 +128,20 @@ void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const 
 
 void CheckPlaces(const Scenario& scenario) {
   Occupancy occupancy(scenario);
-  const auto put_all = [&occupancy](const std::string& path, const auto& cells, const char* what) {
+  const auto put_all = [&occupancy](const std::string& path, const auto& cells,
+                                    Occupancy::Thing what) {
     for (std::size_t i = 0; i < cells.size(); ++i) occupancy.Put(At(path, i), cells[i], what);
   };
   for (std::size_t i = 0; i < scenario.islands.size(); ++i) {
     occupancy.PutIsland(At("layout.islands", i), scenario.islands[i]);
   }
-  put_all("layout.rocks.cells", scenario.rocks.cells, "a rock");
-  put_all("layout.ports.cells", scenario.ports.cells, "a port");
+  put_all("layout.rocks.cells", scenario.rocks.cells, Occupancy::kRock);
+  put_all("layout.ports.cells", scenario.ports.cells, Occupancy::kPort);
   const DeviceSpec& devices = scenario.devices;
   const bool chosen = devices.placement == DevicePlacement::kExplicit;
   for (std::size_t i = 0; chosen && i < devices.sites.size(); ++i) {
-    occupancy.Put(At("layout.devices.sites", i) + ".cell", devices.sites[i].cell, "a device");
+    occupancy.Put(At("layout.devices.sites", i) + ".cell", devices.sites[i].cell,
+                  Occupancy::kDevice);
   }
   std::int32_t free = occupancy.FreeCells();
   const bool drawn_ports = scenario.ports.cells.empty();

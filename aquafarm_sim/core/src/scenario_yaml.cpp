@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/scenario_yaml.h"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 
 #include "aquafarm/hash.h"
 #include "yaml_reader.h"
@@ -40,8 +43,9 @@ void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path
   if (frame == nullptr || !frame->grid) {
     throw FieldError(Join(path, "latitude"), "needs grid.origin, which is missing");
   }
-  if (!frame->start_time)
+  if (!frame->start_time) {
     throw FieldError(Join(path, "time"), "needs time.start, which is missing");
+  }
   const std::array<double, 2> place = frame->grid->ToGrid(fix.point);
   const double seconds = static_cast<double>(fix.time - *frame->start_time);
   waypoint.step = static_cast<float>(seconds / frame->step_duration_s);
@@ -78,12 +82,42 @@ void CheckText(const std::string& text, const std::string& origin_name) {
   }
 }
 
+// Counts nothing but the documents that start.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { line_ = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+  int line() const { return line_; }
+
+ private:
+  int line_{};
+};
+
+// YAML::LoadAll never ends on a stray closing bracket, and YAML::Load ignores what follows the
+// first document.
 YAML::Node ParseDocument(const std::string& text, const std::string& origin_name) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() == 1) return documents[0];
-    throw InputError(origin_name + ": got " + std::to_string(documents.size()) +
-                     " YAML documents, expected 1");
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    DocumentStarts starts;
+    if (!parser.HandleNextDocument(starts)) {
+      throw InputError(origin_name + ": got no keys, expected a scenario");
+    }
+    if (parser.HandleNextDocument(starts)) {
+      throw InputError(Place(origin_name, starts.line()) +
+                       "got a second document, expected one YAML document");
+    }
+    return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
   }

@@ -6,6 +6,15 @@
 namespace aquafarm::internal {
 namespace {
 
+// For messages of one line.
+std::string Shortened(std::string text) {
+  constexpr std::size_t kLongest = 60;
+  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+  return text;
+}
+
 std::string KindOf(const YAML::Node& node) {
   switch (node.Type()) {
     case YAML::NodeType::Map:
@@ -13,7 +22,7 @@ std::string KindOf(const YAML::Node& node) {
     case YAML::NodeType::Sequence:
       return "a list";
     case YAML::NodeType::Scalar:
-      return "'" + node.Scalar() + "'";
+      return "'" + Shortened(node.Scalar()) + "'";
     default:
       return "nothing";
   }
@@ -39,15 +48,16 @@ int LineMap::Find(std::string path) const {
 
 YamlReader::YamlReader(const YAML::Node& node, std::string path, LineMap& lines)
     : path_(std::move(path)), lines_(lines) {
-  if (!node.IsMap()) throw FieldError(path_, "got " + KindOf(node) + ", expected a block of keys");
+  if (!node.IsMap()) throw Refusal(path_, node, "a block of keys");
   for (const auto& pair : node) {
     if (!pair.first.IsScalar()) {
       throw FieldError(path_, "got " + KindOf(pair.first) + " as a key, expected a name");
     }
     const std::string key = pair.first.Scalar();
-    lines_.Put(Join(path_, key), pair.first);
+    const std::string here = Join(path_, Shortened(key));
+    lines_.Put(here, pair.first);
     if (!nodes_.emplace(key, pair.second).second) {
-      throw FieldError(Join(path_, key), "got the key twice, expected it once");
+      throw FieldError(here, "got the key twice, expected it once");
     }
   }
 }
@@ -57,65 +67,63 @@ void YamlReader::When(bool used, const char* condition) {
   condition_ = condition;
 }
 
-const YAML::Node* YamlReader::Take(const char* key, Need need) {
+const YAML::Node* YamlReader::Take(const char* key) {
   const auto found = nodes_.find(key);
   if (!used_) {
     if (found == nodes_.end()) return nullptr;
     throw FieldError(Join(path_, key), std::string("is used only where ") + condition_);
   }
   allowed_.emplace_back(key);
-  if (found != nodes_.end()) return &found->second;
-  if (need == Need::kRequired) throw FieldError(Join(path_, key), "missing, expected a value");
-  return nullptr;
+  return found == nodes_.end() ? nullptr : &found->second;
 }
 
 void YamlReader::Finish() const {
   for (const auto& [key, node] : nodes_) {
     if (std::find(allowed_.begin(), allowed_.end(), key) != allowed_.end()) continue;
     const std::optional<std::string> nearest = Nearest(key, allowed_);
-    throw FieldError(Join(path_, key), "unknown key '" + key + "'" +
-                                           (nearest ? " (did you mean '" + *nearest + "'?)" : "") +
-                                           "; allowed: " + List(allowed_));
+    throw FieldError(Join(path_, Shortened(key)),
+                     "unknown key '" + Shortened(key) + "'" +
+                         (nearest ? " (did you mean '" + *nearest + "'?)" : "") +
+                         "; allowed: " + List(allowed_));
   }
 }
 
 void YamlReader::CheckList(const std::string& path, const YAML::Node& node,
                            const std::array<std::size_t, 2>& sizes) {
-  if (!node.IsSequence()) throw FieldError(path, "got " + KindOf(node) + ", expected a list");
+  if (!node.IsSequence()) throw Refusal(path, node, "a list");
   CheckSize(path, node.size(), sizes);
 }
 
-std::string YamlReader::Scalar(const std::string& path, const YAML::Node& node,
+FieldError YamlReader::Refusal(const std::string& path, const YAML::Node& node,
                                const std::string& expected) {
-  if (!node.IsScalar()) throw FieldError(path, "got " + KindOf(node) + ", expected " + expected);
-  return node.Scalar();
+  return FieldError(path, "got " + KindOf(node) + ", expected " + expected);
 }
 
 void YamlReader::Read(const std::string& path, const YAML::Node& node, bool& value, AnyFlag) {
-  const std::string expected = "true or false";
-  const std::string text = Scalar(path, node, expected);
+  const std::string text = node.IsScalar() ? node.Scalar() : "";
   value = text == "true";
-  if (!value && text != "false") {
-    throw FieldError(path, "got '" + text + "', expected " + expected);
-  }
+  if (!value && text != "false") throw Refusal(path, node, Expected(value, AnyFlag{}));
+}
+
+void YamlReader::Read(const std::string& path, const YAML::Node& node, std::string& value, TextOf) {
+  if (!node.IsScalar()) throw Refusal(path, node, Expected(value, TextOf{}));
+  value = node.Scalar();
 }
 
 void YamlReader::Read(const std::string& path, const YAML::Node& node, std::int64_t& value,
                       UtcTime) {
-  const std::string expected = "a UTC time as 2021-07-24T12:00:00Z";
-  const std::string text = Scalar(path, node, expected);
-  if (!ParseTime(text, value)) throw FieldError(path, "got '" + text + "', expected " + expected);
+  if (node.IsScalar() && ParseTime(node.Scalar(), value)) return;
+  throw Refusal(path, node, Expected(value, UtcTime{}));
 }
 
 std::size_t YamlReader::ReadName(const std::string& path, const YAML::Node& node,
                                  const std::vector<std::string>& names) {
-  const std::string expected = "one of " + List(names);
-  const std::string text = Scalar(path, node, expected);
+  const std::string text = node.IsScalar() ? node.Scalar() : "";
   const auto found = std::find(names.begin(), names.end(), text);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   const std::optional<std::string> nearest = Nearest(text, names);
-  throw FieldError(path, "got '" + text + "', expected " + expected +
-                             (nearest ? " (did you mean '" + *nearest + "'?)" : ""));
+  throw Refusal(path, node,
+                "one of " + List(names) + (nearest ? " (did you mean '" + *nearest + "'?)" : ""));
 }
 
 }  // namespace aquafarm::internal

@@ -35,21 +35,24 @@ class YamlReader {
 
   template <typename T, typename Domain>
   void Leaf(const char* key, T& value, const Domain& domain, Need need = Need::kOptional) {
-    const YAML::Node* node = Take(key, need);
-    if (node == nullptr) return;
+    const YAML::Node* node = Take(key);
     const std::string path = Join(path_, key);
-    Read(path, *node, value, domain);
-    Check(path, value, domain);
+    if (node != nullptr) {
+      Read(path, *node, value, domain);
+      Check(path, value, domain);
+    } else if (need == Need::kRequired && used_) {
+      throw FieldError(path, "missing, expected " + Expected(value, domain));
+    }
   }
 
   template <typename Visit>
   void Object(const char* key, const Visit& visit) {
-    if (const YAML::Node* node = Take(key, Need::kOptional)) Block(*node, Join(path_, key), visit);
+    if (const YAML::Node* node = Take(key)) Block(*node, Join(path_, key), visit);
   }
 
   template <typename T, typename Visit>
   void Optional(const char* key, std::optional<T>& value, const Visit& visit) {
-    const YAML::Node* node = Take(key, Need::kOptional);
+    const YAML::Node* node = Take(key);
     if (node == nullptr) return;
     Block(*node, Join(path_, key), [&](YamlReader& child) { visit(child, value.emplace()); });
   }
@@ -57,7 +60,7 @@ class YamlReader {
   template <typename T, typename Visit>
   void Objects(const char* key, std::vector<T>& values, std::array<std::size_t, 2> sizes,
                const Visit& visit) {
-    const YAML::Node* node = Take(key, Need::kOptional);
+    const YAML::Node* node = Take(key);
     if (node == nullptr) return;
     const std::string path = Join(path_, key);
     CheckList(path, *node, sizes);
@@ -83,20 +86,42 @@ class YamlReader {
   }
 
   /// The node of a key, or null when it is not there.
-  const YAML::Node* Take(const char* key, Need need);
+  const YAML::Node* Take(const char* key);
   static void CheckList(const std::string& path, const YAML::Node& node,
                         const std::array<std::size_t, 2>& sizes);
-  static std::string Scalar(const std::string& path, const YAML::Node& node,
+  static FieldError Refusal(const std::string& path, const YAML::Node& node,
                             const std::string& expected);
+
+  // What a value must be, in words.
+  template <typename T>
+  static std::enable_if_t<std::is_arithmetic_v<T>, std::string> Expected(
+      const T&, const Interval<T>& domain) {
+    return (std::is_integral_v<T> ? "a whole number in " : "a number in ") + Describe(domain);
+  }
+  template <typename Enum>
+  static std::enable_if_t<std::is_enum_v<Enum>, std::string> Expected(const Enum&, OneOfNames) {
+    return "one of " + List(NamesOf<Enum>());
+  }
+  static std::string Expected(bool, AnyFlag) { return "true or false"; }
+  static std::string Expected(const std::string&, TextOf) { return "a text"; }
+  static std::string Expected(std::int64_t, UtcTime) {
+    return "a UTC time as 2021-07-24T12:00:00Z";
+  }
+  template <typename T, typename Domain>
+  static std::string Expected(const T&, const Domain&) {
+    return "a list";  // of numbers, of names, a cell, a pair
+  }
+  template <typename T, typename Domain>
+  static std::string Expected(const std::optional<T>& value, const Domain& domain) {
+    return Expected(value.value_or(T{}), domain);
+  }
 
   template <typename T>
   static std::enable_if_t<std::is_arithmetic_v<T>> Read(const std::string& path,
                                                         const YAML::Node& node, T& value,
                                                         const Interval<T>& domain) {
-    const std::string expected =
-        (std::is_integral_v<T> ? "a whole number in " : "a number in ") + Describe(domain);
-    const std::string text = Scalar(path, node, expected);
-    if (!Parse(text, value)) throw FieldError(path, "got '" + text + "', expected " + expected);
+    if (node.IsScalar() && Parse(node.Scalar(), value)) return;
+    throw Refusal(path, node, Expected(value, domain));
   }
   template <typename T, typename Domain>
   static void Read(const std::string& path, const YAML::Node& node, std::optional<T>& value,
@@ -123,9 +148,7 @@ class YamlReader {
     ReadPair(path, node, value.x, value.y, Interval<std::int32_t>{0, kMaxSide - 1});
   }
   static void Read(const std::string& path, const YAML::Node& node, bool& value, AnyFlag);
-  static void Read(const std::string& path, const YAML::Node& node, std::string& value, TextOf) {
-    value = Scalar(path, node, "a text");
-  }
+  static void Read(const std::string& path, const YAML::Node& node, std::string& value, TextOf);
   static void Read(const std::string& path, const YAML::Node& node, std::int64_t& value, UtcTime);
   template <typename Enum>
   static std::enable_if_t<std::is_enum_v<Enum>> Read(const std::string& path,

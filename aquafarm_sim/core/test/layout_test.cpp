@@ -60,7 +60,7 @@ void ExpectValid(const Scenario& scenario, const Layout& layout) {
   }
   for (const Cell port : layout.ports) {
     ASSERT_EQ(layout.bits(port), kPortBit);
-    if (!scenario.islands.empty()) ASSERT_TRUE(HasNeighbour(layout, port, kIslandBit));
+    ASSERT_TRUE(scenario.islands.empty() || HasNeighbour(layout, port, kIslandBit));
   }
   for (const Cell rock : layout.rocks) {
     ASSERT_EQ(layout.bits(rock), kRockBit);
@@ -83,7 +83,7 @@ void ExpectConsistent(const Scenario& scenario, const Layout& layout) {
       sites += (bits & kDeviceSiteBit) != 0;
       const float reward = layout.crash_reward(y, x);
       ASSERT_EQ(reward < 0.0F, (bits & kBlockedBits) != 0);
-      if ((bits & kIslandBit) != 0) ASSERT_EQ(reward, scenario.rewards.island_crash);
+      ASSERT_TRUE((bits & kIslandBit) == 0 || reward == scenario.rewards.island_crash);
       ASSERT_NEAR(layout.obstacle(y, x), 255.0F * std::min(1.0F, -reward / 20.0F), 0.5F);
     }
   }
@@ -156,7 +156,7 @@ TEST_P(Placements, AMillionCellsTakeMilliseconds) {
 INSTANTIATE_TEST_SUITE_P(All, Placements,
                          testing::Values(DevicePlacement::kUniform, DevicePlacement::kLinear,
                                          DevicePlacement::kRandom),
-                         [](const auto& info) { return std::string(ToString(info.param)); });
+                         [](const auto& test) { return std::string(ToString(test.param)); });
 
 TEST(Layout, IsAFunctionOfSeedAndEpisode) {
   const Scenario scenario = FarmOf(DevicePlacement::kRandom, true);
@@ -294,7 +294,8 @@ std::string MessageOf(const Scenario& scenario) {
 TEST(CrowdedLayout, NamesTheParameterToChange) {
   Scenario rocks = FarmOf(DevicePlacement::kRandom, false);
   rocks.rocks.count = {560, 560};
-  EXPECT_EQ(MessageOf(rocks).find("layout.rocks.count: too crowded: no layout of 25 x 25 cells"), 0U)
+  EXPECT_EQ(MessageOf(rocks).find("layout.rocks.count: too crowded: no layout of 25 x 25 cells"),
+            0U)
       << MessageOf(rocks);
 
   Scenario ports = FarmOf(DevicePlacement::kRandom, false);

@@ -79,7 +79,9 @@ TEST(ValidateDisaster, NamesWhatIsWrong) {
             "border: got code 3, expected [0, 2]");
   EXPECT_EQ(AfterChange([](DisasterSpec& d) { d.track[1].step = 0.0F; }),
             "track[1].step: got 0, expected more than that of track[0], 0");
-  EXPECT_EQ(AfterChange([](DisasterSpec& d) { d.track[1].radii = {2.0F, 1.0F}; }),
+  EXPECT_EQ(AfterChange([](DisasterSpec& d) {
+              d.track[1].radii = {2.0F, 1.0F};
+            }),
             "track[1].radii[1]: got 1, expected at least radii[0] = 2");
 }
 
@@ -91,8 +93,12 @@ TEST(ValidateDisaster, RefusesHostileNumbersEverywhere) {
         [=](DisasterSpec& d) { d.speed = bad; },
         [=](DisasterSpec& d) { d.turn_probability = bad; },
         [=](DisasterSpec& d) { d.radius_growth = bad; },
-        [=](DisasterSpec& d) { d.start = {{bad, 0.0F}}; },
-        [=](DisasterSpec& d) { d.start = {{0.0F, bad}}; },
+        [=](DisasterSpec& d) {
+          d.start = {{bad, 0.0F}};
+        },
+        [=](DisasterSpec& d) {
+          d.start = {{0.0F, bad}};
+        },
         [=](DisasterSpec& d) { d.track[1].step = bad; },
         [=](DisasterSpec& d) { d.track[1].x = bad; },
         [=](DisasterSpec& d) { d.track[1].y = bad; },
@@ -139,17 +145,29 @@ TEST(ValidateScenario, RefusesNumbersThatAFileCouldNotSay) {
       [](Scenario& s) { s.step_duration_s = 0.0; },
       [](Scenario& s) { s.step_limit = 0; },
       [](Scenario& s) { s.start_time = std::numeric_limits<std::int64_t>::max(); },
-      [](Scenario& s) { s.origin = GeoPoint{kNan, 0.0}; },
-      [](Scenario& s) { s.islands = {{{-1, 0}, 1, 1}}; },
-      [](Scenario& s) { s.islands = {{{0, 0}, 0, 1}}; },
-      [](Scenario& s) { s.rocks.count = {-1, 2}; },
-      [](Scenario& s) { s.rocks.reward = {-5.0F, 1.0F}; },
+      [](Scenario& s) {
+        s.origin = GeoPoint{kNan, 0.0};
+      },
+      [](Scenario& s) {
+        s.islands = {{{-1, 0}, 1, 1}};
+      },
+      [](Scenario& s) {
+        s.islands = {{{0, 0}, 0, 1}};
+      },
+      [](Scenario& s) {
+        s.rocks.count = {-1, 2};
+      },
+      [](Scenario& s) {
+        s.rocks.reward = {-5.0F, 1.0F};
+      },
       [](Scenario& s) { s.ports.count = 0; },
       [](Scenario& s) { s.ships.count = 65; },
       [](Scenario& s) { s.ships.capacity = 0; },
       [](Scenario& s) { s.devices.kinds.clear(); },
       [](Scenario& s) { s.devices.count = 0; },
-      [](Scenario& s) { s.devices.value = {kNan, kNan}; },
+      [](Scenario& s) {
+        s.devices.value = {kNan, kNan};
+      },
       [](Scenario& s) { s.devices.health = 1.5F; },
       [](Scenario& s) { s.rewards.island_crash = 1.0F; },
       [](Scenario& s) { s.damage.crash_probability = 2.0F; },

@@ -8,11 +8,13 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
+#include <sstream>
 
+#include "../src/field_domain.h"
 #include "aquafarm/check.h"
 #include "aquafarm/hash.h"
-#include "../src/field_domain.h"
 #include "tiny_farms.h"
 
 namespace aquafarm {
@@ -58,7 +60,7 @@ std::vector<fs::path> InvalidFiles() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, InvalidScenario, testing::ValuesIn(InvalidFiles()),
-                         [](const auto& info) { return info.param.stem().string(); });
+                         [](const auto& test) { return test.param.stem().string(); });
 
 TEST(Reader, RefusesFilesThatAreNoScenarios) {
   const std::string binary("name: x\nships: {count: \0 1}", 27);
@@ -113,7 +115,8 @@ disasters:
          pressure_hpa: 970, wind_mps: 33}
       - {time: 2021-07-25T12:00:00Z, latitude: 30, longitude: 122.1, radii_km: [0, 0], grade: 1,
          risks: [-10, -8]}
-)", "ranch.yaml");
+)",
+                                          "ranch.yaml");
   const std::vector<Waypoint>& track = scenario.disasters[0].track;
   ASSERT_EQ(track.size(), 3U);
   EXPECT_FLOAT_EQ(track[0].step, -6.0F);
@@ -197,6 +200,21 @@ TEST(Writer, KeepsExplicitPlaces) {
   EXPECT_EQ(back.islands[0].width, 2);
   EXPECT_EQ(back.SelfPropelledCount(), 1);
   EXPECT_EQ(back.AgentCount(), 2);
+}
+
+TEST(Documentation, NamesEveryKey) {
+  std::ifstream file(AQUAFARM_CORE_DIR "/../../docs/scenario.md");
+  if (!file) GTEST_SKIP() << "no docs beside this copy of the core";
+  const std::string docs((std::istreambuf_iterator<char>(file)), {});
+  std::istringstream keys(ToYaml(UnusualScenario()) + ToYaml(test::TinyScenario()) +
+                          "time:\nlatitude:\nlongitude:\nradii_km:\npressure_hpa:\nwind_mps:\n");
+  for (std::string line; std::getline(keys, line);) {
+    const std::size_t first = line.find_first_not_of(" -");
+    const std::string key = line.substr(first, line.find(':') - first);
+    const bool named = docs.find(" " + key + ":") != std::string::npos ||
+                       docs.find("\n" + key + ":") != std::string::npos;
+    EXPECT_TRUE(named) << key;
+  }
 }
 
 TEST(Writer, DoesNotMindALocaleWithADecimalComma) {

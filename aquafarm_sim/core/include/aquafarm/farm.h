@@ -78,6 +78,8 @@ class Farm {
   const std::vector<Ship>& ships() const { return ships_; }
   const std::vector<Device>& devices() const { return devices_; }
   const std::vector<Disaster>& disasters() const { return disasters_; }
+  /// Each disaster's waypoints; empty for one that moves on its own.
+  const std::vector<Track>& tracks() const { return tracks_; }
   const EpisodeRecord& record() const { return record_; }
   std::uint64_t seed() const { return record_.seed; }
   std::uint64_t episode() const { return record_.episode; }

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Every topic, service and frame name of a ranch, relative to its namespace unless it begins with
+/// a slash. Nodes and clients take them from here.
+
+#include <cstdint>
+#include <string>
+
+namespace aquafarm_sim::names {
+
+inline constexpr const char* kSpec = "spec";
+inline constexpr const char* kState = "state";
+inline constexpr const char* kChart = "chart";
+inline constexpr const char* kRisk = "risk";
+inline constexpr const char* kEpisode = "episode";
+inline constexpr const char* kTraining = "training";
+inline constexpr const char* kClock = "/clock";
+
+inline constexpr const char* kCommand = "command";
+inline constexpr const char* kStep = "step";
+inline constexpr const char* kReset = "reset";
+inline constexpr const char* kGetState = "get_state";
+inline constexpr const char* kSaveState = "save_state";
+inline constexpr const char* kLoadState = "load_state";
+inline constexpr const char* kPause = "pause";
+inline constexpr const char* kSetDisaster = "set_disaster";
+inline constexpr const char* kSetPace = "set_pace";
+
+inline constexpr const char* kMapFrame = "map";
+inline constexpr const char* kEarthFrame = "earth";
+
+/// Name of a ship's own namespace and tf frame.
+inline std::string Ship(std::int32_t id) { return "ship_" + std::to_string(id); }
+/// Name of a disaster's tf frame.
+inline std::string Disaster(std::int32_t id) { return "disaster_" + std::to_string(id); }
+inline std::string Observation(std::int32_t ship) { return Ship(ship) + "/observation"; }
+inline std::string Move(std::int32_t ship) { return Ship(ship) + "/move"; }
+inline std::string Pickup(std::int32_t ship) { return Ship(ship) + "/pickup"; }
+inline std::string DropOff(std::int32_t ship) { return Ship(ship) + "/drop_off"; }
+
+}  // namespace aquafarm_sim::names

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/service_callback_helper.h>
+
+#include <functional>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace aquafarm_sim {
+
+/// Serves calls one at a time, deserializing every request into the same memory and serializing the
+/// answer from where it lies: in the steady state the codec allocates nothing but the wire buffer.
+template <typename Service>
+class ReusingService : public ros::ServiceCallbackHelper {
+ public:
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  /// The answer must stay as it is until the next call.
+  using Handler = std::function<const Response&(const Request&)>;
+
+  explicit ReusingService(Handler handler) : handler_(std::move(handler)) {}
+
+  bool call(ros::ServiceCallbackHelperCallParams& params) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
+    ros::serialization::deserializeMessage(params.request, request_);
+    params.response = ros::serialization::serializeServiceResponse(true, handler_(request_));
+    if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
+    return true;
+  }
+
+  static ros::ServiceServer Advertise(ros::NodeHandle& node, const std::string& name,
+                                      Handler handler) {
+    ros::AdvertiseServiceOptions options;
+    options.service = name;
+    options.md5sum = ros::service_traits::md5sum<Service>();
+    options.datatype = ros::service_traits::datatype<Service>();
+    options.req_datatype = ros::message_traits::datatype<Request>();
+    options.res_datatype = ros::message_traits::datatype<Response>();
+    options.helper = boost::make_shared<ReusingService>(std::move(handler));
+    return node.advertiseService(options);
+  }
+
+ private:
+  // A request of a million entries must not leave its memory behind.
+  static constexpr std::size_t kMostKeptBytes = std::size_t{1} << 16U;
+
+  std::mutex mutex_;
+  Handler handler_;
+  Request request_;
+};
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/sim_node.h"
+
+#include <aquafarm_msgs/Command.h>
+#include <aquafarm_msgs/DropOff.h>
+#include <aquafarm_msgs/Move.h>
+#include <aquafarm_msgs/Outcome.h>
+#include <aquafarm_msgs/Pickup.h>
+#include <ros/init.h>
+#include <ros/this_node.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+
+#include "aquafarm/check.h"
+#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/version.h"
+#include "aquafarm_sim/names.h"
+#include "aquafarm_sim/reusing_service.h"
+
+namespace aquafarm_sim {
+namespace {
+
+/// More waiting clients than this share threads.
+constexpr std::int32_t kMaxShipThreads = 256;
+constexpr std::uint32_t kCommonThreads = 2;
+constexpr double kDiagnosticsPeriod_s = 1.0;
+
+std::shared_ptr<const aquafarm::Scenario> Load(const std::string& scenario) {
+  return std::make_shared<const aquafarm::Scenario>(
+      aquafarm::LoadScenario(ResolveScenario(scenario, ScenarioFolder())));
+}
+
+/// A service that `handle` answers; what it throws is logged and fails the call.
+template <typename Service, typename Handle>
+ros::ServiceServer Serve(ros::NodeHandle& node, const std::string& name, Handle handle) {
+  using Request = typename Service::Request;
+  using Response = typename Service::Response;
+  const boost::function<bool(Request&, Response&)> callback = [name, handle](Request& request,
+                                                                             Response& response) {
+    try {
+      handle(request, response);
+      return true;
+    } catch (const std::exception& error) {
+      ROS_ERROR("%s: %s", name.c_str(), error.what());
+      return false;
+    }
+  };
+  return node.advertiseService(name, callback);
+}
+
+/// The command that a ship's request is.
+template <typename Request>
+ShipCommand ToCommand(std::int32_t ship, std::uint8_t action, const Request& request) {
+  return {ship, action, request.episode, request.step, request.token};
+}
+
+ros::NodeHandle OnQueue(const ros::NodeHandle& node, ros::CallbackQueue& queue) {
+  ros::NodeHandle handle(node);
+  handle.setCallbackQueue(&queue);
+  return handle;
+}
+
+double ResidentMebibytes() {
+  std::ifstream file("/proc/self/statm");
+  double pages = 0.0;
+  double resident = 0.0;
+  file >> pages >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
+}
+
+}  // namespace
+
+SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
+    : params_(ReadSimParams(private_node)),
+      node_(node),
+      ranch_(Load(params_.scenario), params_.ranch),
+      publisher_(node_, params_, ranch_),
+      ship_node_(OnQueue(node_, ship_queue_)),
+      diagnostics_(ros::NodeHandle(), private_node, ros::this_node::getName()),
+      diagnosed_at_(ros::WallTime::now()) {
+  const std::int32_t agents = ranch_.agents();
+  for (std::int32_t ship = 0; ship < agents; ++ship) AdvertiseShip(ship);
+  AdvertiseFarm();
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("farm", this, &SimNode::Diagnose);
+  diagnostics_timer_ =
+      node_.createWallTimer(ros::WallDuration(kDiagnosticsPeriod_s),
+                            [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
+  // One waiting command a ship at most, so one thread more is always free.
+  const std::int32_t threads = agents == 1 ? 1 : std::min(agents, kMaxShipThreads) + 1;
+  ship_spinner_ =
+      std::make_unique<ros::AsyncSpinner>(static_cast<std::uint32_t>(threads), &ship_queue_);
+  ship_spinner_->start();
+  pacer_ = std::thread([this] { ranch_.RunPaced(); });
+}
+
+SimNode::~SimNode() {
+  ranch_.Shutdown();
+  for (ros::ServiceServer& service : services_) service.shutdown();
+  ship_spinner_->stop();
+  pacer_.join();
+}
+
+void SimNode::AdvertiseShip(std::int32_t ship) {
+  using aquafarm::Action;
+  services_.push_back(Serve<aquafarm_msgs::Move>(
+      ship_node_, names::Move(ship), [this, ship](const auto& request, auto& response) {
+        response.result = ranch_.MoveShip(ToCommand(ship, request.direction, request));
+      }));
+  services_.push_back(Serve<aquafarm_msgs::Pickup>(
+      ship_node_, names::Pickup(ship), [this, ship](const auto& request, auto& response) {
+        constexpr auto kPickup = static_cast<std::uint8_t>(Action::kPickup);
+        response.result = ranch_.Command(ToCommand(ship, kPickup, request));
+      }));
+  services_.push_back(Serve<aquafarm_msgs::DropOff>(
+      ship_node_, names::DropOff(ship), [this, ship](const auto& request, auto& response) {
+        constexpr auto kDropOff = static_cast<std::uint8_t>(Action::kDropOff);
+        response.result = ranch_.Command(ToCommand(ship, kDropOff, request));
+      }));
+}
+
+void SimNode::AdvertiseFarm() {
+  namespace msgs = aquafarm_msgs;
+  services_.push_back(Serve<msgs::Command>(
+      ship_node_, names::kCommand, [this](const auto& request, auto& response) {
+        response.result = ranch_.Command(ToCommand(request.ship, request.action, request));
+      }));
+  services_.push_back(ReusingService<msgs::Step>::Advertise(
+      node_,
+      names::kStep, [this](const auto& request) -> const auto& { return ranch_.Step(request); }));
+  services_.push_back(Serve<msgs::Reset>(node_, names::kReset,
+                                         [this](const auto& q, auto& a) { ranch_.Reset(q, a); }));
+  services_.push_back(Serve<msgs::GetState>(
+      node_, names::kGetState, [this](const auto& q, auto& a) { ranch_.GetState(q, a); }));
+  services_.push_back(Serve<msgs::SaveState>(
+      node_, names::kSaveState, [this](const auto&, auto& a) { ranch_.SaveState(a); }));
+  services_.push_back(Serve<msgs::LoadState>(
+      node_, names::kLoadState, [this](const auto& q, auto& a) { ranch_.LoadState(q, a); }));
+  services_.push_back(Serve<msgs::Pause>(node_, names::kPause,
+                                         [this](const auto& q, auto& a) { ranch_.Pause(q, a); }));
+  services_.push_back(Serve<msgs::SetPace>(
+      node_, names::kSetPace, [this](const auto& q, auto& a) { ranch_.SetPace(q, a); }));
+  services_.push_back(Serve<msgs::SetDisaster>(
+      node_, names::kSetDisaster, [this](const auto& q, auto& a) { ranch_.SetDisaster(q, a); }));
+}
+
+void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const RanchCounters now = ranch_.counters();
+  const ros::WallTime time = ros::WallTime::now();
+  const double elapsed_s = std::max((time - diagnosed_at_).toSec(), 1e-3);
+  const double steps_per_s =
+      static_cast<double>(now.farm_steps - diagnosed_.farm_steps) / elapsed_s;
+  const bool timed_out = now.barrier_timeouts > diagnosed_.barrier_timeouts;
+  status.summary(
+      timed_out ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK,
+      timed_out ? "a ship waited in vain for the others" : "running");
+  status.add("version", aquafarm::kVersion);
+  status.add("farm steps per second", steps_per_s);
+  status.add("farm steps", now.farm_steps);
+  status.add("late ships", now.late_ships);
+  status.add("barrier timeouts", now.barrier_timeouts);
+  status.add("dropped clients", now.superseded);
+  status.add("refused requests", now.refused);
+  status.add("dropped episode summaries", publisher_.dropped_summaries());
+  status.add("memory [MiB]", ResidentMebibytes());
+  diagnosed_ = now;
+  diagnosed_at_ = time;
+}
+
+int RunSimNode() {
+  // ROS's console is gone once the last node handle is, so refusals go to stderr directly.
+  try {
+    const SimNode node(ros::NodeHandle(), ros::NodeHandle("~"));
+    ros::AsyncSpinner spinner(kCommonThreads);
+    spinner.start();
+    ros::waitForShutdown();
+    return 0;
+  } catch (const aquafarm::InputError& error) {
+    std::fprintf(stderr, "sim_node: %s\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "sim_node: %s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Joint steps, episodes, saved states, bulletins and pace.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "aquafarm/rng.h"
+#include "ranch_fixture.h"
+
+namespace aquafarm_sim {
+namespace {
+
+using namespace test;  // NOLINT: the fixture
+using aquafarm_msgs::StepResult;
+
+aquafarm_msgs::Step::Response StepAll(Ranch& ranch, const std::vector<std::uint8_t>& actions,
+                                      std::uint8_t encodings = 0, std::uint64_t sequence = 0) {
+  aquafarm_msgs::Step::Request request;
+  request.actions = actions;
+  request.encodings = encodings;
+  request.sequence = sequence;
+  return ranch.Step(request);
+}
+
+/// Joint steps with random actions; returns the hashes of all farms after each.
+std::vector<std::uint64_t> Play(Ranch& ranch, std::size_t actions, int steps, std::uint64_t seed) {
+  aquafarm::RandomStream random({seed, 0, aquafarm::Purpose::kExploration, 0});
+  std::vector<std::uint64_t> hashes;
+  for (int i = 0; i < steps; ++i) {
+    std::vector<std::uint8_t> joint(actions);
+    for (std::uint8_t& action : joint) action = static_cast<std::uint8_t>(random.Below(10));
+    const auto answer = StepAll(ranch, joint, StepResult::HASHES);
+    EXPECT_TRUE(answer.ok) << answer.message;
+    hashes.insert(hashes.end(), answer.result.hashes.begin(), answer.result.hashes.end());
+  }
+  return hashes;
+}
+
+TEST(RanchServices, AJointStepEqualsTheBatchInProcess) {
+  const aquafarm::Scenario scenario = aquafarm::test::CrowdedScenario(2);
+  const auto ranch = MakeRanch(scenario, 5);
+  aquafarm::FarmBatch batch(std::make_shared<const aquafarm::Scenario>(scenario), 5);
+  batch.Reset(5, 0, {});
+  const std::size_t entries = 5 * static_cast<std::size_t>(scenario.AgentCount());
+  aquafarm::RandomStream random({1, 0, aquafarm::Purpose::kExploration, 0});
+  const auto features = static_cast<std::size_t>(batch.encoder().feature_count());
+  std::vector<float> rewards(entries);
+  std::vector<float> vectors(entries * features);
+  std::vector<std::uint8_t> planes(entries * batch.encoder().planes_size());
+  std::vector<std::uint64_t> hashes(5);
+  aquafarm::BatchOutput output;
+  output.rewards = rewards.data();
+  output.features = vectors.data();
+  output.planes = planes.data();
+  output.hashes = hashes.data();
+  for (int i = 0; i < 300; ++i) {
+    std::vector<std::uint8_t> joint(entries);
+    for (std::uint8_t& action : joint) action = static_cast<std::uint8_t>(random.Below(10));
+    const auto answer =
+        StepAll(*ranch, joint, StepResult::HASHES | StepResult::FEATURES | StepResult::PLANES);
+    batch.Step(joint.data(), output);
+    ASSERT_EQ(hashes, answer.result.hashes);
+    ASSERT_EQ(rewards, answer.result.rewards);
+    ASSERT_EQ(vectors, answer.result.features);
+    ASSERT_EQ(planes, answer.result.planes);
+  }
+}
+
+TEST(RanchServices, ArraysHaveTheStatedLengths) {
+  const auto ranch = MakeRanch(TwoShips(), 3);
+  const auto bare = StepAll(*ranch, std::vector<std::uint8_t>(6, kHold)).result;
+  EXPECT_EQ(3, bare.farms);
+  EXPECT_EQ(2, bare.agents);
+  EXPECT_EQ(6U, bare.rewards.size());
+  EXPECT_EQ(6U, bare.legal.size());
+  EXPECT_EQ(3U, bare.terminated.size());
+  EXPECT_TRUE(bare.terms.empty() && bare.index.empty() && bare.planes.empty());
+  const auto full = StepAll(*ranch, std::vector<std::uint8_t>(6, kHold), 31).result;
+  EXPECT_EQ(42U, full.terms.size());
+  EXPECT_EQ(6U, full.index.size());
+  EXPECT_EQ(3U, full.hashes.size());
+}
+
+TEST(RanchServices, RepeatingTheLastSequenceStepsNothing) {
+  const auto ranch = MakeRanch(TwoShips(), 2);
+  const auto first = StepAll(*ranch, {0, 1, 2, 3}, StepResult::HASHES, 41);
+  const auto refused = StepAll(*ranch, {0}, StepResult::HASHES, 42);
+  EXPECT_FALSE(refused.ok);
+  EXPECT_EQ(first, StepAll(*ranch, {0, 1, 2, 3}, StepResult::HASHES, 41));
+  EXPECT_EQ(1U, StateOf(*ranch).step);
+}
+
+TEST(RanchServices, JointStepsOutOfRangeAreRefused) {
+  const auto ranch = MakeRanch(TwoShips(), 2);
+  const std::uint64_t hash = StateOf(*ranch).hash;
+  const auto shorter = StepAll(*ranch, {0, 1, 2});
+  EXPECT_EQ(Outcome::BAD_LENGTH, shorter.code);
+  EXPECT_EQ("actions: got 3 entries, expected 4 (2 farms x 2 agents)", shorter.message);
+  EXPECT_EQ(Outcome::BAD_LENGTH, StepAll(*ranch, {}).code);
+  EXPECT_EQ(Outcome::BAD_LENGTH, StepAll(*ranch, std::vector<std::uint8_t>(1000000)).code);
+  EXPECT_EQ(Outcome::BAD_ACTION, StepAll(*ranch, {0, 1, 2, 250}).code);
+  EXPECT_EQ(Outcome::BAD_VALUE, StepAll(*ranch, {0, 1, 2, 3}, 255).code);
+  EXPECT_EQ(hash, StateOf(*ranch).hash);
+}
+
+TEST(RanchServices, JointStepsNeedLockstep) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 1, true);
+  EXPECT_EQ(Outcome::WRONG_PACE, StepAll(*ranch, {0}).code);
+}
+
+TEST(RanchServices, FinishedEpisodesComeWithTheStepThatEndsThem) {
+  aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.step_limit = 2;
+  const auto ranch = MakeRanch(scenario, 2);
+  EXPECT_TRUE(StepAll(*ranch, {kNorth, kSouth}).result.finished.empty());
+  const auto last = StepAll(*ranch, {kNorth, kSouth}).result;
+  ASSERT_EQ(2U, last.finished.size());
+  EXPECT_EQ(1, last.finished[1].farm);
+  EXPECT_EQ(1U, last.finished[1].episode);
+  EXPECT_EQ(2, last.finished[1].steps);
+  EXPECT_EQ(1, last.truncated[1]);
+  const auto next = StepAll(*ranch, {kNorth, kSouth}).result;
+  EXPECT_TRUE(next.finished.empty());
+  EXPECT_EQ(1, next.started[0]);
+  EXPECT_EQ(2U, StateOf(*ranch, 0).episode);
+  EXPECT_EQ(3U, StateOf(*ranch, 1).episode);
+}
+
+TEST(RanchServices, ASeedReproducesAndWithoutOneTheSequenceGoesOn) {
+  const auto ranch = MakeRanch(aquafarm::test::CrowdedScenario(2), 2);
+  const std::size_t actions = 2 * static_cast<std::size_t>(ranch->agents());
+  const auto first = ResetTo(*ranch, 11);
+  EXPECT_EQ(0U, first.episode);
+  const auto played = Play(*ranch, actions, 100, 1);
+  aquafarm_msgs::Reset next;
+  ranch->Reset(next.request, next.response);
+  EXPECT_EQ(11U, next.response.seed);
+  EXPECT_EQ(2U, next.response.episode);
+  const auto second = Play(*ranch, actions, 100, 1);
+  ResetTo(*ranch, 11);
+  EXPECT_EQ(played, Play(*ranch, actions, 100, 1));
+  ranch->Reset(next.request, next.response);
+  EXPECT_EQ(second, Play(*ranch, actions, 100, 1));
+}
+
+TEST(RanchServices, ResetChangesTheNumberOfFarmsAndStartsWhereAsked) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::Reset call;
+  call.request.farms = 3;
+  call.request.has_episode = true;
+  call.request.episode = 100;
+  call.request.encodings = StepResult::INDEX;
+  call.request.with_spec = true;
+  ranch->Reset(call.request, call.response);
+  EXPECT_TRUE(call.response.ok) << call.response.message;
+  EXPECT_EQ(3, call.response.spec.farms);
+  EXPECT_EQ(std::vector<std::uint8_t>(3, 1), call.response.result.started);
+  EXPECT_EQ(3U, call.response.result.index.size());
+  EXPECT_EQ(102U, StateOf(*ranch, 2).episode);
+}
+
+TEST(RanchServices, ResetOutOfRangeChangesNothing) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  const std::uint64_t hash = StateOf(*ranch).hash;
+  for (const std::int32_t farms : {-1, kMaxFarms + 1, std::numeric_limits<std::int32_t>::max()}) {
+    aquafarm_msgs::Reset call;
+    call.request.farms = farms;
+    ranch->Reset(call.request, call.response);
+    EXPECT_EQ(Outcome::BAD_VALUE, call.response.code);
+  }
+  EXPECT_EQ(hash, StateOf(*ranch).hash);
+}
+
+TEST(RanchServices, RepeatingAResetBeginsNoFurtherEpisode) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::Reset call;
+  call.request.sequence = 9;
+  ranch->Reset(call.request, call.response);
+  aquafarm_msgs::Reset again;
+  again.request.sequence = 9;
+  ranch->Reset(again.request, again.response);
+  EXPECT_EQ(call.response, again.response);
+  EXPECT_EQ(1U, StateOf(*ranch).episode);
+}
+
+TEST(RanchServices, LoadResumesBitForBit) {
+  const auto ranch = MakeRanch(aquafarm::test::CrowdedScenario(2), 3);
+  const std::size_t actions = 3 * static_cast<std::size_t>(ranch->agents());
+  Play(*ranch, actions, 40, 1);
+  aquafarm_msgs::SaveState save;
+  ranch->SaveState(save.response);
+  ASSERT_TRUE(save.response.ok);
+  const auto expected = Play(*ranch, actions, 150, 2);
+  aquafarm_msgs::LoadState load;
+  load.request.data = save.response.data;
+  ranch->LoadState(load.request, load.response);
+  ASSERT_TRUE(load.response.ok) << load.response.message;
+  EXPECT_EQ(save.response.hash, load.response.hash);
+  EXPECT_EQ(expected, Play(*ranch, actions, 150, 2));
+}
+
+TEST(RanchServices, DamagedBytesChangeNothing) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
+  aquafarm_msgs::SaveState save;
+  ranch->SaveState(save.response);
+  StepAll(*ranch, {kNorth, kNorth});
+  const std::uint64_t hash = StateOf(*ranch).hash;
+  for (std::size_t cut : {std::size_t{0}, std::size_t{1}, save.response.data.size() / 2}) {
+    aquafarm_msgs::LoadState load;
+    load.request.data.assign(save.response.data.begin(),
+                             save.response.data.begin() + static_cast<std::ptrdiff_t>(cut));
+    ranch->LoadState(load.request, load.response);
+    EXPECT_EQ(Outcome::BAD_DATA, load.response.code) << load.response.message;
+  }
+  aquafarm_msgs::LoadState load;
+  load.request.data = save.response.data;
+  load.request.data[load.request.data.size() / 2] ^= 0x10;
+  ranch->LoadState(load.request, load.response);
+  EXPECT_EQ(Outcome::BAD_DATA, load.response.code) << load.response.message;
+  EXPECT_EQ(hash, StateOf(*ranch).hash);
+}
+
+aquafarm_msgs::SetDisaster::Request Bulletin() {
+  aquafarm_msgs::SetDisaster::Request request;
+  request.info.grade = 3;
+  request.info.radii = {1.0F, 2.0F};
+  request.info.risks = {-20.0F, -5.0F};
+  request.info.speed = 0.5F;
+  request.info.duration = 50;
+  request.info.has_start = true;
+  request.info.x = 1.0F;
+  request.info.y = 3.0F;
+  return request;
+}
+
+TEST(RanchServices, ABulletinAddsAndCorrectsADisaster) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
+  aquafarm_msgs::SetDisaster call;
+  call.request = Bulletin();
+  call.request.farm = -1;
+  ranch->SetDisaster(call.request, call.response);
+  ASSERT_TRUE(call.response.ok) << call.response.message;
+  ASSERT_EQ(1U, StateOf(*ranch, 1).disasters.size());
+  EXPECT_EQ(call.response.hash, StateOf(*ranch).hash);
+  call.request.farm = 0;
+  call.request.info.x = 4.0F;
+  ranch->SetDisaster(call.request, call.response);
+  EXPECT_TRUE(call.response.ok) << call.response.message;
+  EXPECT_FLOAT_EQ(4.0F, StateOf(*ranch, 0).disasters[0].x);
+  EXPECT_FLOAT_EQ(1.0F, StateOf(*ranch, 1).disasters[0].x);
+}
+
+TEST(RanchServices, HostileBulletinsChangeNothing) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
+  const std::uint64_t hash = StateOf(*ranch).hash;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  std::vector<aquafarm_msgs::SetDisaster::Request> hostile(15, Bulletin());
+  hostile[0].info.x = nan;
+  hostile[1].info.radii = {1.0F, nan};
+  hostile[2].info.risks = {-20.0F, infinity};
+  hostile[3].info.speed = nan;
+  hostile[4].info.radii.assign(1000000, 1.0F);
+  hostile[5].info.track.resize(1000000);
+  hostile[6].info.radii = {2.0F, 1.0F};
+  hostile[7].info.risks = {-20.0F};
+  hostile[8].info.turn_probability = 1.5F;
+  hostile[9].id = 7;
+  hostile[10].id = -1;
+  hostile[11].farm = 2;
+  hostile[12].info.grade = 9;
+  hostile[13].info.has_heading = true;
+  hostile[13].info.heading_deg = 360;
+  hostile[14].info.duration = 0;
+  for (std::size_t i = 0; i < hostile.size(); ++i) {
+    aquafarm_msgs::SetDisaster::Response response;
+    ranch->SetDisaster(hostile[i], response);
+    EXPECT_FALSE(response.ok) << i;
+    EXPECT_EQ(i == 11 ? Outcome::UNKNOWN_FARM : Outcome::BAD_VALUE, response.code)
+        << i << ' ' << response.message;
+    EXPECT_EQ(hash, StateOf(*ranch).hash) << i;
+  }
+}
+
+TEST(RanchServices, PaceAndRateOutOfRangeAreRefused) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  for (const double rate_hz : {-1.0, 1e9, std::nan("")}) {
+    aquafarm_msgs::SetPace call;
+    call.request.rate_hz = rate_hz;
+    ranch->SetPace(call.request, call.response);
+    EXPECT_EQ(Outcome::BAD_VALUE, call.response.code);
+    EXPECT_DOUBLE_EQ(10.0, call.response.rate_hz);
+  }
+  aquafarm_msgs::SetPace call;
+  call.request.pace = "warp";
+  ranch->SetPace(call.request, call.response);
+  EXPECT_EQ("pace: got 'warp', expected lockstep or paced", call.response.message);
+  call.request.pace = "paced";
+  call.request.rate_hz = 2.0;
+  ranch->SetPace(call.request, call.response);
+  EXPECT_TRUE(call.response.ok);
+  EXPECT_EQ(aquafarm_msgs::FarmState::PACED, StateOf(*ranch).pace);
+}
+
+TEST(RanchServices, UnknownFarmsAndShipsAreNotRead) {
+  const auto ranch = MakeRanch(TwoShips(), 2);
+  aquafarm_msgs::GetState call;
+  call.request.farm = 2;
+  ranch->GetState(call.request, call.response);
+  EXPECT_EQ(Outcome::UNKNOWN_FARM, call.response.code);
+  call.request.farm = 1;
+  call.request.observation = true;
+  call.request.ship = 2;
+  ranch->GetState(call.request, call.response);
+  EXPECT_EQ(Outcome::UNKNOWN_SHIP, call.response.code);
+  call.request.ship = 1;
+  ranch->GetState(call.request, call.response);
+  EXPECT_TRUE(call.response.ok);
+  EXPECT_EQ(1, call.response.state.observer);
+}
+
+}  // namespace
+}  // namespace aquafarm_sim

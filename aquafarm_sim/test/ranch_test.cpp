@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Commands of single ships: exactly once, in time, together.
+#include "aquafarm_sim/ranch.h"
+
+#include <gtest/gtest.h>
+
+#include <future>
+#include <thread>
+
+#include "ranch_fixture.h"
+
+namespace aquafarm_sim {
+namespace {
+
+using namespace test;  // NOLINT: the fixture
+using std::chrono::milliseconds;
+
+TEST(Ranch, ACommandMovesTheShipAndTellsTheNextStep) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  const CommandResult result = ranch->Command({0, kNorth, 0, 0, 1});
+  EXPECT_TRUE(result.ok);
+  EXPECT_EQ(Outcome::OK, result.code);
+  EXPECT_EQ(1U, result.step);
+  EXPECT_FLOAT_EQ(-1.0F, result.reward);
+  EXPECT_FLOAT_EQ(-1.0F, result.terms.step);
+  EXPECT_EQ(StateOf(*ranch).hash, result.hash);
+  EXPECT_EQ(1, StateOf(*ranch).ships[0].y);
+}
+
+TEST(Ranch, RepeatingTheLastAcceptedCommandMovesNothing) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  ranch->Command({0, kNorth, 0, 0, 1});
+  const CommandResult first = ranch->Command({0, kNorth, 0, 1, 0});
+  const CommandResult again = ranch->Command({0, kNorth, 0, 1, 0});
+  EXPECT_EQ(first, again);
+  EXPECT_EQ(2U, StateOf(*ranch).step);
+}
+
+TEST(Ranch, ATokenTellsARepeatOfTheVeryFirstCommand) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  const CommandResult first = ranch->Command({0, kNorth, 0, 0, 77});
+  EXPECT_EQ(first, ranch->Command({0, kNorth, 0, 0, 77}));
+  EXPECT_EQ(1U, StateOf(*ranch).step);
+}
+
+TEST(Ranch, WithoutNumbersEachCommandCounts) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  ranch->Command({0, kNorth, 0, 0, 0});
+  ranch->Command({0, kNorth, 0, 0, 0});
+  EXPECT_EQ(2, StateOf(*ranch).ships[0].y);
+}
+
+TEST(Ranch, AnotherStepOrEpisodeIsStale) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  ranch->Command({0, kNorth, 0, 0, 0});
+  ranch->Command({0, kNorth, 0, 0, 0});
+  const std::uint64_t hash = StateOf(*ranch).hash;
+  const CommandResult past = ranch->Command({0, kNorth, 0, 1, 0});
+  EXPECT_EQ(Outcome::STALE, past.code);
+  EXPECT_EQ("meant for episode 0 step 1, the farm is at episode 0 step 2", past.message);
+  EXPECT_EQ(Outcome::STALE, ranch->Command({0, kNorth, 0, 3, 0}).code);
+  EXPECT_EQ(Outcome::STALE, ranch->Command({0, kNorth, 1, 2, 0}).code);
+  EXPECT_EQ(hash, StateOf(*ranch).hash);
+}
+
+TEST(Ranch, UnknownShipsDirectionsAndActionsAreRefused) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  const std::uint64_t hash = StateOf(*ranch).hash;
+  EXPECT_EQ(Outcome::UNKNOWN_SHIP, ranch->Command({1, kNorth, 0, 0, 0}).code);
+  EXPECT_EQ(Outcome::UNKNOWN_SHIP, ranch->Command({-1, kNorth, 0, 0, 0}).code);
+  EXPECT_EQ(Outcome::BAD_ACTION, ranch->Command({0, 11, 0, 0, 0}).code);
+  const CommandResult bad = ranch->MoveShip({0, 250, 0, 0, 0});
+  EXPECT_EQ(Outcome::BAD_DIRECTION, bad.code);
+  EXPECT_EQ("direction: got 250, expected [0, 7]", bad.message);
+  EXPECT_EQ(Outcome::BAD_DIRECTION, ranch->MoveShip({0, kPickup, 0, 0, 0}).code);
+  EXPECT_EQ(hash, StateOf(*ranch).hash);
+}
+
+TEST(Ranch, AfterTheEndCommandsAreAnsweredEpisodeOver) {
+  aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.step_limit = 1;
+  const auto ranch = MakeRanch(scenario);
+  const CommandResult last = ranch->Command({0, kNorth, 0, 0, 0});
+  EXPECT_TRUE(last.truncated);
+  EXPECT_FALSE(last.terminated);
+  EXPECT_EQ(aquafarm_msgs::FarmState::STEP_LIMIT, last.reason);
+  EXPECT_EQ(Outcome::EPISODE_OVER, ranch->Command({0, kNorth, 0, 0, 0}).code);
+  EXPECT_EQ(1U, StateOf(*ranch).step);
+}
+
+TEST(Ranch, TheBarrierStepsWhenTheLastShipHasSpoken) {
+  const auto ranch = MakeRanch(TwoShips());
+  auto first = std::async(std::launch::async, [&] { return ranch->Command({0, kNorth, 0, 0, 1}); });
+  std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_EQ(0U, StateOf(*ranch).step);
+  const CommandResult second = ranch->Command({1, kHold, 0, 0, 1});
+  const CommandResult waited = first.get();
+  EXPECT_EQ(Outcome::HELD, second.code);
+  EXPECT_EQ(Outcome::OK, waited.code);
+  EXPECT_EQ(1U, waited.step);
+  EXPECT_EQ(second.hash, waited.hash);
+}
+
+TEST(Ranch, ALoneCommandTimesOutAndIsTakenBack) {
+  const auto ranch = MakeRanch(TwoShips());
+  const std::uint64_t hash = StateOf(*ranch).hash;
+  const CommandResult lone = ranch->Command({0, kNorth, 0, 0, 1});
+  EXPECT_EQ(Outcome::TIMEOUT, lone.code);
+  EXPECT_EQ(hash, StateOf(*ranch).hash);
+  const CommandResult other = ranch->Command({1, kNorth, 0, 0, 1});
+  EXPECT_EQ(Outcome::TIMEOUT, other.code);
+  EXPECT_EQ(2U, ranch->counters().barrier_timeouts);
+}
+
+TEST(Ranch, ANewerCommandOfTheSameShipSupersedesTheWaitingOne) {
+  const auto ranch = MakeRanch(TwoShips());
+  auto old = std::async(std::launch::async, [&] { return ranch->Command({0, kNorth, 0, 0, 1}); });
+  std::this_thread::sleep_for(milliseconds(50));
+  auto newer = std::async(std::launch::async, [&] { return ranch->Command({0, kHold, 0, 0, 2}); });
+  EXPECT_EQ(Outcome::SUPERSEDED, old.get().code);
+  ranch->Command({1, kHold, 0, 0, 1});
+  EXPECT_EQ(Outcome::HELD, newer.get().code);
+}
+
+TEST(Ranch, AResetReleasesThoseWhoWait) {
+  const auto ranch = MakeRanch(TwoShips());
+  auto waiting = std::async(std::launch::async, [&] {
+    return ranch->Command({0, kNorth, 0, 0, 1});
+  });
+  std::this_thread::sleep_for(milliseconds(50));
+  ResetTo(*ranch, 9);
+  EXPECT_EQ(Outcome::STALE, waiting.get().code);
+}
+
+TEST(Ranch, ShutdownReleasesThoseWhoWait) {
+  const auto ranch = MakeRanch(TwoShips());
+  auto waiting = std::async(std::launch::async, [&] {
+    return ranch->Command({0, kNorth, 0, 0, 1});
+  });
+  std::this_thread::sleep_for(milliseconds(50));
+  ranch->Shutdown();
+  EXPECT_EQ(Outcome::SHUTTING_DOWN, waiting.get().code);
+  EXPECT_EQ(Outcome::SHUTTING_DOWN, ranch->Command({1, kNorth, 0, 0, 1}).code);
+}
+
+TEST(Ranch, ManyThreadsMoveEachShipOnceAStep) {
+  const auto ranch = MakeRanch(TwoShips());
+  constexpr std::uint64_t kSteps = 500;
+  const auto drive = [&](std::int32_t ship) {
+    for (std::uint64_t step = 0; step < kSteps; ++step) {
+      const CommandResult result =
+          ranch->Command({ship, static_cast<std::uint8_t>(step % 8), 0, step, step + 1});
+      ASSERT_TRUE(result.ok) << result.message;
+      ASSERT_EQ(step + 1, result.step);
+    }
+  };
+  std::thread other([&] { drive(1); });
+  drive(0);
+  other.join();
+  EXPECT_EQ(kSteps, StateOf(*ranch).step);
+}
+
+TEST(Ranch, PacedCommandsAreAcceptedAndCarriedOutByTheTick) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 1, true);
+  const CommandResult accepted = ranch->Command({0, kNorth, 0, 0, 1});
+  EXPECT_EQ(Outcome::ACCEPTED, accepted.code);
+  EXPECT_EQ(1U, accepted.step);
+  EXPECT_EQ(0U, StateOf(*ranch).step);
+  ranch->Tick();
+  EXPECT_EQ(1, StateOf(*ranch).ships[0].y);
+}
+
+TEST(Ranch, APacedShipWithoutACommandHolds) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 1, true);
+  ranch->Tick();
+  const auto state = StateOf(*ranch);
+  EXPECT_EQ(1U, state.step);
+  EXPECT_EQ(0, state.ships[0].y);
+  EXPECT_EQ(Outcome::HELD, state.ships[0].outcome);
+  EXPECT_EQ(1U, ranch->counters().late_ships);
+}
+
+TEST(Ranch, APacedFarmBeginsTheNextEpisodeByItself) {
+  aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.step_limit = 1;
+  const auto ranch = MakeRanch(scenario, 1, true);
+  ranch->Tick();
+  EXPECT_TRUE(StateOf(*ranch).truncated);
+  EXPECT_EQ(Outcome::EPISODE_OVER, ranch->Command({0, kNorth, 0, 1, 0}).code);
+  ranch->Tick();
+  EXPECT_EQ(1U, StateOf(*ranch).episode);
+  EXPECT_EQ(0U, StateOf(*ranch).step);
+}
+
+TEST(Ranch, PacedRunningTakesStepsOnTime) {
+  RanchOptions options;
+  options.paced = true;
+  options.rate_hz = 100.0;
+  Ranch ranch(std::make_shared<const aquafarm::Scenario>(aquafarm::test::TinyScenario()), options);
+  std::thread pacer([&] { ranch.RunPaced(); });
+  std::this_thread::sleep_for(milliseconds(500));
+  aquafarm_msgs::Pause pause;
+  pause.request.paused = true;
+  ranch.Pause(pause.request, pause.response);
+  const std::uint64_t steps = StateOf(ranch).step;
+  EXPECT_GT(steps, 20U);
+  EXPECT_LE(steps, 52U);
+  std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_EQ(steps, StateOf(ranch).step);
+  ranch.Shutdown();
+  pacer.join();
+}
+
+TEST(Ranch, WhilePausedCommandsAreAnsweredPaused) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::Pause pause;
+  pause.request.paused = true;
+  ranch->Pause(pause.request, pause.response);
+  EXPECT_EQ(Outcome::PAUSED, ranch->Command({0, kNorth, 0, 0, 0}).code);
+  pause.request.paused = false;
+  ranch->Pause(pause.request, pause.response);
+  EXPECT_EQ(Outcome::OK, ranch->Command({0, kNorth, 0, 0, 0}).code);
+}
+
+}  // namespace
+}  // namespace aquafarm_sim

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <benchmark/benchmark.h>
+
+#include <opencv2/core/utility.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "aquafarm_viz/image.h"
+#include "aquafarm_viz/markers.h"
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+// Frames of an episode at 640 x 640: the disaster moves, the ship sails, words change.
+void BM_Frame(benchmark::State& bench) {
+  cv::setNumThreads(1);
+  const int side = static_cast<int>(bench.range(0));
+  const auto spec = test::MakeSpec(side);
+  auto state = test::MakeState(side);
+  Wake wake;
+  FarmPainter painter({640, 640});
+  aquafarm_msgs::TrainingStatus training;
+  training.algorithm = "q_learning";
+  for (auto _ : bench) {
+    ++state.step;
+    auto& disaster = state.disasters.front();
+    disaster.x = static_cast<float>(state.step % 100) * 0.01F * static_cast<float>(side);
+    state.ships.front().x = static_cast<int>(state.step) % side;
+    wake.Update(state);
+    benchmark::DoNotOptimize(painter.Draw(spec, state, {&wake, &training}).data);
+  }
+  bench.SetItemsProcessed(bench.iterations());
+}
+BENCHMARK(BM_Frame)->Arg(10)->Arg(25)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond);
+
+void BM_FrameUnderATyphoonThatCoversAll(benchmark::State& bench) {
+  cv::setNumThreads(1);
+  const auto spec = test::MakeSpec(25);
+  auto state = test::MakeState(25);
+  state.disasters.front().radii = {15.0F, 30.0F, 60.0F};
+  FarmPainter painter({640, 640});
+  for (auto _ : bench) benchmark::DoNotOptimize(painter.Draw(spec, state).data);
+  bench.SetItemsProcessed(bench.iterations());
+}
+BENCHMARK(BM_FrameUnderATyphoonThatCoversAll)->Unit(benchmark::kMicrosecond);
+
+void BM_Jpeg(benchmark::State& bench) {
+  cv::setNumThreads(1);
+  const cv::Mat image = DrawFarm(test::MakeSpec(), test::MakeState(), {640, 640});
+  std::vector<std::uint8_t> bytes;
+  for (auto _ : bench) cv::imencode(".jpg", image, bytes);
+  bench.counters["bytes"] = double(bytes.size());
+  bench.SetItemsProcessed(bench.iterations());
+}
+BENCHMARK(BM_Jpeg)->Unit(benchmark::kMicrosecond);
+
+void BM_Markers(benchmark::State& bench) {
+  const auto spec = test::MakeSpec();
+  const auto state = test::MakeState();
+  for (auto _ : bench) benchmark::DoNotOptimize(StateMarkers(spec, state).markers.data());
+  bench.SetItemsProcessed(bench.iterations());
+}
+BENCHMARK(BM_Markers)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace aquafarm_viz
+
+BENCHMARK_MAIN();

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Names of topics, parameters and frames that this package uses; all are relative but the frame.
+
+namespace aquafarm_viz::names {
+
+inline constexpr char kSpec[] = "spec";
+inline constexpr char kState[] = "state";
+inline constexpr char kTraining[] = "training";
+inline constexpr char kMarkers[] = "markers";
+inline constexpr char kImage[] = "image";
+inline constexpr char kCompressed[] = "image/compressed";
+
+inline constexpr char kRateParam[] = "rate_hz";
+inline constexpr char kWidthParam[] = "image_width";
+inline constexpr char kHeightParam[] = "image_height";
+
+inline constexpr char kMapFrame[] = "map";
+
+}  // namespace aquafarm_viz::names

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Colours and outlines that the image and the markers share.
+
+#include <cstdint>
+#include <opencv2/core/types.hpp>
+#include <string>
+#include <vector>
+
+namespace aquafarm_viz {
+
+/// An opaque colour.
+struct Rgb {
+  std::uint8_t r{};
+  std::uint8_t g{};
+  std::uint8_t b{};
+};
+
+/// The colour as OpenCV's BGR images want it.
+inline cv::Scalar Bgr(Rgb c) { return {double(c.b), double(c.g), double(c.r)}; }
+
+/// The colour between two: share 0 gives `from`, 1 gives `to`.
+Rgb Mix(Rgb from, Rgb to, double share);
+
+inline constexpr Rgb kSeaDeep{0x1b, 0x4f, 0x78};
+inline constexpr Rgb kSeaShallow{0x5f, 0xa8, 0xc4};
+inline constexpr Rgb kSand{0xe9, 0xd8, 0xa6};
+inline constexpr Rgb kLand{0x7d, 0x9d, 0x6a};
+inline constexpr Rgb kLandHigh{0x5b, 0x80, 0x52};
+inline constexpr Rgb kRock{0x8a, 0x86, 0x80};
+inline constexpr Rgb kRockDark{0x4a, 0x47, 0x45};
+inline constexpr Rgb kPort{0xff, 0xff, 0xff};
+inline constexpr Rgb kInk{0x12, 0x20, 0x2e};
+inline constexpr Rgb kPaper{0xf4, 0xf7, 0xf9};
+inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
+
+/// The colour of a device kind (DeviceState.kind); grey for a kind that does not exist.
+Rgb DeviceColor(std::uint8_t kind);
+
+/// The short name of a device kind, such as "monitoring".
+std::string DeviceName(std::uint8_t kind);
+
+/// The outline of a device kind about the origin, y up, within the unit circle, anticlockwise.
+const std::vector<cv::Point2f>& DeviceOutline(std::uint8_t kind);
+
+/// Green at full health over amber to red at none.
+Rgb HealthColor(double health);
+
+/// The colour of a ship's deck, by id.
+Rgb ShipColor(std::int32_t id);
+
+/// A ship's hull about the origin with its bow at (0, 1), y up, anticlockwise.
+const std::vector<cv::Point2f>& HullOutline();
+
+/// How bad a risk is: 0 at -5 and above, 1 at -20 and below; linear between.
+double Severity(double risk);
+
+/// The colour of a severity in [0, 1]: yellow, orange, red, purple.
+Rgb SeverityColor(double severity);
+
+/// The colour of a bulletin's grade: 1 blue, 2 yellow, 3 orange, 4 red.
+Rgb GradeColor(std::uint8_t grade);
+
+/// The name of a disaster kind, such as "red tide".
+std::string DisasterName(std::uint8_t kind);
+
+/// The bearing of a move, degrees clockwise from north; -1 for an action that is no move.
+int MoveBearingDeg(std::uint8_t action);
+
+/// The compass point of a bearing in [0, 359], such as "NE".
+std::string CompassPoint(int bearing_deg);
+
+/// A port's letters: A ... Z, AA ...
+std::string PortLetter(std::int32_t id);
+
+}  // namespace aquafarm_viz

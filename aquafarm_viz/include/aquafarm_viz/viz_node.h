@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The one node of this package: spec and state in, markers and images out.
+
+#include <aquafarm_msgs/TrainingStatus.h>
+#include <ros/ros.h>
+
+#include <set>
+#include <string>
+
+#include "aquafarm_viz/image.h"
+#include "aquafarm_viz/pairing.h"
+
+namespace aquafarm_viz {
+
+/// The parameters of the node, from its private namespace.
+struct VizParams {
+  double rate_hz{20.0};  ///< most drawings a second of wall time, (0, 1000]
+  ImageSize image;       ///< pixels, each side in [kMinImageSide, kMaxImageSide]
+};
+
+/// Reads the parameters.
+/// @throws std::invalid_argument naming the parameter, what it is and what is allowed.
+VizParams ReadVizParams(const ros::NodeHandle& node);
+
+/// Publishes `markers`, `image` and `image/compressed`, at most rate_hz times a second of wall
+/// time, only of states that are new, and each only while somebody subscribes.
+class VizNode {
+ public:
+  /// @param node  namespace of the topics.
+  VizNode(ros::NodeHandle node, const VizParams& params);
+
+ private:
+  void OnSpec(const aquafarm_msgs::FarmSpecConstPtr& spec);
+  void OnState(const aquafarm_msgs::FarmStateConstPtr& state);
+  void OnTraining(const aquafarm_msgs::TrainingStatusConstPtr& training);
+  void OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscriber);
+  void Draw();
+  void PublishMarkers(const Shown& shown);
+  void PublishImages(const Shown& shown);
+
+  Pairing pairing_;
+  Wake wake_;
+  FarmPainter painter_;
+  aquafarm_msgs::TrainingStatusConstPtr training_;
+  bool marked_{};         // state of `markers`: whether it is up to date
+  bool pictured_{};       // the same of the images
+  Shown marked_episode_;  // the episode whose standing markers were sent
+
+  ros::Publisher markers_;
+  ros::Publisher image_;
+  ros::Publisher compressed_;
+  ros::Subscriber spec_;
+  ros::Subscriber state_;
+  ros::Subscriber training_topic_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// What a single state cannot tell: where ships came from and which way they point.
+
+#include <aquafarm_msgs/FarmState.h>
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <opencv2/core/types.hpp>
+
+namespace aquafarm_viz {
+
+/// The recent way of a ship.
+struct ShipWake {
+  int bearing_deg{};             ///< of its last move, [0, 359], clockwise from north
+  std::deque<cv::Point> places;  ///< cells it stood at, oldest first, the present one last
+};
+
+/// Remembers the recent way of each ship of one farm.
+class Wake {
+ public:
+  static constexpr std::size_t kLength = 24;  ///< places remembered
+  static constexpr int kMaxJump = 2;          ///< cells; farther apart means states were missed
+
+  /// Takes the next state in; another episode or an earlier step starts anew.
+  void Update(const aquafarm_msgs::FarmState& state);
+
+  /// The way of a ship; nullptr for one never seen.
+  const ShipWake* Find(std::int32_t ship) const;
+
+ private:
+  std::uint64_t seed_{};
+  std::uint64_t episode_{};
+  std::uint64_t step_{};
+  std::map<std::int32_t, ShipWake> ships_;
+};
+
+/// The bearing to draw a ship at: of its move in this state, else of its wake, else 0.
+int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Wake* wake);
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/image.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "aquafarm_viz/checks.h"
+#include "image_parts.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+
+// Whether two episodes have the same background.
+bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
+  const auto same_cell = [](const auto& c, const auto& d) { return c.x == d.x && c.y == d.y; };
+  return a.width == b.width && a.height == b.height && a.cell_size_m == b.cell_size_m &&
+         std::equal(a.islands.begin(), a.islands.end(), b.islands.begin(), b.islands.end(),
+                    same_cell) &&
+         std::equal(a.rocks.begin(), a.rocks.end(), b.rocks.begin(), b.rocks.end(),
+                    [&](const auto& c, const auto& d) { return same_cell(c.cell, d.cell); }) &&
+         std::equal(a.ports.begin(), a.ports.end(), b.ports.begin(), b.ports.end(),
+                    [&](const auto& c, const auto& d) {
+                      return c.id == d.id && same_cell(c.cell, d.cell);
+                    });
+}
+
+}  // namespace
+
+struct FarmPainter::Parts {
+  explicit Parts(ImageSize wanted)
+      : size{std::clamp(wanted.width, kMinImageSide, kMaxImageSide),
+             std::clamp(wanted.height, kMinImageSide, kMaxImageSide)},
+        fonts(MakeLayout(1, 1, size).unit) {}
+
+  ImageSize size;
+  Fonts fonts;
+  Layout layout;
+  FarmSpec drawn;  // what the background shows
+  cv::Mat background;
+  cv::Mat image;
+};
+
+FarmPainter::FarmPainter(ImageSize size) : parts_(std::make_unique<Parts>(size)) {}
+FarmPainter::~FarmPainter() = default;
+FarmPainter::FarmPainter(FarmPainter&&) noexcept = default;
+FarmPainter& FarmPainter::operator=(FarmPainter&&) noexcept = default;
+
+const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
+                                 const Extras& extras) {
+  Parts& p = *parts_;
+  if (p.background.empty() || !SameBackground(spec, p.drawn)) {
+    p.layout = MakeLayout(spec.width, spec.height, p.size);
+    p.background = DrawBackground(spec, p.layout, p.fonts, p.size);
+    p.drawn = spec;
+  }
+  p.background.copyTo(p.image);
+  cv::Mat map = p.image(p.layout.map);
+  if (extras.wake != nullptr) DrawWakes(map, state, *extras.wake, p.layout);
+  ShadeDisasters(map, state, p.layout);
+  DrawPorts(map, spec, p.layout, p.fonts);
+  DrawDevices(map, spec, state, p.layout);
+  DrawDisasterSigns(map, spec, state, p.layout, p.fonts);
+  DrawShips(map, spec, state, extras.wake, p.layout, p.fonts);
+  DrawWords(p.image, spec, state, extras, p.layout, p.fonts);
+  return p.image;
+}
+
+cv::Mat DrawFarm(const FarmSpec& spec, const FarmState& state, ImageSize size,
+                 const Extras& extras) {
+  if (const auto fault = CheckSpec(spec); !fault.empty()) throw std::invalid_argument(fault);
+  if (const auto fault = CheckState(state); !fault.empty()) throw std::invalid_argument(fault);
+  return FarmPainter(size).Draw(spec, state, extras).clone();
+}
+
+}  // namespace aquafarm_viz

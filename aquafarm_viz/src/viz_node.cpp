@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/viz_node.h"
+
+#include <cv_bridge/cv_bridge.h>
+#include <sensor_msgs/CompressedImage.h>
+#include <sensor_msgs/Image.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <sstream>
+#include <stdexcept>
+
+#include "aquafarm_viz/markers.h"
+#include "aquafarm_viz/names.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr double kWarnEvery_s = 5.0;
+constexpr int kJpegQuality = 90;
+
+template <typename Value>
+void Read(const ros::NodeHandle& node, const char* name, Value& value, Value low, Value high) {
+  XmlRpc::XmlRpcValue raw;
+  if (!node.getParam(name, raw)) return;
+  if (node.getParam(name, value) && value >= low && value <= high) return;
+  std::ostringstream line;
+  line << node.resolveName(name) << ": got " << raw << ", expected a number in [" << low << ", "
+       << high << "]";
+  throw std::invalid_argument(line.str());
+}
+
+visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
+                                       const visualization_msgs::MarkerArray& second) {
+  first.markers.insert(first.markers.end(), second.markers.begin(), second.markers.end());
+  return first;
+}
+
+}  // namespace
+
+VizParams ReadVizParams(const ros::NodeHandle& node) {
+  VizParams params;
+  Read(node, names::kRateParam, params.rate_hz, 0.1, 1000.0);
+  Read(node, names::kWidthParam, params.image.width, kMinImageSide, kMaxImageSide);
+  Read(node, names::kHeightParam, params.image.height, kMinImageSide, kMaxImageSide);
+  return params;
+}
+
+VizNode::VizNode(ros::NodeHandle node, const VizParams& params) : painter_(params.image) {
+  markers_ = node.advertise<visualization_msgs::MarkerArray>(
+      names::kMarkers, 10,
+      [this](const ros::SingleSubscriberPublisher& subscriber) { OnMarkerSubscriber(subscriber); });
+  // A new onlooker gets a picture even of a farm that stands still.
+  const auto redraw = [this](const ros::SingleSubscriberPublisher&) { pictured_ = false; };
+  image_ = node.advertise<sensor_msgs::Image>(names::kImage, 2, redraw);
+  compressed_ = node.advertise<sensor_msgs::CompressedImage>(names::kCompressed, 2, redraw);
+  spec_ = node.subscribe(names::kSpec, Pairing::kSpecs, &VizNode::OnSpec, this);
+  state_ = node.subscribe(names::kState, 100, &VizNode::OnState, this,
+                          ros::TransportHints().tcpNoDelay());
+  training_topic_ = node.subscribe(names::kTraining, 1, &VizNode::OnTraining, this);
+  timer_ = node.createWallTimer(ros::WallDuration(1.0 / params.rate_hz),
+                                [this](const ros::WallTimerEvent&) { Draw(); });
+}
+
+void VizNode::OnSpec(const aquafarm_msgs::FarmSpecConstPtr& spec) {
+  if (const auto fault = pairing_.AddSpec(spec); !fault.empty()) {
+    ROS_WARN_THROTTLE(kWarnEvery_s, "spec refused: %s", fault.c_str());
+    return;
+  }
+  marked_ = pictured_ = false;
+}
+
+void VizNode::OnState(const aquafarm_msgs::FarmStateConstPtr& state) {
+  if (const auto fault = pairing_.AddState(state); !fault.empty()) {
+    ROS_WARN_THROTTLE(kWarnEvery_s, "state refused: %s", fault.c_str());
+    return;
+  }
+  wake_.Update(*state);
+  marked_ = pictured_ = false;
+}
+
+void VizNode::OnTraining(const aquafarm_msgs::TrainingStatusConstPtr& training) {
+  training_ = training;
+  pictured_ = false;
+}
+
+void VizNode::OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscriber) {
+  const Shown& shown = pairing_.shown();
+  if (shown.spec == nullptr) return;
+  subscriber.publish(
+      Joined(SpecMarkers(*shown.spec, false), StateMarkers(*shown.spec, *shown.state, &wake_)));
+}
+
+void VizNode::Draw() {
+  if (const auto waiting = pairing_.Waiting(); !waiting.empty()) {
+    ROS_WARN_DELAYED_THROTTLE(kWarnEvery_s, "%s", waiting.c_str());
+  }
+  const Shown& shown = pairing_.shown();
+  if (shown.spec == nullptr) return;
+  try {
+    if (!marked_) PublishMarkers(shown);
+    if (!pictured_) PublishImages(shown);
+  } catch (const std::exception& fault) {
+    marked_ = pictured_ = true;  // the same state would fail again
+    ROS_ERROR_THROTTLE(kWarnEvery_s, "state not drawn: %s", fault.what());
+  }
+}
+
+void VizNode::PublishMarkers(const Shown& shown) {
+  if (markers_.getNumSubscribers() == 0) return;
+  auto array = StateMarkers(*shown.spec, *shown.state, &wake_);
+  if (marked_episode_.spec != shown.spec) array = Joined(SpecMarkers(*shown.spec, true), array);
+  markers_.publish(array);
+  marked_episode_ = shown;
+  marked_ = true;
+}
+
+void VizNode::PublishImages(const Shown& shown) {
+  const bool raw = image_.getNumSubscribers() > 0;
+  const bool compressed = compressed_.getNumSubscribers() > 0;
+  if (!raw && !compressed) return;
+  const cv::Mat& picture = painter_.Draw(*shown.spec, *shown.state, {&wake_, training_.get()});
+  std_msgs::Header header = shown.state->header;
+  header.frame_id = names::kMapFrame;
+  if (raw) image_.publish(cv_bridge::CvImage(header, "bgr8", picture).toImageMsg());
+  if (compressed) {
+    sensor_msgs::CompressedImage message;
+    message.header = header;
+    message.format = "bgr8; jpeg compressed bgr8";
+    cv::imencode(".jpg", picture, message.data, {cv::IMWRITE_JPEG_QUALITY, kJpegQuality});
+    compressed_.publish(message);
+  }
+  pictured_ = true;
+}
+
+}  // namespace aquafarm_viz

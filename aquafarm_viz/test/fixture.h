@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// A small ranch made by hand, as the sim node would describe it.
+
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+
+#include <cstdint>
+
+namespace aquafarm_viz::test {
+
+inline aquafarm_msgs::Cell MakeCell(int x, int y) {
+  aquafarm_msgs::Cell cell;
+  cell.x = x;
+  cell.y = y;
+  return cell;
+}
+
+inline aquafarm_msgs::DeviceState MakeDevice(int id, std::uint8_t kind, int x, int y,
+                                             float health) {
+  aquafarm_msgs::DeviceState device;
+  device.id = id;
+  device.kind = kind;
+  device.x = x;
+  device.y = y;
+  device.value = 75.0F;
+  device.health = health;
+  device.health_known = true;
+  device.carrier = -1;
+  return device;
+}
+
+inline aquafarm_msgs::ShipState MakeShip(int id, int x, int y) {
+  aquafarm_msgs::ShipState ship;
+  ship.id = id;
+  ship.x = x;
+  ship.y = y;
+  ship.visible = true;
+  ship.own_device = -1;
+  ship.capacity = 1;
+  ship.active = true;
+  ship.action = 10;
+  ship.outcome = 6;
+  return ship;
+}
+
+inline aquafarm_msgs::DisasterState MakeDisaster(int id, float x, float y) {
+  aquafarm_msgs::DisasterState disaster;
+  disaster.id = id;
+  disaster.grade = 3;
+  disaster.x = x;
+  disaster.y = y;
+  disaster.heading_deg = 90;
+  disaster.speed = 0.5F;
+  disaster.radii = {2.0F, 4.0F, 6.0F};
+  disaster.risks = {-20.0F, -12.0F, -5.0F};
+  disaster.steps_left = 983;
+  disaster.known = true;
+  disaster.visible = true;
+  return disaster;
+}
+
+/// A ranch of side x side cells with an island in the south-west and one of each thing.
+inline aquafarm_msgs::FarmSpec MakeSpec(int side = 25) {
+  aquafarm_msgs::FarmSpec spec;
+  spec.header.frame_id = "map";
+  spec.version = "0.1.0";
+  spec.scenario_name = "paper";
+  spec.seed = 7;
+  spec.episode = 12;
+  spec.farms = 1;
+  spec.width = side;
+  spec.height = side;
+  spec.cell_size_m = 1000.0;
+  spec.step_duration_s = 180.0;
+  spec.step_limit = 5000;
+  for (int y = 0; y < side / 4; ++y) {
+    for (int x = 0; x < side / 4 - y / 2; ++x) spec.islands.push_back(MakeCell(x, y));
+  }
+  for (int i = 0; i < side; ++i) {
+    const int x = (i * 7 + 3) % side;
+    const int y = (i * 11 + 5) % side;
+    if (x < side / 3 && y < side / 3) continue;
+    aquafarm_msgs::RockInfo rock;
+    rock.cell = MakeCell(x, y);
+    rock.reward = -3.0F;
+    spec.rocks.push_back(rock);
+  }
+  const int shore = side / 4;
+  for (int i = 0; i < 4; ++i) {
+    aquafarm_msgs::PortInfo port;
+    port.id = i;
+    port.cell = i < 2 ? MakeCell(shore, i * (shore - 1)) : MakeCell((i - 2) * (shore / 2), shore);
+    spec.ports.push_back(port);
+  }
+  spec.ships = 1;
+  spec.agents = 1;
+  spec.capacity = 1;
+  return spec;
+}
+
+/// A state of MakeSpec's ranch: ship 0 under way, three devices deployed, one delivered.
+inline aquafarm_msgs::FarmState MakeState(int side = 25) {
+  aquafarm_msgs::FarmState state;
+  state.header.frame_id = "map";
+  state.header.stamp = ros::Time(17, 0);
+  state.observer = -1;
+  state.seed = 7;
+  state.episode = 12;
+  state.step = 17;
+  state.world_time = ros::Time(17 * 180, 0);
+  auto ship = MakeShip(0, side / 2, side / 3);
+  ship.action = 5;
+  ship.outcome = 0;
+  ship.terms.disaster = -5.0F;
+  ship.reward = -5.0F;
+  state.ships.push_back(ship);
+  for (int kind = 0; kind < 4; ++kind) {
+    state.devices.push_back(MakeDevice(kind, static_cast<std::uint8_t>(kind),
+                                       side / 4 + kind * side / 6, side * 3 / 4 - kind,
+                                       1.0F - 0.3F * static_cast<float>(kind)));
+  }
+  state.devices[1].status = aquafarm_msgs::DeviceState::DELIVERED;
+  state.devices[1].x = side / 4;
+  state.devices[1].y = 0;
+  state.disasters.push_back(
+      MakeDisaster(0, static_cast<float>(side) * 0.6F, static_cast<float>(side) * 0.45F));
+  state.joint_reward = -5.0F;
+  state.joint_return = -42.5F;
+  return state;
+}
+
+}  // namespace aquafarm_viz::test

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/image.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <opencv2/core.hpp>
+#include <stdexcept>
+
+#include "aquafarm_viz/palette.h"
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr ImageSize kSize{640, 640};
+
+cv::Mat1b Near(const cv::Mat& image, Rgb color, int tolerance = 6) {
+  const cv::Scalar middle = Bgr(color);
+  cv::Mat1b found;
+  cv::inRange(image, middle - cv::Scalar::all(tolerance), middle + cv::Scalar::all(tolerance),
+              found);
+  return found;
+}
+
+// The middle of all pixels that differ between two pictures.
+cv::Point2d MiddleOfDifference(const cv::Mat& a, const cv::Mat& b) {
+  cv::Mat difference;
+  cv::absdiff(a, b, difference);
+  cv::Mat1b grey;
+  cv::extractChannel(difference, grey, 1);
+  std::vector<cv::Point> points;
+  cv::findNonZero(grey > 40, points);
+  cv::Point2d sum;
+  for (const auto& point : points) sum += cv::Point2d(point);
+  return points.empty() ? cv::Point2d(-1, -1) : sum / double(points.size());
+}
+
+cv::Mat MapOf(const cv::Mat& image, int side = 25, ImageSize size = kSize) {
+  return image(PlaceMap(side, side, size).map).clone();
+}
+
+// A state with nothing on the water.
+aquafarm_msgs::FarmState Empty() {
+  auto state = test::MakeState();
+  state.ships.clear();
+  state.devices.clear();
+  state.disasters.clear();
+  return state;
+}
+
+TEST(Image, HasTheSizeAskedForWithinLimits) {
+  const auto spec = test::MakeSpec();
+  const auto state = test::MakeState();
+  EXPECT_EQ(DrawFarm(spec, state, {800, 640}).size(), cv::Size(800, 640));
+  EXPECT_EQ(DrawFarm(spec, state, {1, 1}).size(), cv::Size(kMinImageSide, kMinImageSide));
+}
+
+TEST(Image, ShowsAShipInTheNorthAboveOneInTheSouth) {
+  const auto spec = test::MakeSpec();
+  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
+  const auto at = [&](int x, int y) {
+    auto state = Empty();
+    state.ships.push_back(test::MakeShip(0, x, y));
+    return MiddleOfDifference(empty, MapOf(DrawFarm(spec, state, kSize)));
+  };
+  EXPECT_LT(at(12, 22).y, at(12, 2).y);
+  EXPECT_GT(at(22, 12).x, at(10, 12).x);
+  const cv::Point2d expected = PlaceMap(25, 25, kSize).view.ToPixel(12, 20);
+  EXPECT_NEAR(at(12, 20).x, expected.x, 2.0);
+  EXPECT_NEAR(at(12, 20).y, expected.y, 3.0);
+}
+
+TEST(Image, PointsTheBowWhereTheShipMoves) {
+  const auto spec = test::MakeSpec();
+  const auto middle = [&](std::uint8_t action) {
+    auto state = Empty();
+    state.ships.push_back(test::MakeShip(0, 12, 12));
+    state.ships.front().action = action;
+    const auto map = MapOf(DrawFarm(spec, state, kSize));
+    // The deck lies behind the middle of the ship.
+    std::vector<cv::Point> deck;
+    cv::findNonZero(Near(map, ShipColor(0)), deck);
+    cv::Point2d sum;
+    for (const auto& point : deck) sum += cv::Point2d(point);
+    return sum / double(deck.size());
+  };
+  EXPECT_GT(middle(0).y, middle(1).y);  // north: deck to the south, lower in the picture
+  EXPECT_LT(middle(3).x, middle(2).x);  // east: deck to the west
+}
+
+TEST(Image, ShowsEveryDeviceKindInItsColour) {
+  const auto spec = test::MakeSpec();
+  for (std::uint8_t kind = 0; kind < 4; ++kind) {
+    auto state = Empty();
+    state.devices.push_back(test::MakeDevice(0, kind, 12, 18, 1.0F));
+    const auto map = MapOf(DrawFarm(spec, state, kSize));
+    EXPECT_GT(cv::countNonZero(Near(map, DeviceColor(kind))), 15) << DeviceName(kind);
+  }
+}
+
+TEST(Image, ShowsHealthAsTheLengthOfABar) {
+  const auto spec = test::MakeSpec();
+  const auto lit = [&](float health) {
+    auto state = Empty();
+    state.devices.push_back(test::MakeDevice(0, 0, 12, 18, health));
+    return cv::countNonZero(Near(MapOf(DrawFarm(spec, state, kSize)), HealthColor(health)));
+  };
+  EXPECT_GT(lit(1.0F), lit(0.5F));
+  EXPECT_GT(lit(0.5F), lit(0.2F));
+}
+
+TEST(Image, MovesTheDisaster) {
+  const auto spec = test::MakeSpec();
+  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
+  const auto at = [&](float x, float y) {
+    auto state = Empty();
+    state.disasters.push_back(test::MakeDisaster(0, x, y));
+    state.disasters.front().speed = 0.0F;  // no arrow, so the middle is the centre
+    return MiddleOfDifference(empty, MapOf(DrawFarm(spec, state, kSize)));
+  };
+  const MapView view = PlaceMap(25, 25, kSize).view;
+  for (const auto& [x, y] : {std::pair{10.0F, 15.0F}, {10.5F, 15.0F}, {15.0F, 17.25F}}) {
+    const cv::Point2d expected = view.ToPixel(double(x), double(y));
+    EXPECT_NEAR(at(x, y).x, expected.x, 4.0);
+    EXPECT_NEAR(at(x, y).y, expected.y, 4.0);
+  }
+  EXPECT_GT(at(10.5F, 15.0F).x, at(10.0F, 15.0F).x);
+}
+
+TEST(Image, ShadesCellsOfARingAndNoneOutside) {
+  const auto spec = test::MakeSpec();
+  auto state = Empty();
+  state.disasters.push_back(test::MakeDisaster(0, 12.0F, 14.0F));
+  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
+  const auto map = MapOf(DrawFarm(spec, state, kSize));
+  const MapView view = PlaceMap(25, 25, kSize).view;
+  const auto changed = [&](double x, double y) {
+    const cv::Point at(view.ToPixel(x, y));
+    return cv::norm(empty(cv::Rect(at, cv::Size(1, 1))), map(cv::Rect(at, cv::Size(1, 1)))) > 10;
+  };
+  EXPECT_TRUE(changed(12.0, 8.3));    // 5.7 cells south
+  EXPECT_FALSE(changed(12.0, 7.7));   // 6.3 cells south
+  EXPECT_TRUE(changed(6.3, 14.0));    // 5.7 cells west
+  EXPECT_FALSE(changed(5.7, 14.0));   // 6.3 cells west
+  EXPECT_TRUE(changed(12.0, 19.7));   // 5.7 cells north
+  EXPECT_FALSE(changed(12.0, 20.3));  // 6.3 cells north
+}
+
+TEST(Image, ShowsNoDisasterThatIsOverOrUnknown) {
+  const auto spec = test::MakeSpec();
+  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
+  auto state = Empty();
+  state.disasters.push_back(test::MakeDisaster(0, 12.0F, 14.0F));
+  state.disasters.front().steps_left = 0;
+  EXPECT_EQ(cv::norm(empty, MapOf(DrawFarm(spec, state, kSize))), 0.0);
+  state.disasters.front().steps_left = 9;
+  state.disasters.front().known = false;
+  EXPECT_EQ(cv::norm(empty, MapOf(DrawFarm(spec, state, kSize))), 0.0);
+}
+
+TEST(Image, PointsToADisasterOutside) {
+  const auto spec = test::MakeSpec();
+  const auto empty = MapOf(DrawFarm(spec, Empty(), kSize));
+  auto state = Empty();
+  state.disasters.push_back(test::MakeDisaster(0, 60.0F, 12.0F));
+  const auto middle = MiddleOfDifference(empty, MapOf(DrawFarm(spec, state, kSize)));
+  EXPECT_GT(middle.x, 0.85 * empty.cols);
+  EXPECT_NEAR(middle.y, empty.rows / 2.0, 25.0);
+}
+
+TEST(Image, ShowsIslandAndPorts) {
+  const auto spec = test::MakeSpec();
+  const auto map = MapOf(DrawFarm(spec, Empty(), kSize));
+  const MapView view = PlaceMap(25, 25, kSize).view;
+  const auto land = map.at<cv::Vec3b>(cv::Point(view.ToPixel(1, 2)));
+  EXPECT_GT(land[1], land[0]);  // green above blue
+  const auto sea = map.at<cv::Vec3b>(cv::Point(view.ToPixel(12, 20)));
+  EXPECT_GT(sea[0], sea[2]);  // blue above red
+  for (const auto& port : spec.ports) {
+    const cv::Rect around(cv::Point(view.ToPixel(port.cell.x, port.cell.y)) - cv::Point(8, 8),
+                          cv::Size(17, 17));
+    const auto disc = map(around & cv::Rect({0, 0}, map.size()));
+    EXPECT_GT(cv::countNonZero(Near(disc, kPort, 30)), 20) << PortLetter(port.id);
+  }
+}
+
+TEST(Image, WritesLegendAndLines) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  const auto before = DrawFarm(spec, state, kSize);
+  const auto variety = [](const cv::Mat& part) {
+    cv::Scalar mean;
+    cv::Scalar deviation;
+    cv::meanStdDev(part, mean, deviation);
+    return deviation[0];
+  };
+  EXPECT_GT(variety(before(cv::Rect(0, 0, 640, 46))), 10.0);       // episode, step, return
+  EXPECT_GT(variety(before(cv::Rect(490, 50, 150, 200))), 10.0);   // devices, disasters, ships
+  EXPECT_GT(variety(before(cv::Rect(490, 450, 150, 140))), 10.0);  // legend, north, scale
+  EXPECT_GT(variety(before(cv::Rect(0, 598, 640, 20))), 10.0);     // reward terms
+  ++state.step;
+  EXPECT_GT(cv::norm(before(cv::Rect(0, 0, 640, 46)),
+                     DrawFarm(spec, state, kSize)(cv::Rect(0, 0, 640, 46))),
+            0.0);
+}
+
+TEST(Image, SaysHowTheEpisodeEnded) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  const auto before = MapOf(DrawFarm(spec, state, kSize));
+  state.terminated = true;
+  state.reason = aquafarm_msgs::FarmState::ALL_RETRIEVED;
+  const auto after = MapOf(DrawFarm(spec, state, kSize));
+  EXPECT_GT(cv::norm(before(cv::Rect(100, 10, 200, 30)), after(cv::Rect(100, 10, 200, 30))), 100.0);
+}
+
+TEST(Image, IsTheSameFromAPainterThatHasDrawnOtherFarms) {
+  FarmPainter painter(kSize);
+  painter.Draw(test::MakeSpec(50), test::MakeState(50));
+  painter.Draw(test::MakeSpec(), test::MakeState());
+  auto moved = test::MakeSpec();
+  moved.rocks.pop_back();
+  const cv::Mat again = painter.Draw(moved, test::MakeState()).clone();
+  EXPECT_EQ(cv::norm(again, DrawFarm(moved, test::MakeState(), kSize)), 0.0);
+  EXPECT_GT(cv::norm(again, DrawFarm(test::MakeSpec(), test::MakeState(), kSize)), 0.0);
+}
+
+class ImageOf : public testing::TestWithParam<int> {};
+
+TEST_P(ImageOf, FarmsOfAnySizeShowTheirThings) {
+  const int side = GetParam();
+  const auto spec = test::MakeSpec(side);
+  for (const ImageSize size : {ImageSize{640, 640}, {1280, 960}, {160, 160}}) {
+    auto state = test::MakeState(side);
+    state.disasters.clear();
+    const auto map = MapOf(DrawFarm(spec, state, size), side, size);
+    EXPECT_GT(cv::countNonZero(Near(map, DeviceColor(0))), 5) << size.width;
+    EXPECT_GT(cv::countNonZero(Near(map, ShipColor(0))), 3) << size.width;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sides, ImageOf, testing::Values(10, 25, 100, 500));
+
+TEST(Image, SurvivesWhatAnObservationOrAnAttackerMaySend) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.ships.front().x = std::numeric_limits<int>::min();
+  state.ships.front().aboard = {-1, 77, 0, 1, 2, 3};
+  state.ships.push_back(test::MakeShip(-5, 3, 24));
+  state.ships.back().own_device = 99;
+  state.devices[0].kind = 200;
+  state.devices[1].x = 1000000000;
+  state.devices[2].health = -3.0F;
+  state.disasters.front().radii = {0.0F, 1e6F};
+  state.disasters.front().risks = {3e38F, -3e38F};
+  state.disasters.push_back(test::MakeDisaster(1, -1e6F, 1e6F));
+  state.disasters.back().heading_deg = std::numeric_limits<int>::min();
+  state.joint_return = std::numeric_limits<float>::quiet_NaN();
+  aquafarm_msgs::TrainingStatus training;
+  training.phase = 99;
+  training.steps_per_second = std::numeric_limits<float>::infinity();
+  training.time_left_s = -std::numeric_limits<double>::infinity();
+  Wake wake;
+  wake.Update(state);
+  EXPECT_NO_THROW(DrawFarm(spec, state, kSize, {&wake, &training}));
+}
+
+TEST(Image, RefusesWhatCannotBeDrawn) {
+  auto spec = test::MakeSpec();
+  spec.width = -1;
+  try {
+    DrawFarm(spec, test::MakeState());
+    FAIL() << "drew a farm of width -1";
+  } catch (const std::invalid_argument& fault) {
+    EXPECT_STREQ(fault.what(), "spec.width: got -1, expected [1, 4096]");
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/markers.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "aquafarm_viz/checks.h"
+#include "aquafarm_viz/palette.h"
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+using Key = std::pair<std::string, int>;
+
+std::map<Key, Marker> ByKey(const MarkerArray& array) {
+  std::map<Key, Marker> result;
+  for (const auto& marker : array.markers) {
+    EXPECT_TRUE(result.emplace(Key(marker.ns, marker.id), marker).second)
+        << marker.ns << " " << marker.id << " twice";
+  }
+  return result;
+}
+
+std::set<Key> Keys(const MarkerArray& array) {
+  std::set<Key> keys;
+  for (const auto& marker : array.markers) keys.emplace(marker.ns, marker.id);
+  return keys;
+}
+
+// Where a marker's own x (or, for outlines, its bow) points to, as a bearing.
+double BearingDeg(const Marker& marker, double rest_deg) {
+  const auto& q = marker.pose.orientation;
+  const double yaw_deg = 2.0 * std::atan2(q.z, q.w) * 180.0 / M_PI;
+  return std::fmod(rest_deg - yaw_deg + 720.0, 360.0);
+}
+
+TEST(SpecMarkers, ShowEveryThingThatStandsStill) {
+  const auto spec = test::MakeSpec();
+  const auto markers = ByKey(SpecMarkers(spec, false));
+  EXPECT_EQ(markers.at({"island", 0}).points.size(), 6 * spec.islands.size());
+  EXPECT_EQ(markers.at({"rocks", 0}).points.size(), 12 * spec.rocks.size());
+  for (int port = 0; port < 4; ++port) {
+    EXPECT_EQ(markers.count({"port", port}), 1U);
+    EXPECT_EQ(markers.at({"port_letter", port}).text, std::string(1, char('A' + port)));
+  }
+  EXPECT_DOUBLE_EQ(markers.at({"sea", 0}).scale.x, 25000.0);
+}
+
+TEST(SpecMarkers, AreInMetresOfFrameMap) {
+  auto spec = test::MakeSpec();
+  spec.cell_size_m = 250.0;
+  const auto port = ByKey(SpecMarkers(spec, false)).at({"port", 1});
+  EXPECT_EQ(port.header.frame_id, "map");
+  EXPECT_DOUBLE_EQ(port.pose.position.x, spec.ports[1].cell.x * 250.0);
+  EXPECT_DOUBLE_EQ(port.pose.position.y, spec.ports[1].cell.y * 250.0);
+}
+
+TEST(SpecMarkers, DeleteAllOnceAndFirstWhenTheEpisodeStarts) {
+  const auto spec = test::MakeSpec();
+  const auto array = SpecMarkers(spec, true);
+  EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
+  for (std::size_t i = 1; i < array.markers.size(); ++i) {
+    EXPECT_EQ(array.markers[i].action, Marker::ADD);
+  }
+  for (const auto& marker : SpecMarkers(spec, false).markers) {
+    EXPECT_EQ(marker.action, Marker::ADD);
+  }
+}
+
+TEST(StateMarkers, NeverDeleteAll) {
+  for (const auto& marker : StateMarkers(test::MakeSpec(), test::MakeState()).markers) {
+    EXPECT_NE(marker.action, Marker::DELETEALL);
+  }
+}
+
+TEST(StateMarkers, ShowEveryShipDeviceAndDisaster) {
+  const auto state = test::MakeState();
+  const auto markers = ByKey(StateMarkers(test::MakeSpec(), state));
+  EXPECT_EQ(markers.at({"ship", 0}).action, Marker::ADD);
+  for (const auto& device : state.devices) {
+    EXPECT_EQ(markers.at({"device", device.id}).action, Marker::ADD);
+  }
+  EXPECT_EQ(markers.at({"disaster", 0}).action, Marker::ADD);
+  EXPECT_EQ(markers.at({"heading", 0}).type, Marker::ARROW);
+}
+
+TEST(StateMarkers, KeepTheirIdsWhateverHappens) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  const auto before = Keys(StateMarkers(spec, state));
+  ++state.step;
+  state.disasters.front().steps_left = 0;
+  state.devices[0].status = aquafarm_msgs::DeviceState::ABOARD;
+  state.devices[2].status = aquafarm_msgs::DeviceState::DELIVERED;
+  state.ships.front().visible = false;
+  EXPECT_EQ(Keys(StateMarkers(spec, state)), before);
+}
+
+TEST(StateMarkers, LiveUntilReplaced) {
+  for (const auto& marker : StateMarkers(test::MakeSpec(), test::MakeState()).markers) {
+    EXPECT_TRUE(marker.lifetime.isZero());
+    EXPECT_EQ(marker.header.frame_id, "map");
+  }
+}
+
+TEST(StateMarkers, HaveRingsAtTheRadiiOfTheDisaster) {
+  const auto spec = test::MakeSpec();
+  const auto state = test::MakeState();
+  const auto markers = ByKey(StateMarkers(spec, state));
+  const auto& disaster = state.disasters.front();
+  for (std::size_t ring = 0; ring < disaster.radii.size(); ++ring) {
+    const auto& edge = markers.at({"ring_edge", static_cast<int>(ring)});
+    EXPECT_NEAR(edge.pose.position.x, static_cast<double>(disaster.x) * spec.cell_size_m, 0.5);
+    double outermost = 0.0;
+    for (const auto& point : edge.points) {
+      outermost = std::max(outermost, std::hypot(point.x, point.y));
+    }
+    EXPECT_NEAR(outermost, static_cast<double>(disaster.radii[ring]) * spec.cell_size_m, 1e-6);
+    const double inner = ring == 0 ? 0.0 : static_cast<double>(disaster.radii[ring - 1]);
+    for (const auto& point : markers.at({"ring", static_cast<int>(ring)}).points) {
+      const double radius = std::hypot(point.x, point.y) / spec.cell_size_m;
+      EXPECT_GE(radius, inner - 1e-9);
+      EXPECT_LE(radius, static_cast<double>(disaster.radii[ring]) + 1e-9);
+    }
+  }
+  EXPECT_EQ(markers.at({"ring", 3}).action, Marker::DELETE);
+}
+
+TEST(StateMarkers, ShadeWorseRingsMoreStrongly) {
+  const auto markers = ByKey(StateMarkers(test::MakeSpec(), test::MakeState()));
+  EXPECT_GT(markers.at({"ring", 0}).color.a, markers.at({"ring", 1}).color.a);
+  EXPECT_GT(markers.at({"ring", 1}).color.a, markers.at({"ring", 2}).color.a);
+}
+
+TEST(StateMarkers, PointTheArrowWhereTheDisasterHeads) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  for (const int heading : {0, 45, 90, 180, 270, 359}) {
+    state.disasters.front().heading_deg = heading;
+    const auto arrow = ByKey(StateMarkers(spec, state)).at({"heading", 0});
+    EXPECT_NEAR(BearingDeg(arrow, 90.0), heading, 1e-6);
+  }
+  state.disasters.front().heading_deg = 90;
+  const auto east = ByKey(StateMarkers(spec, state)).at({"heading", 0}).pose.orientation;
+  EXPECT_NEAR(east.z, 0.0, 1e-12);  // rviz's arrows point east when they are not turned
+  EXPECT_NEAR(east.w, 1.0, 1e-12);
+}
+
+TEST(StateMarkers, TurnAShipTowardsItsMove) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  for (const auto& [action, bearing] : {std::pair{0, 0}, {3, 90}, {5, 45}, {6, 225}}) {
+    state.ships.front().action = static_cast<std::uint8_t>(action);
+    const auto ship = ByKey(StateMarkers(spec, state)).at({"ship", 0});
+    EXPECT_NEAR(BearingDeg(ship, 0.0), bearing, 1e-6);
+  }
+}
+
+TEST(StateMarkers, DeleteADisasterThatIsOver) {
+  auto state = test::MakeState();
+  state.disasters.front().steps_left = 0;
+  const auto markers = ByKey(StateMarkers(test::MakeSpec(), state));
+  for (int ring = 0; ring < kMaxRings; ++ring) {
+    EXPECT_EQ(markers.at({"ring", ring}).action, Marker::DELETE);
+    EXPECT_EQ(markers.at({"ring_edge", ring}).action, Marker::DELETE);
+  }
+  EXPECT_EQ(markers.at({"heading", 0}).action, Marker::DELETE);
+  EXPECT_EQ(markers.at({"disaster", 0}).action, Marker::DELETE);
+}
+
+TEST(StateMarkers, ShowHealthAsTheLengthAndColourOfABar) {
+  auto state = test::MakeState();
+  state.devices[0].health = 1.0F;
+  state.devices[2].health = 0.25F;
+  const auto markers = ByKey(StateMarkers(test::MakeSpec(), state));
+  const auto& full = markers.at({"health", 0});
+  const auto& poor = markers.at({"health", 2});
+  EXPECT_NEAR(poor.scale.x / full.scale.x, 0.25, 1e-6);
+  EXPECT_GT(full.color.g, full.color.r);
+  EXPECT_GT(poor.color.r, poor.color.g);
+  state.devices[2].health_known = false;
+  EXPECT_EQ(ByKey(StateMarkers(test::MakeSpec(), state)).at({"health", 2}).action, Marker::DELETE);
+}
+
+TEST(StateMarkers, TellDeviceKindsApart) {
+  auto state = test::MakeState();
+  for (auto& device : state.devices) {
+    device.health = 1.0F;
+    device.status = aquafarm_msgs::DeviceState::DEPLOYED;
+  }
+  const auto markers = ByKey(StateMarkers(test::MakeSpec(), state));
+  std::set<std::size_t> shapes;
+  std::set<std::pair<float, float>> colors;
+  for (int id = 0; id < 4; ++id) {
+    shapes.insert(markers.at({"device", id}).points.size());
+    colors.emplace(markers.at({"device", id}).color.r, markers.at({"device", id}).color.b);
+  }
+  EXPECT_EQ(shapes.size(), 4U);
+  EXPECT_EQ(colors.size(), 4U);
+}
+
+TEST(StateMarkers, ShowASelfPropelledDeviceThatWasDeliveredOnlyAsDevice) {
+  auto state = test::MakeState();
+  state.ships.push_back(test::MakeShip(1, 9, 9));
+  state.ships.back().own_device = 2;
+  const auto spec = test::MakeSpec();
+  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"ship", 1}).action, Marker::ADD);
+  state.ships.back().active = false;
+  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"ship", 1}).action, Marker::DELETE);
+}
+
+TEST(StateMarkers, StayBelowTheHeightAtWhichRvizCutsOff) {
+  auto spec = test::MakeSpec();
+  spec.cell_size_m = 50000.0;
+  const auto state = test::MakeState();
+  for (const auto& array : {SpecMarkers(spec, false), StateMarkers(spec, state)}) {
+    for (const auto& marker : array.markers) EXPECT_LT(marker.pose.position.z, 400.0);
+  }
+}
+
+TEST(StateMarkers, SayEpisodeStepAndReturn) {
+  const auto status = ByKey(StateMarkers(test::MakeSpec(), test::MakeState())).at({"status", 0});
+  EXPECT_EQ(status.text, "episode 12   step 17   return -42.5");
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+#include <ros/ros.h>
+#include <sensor_msgs/CompressedImage.h>
+#include <sensor_msgs/Image.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+// Plays the sim node with messages made by hand. No /clock runs: the node must not need it.
+class VizNodeTest : public testing::Test {
+ protected:
+  static constexpr double kLimit_s = 10.0;
+
+  VizNodeTest()
+      : spec_(node_.advertise<aquafarm_msgs::FarmSpec>("spec", 10, true)),
+        state_(node_.advertise<aquafarm_msgs::FarmState>("state", 10)) {
+    EXPECT_TRUE(Until([&] {
+      return spec_.getNumSubscribers() > 0 && state_.getNumSubscribers() > 0;
+    })) << "viz_node does not subscribe to spec and state";
+  }
+
+  static bool Until(const std::function<bool()>& done) {
+    const auto end = ros::WallTime::now() + ros::WallDuration(kLimit_s);
+    while (!done()) {
+      if (ros::WallTime::now() > end || !ros::ok()) return false;
+      ros::spinOnce();
+      ros::WallDuration(0.005).sleep();
+    }
+    return true;
+  }
+
+  static void Idle(double seconds) {
+    const auto end = ros::WallTime::now() + ros::WallDuration(seconds);
+    while (ros::WallTime::now() < end) {
+      ros::spinOnce();
+      ros::WallDuration(0.005).sleep();
+    }
+  }
+
+  // Each test plays an episode of its own.
+  void Play(std::uint64_t episode, std::uint64_t step) {
+    auto state = test::MakeState();
+    state.episode = episode;
+    state.step = step;
+    state.header.stamp = ros::Time(100.0 + double(step));
+    state.disasters.front().x += 0.5F * static_cast<float>(step);
+    state_.publish(state);
+  }
+
+  void Announce(std::uint64_t episode) {
+    auto spec = test::MakeSpec();
+    spec.episode = episode;
+    spec_.publish(spec);
+  }
+
+  ros::NodeHandle node_;
+  ros::Publisher spec_;
+  ros::Publisher state_;
+};
+
+TEST_F(VizNodeTest, DrawsStatesAsImagesThatChange) {
+  std::vector<sensor_msgs::ImageConstPtr> images;
+  const auto subscriber = node_.subscribe<sensor_msgs::Image>(
+      "image", 10, [&](const sensor_msgs::ImageConstPtr& image) { images.push_back(image); });
+  ASSERT_TRUE(Until([&] { return subscriber.getNumPublishers() > 0; }));
+  Announce(1);
+  Play(1, 1);
+  ASSERT_TRUE(Until([&] { return !images.empty() && images.back()->header.stamp.sec == 101; }));
+  EXPECT_EQ(images.back()->encoding, "bgr8");
+  EXPECT_EQ(images.back()->width, 640U);
+  EXPECT_EQ(images.back()->height, 640U);
+  EXPECT_EQ(images.back()->header.frame_id, "map");
+  const auto first = images.back();
+  Play(1, 6);
+  ASSERT_TRUE(Until([&] { return images.back()->header.stamp.sec == 106; }));
+  EXPECT_NE(first->data, images.back()->data);
+}
+
+TEST_F(VizNodeTest, CompressesOnlyWhatIsAskedFor) {
+  std::vector<sensor_msgs::CompressedImageConstPtr> images;
+  Announce(2);
+  Play(2, 1);
+  {
+    const auto subscriber = node_.subscribe<sensor_msgs::CompressedImage>(
+        "image/compressed", 10,
+        [&](const sensor_msgs::CompressedImageConstPtr& image) { images.push_back(image); });
+    // Nothing moves, yet whoever comes gets a picture.
+    ASSERT_TRUE(Until([&] { return !images.empty(); }));
+  }
+  const cv::Mat picture = cv::imdecode(images.back()->data, cv::IMREAD_COLOR);
+  EXPECT_EQ(picture.size(), cv::Size(640, 640));
+  EXPECT_EQ(images.back()->format, "bgr8; jpeg compressed bgr8");
+}
+
+// Counts what comes on `markers`.
+struct MarkerCount {
+  std::map<std::string, int> delete_all;  // by episode, as the status names it
+  std::set<std::string> spaces;
+  std::string status;
+  void Take(const MarkerArray& array) {
+    int here = 0;
+    for (const auto& marker : array.markers) {
+      here += marker.action == Marker::DELETEALL ? 1 : 0;
+      spaces.insert(marker.ns);
+      if (marker.ns == "status") status = marker.text;
+    }
+    delete_all[status.substr(0, status.find("   "))] += here;
+  }
+};
+
+TEST_F(VizNodeTest, DeletesAllMarkersOncePerEpisode) {
+  MarkerCount count;
+  const auto subscriber = node_.subscribe<MarkerArray>(
+      "markers", 100, [&](const visualization_msgs::MarkerArrayConstPtr& m) { count.Take(*m); });
+  ASSERT_TRUE(Until([&] { return subscriber.getNumPublishers() > 0; }));
+  for (const std::uint64_t episode : {30U, 31U}) {
+    Announce(episode);
+    for (std::uint64_t step = 1; step <= 5; ++step) {
+      Play(episode, step);
+      const std::string words =
+          "episode " + std::to_string(episode) + "   step " + std::to_string(step);
+      ASSERT_TRUE(Until([&] { return count.status.substr(0, words.size()) == words; })) << words;
+    }
+    EXPECT_EQ(count.delete_all["episode " + std::to_string(episode)], 1);
+  }
+}
+
+TEST_F(VizNodeTest, GivesALateOnlookerEverything) {
+  Announce(40);
+  Play(40, 1);
+  Idle(0.3);
+  MarkerCount count;
+  const auto subscriber = node_.subscribe<MarkerArray>(
+      "markers", 100, [&](const visualization_msgs::MarkerArrayConstPtr& m) { count.Take(*m); });
+  ASSERT_TRUE(Until([&] { return count.spaces.count("status") > 0; }));
+  for (const char* space :
+       {"sea", "island", "rocks", "port", "ship", "device", "ring", "heading"}) {
+    EXPECT_EQ(count.spaces.count(space), 1U) << space;
+  }
+}
+
+TEST_F(VizNodeTest, WaitsForTheSpecThatFits) {
+  MarkerCount count;
+  const auto subscriber = node_.subscribe<MarkerArray>(
+      "markers", 100, [&](const visualization_msgs::MarkerArrayConstPtr& m) { count.Take(*m); });
+  ASSERT_TRUE(Until([&] { return subscriber.getNumPublishers() > 0; }));
+  Play(50, 1);
+  Idle(0.5);
+  EXPECT_NE(count.status.substr(0, 10), "episode 50");
+  Announce(50);
+  EXPECT_TRUE(Until([&] { return count.status.substr(0, 10) == "episode 50"; }));
+}
+
+TEST_F(VizNodeTest, OutlivesHostileMessages) {
+  auto spec = test::MakeSpec();
+  spec.episode = 60;
+  spec.width = spec.height = 2000000000;
+  spec_.publish(spec);
+  spec.width = spec.height = -1;
+  spec_.publish(spec);
+  auto state = test::MakeState();
+  state.episode = 60;
+  state.disasters.front().radii.assign(1000000, 1.0F);
+  state_.publish(state);
+  state = test::MakeState();
+  state.episode = 60;
+  state.disasters.front().x = std::numeric_limits<float>::quiet_NaN();
+  state_.publish(state);
+  MarkerCount count;
+  const auto subscriber = node_.subscribe<MarkerArray>(
+      "markers", 100, [&](const visualization_msgs::MarkerArrayConstPtr& m) { count.Take(*m); });
+  Announce(61);
+  Play(61, 1);
+  EXPECT_TRUE(Until([&] { return count.status.substr(0, 10) == "episode 61"; }));
+}
+
+TEST_F(VizNodeTest, DrawsNoFasterThanItsRate) {
+  int images = 0;
+  const auto subscriber = node_.subscribe<sensor_msgs::Image>(
+      "image", 1000, [&](const sensor_msgs::ImageConstPtr&) { ++images; });
+  ASSERT_TRUE(Until([&] { return subscriber.getNumPublishers() > 0; }));
+  Announce(70);
+  const auto start = ros::WallTime::now();
+  for (std::uint64_t step = 1; step <= 2000; ++step) {
+    Play(70, step % 5000);
+    ros::WallDuration(0.0005).sleep();
+    ros::spinOnce();
+  }
+  const double seconds = (ros::WallTime::now() - start).toSec();
+  EXPECT_GT(images, 2);
+  EXPECT_LE(images, static_cast<int>(50.0 * seconds * 1.2) + 3);
+}
+
+}  // namespace
+}  // namespace aquafarm_viz
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "viz_node_test");
+  return RUN_ALL_TESTS();
+}

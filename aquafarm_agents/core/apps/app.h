@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// What the programs share: where scenarios are, and Ctrl-C.
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/options.h"
+#include "aquafarm/check.h"
+#include "aquafarm/scenario_yaml.h"
+
+namespace aquafarm::agents {
+
+inline std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
+
+/// The first Ctrl-C asks to save and end, the second ends at once.
+inline void StopOnSignals() {
+  const auto handler = [](int signal) {
+    stop_requested = true;
+    std::signal(signal, SIG_DFL);
+  };
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+/// Folder of the shipped scenarios: of the workspace that this program was installed into, else of
+/// the sources.
+inline std::string ScenarioFolder() {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);  // <prefix>/lib/<package>/
+  const fs::path prefix = program.parent_path().parent_path().parent_path();
+  const fs::path installed = prefix / "share" / "aquafarm_sim" / "scenarios";
+  return fs::is_directory(installed, ignored) ? installed.string() : AQUAFARM_SCENARIO_DIR;
+}
+
+/// A path, or the name of a scenario in `folder`.
+inline std::shared_ptr<const Scenario> FindScenario(const std::string& name,
+                                                    const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const std::string shipped = folder + "/" + name + ".yaml";
+  const bool is_name = name.find('/') == std::string::npos;
+  if (is_name && fs::exists(shipped, ignored)) {
+    return std::make_shared<const Scenario>(LoadScenario(shipped));
+  }
+  if (fs::exists(name, ignored)) return std::make_shared<const Scenario>(LoadScenario(name));
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  throw InputError("scenario: got '" + name + "', expected a file or one of: " + Join(names));
+}
+
+}  // namespace aquafarm::agents

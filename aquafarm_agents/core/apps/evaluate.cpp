@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plays a saved policy greedily in this process, without ROS.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "app.h"
+#include "aquafarm/agents/evaluation.h"
+#include "aquafarm/agents/exit_code.h"
+#include "aquafarm/agents/local_environment.h"
+#include "aquafarm/agents/saved_policy.h"
+
+namespace aquafarm::agents {
+namespace {
+
+struct Arguments {
+  std::string policy;
+  std::string scenario;
+  std::string folder{ScenarioFolder()};
+  std::string output;
+  std::uint64_t seed{1000};
+  std::int32_t episodes{1000};
+  EnvironmentOptions environment{64, 0, false, 1};
+};
+
+// Without a scenario: the one that the policy's run folder keeps.
+std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
+  namespace fs = std::filesystem;
+  if (!arguments.scenario.empty()) return arguments.scenario;
+  const fs::path file = fs::path(saved.path).parent_path();
+  std::error_code ignored;
+  for (const fs::path& folder : {file, file.parent_path()}) {
+    const std::string path = (folder / "scenario.yaml").string();
+    if (fs::exists(path, ignored)) return path;
+  }
+  throw InputError("scenario: got nothing, and there is no scenario.yaml beside " + saved.path);
+}
+
+ExitCode Run(Arguments arguments) {
+  const SavedPolicy saved = FindPolicy(arguments.policy);
+  arguments.environment.encodings = saved.encodings;
+  LocalEnvironment environment(FindScenario(ScenarioOf(arguments, saved), arguments.folder),
+                               arguments.environment);
+  const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
+  const Evaluation evaluation =
+      Evaluate(environment, *policy, arguments.seed, arguments.episodes, &stop_requested);
+  std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
+              environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
+  if (!arguments.output.empty()) {
+    const EnvironmentSpec& spec = environment.spec();
+    WriteEvaluation(arguments.output, evaluation,
+                    {saved.path, saved.checkpoint.algorithm, saved.checkpoint.steps,
+                     spec.scenario_name, spec.scenario_hash, spec.version, spec.farms});
+  }
+  return evaluation.complete ? ExitCode::kOk : ExitCode::kInterrupted;
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Plays a saved policy greedily on episodes never trained on, and reports.");
+  app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
+  app.option_defaults()->always_capture_default();
+  app.add_option("policy", arguments.policy, "run folder, checkpoint file, or the word random")
+      ->required();
+  app.add_option("scenario", arguments.scenario,
+                 "scenario file or name; empty: the one in the policy's run folder");
+  app.add_option("-e,--episodes", arguments.episodes, "episodes")->check(CLI::Range(1, 10000000));
+  app.add_option("-s,--seed", arguments.seed, "seed of the episodes");
+  app.add_option("-f,--farms", arguments.environment.farms, "farms stepped together")
+      ->check(CLI::Range(1, 4096));
+  app.add_option("-w,--write", arguments.output,
+                 "write <this>.csv and <this>.json; empty: nothing");
+  app.add_option("--scenarios", arguments.folder, "folder of the shipped scenarios");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
+  }
+  StopOnSignals();
+  ExitCode code = ExitCode::kInternal;
+  try {
+    code = Run(arguments);
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    code = ExitCode::kBadInput;
+  } catch (const StorageError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    code = ExitCode::kStorage;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "internal error: %s\n", error.what());
+  }
+  return static_cast<int>(code);
+}
+
+}  // namespace
+}  // namespace aquafarm::agents
+
+int main(int argc, char** argv) { return aquafarm::agents::Main(argc, argv); }

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Trains an agent in this process, without ROS.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <ctime>
+
+#include "app.h"
+#include "aquafarm/agents/algorithms.h"
+#include "aquafarm/agents/local_environment.h"
+#include "aquafarm/agents/run.h"
+
+namespace aquafarm::agents {
+namespace {
+
+std::string NewRunFolder() {
+  char name[40];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(name, sizeof(name), "runs/%Y%m%d-%H%M%S", std::localtime(&now));
+  return name;
+}
+
+std::string ListAlgorithms() {
+  std::string text = "algorithms:";
+  for (const Algorithm& one : Algorithms()) {
+    text += std::string("\n  ") + one.name + std::string(14 - std::string(one.name).size(), ' ') +
+            one.summary;
+  }
+  return text;
+}
+
+void Print(const RunStatus& status, const RunOptions& options) {
+  if (!status.message.empty() && status.phase != RunPhase::kEnded) {
+    std::printf("%s\n", status.message.c_str());
+  }
+  if (status.phase == RunPhase::kTraining) {
+    std::printf("%s\n", DescribeProgress(status.progress, options).c_str());
+  }
+  std::fflush(stdout);
+}
+
+int Main(int argc, char** argv) {
+  RunOptions options;
+  std::string scenario = "paper";
+  std::string folder = ScenarioFolder();
+  std::vector<std::string> settings;
+  EnvironmentOptions environment;
+  environment.farms = 16;
+  CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume goes on.");
+  app.footer(ListAlgorithms() +
+             "\nexit codes: 0 trained, 2 bad argument, 3 storage, 130 interrupted and saved");
+  app.option_defaults()->always_capture_default();
+  app.add_option("scenario", scenario, "scenario file, or the name of a shipped one");
+  app.add_option("-a,--algorithm", options.algorithm, "learner by name");
+  app.add_option("-e,--episodes", options.episodes, "limit of episodes; 0: none");
+  app.add_option("-n,--steps", options.steps,
+                 "limit of farm steps; 0: none, or the algorithm's own when there is no limit");
+  app.add_option("-s,--seed", options.seed, "seed of episodes and exploration");
+  app.add_option("-f,--farms", environment.farms, "farms stepped together")
+      ->check(CLI::Range(1, 4096));
+  app.add_option("-t,--threads", environment.threads, "threads that step them")
+      ->check(CLI::Range(1, 256));
+  app.add_option("-d,--run-dir", options.run_dir, "run folder; empty: a new one under ./runs");
+  app.add_flag("-r,--resume", options.resume, "go on from the newest checkpoint of the run folder");
+  app.add_option("-x,--exploration", options.exploration,
+                 "such as epsilon_greedy:linear:1:0.05:0.5 or boltzmann:1; empty: the algorithm's");
+  app.add_option("-o,--set", settings, "option of the learner, key=value");
+  app.add_option("--checkpoint-period", options.checkpoint_period_s, "seconds between checkpoints");
+  app.add_option("--evaluate", options.evaluation_episodes, "greedy episodes at the end; 0: none");
+  app.add_option("--random", options.random_episodes, "episodes of RANDOM beside them; 0: none");
+  app.add_option("--scenarios", folder, "folder of the shipped scenarios");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
+  }
+  for (const std::string& setting : settings) options.options += " " + setting;
+  options.arguments.assign(argv, argv + argc);
+  if (options.run_dir.empty()) options.run_dir = NewRunFolder();
+
+  StopOnSignals();
+  const RunReport report = Train(
+      options,
+      [&](std::uint8_t encodings) {
+        environment.encodings = encodings;
+        return std::make_unique<LocalEnvironment>(FindScenario(scenario, folder), environment);
+      },
+      [&](const RunStatus& status) { Print(status, options); }, &stop_requested);
+  std::fprintf(report.code == ExitCode::kOk ? stdout : stderr, "%s", report.summary.c_str());
+  return static_cast<int>(report.code);
+}
+
+}  // namespace
+}  // namespace aquafarm::agents
+
+int main(int argc, char** argv) { return aquafarm::agents::Main(argc, argv); }

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/learner.h"
+
+namespace aquafarm::agents {
+
+/// A learner that can be asked for by name.
+struct Algorithm {
+  const char* name;
+  const char* summary;          ///< one line for people
+  std::uint8_t encodings;       ///< EncodingBits that it reads
+  std::uint64_t default_steps;  ///< of training when no limit is given
+  std::unique_ptr<Learner> (*make)(const EnvironmentSpec& spec, std::uint64_t seed,
+                                   const std::string& options);
+  /// Makes what it learnt play on farms of `spec`. @throws InputError when it does not fit
+  std::unique_ptr<Policy> (*make_policy)(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
+};
+
+/// All of them, in the order in which they are listed.
+const std::vector<Algorithm>& Algorithms();
+
+/// @throws InputError "algorithm: got 'dqm', expected one of: random, q_learning, sarsa"
+const Algorithm& FindAlgorithm(const std::string& name);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "aquafarm/agents/learner.h"
+#include "aquafarm/rng.h"
+
+namespace aquafarm::agents {
+
+/// RANDOM of §4: every action equally likely, whatever it sees, legal or not.
+class RandomPolicy final : public Policy {
+ public:
+  explicit RandomPolicy(std::int32_t agents) : agents_(agents) {}
+  std::uint8_t encodings() const override { return 0; }
+  void Begin(std::uint64_t seed, std::int32_t farms) override;
+  void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
+
+  std::vector<std::uint64_t> positions() const;
+  /// @param positions as many as farms × agents
+  void Seek(const std::vector<std::uint64_t>& positions);
+
+ private:
+  std::int32_t agents_;
+  std::vector<RandomStream> streams_;
+};
+
+/// RANDOM where a learner is asked for: goes through all the motions and learns nothing.
+class RandomLearner final : public Learner {
+ public:
+  /// @throws InputError on any option; it has none
+  RandomLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
+  std::uint8_t encodings() const override { return 0; }
+  std::string options() const override { return ""; }
+  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  LearnerStatus status() const override;
+  std::unique_ptr<Policy> GreedyPolicy() const override;
+  void SavePolicy(Checkpoint&) const override {}
+  void Save(Checkpoint& checkpoint) const override;
+  void Load(const Checkpoint& checkpoint) override;
+
+ private:
+  std::int32_t agents_;
+  std::size_t entries_;
+  RandomPolicy policy_;
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/saved_policy.h"
+
+#include <filesystem>
+
+#include "aquafarm/agents/algorithms.h"
+#include "aquafarm/agents/run_folder.h"
+#include "aquafarm/check.h"
+
+namespace aquafarm::agents {
+
+SavedPolicy FindPolicy(const std::string& where) {
+  SavedPolicy saved;
+  saved.path = where;
+  if (where == "random") {
+    saved.checkpoint.algorithm = where;
+    return saved;
+  }
+  std::error_code ignored;
+  if (std::filesystem::is_directory(where, ignored)) {
+    saved.path = where + "/policy.ckpt";
+    if (!std::filesystem::exists(saved.path, ignored)) {
+      const auto newest = RunFolder::NewestCheckpoint(where);
+      if (!newest) {
+        throw InputError(where +
+                         ": holds neither policy.ckpt nor a checkpoint; expected a run "
+                         "folder, a checkpoint file or the word random");
+      }
+      saved.path = *newest;
+    }
+  }
+  saved.checkpoint = ReadCheckpoint(saved.path);
+  saved.encodings = FindAlgorithm(saved.checkpoint.algorithm).encodings;
+  return saved;
+}
+
+std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSpec& spec) {
+  try {
+    return FindAlgorithm(saved.checkpoint.algorithm).make_policy(saved.checkpoint, spec);
+  } catch (const InputError& error) {
+    throw InputError(saved.path + ": " + error.what());
+  }
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/schedule.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "aquafarm/agents/options.h"
+#include "aquafarm/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+std::vector<std::string> Split(const std::string& text) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (;;) {
+    const std::size_t end = text.find(':', begin);
+    parts.push_back(text.substr(begin, end - begin));
+    if (end == std::string::npos) return parts;
+    begin = end + 1;
+  }
+}
+
+void CheckRange(double value, const std::string& what, double min, double max) {
+  if (value >= min && value <= max) return;
+  throw InputError(what + ": got " + FormatNumber(value) + ", expected [" + FormatNumber(min) +
+                   ", " + FormatNumber(max) + "]");
+}
+
+}  // namespace
+
+std::string_view ToString(ScheduleKind value) {
+  switch (value) {
+    case ScheduleKind::kConstant:
+      return "constant";
+    case ScheduleKind::kLinear:
+      return "linear";
+    case ScheduleKind::kExponential:
+      return "exponential";
+  }
+  return "?";
+}
+
+double Schedule::At(double progress) const {
+  if (kind == ScheduleKind::kConstant) return start;
+  if (progress >= share) return end;
+  const double done = std::max(0.0, progress) / share;
+  if (kind == ScheduleKind::kLinear) return start + (end - start) * done;
+  return start * std::pow(end / start, done);
+}
+
+Schedule ParseSchedule(const std::string& text, const std::string& what, double min, double max) {
+  const std::vector<std::string> parts = Split(text);
+  Schedule schedule;
+  if (parts.size() == 1) {
+    schedule.start = ParseNumber(parts[0], what);
+    CheckRange(schedule.start, what, min, max);
+    return schedule;
+  }
+  if (parts.size() == 2 && parts[0] == ToString(ScheduleKind::kConstant)) {
+    return ParseSchedule(parts[1], what, min, max);
+  }
+  const bool linear = parts[0] == ToString(ScheduleKind::kLinear);
+  if (parts.size() != 4 || (!linear && parts[0] != ToString(ScheduleKind::kExponential))) {
+    throw InputError(what + ": got '" + text +
+                     "', expected a number, linear:start:end:share or exponential:start:end:share");
+  }
+  schedule.kind = linear ? ScheduleKind::kLinear : ScheduleKind::kExponential;
+  schedule.start = ParseNumber(parts[1], what);
+  schedule.end = ParseNumber(parts[2], what);
+  schedule.share = ParseNumber(parts[3], what);
+  CheckRange(schedule.start, what + ": start", min, max);
+  CheckRange(schedule.end, what + ": end", min, max);
+  if (schedule.share <= 0.0 || schedule.share > 1.0) {
+    throw InputError(what + ": share: got " + parts[3] + ", expected (0, 1]");
+  }
+  if (!linear && (schedule.start <= 0.0 || schedule.end <= 0.0)) {
+    throw InputError(what + ": got '" + text +
+                     "', expected start and end above 0 when exponential");
+  }
+  return schedule;
+}
+
+std::string ToString(const Schedule& schedule) {
+  if (schedule.kind == ScheduleKind::kConstant) return FormatNumber(schedule.start);
+  return std::string(ToString(schedule.kind)) + ":" + FormatNumber(schedule.start) + ":" +
+         FormatNumber(schedule.end) + ":" + FormatNumber(schedule.share);
+}
+
+}  // namespace aquafarm::agents

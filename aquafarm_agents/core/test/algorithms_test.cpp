@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/algorithms.h"
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/random_policy.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
+  EXPECT_EQ(MessageOf<InputError>([] { FindAlgorithm("dqm"); }),
+            "algorithm: got 'dqm', expected one of: random, q_learning, sarsa");
+}
+
+TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
+  LocalEnvironment environment(TinyFarm(), {2, kIndexBit, false, 1});
+  for (const Algorithm& algorithm : Algorithms()) {
+    const auto learner = algorithm.make(environment.spec(), 1, "");
+    EXPECT_EQ(learner->encodings(), algorithm.encodings) << algorithm.name;
+    EXPECT_GT(algorithm.default_steps, 0U);
+    // What it says of itself makes the same again.
+    EXPECT_EQ(algorithm.make(environment.spec(), 1, learner->options())->options(),
+              learner->options());
+  }
+}
+
+TEST(Algorithms, EachContinuesBitForBit) {
+  for (const Algorithm& algorithm : Algorithms()) {
+    LocalEnvironment environment(TinyFarm(), {3, kIndexBit, false, 1});
+    const auto learner = algorithm.make(environment.spec(), 1, "");
+    std::vector<std::uint8_t> actions;
+    const Results* results = &environment.Reset(1);
+    for (int i = 0; i < 100; ++i) {
+      learner->Step(*results, 0.3, actions);
+      results = &environment.Step(actions);
+    }
+    Checkpoint checkpoint;
+    learner->Save(checkpoint);
+    const auto resumed = algorithm.make(environment.spec(), 1, "");
+    resumed->Load(checkpoint);
+    std::vector<std::uint8_t> expected;
+    for (int i = 0; i < 100; ++i) {
+      learner->Step(*results, 0.6, expected);
+      resumed->Step(*results, 0.6, actions);
+      ASSERT_EQ(actions, expected) << algorithm.name;
+      results = &environment.Step(actions);
+    }
+    Checkpoint a;
+    Checkpoint b;
+    learner->Save(a);
+    resumed->Save(b);
+    EXPECT_EQ(a.sections, b.sections) << algorithm.name;
+  }
+}
+
+TEST(RandomPolicy, TakesEveryActionAlikeAndReproduces) {
+  RandomPolicy policy(1);
+  std::array<int, kActionCount> counts{};
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint8_t> first;
+  policy.Begin(3, 10);
+  policy.Act({}, first);
+  for (int i = 0; i < 1000; ++i) {
+    policy.Act({}, actions);
+    for (const std::uint8_t action : actions) ++counts[action];
+  }
+  for (const int count : counts) EXPECT_NEAR(count, 1000, 130);
+  policy.Begin(3, 10);
+  policy.Act({}, actions);
+  EXPECT_EQ(actions, first);
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// What every environment must keep, whatever is behind it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
+#include "aquafarm/agents/environment.h"
+#include "aquafarm/check.h"
+#include "aquafarm/rng.h"
+
+namespace aquafarm::agents::test {
+
+/// Draws the same actions for the same seed.
+class RandomActions {
+ public:
+  explicit RandomActions(std::uint64_t seed)
+      : stream_(StreamKey{seed, 0, Purpose::kExploration, 0}) {}
+  std::vector<std::uint8_t> Next(std::size_t entries) {
+    std::vector<std::uint8_t> actions(entries);
+    for (auto& action : actions) action = static_cast<std::uint8_t>(stream_.Below(kActionCount));
+    return actions;
+  }
+
+ private:
+  RandomStream stream_;
+};
+
+inline std::size_t Entries(const EnvironmentSpec& spec) {
+  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
+}
+
+/// Everything but `finished` is the same.
+inline void ExpectSame(const Results& a, const Results& b) {
+  EXPECT_EQ(a.rewards, b.rewards);
+  EXPECT_EQ(a.outcomes, b.outcomes);
+  EXPECT_EQ(a.legal, b.legal);
+  EXPECT_EQ(a.reasons, b.reasons);
+  EXPECT_EQ(a.started, b.started);
+  EXPECT_EQ(a.hashes, b.hashes);
+  EXPECT_EQ(a.index, b.index);
+  EXPECT_EQ(a.features, b.features);
+  EXPECT_EQ(a.planes, b.planes);
+}
+
+inline void ExpectFirstObservations(const EnvironmentSpec& spec, const Results& results) {
+  const auto farms = static_cast<std::size_t>(spec.farms);
+  EXPECT_EQ(results.started, std::vector<std::uint8_t>(farms, 1));
+  EXPECT_EQ(results.reasons, std::vector<std::uint8_t>(farms, 0));
+  EXPECT_EQ(results.rewards, std::vector<float>(Entries(spec), 0.0F));
+  EXPECT_EQ(results.legal.size(), Entries(spec));
+  EXPECT_EQ(results.outcomes.size(), Entries(spec));
+  EXPECT_EQ(results.hashes.size(), farms);
+  EXPECT_TRUE(results.finished.empty());
+}
+
+/// What a pickup or drop-off came to must be what the mask said before.
+inline void ExpectMaskHeld(std::uint8_t action, ActionMask before, std::uint8_t outcome) {
+  if (action < kMoveCount || outcome == static_cast<std::uint8_t>(Outcome::kOutOfPlay)) return;
+  const bool illegal = outcome == static_cast<std::uint8_t>(Outcome::kIllegalPickup) ||
+                       outcome == static_cast<std::uint8_t>(Outcome::kIllegalDropOff);
+  EXPECT_EQ(illegal, ((before >> action) & 1U) == 0) << "action " << +action;
+}
+
+/// Plays at random for a while and checks each step against the last.
+inline void ExpectStepsKeepTheRules(Environment& environment, std::uint64_t seed, int steps,
+                                    bool one_ship_masks) {
+  const EnvironmentSpec& spec = environment.spec();
+  const auto farms = static_cast<std::uint64_t>(spec.farms);
+  RandomActions random(seed);
+  Results last = environment.Reset(seed);
+  ExpectFirstObservations(spec, last);
+  std::map<std::int32_t, std::uint64_t> next_episode;
+  std::vector<double> returns(farms, 0.0);
+  std::vector<std::int32_t> length(farms, 0);
+  for (int step = 0; step < steps; ++step) {
+    const auto actions = random.Next(Entries(spec));
+    const Results& now = environment.Step(actions);
+    std::size_t ended = 0;
+    for (std::size_t farm = 0; farm < farms; ++farm) {
+      EXPECT_EQ(now.started[farm] != 0, last.reasons[farm] != 0) << "next-step reset";
+      for (std::size_t agent = 0; agent < static_cast<std::size_t>(spec.agents); ++agent) {
+        const std::size_t k = farm * static_cast<std::size_t>(spec.agents) + agent;
+        if (!now.index.empty()) {
+          EXPECT_LT(now.index[k], spec.state_count);
+        }
+        if (now.started[farm] != 0) {
+          EXPECT_EQ(now.rewards[k], 0.0F);
+        } else if (one_ship_masks) {
+          ExpectMaskHeld(actions[k], last.legal[k], now.outcomes[k]);
+        }
+        returns[farm] += static_cast<double>(now.rewards[k]);
+      }
+      if (now.started[farm] != 0) {
+        returns[farm] = 0.0;
+        length[farm] = 0;
+      } else {
+        ++length[farm];
+      }
+      if (now.reasons[farm] == 0) continue;
+      ASSERT_LT(ended, now.finished.size());
+      const EpisodeResult& result = now.finished[ended++];
+      EXPECT_EQ(result.farm, static_cast<std::int32_t>(farm)) << "finished in farm order";
+      EXPECT_EQ(static_cast<std::uint8_t>(result.reason), now.reasons[farm]);
+      EXPECT_EQ(result.seed, seed);
+      const auto expected = next_episode.emplace(result.farm, farm).first;
+      EXPECT_EQ(result.episode, expected->second) << "farm i plays i, i + N, i + 2N";
+      expected->second += farms;
+      EXPECT_EQ(result.steps, length[farm]);
+      EXPECT_LE(result.steps, spec.step_limit);
+      EXPECT_NEAR(static_cast<double>(result.episode_return), returns[farm],
+                  1e-3 * (1.0 + std::abs(returns[farm])));
+    }
+    EXPECT_EQ(ended, now.finished.size());
+    last = now;
+    if (::testing::Test::HasFailure()) return;
+  }
+}
+
+inline void ExpectSeedsReproduce(Environment& environment, int steps) {
+  std::vector<std::vector<std::uint64_t>> runs[2];
+  for (auto& run : runs) {
+    RandomActions random(7);
+    run.push_back(environment.Reset(11, 3).hashes);
+    for (int i = 0; i < steps; ++i) {
+      run.push_back(environment.Step(random.Next(Entries(environment.spec()))).hashes);
+    }
+  }
+  EXPECT_EQ(runs[0], runs[1]);
+  EXPECT_NE(environment.Reset(12, 3).hashes, runs[0][0]) << "another seed";
+}
+
+inline void ExpectSaveAndLoadContinue(Environment& environment, int steps) {
+  RandomActions random(13);
+  environment.Reset(5);
+  const std::size_t entries = Entries(environment.spec());
+  for (int i = 0; i < steps; ++i) environment.Step(random.Next(entries));
+  const Results standing = environment.Step(random.Next(entries));
+  const std::string saved = environment.Save();
+  std::vector<std::vector<std::uint8_t>> actions;
+  std::vector<Results> expected;
+  for (int i = 0; i < steps; ++i) {
+    actions.push_back(random.Next(entries));
+    expected.push_back(environment.Step(actions.back()));
+  }
+  environment.Reset(99);
+  ExpectSame(environment.Load(saved), standing);
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    ExpectSame(environment.Step(actions[i]), expected[i]);
+    if (::testing::Test::HasFailure()) return;
+  }
+}
+
+inline void ExpectBadBytesAreRefused(Environment& environment) {
+  environment.Reset(5);
+  const std::string saved = environment.Save();
+  EXPECT_THROW(environment.Load("no farm at all"), InputError);
+  EXPECT_THROW(environment.Load(saved.substr(0, saved.size() / 2)), InputError);
+  const std::vector<std::uint8_t> actions(Entries(environment.spec()), 0);
+  const Results after = environment.Step(actions);
+  environment.Reset(5);
+  ExpectSame(environment.Step(actions), after);
+}
+
+/// @param environment must give hashes
+/// @param one_ship_masks masks are promises only where no other ship can act in between
+inline void RunEnvironmentContract(Environment& environment, int steps = 600,
+                                   bool one_ship_masks = true) {
+  const EnvironmentSpec& spec = environment.spec();
+  EXPECT_FALSE(spec.scenario_name.empty());
+  EXPECT_FALSE(spec.scenario_yaml.empty());
+  EXPECT_FALSE(spec.version.empty());
+  EXPECT_GE(spec.farms, 1);
+  EXPECT_GE(spec.agents, 1);
+  EXPECT_GT(spec.width * spec.height, 0);
+  ExpectStepsKeepTheRules(environment, 21, steps, one_ship_masks);
+  ExpectSeedsReproduce(environment, 50);
+  ExpectSaveAndLoadContinue(environment, 60);
+  ExpectBadBytesAreRefused(environment);
+  const std::vector<std::uint8_t> too_few(Entries(spec) - 1, 0);
+  EXPECT_THROW(environment.Step(too_few), LogicError);
+  EXPECT_THROW(environment.Step(std::vector<std::uint8_t>(Entries(spec), kActionCount)),
+               LogicError);
+  EXPECT_FALSE(environment.TakeRestarted());
+}
+
+}  // namespace aquafarm::agents::test

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/planner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/check.h"
+#include "aquafarm/scenario_yaml.h"
+
+namespace aquafarm::agents {
+namespace {
+
+// 4 × 3 cells, an island, a rock, a port, two devices; everything that costs, costs.
+Scenario TinyScenario(std::int32_t duration, float exposure, std::int32_t capacity) {
+  Scenario scenario;
+  scenario.name = "tiny";
+  scenario.width = 4;
+  scenario.height = 3;
+  scenario.islands = {{{0, 0}, 1, 1}};
+  scenario.rocks.cells = {{2, 1}};
+  scenario.rocks.reward = {-2.0F, -1.0F};
+  scenario.ports.cells = {{1, 0}};
+  scenario.ships.capacity = capacity;
+  scenario.devices.placement = DevicePlacement::kExplicit;
+  scenario.devices.sites = {{{3, 0}, DeviceKind::kMonitoring, 60.0F, false},
+                            {{1, 2}, DeviceKind::kMonitoring, 9.0F, false}};
+  scenario.damage.exposure_damage = exposure;
+  scenario.damage.crash_probability = 0.5F;
+  DisasterSpec storm;
+  storm.radii = {0.8F, 1.7F};
+  storm.risks = {-20.0F, -5.0F};
+  storm.turn_probability = 0.4F;
+  storm.duration = duration;
+  scenario.disasters = {storm};
+  ValidateScenario(scenario);
+  return scenario;
+}
+
+// The best return of all action sequences, by playing every one: states that agree in all that
+// decides the future are played once.
+double BruteForce(const Farm& farm, std::map<std::string, double>& seen) {
+  if (farm.over()) return 0.0;
+  // Hash() tells apart how a state was reached (the return so far), so name the state by hand.
+  const Ship& ship = farm.ships()[0];
+  std::string name = std::to_string(farm.step()) + ' ' + std::to_string(ship.cell.x) + ' ' +
+                     std::to_string(ship.cell.y);
+  for (const Device& device : farm.devices()) {
+    name +=
+        ' ' + std::to_string(static_cast<int>(device.status)) + ' ' + std::to_string(device.health);
+  }
+  const auto found = seen.find(name);
+  if (found != seen.end()) return found->second;
+  const std::string saved = farm.Save();
+  double best = -1e9;
+  for (std::uint8_t action = 0; action < kActionCount; ++action) {
+    Farm next(std::make_shared<const Scenario>(farm.scenario()), farm.shared_layout());
+    next.Load(saved);
+    next.Step(&action);
+    best = std::max(best, static_cast<double>(next.ships()[0].reward) + BruteForce(next, seen));
+  }
+  seen[name] = best;
+  return best;
+}
+
+// Plays a plan and returns what it came to.
+double Play(Farm& farm, const Plan& plan) {
+  const float before = farm.ships()[0].episode_return;
+  for (const std::uint8_t action : plan.actions) {
+    if (!farm.over()) farm.Step(&action);
+  }
+  return static_cast<double>(farm.ships()[0].episode_return - before);
+}
+
+TEST(Clairvoyant, EqualsBruteForceOnTinyFarms) {
+  for (const std::int32_t duration : {3, 7, 11}) {
+    for (const float exposure : {0.0F, 0.02F, 0.1F}) {
+      for (std::uint64_t episode = 0; episode < 3; ++episode) {
+        const std::int32_t capacity = episode == 2 ? 2 : 1;
+        const auto scenario =
+            std::make_shared<const Scenario>(TinyScenario(duration, exposure, capacity));
+        Farm farm(scenario);
+        farm.Reset(5, episode);
+        std::map<std::string, double> seen;
+        const double expected = BruteForce(farm, seen);
+        Planner planner(*scenario);
+        const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+        const std::string where = "duration " + std::to_string(duration) + " exposure " +
+                                  std::to_string(exposure) + " episode " + std::to_string(episode);
+        EXPECT_NEAR(plan.expected_return, expected, 1e-3) << where;
+        EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << where;
+      }
+    }
+  }
+}
+
+TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {
+  const auto scenario = std::make_shared<const Scenario>(TinyScenario(9, 0.02F, 1));
+  Planner planner(*scenario);
+  Farm farm(scenario);
+  farm.Reset(1, 0);
+  double last = 1e9;
+  while (!farm.over()) {
+    std::map<std::string, double> seen;
+    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    EXPECT_NEAR(plan.expected_return, BruteForce(farm, seen), 1e-3) << "step " << farm.step();
+    // Following the plan, what is still to come is what was promised.
+    if (last < 1e8) {
+      EXPECT_NEAR(plan.expected_return, last, 1e-3);
+    }
+    farm.Step(&plan.actions.at(0));
+    last = plan.expected_return - static_cast<double>(farm.ships()[0].reward);
+  }
+  EXPECT_NEAR(last, 0.0, 1e-3);
+}
+
+TEST(Clairvoyant, BringsEverythingHomeOnThePapersFarm) {
+  const auto scenario =
+      std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));
+  Planner planner(*scenario);
+  Farm farm(scenario);
+  for (std::uint64_t episode = 0; episode < 20; ++episode) {
+    farm.Reset(7, episode);
+    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    EXPECT_NEAR(Play(farm, plan), plan.expected_return, 1e-2);
+    EXPECT_EQ(farm.reason(), EndReason::kAllRetrieved);
+  }
+}
+
+TEST(RecedingHorizon, IsNeverBetterThanClairvoyant) {
+  const auto scenario =
+      std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));
+  Planner planner(*scenario);
+  Farm farm(scenario);
+  double optimum = 0.0;
+  double achieved = 0.0;
+  for (std::uint64_t episode = 0; episode < 5; ++episode) {
+    farm.Reset(11, episode);
+    const double best = planner.Solve(farm, Foresight::kClairvoyant).expected_return;
+    while (!farm.over()) {
+      const Plan plan = planner.Solve(farm, Foresight::kHeadingHolds);
+      farm.Step(&plan.actions.at(0));
+    }
+    EXPECT_LE(static_cast<double>(farm.ships()[0].episode_return), best + 1e-2);
+    optimum += best;
+    achieved += static_cast<double>(farm.ships()[0].episode_return);
+  }
+  EXPECT_GT(achieved, 0.8 * optimum);
+}
+
+TEST(Planner, SaysWhatItCannotPlanFor) {
+  Scenario squads;
+  squads.ships.count = 2;
+  try {
+    Planner planner(squads);
+    FAIL() << "was let through";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "planner: got 2 agents, expected 1 rescue ship");
+  }
+  Scenario many;
+  many.devices.count = 30;
+  EXPECT_THROW(Planner{many}, InputError);
+}
+
+}  // namespace
+}  // namespace aquafarm::agents

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <csignal>
+
+namespace aquafarm_agents {
+
+/// Set by Ctrl-C and by roslaunch's end.
+inline std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
+
+/// Asks to save and end instead of dying; after ros::init with NoSigintHandler.
+inline void StopOnSignals() {
+  const auto handler = [](int) { stop_requested = true; };
+  std::signal(SIGINT, handler);
+  std::signal(SIGTERM, handler);
+}
+
+}  // namespace aquafarm_agents

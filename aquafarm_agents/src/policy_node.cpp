@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ros/console.h>
+#include <ros/node_handle.h>
+
+#include <climits>
+#include <cstdio>
+#include <memory>
+
+#include "aquafarm/agents/evaluation.h"
+#include "aquafarm/agents/exit_code.h"
+#include "aquafarm/agents/saved_policy.h"
+#include "aquafarm/check.h"
+#include "aquafarm_agents/node.h"
+#include "aquafarm_agents/params.h"
+#include "aquafarm_agents/ros_environment.h"
+#include "aquafarm_agents/ship_driver.h"
+#include "aquafarm_agents/signals.h"
+
+namespace aquafarm_agents {
+namespace {
+
+namespace agents = aquafarm::agents;
+using agents::ExitCode;
+
+struct PolicyParams {
+  std::string policy;
+  std::string mode{"evaluate"};
+  std::string output;  ///< prefix of .csv and .json; empty: none are written
+  int episodes{};      ///< act: 0 for ever
+  int seed{1000};
+  int ship{-1};
+  double sim_timeout_s{20.0};
+};
+
+PolicyParams ReadPolicyParams(const ros::NodeHandle& node) {
+  PolicyParams params;
+  Params reader(node);
+  reader.Text("policy", params.policy);
+  reader.Text("mode", params.mode);
+  reader.Text("output", params.output);
+  reader.Int("episodes", 0, 10000000, params.episodes);
+  reader.Int("seed", 0, INT_MAX, params.seed);
+  reader.Int("ship", -1, INT_MAX, params.ship);
+  reader.Number("sim_timeout_s", 0.0, 86400.0, params.sim_timeout_s);
+  reader.RefuseOthers();
+  if (params.policy.empty()) {
+    throw aquafarm::InputError(
+        "~policy: got nothing, expected a run folder, a checkpoint file or "
+        "the word random");
+  }
+  if (params.mode != "evaluate" && params.mode != "act") {
+    throw aquafarm::InputError("~mode: got '" + params.mode + "', expected evaluate or act");
+  }
+  if (params.mode == "evaluate" && params.episodes == 0) params.episodes = 100;
+  return params;
+}
+
+ExitCode Evaluate(const ros::NodeHandle& node, const PolicyParams& params,
+                  const agents::SavedPolicy& saved) {
+  RosEnvironmentOptions options;
+  options.encodings = saved.encodings;
+  options.wait_limit_s = params.sim_timeout_s;
+  options.stop = &stop_requested;
+  options.on_notice = [](const std::string& text) { ROS_WARN("%s", text.c_str()); };
+  RosEnvironment environment(node, options);
+  const auto policy = agents::MakePolicy(saved, environment.spec());
+  const agents::Evaluation evaluation =
+      agents::Evaluate(environment, *policy, static_cast<std::uint64_t>(params.seed),
+                       params.episodes, &stop_requested);
+  const agents::EnvironmentSpec& spec = environment.spec();
+  std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(), spec.scenario_name.c_str(),
+              agents::Describe(evaluation).c_str());
+  if (!params.output.empty()) {
+    agents::WriteEvaluation(params.output, evaluation,
+                            {saved.path, saved.checkpoint.algorithm, saved.checkpoint.steps,
+                             spec.scenario_name, spec.scenario_hash, spec.version, spec.farms});
+  }
+  return evaluation.complete ? ExitCode::kOk : ExitCode::kInterrupted;
+}
+
+ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
+             const agents::SavedPolicy& saved) {
+  ShipDriverOptions options;
+  options.ship = params.ship;
+  options.wait_limit_s = params.sim_timeout_s;
+  options.stop = &stop_requested;
+  ShipDriver driver(node, saved.encodings, options);
+  const auto policy = agents::MakePolicy(saved, driver.spec());
+  ROS_INFO("driving with %s", saved.path.c_str());
+  const auto ended =
+      driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);
+  std::size_t successes = 0;
+  for (const agents::EpisodeResult& result : ended) successes += result.Success() ? 1 : 0;
+  std::printf("%zu of %zu episodes ended with every device delivered\n", successes, ended.size());
+  return ExitCode::kOk;
+}
+
+int Refuse(ExitCode code, const char* what) {
+  std::fprintf(stderr, "policy_node: %s\n", what);
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int RunPolicyNode() {
+  try {
+    const ros::NodeHandle node;
+    const PolicyParams params = ReadPolicyParams(ros::NodeHandle("~"));
+    const agents::SavedPolicy saved = agents::FindPolicy(params.policy);
+    return static_cast<int>(params.mode == "act" ? Act(node, params, saved)
+                                                 : Evaluate(node, params, saved));
+  } catch (const aquafarm::InputError& error) {
+    return Refuse(ExitCode::kBadInput, error.what());
+  } catch (const agents::StorageError& error) {
+    return Refuse(ExitCode::kStorage, error.what());
+  } catch (const agents::EnvironmentLost& error) {
+    return Refuse(stop_requested ? ExitCode::kInterrupted : ExitCode::kLost, error.what());
+  } catch (const std::exception& error) {
+    return Refuse(ExitCode::kInternal, error.what());
+  }
+}
+
+}  // namespace aquafarm_agents

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <aquafarm_msgs/TrainingStatus.h>
+#include <ros/console.h>
+#include <ros/node_handle.h>
+#include <ros/param.h>
+
+#include <climits>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <memory>
+
+#include "aquafarm/agents/run.h"
+#include "aquafarm/check.h"
+#include "aquafarm_agents/node.h"
+#include "aquafarm_agents/params.h"
+#include "aquafarm_agents/ros_environment.h"
+#include "aquafarm_agents/signals.h"
+#include "aquafarm_sim/names.h"
+
+namespace aquafarm_agents {
+namespace {
+
+namespace agents = aquafarm::agents;
+using agents::ExitCode;
+using agents::RunPhase;
+using aquafarm_msgs::TrainingStatus;
+
+constexpr double kPrintPeriod_s = 5.0;
+
+struct TrainParams {
+  agents::RunOptions run;
+  RosEnvironmentOptions environment;
+  std::string exit_file;
+};
+
+std::string NewRunFolder() {
+  char name[40];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(name, sizeof(name), "runs/%Y%m%d-%H%M%S", std::localtime(&now));
+  return name;
+}
+
+TrainParams ReadTrainParams(const ros::NodeHandle& node) {
+  TrainParams params;
+  Params reader(node);
+  int episodes = 0;
+  int seed = 1;
+  double steps = 0.0;  // a parameter holds no whole number beyond 31 bits
+  reader.Text("exit_file", params.exit_file);
+  reader.Text("algorithm", params.run.algorithm);
+  reader.Text("exploration", params.run.exploration);
+  reader.Text("options", params.run.options);
+  reader.Int("episodes", 0, INT_MAX, episodes);
+  reader.Number("steps", 0.0, 1e15, steps);
+  reader.Int("seed", 0, INT_MAX, seed);
+  reader.Int("farms", 0, 4096, params.environment.farms);
+  reader.Text("run_dir", params.run.run_dir);
+  reader.Flag("resume", params.run.resume);
+  reader.Number("checkpoint_period_s", 0.0, 86400.0, params.run.checkpoint_period_s);
+  reader.Int("evaluation_episodes", 0, 10000000, params.run.evaluation_episodes);
+  reader.Int("random_episodes", 0, 10000000, params.run.random_episodes);
+  reader.Number("sim_timeout_s", 0.0, 86400.0, params.environment.wait_limit_s);
+  reader.Number("call_limit_s", 0.1, 86400.0, params.environment.call_limit_s);
+  reader.RefuseOthers();
+  params.run.episodes = static_cast<std::uint64_t>(episodes);
+  params.run.steps = static_cast<std::uint64_t>(steps);
+  params.run.seed = static_cast<std::uint64_t>(seed);
+  params.run.arguments = reader.given();
+  if (params.run.run_dir.empty()) params.run.run_dir = NewRunFolder();
+  return params;
+}
+
+std::uint8_t PhaseOf(RunPhase phase, ExitCode code) {
+  switch (phase) {
+    case RunPhase::kStarting:
+      return TrainingStatus::STARTING;
+    case RunPhase::kTraining:
+      return TrainingStatus::TRAINING;
+    case RunPhase::kEvaluating:
+      return TrainingStatus::EVALUATING;
+    case RunPhase::kEnded:
+      break;
+  }
+  if (code == ExitCode::kOk) return TrainingStatus::DONE;
+  return code == ExitCode::kInterrupted ? TrainingStatus::INTERRUPTED : TrainingStatus::FAILED;
+}
+
+TrainingStatus ToMsg(const agents::RunStatus& status, const agents::RunOptions& options,
+                     ExitCode code) {
+  const agents::TrainingProgress& progress = status.progress;
+  TrainingStatus message;
+  message.header.stamp = ros::Time::now();
+  message.phase = PhaseOf(status.phase, code);
+  message.algorithm = options.algorithm;
+  message.run_dir = options.run_dir;
+  message.message = status.message;
+  message.episode = progress.episodes;
+  message.episodes = options.episodes;
+  message.steps = progress.steps;
+  message.last_return = progress.last_return;
+  message.mean_return = progress.mean_return;
+  message.best_mean_return = progress.best_mean_return;
+  message.success_rate = progress.success_rate;
+  message.evaluation_return = message.evaluation_success = std::nanf("");
+  if (status.has_evaluation) {
+    message.evaluation_return = static_cast<float>(status.evaluation.mean_return);
+    message.evaluation_success = static_cast<float>(status.evaluation.success_rate);
+  }
+  message.loss = progress.learner.loss;
+  message.exploration = progress.learner.exploration;
+  message.learning_rate = progress.learner.learning_rate;
+  message.steps_per_second = static_cast<float>(progress.steps_per_second);
+  message.elapsed_s = progress.elapsed_s;
+  message.time_left_s = progress.time_left_s;
+  return message;
+}
+
+/// Tells people: on a topic each time, on the console now and then.
+class Herald {
+ public:
+  Herald(ros::NodeHandle& node, agents::RunOptions options)
+      : options_(std::move(options)),
+        publisher_(node.advertise<TrainingStatus>(aquafarm_sim::names::kTraining, 10, true)) {}
+
+  void Tell(const agents::RunStatus& status) {
+    last_ = status;
+    Publish(ToMsg(status, options_, ExitCode::kOk));
+    if (!status.message.empty()) ROS_INFO("%s", status.message.c_str());
+    const ros::WallTime now = ros::WallTime::now();
+    const bool due = printed_.isZero() || (now - printed_).toSec() >= kPrintPeriod_s;
+    if (status.phase != RunPhase::kTraining || !due) return;
+    printed_ = now;
+    ROS_INFO("%s", agents::DescribeProgress(status.progress, options_).c_str());
+  }
+
+  void Warn(const std::string& text) {
+    ROS_WARN("%s", text.c_str());
+    TrainingStatus message = ToMsg(last_, options_, ExitCode::kOk);
+    message.phase = TrainingStatus::WAITING;
+    message.message = text;
+    Publish(message);
+  }
+
+  void End(const agents::RunReport& report) {
+    Publish(ToMsg(report.status, options_, report.code));
+    ros::WallDuration(0.2).sleep();  // lets the last status leave before the node does
+  }
+
+ private:
+  void Publish(const TrainingStatus& message) { publisher_.publish(message); }
+
+  const agents::RunOptions options_;
+  ros::Publisher publisher_;
+  agents::RunStatus last_;
+  ros::WallTime printed_;
+};
+
+agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {
+  Herald herald(node, params.run);
+  params.environment.stop = &stop_requested;
+  params.environment.on_notice = [&herald](const std::string& text) { herald.Warn(text); };
+  agents::RunReport report = agents::Train(
+      params.run,
+      [&](std::uint8_t encodings) {
+        params.environment.encodings = encodings;
+        return std::make_unique<RosEnvironment>(node, params.environment);
+      },
+      [&herald](const agents::RunStatus& status) {
+        if (status.phase != RunPhase::kEnded) herald.Tell(status);
+      },
+      &stop_requested);
+  herald.End(report);
+  return report;
+}
+
+int End(ExitCode code, const std::string& exit_file, const std::string& summary) {
+  std::fprintf(code == ExitCode::kOk ? stdout : stderr, "%s", summary.c_str());
+  std::fflush(stdout);
+  const int number = static_cast<int>(code);
+  if (exit_file.empty() || exit_file == "none") return number;
+  try {
+    agents::WriteFileAtomically(exit_file, std::to_string(number) + "\n");
+  } catch (const agents::StorageError& error) {
+    std::fprintf(stderr, "train_node: ~exit_file: %s\n", error.what());
+  }
+  return number;
+}
+
+}  // namespace
+
+int RunTrainNode() {
+  std::string exit_file;
+  try {
+    ros::NodeHandle node;
+    TrainParams params;
+    ros::NodeHandle("~").param("exit_file", exit_file, exit_file);  // refusals go there too
+    params = ReadTrainParams(ros::NodeHandle("~"));
+    const agents::RunReport report = Train(node, params);
+    return End(report.code, exit_file, report.summary);
+  } catch (const aquafarm::InputError& error) {
+    return End(ExitCode::kBadInput, exit_file, std::string("train_node: ") + error.what() + "\n");
+  } catch (const std::exception& error) {
+    return End(ExitCode::kInternal, exit_file, std::string("train_node: ") + error.what() + "\n");
+  }
+}
+
+}  // namespace aquafarm_agents

@@ -1,0 +1,125 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Saved policies through ROS: evaluated as in process, driving ships, refused with a reason."""
+import csv
+import json
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import DATA, Program, program, start_agent, start_sim  # noqa: E402
+
+TINY = DATA / "tiny.yaml"
+PAIR = DATA / "pair.yaml"
+
+
+class PolicyNodeTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_policy_"))
+        cls.addClassCleanup(lambda: __import__("shutil").rmtree(cls.folder))
+
+    def setUp(self):
+        self.namespace = "/" + self.id().rsplit(".", maxsplit=1)[-1]
+
+    def trained(self):
+        """Run folder of a policy that always solves the tiny farm; trained once."""
+        folder = self.folder / "trained"
+        if not folder.exists():
+            run = Program(self, program("aquafarm_agents", "aquafarm_train"), TINY, "--steps",
+                          "200000", "--run-dir", folder, "--evaluate", "100")
+            self.assertEqual(0, run.code(), run.words())
+            self.assertIn("success 100.0 %", run.words())
+        return folder
+
+    def play(self, *parameters, wait_s=10):
+        return start_agent(self, "policy_node", self.namespace, f"_sim_timeout_s:={wait_s}",
+                           *parameters)
+
+    def test_an_evaluation_is_that_of_this_process(self):
+        policy = self.trained()
+        start_sim(self, self.namespace, TINY, "_farms:=4")
+        for name in ("trained", "random"):
+            where = policy if name == "trained" else name
+            ros = self.play(f"_policy:={where}", "_episodes:=40", "_seed:=9",
+                            f"_output:={self.folder / name}_ros")
+            self.assertEqual(0, ros.code(), ros.words())
+            local = Program(self, program("aquafarm_agents", "aquafarm_evaluate"), where, TINY,
+                            "--episodes", "40", "--seed", "9", "--farms", "4", "--write",
+                            self.folder / f"{name}_local")
+            self.assertEqual(0, local.code(), local.words())
+            with open(self.folder / f"{name}_ros.csv", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file))
+            self.assertEqual([str(k) for k in range(40)], [row["episode"] for row in rows])
+            self.assertEqual((self.folder / f"{name}_local.csv").read_text(),
+                             (self.folder / f"{name}_ros.csv").read_text())
+        results = {name: json.loads((self.folder / f"{name}_ros.json").read_text())
+                   for name in ("trained", "random")}
+        self.assertEqual(1.0, results["trained"]["success_rate"])
+        self.assertGreater(results["trained"]["return_per_episode"],
+                           results["random"]["return_per_episode"] + 50)
+
+    def drive(self, *parameters):
+        return self.play("_mode:=act", *parameters)
+
+    def test_it_drives_a_ship_step_by_step(self):
+        start_sim(self, self.namespace, TINY)
+        run = self.drive(f"_policy:={self.trained()}", "_episodes:=3")
+        self.assertEqual(0, run.code(), run.words())
+        self.assertIn("3 of 3 episodes ended with every device delivered", run.words())
+
+    def test_it_drives_a_ship_that_does_not_wait(self):
+        start_sim(self, self.namespace, TINY, "_pace:=paced", "_rate_hz:=20")
+        run = self.drive(f"_policy:={self.trained()}", "_episodes:=2")
+        self.assertEqual(0, run.code(), run.words())
+        self.assertIn("2 of 2 episodes ended with every device delivered", run.words())
+
+    def test_it_drives_all_ships_of_a_farm_or_one(self):
+        start_sim(self, self.namespace, PAIR)
+        run = self.drive("_policy:=random", "_episodes:=2")
+        self.assertEqual(0, run.code(), run.words())
+        one = self.drive("_policy:=random", "_ship:=1", "_episodes:=1")
+        other = self.drive("_policy:=random", "_ship:=0", "_episodes:=1")
+        self.assertEqual(0, one.code(), one.words())
+        self.assertEqual(0, other.code(), other.words())
+
+    def test_interrupted_while_driving_it_ends_well(self):
+        start_sim(self, self.namespace, PAIR)
+        run = self.drive("_policy:=random")
+        run.wait_for(lambda: "episode 1" in run.words(), "an episode")
+        run.send(signal.SIGINT)
+        self.assertEqual(0, run.code(), run.words())
+
+    def test_policies_that_do_not_fit_are_refused_with_the_reason(self):
+        start_sim(self, self.namespace, PAIR)
+        for parameters, words in (
+                ((f"_policy:={self.trained()}",), "q_learning of scenario tiny does not fit scenario pair: width: it knows 6"),
+                (("_policy:=/no/such/folder",), "/no/such/folder"),
+                ((f"_policy:={self.folder}",), "holds neither policy.ckpt nor a checkpoint"),
+                ((f"_policy:={TINY}",), "no checkpoint"),
+                ((), "~policy: got nothing, expected a run folder"),
+                (("_policy:=random", "_mode:=watch"), "expected evaluate or act"),
+                (("_policy:=random", "_mode:=act", "_ship:=2"), "~ship: got 2, expected -1")):
+            with self.subTest(parameters=parameters):
+                run = self.play(*parameters)
+                self.assertEqual(2, run.code(), run.words())
+                self.assertIn(words, run.words())
+
+    def test_without_a_sim_node_it_says_so_and_ends(self):
+        for mode in ("evaluate", "act"):
+            run = self.play("_policy:=random", f"_mode:={mode}", wait_s=2)
+            self.assertEqual(4, run.code(), run.words())
+            self.assertIn(f"no answer from service {self.namespace}/", run.words())
+
+
+if __name__ == "__main__":
+    rospy.init_node("policy_node_test")
+    rostest.rosrun("aquafarm_agents", "policy_node", PolicyNodeTest, sys.argv)

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the tests of the agents' nodes share: programs that are started, watched and ended."""
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+
+import roslib.packages
+
+LIMIT_S = 60.0
+DATA = pathlib.Path(__file__).resolve().parent / "data"
+
+
+def program(package, name):
+    """Path of an executable of a package."""
+    found = roslib.packages.find_node(package, name)
+    assert found, f"{package} has no {name}"
+    return found[0]
+
+
+class Program:
+    """A running program whose words go to a file; killed when a test ends."""
+
+    def __init__(self, test, *command):
+        self._file = tempfile.NamedTemporaryFile("w+", prefix="aquafarm_", suffix=".log")
+        self.process = subprocess.Popen([str(word) for word in command], stdout=self._file,
+                                        stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+        test.addCleanup(self.kill)
+
+    def words(self):
+        """Everything it has printed so far."""
+        return pathlib.Path(self._file.name).read_text()
+
+    def code(self, limit_s=LIMIT_S):
+        """Waits for its end and returns its exit code."""
+        try:
+            return self.process.wait(timeout=limit_s)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"did not end within {limit_s} s:\n{self.words()}") from None
+
+    def send(self, number):
+        """Sends a signal."""
+        self.process.send_signal(number)
+
+    def kill(self):
+        """Ends it at once, also when it was stopped."""
+        if self.process.poll() is None:
+            self.send(signal.SIGKILL)
+        self.process.wait()
+
+    def wait_for(self, condition, what, limit_s=LIMIT_S):
+        """Waits until a condition holds, while it runs."""
+        end = time.monotonic() + limit_s
+        while not condition():
+            assert self.process.poll() is None, f"ended before {what}:\n{self.words()}"
+            assert time.monotonic() < end, f"waited in vain for {what}:\n{self.words()}"
+            time.sleep(0.02)
+
+
+def start_sim(test, namespace, scenario, *parameters):
+    """Starts a sim node in a namespace."""
+    return Program(test, program("aquafarm_sim", "sim_node"), f"__ns:={namespace}", "__name:=sim",
+                   f"_scenario:={scenario}", "_publish_clock:=false", *parameters)
+
+
+def start_agent(test, node, namespace, *parameters):
+    """Starts train_node or policy_node; each under a name of its own, so that no parameter of an
+    earlier one is left."""
+    start_agent.count = getattr(start_agent, "count", 0) + 1
+    return Program(test, program("aquafarm_agents", node), f"__ns:={namespace}",
+                   f"__name:=agent_{os.getpid()}_{start_agent.count}", *parameters)
+
+
+def newest_checkpoint(run_folder):
+    """Name of a run folder's newest checkpoint; empty when there is none."""
+    names = sorted(path.name for path in pathlib.Path(run_folder).glob("checkpoints/step_*.ckpt"))
+    return names[-1] if names else ""

@@ -1,0 +1,151 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Training through ROS: the bits of training in process, kills, losses and refusals."""
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from aquafarm_msgs.msg import TrainingStatus
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import (DATA, Program, newest_checkpoint, program, start_agent,  # noqa: E402
+                       start_sim)
+
+TINY = DATA / "tiny.yaml"
+
+
+class TrainNodeTest(unittest.TestCase):
+
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="aquafarm_train_")
+        self.addCleanup(self._folder.cleanup)
+        self.folder = pathlib.Path(self._folder.name)
+        self.namespace = "/" + self.id().rsplit(".", maxsplit=1)[-1]
+
+    def train(self, run, *parameters, wait_s=10):
+        return start_agent(self, "train_node", self.namespace, f"_run_dir:={self.folder / run}",
+                           "_evaluation_episodes:=50", "_random_episodes:=10",
+                           f"_sim_timeout_s:={wait_s}", *parameters)
+
+    def in_process(self, run, *arguments):
+        return Program(self, program("aquafarm_agents", "aquafarm_train"), TINY, "--run-dir",
+                       self.folder / run, "--evaluate", "50", "--random", "10", *arguments)
+
+    def assert_same_files(self, a, b, names):
+        for name in names:
+            self.assertEqual((self.folder / a / name).read_bytes(),
+                             (self.folder / b / name).read_bytes(), name)
+
+    def test_a_training_is_that_of_the_same_seed_in_process(self):
+        start_sim(self, self.namespace, TINY)
+        for algorithm in ("q_learning", "sarsa"):
+            ros = self.train(f"{algorithm}_ros", f"_algorithm:={algorithm}", "_steps:=60000",
+                             "_farms:=8", "_seed:=3")
+            self.assertEqual(0, ros.code(), ros.words())
+            local = self.in_process(f"{algorithm}_local", "--algorithm", algorithm, "--steps",
+                                    "60000", "--farms", "8", "--seed", "3")
+            self.assertEqual(0, local.code(), local.words())
+            self.assert_same_files(
+                f"{algorithm}_ros", f"{algorithm}_local",
+                ["policy.ckpt", "metrics.csv", "scenario.yaml", "evaluation.csv",
+                 "evaluation_random.csv"])
+            self.assertIn("success 100.0 %", ros.words())
+
+    def test_killed_and_resumed_it_ends_in_the_same_bits(self):
+        start_sim(self, self.namespace, TINY)
+        parameters = ("_steps:=300000", "_farms:=8", "_checkpoint_period_s:=0.05")
+        whole = self.train("whole", *parameters)
+        self.assertEqual(0, whole.code(), whole.words())
+        for resume in ("false", "true"):
+            before = newest_checkpoint(self.folder / "parts")
+            part = self.train("parts", *parameters, f"_resume:={resume}")
+            part.wait_for(lambda b=before: newest_checkpoint(self.folder / "parts") != b,
+                          "a checkpoint")
+            part.send(signal.SIGKILL)
+            self.assertEqual(-signal.SIGKILL, part.code())
+        rest = self.train("parts", *parameters, "_resume:=true")
+        self.assertEqual(0, rest.code(), rest.words())
+        self.assertIn("resuming from", rest.words())
+        newest = newest_checkpoint(self.folder / "whole")
+        self.assert_same_files("whole", "parts",
+                               ["policy.ckpt", "metrics.csv", f"checkpoints/{newest}"])
+
+    def test_a_frozen_sim_node_ends_the_training_after_its_limits(self):
+        sim = start_sim(self, self.namespace, TINY)
+        run = self.train("run", "_steps:=1e9", "_checkpoint_period_s:=0.05", "_call_limit_s:=1",
+                         wait_s=2)
+        run.wait_for(lambda: newest_checkpoint(self.folder / "run"), "a checkpoint")
+        sim.send(signal.SIGSTOP)
+        self.assertEqual(4, run.code(20), run.words())
+        self.assertIn("the sim node is gone; waiting up to 2 s", run.words())
+        self.assertIn(f"saved in {self.folder / 'run'}", run.words())
+
+    def test_a_sim_node_that_comes_back_is_gone_on_with(self):
+        sim = start_sim(self, self.namespace, TINY)
+        run = self.train("run", "_steps:=400000", "_farms:=8")
+        metrics = self.folder / "run" / "metrics.csv"
+        run.wait_for(lambda: metrics.exists() and metrics.stat().st_size > 4096, "episodes")
+        sim.send(signal.SIGKILL)
+        sim.process.wait()
+        run.wait_for(lambda: "the sim node is gone" in run.words(), "a word of the loss", 5)
+        start_sim(self, self.namespace, TINY)
+        self.assertEqual(0, run.code(), run.words())
+        self.assertIn("going on with fresh episodes", run.words())
+        lines = metrics.read_text().splitlines()
+        column = lines[0].split(",").index("episode")
+        episodes = [int(line.split(",")[column]) for line in lines[1:]]
+        self.assertEqual(len(episodes), len(set(episodes)), "an episode was trained on twice")
+
+    def test_status_goes_to_a_topic(self):
+        start_sim(self, self.namespace, TINY)
+        statuses = []
+        rospy.Subscriber(f"{self.namespace}/training", TrainingStatus, statuses.append)
+        run = self.train("run", "_steps:=500000", "_farms:=8")
+        self.assertEqual(0, run.code(), run.words())
+        phases = [status.phase for status in statuses]
+        self.assertIn(TrainingStatus.TRAINING, phases)
+        self.assertEqual(TrainingStatus.DONE, phases[-1])
+        last = statuses[-1]
+        self.assertEqual(500000, last.steps - last.steps % 500000)
+        self.assertEqual(str(self.folder / "run"), last.run_dir)
+        self.assertGreaterEqual(last.evaluation_success, 0.99)
+
+    def test_a_run_folder_in_use_is_refused(self):
+        start_sim(self, self.namespace, TINY)
+        first = self.train("run", "_steps:=1e9", "_checkpoint_period_s:=0.05")
+        first.wait_for(lambda: newest_checkpoint(self.folder / "run"), "a checkpoint")
+        second = self.train("run", "_resume:=true")
+        self.assertEqual(3, second.code(), second.words())
+        self.assertIn(f"is in use by another training (process {first.process.pid})",
+                      second.words())
+        first.send(signal.SIGINT)
+        self.assertEqual(130, first.code(), first.words())
+
+    def test_arguments_are_refused_with_what_is_allowed(self):
+        for argument, words in (
+                ("_algorithm:=dqm", "algorithm: got 'dqm', expected one of: random, q_learning"),
+                ("_episodes:=-1", "~episodes: got -1, expected [0, 2147483647]"),
+                ("_episodes:=many", "~episodes: got another type, expected a whole number"),
+                ("_epsiodes:=5", "~epsiodes: unknown parameter, expected one of: "),
+                ("_exploration:=greedy", "exploration: got 'greedy'"),
+                ("_options:=discuont=0.9", "discuont"),
+                ("_options:=discount=1.5", "discount: got 1.5, expected [0, 1]")):
+            with self.subTest(argument=argument):
+                run = self.train("run", argument)
+                self.assertEqual(2, run.code(), run.words())
+                self.assertIn(words, run.words())
+
+    def test_without_a_sim_node_it_says_so_and_ends(self):
+        run = self.train("run", wait_s=2)
+        self.assertEqual(4, run.code(), run.words())
+        self.assertIn(f"no answer from service {self.namespace}/get_state for 2 s", run.words())
+
+
+if __name__ == "__main__":
+    rospy.init_node("train_node_test")
+    rostest.rosrun("aquafarm_agents", "train_node", TrainNodeTest, sys.argv)

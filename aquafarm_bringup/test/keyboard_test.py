@@ -1,0 +1,59 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the keyboard node makes of keys and answers."""
+import importlib.machinery
+import importlib.util
+import pathlib
+import subprocess
+import sys
+import unittest
+
+import rostest
+from aquafarm_msgs.msg import (Cell, CommandResult, DeviceState, FarmSpec, FarmState, Outcome,
+                               PortInfo, RewardTerms, RockInfo, ShipState)
+
+PATH = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "keyboard"
+sys.dont_write_bytecode = True
+LOADER = importlib.machinery.SourceFileLoader("keyboard_node", str(PATH))
+keyboard = importlib.util.module_from_spec(importlib.util.spec_from_loader("keyboard_node", LOADER))
+LOADER.exec_module(keyboard)
+
+
+class KeyboardTest(unittest.TestCase):
+
+    def test_an_arrow_key_is_one_key(self):
+        self.assertEqual(["\x1b[A", "p", "\x1bOC"], keyboard.split_keys("\x1b[Ap\x1bOC"))
+
+    def test_every_action_has_a_key(self):
+        self.assertLessEqual(set(keyboard.ACTIONS), set(keyboard.KEYS.values()))
+
+    def test_a_step_is_told_with_its_terms_and_what_is_legal(self):
+        result = CommandResult(ok=True, code=Outcome.CRASH, step=7, reward=-2.5,
+                               terms=RewardTerms(crash=-2.5), legal_actions=0x1FF)
+        self.assertEqual("step 7: CRASH, reward -2.5 (crash -2.5); legal: moves, pickup",
+                         keyboard.describe(result))
+
+    def test_the_end_is_told_with_its_reason(self):
+        result = CommandResult(ok=True, terminated=True, reason=FarmState.ALL_RETRIEVED)
+        self.assertIn("the episode is over: ALL_RETRIEVED", keyboard.describe(result))
+
+    def test_a_refusal_is_told_with_its_code(self):
+        result = CommandResult(code=Outcome.EPISODE_OVER, message="reset first")
+        self.assertEqual("EPISODE_OVER: reset first", keyboard.describe(result))
+
+    def test_the_map_has_north_at_the_top(self):
+        spec = FarmSpec(width=3, height=2, islands=[Cell(0, 0)], ports=[PortInfo(0, Cell(1, 0))],
+                        rocks=[RockInfo(Cell(2, 1), -3.0)])
+        state = FarmState(ships=[ShipState(id=0, x=1, y=1, active=True)],
+                          devices=[DeviceState(x=2, y=0)])
+        self.assertEqual(".0^\n#HD", keyboard.draw_map(spec, state))
+
+    def test_without_a_terminal_it_says_what_it_needs(self):
+        done = subprocess.run([str(PATH)], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                              text=True, timeout=20, check=False)
+        self.assertEqual(2, done.returncode)
+        self.assertIn("got no terminal as input, expected one", done.stderr)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_bringup", "keyboard", KeyboardTest, sys.argv)

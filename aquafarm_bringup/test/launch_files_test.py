@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every launch file parses, documents its arguments and stays on the loopback address."""
+import pathlib
+import sys
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+import roslaunch.config
+import roslib.packages
+import rospkg
+import rostest
+
+PACKAGE = "aquafarm_bringup"
+LAUNCH = pathlib.Path(rospkg.RosPack().get_path(PACKAGE)) / "launch"
+FILES = sorted(LAUNCH.rglob("*.launch"))
+ARGUMENTS = {"replay": ["bag:=/tmp/none.bag"]}
+VARIANTS = {
+    "train": [["run_dir:=/tmp/run", "resume:=true", "rviz:=true"], ["viz:=false"]],
+    "sim": [["headless:=true"], ["policy:=random"]],
+    "record": [["of:=train"], ["of:=evaluate", "bag:=/tmp/day.bag"], ["policy:=none"]],
+    "replay": [["bag:=/tmp/none.bag", "headless:=true", "play_options:=--loop"]],
+}
+
+
+def load(path, arguments):
+    """Returns roslaunch's configuration of a launch file with the given name:=value arguments."""
+    return roslaunch.config.load_config_default([(str(path), list(arguments))], None, verbose=False,
+                                                assign_machines=False)
+
+
+class LaunchFilesTest(unittest.TestCase):
+
+    def test_the_six_launch_files_are_there(self):
+        names = {path.stem for path in FILES}
+        self.assertLessEqual({"train", "evaluate", "sim", "play", "record", "replay"}, names)
+
+    def test_every_argument_says_what_it_is_and_has_a_default(self):
+        for path in FILES:
+            for argument in ElementTree.parse(path).getroot().findall("arg"):
+                where = f"{path.name}: {argument.get('name')}"
+                self.assertGreater(len(argument.get("doc") or ""), 15, where)
+                if where != "replay.launch: bag":
+                    self.assertTrue(argument.get("default"), where)
+
+    def test_every_file_and_variant_parses(self):
+        for path in FILES:
+            variants = [ARGUMENTS.get(path.stem, [])] + VARIANTS.get(path.stem, [])
+            for arguments in variants:
+                with self.subTest(file=path.name, arguments=arguments):
+                    config = load(path, arguments)
+                    self.assertEqual([], config.config_errors)
+
+    def test_every_node_is_bound_to_the_loopback_address(self):
+        for path in FILES:
+            for node in load(path, ARGUMENTS.get(path.stem, [])).nodes:
+                with self.subTest(file=path.name, node=node.name):
+                    self.assertEqual("127.0.0.1", dict(node.env_args).get("ROS_IP"))
+
+    def test_every_node_has_an_executable(self):
+        for path in FILES:
+            for arguments in [ARGUMENTS.get(path.stem, [])] + VARIANTS.get(path.stem, []):
+                for node in load(path, arguments).nodes:
+                    with self.subTest(file=path.name, node=node.name):
+                        self.assertTrue(roslib.packages.find_node(node.package, node.type),
+                                        f"{node.package}/{node.type}")
+
+    def test_replay_runs_no_farm(self):
+        nodes = load(LAUNCH / "replay.launch", ["bag:=/tmp/none.bag"]).nodes
+        self.assertEqual({("aquafarm_viz", "viz_node"), ("rviz", "rviz"), ("rosbag", "play")},
+                         {(node.package, node.type) for node in nodes})
+
+    def test_rviz_is_absent_from_training_and_headless_running(self):
+        for name, arguments in (("train", []), ("sim", ["headless:=true"]), ("record", [])):
+            nodes = load(LAUNCH / f"{name}.launch", arguments).nodes
+            self.assertNotIn("rviz", [node.type for node in nodes], name)
+
+
+if __name__ == "__main__":
+    rostest.rosrun(PACKAGE, "launch_files", LaunchFilesTest, sys.argv)

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs a launch file as a person would, on a port and in folders of its own, under a limit."""
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+
+
+def free_port():
+    """Returns a port that nobody listened on a moment ago."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Ranch:
+    """A launch in a process group of its own; leaving the context ends all of it."""
+
+    def __init__(self, launch, *arguments, port=None, stdin=subprocess.DEVNULL):
+        self._folder = tempfile.TemporaryDirectory(prefix="aquafarm_test_")
+        self.folder = pathlib.Path(self._folder.name)
+        self.log = self.folder / "launch.log"
+        self._exit_file = self.folder / "exit_code"
+        self.port = port or free_port()
+        self.environment = dict(
+            os.environ, ROS_HOME=str(self.folder), ROS_LOG_DIR=str(self.folder / "log"),
+            ROS_IP="127.0.0.1", ROS_MASTER_URI=f"http://127.0.0.1:{self.port}")
+        self._command = ["roslaunch", "aquafarm_bringup", f"{launch}.launch", *arguments]
+        if launch != "replay":
+            self._command.append(f"exit_file:={self._exit_file}")
+        self._stdin = stdin
+        self._process = None
+
+    def __enter__(self):
+        with open(self.log, "wb") as log:
+            self._process = subprocess.Popen(
+                self._command, env=self.environment, stdin=self._stdin, stdout=log,
+                stderr=subprocess.STDOUT, start_new_session=True)
+        return self
+
+    def __exit__(self, *_):
+        self.interrupt()
+        try:
+            self._process.wait(timeout=30)
+        except subprocess.TimeoutExpired:
+            os.killpg(self._process.pid, signal.SIGKILL)
+            self._process.wait()
+        self._folder.cleanup()
+
+    def words(self):
+        """Returns everything the launch has printed so far."""
+        return self.log.read_text(errors="replace")
+
+    def interrupt(self):
+        """Sends Ctrl-C unless the launch has ended."""
+        if self._process.poll() is None:
+            self._process.send_signal(signal.SIGINT)
+
+    def is_running(self):
+        return self._process.poll() is None
+
+    def exit_code(self, limit_s):
+        """Waits for the launch to end by itself; returns the exit code that its nodes left."""
+        try:
+            self._process.wait(timeout=limit_s)
+        except subprocess.TimeoutExpired as error:
+            raise AssertionError(f"still running: {error}\n{self.words()[-4000:]}") from None
+        if not self._exit_file.exists():
+            raise AssertionError(f"no exit code was left:\n{self.words()[-4000:]}")
+        return int(self._exit_file.read_text())
+
+    def wait_for(self, what, limit_s):
+        """Waits until what() is true; returns its value."""
+        end = time.monotonic() + limit_s
+        while time.monotonic() < end:
+            value = what()
+            if value:
+                return value
+            if not self.is_running():
+                break
+            time.sleep(0.05)
+        value = what()
+        if not value:
+            raise AssertionError(f"did not come about within {limit_s} s:\n{self.words()[-4000:]}")
+        return value
+
+    def node_pid(self, name):
+        """Returns the process id of a node by its executable's name, or None."""
+        for entry in pathlib.Path("/proc").iterdir():
+            if not entry.name.isdigit():
+                continue
+            try:
+                command = (entry / "cmdline").read_bytes().split(b"\0")
+                environment = (entry / "environ").read_bytes()
+            except OSError:
+                continue
+            if (os.path.basename(command[0]) == name.encode()
+                    and f"ROS_MASTER_URI=http://127.0.0.1:{self.port}".encode() in environment):
+                return int(entry.name)
+        return None

@@ -1,0 +1,66 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The script ./aquafarm refuses what it does not know and says what is missing."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rostest
+
+PACKAGE = pathlib.Path(__file__).resolve().parent.parent
+SCRIPT = PACKAGE.parent / "aquafarm"
+LIMIT_S = 20
+
+
+def run(*command, **options):
+    """Runs a command under a limit and returns the finished process with its words."""
+    return subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LIMIT_S,
+                          check=False, **options)
+
+
+@unittest.skipUnless(SCRIPT.exists(), f"no script at {SCRIPT}: the package stands alone")
+class ScriptTest(unittest.TestCase):
+
+    def test_an_unknown_verb_is_refused_with_the_list(self):
+        done = run(SCRIPT, "trian")
+        self.assertEqual(2, done.returncode)
+        self.assertIn("got 'trian', expected setup, build, train,", done.stdout)
+
+    def test_an_unknown_argument_is_refused_with_the_list(self):
+        done = run(SCRIPT, "train", "algoritm:=sarsa")
+        self.assertEqual(2, done.returncode)
+        self.assertIn("train.launch has no argument 'algoritm'; it has: algorithm ", done.stdout)
+
+    def test_an_argument_without_a_value_is_refused(self):
+        done = run(SCRIPT, "train", "sarsa")
+        self.assertEqual(2, done.returncode)
+        self.assertIn("got 'sarsa', expected name:=value", done.stdout)
+
+    def test_every_verb_has_help(self):
+        for verb in ("setup", "build", "train", "evaluate", "sim", "play", "record", "replay",
+                     "test", "bench"):
+            with self.subTest(verb=verb):
+                done = run(SCRIPT, verb, "--help")
+                self.assertEqual(0, done.returncode, done.stdout)
+                self.assertIn(f"usage: ./aquafarm {verb}", done.stdout)
+
+    @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "needs root and setpriv")
+    def test_without_root_setup_says_what_to_install_and_ends(self):
+        with tempfile.TemporaryDirectory() as folder:
+            os.chmod(folder, 0o755)
+            copy = pathlib.Path(folder, "aquafarm")
+            text = SCRIPT.read_text().replace("packages=(", "packages=(\n  no-such-thing", 1)
+            copy.write_text(text)
+            copy.chmod(0o755)
+            done = run("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", copy, "setup")
+        self.assertEqual(3, done.returncode, done.stdout)
+        self.assertIn("apt-get install --no-install-recommends no-such-thing\n", done.stdout)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_bringup", "script", ScriptTest, sys.argv)

@@ -1,0 +1,101 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Training through ROS from start to end, and what it makes of faults and accidents."""
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import time
+import unittest
+
+import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import Ranch  # noqa: E402
+
+ARGUMENT_REFUSED = 2
+RUN_FOLDER_FAILED = 3
+SIM_LOST = 4
+INTERRUPTED = 130
+START_LIMIT_S = 20
+
+
+class TrainLaunchTest(unittest.TestCase):
+
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory(prefix="aquafarm_run_")
+        self.addCleanup(self._folder.cleanup)
+        self.run_dir = pathlib.Path(self._folder.name) / "run"
+
+    def train(self, *arguments):
+        return Ranch("train", f"run_dir:={self.run_dir}", "viz:=false", "checkpoint_period_s:=0.5",
+                     "evaluation_episodes:=20", "random_episodes:=20", *arguments)
+
+    def wait_until_training(self, ranch):
+        """Waits until the first line of metrics is there."""
+        metrics = self.run_dir / "metrics.csv"
+        ranch.wait_for(lambda: metrics.exists() and metrics.read_text().count("\n") > 1,
+                       START_LIMIT_S)
+
+    def test_a_short_training_ends_with_zero_a_summary_and_a_run_folder(self):
+        with self.train("episodes:=64") as ranch:
+            self.assertEqual(0, ranch.exit_code(60), ranch.words())
+            for word in ("return", "success", str(self.run_dir)):
+                self.assertIn(word, ranch.words())
+        names = {path.name for path in self.run_dir.rglob("*")}
+        self.assertLessEqual({"metrics.csv", "scenario.yaml"}, names)
+        self.assertFalse([name for name in names if name.endswith((".tmp", ".part"))])
+
+    def test_an_unknown_algorithm_ends_at_once_and_lists_what_there_is(self):
+        start = time.monotonic()
+        with self.train("algorithm:=alphago") as ranch:
+            self.assertEqual(ARGUMENT_REFUSED, ranch.exit_code(START_LIMIT_S))
+            for word in ("alphago", "random", "q_learning", "sarsa"):
+                self.assertIn(word, ranch.words())
+        self.assertLess(time.monotonic() - start, 15)
+
+    def test_an_unknown_scenario_ends_at_once_and_lists_what_there_is(self):
+        with self.train("scenario:=atlantis") as ranch:
+            self.assertEqual(ARGUMENT_REFUSED, ranch.exit_code(START_LIMIT_S))
+            for word in ("atlantis", "paper", "procedural", "red_tide", "zhoushan_infa_2021"):
+                self.assertIn(word, ranch.words())
+
+    def test_a_run_folder_that_cannot_be_made_ends_at_the_start(self):
+        self.run_dir.parent.joinpath("file").write_text("in the way")
+        self.run_dir = self.run_dir.parent / "file" / "run"
+        with self.train() as ranch:
+            self.assertEqual(RUN_FOLDER_FAILED, ranch.exit_code(START_LIMIT_S))
+            self.assertIn(str(self.run_dir), ranch.words())
+
+    def test_a_lost_sim_node_is_told_and_ends_the_training_after_the_limit(self):
+        with self.train("sim_restarts:=0", "sim_timeout_s:=3") as ranch:
+            self.wait_until_training(ranch)
+            os.kill(ranch.node_pid("sim_node"), signal.SIGKILL)
+            killed = time.monotonic()
+            ranch.wait_for(lambda: "the sim node is gone; waiting up to 3 s" in ranch.words(), 3)
+            self.assertEqual(SIM_LOST, ranch.exit_code(20), ranch.words())
+            self.assertGreater(time.monotonic() - killed, 2.5)
+        self.assertTrue(list(self.run_dir.rglob("*checkpoint*")), "nothing was saved")
+
+    def test_a_sim_node_that_returns_lets_the_training_go_on(self):
+        with self.train("episodes:=20000") as ranch:
+            self.wait_until_training(ranch)
+            os.kill(ranch.node_pid("sim_node"), signal.SIGKILL)
+            self.assertEqual(0, ranch.exit_code(90), ranch.words())
+            self.assertIn("starting it again", ranch.words())
+
+    def test_ctrl_c_saves_and_resume_goes_on(self):
+        with self.train() as ranch:
+            self.wait_until_training(ranch)
+            ranch.interrupt()
+            self.assertEqual(INTERRUPTED, ranch.exit_code(30), ranch.words())
+        lines = (self.run_dir / "metrics.csv").read_text().splitlines()
+        with self.train("resume:=true", f"episodes:={len(lines) + 64}") as ranch:
+            self.assertEqual(0, ranch.exit_code(60), ranch.words())
+        self.assertEqual(lines[0], (self.run_dir / "metrics.csv").read_text().splitlines()[0])
+        self.assertGreater(len((self.run_dir / "metrics.csv").read_text().splitlines()), len(lines))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_bringup", "train_launch", TrainLaunchTest, sys.argv)

@@ -1,0 +1,60 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Adds up JUnit-style results (gtest, ctest, rostest, nosetests) under the given folders.
+
+Names each failed case and ends with one line 'N passed, N failed, N skipped'; exits 1 when a case
+failed, a file is no result, or nothing was run at all. catkin_test_results is not used for the
+sum: it passes over files it cannot read and knows no ctest results.
+"""
+import pathlib
+import sys
+import xml.etree.ElementTree as ElementTree
+
+
+def outcome(case):
+    """Returns 'failed', 'skipped' or 'passed' for one <testcase>."""
+    if case.find("failure") is not None or case.find("error") is not None:
+        return "failed"
+    if case.find("skipped") is not None or case.get("status") in ("notrun", "disabled"):
+        return "skipped"
+    return "passed"
+
+
+def cases_of(path, stems):
+    """Returns (outcome, name) of each case in a result file; an unreadable file is a failure."""
+    try:
+        root = ElementTree.parse(path).getroot()
+    except ElementTree.ParseError as error:
+        return [("failed", f"no readable result ({error})")]
+    found = [(outcome(case), f"{case.get('classname', '')}.{case.get('name', '')}", case)
+             for case in root.iter("testcase")]
+    # rostest tells the fate of a test program beside the program's own results in rosunit-*: there
+    # a pass says nothing, but a failure may be all that is known.
+    if path.name.startswith("rostest-"):
+        found = [entry for entry in found if entry[0] == "failed"]
+    # To ctest an executable is one case; it counts only where gtest left no result of its own.
+    if path.name.startswith("ctest-"):
+        found = [entry for entry in found if entry[2].get("name") not in stems]
+    # What fails before the first case (setUpClass) is told by the suite alone.
+    told = int(root.get("errors") or 0) + int(root.get("failures") or 0)
+    untold = told - sum(entry[0] == "failed" for entry in found)
+    if not path.name.startswith("ctest-"):
+        found += [("failed", "outside its cases", None)] * max(0, untold)
+    return [entry[:2] for entry in found]
+
+
+def main(folders):
+    paths = sorted(p for folder in folders for p in pathlib.Path(folder).rglob("*.xml"))
+    stems = {path.stem for path in paths}
+    counts = {"passed": 0, "failed": 0, "skipped": 0}
+    for path in paths:
+        for result, name in cases_of(path, stems):
+            counts[result] += 1
+            if result != "passed":
+                print(f"{result.upper()} {name} ({path})")
+    print("{passed} passed, {failed} failed, {skipped} skipped".format(**counts))
+    return 1 if counts["failed"] or not counts["passed"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

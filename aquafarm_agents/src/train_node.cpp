@@ -96,7 +96,7 @@ TrainingStatus ToMsg(const agents::RunStatus& status, const agents::RunOptions& 
   message.run_dir = options.run_dir;
   message.message = status.message;
   message.episode = progress.episodes;
-  message.episodes = options.episodes;
+  message.episodes = progress.episode_limit;
   message.steps = progress.steps;
   message.last_return = progress.last_return;
   message.mean_return = progress.mean_return;
@@ -131,7 +131,7 @@ class Herald {
     const bool due = printed_.isZero() || (now - printed_).toSec() >= kPrintPeriod_s;
     if (status.phase != RunPhase::kTraining || !due) return;
     printed_ = now;
-    ROS_INFO("%s", agents::DescribeProgress(status.progress, options_).c_str());
+    ROS_INFO("%s", agents::DescribeProgress(status.progress).c_str());
   }
 
   void Warn(const std::string& text) {
@@ -187,6 +187,17 @@ int End(ExitCode code, const std::string& exit_file, const std::string& summary)
   return number;
 }
 
+/// What people may want to do next.
+std::string Next(const agents::RunReport& report, const std::string& run_dir) {
+  const std::string launch = "roslaunch aquafarm_bringup ";
+  if (report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost) {
+    return "go on      " + launch + "train.launch … resume:=true run_dir:=" + run_dir + "\n";
+  }
+  if (report.code != ExitCode::kOk) return "";
+  return "watch it   " + launch + "sim.launch scenario:=" + run_dir +
+         "/scenario.yaml policy:=" + run_dir + "\n";
+}
+
 }  // namespace
 
 int RunTrainNode() {
@@ -197,7 +208,7 @@ int RunTrainNode() {
     ros::NodeHandle("~").param("exit_file", exit_file, exit_file);  // refusals go there too
     params = ReadTrainParams(ros::NodeHandle("~"));
     const agents::RunReport report = Train(node, params);
-    return End(report.code, exit_file, report.summary);
+    return End(report.code, exit_file, report.summary + Next(report, params.run.run_dir));
   } catch (const aquafarm::InputError& error) {
     return End(ExitCode::kBadInput, exit_file, std::string("train_node: ") + error.what() + "\n");
   } catch (const std::exception& error) {

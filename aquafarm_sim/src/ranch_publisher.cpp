@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_sim/ranch_publisher.h"
 
+#include <ros/init.h>
 #include <rosgraph_msgs/Clock.h>
 
 #include <chrono>
@@ -16,6 +17,8 @@ constexpr std::uint32_t kRecordQueue = 10000;
 // rosbag record keeps 100 messages a topic while it writes a chunk; what comes faster is lost.
 constexpr std::chrono::milliseconds kRecordPeriod{2};
 constexpr std::size_t kMaxSummaries = 1000;
+// A recorder connects to its topics one after the other.
+const ros::WallDuration kRecorderGrace(0.3);
 
 }  // namespace
 
@@ -66,6 +69,16 @@ RanchPublisher::~RanchPublisher() {
     wake_.notify_all();
   }
   thread_.join();
+}
+
+bool RanchPublisher::WaitForRecorder(double limit_s) {
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(limit_s);
+  while (episode_.getNumSubscribers() == 0) {
+    if (!ros::ok() || ros::WallTime::now() >= end) return false;
+    ros::WallDuration(0.02).sleep();
+  }
+  kRecorderGrace.sleep();
+  return true;
 }
 
 void RanchPublisher::OnChange(const RanchView& view) {

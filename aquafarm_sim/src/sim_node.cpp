@@ -6,6 +6,7 @@
 #include <aquafarm_msgs/Move.h>
 #include <aquafarm_msgs/Outcome.h>
 #include <aquafarm_msgs/Pickup.h>
+#include <ros/console.h>
 #include <ros/init.h>
 #include <ros/this_node.h>
 #include <unistd.h>
@@ -81,6 +82,10 @@ SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_nod
       ship_node_(OnQueue(node_, ship_queue_)),
       diagnostics_(ros::NodeHandle(), private_node, ros::this_node::getName()),
       diagnosed_at_(ros::WallTime::now()) {
+  const double wait_s = params_.recorder_wait_s;
+  if (wait_s > 0.0 && !publisher_.WaitForRecorder(wait_s)) {
+    ROS_WARN("nobody recorded within ~recorder_wait_s, %g s; going on", wait_s);
+  }
   const std::int32_t agents = ranch_.agents();
   for (std::int32_t ship = 0; ship < agents; ++ship) AdvertiseShip(ship);
   AdvertiseFarm();

@@ -92,6 +92,7 @@ SimParams ReadSimParams(const ros::NodeHandle& private_node) {
   reader.ReadDouble("barrier_timeout_s", 0.01, 3600.0, params.ranch.barrier_timeout_s);
   reader.ReadDouble("publish_hz", 0.0, kMaxRate_hz, params.publish_hz);
   reader.Read("record", "true or false", params.record);
+  reader.ReadDouble("recorder_wait_s", 0.0, 3600.0, params.recorder_wait_s);
   reader.Read("publish_clock", "true or false", params.publish_clock);
   reader.Read("map_frame", "a frame", params.map_frame);
   reader.Read("earth_frame", "a frame", params.earth_frame);

@@ -29,12 +29,12 @@ std::string ListAlgorithms() {
   return text;
 }
 
-void Print(const RunStatus& status, const RunOptions& options) {
+void Print(const RunStatus& status) {
   if (!status.message.empty() && status.phase != RunPhase::kEnded) {
     std::printf("%s\n", status.message.c_str());
   }
   if (status.phase == RunPhase::kTraining) {
-    std::printf("%s\n", DescribeProgress(status.progress, options).c_str());
+    std::printf("%s\n", DescribeProgress(status.progress).c_str());
   }
   std::fflush(stdout);
 }
@@ -86,7 +86,7 @@ int Main(int argc, char** argv) {
         environment.encodings = encodings;
         return std::make_unique<LocalEnvironment>(FindScenario(scenario, folder), environment);
       },
-      [&](const RunStatus& status) { Print(status, options); }, &stop_requested);
+      Print, &stop_requested);
   std::fprintf(report.code == ExitCode::kOk ? stdout : stderr, "%s", report.summary.c_str());
   return static_cast<int>(report.code);
 }

@@ -253,15 +253,20 @@ RunReport Train(const RunOptions& options, const MakeEnvironment& make_environme
   return run.End();
 }
 
-std::string DescribeProgress(const TrainingProgress& progress, const RunOptions& options) {
-  std::string text = "steps " + Count(progress.steps);
-  if (options.steps > 0) text += " / " + Count(options.steps);
-  text += "  episodes " + Count(progress.episodes);
-  if (options.episodes > 0) text += " / " + Count(options.episodes);
-  char rest[160];
-  std::snprintf(rest, sizeof(rest), "  return %.1f  success %.2f  exploration %.3g  %s steps/s",
-                static_cast<double>(progress.mean_return),
-                static_cast<double>(progress.success_rate),
+std::string DescribeProgress(const TrainingProgress& progress) {
+  const auto of = [](std::uint64_t done, std::uint64_t limit) {
+    return limit == 0 ? Count(done) : Count(done) + " / " + Count(limit);
+  };
+  std::string text = "steps " + of(progress.steps, progress.step_limit) + "  episodes " +
+                     of(progress.episodes, progress.episode_limit);
+  char rest[80];
+  if (progress.episodes > 0) {
+    std::snprintf(rest, sizeof(rest), "  return %.1f  success %.2f",
+                  static_cast<double>(progress.mean_return),
+                  static_cast<double>(progress.success_rate));
+    text += rest;
+  }
+  std::snprintf(rest, sizeof(rest), "  exploration %.3g  %s steps/s",
                 static_cast<double>(progress.learner.exploration),
                 Count(static_cast<std::uint64_t>(progress.steps_per_second)).c_str());
   text += rest;

@@ -29,6 +29,8 @@ Trainer::Trainer(Environment& environment, Learner& learner, const TrainerOption
     throw InputError("seed: got " + std::to_string(options_.seed) +
                      ", expected less than 2^63; those above are for evaluation");
   }
+  progress_.episode_limit = options_.episodes;
+  progress_.step_limit = options_.steps;
   Summarise();
 }
 

@@ -38,6 +38,10 @@ class RanchPublisher : public RanchListener {
   RanchPublisher(const RanchPublisher&) = delete;
   RanchPublisher& operator=(const RanchPublisher&) = delete;
 
+  /// Waits until someone subscribes to `episode`, which only recorders do before the first step.
+  /// @returns false when nobody came within the limit
+  bool WaitForRecorder(double limit_s);
+
   void OnChange(const RanchView& view) override;
   void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) override;
 

@@ -20,6 +20,7 @@ struct SimParams {
   RanchOptions ranch;
   double publish_hz{10.0};   ///< most states a second for people; 0: none
   bool record{};             ///< publish every step of farm 0
+  double recorder_wait_s{};  ///< most seconds to wait at the start for someone who records
   bool publish_clock{true};  ///< false where another node owns /clock
   std::string map_frame{names::kMapFrame};
   std::string earth_frame{names::kEarthFrame};

@@ -29,11 +29,13 @@ struct TrainerOptions {
 /// How a training is getting on.
 struct TrainingProgress {
   std::uint64_t episodes{};
-  std::uint64_t steps{};     ///< farm steps
-  float last_return{};       ///< NaN: no episode has ended
-  float mean_return{};       ///< of the last kWindow episodes; NaN: none
-  float best_mean_return{};  ///< best mean over a full window; NaN: none yet
-  float success_rate{};      ///< of the last kWindow episodes; NaN: none
+  std::uint64_t steps{};          ///< farm steps
+  std::uint64_t episode_limit{};  ///< 0: none
+  std::uint64_t step_limit{};     ///< 0: none
+  float last_return{};            ///< NaN: no episode has ended
+  float mean_return{};            ///< of the last kWindow episodes; NaN: none
+  float best_mean_return{};       ///< best mean over a full window; NaN: none yet
+  float success_rate{};           ///< of the last kWindow episodes; NaN: none
   LearnerStatus learner;
   double steps_per_second{};
   double elapsed_s{};        ///< in this process

@@ -117,19 +117,8 @@ void PrintMetrics(const bench::MetricReporter& reporter) {
 }  // namespace aquafarm
 
 int main(int argc, char** argv) {
-  std::vector<char*> arguments(argv, argv + argc);
-  // Medians of five, unless the caller says otherwise (the last of a repeated flag counts).
-  std::string repetitions = "--benchmark_repetitions=5";
-  std::string aggregates = "--benchmark_report_aggregates_only=true";
-  std::string interleave = "--benchmark_enable_random_interleaving=true";
-  std::string time = "--benchmark_min_time=0.2";
-  arguments.insert(arguments.begin() + 1,
-                   {repetitions.data(), aggregates.data(), interleave.data(), time.data()});
-  int count = static_cast<int>(arguments.size());
-  benchmark::Initialize(&count, arguments.data());
-  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
   aquafarm::bench::MetricReporter reporter;
-  benchmark::RunSpecifiedBenchmarks(&reporter);
+  if (!aquafarm::bench::RunMedians(argc, argv, reporter)) return 2;
   aquafarm::PrintMetrics(reporter);
   return 0;
 }

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace aquafarm::bench {
 
@@ -34,6 +35,23 @@ class MetricReporter : public benchmark::ConsoleReporter {
   static std::string Argument(const std::string& args) { return args.empty() ? "" : "/" + args; }
   std::map<std::string, double> median_;
 };
+
+/// Runs all benchmarks as medians of five, unless the caller says otherwise.
+/// @returns false when an argument was not understood
+inline bool RunMedians(int argc, char** argv, MetricReporter& reporter) {
+  std::vector<char*> arguments(argv, argv + argc);
+  std::string repetitions = "--benchmark_repetitions=5";
+  std::string aggregates = "--benchmark_report_aggregates_only=true";
+  std::string interleave = "--benchmark_enable_random_interleaving=true";
+  std::string time = "--benchmark_min_time=0.2";
+  arguments.insert(arguments.begin() + 1,  // the last of a repeated flag counts
+                   {repetitions.data(), aggregates.data(), interleave.data(), time.data()});
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return false;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return true;
+}
 
 inline void PrintMetric(const std::string& name, double value, const char* unit) {
   std::printf("%s %.6g %s\n", name.c_str(), value, unit);

@@ -11,10 +11,10 @@
 #include "aquafarm/agents/saved_policy.h"
 #include "aquafarm/check.h"
 #include "aquafarm_agents/node.h"
-#include "aquafarm_agents/params.h"
 #include "aquafarm_agents/ros_environment.h"
 #include "aquafarm_agents/ship_driver.h"
 #include "aquafarm_agents/signals.h"
+#include "aquafarm_sim/params.h"
 
 namespace aquafarm_agents {
 namespace {
@@ -34,7 +34,7 @@ struct PolicyParams {
 
 PolicyParams ReadPolicyParams(const ros::NodeHandle& node) {
   PolicyParams params;
-  Params reader(node);
+  aquafarm_sim::Params reader(node);
   reader.Text("policy", params.policy);
   reader.Text("mode", params.mode);
   reader.Text("output", params.output);

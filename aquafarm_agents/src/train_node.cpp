@@ -13,10 +13,10 @@
 #include "aquafarm/agents/run.h"
 #include "aquafarm/check.h"
 #include "aquafarm_agents/node.h"
-#include "aquafarm_agents/params.h"
 #include "aquafarm_agents/ros_environment.h"
 #include "aquafarm_agents/signals.h"
 #include "aquafarm_sim/names.h"
+#include "aquafarm_sim/params.h"
 
 namespace aquafarm_agents {
 namespace {
@@ -43,7 +43,7 @@ std::string NewRunFolder() {
 
 TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   TrainParams params;
-  Params reader(node);
+  aquafarm_sim::Params reader(node);
   int episodes = 0;
   int seed = 1;
   double steps = 0.0;  // a parameter holds no whole number beyond 31 bits

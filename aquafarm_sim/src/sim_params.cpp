@@ -4,12 +4,11 @@
 #include <ros/package.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <sstream>
 
 #include "aquafarm/check.h"
+#include "aquafarm_sim/params.h"
 
 namespace aquafarm_sim {
 namespace {
@@ -23,80 +22,30 @@ std::string Joined(const std::vector<std::string>& words) {
   return text;
 }
 
-/// Reads parameters of one node and remembers which there are.
-class Reader {
- public:
-  explicit Reader(const ros::NodeHandle& node) : node_(node) {}
-
-  template <typename T>
-  void Read(const std::string& name, const char* type, T& value) {
-    known_.push_back(name);
-    if (!node_.hasParam(name)) return;
-    if (!node_.getParam(name, value)) {
-      throw InputError("~" + name + ": got another type, expected " + type);
-    }
-  }
-  void ReadDouble(const std::string& name, double least, double most, double& value) {
-    Read(name, "a number", value);
-    if (!std::isfinite(value) || value < least || value > most) {
-      throw InputError("~" + name + ": got " + Text(value) + ", expected [" + Text(least) + ", " +
-                       Text(most) + "]");
-    }
-  }
-  void ReadInt(const std::string& name, int least, int most, int& value) {
-    Read(name, "a whole number", value);
-    if (value < least || value > most) {
-      throw InputError("~" + name + ": got " + std::to_string(value) + ", expected [" +
-                       std::to_string(least) + ", " + std::to_string(most) + "]");
-    }
-  }
-  void RefuseOthers() {
-    known_.push_back("diagnostic_period");  // read by diagnostic_updater
-    std::vector<std::string> there;
-    node_.getParamNames(there);
-    const std::string space = node_.getNamespace() + "/";
-    for (const std::string& path : there) {
-      if (path.compare(0, space.size(), space) != 0) continue;
-      const std::string name = path.substr(space.size());
-      if (std::find(known_.begin(), known_.end(), name) == known_.end()) {
-        throw InputError("~" + name + ": unknown parameter, expected one of " + Joined(known_));
-      }
-    }
-  }
-
- private:
-  static std::string Text(double value) {
-    std::ostringstream text;
-    text << value;
-    return text.str();
-  }
-  const ros::NodeHandle& node_;
-  std::vector<std::string> known_;
-};
-
 }  // namespace
 
 SimParams ReadSimParams(const ros::NodeHandle& private_node) {
   SimParams params;
-  Reader reader(private_node);
+  Params reader(private_node);
   int farms = params.ranch.farms;
   int threads = params.ranch.threads;
   int seed = 1;
   std::string pace = "lockstep";
-  reader.Read("scenario", "a name or path", params.scenario);
-  reader.ReadInt("farms", 1, kMaxFarms, farms);
-  reader.ReadInt("threads", 1, 256, threads);
-  reader.ReadInt("seed", -1, INT32_MAX, seed);
-  reader.Read("pace", "lockstep or paced", pace);
-  reader.ReadDouble("rate_hz", kMinRate_hz, kMaxRate_hz, params.ranch.rate_hz);
-  reader.ReadDouble("barrier_timeout_s", 0.01, 3600.0, params.ranch.barrier_timeout_s);
-  reader.ReadDouble("publish_hz", 0.0, kMaxRate_hz, params.publish_hz);
-  reader.Read("record", "true or false", params.record);
-  reader.ReadDouble("recorder_wait_s", 0.0, 3600.0, params.recorder_wait_s);
-  reader.Read("publish_clock", "true or false", params.publish_clock);
-  reader.Read("map_frame", "a frame", params.map_frame);
-  reader.Read("earth_frame", "a frame", params.earth_frame);
-  reader.Read("frame_prefix", "a text", params.frame_prefix);
+  reader.Text("scenario", params.scenario);
+  reader.Int("farms", 1, kMaxFarms, farms);
+  reader.Int("threads", 1, 256, threads);
+  reader.Int("seed", -1, INT32_MAX, seed);
+  reader.Text("pace", pace);
+  reader.Number("rate_hz", kMinRate_hz, kMaxRate_hz, params.ranch.rate_hz);
+  reader.Number("barrier_timeout_s", 0.01, 3600.0, params.ranch.barrier_timeout_s);
+  reader.Number("publish_hz", 0.0, kMaxRate_hz, params.publish_hz);
+  reader.Flag("record", params.record);
+  reader.Number("recorder_wait_s", 0.0, 3600.0, params.recorder_wait_s);
+  reader.Flag("publish_clock", params.publish_clock);
+  reader.Text("map_frame", params.map_frame);
+  reader.Text("earth_frame", params.earth_frame);
+  reader.Text("frame_prefix", params.frame_prefix);
+  reader.Allow("diagnostic_period");  // read by diagnostic_updater
   reader.RefuseOthers();
   if (pace != "lockstep" && pace != "paced") {
     throw InputError("~pace: got '" + pace + "', expected lockstep or paced");

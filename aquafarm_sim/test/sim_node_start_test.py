@@ -41,7 +41,7 @@ class SimNodeStartTest(unittest.TestCase):
         self.assertIn("paper", words)
 
     def test_an_unknown_parameter_is_refused(self):
-        self.assertIn("unknown parameter, expected one of scenario, farms,",
+        self.assertIn("unknown parameter, expected one of: scenario, farms,",
                       self.refusal("_scenario:=" + LONE, "_farm:=3"))
 
     def test_parameters_out_of_range_are_refused(self):

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "aquafarm/check.h"
+
+namespace aquafarm_sim {
+
+/// Reads a node's private parameters; each is used or refused.
+class Params {
+ public:
+  explicit Params(const ros::NodeHandle& private_node) : node_(private_node) {}
+
+  // Each leaves `value` as it is when the parameter is absent.
+  // @throws InputError "~episodes: got -1, expected [0, 2147483647]"
+
+  void Text(const std::string& name, std::string& value) { Read(name, "a text", value); }
+  void Flag(const std::string& name, bool& value) { Read(name, "true or false", value); }
+  void Int(const std::string& name, int min, int max, int& value) {
+    if (Read(name, "a whole number", value)) CheckRange(name, value, min, max);
+  }
+  void Number(const std::string& name, double min, double max, double& value) {
+    if (Read(name, "a number", value)) CheckRange(name, value, min, max);
+  }
+
+  /// Leaves a parameter to others, such as a library that reads it.
+  void Allow(const std::string& name) { known_.push_back(name); }
+
+  /// @throws InputError naming an unknown parameter, and those there are
+  void RefuseOthers() const {
+    std::vector<std::string> there;
+    node_.getParamNames(there);
+    const std::string space = node_.getNamespace() + "/";
+    for (const std::string& path : there) {
+      if (path.compare(0, space.size(), space) != 0) continue;
+      const std::string name = path.substr(space.size());
+      if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
+      std::string names;
+      for (const std::string& one : known_) names += (names.empty() ? "" : ", ") + one;
+      throw aquafarm::InputError("~" + name + ": unknown parameter, expected one of: " + names);
+    }
+  }
+
+  /// "name:=value" of what was given; for records.
+  const std::vector<std::string>& given() const { return given_; }
+
+ private:
+  template <typename T>
+  static std::string ToText(const T& value) {
+    std::ostringstream text;
+    text.precision(12);
+    text << std::boolalpha << value;
+    return text.str();
+  }
+
+  template <typename T>
+  bool Read(const std::string& name, const char* type, T& value) {
+    known_.push_back(name);
+    if (!node_.hasParam(name)) return false;
+    if (!node_.getParam(name, value)) {
+      throw aquafarm::InputError("~" + name + ": got another type, expected " + type);
+    }
+    given_.push_back(name + ":=" + ToText(value));
+    return true;
+  }
+
+  template <typename T>
+  static void CheckRange(const std::string& name, T value, T min, T max) {
+    if (value >= min && value <= max) return;  // false for NaN
+    throw aquafarm::InputError("~" + name + ": got " + ToText(value) + ", expected [" +
+                               ToText(min) + ", " + ToText(max) + "]");
+  }
+
+  ros::NodeHandle node_;
+  std::vector<std::string> known_;
+  std::vector<std::string> given_;
+};
+
+}  // namespace aquafarm_sim

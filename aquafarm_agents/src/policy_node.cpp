@@ -45,8 +45,8 @@ PolicyParams ReadPolicyParams(const ros::NodeHandle& node) {
   reader.RefuseOthers();
   if (params.policy.empty()) {
     throw aquafarm::InputError(
-        "~policy: got nothing, expected a run folder, a checkpoint file or "
-        "the word random");
+        "~policy: got nothing, expected a run folder, a checkpoint file, "
+        "random, planner or clairvoyant");
   }
   if (params.mode != "evaluate" && params.mode != "act") {
     throw aquafarm::InputError("~mode: got '" + params.mode + "', expected evaluate or act");
@@ -66,7 +66,9 @@ ExitCode Evaluate(const ros::NodeHandle& node, const PolicyParams& params,
   const auto policy = agents::MakePolicy(saved, environment.spec());
   const agents::Evaluation evaluation =
       agents::Evaluate(environment, *policy, static_cast<std::uint64_t>(params.seed),
-                       params.episodes, &stop_requested);
+                       params.episodes, &stop_requested, [&params](std::size_t over) {
+                         ROS_INFO("%zu of %d episodes played", over, params.episodes);
+                       });
   const agents::EnvironmentSpec& spec = environment.spec();
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(), spec.scenario_name.c_str(),
               agents::Describe(evaluation).c_str());

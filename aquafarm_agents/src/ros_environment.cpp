@@ -72,7 +72,7 @@ std::string Seconds(double seconds) {
 RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOptions options)
     : node_(node),
       options_(std::move(options)),
-      encodings_(static_cast<std::uint8_t>(options_.encodings |
+      encodings_(static_cast<std::uint8_t>((options_.encodings & ~aquafarm::agents::kStatesBit) |
                                            (options_.hashes ? int{StepResult::HASHES} : 0))),
       limit_(options_.call_limit_s),
       // Numbers of an earlier client of the same farms must not come again.
@@ -158,7 +158,9 @@ const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
   return results_;
 }
 
+// The state comes by a call of its own: planners take longer than that at any step.
 void RosEnvironment::Take(StepResult& result) {
+  if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) results_.states = Save();
   results_.rewards.swap(result.rewards);
   results_.outcomes.swap(result.outcomes);
   results_.legal.swap(result.legal);

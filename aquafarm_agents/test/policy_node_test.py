@@ -47,7 +47,7 @@ class PolicyNodeTest(unittest.TestCase):
     def test_an_evaluation_is_that_of_this_process(self):
         policy = self.trained()
         start_sim(self, self.namespace, TINY, "_farms:=4")
-        for name in ("trained", "random"):
+        for name in ("trained", "random", "planner"):
             where = policy if name == "trained" else name
             ros = self.play(f"_policy:={where}", "_episodes:=40", "_seed:=9",
                             f"_output:={self.folder / name}_ros")

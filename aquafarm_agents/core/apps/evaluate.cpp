@@ -43,7 +43,11 @@ ExitCode Run(Arguments arguments) {
                                arguments.environment);
   const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
   const Evaluation evaluation =
-      Evaluate(environment, *policy, arguments.seed, arguments.episodes, &stop_requested);
+      Evaluate(environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
+               [&arguments](std::size_t over) {
+                 std::printf("%zu of %d episodes played\n", over, arguments.episodes);
+                 std::fflush(stdout);
+               });
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
   if (!arguments.output.empty()) {
@@ -60,7 +64,8 @@ int Main(int argc, char** argv) {
   CLI::App app("Plays a saved policy greedily on episodes never trained on, and reports.");
   app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
   app.option_defaults()->always_capture_default();
-  app.add_option("policy", arguments.policy, "run folder, checkpoint file, or the word random")
+  app.add_option("policy", arguments.policy,
+                 "run folder, checkpoint file, random, planner or clairvoyant")
       ->required();
   app.add_option("scenario", arguments.scenario,
                  "scenario file or name; empty: the one in the policy's run folder");

@@ -2,6 +2,7 @@
 #include "aquafarm/agents/algorithms.h"
 
 #include "aquafarm/agents/options.h"
+#include "aquafarm/agents/planner_policy.h"
 #include "aquafarm/agents/random_policy.h"
 #include "aquafarm/agents/tabular.h"
 #include "aquafarm/check.h"
@@ -15,18 +16,49 @@ std::unique_ptr<Learner> Make(const EnvironmentSpec& spec, std::uint64_t seed,
   return std::make_unique<T>(spec, seed, options);
 }
 
+template <Foresight foresight>
+std::unique_ptr<Learner> MakePlanner(const EnvironmentSpec& spec, std::uint64_t,
+                                     const std::string& options) {
+  return std::make_unique<PlannerLearner>(spec, foresight, options);
+}
+
+template <Foresight foresight>
+std::unique_ptr<Policy> MakePlannerPolicy(const Checkpoint&, const EnvironmentSpec& spec) {
+  return std::make_unique<PlannerPolicy>(spec, foresight);
+}
+
+std::unique_ptr<Policy> MakeRandomPolicy(const Checkpoint&, const EnvironmentSpec& spec) {
+  return std::make_unique<RandomPolicy>(spec.agents);
+}
+
+template <std::uint8_t bits>
+std::uint8_t WithoutOptions(const std::string& options) {
+  OptionReader(options).Finish();
+  return bits;
+}
+
+std::uint8_t Tabular(const std::string& options) {
+  std::string resolved;
+  TabularOptions::Parse(options, resolved);
+  return kIndexBit;
+}
+
 }  // namespace
 
 const std::vector<Algorithm>& Algorithms() {
   static const std::vector<Algorithm> algorithms{
-      {"random", "any action at any time; the yardstick (§4)", 0, 100000, Make<RandomLearner>,
-       [](const Checkpoint&, const EnvironmentSpec& spec) -> std::unique_ptr<Policy> {
-         return std::make_unique<RandomPolicy>(spec.agents);
-       }},
-      {"q_learning", "tabular Q-learning (Eq. 12)", kIndexBit, 4000000,
+      {"random", "any action at any time; the yardstick (§4)", false, 100000, WithoutOptions<0>,
+       Make<RandomLearner>, MakeRandomPolicy},
+      {"q_learning", "tabular Q-learning (Eq. 12)", true, 4000000, Tabular,
        Make<TabularLearner<QLearningRule>>, MakeTabularPolicy},
-      {"sarsa", "tabular SARSA (Eq. 14)", kIndexBit, 8000000, Make<TabularLearner<SarsaRule>>,
+      {"sarsa", "tabular SARSA (Eq. 14)", true, 8000000, Tabular, Make<TabularLearner<SarsaRule>>,
        MakeTabularPolicy},
+      {"planner", "plans anew each step, trusting that disasters hold their heading", false, 1,
+       WithoutOptions<kStatesBit>, MakePlanner<Foresight::kHeadingHolds>,
+       MakePlannerPolicy<Foresight::kHeadingHolds>},
+      {"clairvoyant", "plans with the disasters' true future: the best there can be", false, 1,
+       WithoutOptions<kStatesBit>, MakePlanner<Foresight::kClairvoyant>,
+       MakePlannerPolicy<Foresight::kClairvoyant>},
   };
   return algorithms;
 }

@@ -12,6 +12,8 @@
 namespace aquafarm::agents {
 namespace {
 
+constexpr std::chrono::seconds kProgressPeriod{5};
+
 void Summarise(Evaluation& evaluation) {
   const auto count = static_cast<double>(evaluation.episodes.size());
   double steps = 0.0;
@@ -61,9 +63,11 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
 }  // namespace
 
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
-                    std::int32_t episodes, const std::atomic<bool>* stop) {
+                    std::int32_t episodes, const std::atomic<bool>* stop,
+                    const std::function<void(std::size_t over)>& on_progress) {
   AQUAFARM_CHECK_GE(episodes, 1);
   const auto start = std::chrono::steady_clock::now();
+  auto told = start;
   const auto count = static_cast<std::size_t>(episodes);
   Evaluation evaluation;
   evaluation.seed = EvaluationSeed(seed);
@@ -81,6 +85,11 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
       results[result.episode] = result;
       is_over[result.episode] = 1;
       ++over;
+    }
+    const auto present = std::chrono::steady_clock::now();
+    if (on_progress && present - told >= kProgressPeriod) {
+      told = present;
+      on_progress(over);
     }
     if (environment.TakeRestarted()) {  // fresh farms; what is over stays so
       policy.Begin(evaluation.seed, environment.spec().farms);

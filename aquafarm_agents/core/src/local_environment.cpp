@@ -70,6 +70,7 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
   if ((options.encodings & kPlanesBit) != 0) {
     results_.planes.resize(entries * batch_.encoder().planes_size());
   }
+  with_states_ = (options.encodings & kStatesBit) != 0;
   output_ = Output();
 }
 
@@ -90,6 +91,7 @@ BatchOutput LocalEnvironment::Output() {
 
 const Results& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
   batch_.Reset(seed, first_episode, output_);
+  if (with_states_) results_.states = batch_.Save();
   results_.finished.clear();
   return results_;
 }
@@ -98,6 +100,7 @@ const Results& LocalEnvironment::Step(const std::vector<std::uint8_t>& actions) 
   AQUAFARM_CHECK_EQ(actions.size(), results_.rewards.size());
   AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), kActionCount);
   batch_.Step(actions.data(), output_);
+  if (with_states_) results_.states = batch_.Save();
   CollectFinished();
   return results_;
 }
@@ -116,6 +119,7 @@ std::string LocalEnvironment::Save() { return batch_.Save(); }
 const Results& LocalEnvironment::Load(const std::string& bytes) {
   batch_.Load(bytes);
   batch_.Write(output_);
+  if (with_states_) results_.states = bytes;
   results_.finished.clear();
   return results_;
 }

@@ -19,15 +19,6 @@ std::string LearnerOptionsOf(const RunOptions& options) {
   return options.options + " exploration=" + options.exploration;
 }
 
-// A farm of no size, on which a learner's options can be tried before there are farms.
-EnvironmentSpec NoFarm() {
-  EnvironmentSpec spec;
-  spec.farms = 1;
-  spec.agents = 1;
-  spec.state_count = 1;
-  return spec;
-}
-
 std::string Count(std::uint64_t value) {
   std::string text = std::to_string(value);
   for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, ",");
@@ -85,7 +76,8 @@ void Run::All(const MakeEnvironment& make_environment) {
   const Algorithm& algorithm = FindAlgorithm(options_.algorithm);
   if (options_.episodes == 0 && options_.steps == 0) options_.steps = algorithm.default_steps;
   RunFolder folder(options_.run_dir, options_.resume);
-  const std::unique_ptr<Environment> environment = make_environment(algorithm.encodings);
+  const std::unique_ptr<Environment> environment =
+      make_environment(algorithm.encodings(LearnerOptionsOf(options_)));
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
   Train(*environment, *learner, folder);
@@ -168,7 +160,12 @@ void Run::Evaluate(Environment& environment, const Learner& learner, const RunFo
   context.farms = environment.spec().farms;
   const std::unique_ptr<Policy> greedy = learner.GreedyPolicy();
   report_.status.evaluation =
-      agents::Evaluate(environment, *greedy, options_.seed, options_.evaluation_episodes, stop_);
+      agents::Evaluate(environment, *greedy, options_.seed, options_.evaluation_episodes, stop_,
+                       [&](std::size_t over) {
+                         Tell(RunPhase::kEvaluating,
+                              Count(over) + " of " + std::to_string(options_.evaluation_episodes) +
+                                  " episodes played");
+                       });
   report_.status.has_evaluation = true;
   WriteEvaluation(folder.path() + "/evaluation", report_.status.evaluation, context);
   if (options_.random_episodes > 0) {
@@ -219,7 +216,7 @@ RunReport Run::End() {
 
 void CheckRunOptions(const RunOptions& options) {
   const Algorithm& algorithm = FindAlgorithm(options.algorithm);
-  algorithm.make(NoFarm(), options.seed, LearnerOptionsOf(options));
+  algorithm.encodings(LearnerOptionsOf(options));  // refuses wrong ones
   if ((options.seed & kEvaluationSeedBit) != 0) {
     throw InputError("seed: got " + std::to_string(options.seed) + ", expected less than 2^63");
   }

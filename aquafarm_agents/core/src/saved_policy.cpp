@@ -12,8 +12,10 @@ namespace aquafarm::agents {
 SavedPolicy FindPolicy(const std::string& where) {
   SavedPolicy saved;
   saved.path = where;
-  if (where == "random") {
+  for (const Algorithm& algorithm : Algorithms()) {
+    if (algorithm.learns || where != algorithm.name) continue;
     saved.checkpoint.algorithm = where;
+    saved.encodings = algorithm.encodings("");
     return saved;
   }
   std::error_code ignored;
@@ -24,13 +26,13 @@ SavedPolicy FindPolicy(const std::string& where) {
       if (!newest) {
         throw InputError(where +
                          ": holds neither policy.ckpt nor a checkpoint; expected a run "
-                         "folder, a checkpoint file or the word random");
+                         "folder, a checkpoint file, random, planner or clairvoyant");
       }
       saved.path = *newest;
     }
   }
   saved.checkpoint = ReadCheckpoint(saved.path);
-  saved.encodings = FindAlgorithm(saved.checkpoint.algorithm).encodings;
+  saved.encodings = FindAlgorithm(saved.checkpoint.algorithm).encodings(saved.checkpoint.options);
   return saved;
 }
 

@@ -9,14 +9,15 @@ namespace {
 
 TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
   EXPECT_EQ(MessageOf<InputError>([] { FindAlgorithm("dqm"); }),
-            "algorithm: got 'dqm', expected one of: random, q_learning, sarsa");
+            "algorithm: got 'dqm', expected one of: random, q_learning, sarsa, planner, "
+            "clairvoyant");
 }
 
 TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
-  LocalEnvironment environment(TinyFarm(), {2, kIndexBit, false, 1});
   for (const Algorithm& algorithm : Algorithms()) {
+    LocalEnvironment environment(TinyFarm(), {2, algorithm.encodings(""), false, 1});
     const auto learner = algorithm.make(environment.spec(), 1, "");
-    EXPECT_EQ(learner->encodings(), algorithm.encodings) << algorithm.name;
+    EXPECT_EQ(learner->encodings(), algorithm.encodings("")) << algorithm.name;
     EXPECT_GT(algorithm.default_steps, 0U);
     // What it says of itself makes the same again.
     EXPECT_EQ(algorithm.make(environment.spec(), 1, learner->options())->options(),
@@ -26,7 +27,7 @@ TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
 
 TEST(Algorithms, EachContinuesBitForBit) {
   for (const Algorithm& algorithm : Algorithms()) {
-    LocalEnvironment environment(TinyFarm(), {3, kIndexBit, false, 1});
+    LocalEnvironment environment(TinyFarm(), {3, algorithm.encodings(""), false, 1});
     const auto learner = algorithm.make(environment.spec(), 1, "");
     std::vector<std::uint8_t> actions;
     const Results* results = &environment.Reset(1);

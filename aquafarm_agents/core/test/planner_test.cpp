@@ -10,6 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "agents_fixture.h"
+#include "aquafarm/agents/evaluation.h"
+#include "aquafarm/agents/saved_policy.h"
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
 
@@ -165,6 +168,57 @@ TEST(Planner, SaysWhatItCannotPlanFor) {
   Scenario many;
   many.devices.count = 30;
   EXPECT_THROW(Planner{many}, InputError);
+}
+
+// What policies of the two kinds come to on the same episodes.
+class PlannerPolicies : public ::testing::Test {
+ protected:
+  static Evaluation Evaluate(const std::string& policy, std::int32_t farms) {
+    LocalEnvironment environment(test::Share(TinyScenario(40, 0.02F, 1)),
+                                 {farms, kStatesBit, false, 1});
+    const SavedPolicy saved = FindPolicy(policy);
+    return agents::Evaluate(environment, *MakePolicy(saved, environment.spec()), 3, 60);
+  }
+};
+
+TEST_F(PlannerPolicies, TheFutureIsWorthKnowing) {
+  const Evaluation clairvoyant = Evaluate("clairvoyant", 4);
+  const Evaluation planner = Evaluate("planner", 4);
+  double gained = 0.0;
+  for (std::size_t i = 0; i < clairvoyant.episodes.size(); ++i) {
+    const auto best = static_cast<double>(clairvoyant.episodes[i].episode_return);
+    const auto good = static_cast<double>(planner.episodes[i].episode_return);
+    EXPECT_GE(best, good - 1e-3) << "episode " << i;
+    gained += best - good;
+  }
+  EXPECT_GT(gained, 0.0);
+  EXPECT_GT(planner.mean_return, 0.0);
+}
+
+TEST_F(PlannerPolicies, TheNumberOfFarmsChangesNothing) {
+  for (const char* policy : {"planner", "clairvoyant"}) {
+    EXPECT_EQ(Evaluate(policy, 1).mean_return, Evaluate(policy, 7).mean_return) << policy;
+  }
+}
+
+TEST_F(PlannerPolicies, EarnWhatTheClairvoyantPlanPromises) {
+  const Evaluation evaluation = Evaluate("clairvoyant", 1);
+  const auto scenario = test::Share(TinyScenario(40, 0.02F, 1));
+  Planner planner(*scenario);
+  for (const EpisodeResult& result : evaluation.episodes) {
+    Farm farm(scenario);
+    farm.Reset(result.seed, result.episode);
+    EXPECT_NEAR(planner.Solve(farm, Foresight::kClairvoyant).expected_return,
+                static_cast<double>(result.episode_return), 1e-3)
+        << "episode " << result.episode;
+  }
+}
+
+TEST_F(PlannerPolicies, RefuseAFarmOfTwoShips) {
+  Scenario scenario = TinyScenario(40, 0.02F, 1);
+  scenario.ships.count = 2;
+  LocalEnvironment environment(test::Share(scenario), {1, kStatesBit, false, 1});
+  EXPECT_THROW(MakePolicy(FindPolicy("planner"), environment.spec()), InputError);
 }
 
 }  // namespace

@@ -13,8 +13,10 @@ namespace aquafarm::agents {
 struct Algorithm {
   const char* name;
   const char* summary;          ///< one line for people
-  std::uint8_t encodings;       ///< EncodingBits that it reads
+  bool learns;                  ///< false: its name alone stands for a policy
   std::uint64_t default_steps;  ///< of training when no limit is given
+  /// EncodingBits that it reads with these options. @throws InputError when an option is wrong
+  std::uint8_t (*encodings)(const std::string& options);
   std::unique_ptr<Learner> (*make)(const EnvironmentSpec& spec, std::uint64_t seed,
                                    const std::string& options);
   /// Makes what it learnt play on farms of `spec`. @throws InputError when it does not fit

@@ -16,8 +16,14 @@
 
 namespace aquafarm::agents {
 
-/// Which encodings of an observation are wanted; bits.
-enum EncodingBits : std::uint8_t { kIndexBit = 1, kFeaturesBit = 2, kPlanesBit = 4 };
+/// Which encodings of an observation are wanted; bits. kStatesBit asks for the whole farms, for
+/// planners; a learner never does.
+enum EncodingBits : std::uint8_t {
+  kIndexBit = 1,
+  kFeaturesBit = 2,
+  kPlanesBit = 4,
+  kStatesBit = 128
+};
 
 /// What a learner may know of the farm before it starts.
 struct EnvironmentSpec {
@@ -63,6 +69,7 @@ struct Results {
   std::vector<std::uint32_t> index;     ///< [N, S]; empty unless asked for
   std::vector<float> features;          ///< [N, S, F]; empty unless asked for
   std::vector<std::uint8_t> planes;     ///< [N, S, P, H, W]; empty unless asked for
+  std::string states;                   ///< all farms as Save() gives them; empty unless asked for
   std::vector<EpisodeResult> finished;  ///< episodes that ended in this step, by farm
 };
 

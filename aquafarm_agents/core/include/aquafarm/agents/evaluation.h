@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,10 @@ struct Evaluation {
 /// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). The result does not depend on the
 /// number of farms for a policy that uses no chance.
 /// @param stop may be set by a signal handler; null: never
+/// @param on_progress is told now and then how many episodes are over
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
-                    std::int32_t episodes, const std::atomic<bool>* stop = nullptr);
+                    std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
+                    const std::function<void(std::size_t over)>& on_progress = {});
 
 /// What an evaluation was of; goes into its JSON so that it can be done again.
 struct EvaluationContext {

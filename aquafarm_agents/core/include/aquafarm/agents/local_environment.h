@@ -30,6 +30,7 @@ class LocalEnvironment final : public Environment {
 
   FarmBatch batch_;
   EnvironmentSpec spec_;
+  bool with_states_{};
   Results results_;
   BatchOutput output_;
 };

@@ -11,12 +11,13 @@ namespace aquafarm::agents {
 
 /// A policy as it was found on disk.
 struct SavedPolicy {
-  std::string path;       ///< file that it was read from; "random" for RANDOM
-  Checkpoint checkpoint;  ///< what the file says; algorithm "random" for RANDOM
+  std::string path;       ///< file that it was read from, or the name of one that needs none
+  Checkpoint checkpoint;  ///< what the file says; of one without a file its algorithm alone
   std::uint8_t encodings{};
 };
 
-/// Finds a policy. @param where a run folder, a policy or checkpoint file, or the word random
+/// Finds a policy.
+/// @param where a run folder, a policy or checkpoint file, or random, planner or clairvoyant
 /// @throws InputError when there is none, or it is damaged
 SavedPolicy FindPolicy(const std::string& where);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/algorithms.h"
 
+#include "aquafarm/agents/dqn.h"
 #include "aquafarm/agents/options.h"
 #include "aquafarm/agents/planner_policy.h"
 #include "aquafarm/agents/random_policy.h"
@@ -53,6 +54,10 @@ const std::vector<Algorithm>& Algorithms() {
        Make<TabularLearner<QLearningRule>>, MakeTabularPolicy},
       {"sarsa", "tabular SARSA (Eq. 14)", true, 8000000, Tabular, Make<TabularLearner<SarsaRule>>,
        MakeTabularPolicy},
+      {"dqn", "deep Q-network on features or planes (Eq. 15)", true, 400000, DqnEncodings, MakeDqn,
+       MakeDqnPolicy},
+      {"lstm_dqn", "deep Q-network with a memory (Algorithm 2)", true, 1000000,
+       RecurrentDqnEncodings, MakeRecurrentDqn, MakeRecurrentDqnPolicy},
       {"planner", "plans anew each step, trusting that disasters hold their heading", false, 1,
        WithoutOptions<kStatesBit>, MakePlanner<Foresight::kHeadingHolds>,
        MakePlannerPolicy<Foresight::kHeadingHolds>},

@@ -126,6 +126,9 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
       return Fail(ExitCode::kInterrupted, "interrupted; saved in " + folder.path());
     case TrainingEnd::kLost:
       return Fail(ExitCode::kLost, trainer.message() + "; saved in " + folder.path());
+    case TrainingEnd::kDiverged:
+      return Fail(ExitCode::kDiverged, trainer.message() + "; the last good checkpoint is " +
+                                           folder.NewestCheckpoint().value_or("none"));
     case TrainingEnd::kStorage:
       return Fail(ExitCode::kStorage, trainer.message() + "; the last good checkpoint is " +
                                           folder.NewestCheckpoint().value_or("none"));

@@ -88,6 +88,9 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
   } catch (const StorageError& error) {
     message_ = error.what();
     end = TrainingEnd::kStorage;
+  } catch (const LearnerFailed& error) {
+    message_ = error.what();
+    end = TrainingEnd::kDiverged;
   }
   try {
     if (end == TrainingEnd::kLost) Save(false);

@@ -9,7 +9,8 @@ namespace {
 
 TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
   EXPECT_EQ(MessageOf<InputError>([] { FindAlgorithm("dqm"); }),
-            "algorithm: got 'dqm', expected one of: random, q_learning, sarsa, planner, "
+            "algorithm: got 'dqm', expected one of: random, q_learning, sarsa, dqn, "
+            "lstm_dqn, planner, "
             "clairvoyant");
 }
 
@@ -25,10 +26,19 @@ TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
   }
 }
 
+// Deep learners learn too rarely for a short test unless told otherwise.
+std::string Lively(const Algorithm& algorithm) {
+  const std::string name = algorithm.name;
+  if (name == "dqn") return "hidden=8 batch=8 start=20 replay=300 priority=0.5";
+  if (name == "lstm_dqn") return "hidden=8 batch=8 start=20 replay=300 sequence=4 burn_in=2";
+  return "";
+}
+
 TEST(Algorithms, EachContinuesBitForBit) {
   for (const Algorithm& algorithm : Algorithms()) {
-    LocalEnvironment environment(TinyFarm(), {3, algorithm.encodings(""), false, 1});
-    const auto learner = algorithm.make(environment.spec(), 1, "");
+    const std::string options = Lively(algorithm);
+    LocalEnvironment environment(TinyFarm(), {3, algorithm.encodings(options), false, 1});
+    const auto learner = algorithm.make(environment.spec(), 1, options);
     std::vector<std::uint8_t> actions;
     const Results* results = &environment.Reset(1);
     for (int i = 0; i < 100; ++i) {
@@ -37,7 +47,7 @@ TEST(Algorithms, EachContinuesBitForBit) {
     }
     Checkpoint checkpoint;
     learner->Save(checkpoint);
-    const auto resumed = algorithm.make(environment.spec(), 1, "");
+    const auto resumed = algorithm.make(environment.spec(), 1, options);
     resumed->Load(checkpoint);
     std::vector<std::uint8_t> expected;
     for (int i = 0; i < 100; ++i) {

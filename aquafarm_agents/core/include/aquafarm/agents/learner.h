@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,12 @@
 #include "aquafarm/agents/policy.h"
 
 namespace aquafarm::agents {
+
+/// Thrown when learning cannot go on, such as at a loss that is no number; what() is one line.
+class LearnerFailed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// How a learner is getting on.
 struct LearnerStatus {
@@ -34,6 +41,7 @@ class Learner {
   /// not.
   /// @param progress of the run, [0, 1]; drives the schedules
   /// @param actions is resized to [N, S]
+  /// @throws LearnerFailed
   virtual void Step(const Results& results, double progress,
                     std::vector<std::uint8_t>& actions) = 0;
 

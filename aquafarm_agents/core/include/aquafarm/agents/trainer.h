@@ -45,7 +45,7 @@ struct TrainingProgress {
 };
 
 /// Why a training came to its end.
-enum class TrainingEnd : std::uint8_t { kDone, kInterrupted, kLost, kStorage };
+enum class TrainingEnd : std::uint8_t { kDone, kInterrupted, kLost, kStorage, kDiverged };
 
 /// Lets a learner train on an environment: limits, progress, metrics, checkpoints, interruption.
 /// The same options give the same bits however often it was stopped and resumed.

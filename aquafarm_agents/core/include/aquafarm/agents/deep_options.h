@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "aquafarm/agents/exploration.h"
+#include "aquafarm/agents/schedule.h"
+
+namespace aquafarm::agents {
+
+/// Which observation a network reads, and how.
+enum class NetworkKind : std::uint8_t {
+  kMlp,  ///< the feature vector, two hidden layers
+  kCnn,  ///< the planes, two convolutions and a hidden layer
+};
+inline constexpr int kNetworkKindCount = 2;
+std::string_view ToString(NetworkKind value);
+
+/// How the error of a prediction counts.
+enum class LossKind : std::uint8_t { kHuber, kMse };
+inline constexpr int kLossKindCount = 2;
+std::string_view ToString(LossKind value);
+
+/// Numbers and switches of DQN and LSTM-DQN. Two presets give the defaults: *tuned*, what was
+/// measured to do well on the shipped farms, and *paper*, §3.4.3 as printed with every switch off.
+struct DeepOptions {
+  NetworkKind network{NetworkKind::kMlp};
+  std::int32_t hidden{128};  ///< units of a hidden layer; of the LSTM when recurrent
+  Schedule learning_rate{ScheduleKind::kConstant, 5e-4, 0.0, 1.0};  ///< of Adam
+  double discount{0.97};
+  ExplorationOptions exploration;
+  std::int32_t batch{64};            ///< transitions, or sequences, of an update
+  double steps_per_update{4.0};      ///< farm steps between updates
+  std::uint64_t start{5000};         ///< farm steps before the first update
+  std::uint64_t replay{100000};      ///< transitions kept
+  std::uint64_t target_period{250};  ///< updates between copies to the target network (hard)
+  double target_rate{0.0};           ///< share copied at each update (soft) instead; 0: hard
+  LossKind loss{LossKind::kHuber};
+  double gradient_limit{10.0};  ///< largest norm of a gradient; 0: none
+
+  // Switches beyond §3.4.3, with their sources.
+  bool double_q{true};        ///< van Hasselt et al. 2016
+  bool dueling{false};        ///< Wang et al. 2016
+  std::int32_t n_step{3};     ///< Sutton 1988; 1: off
+  double priority{0.0};       ///< exponent α of Schaul et al. 2016; 0: uniform
+  double importance{0.4};     ///< exponent β of the same, at the start; 1 at the end
+  double reward_scale{0.05};  ///< 1: off
+  bool mask_illegal{true};    ///< never try, nor bootstrap on, actions that would be ILLEGAL
+
+  // Recurrent alone (R2D2: Kapturowski et al. 2019).
+  std::int32_t sequence{16};  ///< steps learnt from; 1 with burn_in 0: the paper's literal tuples
+  std::int32_t burn_in{8};    ///< steps before them that only warm up the state
+
+  std::string device{"auto"};  ///< auto, cpu or cuda
+  std::int32_t threads{1};     ///< of the network library on the CPU
+
+  /// Reads "key=value …". @param resolved gets all of them with their values in force
+  /// @throws InputError
+  static DeepOptions Parse(const std::string& text, bool recurrent, std::string& resolved);
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/deep_options.h"
+
+#include <array>
+
+#include "aquafarm/agents/options.h"
+#include "aquafarm/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr std::array<std::string_view, kNetworkKindCount> kNetworks{"mlp", "cnn"};
+constexpr std::array<std::string_view, kLossKindCount> kLosses{"huber", "mse"};
+
+template <typename Kind, std::size_t size>
+Kind ReadWord(OptionReader& reader, const std::string& key, Kind otherwise,
+              const std::array<std::string_view, size>& words) {
+  const std::string text =
+      reader.Text(key, std::string(words[static_cast<std::size_t>(otherwise)]));
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (text == words[i]) return static_cast<Kind>(i);
+    names.emplace_back(words[i]);
+  }
+  throw InputError(key + ": got '" + text + "', expected one of: " + Join(names));
+}
+
+template <typename Whole>
+void ReadWhole(OptionReader& reader, const std::string& key, double min, double max, Whole& value) {
+  const double got = reader.Number(key, static_cast<double>(value), min, max);
+  value = static_cast<Whole>(got);
+  if (static_cast<double>(value) == got) return;
+  throw InputError(key + ": got " + FormatNumber(got) + ", expected a whole number");
+}
+
+void ReadNumber(OptionReader& reader, const std::string& key, double min, double max,
+                double& value) {
+  value = reader.Number(key, value, min, max);
+}
+
+DeepOptions Tuned(bool recurrent) {
+  DeepOptions options;
+  if (!recurrent) return options;
+  options.hidden = 64;
+  options.batch = 32;
+  options.steps_per_update = 16.0;
+  options.target_period = 100;
+  options.n_step = 3;
+  return options;
+}
+
+// §3.4.3 and Algorithm 2 print no more than this; numbers they leave open are the tuned ones.
+DeepOptions Paper(bool recurrent) {
+  DeepOptions options = Tuned(recurrent);
+  options.loss = LossKind::kMse;
+  options.gradient_limit = 0.0;
+  options.double_q = false;
+  options.n_step = 1;
+  options.reward_scale = 1.0;
+  options.mask_illegal = false;
+  options.sequence = 1;
+  options.burn_in = 0;
+  return options;
+}
+
+}  // namespace
+
+std::string_view ToString(NetworkKind value) { return kNetworks[static_cast<std::size_t>(value)]; }
+std::string_view ToString(LossKind value) { return kLosses[static_cast<std::size_t>(value)]; }
+
+DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::string& resolved) {
+  OptionReader reader(text);
+  constexpr std::array<std::string_view, 2> kPresets{"tuned", "paper"};
+  enum class Preset : std::uint8_t { kTuned, kPaper };
+  const Preset preset = ReadWord(reader, "preset", Preset::kTuned, kPresets);
+  DeepOptions options = preset == Preset::kPaper ? Paper(recurrent) : Tuned(recurrent);
+  if (!recurrent) options.network = ReadWord(reader, "network", options.network, kNetworks);
+  ReadWhole(reader, "hidden", 1, 4096, options.hidden);
+  options.learning_rate = reader.GetSchedule("learning_rate", options.learning_rate, 0.0, 1.0);
+  ReadNumber(reader, "discount", 0.0, 1.0, options.discount);
+  options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)));
+  reader.Resolve("exploration", ToString(options.exploration));
+  ReadWhole(reader, "batch", 1, 65536, options.batch);
+  ReadNumber(reader, "steps_per_update", 0.01, 1e6, options.steps_per_update);
+  ReadWhole(reader, "start", 0, 1e9, options.start);
+  ReadWhole(reader, "replay", 100, 1e9, options.replay);
+  ReadWhole(reader, "target_period", 1, 1e9, options.target_period);
+  ReadNumber(reader, "target_rate", 0.0, 1.0, options.target_rate);
+  options.loss = ReadWord(reader, "loss", options.loss, kLosses);
+  ReadNumber(reader, "gradient_limit", 0.0, 1e9, options.gradient_limit);
+  options.double_q = reader.Flag("double_q", options.double_q);
+  options.dueling = reader.Flag("dueling", options.dueling);
+  ReadWhole(reader, "n_step", 1, 100, options.n_step);
+  ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
+  options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
+  if (recurrent) {
+    ReadWhole(reader, "sequence", 1, 1000, options.sequence);
+    ReadWhole(reader, "burn_in", 0, 1000, options.burn_in);
+  } else {
+    ReadNumber(reader, "priority", 0.0, 2.0, options.priority);
+    ReadNumber(reader, "importance", 0.0, 1.0, options.importance);
+  }
+  constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
+  enum class Device : std::uint8_t { kAuto, kCpu, kCuda };
+  options.device =
+      kDevices[static_cast<std::size_t>(ReadWord(reader, "device", Device::kAuto, kDevices))];
+  ReadWhole(reader, "threads", 1, 256, options.threads);
+  reader.Finish();
+  resolved = reader.Resolved();
+  return options;
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// What the deep learners and their policies do alike around a network: read observations, and
+/// compare a saved network with the farms it shall play on.
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/checkpoint.h"
+#include "aquafarm/agents/deep_options.h"
+#include "aquafarm/agents/environment.h"
+
+namespace aquafarm::agents {
+
+inline std::size_t EntryCount(const EnvironmentSpec& spec) {
+  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
+}
+
+/// What learners may do now: all actions, or the legal ones.
+inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
+  return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
+}
+
+/// How the network sees: float features, or bytes of planes (255 stands for 1).
+template <typename Scalar>
+struct Sight;
+
+template <>
+struct Sight<float> {
+  static std::vector<std::int64_t> Shape(const EnvironmentSpec& spec) {
+    return {spec.feature_count};
+  }
+  static const float* Of(const Results& results) { return results.features.data(); }
+  static torch::Tensor ToInput(const float* rows, std::vector<std::int64_t> shape,
+                               torch::Device device) {
+    return torch::from_blob(const_cast<float*>(rows), shape, torch::kFloat).to(device);
+  }
+};
+
+template <>
+struct Sight<std::uint8_t> {
+  static std::vector<std::int64_t> Shape(const EnvironmentSpec& spec) {
+    return {spec.plane_count, spec.height, spec.width};
+  }
+  static const std::uint8_t* Of(const Results& results) { return results.planes.data(); }
+  static torch::Tensor ToInput(const std::uint8_t* rows, std::vector<std::int64_t> shape,
+                               torch::Device device) {
+    return torch::from_blob(const_cast<std::uint8_t*>(rows), shape, torch::kByte)
+        .to(device)
+        .to(torch::kFloat)
+        .div_(255.0F);
+  }
+};
+
+/// {count, rest…}
+inline std::vector<std::int64_t> WithCount(std::size_t count, std::vector<std::int64_t> rest) {
+  rest.insert(rest.begin(), static_cast<std::int64_t>(count));
+  return rest;
+}
+
+/// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
+void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// What DQN and LSTM-DQN share: a pair of networks, the optimiser, and when to update.
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/checkpoint.h"
+#include "aquafarm/agents/deep_options.h"
+#include "aquafarm/agents/learner.h"
+#include "networks.h"
+
+namespace aquafarm::agents {
+
+class ValueOptimizer {
+ public:
+  /// Both modules have the same parameters; the target begins as a copy.
+  ValueOptimizer(const DeepOptions& options, torch::nn::Module& online, torch::nn::Module& target,
+                 torch::Device device);
+
+  /// Farm steps were taken; sets the learning rate.
+  void Count(std::uint64_t farm_steps, double progress);
+  /// Takes one update from what is due. @returns false when none is
+  bool TakeDue();
+
+  /// Mean loss of predictions [n] against targets [n], weighted [n] (summing to what `weights`
+  /// sums to), then one step of Adam, then the target follows.
+  /// @throws LearnerFailed when the loss is not finite; the weights are then as they were
+  void Update(const torch::Tensor& predicted, const torch::Tensor& targets,
+              const torch::Tensor& weights);
+
+  LearnerStatus status(double exploration) const;
+  const FlatParameters& online() const { return online_; }
+  std::uint64_t updates() const { return updates_; }
+
+  void Save(Checkpoint& checkpoint) const;
+  /// @throws InputError
+  void Load(const Checkpoint& checkpoint);
+
+ private:
+  torch::optim::AdamParamState& AdamState();
+
+  const DeepOptions options_;
+  FlatParameters online_;
+  FlatParameters target_;
+  torch::optim::Adam adam_;
+  double learning_rate_{};
+  std::uint64_t steps_{};
+  double due_{};
+  std::uint64_t updates_{};
+  float loss_;
+};
+
+}  // namespace aquafarm::agents

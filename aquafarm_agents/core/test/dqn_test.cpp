@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// DQN and LSTM-DQN learn tiny farms, each switch on its own, and continue bit for bit.
+#include "aquafarm/agents/dqn.h"
+
+#include <algorithm>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/algorithms.h"
+#include "aquafarm/agents/deep_options.h"
+#include "aquafarm/agents/evaluation.h"
+#include "aquafarm/agents/trainer.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+constexpr const char* kSmall =
+    "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
+    "learning_rate=0.002 ";
+constexpr const char* kSmallRecurrent =
+    "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=8 "
+    "burn_in=4 learning_rate=0.003 ";
+
+/// Success of a greedy policy on seeds never trained on, before and after training.
+struct Progress {
+  double before{};
+  double after{};
+};
+
+Progress Learn(const std::string& algorithm, const std::string& options, std::uint64_t steps,
+               std::shared_ptr<const Scenario> scenario = TinyFarm()) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(std::move(scenario), {8, entry.encodings(options), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  Progress progress;
+  progress.before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
+  TrainerOptions trainer;
+  trainer.algorithm = algorithm;
+  trainer.steps = steps;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  progress.after = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
+  return progress;
+}
+
+void ExpectSolves(const std::string& algorithm, const std::string& options, std::uint64_t steps) {
+  const Progress progress = Learn(algorithm, options, steps);
+  EXPECT_LT(progress.before, 0.5) << options;
+  EXPECT_GE(progress.after, 0.98) << options;
+}
+
+TEST(Dqn, SolvesATinyFarm) { ExpectSolves("dqn", kSmall, 12000); }
+
+TEST(Dqn, SolvesItWithEachSwitchTurnedRound) {
+  for (const char* change :
+       {"double_q=false", "dueling=true", "n_step=1", "priority=0.6", "loss=mse",
+        "mask_illegal=false", "target_rate=0.01", "exploration=boltzmann:linear:1:0.05:0.5"}) {
+    ExpectSolves("dqn", kSmall + std::string(change), 20000);
+  }
+}
+
+TEST(Dqn, SolvesItFromThePlanes) {
+  ExpectSolves("dqn",
+               "network=cnn hidden=16 batch=32 start=500 replay=5000 target_period=50 "
+               "learning_rate=0.002",
+               12000);
+}
+
+TEST(RecurrentDqn, SolvesATinyFarm) { ExpectSolves("lstm_dqn", kSmallRecurrent, 20000); }
+
+TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
+  ExpectSolves("lstm_dqn",
+               "hidden=24 batch=64 start=500 replay=5000 target_period=50 steps_per_update=4 "
+               "sequence=1 burn_in=0 learning_rate=0.003",
+               24000);
+}
+
+TEST(Dqn, PaperModeTurnsEverySwitchOff) {
+  std::string resolved;
+  const DeepOptions paper = DeepOptions::Parse("preset=paper", false, resolved);
+  EXPECT_FALSE(paper.double_q);
+  EXPECT_FALSE(paper.dueling);
+  EXPECT_EQ(paper.n_step, 1);
+  EXPECT_EQ(paper.priority, 0.0);
+  EXPECT_EQ(paper.reward_scale, 1.0);
+  EXPECT_FALSE(paper.mask_illegal);
+  EXPECT_EQ(paper.loss, LossKind::kMse);
+  EXPECT_TRUE(DeepOptions::Parse("preset=paper double_q=true", false, resolved).double_q);
+  EXPECT_CONTAINS(resolved, "preset=paper");
+}
+
+TEST(Dqn, WrongOptionsAreAnsweredWithWhatIsAllowed) {
+  for (const auto& [options, words] :
+       {std::pair{"doubel_q=true", "options: got 'doubel_q', expected one of: batch, device"},
+        std::pair{"network=rnn", "network: got 'rnn', expected one of: mlp, cnn"},
+        std::pair{"batch=0", "batch: got 0, expected [1, 65536]"},
+        std::pair{"batch=2.5", "batch: got 2.5, expected a whole number"},
+        std::pair{"loss=l1", "loss: got 'l1', expected one of: huber, mse"},
+        std::pair{"sequence=8", "options: got 'sequence'"},
+        std::pair{"device=gpu", "device: got 'gpu', expected one of: auto, cpu, cuda"}}) {
+    EXPECT_CONTAINS(MessageOf<InputError>([o = options] { DqnEncodings(o); }), words);
+  }
+}
+
+TEST(Dqn, ALossThatIsNoNumberEndsTheTraining) {
+  const std::string options = "hidden=8 batch=8 start=10 replay=500";
+  LocalEnvironment environment(TinyFarm(), {8, kFeaturesBit, false, 1});
+  const auto learner = MakeDqn(environment.spec(), 1, options);
+  Checkpoint checkpoint;
+  learner->Save(checkpoint);
+  std::string& weights = checkpoint.sections["weights"];
+  std::fill_n(weights.begin() + 40, 4, '\xff');  // a NaN
+  learner->Load(checkpoint);
+  TrainerOptions trainer_options;
+  trainer_options.algorithm = "dqn";
+  trainer_options.steps = 200000;
+  Trainer trainer(environment, *learner, trainer_options);
+  EXPECT_EQ(trainer.Run(), TrainingEnd::kDiverged);
+  EXPECT_CONTAINS(trainer.message(), "loss: got ");
+  EXPECT_CONTAINS(trainer.message(), "farm steps; expected a number");
+}
+
+TEST(DeepPolicies, ThatDoNotFitAreRefusedWithWhatDiffers) {
+  for (const char* algorithm : {"dqn", "lstm_dqn"}) {
+    LocalEnvironment environment(TinyFarm(), {1, kFeaturesBit, false, 1});
+    const Algorithm& entry = FindAlgorithm(algorithm);
+    const auto learner = entry.make(environment.spec(), 1, "hidden=8");
+    Checkpoint checkpoint;
+    checkpoint.algorithm = algorithm;
+    checkpoint.options = learner->options();
+    checkpoint.spec = environment.spec();
+    learner->SavePolicy(checkpoint);
+    EXPECT_NE(entry.make_policy(checkpoint, environment.spec()), nullptr);
+    EnvironmentSpec other = environment.spec();
+    other.feature_count += 3;
+    EXPECT_CONTAINS(MessageOf<InputError>([&] { entry.make_policy(checkpoint, other); }),
+                    "does not fit scenario tiny: features: it knows " +
+                        std::to_string(other.feature_count - 3));
+    checkpoint.sections["weights"].resize(40);
+    EXPECT_THROW(entry.make_policy(checkpoint, environment.spec()), InputError);
+  }
+}
+
+TEST(RecurrentDqn, ForgetsAtAnEpisodesStart) {
+  LocalEnvironment environment(TinyFarm(), {1, kFeaturesBit, false, 1});
+  const auto learner = MakeRecurrentDqn(environment.spec(), 1, "hidden=8");
+  const auto policy = learner->GreedyPolicy();
+  const Evaluation once = Evaluate(environment, *policy, 3, 6);
+  const Evaluation twice = Evaluate(environment, *policy, 3, 3);
+  for (std::size_t i = 0; i < twice.episodes.size(); ++i) {
+    EXPECT_EQ(once.episodes[i].episode_return, twice.episodes[i].episode_return);
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

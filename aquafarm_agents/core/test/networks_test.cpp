@@ -69,7 +69,7 @@ TEST(Networks, GradientsOfEveryKindAreDifferences) {
 }
 
 // An LSTM by its equations (Hochreiter and Schmidhuber 1997, with forget gates; PyTorch's order of
-// gates i, f, g, o), one number at a time, between a layer with ReLU before and the head after.
+// gates i, f, g, o), one number at a time, between the layers around it.
 std::vector<double> RecurrentByHand(const std::vector<float>& weights,
                                     const std::vector<std::vector<float>>& input,
                                     std::size_t hidden) {
@@ -86,7 +86,9 @@ std::vector<double> RecurrentByHand(const std::vector<float>& weights,
   const float* hh = take(4 * hidden * hidden);
   const float* ih_b = take(4 * hidden);
   const float* hh_b = take(4 * hidden);
-  const float* head_w = take(kActionCount * hidden);
+  const float* second_w = take(4 * hidden * hidden);
+  const float* second_b = take(2 * hidden);
+  const float* head_w = take(kActionCount * 2 * hidden);
   const float* head_b = take(kActionCount);
   const auto layer = [](const float* matrix, const float* bias, const std::vector<double>& x,
                         std::size_t rows) {
@@ -115,7 +117,11 @@ std::vector<double> RecurrentByHand(const std::vector<float>& weights,
       c[k] = sigmoid(gate(1)) * c[k] + sigmoid(gate(0)) * std::tanh(gate(2));
       h[k] = sigmoid(gate(3)) * std::tanh(c[k]);
     }
-    values = layer(head_w, head_b, h, kActionCount);
+    std::vector<double> both = h;
+    both.insert(both.end(), x.begin(), x.end());
+    std::vector<double> second = layer(second_w, second_b, both, 2 * hidden);
+    for (double& one : second) one = std::max(0.0, one);
+    values = layer(head_w, head_b, second, kActionCount);
   }
   return values;
 }

@@ -48,7 +48,8 @@ int Main(int argc, char** argv) {
   environment.farms = 16;
   CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume goes on.");
   app.footer(ListAlgorithms() +
-             "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 130 interrupted and saved");
+             "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 130 "
+             "interrupted and saved");
   app.option_defaults()->always_capture_default();
   app.add_option("scenario", scenario, "scenario file, or the name of a shipped one");
   app.add_option("-a,--algorithm", options.algorithm, "learner by name");

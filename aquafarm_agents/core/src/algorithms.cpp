@@ -56,7 +56,7 @@ const std::vector<Algorithm>& Algorithms() {
        MakeTabularPolicy},
       {"dqn", "deep Q-network on features or planes (Eq. 15)", true, 400000, DqnEncodings, MakeDqn,
        MakeDqnPolicy},
-      {"lstm_dqn", "deep Q-network with a memory (Algorithm 2)", true, 1000000,
+      {"lstm_dqn", "deep Q-network with a memory (Algorithm 2)", true, 400000,
        RecurrentDqnEncodings, MakeRecurrentDqn, MakeRecurrentDqnPolicy},
       {"planner", "plans anew each step, trusting that disasters hold their heading", false, 1,
        WithoutOptions<kStatesBit>, MakePlanner<Foresight::kHeadingHolds>,

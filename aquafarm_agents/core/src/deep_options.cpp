@@ -43,7 +43,7 @@ DeepOptions Tuned(bool recurrent) {
   if (!recurrent) return options;
   options.hidden = 64;
   options.batch = 32;
-  options.steps_per_update = 16.0;
+  options.steps_per_update = 8.0;
   options.target_period = 100;
   options.n_step = 3;
   return options;

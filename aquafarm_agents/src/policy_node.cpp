@@ -26,7 +26,7 @@ struct PolicyParams {
   std::string policy;
   std::string mode{"evaluate"};
   std::string output;  ///< prefix of .csv and .json; empty: none are written
-  int episodes{};      ///< act: 0 for ever
+  int episodes{-1};    ///< act: 0 for ever; -1: not given
   int seed{1000};
   int ship{-1};
   double sim_timeout_s{20.0};
@@ -51,7 +51,11 @@ PolicyParams ReadPolicyParams(const ros::NodeHandle& node) {
   if (params.mode != "evaluate" && params.mode != "act") {
     throw aquafarm::InputError("~mode: got '" + params.mode + "', expected evaluate or act");
   }
-  if (params.mode == "evaluate" && params.episodes == 0) params.episodes = 100;
+  const bool evaluates = params.mode == "evaluate";
+  if (evaluates && params.episodes == 0) {
+    throw aquafarm::InputError("~episodes: got 0, expected [1, 10000000]");
+  }
+  if (params.episodes < 0) params.episodes = evaluates ? 100 : 0;
   return params;
 }
 

@@ -125,17 +125,25 @@ const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
   step_.request.encodings = encodings_;
   step_.request.sequence = ++sequence_;
   double waited_s = 0.0;
+  ros::WallTime lost_since;
   while (!Try(step_client_, names::kStep, step_) || !step_.response.ok) {
     const int code = step_client_.isValid() ? int{step_.response.code} : int{Outcome::OK};
     if (code == Outcome::PAUSED || code == Outcome::WRONG_PACE) {
       WaitToGoOn(step_.response.message, waited_s);
     } else if (code == Outcome::OK || code == Outcome::SHUTTING_DOWN) {
-      Notice("the sim node is gone; waiting up to " + Seconds(options_.wait_limit_s) +
-             " for its return");
+      if (lost_since.isZero()) {
+        lost_since = ros::WallTime::now();
+        Notice("the sim node is gone; waiting up to " + Seconds(options_.wait_limit_s) +
+               " for its return");
+      }
       if (!IsStillThere()) {
         Restart();
         return results_;
       }
+      if (Stopped() || (ros::WallTime::now() - lost_since).toSec() >= options_.wait_limit_s) {
+        throw EnvironmentLost("sim node: answers, but takes no steps");
+      }
+      Sleep();
     } else if (code == Outcome::BAD_LENGTH) {  // it came back with another number of farms
       Restart();
       return results_;

@@ -10,6 +10,7 @@
 #include <ros/init.h>
 
 #include <future>
+#include <mutex>
 #include <utility>
 
 #include "aquafarm/check.h"
@@ -27,6 +28,7 @@ using aquafarm_msgs::Outcome;
 
 constexpr double kPollPeriod_s = 0.01;
 constexpr double kRetryPeriod_s = 0.1;
+constexpr double kWarnPeriod_s = 5.0;
 constexpr double kCallLimit_s = 30.0;
 
 /// One connection, made again when it breaks, with limits.
@@ -109,6 +111,9 @@ class ShipDriver::Impl {
       }
       policy.Act(results, actions_);
       Send();
+      if (!again_.exchange(false)) continue;
+      seen_.reset();
+      ros::WallDuration(kRetryPeriod_s).sleep();
     }
     return ended;
   }
@@ -142,6 +147,7 @@ class ShipDriver::Impl {
   void StartNext() {
     if (State().pace == aquafarm_msgs::FarmState::PACED) return;
     aquafarm_msgs::Reset reset;
+    reset.request.sequence = ++token_;
     reset_.Call(names::kReset, reset);
     if (!reset.response.ok) throw EnvironmentLost("sim node: reset: " + reset.response.message);
   }
@@ -162,6 +168,7 @@ class ShipDriver::Impl {
     command.request.action = actions_[static_cast<std::size_t>(ships_[i])];
     command.request.episode = seen_->first;
     command.request.step = seen_->second;
+    command.request.token = ++token_;  // a repeat after a lost connection moves nothing twice
     commands_[i]->Call(names::kCommand, command);
     const std::uint8_t code = command.response.result.code;
     // Late or overtaken: the next look says where the farm is.
@@ -172,8 +179,18 @@ class ShipDriver::Impl {
       throw EnvironmentLost("sim node: command refused: " + command.response.result.message);
     }
     if (code == Outcome::TIMEOUT || code == Outcome::PAUSED) {
-      ROS_WARN_THROTTLE(5.0, "ship %d: %s", ships_[i], command.response.result.message.c_str());
+      again_ = true;  // the command was dropped
+      WarnNowAndThen("ship " + std::to_string(ships_[i]) + ": " + command.response.result.message);
     }
+  }
+
+  // By the wall clock: ROS time stands still with the farm.
+  void WarnNowAndThen(const std::string& text) {
+    const std::lock_guard<std::mutex> lock(warn_mutex_);
+    const ros::WallTime now = ros::WallTime::now();
+    if ((now - warned_).toSec() < kWarnPeriod_s) return;
+    warned_ = now;
+    ROS_WARN("%s", text.c_str());
   }
 
   static EpisodeResult Record(const aquafarm::Farm& farm) {
@@ -194,6 +211,10 @@ class ShipDriver::Impl {
   std::vector<std::unique_ptr<Link>> commands_;  // one a ship
   std::unique_ptr<LocalEnvironment> mirror_;
   std::vector<std::uint8_t> actions_;
+  std::atomic<bool> again_{};  // a command was dropped: look and send anew
+  std::atomic<std::uint64_t> token_{ros::WallTime::now().toNSec()};  // of the last command
+  std::mutex warn_mutex_;
+  ros::WallTime warned_;
   std::optional<std::pair<std::uint64_t, std::uint64_t>> seen_;  // episode and step
 };
 

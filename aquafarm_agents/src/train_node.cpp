@@ -7,6 +7,7 @@
 #include <climits>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <memory>
 
@@ -31,7 +32,6 @@ constexpr double kPrintPeriod_s = 5.0;
 struct TrainParams {
   agents::RunOptions run;
   RosEnvironmentOptions environment;
-  std::string exit_file;
 };
 
 std::string NewRunFolder() {
@@ -47,7 +47,6 @@ TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   int episodes = 0;
   int seed = 1;
   double steps = 0.0;  // a parameter holds no whole number beyond 31 bits
-  reader.Text("exit_file", params.exit_file);
   reader.Text("algorithm", params.run.algorithm);
   reader.Text("exploration", params.run.exploration);
   reader.Text("options", params.run.options);
@@ -174,45 +173,39 @@ agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {
   return report;
 }
 
-int End(ExitCode code, const std::string& exit_file, const std::string& summary) {
+int End(ExitCode code, const std::string& summary) {
   std::fprintf(code == ExitCode::kOk ? stdout : stderr, "%s", summary.c_str());
   std::fflush(stdout);
-  const int number = static_cast<int>(code);
-  if (exit_file.empty() || exit_file == "none") return number;
-  try {
-    agents::WriteFileAtomically(exit_file, std::to_string(number) + "\n");
-  } catch (const agents::StorageError& error) {
-    std::fprintf(stderr, "train_node: ~exit_file: %s\n", error.what());
-  }
-  return number;
+  return static_cast<int>(code);
 }
 
 /// What people may want to do next.
 std::string Next(const agents::RunReport& report, const std::string& run_dir) {
-  const std::string launch = "roslaunch aquafarm_bringup ";
+  const char* const script = std::getenv("AQUAFARM_LAUNCHER");
+  const auto launch = [script](const std::string& name) {
+    return script != nullptr ? std::string(script) + " " + name
+                             : "roslaunch aquafarm_bringup " + name + ".launch";
+  };
   if (report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost) {
-    return "go on      " + launch + "train.launch … resume:=true run_dir:=" + run_dir + "\n";
+    return "go on      " + launch("train") + " … resume:=true run_dir:=" + run_dir + "\n";
   }
   if (report.code != ExitCode::kOk) return "";
-  return "watch it   " + launch + "sim.launch scenario:=" + run_dir +
+  return "watch it   " + launch("sim") + " scenario:=" + run_dir +
          "/scenario.yaml policy:=" + run_dir + "\n";
 }
 
 }  // namespace
 
 int RunTrainNode() {
-  std::string exit_file;
   try {
     ros::NodeHandle node;
-    TrainParams params;
-    ros::NodeHandle("~").param("exit_file", exit_file, exit_file);  // refusals go there too
-    params = ReadTrainParams(ros::NodeHandle("~"));
+    const TrainParams params = ReadTrainParams(ros::NodeHandle("~"));
     const agents::RunReport report = Train(node, params);
-    return End(report.code, exit_file, report.summary + Next(report, params.run.run_dir));
+    return End(report.code, report.summary + Next(report, params.run.run_dir));
   } catch (const aquafarm::InputError& error) {
-    return End(ExitCode::kBadInput, exit_file, std::string("train_node: ") + error.what() + "\n");
+    return End(ExitCode::kBadInput, std::string("train_node: ") + error.what() + "\n");
   } catch (const std::exception& error) {
-    return End(ExitCode::kInternal, exit_file, std::string("train_node: ") + error.what() + "\n");
+    return End(ExitCode::kInternal, std::string("train_node: ") + error.what() + "\n");
   }
 }
 

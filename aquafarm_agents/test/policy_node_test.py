@@ -12,6 +12,7 @@ import unittest
 
 import rospy
 import rostest
+from aquafarm_msgs.srv import Pause
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, program, start_agent, start_sim  # noqa: E402
@@ -91,6 +92,25 @@ class PolicyNodeTest(unittest.TestCase):
         self.assertEqual(0, one.code(), one.words())
         self.assertEqual(0, other.code(), other.words())
 
+    def test_paused_and_resumed_it_drives_on(self):
+        start_sim(self, self.namespace, PAIR)
+        pause = rospy.ServiceProxy(f"{self.namespace}/pause", Pause)
+        pause.wait_for_service(20)
+        run = self.drive("_policy:=random", "_episodes:=200")
+        run.wait_for(lambda: "episode 1" in run.words(), "an episode")
+        self.assertTrue(pause(paused=True).ok)
+        run.wait_for(lambda: "is paused" in run.words(), "a word of the pause")
+        self.assertTrue(pause(paused=False).ok)
+        self.assertEqual(0, run.code(), run.words())
+
+    def test_drivers_that_waited_in_vain_for_each_other_go_on(self):
+        start_sim(self, self.namespace, PAIR, "_barrier_timeout_s:=0.3")
+        one = self.drive("_policy:=random", "_ship:=1", "_episodes:=2")
+        one.wait_for(lambda: "gave no command within" in one.words(), "a timeout")
+        other = self.drive("_policy:=random", "_ship:=0", "_episodes:=2")
+        self.assertEqual(0, one.code(), one.words())
+        self.assertEqual(0, other.code(), other.words())
+
     def test_interrupted_while_driving_it_ends_well(self):
         start_sim(self, self.namespace, PAIR)
         run = self.drive("_policy:=random")
@@ -107,6 +127,7 @@ class PolicyNodeTest(unittest.TestCase):
                 ((f"_policy:={TINY}",), "no checkpoint"),
                 ((), "~policy: got nothing, expected a run folder"),
                 (("_policy:=random", "_mode:=watch"), "expected evaluate or act"),
+                (("_policy:=random", "_episodes:=0"), "~episodes: got 0, expected [1, 10000000]"),
                 (("_policy:=random", "_mode:=act", "_ship:=2"), "~ship: got 2, expected -1")):
             with self.subTest(parameters=parameters):
                 run = self.play(*parameters)

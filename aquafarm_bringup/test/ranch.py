@@ -29,8 +29,7 @@ class Ranch:
             os.environ, ROS_HOME=str(self.folder), ROS_LOG_DIR=str(self.folder / "log"),
             ROS_IP="127.0.0.1", ROS_MASTER_URI=f"http://127.0.0.1:{self.port}")
         self._command = ["roslaunch", "aquafarm_bringup", f"{launch}.launch", *arguments]
-        if launch != "replay":
-            self._command.append(f"exit_file:={self._exit_file}")
+        self._command.append(f"exit_file:={self._exit_file}")
         self._stdin = stdin
         self._process = None
 

@@ -42,7 +42,8 @@ class RecordReplayTest(unittest.TestCase):
 
     def test_recording_ends_with_zero_and_a_closed_bag(self):
         self.assertEqual(0, self.code, self.words)
-        self.assertEqual(["day.bag"], [path.name for path in self.folder.iterdir()])
+        self.assertIn("day.bag", [path.name for path in self.folder.iterdir()])
+        self.assertFalse(list(self.folder.glob("*.active")))
 
     def test_the_spec_of_each_episode_says_which_it_is(self):
         specs = self.messages("/aquafarm/spec")
@@ -91,6 +92,21 @@ class RecordReplayTest(unittest.TestCase):
             self.assertLessEqual({"/aquafarm/viz", "/play"}, names)
             self.assertNotIn("/aquafarm/sim", names)
         self.assertGreater(images[0].width * images[0].height, 0)
+
+    def test_a_bag_that_cannot_be_written_or_read_leaves_a_code(self):
+        with Ranch("record", "of:=evaluate", "policy:=random", "bag:=/nowhere/x.bag",
+                   "viz:=false") as ranch:
+            self.assertNotIn(ranch.exit_code(60), (0, 130), ranch.words())
+        with Ranch("replay", "bag:=/nowhere/x.bag", "headless:=true", "viz:=false") as ranch:
+            self.assertNotEqual(0, ranch.exit_code(60), ranch.words())
+
+    def test_a_path_with_a_blank_is_one_path(self):
+        bag = self.folder / "a day.bag"
+        with Ranch("record", "of:=evaluate", "policy:=random", "episodes:=1", f"bag:={bag}",
+                   "viz:=false", "rate_hz:=100") as ranch:
+            self.assertEqual(0, ranch.exit_code(60), ranch.words())
+        self.assertTrue(bag.exists())
+        bag.unlink()
 
 
 if __name__ == "__main__":

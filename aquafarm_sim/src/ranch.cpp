@@ -253,9 +253,10 @@ void Ranch::Tick() {
       if (!slots_[i]->pending && batch_->farm(0).ships()[i].in_play) ++counters_.late_ships;
     }
     StepPublishedFarm();
-  } catch (const std::exception&) {
+  } catch (const std::exception& error) {
     DropCommands();
     context_.paused = true;  // A farm that cannot go on must not fail at every tick.
+    counters_.fault = error.what();
   }
 }
 
@@ -317,7 +318,12 @@ void Ranch::Inspect(const std::function<void(const RanchView&)>& look) {
 
 RanchCounters Ranch::counters() {
   const Lock lock(mutex_);
-  return counters_;
+  RanchCounters counters = counters_;
+  if (joint_step_at_ != Clock::time_point{}) {
+    counters.joint_step_age_s =
+        std::chrono::duration<double>(Clock::now() - joint_step_at_).count();
+  }
+  return counters;
 }
 
 }  // namespace aquafarm_sim

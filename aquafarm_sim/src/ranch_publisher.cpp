@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_sim/ranch_publisher.h"
 
+#include <ros/console.h>
 #include <ros/init.h>
 #include <rosgraph_msgs/Clock.h>
 
@@ -123,12 +124,16 @@ void RanchPublisher::Run() {
     const Clock::time_point next = Clock::now() + period;
     lock.unlock();
     if (dirty_.exchange(false) && (params_.publish_hz > 0.0 || params_.record)) {
-      ranch_.Inspect([this](const RanchView& view) {
+      try {
+        ranch_.Inspect([this](const RanchView& view) {
+          const std::lock_guard<std::mutex> message_lock(message_mutex_);
+          Fill(view);
+        });
         const std::lock_guard<std::mutex> message_lock(message_mutex_);
-        Fill(view);
-      });
-      const std::lock_guard<std::mutex> message_lock(message_mutex_);
-      Send();
+        Send();
+      } catch (const std::exception& error) {
+        ROS_ERROR("a state could not be published: %s", error.what());
+      }
     }
     for (const aquafarm_msgs::EpisodeSummary& summary : summaries) episode_.publish(summary);
     lock.lock();

@@ -64,6 +64,7 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
       return step_refusal_;
     }
     last_sequence_ = 0;  // until the answer is complete
+    joint_step_at_ = Clock::now();
     Answer(Outcome::OK, "", step_answer_);
     batch_->Step(request.actions.data(), Prepare(request.encodings, step_answer_.result));
     DropPending();
@@ -103,6 +104,9 @@ std::optional<Ranch::Refusal> Ranch::CheckAnswerSize(std::int32_t farms,
     return Refusal{Outcome::BAD_VALUE, OutOfRange("encodings", encodings, 0, kAllEncodings)};
   }
   const aquafarm::Encoder& encoder = batch_->encoder();
+  if ((encodings & StepResult::INDEX) != 0 && encoder.state_count() == 0) {
+    return Refusal{Outcome::BAD_VALUE, "encodings: this farm has too many states for INDEX"};
+  }
   const std::size_t entries = static_cast<std::size_t>(farms) * slots_.size();
   std::size_t bytes = 0;
   if ((encodings & StepResult::FEATURES) != 0) {
@@ -192,6 +196,14 @@ void Ranch::Reset(const aquafarm_msgs::Reset::Request& request,
     if (const auto refusal = CheckAnswerSize(farms, request.encodings)) {
       return Answer(refusal->code, refusal->message, response);
     }
+    const std::int64_t cells = std::int64_t{farms} * scenario_->CellCount();
+    if (scenario_->layout == aquafarm::LayoutMode::kPerEpisode && cells > kMaxDrawnCells) {
+      return Answer(Outcome::BAD_VALUE,
+                    "farms: " + std::to_string(farms) + " layouts would have " +
+                        std::to_string(cells) + " cells, expected at most " +
+                        std::to_string(kMaxDrawnCells),
+                    response);
+    }
     const std::uint64_t seed = request.has_seed ? request.seed : batch_->farm(0).seed();
     const std::uint64_t first = request.has_episode ? request.episode
                                 : request.has_seed  ? 0
@@ -263,6 +275,7 @@ void Ranch::SaveState(aquafarm_msgs::SaveState::Response& response) {
   Guarded(Outcome::BAD_VALUE, response, [&] {
     const std::string bytes = batch_->Save();
     response.data.assign(bytes.begin(), bytes.end());
+    ++counters_.saves;
     response.hash = batch_->farm(0).Hash();
     Answer(Outcome::OK, "", response);
   });
@@ -342,7 +355,16 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
         return Answer(Outcome::BAD_VALUE, OutOfRange("id", request.id, 0, most), response);
       }
     }
-    // Only ids differ between farms, so what the first farm accepts, all accept.
+    for (std::int32_t i = first; i < end; ++i) {
+      const auto count = static_cast<std::int32_t>(batch_->farm(i).disasters().size());
+      if (request.id == count && !spec.start && spec.track.empty()) {
+        return Answer(Outcome::BAD_VALUE,
+                      "info: disaster " + std::to_string(request.id) + " is new to farm " +
+                          std::to_string(i) + ", expected a start or a track",
+                      response);
+      }
+    }
+    // All that could differ between farms is checked, so what the first accepts, all accept.
     for (std::int32_t i = first; i < end; ++i) batch_->farm(i).SetDisaster(request.id, spec);
     if (first == 0) Changed();
     Answer(Outcome::OK, "", response);

@@ -12,6 +12,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <fstream>
 
@@ -24,10 +26,14 @@
 namespace aquafarm_sim {
 namespace {
 
-/// More waiting clients than this share threads.
-constexpr std::int32_t kMaxShipThreads = 256;
 constexpr std::uint32_t kCommonThreads = 2;
 constexpr double kDiagnosticsPeriod_s = 1.0;
+constexpr double kLookPeriod_s = 0.05;
+constexpr double kAtWork_s = 2.0;     // since the last joint step
+constexpr double kSaveLimit_s = 8.0;  // roslaunch kills after 15
+
+std::atomic<bool> interrupted{false};
+static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
 
 std::shared_ptr<const aquafarm::Scenario> Load(const std::string& scenario) {
   return std::make_shared<const aquafarm::Scenario>(
@@ -95,7 +101,7 @@ SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_nod
       node_.createWallTimer(ros::WallDuration(kDiagnosticsPeriod_s),
                             [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
   // One waiting command a ship at most, so one thread more is always free.
-  const std::int32_t threads = agents == 1 ? 1 : std::min(agents, kMaxShipThreads) + 1;
+  const std::int32_t threads = agents == 1 ? 1 : agents + 1;
   ship_spinner_ =
       std::make_unique<ros::AsyncSpinner>(static_cast<std::uint32_t>(threads), &ship_queue_);
   ship_spinner_->start();
@@ -162,6 +168,9 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(
       timed_out ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK,
       timed_out ? "a ship waited in vain for the others" : "running");
+  if (!now.fault.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "paused itself: " + now.fault);
+  }
   status.add("version", aquafarm::kVersion);
   status.add("farm steps per second", steps_per_s);
   status.add("farm steps", now.farm_steps);
@@ -175,13 +184,28 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   diagnosed_at_ = time;
 }
 
+// Ctrl-C in a launch reaches trainer and farm at once: a trainer at work gets the time to save.
+void SimNode::LetClientsSave() {
+  const ros::WallTime start = ros::WallTime::now();
+  const auto elapsed_s = [&start] { return (ros::WallTime::now() - start).toSec(); };
+  const std::uint64_t saves = ranch_.counters().saves;
+  while (ros::ok() && ranch_.counters().joint_step_age_s < kAtWork_s &&
+         ranch_.counters().saves == saves && elapsed_s() < kSaveLimit_s) {
+    ros::WallDuration(kLookPeriod_s).sleep();
+  }
+  ros::WallDuration(kLookPeriod_s).sleep();  // lets the answer leave
+}
+
 int RunSimNode() {
   // ROS's console is gone once the last node handle is, so refusals go to stderr directly.
   try {
-    const SimNode node(ros::NodeHandle(), ros::NodeHandle("~"));
+    SimNode node(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::AsyncSpinner spinner(kCommonThreads);
     spinner.start();
-    ros::waitForShutdown();
+    std::signal(SIGINT, [](int) { interrupted = true; });
+    while (ros::ok() && !interrupted) ros::WallDuration(kLookPeriod_s).sleep();
+    node.LetClientsSave();
+    ros::shutdown();
     return 0;
   } catch (const aquafarm::InputError& error) {
     std::fprintf(stderr, "sim_node: %s\n", error.what());

@@ -320,5 +320,42 @@ TEST(RanchServices, UnknownFarmsAndShipsAreNotRead) {
   EXPECT_EQ(1, call.response.state.observer);
 }
 
+TEST(RanchServices, AnIndexThatTheFarmHasNotIsRefused) {
+  aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.width = scenario.height = 12;
+  scenario.devices = {};
+  scenario.devices.count = 20;
+  const auto ranch = MakeRanch(scenario);
+  aquafarm_msgs::Reset call;
+  call.request.encodings = StepResult::INDEX;
+  ranch->Reset(call.request, call.response);
+  EXPECT_FALSE(call.response.ok);
+  EXPECT_EQ(call.response.code, Outcome::BAD_VALUE);
+  call.request.encodings = StepResult::FEATURES;
+  ranch->Reset(call.request, call.response);
+  EXPECT_TRUE(call.response.ok) << call.response.message;
+}
+
+TEST(RanchServices, ABulletinForAllFarmsIsTakenByAllOrNone) {
+  const auto ranch = MakeRanch(aquafarm::test::CrowdedScenario(1, 0), 2);
+  aquafarm_msgs::SetDisaster call;
+  call.request.farm = 0;
+  call.request.id = 2;
+  call.request.info.grade = 3;
+  call.request.info.radii = {2.0F};
+  call.request.info.risks = {-10.0F};
+  call.request.info.has_start = true;
+  call.request.info.duration = 100;
+  ranch->SetDisaster(call.request, call.response);
+  ASSERT_TRUE(call.response.ok) << call.response.message;
+  const std::uint64_t before = StateOf(*ranch).hash;
+  call.request.farm = -1;
+  call.request.info.has_start = false;
+  call.request.info.speed = 1.0F;
+  ranch->SetDisaster(call.request, call.response);
+  EXPECT_FALSE(call.response.ok);
+  EXPECT_EQ(StateOf(*ranch).hash, before) << "farm 0 has one to replace, farm 1 has not";
+}
+
 }  // namespace
 }  // namespace aquafarm_sim

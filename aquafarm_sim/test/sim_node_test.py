@@ -117,6 +117,11 @@ class SimNodeTest(unittest.TestCase):
         self.assertEqual(saved.hash, loaded.hash)
         self.assertEqual(expected, play())
 
+    def test_states_that_nest_a_million_deep_get_a_code(self):
+        answer = call("load_state", data=b"\x81" * 1000000)
+        self.assertFalse(answer.ok)
+        self.assertIn("nested too deeply", answer.message)
+
     def test_damaged_bytes_get_a_code(self):
         saved = call("save_state").data
         before = state().hash

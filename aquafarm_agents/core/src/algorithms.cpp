@@ -18,12 +18,6 @@ std::unique_ptr<Learner> Make(const EnvironmentSpec& spec, std::uint64_t seed,
 }
 
 template <Foresight foresight>
-std::unique_ptr<Learner> MakePlanner(const EnvironmentSpec& spec, std::uint64_t,
-                                     const std::string& options) {
-  return std::make_unique<PlannerLearner>(spec, foresight, options);
-}
-
-template <Foresight foresight>
 std::unique_ptr<Policy> MakePlannerPolicy(const Checkpoint&, const EnvironmentSpec& spec) {
   return std::make_unique<PlannerPolicy>(spec, foresight);
 }
@@ -58,12 +52,10 @@ const std::vector<Algorithm>& Algorithms() {
        MakeDqnPolicy},
       {"lstm_dqn", "deep Q-network with a memory (Algorithm 2)", true, 400000,
        RecurrentDqnEncodings, MakeRecurrentDqn, MakeRecurrentDqnPolicy},
-      {"planner", "plans anew each step, trusting that disasters hold their heading", false, 1,
-       WithoutOptions<kStatesBit>, MakePlanner<Foresight::kHeadingHolds>,
-       MakePlannerPolicy<Foresight::kHeadingHolds>},
-      {"clairvoyant", "plans with the disasters' true future: the best there can be", false, 1,
-       WithoutOptions<kStatesBit>, MakePlanner<Foresight::kClairvoyant>,
-       MakePlannerPolicy<Foresight::kClairvoyant>},
+      {"planner", "plans anew each step, trusting that disasters hold their heading", false, 0,
+       WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kHeadingHolds>},
+      {"clairvoyant", "plans with the disasters' true future: the best there can be", false, 0,
+       WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kClairvoyant>},
   };
   return algorithms;
 }

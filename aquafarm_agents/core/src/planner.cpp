@@ -116,6 +116,11 @@ Planner::Solver::Solver(const Scenario& scenario)
       cells_(static_cast<std::size_t>(scenario.CellCount())),
       devices_(static_cast<std::size_t>(scenario.devices.Total())) {
   constexpr std::size_t kMostDevices = 12;
+  if (scenario.rewards.step > 0.0F) {
+    throw InputError(
+        "planner: rewards.step: got more than 0, expected at most 0: there would be "
+        "no end to what dawdling earns");
+  }
   if (scenario.AgentCount() != 1) {
     throw InputError("planner: got " + std::to_string(scenario.AgentCount()) +
                      " agents, expected 1 rescue ship");
@@ -227,7 +232,7 @@ void Planner::Solver::AddGains(std::size_t set, std::vector<double>& best) const
 // most that any cell can still earn, a step costing what it costs in quiet water.
 void Planner::Solver::SolveBound() {
   bound_.assign(state_count(), 0.0);
-  const double move = std::max(static_cast<double>(scenario_.rewards.step), -1e9);
+  const auto move = static_cast<double>(scenario_.rewards.step);
   std::vector<std::size_t> order(sets_.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(),

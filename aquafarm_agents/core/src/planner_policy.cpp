@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/planner_policy.h"
 
-#include <cmath>
-
-#include "aquafarm/agents/options.h"
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
 
@@ -46,23 +43,6 @@ std::uint8_t PlannerPolicy::Follow(const Farm& farm, Course& course) {
   if (action < kMoveCount) cell = {cell.x + kMoves[action].x, cell.y + kMoves[action].y};
   course.cell = cell;
   return action;
-}
-
-PlannerLearner::PlannerLearner(const EnvironmentSpec& spec, Foresight foresight,
-                               const std::string& options)
-    : spec_(spec), foresight_(foresight), policy_(spec, foresight) {
-  OptionReader(options).Finish();
-  policy_.Begin(0, spec.farms);
-}
-
-void PlannerLearner::Step(const Results& results, double, std::vector<std::uint8_t>& actions) {
-  policy_.Act(results, actions);
-}
-
-LearnerStatus PlannerLearner::status() const { return {std::nanf(""), 0.0F, 0.0F}; }
-
-std::unique_ptr<Policy> PlannerLearner::GreedyPolicy() const {
-  return std::make_unique<PlannerPolicy>(spec_, foresight_);
 }
 
 }  // namespace aquafarm::agents

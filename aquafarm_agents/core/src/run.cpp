@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "aquafarm/agents/algorithms.h"
@@ -59,6 +60,8 @@ class Run {
     if (on_status_) on_status_(report_.status);
   }
   bool Stopped() const { return stop_ != nullptr && *stop_; }
+  void TakeOverLimits(const RunFolder& folder);
+  bool Resume(Trainer& trainer, const RunFolder& folder);
   void Describe(const EnvironmentSpec& spec, const Learner& learner, const RunFolder& folder) const;
   void Train(Environment& environment, Learner& learner, RunFolder& folder);
   void SavePolicy(const Environment& environment, const Learner& learner, const RunFolder& folder);
@@ -74,8 +77,9 @@ class Run {
 void Run::All(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
   const Algorithm& algorithm = FindAlgorithm(options_.algorithm);
-  if (options_.episodes == 0 && options_.steps == 0) options_.steps = algorithm.default_steps;
   RunFolder folder(options_.run_dir, options_.resume);
+  if (options_.resume) TakeOverLimits(folder);
+  if (options_.episodes == 0 && options_.steps == 0) options_.steps = algorithm.default_steps;
   const std::unique_ptr<Environment> environment =
       make_environment(algorithm.encodings(LearnerOptionsOf(options_)));
   const std::unique_ptr<Learner> learner =
@@ -85,6 +89,41 @@ void Run::All(const MakeEnvironment& make_environment) {
   SavePolicy(*environment, *learner, folder);
   if (options_.evaluation_episodes > 0) Evaluate(*environment, *learner, folder);
   if (report_.code == ExitCode::kOk) report_.status.message.clear();
+}
+
+// A resumed run goes on to its old limits unless it is given others.
+void Run::TakeOverLimits(const RunFolder& folder) {
+  if (options_.episodes != 0 || options_.steps != 0) return;
+  const std::string path = folder.path() + "/run.json";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return;
+  try {
+    const auto run = nlohmann::json::parse(ReadFile(path));
+    run.at("episodes").get_to(options_.episodes);
+    run.at("steps").get_to(options_.steps);
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(path + ": damaged: " + error.what());
+  }
+}
+
+// The newest checkpoint; when that is damaged, the one before it.
+bool Run::Resume(Trainer& trainer, const RunFolder& folder) {
+  std::string first_damage;
+  for (const std::string& path : folder.Checkpoints()) {
+    Checkpoint checkpoint;
+    try {
+      checkpoint = ReadCheckpoint(path);
+    } catch (const InputError& error) {
+      if (first_damage.empty()) first_damage = error.what();
+      continue;
+    }
+    if (!first_damage.empty()) Tell(RunPhase::kStarting, first_damage + "; taking an older one");
+    trainer.Resume(checkpoint, path);
+    Tell(RunPhase::kStarting, "resuming from " + path);
+    return true;
+  }
+  if (!first_damage.empty()) throw InputError(first_damage);
+  return false;
 }
 
 void Run::Describe(const EnvironmentSpec& spec, const Learner& learner,
@@ -107,12 +146,11 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
   options.checkpoint_period_s = options_.checkpoint_period_s;
   options.progress_period_s = options_.progress_period_s;
   Trainer trainer(environment, learner, options, &folder);
-  const auto newest = options_.resume ? folder.NewestCheckpoint() : std::nullopt;
-  if (newest) {
-    trainer.Resume(ReadCheckpoint(*newest), *newest);
-    Tell(RunPhase::kStarting, "resuming from " + *newest);
-  } else if (options_.resume) {
+  if (options_.resume && !Resume(trainer, folder)) {
     Tell(RunPhase::kStarting, folder.path() + ": holds no checkpoint yet; starting anew");
+  }
+  if (trainer.Done() >= 1.0) {
+    Tell(RunPhase::kStarting, "the run has reached its limit; give steps or episodes beyond it");
   }
   Describe(environment.spec(), learner, folder);
   const TrainingEnd end = trainer.Run(stop_, [&](const TrainingProgress& progress) {
@@ -219,6 +257,12 @@ RunReport Run::End() {
 
 void CheckRunOptions(const RunOptions& options) {
   const Algorithm& algorithm = FindAlgorithm(options.algorithm);
+  if (algorithm.make == nullptr) {
+    throw InputError(options.algorithm +
+                     std::string(": there is nothing to train; let it play: "
+                                 "evaluate policy:=") +
+                     options.algorithm);
+  }
   algorithm.encodings(LearnerOptionsOf(options));  // refuses wrong ones
   if ((options.seed & kEvaluationSeedBit) != 0) {
     throw InputError("seed: got " + std::to_string(options.seed) + ", expected less than 2^63");

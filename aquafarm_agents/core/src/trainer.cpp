@@ -91,6 +91,9 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
   } catch (const LearnerFailed& error) {
     message_ = error.what();
     end = TrainingEnd::kDiverged;
+  } catch (const InputError& error) {  // the farms came back as others
+    message_ = error.what();
+    end = TrainingEnd::kLost;
   }
   try {
     if (end == TrainingEnd::kLost) Save(false);

@@ -34,6 +34,8 @@ TEST_F(RunFolderTest, HoldingARunIsRefusedUnlessResumed) {
   EXPECT_CONTAINS(MessageOf<InputError>([&] { RunFolder(folder_ + "/run", false); }),
                   "holds a run already; resume it or name another folder");
   EXPECT_NO_THROW(RunFolder(folder_ + "/run", true));
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { RunFolder(folder_ + "/other", true); }),
+                  "/other: holds no run to resume");
 }
 
 TEST_F(RunFolderTest, WhereNothingCanBeWrittenIsRefusedAtOnce) {

@@ -5,7 +5,7 @@ namespace aquafarm_agents {
 
 /// Trains through a ranch's services as the private parameters say, publishes how it goes on
 /// `training`, prints a summary.
-/// @returns an ExitCode, which is also written to the file ~exit_file if that is given
+/// @returns an ExitCode
 int RunTrainNode();
 
 /// Lets a saved policy play through a ranch's services: evaluates it, or drives ships.

@@ -143,6 +143,7 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
 }
 
 std::uint32_t Encoder::Index(const Farm& farm, std::int32_t ship) const {
+  AQUAFARM_CHECK_NE(state_count_, 0U);
   std::int32_t code = 0;
   for (const Device& device : farm.devices()) {
     if (device.self_propelled) continue;

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "aquafarm/check.h"
+#include "cbor.h"
 
 namespace aquafarm {
 
@@ -44,10 +46,17 @@ void FarmBatch::Step(const std::uint8_t* actions, const BatchOutput& output) {
     for (std::int32_t i = 0; i < farms(); ++i) StepOne(i, 0, actions, output);
     return;
   }
+  std::exception_ptr failure;  // none may leave the parallel region
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (std::int32_t i = 0; i < farms(); ++i) {
-    StepOne(i, omp_get_thread_num(), actions, output);
+    try {
+      StepOne(i, omp_get_thread_num(), actions, output);
+    } catch (...) {
+#pragma omp critical(aquafarm_farm_batch_failure)
+      failure = std::current_exception();
+    }
   }
+  if (failure) std::rethrow_exception(failure);
 }
 
 void FarmBatch::StepOne(std::int32_t i, std::int32_t thread, const std::uint8_t* actions,
@@ -109,7 +118,7 @@ std::string FarmBatch::Save() const {
 void FarmBatch::Load(const std::string& bytes) {
   std::vector<Farm> loaded;
   try {
-    const nlohmann::json states = nlohmann::json::from_cbor(bytes);
+    const nlohmann::json states = ParseCbor(bytes);
     if (!states.is_array() || states.size() != farms_.size()) {
       throw InputError("state: got " + std::to_string(states.size()) + " farms, expected " +
                        std::to_string(farms_.size()));

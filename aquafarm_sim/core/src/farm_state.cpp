@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An episode in progress as a hash and as bytes, and disasters that arrive while it runs.
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "aquafarm/farm.h"
 #include "aquafarm/hash.h"
 #include "aquafarm/version.h"
+#include "cbor.h"
 
 namespace aquafarm {
 namespace {
@@ -34,6 +36,19 @@ void HashDisaster(const Disaster& disaster, Hasher& hasher) {
   const Bulletin& bulletin = disaster.bulletin;
   hasher.Add(bulletin.x, bulletin.y);
   hasher.Add(bulletin.heading_deg, bulletin.step);
+}
+
+void HashTracks(const std::vector<Track>& tracks, Hasher& hasher) {
+  for (const Track& track : tracks) {
+    hasher.Add(static_cast<std::uint64_t>(track->size()));
+    for (const Waypoint& point : *track) {
+      hasher.Add(point.step, point.x);
+      hasher.Add(point.y, static_cast<float>(point.grade));
+      for (std::size_t k = 0; k < point.radii.size(); ++k) {
+        hasher.Add(point.radii[k], point.risks[k]);
+      }
+    }
+  }
 }
 
 json CellToJson(Cell cell) { return json::array({cell.x, cell.y}); }
@@ -149,6 +164,19 @@ Disaster DisasterFromJson(const json& j) {
   j.at("bulletin").at(2).get_to(d.bulletin.speed);
   j.at("bulletin_when").at(0).get_to(d.bulletin.heading_deg);
   j.at("bulletin_when").at(1).get_to(d.bulletin.step);
+  if (d.bulletin.heading_deg < 0 || d.bulletin.heading_deg > 359) {
+    throw InputError("state: bulletin heading out of range");
+  }
+  bool finite = true;
+  for (const float value : {d.x, d.y, d.dx, d.dy, d.speed, d.radius_growth, d.margin, d.bulletin.x,
+                            d.bulletin.y, d.bulletin.speed}) {
+    finite = finite && std::isfinite(value);
+  }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(kMaxRings); ++k) {
+    finite = finite && std::isfinite(d.radius[k]) && std::isfinite(d.radius_squared[k]) &&
+             std::isfinite(d.risk[k]);
+  }
+  if (!finite) throw InputError("state: a disaster's number is not finite");
   return d;
 }
 
@@ -228,6 +256,7 @@ std::uint64_t Farm::Hash() const {
     hasher.Add(device.carrier, Int(device.status));
   }
   for (const Disaster& disaster : disasters_) HashDisaster(disaster, hasher);
+  if (tracks_changed_) HashTracks(tracks_, hasher);  // else they are the scenario's
   return hasher.value();
 }
 
@@ -262,11 +291,11 @@ void Farm::Load(const std::string& bytes) {
   // Built aside and moved in only when everything fits and hashes to what was saved.
   Farm loaded(scenario_, own_layout_ == nullptr ? layout_ : nullptr);
   try {
-    const json sealed = json::from_cbor(bytes);
+    const json sealed = ParseCbor(bytes);
     const auto& binary = sealed.at("state").get_binary();
     const std::string payload(binary.begin(), binary.end());
     RequireSame("checksum", HashBytes(payload), sealed.at("checksum").get<std::uint64_t>());
-    const json state = json::from_cbor(payload);
+    const json state = ParseCbor(payload);
     RequireSame("format", state.at("format").get<int>(), kStateFormat);
     RequireSame("scenario", state.at("scenario").get<std::string>(), scenario_->name);
     RequireSame("scenario_hash", state.at("scenario_hash").get<std::uint64_t>(), scenario_->hash);
@@ -276,14 +305,21 @@ void Farm::Load(const std::string& bytes) {
     RequireSame("ships", state.at("ships").size(), loaded.ships_.size());
     RequireSame("devices", state.at("devices").size(), loaded.devices_.size());
     const std::size_t disasters = state.at("disasters").size();
-    if (disasters > static_cast<std::size_t>(kMaxDisasters)) {
-      throw InputError("state: too many disasters");
+    if (disasters < scenario_->disasters.size() ||
+        disasters > static_cast<std::size_t>(kMaxDisasters)) {
+      throw InputError("state: disasters: got " + std::to_string(disasters) + ", expected [" +
+                       std::to_string(scenario_->disasters.size()) + ", " +
+                       std::to_string(kMaxDisasters) + "]");
     }
     for (std::size_t i = 0; i < loaded.ships_.size(); ++i) {
+      const std::int32_t own_device = loaded.ships_[i].own_device;
       loaded.ships_[i] = ShipFromJson(state["ships"][i]);
+      RequireSame("own_device", loaded.ships_[i].own_device, own_device);
     }
     for (std::size_t i = 0; i < loaded.devices_.size(); ++i) {
+      const bool self_propelled = loaded.devices_[i].self_propelled;
       loaded.devices_[i] = DeviceFromJson(state["devices"][i]);
+      RequireSame("self_propelled", loaded.devices_[i].self_propelled, self_propelled);
     }
     loaded.remaining_ = 0;
     for (const Device& device : loaded.devices_) {
@@ -317,12 +353,21 @@ void Farm::CheckConsistent() const {
     return id >= kNone && id < static_cast<std::int32_t>(size);
   };
   bool fits = true;
-  for (const Ship& ship : ships_) {
-    fits = fits && on_map(ship.cell) && in_list(ship.own_device, devices_.size());
-  }
+  std::vector<std::int32_t> aboard(ships_.size());
   for (const Device& device : devices_) {
-    fits = fits && on_map(device.cell) && in_list(device.carrier, ships_.size());
+    fits = fits && on_map(device.cell) && in_list(device.carrier, ships_.size()) &&
+           (device.carrier != kNone) == (device.status == DeviceStatus::kAboard) &&
+           std::isfinite(device.value) && std::isfinite(device.health);
+    if (fits && device.carrier != kNone) ++aboard[static_cast<std::size_t>(device.carrier)];
   }
+  for (std::size_t i = 0; i < ships_.size(); ++i) {
+    const Ship& ship = ships_[i];
+    fits = fits && on_map(ship.cell) && ship.aboard == aboard[i] &&
+           ship.aboard <= scenario_->ships.capacity && std::isfinite(ship.reward) &&
+           std::isfinite(ship.episode_return);
+  }
+  fits = fits && record_.steps >= 0 && record_.steps <= scenario_->step_limit &&
+         record_.devices == static_cast<std::int32_t>(devices_.size());
   for (std::size_t i = 0; i < disasters_.size(); ++i) {
     const std::vector<Waypoint>& track = *tracks_[i];
     fits = fits && in_list(disasters_[i].waypoint, track.size());
@@ -331,7 +376,7 @@ void Farm::CheckConsistent() const {
              point.risks.size() == point.radii.size();
     }
   }
-  if (!fits) throw InputError("state: an index is out of range");
+  if (!fits) throw InputError("state: its parts do not fit together");
 }
 
 void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {

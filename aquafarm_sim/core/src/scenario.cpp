@@ -127,6 +127,11 @@ void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const 
 }
 
 void CheckPlaces(const Scenario& scenario) {
+  constexpr std::int32_t kFewestCells = 4;  // planes are written in runs as long as these
+  if (scenario.CellCount() < kFewestCells) {
+    throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
+                                 Format(kFewestCells));
+  }
   Occupancy occupancy(scenario);
   const auto put_all = [&occupancy](const std::string& path, const auto& cells,
                                     Occupancy::Thing what) {

@@ -134,7 +134,7 @@ void VisitRocksAndPorts(Archive& a, S& s) {
     b.When(!chosen, "there are no cells");
     b.Leaf("count", s.rocks.count, Interval<std::int32_t>{0, kMaxSide * kMaxSide});
     b.When(chosen, "there are cells");
-    b.Leaf("cells", s.rocks.cells, ListOf<AnyCell>{{}, 0, kMaxListed});
+    b.Leaf("cells", s.rocks.cells, ListOf<AnyCell>{{}, chosen ? 1U : 0U, kMaxListed});
     b.Always();
     b.Leaf("reward", s.rocks.reward, kPenalty);
   });
@@ -143,7 +143,7 @@ void VisitRocksAndPorts(Archive& a, S& s) {
     b.When(!chosen, "there are no cells");
     b.Leaf("count", s.ports.count, Interval<std::int32_t>{1, kMaxPorts});
     b.When(chosen, "there are cells");
-    b.Leaf("cells", s.ports.cells, ListOf<AnyCell>{{}, 0, kMaxPorts});
+    b.Leaf("cells", s.ports.cells, ListOf<AnyCell>{{}, chosen ? 1U : 0U, kMaxPorts});
     b.Always();
   });
 }

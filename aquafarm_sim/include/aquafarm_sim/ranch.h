@@ -39,6 +39,8 @@ namespace aquafarm_sim {
 inline constexpr std::int32_t kMaxFarms = 4096;
 inline constexpr double kMinRate_hz = 0.001;
 inline constexpr double kMaxRate_hz = 1000.0;
+/// Cells of all farms together where each has a layout of its own.
+inline constexpr std::int64_t kMaxDrawnCells = 64'000'000;
 inline constexpr std::size_t kMaxAnswerBytes = std::size_t{256} << 20U;
 
 struct RanchOptions {
@@ -73,6 +75,9 @@ struct RanchCounters {
   std::uint64_t barrier_timeouts{};  ///< lockstep: commands answered TIMEOUT
   std::uint64_t superseded{};        ///< clients that were overtaken by another of the same ship
   std::uint64_t refused{};           ///< requests answered with any other code of refusal
+  std::uint64_t saves{};             ///< states handed out by save_state
+  double joint_step_age_s{1e9};      ///< since the last joint step
+  std::string fault;                 ///< why paced running paused itself; empty: it did not
 };
 
 /// The farms as they stand, seen while nothing moves.
@@ -197,6 +202,7 @@ class Ranch {
   aquafarm::View view_;                // scratch
   RanchListener* listener_{};
   RanchCounters counters_;
+  Clock::time_point joint_step_at_{};  // of the last joint step; the clock's zero: none
 
   std::uint64_t last_sequence_{};  // of the last accepted joint step; 0: none
   aquafarm_msgs::Step::Response step_answer_;

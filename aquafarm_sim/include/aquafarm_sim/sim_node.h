@@ -27,6 +27,9 @@ class SimNode {
   /// @throws InputError on a parameter or scenario that is not allowed
   SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~SimNode();
+
+  /// Serves on for a moment when a trainer is at work, until it has saved.
+  void LetClientsSave();
   SimNode(const SimNode&) = delete;
   SimNode& operator=(const SimNode&) = delete;
 

@@ -35,7 +35,8 @@ class Encoder {
   static std::vector<std::string> plane_names();
   inline static constexpr std::int32_t kPlaneCount = 8;
 
-  /// In [0, state_count()). The same in full and partial view: chart, places and status are known.
+  /// In [0, state_count()), which must not be 0. The same in full and partial view: chart, places
+  /// and status are known.
   std::uint32_t Index(const Farm& farm, std::int32_t ship) const;
   /// The ship's cell and the status of each device that can be fetched, back from an index.
   struct TabularState {

@@ -41,6 +41,7 @@ class FarmBatch {
   void Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output);
 
   /// Steps every farm. @param actions [N, S], each in [0, kActionCount] (kHold allowed)
+  /// @throws InputError when an episode's layout cannot be drawn; the other farms have stepped then
   void Step(const std::uint8_t* actions, const BatchOutput& output);
 
   /// Writes the present state's results again without stepping (after Load).

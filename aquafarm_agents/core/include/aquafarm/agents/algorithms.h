@@ -17,6 +17,7 @@ struct Algorithm {
   std::uint64_t default_steps;  ///< of training when no limit is given
   /// EncodingBits that it reads with these options. @throws InputError when an option is wrong
   std::uint8_t (*encodings)(const std::string& options);
+  /// Null: there is nothing to train.
   std::unique_ptr<Learner> (*make)(const EnvironmentSpec& spec, std::uint64_t seed,
                                    const std::string& options);
   /// Makes what it learnt play on farms of `spec`. @throws InputError when it does not fit

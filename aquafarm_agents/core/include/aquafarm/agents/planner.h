@@ -37,7 +37,9 @@ struct Plan {
 /// Plans for farms of one scenario; keeps its memory between plans.
 class Planner {
  public:
-  /// @throws InputError when the scenario has more than one agent, self-propelled devices, or more
+  /// @param scenario must outlive the planner
+  /// @throws InputError when the scenario has more than one agent, pays for dawdling,
+  /// self-propelled devices, or more
   ///         devices than fit a table (kMaxStates)
   explicit Planner(const Scenario& scenario);
   ~Planner();

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/agents/learner.h"
 #include "aquafarm/agents/planner.h"
+#include "aquafarm/agents/policy.h"
 #include "aquafarm/farm_batch.h"
 
 namespace aquafarm::agents {
@@ -43,26 +43,6 @@ class PlannerPolicy final : public Policy {
   Planner planner_;
   std::unique_ptr<FarmBatch> farms_;
   std::vector<Course> courses_;
-};
-
-/// A planner where a learner is asked for: there is nothing to learn.
-class PlannerLearner final : public Learner {
- public:
-  /// @throws InputError on any option, it has none; and as PlannerPolicy
-  PlannerLearner(const EnvironmentSpec& spec, Foresight foresight, const std::string& options);
-  std::uint8_t encodings() const override { return kStatesBit; }
-  std::string options() const override { return ""; }
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
-  LearnerStatus status() const override;
-  std::unique_ptr<Policy> GreedyPolicy() const override;
-  void SavePolicy(Checkpoint&) const override {}
-  void Save(Checkpoint&) const override {}
-  void Load(const Checkpoint&) override {}
-
- private:
-  EnvironmentSpec spec_;
-  Foresight foresight_;
-  PlannerPolicy policy_;
 };
 
 }  // namespace aquafarm::agents

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "aquafarm/agents/checkpoint.h"
 
@@ -24,7 +25,7 @@ class RunFolder {
   /// Opens or makes the folder, tries whether it can be written, and locks it.
   /// @param resume false: a folder that holds a run already is refused
   /// @throws StorageError when it cannot be written or another process trains here;
-  ///         InputError when it holds a run and `resume` is false
+  ///         InputError when it holds a run and `resume` is false, or none and it is true
   RunFolder(std::string path, bool resume);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -40,6 +41,8 @@ class RunFolder {
   /// Writes checkpoints/step_<steps>.ckpt and removes all but the last two.
   /// @throws StorageError; those before stay
   void SaveCheckpoint(const Checkpoint& checkpoint) const;
+  /// Paths of all checkpoints, the newest first.
+  std::vector<std::string> Checkpoints() const;
   /// Path of the newest checkpoint, if there is one.
   std::optional<std::string> NewestCheckpoint() const { return NewestCheckpoint(path_); }
   static std::optional<std::string> NewestCheckpoint(const std::string& run_folder);

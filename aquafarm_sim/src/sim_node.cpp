@@ -176,7 +176,7 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("farm steps", now.farm_steps);
   status.add("late ships", now.late_ships);
   status.add("barrier timeouts", now.barrier_timeouts);
-  status.add("dropped clients", now.superseded);
+  status.add("superseded commands", now.superseded);
   status.add("refused requests", now.refused);
   status.add("dropped episode summaries", publisher_.dropped_summaries());
   status.add("memory [MiB]", ResidentMebibytes());

@@ -2,6 +2,7 @@
 #include "aquafarm/view.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace aquafarm {
 namespace {
@@ -16,8 +17,25 @@ bool Within(Cell a, Cell b, float radius) {
   return SquaredDistance(a, static_cast<float>(b.x), static_cast<float>(b.y)) <= radius * radius;
 }
 
-void ObserveDisaster(const Farm& farm, const Disaster& disaster, bool full, Cell self,
-                     KnownDisaster& known) {
+// Rings, risks and grade as they were when the last bulletin was issued: what came after it is not
+// known out of sight.
+void TakeBackToBulletin(const std::vector<Waypoint>& track, std::int32_t age, Disaster& belief) {
+  if (!track.empty()) {
+    belief.waypoint = 0;
+    FollowTrack(belief, track, 0);
+    FollowTrack(belief, track, belief.bulletin.step);
+    return;
+  }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(belief.rings); ++k) {
+    belief.radius[k] =
+        std::max(0.0F, belief.radius[k] - belief.radius_growth * static_cast<float>(age));
+    const float radius = belief.radius[k];
+    belief.radius_squared[k] = radius > 0.0F ? radius * radius : -1.0F;
+  }
+}
+
+void ObserveDisaster(const Farm& farm, std::size_t id, bool full, Cell self, KnownDisaster& known) {
+  const Disaster& disaster = farm.disasters()[id];
   const ViewSpec& view = farm.scenario().view;
   known.belief = disaster;
   known.age = 0;
@@ -28,6 +46,7 @@ void ObserveDisaster(const Farm& farm, const Disaster& disaster, bool full, Cell
   if (known.visible || !known.known) return;
   const Bulletin& bulletin = disaster.bulletin;
   known.age = farm.step() - bulletin.step;
+  TakeBackToBulletin(*farm.tracks()[id], known.age, known.belief);
   known.belief.x = bulletin.x;
   known.belief.y = bulletin.y;
   known.belief.speed = bulletin.speed;
@@ -81,7 +100,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
 
   view.disasters.resize(farm.disasters().size());
   for (std::size_t id = 0; id < view.disasters.size(); ++id) {
-    ObserveDisaster(farm, farm.disasters()[id], full, self.cell, view.disasters[id]);
+    ObserveDisaster(farm, id, full, self.cell, view.disasters[id]);
   }
 }
 

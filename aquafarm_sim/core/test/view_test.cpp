@@ -68,6 +68,32 @@ TEST(PartialView, TheLastBulletinStandsWithItsAge) {
   }
 }
 
+TEST(PartialView, OutOfSightRingsAreThoseOfTheBulletin) {
+  Scenario scenario = PartialScenario();
+  scenario.view.bulletin_period = 10;
+  DisasterSpec growing = StillDisaster(20, 20, {2}, {-5});
+  growing.radius_growth = 0.25F;
+  DisasterSpec tracked = StillDisaster(20, 20, {1}, {-5});
+  tracked.start.reset();
+  const auto at = [](float step, float radius, float risk, std::int32_t grade) {
+    return Waypoint{step, 20, 20, grade, {radius}, {risk}};
+  };
+  tracked.track = {at(0, 1, -5, 1), at(15, 1, -5, 1), at(16, 3, -20, 4), at(1000, 3, -20, 4)};
+  scenario.disasters = {growing, tracked};
+  Farm farm = MakeFarm(scenario);
+  View view;
+  for (std::int32_t step = 0; step < 35; ++step) {
+    Observe(farm, 0, view);
+    ASSERT_FALSE(view.disasters[0].visible || view.disasters[1].visible);
+    const std::int32_t told = step - step % 10;
+    EXPECT_FLOAT_EQ(view.disasters[0].belief.radius[0], 2.0F + 0.25F * static_cast<float>(told));
+    EXPECT_EQ(view.disasters[1].belief.radius[0], told < 16 ? 1.0F : 3.0F) << "step " << step;
+    EXPECT_EQ(view.disasters[1].belief.risk[0], told < 16 ? -5.0F : -20.0F);
+    EXPECT_EQ(view.disasters[1].belief.grade, told < 16 ? 1 : 4);
+    StepOne(farm, Action::kHold);
+  }
+}
+
 TEST(PartialView, BulletinsAreOffByNoMoreThanTheirNoise) {
   Scenario scenario = PartialScenario();
   scenario.view.bulletin_period = 1;

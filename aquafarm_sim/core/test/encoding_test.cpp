@@ -32,8 +32,25 @@ TEST(TabularIndex, CountsTheStatusSetsOfTheRules) {
 }
 
 TEST(TabularIndex, ThePapersCountsAreMisprints) {
-  EXPECT_EQ(25 * 25 * 8 * 4, 20000);  // |S| = 25·25·2³·4, printed as 128,000
-  EXPECT_EQ(25 * 25 * 8, 5000);       // |O| = 25·25·2³, printed as 32,000
+  // The paper's factors: each device is delivered or not, whoever has it. Counted on a farm of its
+  // size: |O| = 25·25·2³ = 5,000, printed as 32,000; |S| = |O|·4 ports = 20,000, printed as
+  // 128,000.
+  Scenario scenario;
+  scenario.width = scenario.height = 25;
+  scenario.devices.count = 3;
+  scenario.ports.count = 4;
+  const Encoder encoder(scenario);
+  std::set<std::vector<std::int32_t>> observations;
+  for (std::uint32_t index = 0; index < encoder.state_count(); ++index) {
+    const Encoder::TabularState state = encoder.Decode(index);
+    std::vector<std::int32_t> observation{state.cell.x, state.cell.y};
+    for (const DeviceStatus status : state.status) {
+      observation.push_back(status == DeviceStatus::kDelivered ? 1 : 0);
+    }
+    observations.insert(observation);
+  }
+  EXPECT_EQ(observations.size(), 5000U);
+  EXPECT_EQ(observations.size() * static_cast<std::size_t>(scenario.ports.count), 20000U);
 }
 
 TEST(TabularIndex, ATinyFarmReachesExactlyItsStates) {

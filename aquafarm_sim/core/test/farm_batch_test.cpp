@@ -13,17 +13,20 @@
 
 namespace {
 std::atomic<long> allocations{0};
+std::atomic<std::size_t> allocated_bytes{0};
 }  // namespace
 
 // Counts what the whole program allocates, so that a test can say that stepping does not. Kept out
 // of line: inlined, gcc takes the malloc behind new for a mismatch with free.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
+  allocated_bytes += size;
   if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
   throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
   ++allocations;
+  allocated_bytes += size;
   const auto align = static_cast<std::size_t>(alignment);
   if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
   throw std::bad_alloc();
@@ -185,11 +188,18 @@ TEST(FarmBatch, NeitherStepsNorEpisodesAllocate) {
 }
 
 TEST(FarmBatch, AFarmsStateIsUnderAKibibyteBesidesItsChart) {
-  Scenario scenario;  // the paper's sizes
+  Scenario scenario;  // the paper's sizes; all farms share one chart
   scenario.disasters.resize(1);
-  const std::size_t bytes =
-      sizeof(Farm) + sizeof(Ship) + 3 * sizeof(Device) + sizeof(Disaster) + sizeof(Track);
-  EXPECT_LT(bytes, 1024U);
+  ValidateScenario(scenario);
+  const auto shared = std::make_shared<const Scenario>(scenario);
+  const auto bytes_of = [&shared](std::int32_t farms) {
+    const std::size_t before = allocated_bytes;
+    FarmBatch batch(shared, farms);
+    batch.Reset(1, 0, {});
+    return allocated_bytes - before;
+  };
+  const std::size_t of_one = bytes_of(1);
+  EXPECT_LT((bytes_of(101) - of_one) / 100, 1024U);
 }
 
 }  // namespace

@@ -268,13 +268,12 @@ TEST(RightOfWay, ASwapIsBlockedForBoth) {
   EXPECT_EQ(farm.record().collisions, 2);
 }
 
-TEST(RightOfWay, TheLowerIdGetsTheDevice) {
+TEST(RightOfWay, TheShipInADevicesCellHasItAlone) {
   Scenario scenario = TinyScenario();
   scenario.ships.count = 2;
   scenario.devices.sites[0].cell = {2, 1};
   scenario.ports.cells = {{2, 0}, {3, 0}};
   Farm farm = MakeFarm(scenario);
-  // Bring both to the device's cell is impossible: the second is blocked and its pickup illegal.
   for (int i = 0; i < 3 && farm.ships()[0].cell != Cell{2, 1}; ++i) {
     Both(farm, farm.ships()[0].cell.x == 3 ? Action::kNorthWest : Action::kNorth, Action::kHold);
   }

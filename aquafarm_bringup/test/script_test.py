@@ -41,6 +41,20 @@ class ScriptTest(unittest.TestCase):
         self.assertEqual(2, done.returncode)
         self.assertIn("got 'sarsa', expected name:=value", done.stdout)
 
+    def test_what_is_not_named_lies_beside_the_user(self):
+        with tempfile.TemporaryDirectory() as folder:  # refused after the defaults are told
+            done = run(SCRIPT, "train", "resume:=maybe", cwd=folder)
+            self.assertEqual(2, done.returncode, done.stdout)
+            self.assertIn(f"taking run_dir:={folder}/runs/", done.stdout)
+            self.assertIn("resume: got 'maybe', expected true or false", done.stdout)
+            done = run(SCRIPT, "record", "of:=foo", cwd=folder)
+            self.assertEqual(2, done.returncode, done.stdout)
+            self.assertIn(f"taking bag:={folder}/aquafarm_", done.stdout)
+            self.assertIn("of: got 'foo', expected sim, train or evaluate", done.stdout)
+            done = run(SCRIPT, "replay", "bag:=day.bag", cwd=folder)
+            self.assertEqual(2, done.returncode, done.stdout)
+            self.assertIn(f"there is no file {folder}/day.bag", done.stdout)
+
     def test_every_verb_has_help(self):
         for verb in ("setup", "build", "train", "evaluate", "sim", "play", "record", "replay",
                      "test", "bench"):

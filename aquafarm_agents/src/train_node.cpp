@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <memory>
 
 #include "aquafarm/agents/run.h"
@@ -33,13 +32,6 @@ struct TrainParams {
   agents::RunOptions run;
   RosEnvironmentOptions environment;
 };
-
-std::string NewRunFolder() {
-  char name[40];
-  const std::time_t now = std::time(nullptr);
-  std::strftime(name, sizeof(name), "runs/%Y%m%d-%H%M%S", std::localtime(&now));
-  return name;
-}
 
 TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   TrainParams params;
@@ -66,7 +58,7 @@ TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   params.run.steps = static_cast<std::uint64_t>(steps);
   params.run.seed = static_cast<std::uint64_t>(seed);
   params.run.arguments = reader.given();
-  if (params.run.run_dir.empty()) params.run.run_dir = NewRunFolder();
+  if (params.run.run_dir.empty()) params.run.run_dir = agents::NewRunFolder();
   return params;
 }
 

@@ -3,7 +3,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <ctime>
 
 #include "app.h"
 #include "aquafarm/agents/algorithms.h"
@@ -12,13 +11,6 @@
 
 namespace aquafarm::agents {
 namespace {
-
-std::string NewRunFolder() {
-  char name[40];
-  const std::time_t now = std::time(nullptr);
-  std::strftime(name, sizeof(name), "runs/%Y%m%d-%H%M%S", std::localtime(&now));
-  return name;
-}
 
 std::string ListAlgorithms() {
   std::string text = "algorithms:";

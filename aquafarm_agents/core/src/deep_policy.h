@@ -6,6 +6,7 @@
 
 #include <torch/torch.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,6 +24,20 @@ inline std::size_t EntryCount(const EnvironmentSpec& spec) {
 /// What learners may do now: all actions, or the legal ones.
 inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
   return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
+}
+
+/// Marks what must not be chosen: 0, or a number far below any value, and finite, so that nothing
+/// becomes NaN. @param out [kActionCount]
+inline void MarkForbidden(ActionMask allowed, float* out) {
+  for (std::size_t a = 0; a < kActionCount; ++a) {
+    out[a] = ((allowed >> a) & 1U) != 0 ? 0.0F : -1e9F;
+  }
+}
+
+/// Farms that took a step; the others began an episode.
+inline std::uint64_t FarmSteps(const Results& results) {
+  return static_cast<std::uint64_t>(
+      std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
 }
 
 /// How the network sees: float features, or bytes of planes (255 stands for 1).

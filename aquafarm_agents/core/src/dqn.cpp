@@ -15,8 +15,6 @@
 namespace aquafarm::agents {
 namespace {
 
-// Far below any value, and finite, so that nothing becomes NaN.
-constexpr float kForbidden = -1e9F;
 constexpr float kSmallestPriority = 1e-4F;
 
 /// Plays the best action of a network.
@@ -66,7 +64,7 @@ struct Batch {
   std::vector<std::int64_t> actions;
   std::vector<float> rewards;
   std::vector<float> discounts;
-  std::vector<float> forbidden;  // [B, kActionCount] 0 or kForbidden, of the next actions
+  std::vector<float> forbidden;  // [B, kActionCount] by MarkForbidden, of the next actions
   std::vector<float> weights;
   std::vector<std::size_t> rows;
 
@@ -167,9 +165,7 @@ void DqnLearner<Scalar>::Step(const Results& results, double progress,
                               std::vector<std::uint8_t>& actions) {
   progress_ = progress;
   Remember(results);
-  std::uint64_t steps = 0;
-  for (const std::uint8_t started : results.started) steps += started == 0 ? 1 : 0;
-  optimizer_.Count(steps, progress);
+  optimizer_.Count(FarmSteps(results), progress);
   while (optimizer_.TakeDue()) Update();
   Choose(results, actions);
   replay_.SetActions(actions);
@@ -255,9 +251,7 @@ bool DqnLearner<Scalar>::Draw() {
     batch_.discounts[i] = one.discount;
     batch_.rows[i] = one.from;
     const ActionMask allowed = Allowed(replay_.legal(one.to), options_.mask_illegal);
-    for (std::size_t a = 0; a < kActionCount; ++a) {
-      batch_.forbidden[i * kActionCount + a] = ((allowed >> a) & 1U) != 0 ? 0.0F : kForbidden;
-    }
+    MarkForbidden(allowed, batch_.forbidden.data() + i * kActionCount);
   }
   if (is_prioritised()) WeighImportance();
   return true;

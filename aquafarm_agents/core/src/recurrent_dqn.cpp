@@ -12,8 +12,6 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kForbidden = -1e9F;
-
 std::shared_ptr<RecurrentNetwork> MakeRecurrent(const EnvironmentSpec& spec,
                                                 const DeepOptions& options, std::uint64_t seed) {
   auto network =
@@ -210,9 +208,7 @@ void RecurrentDqnLearner::Step(const Results& results, double progress,
                                std::vector<std::uint8_t>& actions) {
   carry_.ClearStarted(results, spec_.agents);
   replay_.Add(results, results.features.data(), carry_.values().data());
-  std::uint64_t steps = 0;
-  for (const std::uint8_t started : results.started) steps += started == 0 ? 1 : 0;
-  optimizer_.Count(steps, progress);
+  optimizer_.Count(FarmSteps(results), progress);
   while (optimizer_.TakeDue()) Update();
 
   explorer_.SetProgress(progress);
@@ -266,10 +262,7 @@ void RecurrentDqnLearner::FillRun(std::size_t b, std::size_t age, std::size_t en
     std::copy_n(replay_.observation(row), features(),
                 batch_.observations.data() + (t * batch() + b) * features());
     const ActionMask allowed = Allowed(replay_.legal(row), options_.mask_illegal);
-    float* forbidden = batch_.forbidden.data() + (t * batch() + b) * kActionCount;
-    for (std::size_t a = 0; a < kActionCount; ++a) {
-      forbidden[a] = ((allowed >> a) & 1U) != 0 ? 0.0F : kForbidden;
-    }
+    MarkForbidden(allowed, batch_.forbidden.data() + (t * batch() + b) * kActionCount);
   }
   for (std::size_t t = 0; t < steps; ++t) {
     const std::size_t i = t * batch() + b;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <utility>
@@ -110,6 +111,13 @@ std::optional<std::string> RunFolder::NewestCheckpoint(const std::string& run_fo
   const std::vector<std::string> paths = CheckpointsIn(run_folder);
   if (paths.empty()) return std::nullopt;
   return paths.back();
+}
+
+std::string NewRunFolder() {
+  char name[40];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(name, sizeof(name), "runs/%Y%m%d-%H%M%S", std::localtime(&now));
+  return name;
 }
 
 }  // namespace aquafarm::agents

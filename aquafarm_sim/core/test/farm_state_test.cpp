@@ -19,19 +19,9 @@ using nlohmann::json;
 using test::Act;
 using test::CrowdedScenario;
 using test::MakeFarm;
+using test::RandomSteps;
 using test::StillDisaster;
 using test::TinyScenario;
-
-void RandomSteps(Farm& farm, int steps, std::uint64_t seed) {
-  RandomStream chance({seed, 0, Purpose::kExploration, 1});
-  std::vector<std::uint8_t> codes(farm.ships().size());
-  for (int i = 0; i < steps; ++i) {
-    for (std::uint8_t& code : codes) {
-      code = static_cast<std::uint8_t>(chance.Below(kActionCount));
-    }
-    if (!farm.over()) farm.Step(codes.data());
-  }
-}
 
 TEST(SaveLoad, GoesOnBitForBit) {
   Farm farm = MakeFarm(CrowdedScenario(2));

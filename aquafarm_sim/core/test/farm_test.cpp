@@ -15,6 +15,7 @@ namespace {
 using test::Act;
 using test::CrowdedScenario;
 using test::MakeFarm;
+using test::RandomSteps;
 using test::StepOne;
 using test::StillDisaster;
 using test::TinyScenario;
@@ -393,17 +394,6 @@ TEST(Oracle, AgreesOnRandomFarmsWithSeveralShipsAndSelfPropelledDevices) {
     Scenario scenario = CrowdedScenario(3, 2);
     if (seed % 2 == 0) scenario.rewards.sharing = RewardSharing::kTeam;
     CompareWithOracle(scenario, seed);
-  }
-}
-
-void RandomSteps(Farm& farm, int steps, std::uint64_t seed) {
-  RandomStream chance({seed, 0, Purpose::kExploration, 1});
-  std::vector<std::uint8_t> codes(farm.ships().size());
-  for (int i = 0; i < steps; ++i) {
-    for (std::uint8_t& code : codes) {
-      code = static_cast<std::uint8_t>(chance.Below(kActionCount));
-    }
-    if (!farm.over()) farm.Step(codes.data());
   }
 }
 

@@ -94,4 +94,16 @@ inline const Ship& StepOne(Farm& farm, Action action) {
   return farm.ships()[0];
 }
 
+/// Lets all ships act at random while the episode lasts.
+inline void RandomSteps(Farm& farm, int steps, std::uint64_t seed) {
+  RandomStream chance({seed, 0, Purpose::kExploration, 1});
+  std::vector<std::uint8_t> codes(farm.ships().size());
+  for (int i = 0; i < steps; ++i) {
+    for (std::uint8_t& code : codes) {
+      code = static_cast<std::uint8_t>(chance.Below(kActionCount));
+    }
+    if (!farm.over()) farm.Step(codes.data());
+  }
+}
+
 }  // namespace aquafarm::test

@@ -54,4 +54,7 @@ class RunFolder {
   int lock_{-1};
 };
 
+/// A folder for a run that was given none: runs/<date>-<time>.
+std::string NewRunFolder();
+
 }  // namespace aquafarm::agents

@@ -83,7 +83,7 @@ TrainingStatus ToMsg(const agents::RunStatus& status, const agents::RunOptions& 
   TrainingStatus message;
   message.header.stamp = ros::Time::now();
   message.phase = PhaseOf(status.phase, code);
-  message.algorithm = options.algorithm;
+  message.algorithm = status.algorithm;
   message.run_dir = options.run_dir;
   message.message = status.message;
   message.episode = progress.episodes;

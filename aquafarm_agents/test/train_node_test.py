@@ -115,6 +115,14 @@ class TrainNodeTest(unittest.TestCase):
         self.assertEqual(str(self.folder / "run"), last.run_dir)
         self.assertGreaterEqual(last.evaluation_success, 0.99)
 
+    def test_auto_asks_the_farm_who_decides_and_says_what_it_chose(self):
+        start_sim(self, self.namespace, TINY)
+        run = self.train("run", "_algorithm:=auto", "_steps:=200", "_options:=hidden=8")
+        self.assertEqual(0, run.code(), run.words())
+        self.assertIn("auto: one rescue ship decides, so a single-agent learner: lstm_dqn",
+                      run.words())
+        self.assertIn('"algorithm": "lstm_dqn"', (self.folder / "run/run.json").read_text())
+
     def test_a_run_folder_in_use_is_refused(self):
         start_sim(self, self.namespace, TINY)
         first = self.train("run", "_steps:=1e9", "_checkpoint_period_s:=0.05")

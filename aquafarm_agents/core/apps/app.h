@@ -3,6 +3,7 @@
 
 // What the programs share: where scenarios are, and Ctrl-C.
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -42,22 +43,42 @@ inline std::string ScenarioFolder() {
 }
 
 /// A path, or the name of a scenario in `folder`.
-inline std::shared_ptr<const Scenario> FindScenario(const std::string& name,
-                                                    const std::string& folder) {
+inline Scenario FindScenario(const std::string& name, const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   const std::string shipped = folder + "/" + name + ".yaml";
   const bool is_name = name.find('/') == std::string::npos;
   if (is_name && fs::exists(shipped, ignored)) {
-    return std::make_shared<const Scenario>(LoadScenario(shipped));
+    return LoadScenario(shipped);
   }
-  if (fs::exists(name, ignored)) return std::make_shared<const Scenario>(LoadScenario(name));
+  if (fs::exists(name, ignored)) return LoadScenario(name);
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
   throw InputError("scenario: got '" + name + "', expected a file or one of: " + Join(names));
+}
+
+/// Which farm a program plays on.
+struct ScenarioChoice {
+  std::string name{"paper"};
+  std::string folder{ScenarioFolder()};
+  std::int32_t max_steps{};  ///< step limit of an episode; 0: the scenario's own
+
+  std::shared_ptr<const Scenario> Load() const {
+    Scenario scenario = FindScenario(name, folder);
+    if (max_steps == 0) return std::make_shared<const Scenario>(std::move(scenario));
+    scenario.step_limit = max_steps;
+    // As a file would give it, so that its hash is that of its text.
+    return std::make_shared<const Scenario>(ParseScenario(ToYaml(scenario), scenario.name));
+  }
+};
+
+inline void AddScenarioOptions(CLI::App& app, ScenarioChoice& choice) {
+  app.add_option("--max-steps", choice.max_steps, "step limit of an episode; 0: the scenario's own")
+      ->check(CLI::Range(0, 1000000000));
+  app.add_option("--scenarios", choice.folder, "folder of the shipped scenarios");
 }
 
 }  // namespace aquafarm::agents

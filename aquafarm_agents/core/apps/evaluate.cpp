@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Plays a saved policy greedily in this process, without ROS.
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "app.h"
 #include "aquafarm/agents/evaluation.h"
 #include "aquafarm/agents/exit_code.h"
 #include "aquafarm/agents/local_environment.h"
+#include "aquafarm/agents/route.h"
 #include "aquafarm/agents/saved_policy.h"
 
 namespace aquafarm::agents {
@@ -15,9 +15,9 @@ namespace {
 
 struct Arguments {
   std::string policy;
-  std::string scenario;
-  std::string folder{ScenarioFolder()};
+  ScenarioChoice scenario;
   std::string output;
+  std::string route;
   std::uint64_t seed{1000};
   std::int32_t episodes{1000};
   EnvironmentOptions environment{64, 0, false, 1};
@@ -26,7 +26,7 @@ struct Arguments {
 // Without a scenario: the one that the policy's run folder keeps.
 std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
   namespace fs = std::filesystem;
-  if (!arguments.scenario.empty()) return arguments.scenario;
+  if (!arguments.scenario.name.empty()) return arguments.scenario.name;
   const fs::path file = fs::path(saved.path).parent_path();
   std::error_code ignored;
   for (const fs::path& folder : {file, file.parent_path()}) {
@@ -39,8 +39,9 @@ std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
 ExitCode Run(Arguments arguments) {
   const SavedPolicy saved = FindPolicy(arguments.policy);
   arguments.environment.encodings = saved.encodings;
-  LocalEnvironment environment(FindScenario(ScenarioOf(arguments, saved), arguments.folder),
-                               arguments.environment);
+  arguments.scenario.name = ScenarioOf(arguments, saved);
+  const auto scenario = arguments.scenario.Load();
+  LocalEnvironment environment(scenario, arguments.environment);
   const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
   const Evaluation evaluation =
       Evaluate(environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
@@ -56,18 +57,26 @@ ExitCode Run(Arguments arguments) {
                     {saved.path, saved.checkpoint.algorithm, saved.checkpoint.steps,
                      spec.scenario_name, spec.scenario_hash, spec.version, spec.farms});
   }
+  if (!arguments.route.empty()) {
+    const auto make_policy = [&saved](const EnvironmentSpec& spec) {
+      return MakePolicy(saved, spec);
+    };
+    const Route route = TraceRoute(scenario, saved.encodings, make_policy, arguments.seed, 0);
+    WriteRoute(arguments.route, route, environment.spec());
+  }
   return evaluation.complete ? ExitCode::kOk : ExitCode::kInterrupted;
 }
 
 int Main(int argc, char** argv) {
   Arguments arguments;
+  arguments.scenario.name.clear();
   CLI::App app("Plays a saved policy greedily on episodes never trained on, and reports.");
   app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
   app.option_defaults()->always_capture_default();
   app.add_option("policy", arguments.policy,
                  "run folder, checkpoint file, random, planner or clairvoyant")
       ->required();
-  app.add_option("scenario", arguments.scenario,
+  app.add_option("scenario", arguments.scenario.name,
                  "scenario file or name; empty: the one in the policy's run folder");
   app.add_option("-e,--episodes", arguments.episodes, "episodes")->check(CLI::Range(1, 10000000));
   app.add_option("-s,--seed", arguments.seed, "seed of the episodes");
@@ -75,7 +84,11 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(1, 4096));
   app.add_option("-w,--write", arguments.output,
                  "write <this>.csv and <this>.json; empty: nothing");
-  app.add_option("--scenarios", arguments.folder, "folder of the shipped scenarios");
+  app.add_option(
+      "--route", arguments.route,
+      "write the first episode's route and the best move in each cell to this JSON file; "
+      "empty: nothing");
+  AddScenarioOptions(app, arguments.scenario);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

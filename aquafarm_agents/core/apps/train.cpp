@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trains an agent in this process, without ROS.
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "app.h"
@@ -33,8 +32,7 @@ void Print(const RunStatus& status) {
 
 int Main(int argc, char** argv) {
   RunOptions options;
-  std::string scenario = "paper";
-  std::string folder = ScenarioFolder();
+  ScenarioChoice scenario;
   std::vector<std::string> settings;
   EnvironmentOptions environment;
   environment.farms = 16;
@@ -43,8 +41,8 @@ int Main(int argc, char** argv) {
              "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 130 "
              "interrupted and saved");
   app.option_defaults()->always_capture_default();
-  app.add_option("scenario", scenario, "scenario file, or the name of a shipped one");
-  app.add_option("-a,--algorithm", options.algorithm, "learner by name");
+  app.add_option("scenario", scenario.name, "scenario file, or the name of a shipped one");
+  app.add_option("-a,--algorithm", options.algorithm, "learner by name, or auto");
   app.add_option("-e,--episodes", options.episodes, "limit of episodes; 0: none");
   app.add_option("-n,--steps", options.steps,
                  "limit of farm steps; 0: none, or the algorithm's own when there is no limit");
@@ -55,13 +53,15 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(1, 256));
   app.add_option("-d,--run-dir", options.run_dir, "run folder; empty: a new one under ./runs");
   app.add_flag("-r,--resume", options.resume, "go on from the newest checkpoint of the run folder");
-  app.add_option("-x,--exploration", options.exploration,
-                 "such as epsilon_greedy:linear:1:0.05:0.5 or boltzmann:1; empty: the algorithm's");
+  app.add_option(
+      "-x,--exploration", options.exploration,
+      "such as epsilon_greedy:linear:1:0.05:0.5, boltzmann:1 or icm+boltzmann:1; empty: the "
+      "algorithm's");
   app.add_option("-o,--set", settings, "option of the learner, key=value");
   app.add_option("--checkpoint-period", options.checkpoint_period_s, "seconds between checkpoints");
   app.add_option("--evaluate", options.evaluation_episodes, "greedy episodes at the end; 0: none");
   app.add_option("--random", options.random_episodes, "episodes of RANDOM beside them; 0: none");
-  app.add_option("--scenarios", folder, "folder of the shipped scenarios");
+  AddScenarioOptions(app, scenario);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -77,7 +77,7 @@ int Main(int argc, char** argv) {
       options,
       [&](std::uint8_t encodings) {
         environment.encodings = encodings;
-        return std::make_unique<LocalEnvironment>(FindScenario(scenario, folder), environment);
+        return std::make_unique<LocalEnvironment>(scenario.Load(), environment);
       },
       Print, &stop_requested);
   std::fprintf(report.code == ExitCode::kOk ? stdout : stderr, "%s", report.summary.c_str());

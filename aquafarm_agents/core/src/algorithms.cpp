@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/algorithms.h"
 
+#include "aquafarm/agents/curiosity.h"
 #include "aquafarm/agents/dqn.h"
 #include "aquafarm/agents/options.h"
 #include "aquafarm/agents/planner_policy.h"
 #include "aquafarm/agents/random_policy.h"
 #include "aquafarm/agents/tabular.h"
 #include "aquafarm/check.h"
+#include "aquafarm/scenario_yaml.h"
+#include "networks.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -38,20 +41,58 @@ std::uint8_t Tabular(const std::string& options) {
   return kIndexBit;
 }
 
+using Encodings = std::uint8_t (*)(const std::string&);
+using MakeLearner = std::unique_ptr<Learner> (*)(const EnvironmentSpec&, std::uint64_t,
+                                                 const std::string&);
+
+// The exploration that learner options ask for, whatever else they say.
+ExplorationOptions ExplorationOf(const std::string& options) {
+  return ParseExploration(OptionReader(options).Text("exploration", "epsilon_greedy"));
+}
+
+template <Encodings encodings>
+std::uint8_t WithCuriosityToo(const std::string& options) {
+  const std::uint8_t bits = encodings(options);
+  return ExplorationOf(options).is_curious() ? bits | kFeaturesBit : bits;
+}
+
+template <MakeLearner make>
+std::unique_ptr<Learner> MakeExplorer(const EnvironmentSpec& spec, std::uint64_t seed,
+                                      const std::string& options) {
+  const ExplorationOptions exploration = ExplorationOf(options);
+  if (!exploration.is_curious()) return make(spec, seed, options);
+  PrepareTorch(1);  // a deep learner sets its own number of threads
+  return WithCuriosity(make(spec, seed, options), spec, seed, exploration);
+}
+
+// "one rescue ship decides", "4 self-propelled devices decide"
+std::string DescribeDeciders(const EnvironmentSpec& spec) {
+  const Scenario scenario = ParseScenario(spec.scenario_yaml, spec.scenario_name);
+  const auto ships = scenario.ships.count;
+  const auto devices = spec.agents - ships;
+  const auto count = [](std::int32_t n, const std::string& one) {
+    return n == 1 ? "one " + one : std::to_string(n) + " " + one + "s";
+  };
+  std::string text = ships > 0 ? count(ships, "rescue ship") : "";
+  if (devices > 0) text += (text.empty() ? "" : " and ") + count(devices, "self-propelled device");
+  return text + (spec.agents == 1 ? " decides" : " decide");
+}
+
 }  // namespace
 
 const std::vector<Algorithm>& Algorithms() {
   static const std::vector<Algorithm> algorithms{
       {"random", "any action at any time; the yardstick (§4)", false, 100000, WithoutOptions<0>,
        Make<RandomLearner>, MakeRandomPolicy},
-      {"q_learning", "tabular Q-learning (Eq. 12)", true, 4000000, Tabular,
-       Make<TabularLearner<QLearningRule>>, MakeTabularPolicy},
-      {"sarsa", "tabular SARSA (Eq. 14)", true, 8000000, Tabular, Make<TabularLearner<SarsaRule>>,
-       MakeTabularPolicy},
-      {"dqn", "deep Q-network on features or planes (Eq. 15)", true, 400000, DqnEncodings, MakeDqn,
-       MakeDqnPolicy},
+      {"q_learning", "tabular Q-learning (Eq. 12)", true, 4000000, WithCuriosityToo<Tabular>,
+       MakeExplorer<Make<TabularLearner<QLearningRule>>>, MakeTabularPolicy},
+      {"sarsa", "tabular SARSA (Eq. 14)", true, 8000000, WithCuriosityToo<Tabular>,
+       MakeExplorer<Make<TabularLearner<SarsaRule>>>, MakeTabularPolicy},
+      {"dqn", "deep Q-network on features or planes (Eq. 15)", true, 400000,
+       WithCuriosityToo<DqnEncodings>, MakeExplorer<MakeDqn>, MakeDqnPolicy},
       {"lstm_dqn", "deep Q-network with a memory (Algorithm 2)", true, 400000,
-       RecurrentDqnEncodings, MakeRecurrentDqn, MakeRecurrentDqnPolicy},
+       WithCuriosityToo<RecurrentDqnEncodings>, MakeExplorer<MakeRecurrentDqn>,
+       MakeRecurrentDqnPolicy},
       {"planner", "plans anew each step, trusting that disasters hold their heading", false, 0,
        WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kHeadingHolds>},
       {"clairvoyant", "plans with the disasters' true future: the best there can be", false, 0,
@@ -67,6 +108,14 @@ const Algorithm& FindAlgorithm(const std::string& name) {
     names.emplace_back(algorithm.name);
   }
   throw InputError("algorithm: got '" + name + "', expected one of: " + Join(names));
+}
+
+Choice ChooseAlgorithm(const EnvironmentSpec& spec) {
+  if (spec.agents == 1) {
+    return {"lstm_dqn", DescribeDeciders(spec) + ", so a single-agent learner"};
+  }
+  return {"dqn", DescribeDeciders(spec) +
+                     ": multi-agent learners are not here yet, so all share one network of dqn"};
 }
 
 }  // namespace aquafarm::agents

@@ -122,6 +122,7 @@ class DqnLearner final : public Learner {
   void Reprioritise(const torch::Tensor& errors);
 
   const EnvironmentSpec spec_;
+  const std::uint64_t seed_;
   const DeepOptions options_;
   const std::string resolved_;
   const torch::Device device_;
@@ -143,6 +144,7 @@ template <typename Scalar>
 DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
                                const DeepOptions& options, std::string resolved)
     : spec_(spec),
+      seed_(seed),
       options_(options),
       resolved_(std::move(resolved)),
       device_(FindDevice(options.device)),
@@ -275,13 +277,14 @@ torch::Tensor DqnLearner<Scalar>::Targets() {
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Update() {
+  const BatchOrigin origin{seed_, chance_.position()};
   if (!Draw()) return;
   const auto count = static_cast<std::int64_t>(size());
   const torch::Tensor targets = Targets();
   const torch::Tensor actions = ToDevice(batch_.actions, {count, 1});
   const torch::Tensor predicted =
       online_->Forward(ToInput(batch_.from.data(), size())).gather(1, actions).squeeze(1);
-  optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {count}));
+  optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {count}), origin);
   if (is_prioritised()) Reprioritise((predicted.detach() - targets).abs());
 }
 

@@ -16,6 +16,19 @@ constexpr double kMaxTemperature = 1e6;
 // Rewards are of the order of 100: from near uniform down to near greedy.
 const Schedule kBoltzmannDefault{ScheduleKind::kExponential, 20.0, 0.5, 0.5};
 
+// As much as a step costs, and nothing in the second half, so that what is learnt in the end is the
+// farm's own reward.
+const Schedule kCuriosityDefault{ScheduleKind::kLinear, 1.0, 0.0, 0.5};
+constexpr double kMaxCuriosity = 1e6;
+constexpr std::string_view kCuriosity = "icm";
+
+[[noreturn]] void RefuseExploration(const std::string& text) {
+  throw InputError("exploration: got '" + text +
+                   "', expected epsilon_greedy or boltzmann, alone or with a schedule such as "
+                   "epsilon_greedy:linear:1:0.05:0.5, and icm before them to be curious: "
+                   "icm+epsilon_greedy, icm:linear:1:0:0.5+boltzmann:1");
+}
+
 }  // namespace
 
 std::string_view ToString(ExplorationKind value) {
@@ -29,9 +42,22 @@ std::string_view ToString(ExplorationKind value) {
 }
 
 ExplorationOptions ParseExploration(const std::string& text) {
+  ExplorationOptions options;
+  if (text.rfind(kCuriosity, 0) == 0) {
+    const std::size_t plus = text.find('+');
+    const std::string own = text.substr(0, plus);
+    if (plus != std::string::npos) options = ParseExploration(text.substr(plus + 1));
+    if (options.is_curious()) RefuseExploration(text);
+    options.curiosity = kCuriosityDefault;
+    if (own != kCuriosity) {
+      if (own[kCuriosity.size()] != ':') RefuseExploration(text);
+      options.curiosity =
+          ParseSchedule(own.substr(kCuriosity.size() + 1), "exploration: icm", 0.0, kMaxCuriosity);
+    }
+    return options;
+  }
   const std::size_t colon = text.find(':');
   const std::string name = text.substr(0, colon);
-  ExplorationOptions options;
   double min = 0.0;
   double max = 1.0;
   if (name == ToString(ExplorationKind::kBoltzmann)) {
@@ -40,9 +66,7 @@ ExplorationOptions ParseExploration(const std::string& text) {
     min = kMinTemperature;
     max = kMaxTemperature;
   } else if (name != ToString(ExplorationKind::kEpsilonGreedy)) {
-    throw InputError("exploration: got '" + text +
-                     "', expected epsilon_greedy or boltzmann, alone or with a schedule such as "
-                     "epsilon_greedy:linear:1:0.05:0.5");
+    RefuseExploration(text);
   }
   if (colon != std::string::npos) {
     options.level = ParseSchedule(text.substr(colon + 1), "exploration", min, max);
@@ -51,7 +75,9 @@ ExplorationOptions ParseExploration(const std::string& text) {
 }
 
 std::string ToString(const ExplorationOptions& options) {
-  return std::string(ToString(options.kind)) + ":" + ToString(options.level);
+  const std::string curious =
+      options.is_curious() ? std::string(kCuriosity) + ":" + ToString(options.curiosity) + "+" : "";
+  return curious + std::string(ToString(options.kind)) + ":" + ToString(options.level);
 }
 
 std::array<double, kActionCount> BoltzmannProbabilities(const float* values, ActionMask allowed,

@@ -175,6 +175,7 @@ class RecurrentDqnLearner final : public Learner {
   RecurrentNetwork::State WarmState(RecurrentNetwork& network);
 
   const EnvironmentSpec spec_;
+  const std::uint64_t seed_;
   const DeepOptions options_;
   const std::string resolved_;
   const torch::Device device_;
@@ -191,6 +192,7 @@ class RecurrentDqnLearner final : public Learner {
 RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
                                          const DeepOptions& options, std::string resolved)
     : spec_(spec),
+      seed_(seed),
       options_(options),
       resolved_(std::move(resolved)),
       device_(FindDevice(options.device)),
@@ -302,6 +304,7 @@ RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network
 }
 
 void RecurrentDqnLearner::Update() {
+  const BatchOrigin origin{seed_, chance_.position()};
   if (!Draw()) return;
   const auto count = static_cast<std::int64_t>(batch());
   const std::int64_t steps = options_.sequence;
@@ -325,7 +328,7 @@ void RecurrentDqnLearner::Update() {
   }
   const torch::Tensor predicted =
       values.narrow(0, 0, steps).gather(2, ToDevice(batch_.actions, {steps, count, 1})).squeeze(2);
-  optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {steps, count}));
+  optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {steps, count}), origin);
 }
 
 void RecurrentDqnLearner::Save(Checkpoint& checkpoint) const {

@@ -44,7 +44,9 @@ class Run {
  public:
   Run(RunOptions options, const std::function<void(const RunStatus&)>& on_status,
       const std::atomic<bool>* stop)
-      : options_(std::move(options)), on_status_(on_status), stop_(stop) {}
+      : options_(std::move(options)), on_status_(on_status), stop_(stop) {
+    report_.status.algorithm = options_.algorithm;
+  }
 
   void All(const MakeEnvironment& make_environment);
   void Fail(ExitCode code, const std::string& message) {
@@ -60,6 +62,7 @@ class Run {
     if (on_status_) on_status_(report_.status);
   }
   bool Stopped() const { return stop_ != nullptr && *stop_; }
+  void Choose(const MakeEnvironment& make_environment);
   void TakeOverLimits(const RunFolder& folder);
   bool Resume(Trainer& trainer, const RunFolder& folder);
   void Describe(const EnvironmentSpec& spec, const Learner& learner, const RunFolder& folder) const;
@@ -76,6 +79,7 @@ class Run {
 
 void Run::All(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
+  if (options_.algorithm == kAutoAlgorithm) Choose(make_environment);
   const Algorithm& algorithm = FindAlgorithm(options_.algorithm);
   RunFolder folder(options_.run_dir, options_.resume);
   if (options_.resume) TakeOverLimits(folder);
@@ -89,6 +93,14 @@ void Run::All(const MakeEnvironment& make_environment) {
   SavePolicy(*environment, *learner, folder);
   if (options_.evaluation_episodes > 0) Evaluate(*environment, *learner, folder);
   if (report_.code == ExitCode::kOk) report_.status.message.clear();
+}
+
+// Fig. 6. The farms must be asked who decides before it is known which encodings are read.
+void Run::Choose(const MakeEnvironment& make_environment) {
+  const Choice choice = ChooseAlgorithm(make_environment(0)->spec());
+  options_.algorithm = report_.status.algorithm = choice.algorithm;
+  Tell(RunPhase::kStarting, "auto: " + choice.reason + ": " + choice.algorithm);
+  CheckRunOptions(options_);
 }
 
 // A resumed run goes on to its old limits unless it is given others.
@@ -253,9 +265,7 @@ RunReport Run::End() {
   return report_;
 }
 
-}  // namespace
-
-void CheckRunOptions(const RunOptions& options) {
+void CheckAlgorithm(const RunOptions& options) {
   const Algorithm& algorithm = FindAlgorithm(options.algorithm);
   if (algorithm.make == nullptr) {
     throw InputError(options.algorithm +
@@ -264,6 +274,12 @@ void CheckRunOptions(const RunOptions& options) {
                      options.algorithm);
   }
   algorithm.encodings(LearnerOptionsOf(options));  // refuses wrong ones
+}
+
+}  // namespace
+
+void CheckRunOptions(const RunOptions& options) {
+  if (options.algorithm != kAutoAlgorithm) CheckAlgorithm(options);
   if ((options.seed & kEvaluationSeedBit) != 0) {
     throw InputError("seed: got " + std::to_string(options.seed) + ", expected less than 2^63");
   }

@@ -82,7 +82,7 @@ void TabularLearner<Rule>::Step(const Results& results, double progress,
         float& value = values[pending_[entry]];
         const float error = results.rewards[entry] + discount * next - value;
         value += rate * error;
-        error_sum += std::abs(error);
+        error_sum += error * error;
         ++learnt;
       }
       pending_[entry] = row + action;

@@ -13,9 +13,16 @@
 #include "aquafarm/agents/checkpoint.h"
 #include "aquafarm/agents/deep_options.h"
 #include "aquafarm/agents/learner.h"
+#include "flat_adam.h"
 #include "networks.h"
 
 namespace aquafarm::agents {
+
+/// Where a minibatch came from, so that a bad one can be drawn again.
+struct BatchOrigin {
+  std::uint64_t seed{};      ///< of the learner's stream of chance
+  std::uint64_t position{};  ///< in it before the first draw
+};
 
 class ValueOptimizer {
  public:
@@ -32,10 +39,12 @@ class ValueOptimizer {
   /// sums to), then one step of Adam, then the target follows.
   /// @throws LearnerFailed when the loss is not finite; the weights are then as they were
   void Update(const torch::Tensor& predicted, const torch::Tensor& targets,
-              const torch::Tensor& weights);
+              const torch::Tensor& weights, const BatchOrigin& origin);
 
+  /// Its loss is the mean square error in squared units of reward, whatever loss is minimised and
+  /// however rewards are scaled (Fig. 12).
   LearnerStatus status(double exploration) const;
-  const FlatParameters& online() const { return online_; }
+  const FlatParameters& online() const { return online_.parameters(); }
   std::uint64_t updates() const { return updates_; }
 
   void Save(Checkpoint& checkpoint) const;
@@ -43,12 +52,12 @@ class ValueOptimizer {
   void Load(const Checkpoint& checkpoint);
 
  private:
-  torch::optim::AdamParamState& AdamState();
+  void Measure(const torch::Tensor& predicted, const torch::Tensor& targets,
+               const torch::Tensor& weights);
 
   const DeepOptions options_;
-  FlatParameters online_;
+  FlatAdam online_;
   FlatParameters target_;
-  torch::optim::Adam adam_;
   double learning_rate_{};
   std::uint64_t steps_{};
   double due_{};

@@ -35,35 +35,52 @@ std::string Lively(const Algorithm& algorithm) {
   return "";
 }
 
+void ExpectContinues(const Algorithm& algorithm, const std::string& options) {
+  LocalEnvironment environment(TinyFarm(), {3, algorithm.encodings(options), false, 1});
+  const auto learner = algorithm.make(environment.spec(), 1, options);
+  std::vector<std::uint8_t> actions;
+  const Results* results = &environment.Reset(1);
+  for (int i = 0; i < 100; ++i) {
+    learner->Step(*results, 0.3, actions);
+    results = &environment.Step(actions);
+  }
+  Checkpoint checkpoint;
+  learner->Save(checkpoint);
+  const auto resumed = algorithm.make(environment.spec(), 1, options);
+  resumed->Load(checkpoint);
+  std::vector<std::uint8_t> expected;
+  for (int i = 0; i < 100; ++i) {
+    learner->Step(*results, 0.6, expected);
+    resumed->Step(*results, 0.6, actions);
+    ASSERT_EQ(actions, expected) << algorithm.name << ' ' << options;
+    results = &environment.Step(actions);
+  }
+  Checkpoint a;
+  Checkpoint b;
+  learner->Save(a);
+  resumed->Save(b);
+  EXPECT_EQ(a.sections, b.sections) << algorithm.name << ' ' << options;
+}
+
 TEST(Algorithms, EachContinuesBitForBit) {
   for (const Algorithm& algorithm : Algorithms()) {
     if (algorithm.make == nullptr) continue;
-    const std::string options = Lively(algorithm);
-    LocalEnvironment environment(TinyFarm(), {3, algorithm.encodings(options), false, 1});
-    const auto learner = algorithm.make(environment.spec(), 1, options);
-    std::vector<std::uint8_t> actions;
-    const Results* results = &environment.Reset(1);
-    for (int i = 0; i < 100; ++i) {
-      learner->Step(*results, 0.3, actions);
-      results = &environment.Step(actions);
-    }
-    Checkpoint checkpoint;
-    learner->Save(checkpoint);
-    const auto resumed = algorithm.make(environment.spec(), 1, options);
-    resumed->Load(checkpoint);
-    std::vector<std::uint8_t> expected;
-    for (int i = 0; i < 100; ++i) {
-      learner->Step(*results, 0.6, expected);
-      resumed->Step(*results, 0.6, actions);
-      ASSERT_EQ(actions, expected) << algorithm.name;
-      results = &environment.Step(actions);
-    }
-    Checkpoint a;
-    Checkpoint b;
-    learner->Save(a);
-    resumed->Save(b);
-    EXPECT_EQ(a.sections, b.sections) << algorithm.name;
+    ExpectContinues(algorithm, Lively(algorithm));
+    if (!algorithm.learns) continue;
+    ExpectContinues(algorithm, Lively(algorithm) + " exploration=icm:1+boltzmann:5");
   }
+}
+
+TEST(Algorithms, AutoChoosesByThoseWhoDecideAndSaysWhy) {
+  const auto choose = [](Scenario scenario) {
+    return ChooseAlgorithm(LocalEnvironment(Share(std::move(scenario)), {}).spec());
+  };
+  const Choice single = choose(aquafarm::test::TinyScenario());
+  EXPECT_EQ(single.algorithm, "lstm_dqn");
+  EXPECT_EQ(single.reason, "one rescue ship decides, so a single-agent learner");
+  Scenario several = aquafarm::test::TinyScenario();
+  several.ships.count = 2;
+  EXPECT_CONTAINS(choose(several).reason, "2 rescue ships decide: multi-agent");
 }
 
 TEST(RandomPolicy, TakesEveryActionAlikeAndReproduces) {

@@ -96,13 +96,20 @@ TEST(Explorer, EachEntryHasAStreamOfItsOwnAndContinuesWhereItWas) {
 }
 
 TEST(Exploration, TextReadsBackAndRefusalsSayWhatIsAllowed) {
-  for (const std::string text : {"epsilon_greedy:linear:1:0.05:0.5", "boltzmann:1"}) {
+  for (const std::string text : {"epsilon_greedy:linear:1:0.05:0.5", "boltzmann:1",
+                                 "icm:2+epsilon_greedy:0.1", "icm:linear:1:0:0.5+boltzmann:3"}) {
     EXPECT_EQ(ToString(ParseExploration(text)), text);
   }
   const auto refuse = [](const std::string& text) {
     return MessageOf<InputError>([&] { ParseExploration(text); });
   };
-  EXPECT_CONTAINS(refuse("curious"), "expected epsilon_greedy or boltzmann");
+  EXPECT_EQ(ToString(ParseExploration("icm")),
+            "icm:linear:1:0:0.5+epsilon_greedy:linear:1:0.05:0.5");
+  EXPECT_FALSE(ParseExploration("icm:0+boltzmann:1").is_curious());
+  for (const char* text : {"curious", "icmp", "icm+icm", "icm+greedy", "icm+"}) {
+    EXPECT_CONTAINS(refuse(text), "expected epsilon_greedy or boltzmann");
+  }
+  EXPECT_CONTAINS(refuse("icm:-1"), "exploration: icm: got -1, expected [0, 1e+06]");
   EXPECT_CONTAINS(refuse("epsilon_greedy:1.5"), "got 1.5, expected [0, 1]");
   EXPECT_CONTAINS(refuse("boltzmann:0"), "got 0, expected [1e-06, 1e+06]");
 }

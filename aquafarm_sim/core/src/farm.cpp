@@ -180,6 +180,24 @@ bool Farm::Occupied(std::int32_t index) const {
   return found != 0;
 }
 
+void Farm::PlaceShip(std::int32_t ship, Cell cell) {
+  AQUAFARM_CHECK_LT(static_cast<std::size_t>(ship), ships_.size());
+  const bool on_map =
+      cell.x >= 0 && cell.x < scenario_->width && cell.y >= 0 && cell.y < scenario_->height;
+  const std::int32_t index = on_map ? LinearIndex(cell, scenario_->width) : kNone;
+  Ship& one = ships_[static_cast<std::size_t>(ship)];
+  const bool is_free =
+      on_map && (layout_->bits(cell) & kBlockedBits) == 0 &&
+      (one.cell == cell || (layout_->bits(cell) & kPortBit) != 0 || !Occupied(index));
+  if (!is_free) {
+    throw InputError("cell: got (" + std::to_string(cell.x) + ", " + std::to_string(cell.y) +
+                     "), expected free water on the map");
+  }
+  one.cell = cell;
+  if (one.own_device != kNone) devices_[static_cast<std::size_t>(one.own_device)].cell = cell;
+  IndexShips();
+}
+
 void Farm::Move(Ship& ship, std::int32_t id, Action action) {
   const Cell by = kMoves[static_cast<std::size_t>(action)];
   const Cell to{ship.cell.x + by.x, ship.cell.y + by.y};

@@ -143,6 +143,23 @@ TEST(Step, HoldingStaysAndCostsTheStep) {
   EXPECT_EQ(ship.reward, -1.0F);
 }
 
+TEST(PlaceShip, PutsItOnFreeWaterAloneAndItGoesOnFromThere) {
+  auto scenario = TinyScenario();
+  scenario.ships.count = 2;
+  Farm farm = Start(scenario);
+  farm.PlaceShip(1, {4, 4});
+  farm.PlaceShip(0, {2, 2});
+  for (const Cell cell : {Cell{-1, 0}, Cell{5, 0}, Cell{3, 3}, Cell{0, 0}, Cell{4, 4}}) {
+    EXPECT_THROW(farm.PlaceShip(0, cell), InputError) << cell.x << ' ' << cell.y;
+    EXPECT_EQ(farm.ships()[0].cell, (Cell{2, 2}));
+  }
+  const std::uint8_t actions[] = {Act(Action::kPickup), Act(Action::kWest)};
+  farm.Step(actions);
+  EXPECT_EQ(farm.ships()[0].outcome, Outcome::kOk);
+  EXPECT_EQ(farm.ships()[0].aboard, 1);
+  EXPECT_EQ(farm.ships()[1].cell, (Cell{3, 4}));
+}
+
 TEST(Capacity, AFullShipPicksUpNoMore) {
   Scenario scenario = TinyScenario();
   scenario.devices.sites.push_back({{2, 3}, DeviceKind::kMonitoring, 60.0F, false});

@@ -110,6 +110,10 @@ class Farm {
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
   inline static constexpr std::int32_t kMaxDisasters = 64;
 
+  /// Puts a ship elsewhere, for questions of what it would do there.
+  /// @throws InputError when the cell is off the map, blocked or taken; the farm is then as it was
+  void PlaceShip(std::int32_t ship, Cell cell);
+
  private:
   void MoveDisasters();
   void IssueBulletins();

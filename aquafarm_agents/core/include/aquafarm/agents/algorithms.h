@@ -30,4 +30,15 @@ const std::vector<Algorithm>& Algorithms();
 /// @throws InputError "algorithm: got 'dqm', expected one of: random, q_learning, sarsa"
 const Algorithm& FindAlgorithm(const std::string& name);
 
+/// The name that leaves the choice to ChooseAlgorithm.
+inline constexpr const char* kAutoAlgorithm = "auto";
+
+struct Choice {
+  std::string algorithm;
+  std::string reason;  ///< one line for people
+};
+
+/// Chooses by kind and number of those who decide (Fig. 6).
+Choice ChooseAlgorithm(const EnvironmentSpec& spec);
+
 }  // namespace aquafarm::agents

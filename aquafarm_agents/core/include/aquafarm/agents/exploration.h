@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// How a learner that knows action values tries others.
+/// How a learner that knows action values tries others (Fig. 7).
 ///
 ///   ε-greedy (Eq. 7)   with probability ε any action, else the best known
 ///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. The paper prints no
 ///                      temperature, which is T = 1 here
+///   curiosity            either of them, paid besides for what could not be foreseen; curiosity.h
 ///
 /// ε and T follow a Schedule. Every agent of every farm draws from a stream of its own.
 
@@ -31,10 +32,17 @@ std::string_view ToString(ExplorationKind value);
 struct ExplorationOptions {
   ExplorationKind kind{ExplorationKind::kEpsilonGreedy};
   Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε, or the temperature
+  /// Mean reward that curiosity pays for a step [reward]; 0: not curious.
+  Schedule curiosity{ScheduleKind::kConstant, 0.0};
+  bool is_curious() const {
+    const bool changes = curiosity.kind != ScheduleKind::kConstant;
+    return curiosity.start > 0.0 || (changes && curiosity.end > 0.0);
+  }
 };
 
 /// Reads "epsilon_greedy" or "boltzmann", alone or with a schedule: "epsilon_greedy:0.1",
-/// "boltzmann:exponential:10:0.5:0.5".
+/// "boltzmann:exponential:10:0.5:0.5". "icm" before them and a plus makes it curious, alone or with
+/// a schedule of its weight: "icm+epsilon_greedy:0.1", "icm:linear:2:0:0.5+boltzmann".
 /// @throws InputError with what is allowed
 ExplorationOptions ParseExploration(const std::string& text);
 std::string ToString(const ExplorationOptions& options);

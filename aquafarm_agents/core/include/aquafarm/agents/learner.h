@@ -21,7 +21,7 @@ class LearnerFailed : public std::runtime_error {
 
 /// How a learner is getting on.
 struct LearnerStatus {
-  float loss{};         ///< of late (a moving average); NaN: it has none
+  float loss{};         ///< mean square error of late (a moving average) [reward²]; NaN: none
   float exploration{};  ///< ε or temperature
   float learning_rate{};
 };

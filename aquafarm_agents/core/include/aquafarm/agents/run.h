@@ -16,9 +16,9 @@ namespace aquafarm::agents {
 
 /// A training from its first argument to its summary, wherever the farms are.
 struct RunOptions {
-  std::string algorithm{"q_learning"};
-  std::string exploration;  ///< empty: the algorithm's own
-  std::string options;      ///< key=value …; see OptionReader
+  std::string algorithm{"q_learning"};  ///< or kAutoAlgorithm
+  std::string exploration;              ///< empty: the algorithm's own
+  std::string options;                  ///< key=value …; see OptionReader
   std::uint64_t seed{1};
   std::uint64_t episodes{};  ///< 0 with steps 0: the algorithm's own limit
   std::uint64_t steps{};
@@ -36,6 +36,7 @@ enum class RunPhase : std::uint8_t { kStarting, kTraining, kEvaluating, kEnded }
 
 struct RunStatus {
   RunPhase phase{};
+  std::string algorithm;  ///< once auto has chosen, what it chose
   TrainingProgress progress;
   Evaluation evaluation;  ///< of the learner; meaningful once phase is kEnded and has_evaluation
   bool has_evaluation{};

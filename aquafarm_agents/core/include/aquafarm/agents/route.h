@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// One episode as a policy plays it, and what it would do if the ship were elsewhere: what Fig. 11
+/// shows as a coloured route and an arrow at each cell.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/environment.h"
+#include "aquafarm/agents/policy.h"
+#include "aquafarm/farm.h"
+
+namespace aquafarm::agents {
+
+/// Makes the policy for farms of a spec, afresh: without anything carried from earlier steps.
+using MakePolicyFor = std::function<std::unique_ptr<Policy>(const EnvironmentSpec&)>;
+
+/// The best action in a cell.
+struct BestMove {
+  Cell cell{};
+  std::uint8_t action{};
+};
+
+/// The farm before a step, or at the end.
+struct RouteStep {
+  Cell cell{};  ///< of ship 0
+  std::int32_t aboard{};
+  std::int32_t delivered{};
+  float episode_return{};  ///< so far
+  std::vector<Disaster> disasters;
+  std::uint8_t action{};  ///< taken then; of the last entry, none
+};
+
+struct Route {
+  std::shared_ptr<const Layout> layout;
+  std::vector<RouteStep> steps;
+  EpisodeResult result;
+  /// The greedy action of ship 0 in every free cell, as the farm stands at the episode's start and
+  /// (empty when that never comes) right after the first pickup. A policy with a memory is asked
+  /// with an empty one.
+  std::vector<BestMove> at_start;
+  std::vector<BestMove> after_pickup;
+};
+
+/// Plays one episode of EvaluationSeed(seed), ship 0's route; other agents play along.
+/// @param scenario at most kMaxCells cells; larger ones get no best moves
+/// @throws InputError when the scenario or the policy do not fit
+Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
+                 const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode);
+inline constexpr std::int32_t kMaxCells = 40000;
+
+/// Writes it as JSON: the chart, an entry a step, and the best moves. @throws StorageError
+void WriteRoute(const std::string& path, const Route& route, const EnvironmentSpec& spec);
+
+}  // namespace aquafarm::agents

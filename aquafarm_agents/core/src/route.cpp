@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/route.h"
+
+#include <nlohmann/json.hpp>
+
+#include "aquafarm/agents/evaluation.h"
+#include "aquafarm/agents/local_environment.h"
+#include "aquafarm/agents/storage.h"
+
+namespace aquafarm::agents {
+namespace {
+
+using nlohmann::json;
+
+// Where ship 0 could be.
+std::vector<Cell> FreeCells(const Farm& farm) {
+  std::vector<Cell> cells;
+  for (std::int32_t y = 0; y < farm.scenario().height; ++y) {
+    for (std::int32_t x = 0; x < farm.scenario().width; ++x) {
+      const Cell cell{x, y};
+      bool is_free = (farm.layout().bits(cell) & kBlockedBits) == 0;
+      for (std::size_t id = 1; id < farm.ships().size(); ++id) {
+        is_free = is_free && farm.ships()[id].cell != cell;
+      }
+      if (is_free) cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
+// One farm a cell, so that the policy is asked once for all.
+std::vector<BestMove> BestMoves(const Farm& farm, const std::shared_ptr<const Scenario>& scenario,
+                                std::uint8_t encodings, const MakePolicyFor& make_policy) {
+  if (scenario->width * scenario->height > kMaxCells) return {};
+  const std::vector<Cell> cells = FreeCells(farm);
+  const std::string state = farm.Save();
+  FarmBatch farms(scenario, static_cast<std::int32_t>(cells.size()));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    Farm& one = farms.farm(static_cast<std::int32_t>(i));
+    one.Load(state);
+    one.PlaceShip(0, cells[i]);
+  }
+  LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
+  const std::unique_ptr<Policy> policy = make_policy(environment.spec());
+  policy->Begin(farm.seed(), farms.farms());
+  std::vector<std::uint8_t> actions;
+  policy->Act(environment.Load(farms.Save()), actions);
+  const auto agents = static_cast<std::size_t>(environment.spec().agents);
+  std::vector<BestMove> moves;
+  for (std::size_t i = 0; i < cells.size(); ++i) moves.push_back({cells[i], actions[i * agents]});
+  return moves;
+}
+
+json ToJson(Cell cell) { return json::array({cell.x, cell.y}); }
+
+json ToJson(const std::vector<BestMove>& moves) {
+  json list = json::array();
+  for (const BestMove& move : moves) {
+    list.push_back({move.cell.x, move.cell.y, ToString(static_cast<Action>(move.action))});
+  }
+  return list;
+}
+
+json ToJson(const std::vector<Disaster>& disasters) {
+  json list = json::array();
+  for (const Disaster& disaster : disasters) {
+    if (disaster.steps_left <= 0) continue;
+    json radii = json::array();
+    for (std::int32_t k = 0; k < disaster.rings; ++k) {
+      radii.push_back(disaster.radius[static_cast<std::size_t>(k)]);
+    }
+    list.push_back({{"x", disaster.x}, {"y", disaster.y}, {"radii", radii}});
+  }
+  return list;
+}
+
+json ToJson(const Layout& layout) {
+  json islands = json::array();
+  json rocks = json::array();
+  json ports = json::array();
+  json devices = json::array();
+  const auto height = static_cast<std::int32_t>(layout.cells.rows());
+  const auto width = static_cast<std::int32_t>(layout.cells.cols());
+  for (std::int32_t y = 0; y < height; ++y) {
+    for (std::int32_t x = 0; x < width; ++x) {
+      if ((layout.bits({x, y}) & kIslandBit) != 0) islands.push_back({x, y});
+    }
+  }
+  for (const Cell rock : layout.rocks) rocks.push_back(ToJson(rock));
+  for (const Cell port : layout.ports) ports.push_back(ToJson(port));
+  for (const PlacedDevice& device : layout.devices) {
+    devices.push_back(
+        {{"cell", ToJson(device.cell)}, {"kind", ToString(device.kind)}, {"value", device.value}});
+  }
+  return {{"width", width}, {"height", height}, {"islands", islands},
+          {"rocks", rocks}, {"ports", ports},   {"devices", devices}};
+}
+
+RouteStep Look(const Farm& farm) {
+  const Ship& ship = farm.ships()[0];
+  return {ship.cell,
+          ship.aboard,
+          farm.record().delivered,
+          farm.record().episode_return,
+          farm.disasters(),
+          0};
+}
+
+}  // namespace
+
+Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
+                 const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode) {
+  LocalEnvironment environment(scenario, {1, encodings, false, 1});
+  const std::unique_ptr<Policy> policy = make_policy(environment.spec());
+  policy->Begin(EvaluationSeed(seed), 1);
+  Route route;
+  const Farm& farm = environment.batch().farm(0);
+  const Results* results = &environment.Reset(EvaluationSeed(seed), episode);
+  route.layout = farm.shared_layout();
+  route.at_start = BestMoves(farm, scenario, encodings, make_policy);
+  route.steps.push_back(Look(farm));
+  std::vector<std::uint8_t> actions;
+  while (!farm.over()) {
+    policy->Act(*results, actions);
+    route.steps.back().action = actions[0];
+    results = &environment.Step(actions);
+    route.steps.push_back(Look(farm));
+    if (route.after_pickup.empty() && farm.ships()[0].aboard > 0 && !farm.over()) {
+      route.after_pickup = BestMoves(farm, scenario, encodings, make_policy);
+    }
+  }
+  route.result = ToResult(farm.record(), 0);
+  return route;
+}
+
+void WriteRoute(const std::string& path, const Route& route, const EnvironmentSpec& spec) {
+  json steps = json::array();
+  for (std::size_t i = 0; i < route.steps.size(); ++i) {
+    const RouteStep& one = route.steps[i];
+    json step{{"cell", ToJson(one.cell)},
+              {"aboard", one.aboard},
+              {"delivered", one.delivered},
+              {"return", one.episode_return},
+              {"disasters", ToJson(one.disasters)}};
+    if (i + 1 < route.steps.size()) step["action"] = ToString(static_cast<Action>(one.action));
+    steps.push_back(step);
+  }
+  const json text{{"scenario", spec.scenario_name},
+                  {"scenario_hash", spec.scenario_hash},
+                  {"version", spec.version},
+                  {"farm_seed", route.result.seed},
+                  {"episode", route.result.episode},
+                  {"reason", ToString(route.result.reason)},
+                  {"return", route.result.episode_return},
+                  {"chart", ToJson(*route.layout)},
+                  {"steps", steps},
+                  {"best_moves_at_start", ToJson(route.at_start)},
+                  {"best_moves_after_pickup", ToJson(route.after_pickup)}};
+  WriteFileAtomically(path, text.dump() + "\n");
+}
+
+}  // namespace aquafarm::agents

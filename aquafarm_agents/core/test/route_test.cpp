@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/route.h"
+
+#include <nlohmann/json.hpp>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/planner_policy.h"
+#include "aquafarm/agents/storage.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+std::unique_ptr<Policy> Plan(const EnvironmentSpec& spec) {
+  return std::make_unique<PlannerPolicy>(spec, Foresight::kClairvoyant);
+}
+
+// The device is two cells north of the port: fetched and brought home in six steps.
+TEST(Route, IsTheEpisodeAndTheBestMoveOfEveryFreeCell) {
+  const Route route = TraceRoute(TinyFarm(), kStatesBit, Plan, 3, 0);
+  ASSERT_EQ(route.steps.size(), 7U);
+  EXPECT_EQ(route.steps.front().cell, (Cell{2, 0}));
+  EXPECT_EQ(route.steps[2].cell, (Cell{2, 2}));
+  EXPECT_EQ(route.steps[3].aboard, 1);
+  EXPECT_EQ(route.steps.back().cell, (Cell{2, 0}));
+  EXPECT_EQ(route.steps.back().delivered, 1);
+  EXPECT_TRUE(route.result.Success());
+  // 25 cells less four of the island and a rock.
+  ASSERT_EQ(route.at_start.size(), 20U);
+  ASSERT_EQ(route.after_pickup.size(), 20U);
+  const auto of = [](const std::vector<BestMove>& moves, Cell cell) {
+    for (const BestMove& move : moves) {
+      if (move.cell == cell) return static_cast<Action>(move.action);
+    }
+    return Action::kHold;
+  };
+  EXPECT_EQ(of(route.at_start, {2, 2}), Action::kPickup);
+  EXPECT_EQ(of(route.at_start, {2, 1}), Action::kNorth);
+  EXPECT_EQ(of(route.at_start, {1, 3}), Action::kSouthEast);
+  EXPECT_EQ(of(route.after_pickup, {2, 0}), Action::kDropOff);
+  EXPECT_EQ(of(route.after_pickup, {3, 1}), Action::kSouthWest);
+}
+
+using RouteFile = FolderTest;
+
+TEST_F(RouteFile, SaysWhatFarmAndEpisodeItWas) {
+  const auto scenario = TinyFarm();
+  const LocalEnvironment environment(scenario, {1, 0, false, 1});
+  WriteRoute(folder_ + "/route.json", TraceRoute(scenario, kStatesBit, Plan, 3, 0),
+             environment.spec());
+  const auto text = nlohmann::json::parse(ReadFile(folder_ + "/route.json"));
+  EXPECT_EQ(text.at("scenario_hash").get<std::uint64_t>(), environment.spec().scenario_hash);
+  EXPECT_EQ(text.at("reason"), "all_retrieved");
+  EXPECT_EQ(text.at("chart").at("ports"), nlohmann::json::parse("[[2, 0]]"));
+  EXPECT_EQ(text.at("steps").size(), 7U);
+  EXPECT_EQ(text.at("steps")[2].at("action"), "pickup");
+  EXPECT_EQ(text.at("best_moves_after_pickup").size(), 20U);
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -31,9 +31,10 @@ def load(path, arguments):
 
 class LaunchFilesTest(unittest.TestCase):
 
-    def test_the_six_launch_files_are_there(self):
+    def test_the_seven_launch_files_are_there(self):
         names = {path.stem for path in FILES}
-        self.assertLessEqual({"train", "evaluate", "sim", "play", "record", "replay"}, names)
+        self.assertLessEqual(
+            {"train", "evaluate", "benchmark", "sim", "play", "record", "replay"}, names)
 
     def test_every_argument_says_what_it_is_and_has_a_default(self):
         for path in FILES:

@@ -51,6 +51,7 @@ ExitCode Run(Arguments arguments) {
                });
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
+  std::fflush(stdout);  // before what may still go wrong
   if (!arguments.output.empty()) {
     const EnvironmentSpec& spec = environment.spec();
     WriteEvaluation(arguments.output, evaluation,

@@ -93,12 +93,11 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   ReadWhole(reader, "n_step", 1, 100, options.n_step);
   ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
   options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
+  ReadNumber(reader, "priority", 0.0, 2.0, options.priority);
+  ReadNumber(reader, "importance", 0.0, 1.0, options.importance);
   if (recurrent) {
     ReadWhole(reader, "sequence", 1, 1000, options.sequence);
     ReadWhole(reader, "burn_in", 0, 1000, options.burn_in);
-  } else {
-    ReadNumber(reader, "priority", 0.0, 2.0, options.priority);
-    ReadNumber(reader, "importance", 0.0, 1.0, options.importance);
   }
   constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
   enum class Device : std::uint8_t { kAuto, kCpu, kCuda };

@@ -10,12 +10,11 @@
 #include "aquafarm/agents/replay.h"
 #include "aquafarm/check.h"
 #include "deep_policy.h"
+#include "moment_sampler.h"
 #include "value_optimizer.h"
 
 namespace aquafarm::agents {
 namespace {
-
-constexpr float kSmallestPriority = 1e-4F;
 
 /// Plays the best action of a network.
 template <typename Scalar>
@@ -103,7 +102,6 @@ class DqnLearner final : public Learner {
 
  private:
   std::size_t size() const { return static_cast<std::size_t>(options_.batch); }
-  bool is_prioritised() const { return options_.priority > 0.0; }
   torch::Tensor ToInput(const Scalar* rows, std::size_t count) const {
     return Sight<Scalar>::ToInput(rows, WithCount(count, shape_), device_);
   }
@@ -112,12 +110,8 @@ class DqnLearner final : public Learner {
     return torch::from_blob(values.data(), shape, torch::CppTypeToScalarType<T>::value).to(device_);
   }
   void Choose(const Results& results, std::vector<std::uint8_t>& actions);
-  void Remember(const Results& results);
   void Update();
-  bool Draw();
-  std::pair<std::size_t, std::size_t> DrawUniform();  // age, entry
-  std::pair<std::size_t, std::size_t> DrawByPriority(std::size_t i);
-  void WeighImportance();
+  void Draw();
   torch::Tensor Targets();
   void Reprioritise(const torch::Tensor& errors);
 
@@ -134,8 +128,7 @@ class DqnLearner final : public Learner {
   Explorer explorer_;
   RandomStream chance_;
   Replay<Scalar> replay_;
-  std::unique_ptr<SumTree> priorities_;  // by row of the replay; null: uniform
-  float largest_priority_{1.0F};
+  MomentSampler<Scalar> sampler_;
   double progress_{};
   Batch<Scalar> batch_;
 };
@@ -158,33 +151,19 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       chance_({seed, 0, Purpose::kLearner, 1}),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents,
                observation_size_, 0}),
-      batch_(size(), observation_size_) {
-  if (is_prioritised()) priorities_ = std::make_unique<SumTree>(replay_.rows());
-}
+      sampler_(replay_, options, static_cast<std::size_t>(options.n_step)),
+      batch_(size(), observation_size_) {}
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Step(const Results& results, double progress,
                               std::vector<std::uint8_t>& actions) {
   progress_ = progress;
-  Remember(results);
+  replay_.Add(results, Sight<Scalar>::Of(results));
+  sampler_.Remember();
   optimizer_.Count(FarmSteps(results), progress);
   while (optimizer_.TakeDue()) Update();
   Choose(results, actions);
   replay_.SetActions(actions);
-}
-
-template <typename Scalar>
-void DqnLearner<Scalar>::Remember(const Results& results) {
-  replay_.Add(results, Sight<Scalar>::Of(results));
-  if (!is_prioritised()) return;
-  const auto steps = static_cast<std::size_t>(options_.n_step);
-  for (std::size_t entry = 0; entry < replay_.entries(); ++entry) {
-    priorities_->Set(replay_.Row(replay_.size() - 1, entry), 0.0F);  // whatever was there is gone
-    if (replay_.size() <= steps) continue;
-    const std::size_t age = replay_.size() - 1 - steps;
-    const bool begins = replay_.Begins(age, entry, steps);
-    priorities_->Set(replay_.Row(age, entry), begins ? largest_priority_ : 0.0F);
-  }
 }
 
 template <typename Scalar>
@@ -202,47 +181,10 @@ void DqnLearner<Scalar>::Choose(const Results& results, std::vector<std::uint8_t
 }
 
 template <typename Scalar>
-std::pair<std::size_t, std::size_t> DqnLearner<Scalar>::DrawUniform() {
-  const auto moments =
-      static_cast<std::uint32_t>(replay_.size() - static_cast<std::size_t>(options_.n_step));
-  for (;;) {  // few moments are an episode's last
-    const std::size_t age = chance_.Below(moments);
-    const std::size_t entry = chance_.Below(static_cast<std::uint32_t>(replay_.entries()));
-    if (replay_.Begins(age, entry, static_cast<std::size_t>(options_.n_step))) {
-      return {age, entry};
-    }
-  }
-}
-
-template <typename Scalar>
-std::pair<std::size_t, std::size_t> DqnLearner<Scalar>::DrawByPriority(std::size_t i) {
-  const float total = priorities_->Total();
-  const float share = (static_cast<float>(i) + chance_.Unit()) / static_cast<float>(size());
-  const std::size_t row = priorities_->Find(share * total);
-  batch_.weights[i] = priorities_->Get(row) / total;
-  return {replay_.Age(row), row % replay_.entries()};
-}
-
-// w = (N P)^-β over the largest of the batch; β rises to 1 with progress.
-template <typename Scalar>
-void DqnLearner<Scalar>::WeighImportance() {
-  const double exponent = options_.importance + (1.0 - options_.importance) * progress_;
-  float largest = 0.0F;
-  for (float& weight : batch_.weights) {
-    weight = static_cast<float>(std::pow(static_cast<double>(weight), -exponent));
-    largest = std::max(largest, weight);
-  }
-  for (float& weight : batch_.weights) weight /= largest * static_cast<float>(size());
-}
-
-// Fills the batch. False while there is nothing to draw from.
-template <typename Scalar>
-bool DqnLearner<Scalar>::Draw() {
+void DqnLearner<Scalar>::Draw() {
   const auto steps = static_cast<std::size_t>(options_.n_step);
-  if (replay_.size() <= steps) return false;
-  if (is_prioritised() && !(priorities_->Total() > 0.0F)) return false;
   for (std::size_t i = 0; i < size(); ++i) {
-    const auto [age, entry] = is_prioritised() ? DrawByPriority(i) : DrawUniform();
+    const auto [age, entry] = sampler_.Draw(chance_, i);
     const Transition one = replay_.At(age, entry, steps, static_cast<float>(options_.discount));
     std::copy_n(replay_.observation(one.from), observation_size_,
                 batch_.from.data() + i * observation_size_);
@@ -255,8 +197,10 @@ bool DqnLearner<Scalar>::Draw() {
     const ActionMask allowed = Allowed(replay_.legal(one.to), options_.mask_illegal);
     MarkForbidden(allowed, batch_.forbidden.data() + i * kActionCount);
   }
-  if (is_prioritised()) WeighImportance();
-  return true;
+  const std::vector<float>& weights = sampler_.Weigh(progress_);
+  for (std::size_t i = 0; i < size(); ++i) {
+    batch_.weights[i] = weights[i] / static_cast<float>(size());
+  }
 }
 
 template <typename Scalar>
@@ -277,27 +221,23 @@ torch::Tensor DqnLearner<Scalar>::Targets() {
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Update() {
+  if (!sampler_.IsReady()) return;
   const BatchOrigin origin{seed_, chance_.position()};
-  if (!Draw()) return;
+  Draw();
   const auto count = static_cast<std::int64_t>(size());
   const torch::Tensor targets = Targets();
   const torch::Tensor actions = ToDevice(batch_.actions, {count, 1});
   const torch::Tensor predicted =
       online_->Forward(ToInput(batch_.from.data(), size())).gather(1, actions).squeeze(1);
   optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {count}), origin);
-  if (is_prioritised()) Reprioritise((predicted.detach() - targets).abs());
+  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
 }
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor values = errors.cpu();
   const float* error = values.template data_ptr<float>();
-  for (std::size_t i = 0; i < size(); ++i) {
-    const float priority =
-        std::pow(error[i] + kSmallestPriority, static_cast<float>(options_.priority));
-    largest_priority_ = std::max(largest_priority_, priority);
-    priorities_->Set(batch_.rows[i], priority);
-  }
+  for (std::size_t i = 0; i < size(); ++i) sampler_.SetError(batch_.rows[i], error[i]);
 }
 
 template <typename Scalar>
@@ -306,29 +246,20 @@ void DqnLearner<Scalar>::Save(Checkpoint& checkpoint) const {
   replay_.Save(checkpoint);
   checkpoint.SetArray("streams", explorer_.positions());
   checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
-  if (!is_prioritised()) return;
-  std::vector<float> priorities;
-  for (std::size_t row = 0; row < replay_.rows(); ++row)
-    priorities.push_back(priorities_->Get(row));
-  priorities.push_back(largest_priority_);
-  checkpoint.SetArray("priorities", priorities);
+  sampler_.Save(checkpoint);
 }
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Load(const Checkpoint& checkpoint) {
   std::vector<std::uint64_t> positions;
   std::vector<std::uint64_t> chance;
-  std::vector<float> priorities;
   checkpoint.GetArray("streams", EntryCount(spec_), positions);
   checkpoint.GetArray("chance", 1, chance);
-  if (is_prioritised()) checkpoint.GetArray("priorities", replay_.rows() + 1, priorities);
   optimizer_.Load(checkpoint);
   replay_.Load(checkpoint);
+  sampler_.Load(checkpoint);
   explorer_.Seek(positions);
   chance_.Seek(chance[0]);
-  if (!is_prioritised()) return;
-  for (std::size_t row = 0; row < replay_.rows(); ++row) priorities_->Set(row, priorities[row]);
-  largest_priority_ = priorities.back();
 }
 
 DeepOptions Parse(const std::string& text, std::string& resolved) {

@@ -7,6 +7,7 @@
 #include "aquafarm/agents/replay.h"
 #include "aquafarm/check.h"
 #include "deep_policy.h"
+#include "moment_sampler.h"
 #include "value_optimizer.h"
 
 namespace aquafarm::agents {
@@ -125,7 +126,8 @@ struct SequenceBatch {
   std::vector<float> discounts;       // [T, B] of the value at `next`
   std::vector<std::int64_t> next;     // [T, B] moment that the target looks at
   std::vector<float> forbidden;       // [T + 1, B, kActionCount]
-  std::vector<float> weights;         // [T, B], summing to 1
+  std::vector<float> weights;         // [T, B], summing to 1 at most; 0: not learnt
+  std::vector<std::size_t> rows;      // [T, B] of the replay
 
   SequenceBatch(std::size_t b, std::size_t t, std::size_t burn_in, std::size_t features,
                 std::size_t carry_size)
@@ -138,7 +140,8 @@ struct SequenceBatch {
         discounts(t * b),
         next(t * b),
         forbidden((t + 1) * b * kActionCount),
-        weights(t * b) {}
+        weights(t * b),
+        rows(t * b) {}
 };
 
 class RecurrentDqnLearner final : public Learner {
@@ -169,10 +172,11 @@ class RecurrentDqnLearner final : public Learner {
     return torch::from_blob(values.data(), shape, torch::CppTypeToScalarType<T>::value).to(device_);
   }
   void Update();
-  bool Draw();
+  void Draw();
   void DrawOne(std::size_t b);
   void FillRun(std::size_t b, std::size_t age, std::size_t entry);
   RecurrentNetwork::State WarmState(RecurrentNetwork& network);
+  void Reprioritise(const torch::Tensor& errors);
 
   const EnvironmentSpec spec_;
   const std::uint64_t seed_;
@@ -186,6 +190,8 @@ class RecurrentDqnLearner final : public Learner {
   RandomStream chance_;
   Carry carry_;
   Replay<float> replay_;
+  MomentSampler<float> sampler_;
+  double progress_{};
   SequenceBatch batch_;
 };
 
@@ -204,12 +210,15 @@ RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint6
       carry_(EntryCount(spec), options.hidden),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
                carry_.size_of_one()}),
+      sampler_(replay_, options, 1),
       batch_(batch(), sequence(), burn_in(), features(), carry_.size_of_one()) {}
 
 void RecurrentDqnLearner::Step(const Results& results, double progress,
                                std::vector<std::uint8_t>& actions) {
   carry_.ClearStarted(results, spec_.agents);
+  progress_ = progress;
   replay_.Add(results, results.features.data(), carry_.values().data());
+  sampler_.Remember();
   optimizer_.Count(FarmSteps(results), progress);
   while (optimizer_.TakeDue()) Update();
 
@@ -229,13 +238,7 @@ void RecurrentDqnLearner::Step(const Results& results, double progress,
 // back, with the state stored there. A run never crosses an episode: near its beginning it starts
 // there, with the empty state that is exact.
 void RecurrentDqnLearner::DrawOne(std::size_t b) {
-  const auto moments = static_cast<std::uint32_t>(replay_.size() - 1);
-  std::size_t age = 0;
-  std::size_t entry = 0;
-  do {
-    age = chance_.Below(moments);
-    entry = chance_.Below(static_cast<std::uint32_t>(replay_.entries()));
-  } while (!replay_.Begins(age, entry, 1));
+  const auto [age, entry] = sampler_.Draw(chance_, b);
   std::size_t back = 0;
   while (back < burn_in() && back < age && !replay_.started(replay_.Row(age - back, entry))) ++back;
   const bool at_start = replay_.started(replay_.Row(age - back, entry));
@@ -269,6 +272,7 @@ void RecurrentDqnLearner::FillRun(std::size_t b, std::size_t age, std::size_t en
   for (std::size_t t = 0; t < steps; ++t) {
     const std::size_t i = t * batch() + b;
     const bool is_learnt = t < last;
+    batch_.rows[i] = replay_.Row(age + std::min(t, last), entry);
     batch_.weights[i] = is_learnt ? 1.0F : 0.0F;
     batch_.actions[i] = 0;
     batch_.rewards[i] = batch_.discounts[i] = 0.0F;
@@ -283,13 +287,15 @@ void RecurrentDqnLearner::FillRun(std::size_t b, std::size_t age, std::size_t en
   }
 }
 
-bool RecurrentDqnLearner::Draw() {
-  if (replay_.size() < 2 + burn_in() + sequence()) return false;
+void RecurrentDqnLearner::Draw() {
   for (std::size_t b = 0; b < batch(); ++b) DrawOne(b);
+  const std::vector<float>& importance = sampler_.Weigh(progress_);
   float sum = 0.0F;
-  for (const float weight : batch_.weights) sum += weight;
+  for (std::size_t i = 0; i < batch_.weights.size(); ++i) {
+    sum += batch_.weights[i];
+    batch_.weights[i] *= importance[i % batch()];
+  }
   for (float& weight : batch_.weights) weight /= sum;
-  return true;
 }
 
 RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network) {
@@ -304,8 +310,9 @@ RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network
 }
 
 void RecurrentDqnLearner::Update() {
+  if (replay_.size() < 2 + burn_in() + sequence() || !sampler_.IsReady()) return;
   const BatchOrigin origin{seed_, chance_.position()};
-  if (!Draw()) return;
+  Draw();
   const auto count = static_cast<std::int64_t>(batch());
   const std::int64_t steps = options_.sequence;
   const torch::Tensor observations =
@@ -329,11 +336,22 @@ void RecurrentDqnLearner::Update() {
   const torch::Tensor predicted =
       values.narrow(0, 0, steps).gather(2, ToDevice(batch_.actions, {steps, count, 1})).squeeze(2);
   optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {steps, count}), origin);
+  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
+}
+
+// Each step of a run by its own error. (R2D2 has one priority a sequence, which is fixed there.)
+void RecurrentDqnLearner::Reprioritise(const torch::Tensor& errors) {
+  const torch::Tensor values = errors.cpu().contiguous();
+  const float* const error = values.data_ptr<float>();
+  for (std::size_t i = 0; i < batch_.rows.size(); ++i) {
+    if (batch_.weights[i] > 0.0F) sampler_.SetError(batch_.rows[i], error[i]);
+  }
 }
 
 void RecurrentDqnLearner::Save(Checkpoint& checkpoint) const {
   optimizer_.Save(checkpoint);
   replay_.Save(checkpoint);
+  sampler_.Save(checkpoint);
   checkpoint.SetArray("streams", explorer_.positions());
   checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
   checkpoint.SetArray("carry", carry_.values());
@@ -348,6 +366,7 @@ void RecurrentDqnLearner::Load(const Checkpoint& checkpoint) {
   checkpoint.GetArray("carry", carry_.values().size(), carry);
   optimizer_.Load(checkpoint);
   replay_.Load(checkpoint);
+  sampler_.Load(checkpoint);
   explorer_.Seek(positions);
   chance_.Seek(chance[0]);
   carry_.values() = std::move(carry);

@@ -31,7 +31,8 @@ TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
 std::string Lively(const Algorithm& algorithm) {
   const std::string name = algorithm.name;
   if (name == "dqn") return "hidden=8 batch=8 start=20 replay=300 priority=0.5";
-  if (name == "lstm_dqn") return "hidden=8 batch=8 start=20 replay=300 sequence=4 burn_in=2";
+  if (name == "lstm_dqn")
+    return "hidden=8 batch=8 start=20 replay=300 sequence=4 burn_in=2 priority=0.5";
   return "";
 }
 

@@ -72,7 +72,11 @@ TEST(Dqn, SolvesItFromThePlanes) {
                12000);
 }
 
-TEST(RecurrentDqn, SolvesATinyFarm) { ExpectSolves("lstm_dqn", kSmallRecurrent, 20000); }
+TEST(RecurrentDqn, SolvesATinyFarm) {
+  for (const char* change : {"", "priority=0.6"}) {
+    ExpectSolves("lstm_dqn", kSmallRecurrent + std::string(change), 20000);
+  }
+}
 
 TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
   ExpectSolves("lstm_dqn",

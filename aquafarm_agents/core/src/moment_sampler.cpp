@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "moment_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr float kSmallestPriority = 1e-4F;
+
+}  // namespace
+
+template <typename Scalar>
+MomentSampler<Scalar>::MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options,
+                                     std::size_t steps)
+    : replay_(replay),
+      priority_(options.priority),
+      importance_(options.importance),
+      steps_(steps),
+      weights_(static_cast<std::size_t>(options.batch), 1.0F) {
+  if (priority_ > 0.0) priorities_ = std::make_unique<SumTree>(replay.rows());
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::Remember() {
+  if (!priorities_) return;
+  for (std::size_t entry = 0; entry < replay_.entries(); ++entry) {
+    priorities_->Set(replay_.Row(replay_.size() - 1, entry), 0.0F);  // whatever was there is gone
+    if (replay_.size() <= steps_) continue;
+    const std::size_t age = replay_.size() - 1 - steps_;
+    const bool begins = replay_.Begins(age, entry, steps_);
+    priorities_->Set(replay_.Row(age, entry), begins ? largest_priority_ : 0.0F);
+  }
+}
+
+template <typename Scalar>
+bool MomentSampler<Scalar>::IsReady() const {
+  return replay_.size() > steps_ && (!priorities_ || priorities_->Total() > 0.0F);
+}
+
+template <typename Scalar>
+Moment MomentSampler<Scalar>::Draw(RandomStream& chance, std::size_t i) {
+  if (priorities_) {
+    const float total = priorities_->Total();
+    const float part =
+        (static_cast<float>(i) + chance.Unit()) / static_cast<float>(weights_.size());
+    const std::size_t row = priorities_->Find(part * total);
+    weights_[i] = priorities_->Get(row) / total;
+    return {replay_.Age(row), row % replay_.entries()};
+  }
+  const auto moments = static_cast<std::uint32_t>(replay_.size() - steps_);
+  for (;;) {  // few moments are an episode's last
+    const std::size_t age = chance.Below(moments);
+    const std::size_t entry = chance.Below(static_cast<std::uint32_t>(replay_.entries()));
+    if (replay_.Begins(age, entry, steps_)) return {age, entry};
+  }
+}
+
+template <typename Scalar>
+const std::vector<float>& MomentSampler<Scalar>::Weigh(double progress) {
+  if (!priorities_) return weights_;
+  const double exponent = importance_ + (1.0 - importance_) * progress;
+  float largest = 0.0F;
+  for (float& weight : weights_) {
+    weight = static_cast<float>(std::pow(static_cast<double>(weight), -exponent));
+    largest = std::max(largest, weight);
+  }
+  for (float& weight : weights_) weight /= largest;
+  return weights_;
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::SetError(std::size_t row, float error) {
+  if (!priorities_) return;
+  const float priority = std::pow(error + kSmallestPriority, static_cast<float>(priority_));
+  largest_priority_ = std::max(largest_priority_, priority);
+  priorities_->Set(row, priority);
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::Save(Checkpoint& checkpoint) const {
+  if (!priorities_) return;
+  std::vector<float> priorities;
+  for (std::size_t row = 0; row < replay_.rows(); ++row) {
+    priorities.push_back(priorities_->Get(row));
+  }
+  priorities.push_back(largest_priority_);
+  checkpoint.SetArray("priorities", priorities);
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::Load(const Checkpoint& checkpoint) {
+  if (!priorities_) return;
+  std::vector<float> priorities;
+  checkpoint.GetArray("priorities", replay_.rows() + 1, priorities);
+  for (std::size_t row = 0; row < replay_.rows(); ++row) priorities_->Set(row, priorities[row]);
+  largest_priority_ = priorities.back();
+}
+
+template class MomentSampler<float>;
+template class MomentSampler<std::uint8_t>;
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Which moments of a replay a learner learns from: any alike, or by how wrong it was there (Schaul
+/// et al. 2016): P(i) ∝ |δ_i|^α, set right by weights (N P(i))^-β.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "aquafarm/agents/checkpoint.h"
+#include "aquafarm/agents/deep_options.h"
+#include "aquafarm/agents/replay.h"
+#include "aquafarm/rng.h"
+
+namespace aquafarm::agents {
+
+/// A moment of one agent in a replay.
+struct Moment {
+  std::size_t age{};
+  std::size_t entry{};
+};
+
+template <typename Scalar>
+class MomentSampler {
+ public:
+  /// @param replay must outlive the sampler
+  /// @param steps that a moment must have after it
+  MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps);
+
+  /// The replay got a moment more.
+  void Remember();
+  /// Whether there is a moment to draw.
+  bool IsReady() const;
+  /// Draws the i-th moment of a batch.
+  Moment Draw(RandomStream& chance, std::size_t i);
+  /// Weights of the batch just drawn, [batch], the largest 1. @param progress of the run: β rises
+  /// to 1 with it
+  const std::vector<float>& Weigh(double progress);
+  /// The error that was found at a row; of no use when all are drawn alike.
+  void SetError(std::size_t row, float error);
+
+  void Save(Checkpoint& checkpoint) const;
+  /// @throws InputError
+  void Load(const Checkpoint& checkpoint);
+
+ private:
+  const Replay<Scalar>& replay_;
+  const double priority_;    // α; 0: all alike
+  const double importance_;  // β at the start
+  const std::size_t steps_;
+  std::unique_ptr<SumTree> priorities_;  // by row; null: all alike
+  float largest_priority_{1.0F};
+  std::vector<float> weights_;  // P(i) until they are weighed
+};
+
+extern template class MomentSampler<float>;
+extern template class MomentSampler<std::uint8_t>;
+
+}  // namespace aquafarm::agents

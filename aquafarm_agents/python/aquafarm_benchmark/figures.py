@@ -1,0 +1,206 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The pictures of §4 from what results.py read, as PNG."""
+import json
+
+import matplotlib
+
+matplotlib.use("Agg")  # no display is asked for
+import numpy as np  # noqa: E402
+from matplotlib import pyplot as plt  # noqa: E402
+from matplotlib.patches import Circle  # noqa: E402
+
+from aquafarm_benchmark import measures  # noqa: E402
+
+_DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0),
+               "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
+               "south_east": (1, -1)}
+_DPI = 110
+_MOST_PROBED = 40  # disasters drawn along a route, at most
+
+
+def _save(figure, path):
+    figure.savefig(path, dpi=_DPI, bbox_inches="tight")
+    plt.close(figure)
+
+
+def _axes(title, ylabel, xlabel="episode"):
+    figure, axes = plt.subplots(figsize=(8, 4.5))
+    axes.set_title(title)
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    axes.grid(alpha=0.3)
+    return figure, axes
+
+
+def _smooth(values):
+    """Moving mean over the protocol's window, of the length that is left, and its episodes."""
+    window = min(measures.WINDOW, len(values))
+    return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
+
+
+def _show_returns(axes, curves, optimum=None):
+    """Scales so that what is learnt shows, whatever the first falls cost."""
+    if optimum is not None:
+        axes.axhline(optimum, color="black", linestyle="--", label="clairvoyant")
+        curves = [*curves, np.array([optimum])]
+    top = max(curve.max() for curve in curves)
+    low = min(np.quantile(curve, 0.02) for curve in curves)
+    axes.set_yscale("symlog", linthresh=100.0)
+    axes.set_ylim(low - 0.2 * abs(low), top + 0.5 * abs(top))
+    axes.axhline(0.0, color="black", linewidth=0.5)
+
+
+def draw_rewards(path, contestants, runs, optimum):
+    """Return of every episode of the first run, and its 50-episode mean."""
+    figure, axes = _axes("Return by episode, first run", "return of an episode")
+    curves = []
+    for one in contestants:
+        curve = runs[one.name][0]["curve"]["return"]
+        axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, alpha=0.15, linewidth=0.5)
+        axes.plot(*_smooth(curve), color=one.colour, label=one.label)
+        curves.append(curve)
+    _show_returns(axes, curves, optimum)
+    axes.legend(loc="best")
+    _save(figure, path)
+
+
+def draw_average_rewards(path, contestants, runs):
+    """Mean return of all episodes so far, over all runs."""
+    figure, axes = _axes("Average return so far, all runs", "mean return of all episodes so far")
+    curves = []
+    for one in contestants:
+        curve = _curves(runs[one.name], "return").mean(axis=0)
+        curve = np.cumsum(curve) / np.arange(1, len(curve) + 1)
+        axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, label=one.label)
+        curves.append(curve)
+    _show_returns(axes, curves)
+    axes.legend(loc="best")
+    _save(figure, path)
+
+
+def draw_square_error(path, contestants, runs):
+    """Fig. 12: mean square error of what learners expect, over all runs."""
+    figure, axes = _axes("Mean square error (Fig. 12)", "mean square error [reward²]")
+    for one in contestants:
+        losses = _curves(runs[one.name], "loss")
+        known = np.isfinite(losses).any(axis=0)
+        if not known.any():
+            continue
+        episodes = np.arange(1, losses.shape[1] + 1)[known]
+        axes.plot(episodes, np.nanmean(losses[:, known], axis=0), color=one.colour,
+                  label=one.label)
+    axes.set_yscale("log")
+    axes.legend(loc="upper right")
+    _save(figure, path)
+
+
+def draw_mean_score(path, contestants, rows):
+    """Fig. 13: greedy mean score per contestant, with its 95 % interval."""
+    figure, axes = _axes("Mean score on episodes never trained on (Fig. 13)",
+                         "return of an episode", "")
+    by_name = {row["name"]: row for row in rows}
+    for place, one in enumerate(contestants):
+        row = by_name[one.name]
+        value = row["return_iqm"]
+        low, high = row["return_interval"]
+        error = None if np.isnan(low) else [[value - low], [high - value]]
+        axes.bar(place, value, color=one.colour, yerr=error, capsize=4)
+        axes.annotate(f"{value:.0f}", (place, max(value, 0.0)), xytext=(0, 8),
+                      textcoords="offset points", ha="center")
+    axes.axhline(0.0, color="black", linewidth=0.5)
+    axes.set_yscale("symlog", linthresh=100.0)
+    axes.margins(y=0.15)
+    axes.set_xticks(range(len(contestants)), [one.label for one in contestants])
+    _save(figure, path)
+
+
+def draw_repeated(path, contestants, runs, optimum):
+    """Fig. 14: 50-episode means over all runs, shaded by a standard deviation to either side."""
+    figure, axes = _axes("Repeated trainings (Fig. 14): mean and standard deviation",
+                         "50-episode mean return")
+    curves = []
+    for one in contestants:
+        smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
+        episodes = smooth[0][0]
+        values = np.array([curve for _, curve in smooth])
+        mean, spread = values.mean(axis=0), values.std(axis=0)
+        axes.plot(episodes, mean, color=one.colour, label=f"{one.label}, {len(values)} runs")
+        axes.fill_between(episodes, mean - spread, mean + spread, color=one.colour, alpha=0.2,
+                          linewidth=0)
+        curves.append(mean)
+    _show_returns(axes, curves, optimum)
+    axes.legend(loc="best")
+    _save(figure, path)
+
+
+def draw_route(path, label, route_file):
+    """Fig. 11: the best move at each cell as arrows, before and after the first pickup, and the
+    route with its colour in time order."""
+    route = json.loads(route_file.read_text())
+    panels = [("best_moves_at_start", "with nothing aboard"),
+              ("best_moves_after_pickup", "with a device aboard")]
+    panels = [panel for panel in panels if route[panel[0]]]
+    figure, all_axes = plt.subplots(1, len(panels) + 1, figsize=(6.2 * (len(panels) + 1), 6),
+                                    squeeze=False, layout="constrained")
+    for axes, (key, words) in zip(all_axes[0], panels):
+        _chart(axes, route["chart"])
+        _arrows(axes, route[key])
+        axes.set_title(f"{label}: best move, {words}")
+    axes = all_axes[0][-1]
+    _chart(axes, route["chart"])
+    _disasters(axes, route["steps"])
+    cells = np.array([step["cell"] for step in route["steps"]])
+    chance = np.random.Generator(np.random.PCG64(1))  # passages of a cell lie beside each other
+    shown = cells + chance.uniform(-0.18, 0.18, cells.shape)
+    axes.plot(shown[:, 0], shown[:, 1], color="black", linewidth=0.6, alpha=0.6, zorder=4)
+    points = axes.scatter(shown[:, 0], shown[:, 1], c=np.arange(len(shown)), cmap="plasma", s=26,
+                          zorder=5)
+    figure.colorbar(points, ax=axes, label="step", shrink=0.75)
+    axes.set_title(f"route: {route['reason'].replace('_', ' ')}, return {route['return']:.1f}")
+    _save(figure, path)
+
+
+def _curves(of_one, column):
+    """[runs, episodes], as long as the shortest: farms in step end some episodes more."""
+    length = min(len(run["curve"][column]) for run in of_one)
+    return np.array([run["curve"][column][:length] for run in of_one])
+
+
+def _chart(axes, chart):
+    axes.set_aspect("equal")
+    axes.set_xlim(-0.5, chart["width"] - 0.5)
+    axes.set_ylim(-0.5, chart["height"] - 0.5)
+    axes.set_facecolor("#dcecf5")
+    size = 4200.0 / max(chart["width"], chart["height"])
+    for cells, colour, marker, label in (
+            (chart["islands"], "#8d7b4a", "s", "island"), (chart["rocks"], "#555555", "o", "rock"),
+            (chart["ports"], "#1a7f37", "P", "port"),
+            ([device["cell"] for device in chart["devices"]], "#c2185b", "D", "device")):
+        if cells:
+            x, y = zip(*cells)
+            axes.scatter(x, y, color=colour, marker=marker, label=label, zorder=3,
+                         s=size * (1.0 if marker == "s" else 0.5))
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.05), ncol=4, frameon=False)
+
+
+def _arrows(axes, moves):
+    pointed = [(x, y, *_DIRECTIONS[action]) for x, y, action in moves if action in _DIRECTIONS]
+    if pointed:
+        x, y, dx, dy = np.array(pointed, dtype=float).T
+        length = np.hypot(dx, dy)
+        axes.quiver(x, y, dx / length, dy / length, pivot="mid", scale=32, width=0.004, zorder=4)
+    for letter, action in (("+", "pickup"), ("×", "drop_off")):
+        for x, y, chosen in moves:
+            if chosen == action:
+                axes.text(x, y, letter, ha="center", va="center", weight="bold", zorder=6)
+
+
+def _disasters(axes, steps):
+    every = max(1, len(steps) // _MOST_PROBED)
+    for step in steps[::every]:
+        for disaster in step["disasters"]:
+            for radius in disaster["radii"]:
+                axes.add_patch(Circle((disaster["x"], disaster["y"]), radius, fill=False,
+                                      color="#b22222", alpha=0.06, zorder=2))
+    for disaster in steps[0]["disasters"]:
+        axes.plot(disaster["x"], disaster["y"], marker="x", color="#b22222", zorder=4)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which learners a benchmark compares, with which settings, and what the paper printed."""
+import dataclasses
+import typing
+
+
+@dataclasses.dataclass(frozen=True)
+class Contestant:
+    """Someone who takes part."""
+    name: str  # of the algorithm, as --algorithm and policy take it
+    label: str  # for tables and figures
+    colour: str
+    learns: bool = True
+    exploration: str = ""  # empty: the algorithm's own
+    options: typing.Tuple[str, ...] = ()
+    cost: float = 1.0  # of a training beside the others', until one is over
+    episodes: int = 0  # of evaluation at most; 0: as many as asked for
+
+
+# Exploration ends early, as learning does: 2,000 episodes are few for tables, many for networks.
+_SOON = "epsilon_greedy:linear:1:0.01:0.05"
+
+CONTESTANTS = (
+    Contestant("random", "RANDOM", "#7f7f7f", cost=0.05),
+    Contestant("q_learning", "Q-learning", "#1f77b4", cost=0.02,
+               exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
+    Contestant("sarsa", "SARSA", "#17becf", cost=0.02,
+               exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
+    Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_SOON,
+               options=("hidden=256", "steps_per_update=2",
+                        "learning_rate=linear:0.0005:0.00001:1")),
+    Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=3.0, exploration=_SOON,
+               options=("steps_per_update=4", "learning_rate=linear:0.0005:0.00001:1")),
+    Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100),
+)
+OPTIMUM = Contestant("clairvoyant", "clairvoyant", "#000000", learns=False, cost=0.2)
+
+
+@dataclasses.dataclass(frozen=True)
+class Profile:
+    """How much of it."""
+    runs: int
+    episodes: int
+    evaluation_episodes: int
+
+
+PROFILES = {
+    "full": Profile(runs=10, episodes=2000, evaluation_episodes=1000),
+    "quick": Profile(runs=2, episodes=800, evaluation_episodes=200),
+}
+
+# Table 1 as far as its numbers are known to us; None: not known. The EA of RANDOM is what Eq. 16
+# gives for its row (printed: -0.7), its return is what Eq. 16 needs for that.
+PAPER_TABLE = {
+    "random": {"return_per_step": -10.0, "success": 0.0, "stability": 0.0, "ea_paper": -0.80},
+    "q_learning": {"return_per_step": None, "success": 0.7, "stability": 0.7, "ea_paper": 0.93},
+    "sarsa": {"return_per_step": None, "success": 0.9, "stability": 0.9, "ea_paper": 0.97},
+    "lstm_dqn": {"return_per_step": 1.67, "success": 1.0, "stability": 1.0, "ea_paper": 1.67,
+                 "convergence": 300},
+}

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""From finished runs to measures, and from measures to files."""
+import csv
+import json
+import math
+import os
+
+import numpy as np
+
+from aquafarm_benchmark import measures
+from aquafarm_benchmark.protocol import PAPER_TABLE
+
+_EVALUATED = ("return_per_episode", "return_per_step", "success_rate", "steps_per_episode",
+              "crashes_per_episode", "steps_in_disaster_per_episode", "delivered_health")
+
+
+def write_atomically(path, text):
+    """Writes beside and renames."""
+    beside = path.with_name(path.name + ".part")
+    beside.write_text(text)
+    os.replace(beside, path)
+
+
+def read_curve(metrics):
+    """Columns of a training's metrics.csv: dict of arrays over episodes."""
+    columns = {"return": [], "success": [], "steps": [], "loss": [], "total_steps": []}
+    with open(metrics, newline="") as file:
+        for row in csv.DictReader(file):
+            for name, values in columns.items():
+                values.append(float(row[name]))
+    return {name: np.array(values) for name, values in columns.items()}
+
+
+def read_run(folder):
+    """What one seed of one contestant came to; 'curve' is None when nothing was trained."""
+    evaluation = json.loads((folder / "evaluation.json").read_text())
+    metrics = folder / "metrics.csv"
+    curve = read_curve(metrics) if metrics.exists() else None
+    run = {name: evaluation[name] for name in _EVALUATED}
+    run.update(seed=int(folder.name.rsplit("_", maxsplit=1)[-1]), folder=folder, curve=curve,
+               convergence=None, evaluation=evaluation)
+    if curve is not None:
+        run["convergence"] = measures.convergence(curve["return"], curve["success"])
+    return run
+
+
+def mean_return(evaluation_csv, count):
+    """Mean return of the first `count` episodes of an evaluation."""
+    with open(evaluation_csv, newline="") as file:
+        returns = [float(row["return"]) for row in csv.DictReader(file)
+                   if int(row["episode"]) < count]
+    return float(np.mean(returns))
+
+
+def _interval(values):
+    low, high = measures.bootstrap_interval(values)
+    return [low, high]
+
+
+def summarise(contestant, runs, optimum, episodes):
+    """Measures of a contestant over its runs, but for the ranks, which need all contestants.
+
+    optimum: mean return of the clairvoyant on the episodes that it was evaluated on; None: unknown.
+    """
+    def column(name):
+        return np.array([run[name] for run in runs], dtype=float)
+
+    returns = column("return_per_episode")
+    converged = [run["convergence"] for run in runs if run["convergence"] is not None]
+    row = {"name": contestant.name, "label": contestant.label, "runs": len(runs),
+           "learns": contestant.learns and contestant.name != "random"}
+    for name in _EVALUATED:
+        row[name] = float(column(name).mean())
+    row["success_worst"] = float(column("success_rate").min())
+    row["return_iqm"] = measures.interquartile_mean(returns)
+    row["return_interval"] = _interval(returns)
+    row["return_per_step_interval"] = _interval(column("return_per_step"))
+    row["share_of_optimum"] = None if optimum is None else row["return_per_episode"] / optimum
+    row["convergence"] = float(np.median(converged)) if converged else None
+    row["convergence_runs"] = [run["convergence"] for run in runs]
+    row["stability"] = len(converged) / len(runs) if contestant.learns else None
+    row["training_steps"] = float(np.mean([run["evaluation"]["training_steps"] for run in runs]))
+    row["episodes"] = episodes
+    return row
+
+
+def add_ea(rows):
+    """Adds rank, ea_paper and ea_normalised to those that train."""
+    trained = [row for row in rows if row["stability"] is not None]
+    ranks = measures.convergence_ranks({row["name"]: row["convergence"] for row in trained})
+    for row in rows:
+        row["rank"] = ranks.get(row["name"])
+        row["ea_paper"] = row["ea_normalised"] = None
+        if row["rank"] is None:
+            continue
+        row["ea_paper"] = measures.ea_paper(row["return_per_step"], row["success_rate"],
+                                            row["rank"], row["stability"])
+        if row["share_of_optimum"] is None:
+            continue
+        row["ea_normalised"] = measures.ea_normalised(
+            row["share_of_optimum"], row["success_rate"], row["convergence"], row["stability"],
+            row["episodes"])
+
+
+def _text(value, form="{:.2f}"):
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return "–"
+    return form.format(value)
+
+
+def table(rows):
+    """Table 1 beside ours, as Markdown."""
+    lines = ["| | return per step | success | converged at | stability | EA | EA in [0, 1] | "
+             "return per episode, 95 % interval | share of the optimum |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for row in rows:
+        printed = PAPER_TABLE.get(row["name"])
+        low, high = row["return_interval"]
+        interval = "" if math.isnan(low) else f" ({low:.1f} … {high:.1f})"
+        lines.append("| " + " | ".join((
+            row["label"], _text(row["return_per_step"]), _text(row["success_rate"], "{:.3f}"),
+            _text(row["convergence"], "{:.0f}"), _text(row["stability"], "{:.1f}"),
+            _text(row["ea_paper"]), _text(row["ea_normalised"]),
+            f"{row['return_iqm']:.1f}{interval}", _text(row["share_of_optimum"], "{:.3f}"))) + " |")
+        if printed:
+            lines.append("| " + " | ".join((
+                f"*{row['label']}, paper*", _text(printed["return_per_step"]),
+                _text(printed["success"], "{:.1f}"), _text(printed.get("convergence"), "{:.0f}"),
+                _text(printed["stability"], "{:.1f}"), _text(printed["ea_paper"]), "–", "–",
+                "–")) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def write(folder, settings, rows, runs):
+    """results.json (everything), table.csv and runs.csv (a line each), table.md."""
+    columns = ["name", "runs", "return_per_step", "success_rate", "success_worst", "convergence",
+               "stability", "rank", "ea_paper", "ea_normalised", "return_per_episode",
+               "return_iqm", "return_low", "return_high", "share_of_optimum", "steps_per_episode",
+               "crashes_per_episode", "steps_in_disaster_per_episode", "training_steps"]
+    lines = [",".join(columns)]
+    for row in rows:
+        low, high = row["return_interval"]
+        flat = dict(row, return_low=low, return_high=high)
+        lines.append(",".join("" if flat[name] is None else str(flat[name]) for name in columns))
+    write_atomically(folder / "table.csv", "\n".join(lines) + "\n")
+
+    run_columns = ["seed", "convergence", *_EVALUATED]
+    lines = [",".join(["name", *run_columns])]
+    for name, of_one in runs.items():
+        for run in of_one:
+            lines.append(",".join([name] + ["" if run[c] is None else str(run[c])
+                                            for c in run_columns]))
+    write_atomically(folder / "runs.csv", "\n".join(lines) + "\n")
+
+    everything = {"settings": settings, "table": rows,
+                  "runs": {name: [_without(run, "curve", "folder") for run in of_one]
+                           for name, of_one in runs.items()}}
+    text = json.dumps(_without_nan(everything), indent=2, allow_nan=False)
+    write_atomically(folder / "results.json", text + "\n")
+    write_atomically(folder / "table.md", table(rows))
+
+
+def _without(run, *names):
+    return {name: value for name, value in run.items() if name not in names}
+
+
+def _without_nan(value):
+    if isinstance(value, dict):
+        return {key: _without_nan(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_without_nan(one) for one in value]
+    return None if isinstance(value, float) and math.isnan(value) else value

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What §4.2 measures, against numbers worked out by hand."""
+import math
+import sys
+import unittest
+
+import numpy as np
+import rosunit
+
+from aquafarm_benchmark import measures, results
+
+
+class MeasuresTest(unittest.TestCase):
+
+    def test_a_moving_mean_is_the_mean_of_each_window(self):
+        values = np.random.Generator(np.random.PCG64(1)).normal(size=30)
+        slow = [values[i:i + 7].mean() for i in range(24)]
+        np.testing.assert_allclose(measures.moving_mean(values, 7), slow)
+
+    def test_convergence_is_where_the_mean_comes_to_stay(self):
+        success = np.ones(400)
+        self.assertEqual(50, measures.convergence(np.full(400, 80.0), success))
+        # From episode 101 on all are 100; means are within 5 % once 47.5 of 50 are: 48 of them.
+        late = np.concatenate((np.zeros(100), np.full(300, 100.0)))
+        self.assertEqual(148, measures.convergence(late, success))
+        # Negative plateaus have a band as well.
+        self.assertEqual(50, measures.convergence(np.full(400, -80.0), success))
+
+    def test_what_fails_or_does_not_stay_has_not_converged(self):
+        level = np.full(400, 100.0)
+        self.assertIsNone(measures.convergence(level, np.zeros(400)))
+        self.assertIsNone(measures.convergence(level[:99], np.ones(99)))
+        relapse = level.copy()
+        relapse[330:360] = 0.0
+        self.assertIsNone(measures.convergence(relapse, np.ones(400)))
+        self.assertIsNone(measures.convergence(np.linspace(0.0, 100.0, 400), np.ones(400)))
+
+    def test_an_interquartile_mean_leaves_out_a_quarter_at_either_end(self):
+        self.assertAlmostEqual(3.5, measures.interquartile_mean([100, 1, 2, 3, 4, 5, 6, -50]))
+        self.assertAlmostEqual(2.0, measures.interquartile_mean([1, 2, 3]))
+        # Of five, one and a quarter of the next go at either end: (0.75·2 + 3 + 0.75·4) / 2.5.
+        self.assertAlmostEqual((0.75 * 2 + 3 + 0.75 * 4) / 2.5,
+                               measures.interquartile_mean([4, 90, 3, -9, 2]))
+        self.assertEqual(7.0, measures.interquartile_mean([7.0]))
+
+    def test_a_bootstrap_interval_covers_as_often_as_it_says(self):
+        chance = np.random.Generator(np.random.PCG64(5))
+        hits = 0
+        for trial in range(200):
+            low, high = measures.bootstrap_interval(chance.normal(size=30), np.mean, draws=300,
+                                                    seed=trial)
+            hits += low <= 0.0 <= high
+        self.assertGreater(hits, 175)  # of 200; 95 % less what a bootstrap of 30 misses
+        self.assertEqual(measures.bootstrap_interval([1.0, 2.0, 4.0]),
+                         measures.bootstrap_interval([1.0, 2.0, 4.0]))
+        self.assertTrue(all(math.isnan(bound) for bound in measures.bootstrap_interval([3.0])))
+
+    def test_ranks_count_down_from_four_and_failures_are_one(self):
+        self.assertEqual({"a": 3, "b": 4, "c": 1, "d": 2, "e": 2},
+                         measures.convergence_ranks({"a": 90, "b": 80, "c": None, "d": 200,
+                                                     "e": 900}))
+        self.assertEqual({"a": 4, "b": 4}, measures.convergence_ranks({"a": 70, "b": 70}))
+
+    def test_ea_gives_what_the_paper_prints_but_for_random(self):
+        self.assertAlmostEqual(1.67, measures.ea_paper(1.67, 1.0, 4, 1.0), places=2)
+        # RANDOM's row gives -0.80; the paper prints -0.7.
+        self.assertAlmostEqual(-0.80, measures.ea_paper(-10.0, 0.0, 1, 0.0))
+
+    def test_the_normalised_ea_lies_between_nothing_and_one(self):
+        self.assertEqual(0.0, measures.ea_normalised(-5.0, 0.0, None, 0.0, 100))
+        self.assertAlmostEqual(1.0, measures.ea_normalised(1.0, 1.0, 0, 1.0, 100))
+        self.assertAlmostEqual(0.1 * 0.5 + 0.3 * 0.9 + 0.2 * 0.75 + 0.4 * 0.8,
+                               measures.ea_normalised(0.5, 0.9, 25, 0.8, 100))
+
+    def test_the_table_shows_the_papers_rows_beneath_ours(self):
+        row = {"name": "lstm_dqn", "label": "LSTM-DQN", "return_per_step": 4.5,
+               "success_rate": 1.0, "convergence": 120.0, "stability": 1.0, "ea_paper": 1.95,
+               "ea_normalised": 0.97, "return_iqm": 265.0, "return_interval": [260.0, 270.0],
+               "share_of_optimum": 0.955}
+        lines = results.table([row]).splitlines()
+        self.assertEqual("| LSTM-DQN | 4.50 | 1.000 | 120 | 1.0 | 1.95 | 0.97 | 265.0 "
+                         "(260.0 … 270.0) | 0.955 |", lines[2])
+        self.assertEqual("| *LSTM-DQN, paper* | 1.67 | 1.0 | 300 | 1.0 | 1.67 | – | – | – |",
+                         lines[3])
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("aquafarm_agents", "measures", MeasuresTest, sys.argv)

@@ -46,12 +46,13 @@ void TrainSteps(benchmark::State& state, Training& training) {
 }
 
 void Dqn(benchmark::State& state) {
-  static Training training("dqn", "batch=64 hidden=128 steps_per_update=4 start=5000");
+  static Training training("dqn", "batch=64 hidden=128 steps_per_update=4 start=5000 priority=0");
   TrainSteps(state, training);
 }
 void LstmDqn(benchmark::State& state) {
   static Training training(
-      "lstm_dqn", "batch=32 hidden=64 sequence=16 burn_in=8 steps_per_update=16 start=5000");
+      "lstm_dqn",
+      "batch=32 hidden=64 sequence=16 burn_in=8 steps_per_update=16 start=5000 priority=0");
   TrainSteps(state, training);
 }
 

@@ -41,11 +41,9 @@ void ReadNumber(OptionReader& reader, const std::string& key, double min, double
 DeepOptions Tuned(bool recurrent) {
   DeepOptions options;
   if (!recurrent) return options;
-  options.hidden = 64;
+  options.hidden = 128;
   options.batch = 32;
-  options.steps_per_update = 8.0;
   options.target_period = 100;
-  options.n_step = 3;
   return options;
 }
 
@@ -56,6 +54,7 @@ DeepOptions Paper(bool recurrent) {
   options.gradient_limit = 0.0;
   options.double_q = false;
   options.n_step = 1;
+  options.priority = 0.0;
   options.reward_scale = 1.0;
   options.mask_illegal = false;
   options.sequence = 1;

@@ -6,7 +6,10 @@
 #include <dlfcn.h>
 
 #include <cmath>
+#include <mutex>
+#include <utility>
 
+#include "aquafarm/agents/dqn.h"
 #include "aquafarm/check.h"
 #include "aquafarm/rng.h"
 
@@ -56,6 +59,8 @@ class CnnNetwork final : public QNetwork {
   Head head_;
 };
 
+std::string torch_warning;
+
 // Whether the BLAS in force is OpenBLAS, MKL or the like; the reference BLAS has no such symbol.
 bool HasFastBlas() {
   for (const char* symbol :
@@ -76,19 +81,23 @@ torch::Device FindDevice(const std::string& name) {
   return has_cuda ? torch::kCUDA : torch::kCPU;
 }
 
-std::string PrepareTorch(std::int32_t threads) {
+void PrepareTorch(std::int32_t threads) {
   at::set_num_threads(threads);
   // Debian's OpenBLAS has threads of its own, whose waiting costs more than they win here.
   using SetThreads = void (*)(int);
   const auto set_threads =
       reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
   if (set_threads != nullptr) set_threads(threads);
-  static bool told = false;
-  if (told || HasFastBlas()) return "";
-  told = true;
-  return "libblas.so.3 is the reference BLAS, some ten times slower than OpenBLAS; install "
-         "libopenblas0-pthread";
+  static std::once_flag looked;
+  std::call_once(looked, [] {
+    if (HasFastBlas()) return;
+    torch_warning =
+        "libblas.so.3 is the reference BLAS, some ten times slower than OpenBLAS; install "
+        "libopenblas0-pthread";
+  });
 }
+
+std::string TakeTorchWarning() { return std::exchange(torch_warning, {}); }
 
 HeadImpl::HeadImpl(std::int64_t inputs, bool dueling)
     : advantage_(register_module("advantage", nn::Linear(inputs, kActionCount))) {

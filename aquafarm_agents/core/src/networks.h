@@ -20,9 +20,8 @@ namespace aquafarm::agents {
 /// The device that a name stands for. @throws InputError when it is cuda and there is none
 torch::Device FindDevice(const std::string& name);
 
-/// Sets the library's threads, and tells once, as a line for people, when its BLAS is the slow
-/// reference one; empty otherwise.
-std::string PrepareTorch(std::int32_t threads);
+/// Sets the library's threads. A slow BLAS is noted for TakeTorchWarning.
+void PrepareTorch(std::int32_t threads);
 
 /// Q(s, ·) from features: hidden - ReLU - hidden - ReLU - head.
 /// The head is one layer, or V + A − mean A when dueling.

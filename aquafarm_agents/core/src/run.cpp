@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "aquafarm/agents/algorithms.h"
+#include "aquafarm/agents/dqn.h"
 #include "aquafarm/agents/options.h"
 #include "aquafarm/agents/random_policy.h"
 #include "aquafarm/agents/saved_policy.h"
@@ -88,6 +89,8 @@ void Run::All(const MakeEnvironment& make_environment) {
       make_environment(algorithm.encodings(LearnerOptionsOf(options_)));
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
+  const std::string warning = TakeTorchWarning();
+  if (!warning.empty()) Tell(RunPhase::kStarting, warning);
   Train(*environment, *learner, folder);
   if (report_.code != ExitCode::kOk) return;
   SavePolicy(*environment, *learner, folder);

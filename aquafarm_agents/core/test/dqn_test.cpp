@@ -15,10 +15,10 @@ namespace {
 
 constexpr const char* kSmall =
     "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
-    "learning_rate=0.002 ";
+    "learning_rate=linear:0.002:0.0001:1 ";
 constexpr const char* kSmallRecurrent =
     "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=8 "
-    "burn_in=4 learning_rate=0.003 ";
+    "burn_in=4 learning_rate=linear:0.003:0.0001:1 ";
 
 /// Success of a greedy policy on seeds never trained on, before and after training.
 struct Progress {
@@ -68,7 +68,7 @@ TEST(Curiosity, GoesWithEveryLearnerOfValues) {
 TEST(Dqn, SolvesItFromThePlanes) {
   ExpectSolves("dqn",
                "network=cnn hidden=16 batch=32 start=500 replay=5000 target_period=50 "
-               "learning_rate=0.002",
+               "learning_rate=linear:0.002:0.0001:1",
                12000);
 }
 
@@ -81,7 +81,7 @@ TEST(RecurrentDqn, SolvesATinyFarm) {
 TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
   ExpectSolves("lstm_dqn",
                "hidden=24 batch=64 start=500 replay=5000 target_period=50 steps_per_update=4 "
-               "sequence=1 burn_in=0 learning_rate=0.003",
+               "sequence=1 burn_in=0 learning_rate=linear:0.003:0.0001:1",
                24000);
 }
 

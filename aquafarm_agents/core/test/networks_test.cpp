@@ -202,7 +202,9 @@ TEST(FlatParameters, AreTheNetworksOwn) {
 }
 
 TEST(DrawWeights, KeepsToPyTorchsLimits) {
-  const auto network = MakeNetwork(SmallSpec(), {}, 3);
+  DeepOptions options;
+  options.hidden = 128;
+  const auto network = MakeNetwork(SmallSpec(), options, 3);
   for (const auto& item : network->named_parameters()) {
     const std::int64_t fan_in = item.key().rfind("first", 0) == 0 ? 5 : 128;
     const double limit = 1.0 / std::sqrt(static_cast<double>(fan_in));

@@ -107,6 +107,7 @@ def make_jobs(options, contestants, folder):
                 commands.append([
                     train, *farm, "--algorithm", one.name, "--episodes", str(options.episodes),
                     "--seed", str(seed), "--run-dir", str(run), "--evaluate", "0", "--random", "0",
+                    "--checkpoint-period", "120",
                     *(["--exploration", one.exploration] if one.exploration else []),
                     *(word for option in one.options for word in ("--set", option)),
                     *(["--resume"] if _has_begun(run) else [])])
@@ -209,7 +210,8 @@ def _conclude(folder, contestants, found, settings, seconds, options):
     settings = dict(
         settings, version=evaluation["version"], scenario_name=evaluation["scenario"],
         scenario_hash=evaluation["scenario_hash"], wall_s=round(seconds, 1), jobs=options.jobs,
-        machine={"processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg()})
+        machine={"processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg(),
+                 "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE")})
     results.write(folder, settings, rows, found)
 
     pictures = folder / "figures"

@@ -17,8 +17,8 @@ class Contestant:
     episodes: int = 0  # of evaluation at most; 0: as many as asked for
 
 
-# Exploration ends early, as learning does: 2,000 episodes are few for tables, many for networks.
-_SOON = "epsilon_greedy:linear:1:0.01:0.05"
+# Networks have seen enough of chance after some thirty long episodes, tables after a thousand.
+_SOON = "epsilon_greedy:linear:1:0.005:0.015"
 
 CONTESTANTS = (
     Contestant("random", "RANDOM", "#7f7f7f", cost=0.05),
@@ -27,10 +27,8 @@ CONTESTANTS = (
     Contestant("sarsa", "SARSA", "#17becf", cost=0.02,
                exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
     Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_SOON,
-               options=("hidden=256", "steps_per_update=2",
-                        "learning_rate=linear:0.0005:0.00001:1")),
-    Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=3.0, exploration=_SOON,
-               options=("steps_per_update=4", "learning_rate=linear:0.0005:0.00001:1")),
+               options=("steps_per_update=1",)),
+    Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=5.0, exploration=_SOON),
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100),
 )
 OPTIMUM = Contestant("clairvoyant", "clairvoyant", "#000000", learns=False, cost=0.2)

@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -116,6 +117,7 @@ def run_all(jobs, at_once, report, period_s=10.0):
                 running.remove(job)
                 if code == 0 and is_complete(job.result):
                     progress.finish(job)
+                    shutil.rmtree(job.folder / "checkpoints", ignore_errors=True)
                 elif code == _REFUSED:
                     declined.setdefault(job.contestant, job.last_words())
                     waiting = [one for one in waiting if one.contestant != job.contestant]

@@ -26,12 +26,13 @@ std::string_view ToString(LossKind value);
 /// measured to do well on the shipped farms, and *paper*, §3.4.3 as printed with every switch off.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
-  std::int32_t hidden{128};  ///< units of a hidden layer; of the LSTM when recurrent
-  Schedule learning_rate{ScheduleKind::kConstant, 5e-4, 0.0, 1.0};  ///< of Adam
+  std::int32_t hidden{256};  ///< units of a hidden layer; of the LSTM when recurrent
+  Schedule learning_rate{ScheduleKind::kLinear, 5e-4, 1e-5, 1.0};  ///< of Adam
   double discount{0.97};
-  ExplorationOptions exploration;
+  ExplorationOptions exploration{
+      ExplorationKind::kEpsilonGreedy, {ScheduleKind::kLinear, 1.0, 0.005, 0.1}, {}};
   std::int32_t batch{64};            ///< transitions, or sequences, of an update
-  double steps_per_update{4.0};      ///< farm steps between updates
+  double steps_per_update{2.0};      ///< farm steps between updates
   std::uint64_t start{5000};         ///< farm steps before the first update
   std::uint64_t replay{100000};      ///< transitions kept
   std::uint64_t target_period{250};  ///< updates between copies to the target network (hard)
@@ -42,15 +43,15 @@ struct DeepOptions {
   // Switches beyond §3.4.3, with their sources.
   bool double_q{true};        ///< van Hasselt et al. 2016
   bool dueling{false};        ///< Wang et al. 2016
-  std::int32_t n_step{3};     ///< Sutton 1988; 1: off
-  double priority{0.0};       ///< exponent α of Schaul et al. 2016; 0: uniform
+  std::int32_t n_step{1};     ///< Sutton 1988; 1: off
+  double priority{0.6};       ///< exponent α of Schaul et al. 2016; 0: uniform
   double importance{0.4};     ///< exponent β of the same, at the start; 1 at the end
   double reward_scale{0.05};  ///< 1: off
   bool mask_illegal{true};    ///< never try, nor bootstrap on, actions that would be ILLEGAL
 
   // Recurrent alone (R2D2: Kapturowski et al. 2019).
-  std::int32_t sequence{16};  ///< steps learnt from; 1 with burn_in 0: the paper's literal tuples
-  std::int32_t burn_in{8};    ///< steps before them that only warm up the state
+  std::int32_t sequence{4};  ///< steps learnt from; 1 with burn_in 0: the paper's literal tuples
+  std::int32_t burn_in{2};   ///< steps before them that only warm up the state
 
   std::string device{"auto"};  ///< auto, cpu or cuda
   std::int32_t threads{1};     ///< of the network library on the CPU

@@ -26,6 +26,10 @@ std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed
 /// @throws InputError when the policy does not fit farms of `spec`, with the reason
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
+/// What there is to warn of about the network library, told once, after a learner or a policy was
+/// made; one line for people, empty: nothing.
+std::string TakeTorchWarning();
+
 // The same of LSTM-DQN.
 std::uint8_t RecurrentDqnEncodings(const std::string& options);
 std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint64_t seed,

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "aquafarm/agents/dqn.h"
 #include "aquafarm/agents/evaluation.h"
 #include "aquafarm/agents/exit_code.h"
 #include "aquafarm/agents/saved_policy.h"
@@ -21,6 +22,14 @@ namespace {
 
 namespace agents = aquafarm::agents;
 using agents::ExitCode;
+
+std::unique_ptr<agents::Policy> MakeAndWarn(const agents::SavedPolicy& saved,
+                                            const agents::EnvironmentSpec& spec) {
+  auto policy = agents::MakePolicy(saved, spec);
+  const std::string warning = agents::TakeTorchWarning();
+  if (!warning.empty()) ROS_WARN("%s", warning.c_str());
+  return policy;
+}
 
 struct PolicyParams {
   std::string policy;
@@ -67,7 +76,7 @@ ExitCode Evaluate(const ros::NodeHandle& node, const PolicyParams& params,
   options.stop = &stop_requested;
   options.on_notice = [](const std::string& text) { ROS_WARN("%s", text.c_str()); };
   RosEnvironment environment(node, options);
-  const auto policy = agents::MakePolicy(saved, environment.spec());
+  const auto policy = MakeAndWarn(saved, environment.spec());
   const agents::Evaluation evaluation =
       agents::Evaluate(environment, *policy, static_cast<std::uint64_t>(params.seed),
                        params.episodes, &stop_requested, [&params](std::size_t over) {
@@ -91,7 +100,7 @@ ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
   options.wait_limit_s = params.sim_timeout_s;
   options.stop = &stop_requested;
   ShipDriver driver(node, saved.encodings, options);
-  const auto policy = agents::MakePolicy(saved, driver.spec());
+  const auto policy = MakeAndWarn(saved, driver.spec());
   ROS_INFO("driving with %s", saved.path.c_str());
   const auto ended =
       driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);

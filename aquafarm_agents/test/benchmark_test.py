@@ -3,6 +3,7 @@
 """A small benchmark: what it ends in, killed, resumed, interrupted, refused."""
 import csv
 import dataclasses
+import fcntl
 import json
 import os
 import pathlib
@@ -12,6 +13,7 @@ import tempfile
 import time
 import unittest
 
+import numpy as np
 import rostest
 from matplotlib import image
 
@@ -22,6 +24,7 @@ from processes import DATA, Program, program  # noqa: E402
 
 FIGURES = {"rewards", "average_rewards", "mean_square_error", "mean_score", "repeated_trainings",
            "route_random", "route_q_learning", "route_planner", "route_clairvoyant"}
+BLUE = (31, 119, 180)  # Q-learning's curve
 
 
 def is_running(words):
@@ -61,7 +64,8 @@ class BenchmarkTest(unittest.TestCase):
         self.assertEqual(1.0, rows["q_learning"]["stability"])
         self.assertLess(rows["random"]["ea_paper"], rows["q_learning"]["ea_paper"])
         self.assertEqual([1, 2], [run["seed"] for run in everything["runs"]["q_learning"]])
-        self.assertEqual("tiny", everything["settings"]["scenario_name"])
+        self.assertEqual(1, rows["random"]["runs"], "another seed of RANDOM is the same again")
+        self.assertEqual("tiny", everything["settings"]["scenario"])
         self.assertTrue(everything["settings"]["scenario_hash"])
         with open(self.folder / "out/table.csv", newline="") as file:
             self.assertEqual(len(rows), len(list(csv.DictReader(file))))
@@ -69,7 +73,11 @@ class BenchmarkTest(unittest.TestCase):
         pictures = {path.stem: path for path in (self.folder / "out/figures").glob("*.png")}
         self.assertEqual(FIGURES, set(pictures))
         for name, path in pictures.items():
-            self.assertGreater(image.imread(path).std(), 0.05, name)
+            pixels = image.imread(path)[..., :3]
+            self.assertGreater(len(np.unique(pixels.reshape(-1, 3), axis=0)), 20, name)
+            if not name.startswith("route"):
+                near = np.abs(255.0 * pixels - BLUE).max(axis=-1) < 8
+                self.assertGreater(near.sum(), 100, f"{name} shows no Q-learning")
 
     def test_killed_it_goes_on_and_ends_in_the_same_numbers(self):
         arguments = ("--algorithms", "q_learning", "--jobs", "2")
@@ -77,15 +85,16 @@ class BenchmarkTest(unittest.TestCase):
         self.assertEqual(0, whole.code(), whole.words())
         part = self.start("parts", *arguments, episodes=60000)
         trainings = self.folder / "parts/runs/q_learning"
-        part.wait_for(lambda: len(list(trainings.glob("*/metrics.csv"))) == 2, "two trainings")
+        part.wait_for(lambda: sum(path.stat().st_size > 4096
+                                  for path in trainings.glob("*/metrics.csv")) == 2,
+                      "two trainings")
         part.send(signal.SIGKILL)
         part.code()
-        end = time.monotonic() + 30.0
-        while is_running(str(trainings)):  # the trainings save and end by themselves
-            self.assertLess(time.monotonic(), end, "the trainings outlive the benchmark")
-            time.sleep(0.05)
+        self.assertFalse(list(trainings.glob("*/evaluation.json")), "it was over already")
         rest = self.start("parts", *arguments, episodes=60000)
         self.assertEqual(0, rest.code(), rest.words())
+        logs = [path.read_text() for path in trainings.glob("*.log")]
+        self.assertEqual(2, sum("resuming from" in text for text in logs), "\n".join(logs))
         for name in ("runs.csv", "table.csv", "table.md"):
             self.assertEqual((self.folder / "whole" / name).read_text(),
                              (self.folder / "parts" / name).read_text(), name)
@@ -97,6 +106,43 @@ class BenchmarkTest(unittest.TestCase):
         self.assertIn("3 of 3 runs are there already", again.words())
         self.assertEqual(before, {path: path.stat().st_mtime_ns
                                   for path in trainings.rglob("policy.ckpt")})
+
+    def test_killed_it_leaves_nothing_running(self):
+        one = self.start("out", "--algorithms", "q_learning", episodes=10000000)
+        trainings = self.folder / "out/runs/q_learning"
+        one.wait_for(lambda: list(trainings.glob("*/metrics.csv")), "a training")
+        self.assertTrue(is_running(str(trainings)))
+        one.send(signal.SIGKILL)
+        end = time.monotonic() + 30.0
+        while is_running(str(trainings)):  # the trainings save and end by themselves
+            self.assertLess(time.monotonic(), end, "the trainings outlive the benchmark")
+            time.sleep(0.05)
+
+    def test_a_folder_in_use_is_refused_once_it_was_waited_for(self):
+        folder = self.folder / "out"
+        folder.mkdir()
+        (folder / "benchmark.json").write_text("{}")
+        with open(folder / "lock", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            one = self.start("out")
+            self.assertEqual(2, one.code(), one.words())
+        self.assertIn("is in use; waiting up to 15 s", one.words())
+        self.assertIn("is in use by another benchmark", one.words())
+
+    def test_runs_that_learnt_otherwise_are_not_pooled(self):
+        first = self.start("out", "--algorithms", "q_learning", episodes=40)
+        self.assertEqual(0, first.code(), first.words())
+        path = self.folder / "out/runs/q_learning/seed_2/run.json"
+        path.write_text(path.read_text().replace("discount=0.97", "discount=0.5"))
+        again = self.start("out", "--algorithms", "q_learning", episodes=40)
+        self.assertEqual(2, again.code(), again.words())
+        self.assertIn("q_learning: its runs were made with different options", again.words())
+
+    def test_a_run_that_cannot_be_resumed_fails_and_is_not_left_out(self):
+        job = runs.Job("dqn", "dqn 1", self.folder / "dqn", self.folder / "dqn/evaluation.json",
+                       [["sh", "-c", "echo damaged; exit 2"]], 1.0, resumes=True)
+        with self.assertRaisesRegex(runs.RunFailed, "^dqn 1: exit code 2: damaged"):
+            runs.run_all([job], 1, lambda text: None)
 
     def test_interrupted_it_says_how_to_go_on(self):
         one = self.start("out", "--algorithms", "q_learning", episodes=10000000)
@@ -128,6 +174,7 @@ class BenchmarkTest(unittest.TestCase):
                 (("--algorithms", "dqm"), "algorithms: got 'dqm', expected some of: random"),
                 (("--profile", "long"), "profile: got 'long', expected one of: full, quick"),
                 (("--runs", "-1"), "runs: got -1, expected 1 or more"),
+                (("--runs", "1e1"), "argument --runs: invalid int value: '1e1'"),
                 (("--output", self.folder / "full"), "is not empty and holds no benchmark"),
                 (("--programs", self.folder), "there is no aquafarm_evaluate in")):
             with self.subTest(arguments=arguments):

@@ -36,6 +36,22 @@ class MeasuresTest(unittest.TestCase):
         self.assertIsNone(measures.convergence(relapse, np.ones(400)))
         self.assertIsNone(measures.convergence(np.linspace(0.0, 100.0, 400), np.ones(400)))
 
+    def test_a_settled_mean_may_wander_as_chance_has_it(self):
+        chance = np.random.Generator(np.random.PCG64(2))
+        success = np.ones(2000)
+        noisy = 250.0 + chance.normal(scale=50.0, size=2000)
+        noisy[:100] -= 1000.0
+        self.assertIsNone(measures.convergence(noisy, success))
+        self.assertLess(measures.convergence(noisy, success, measures.NOISE), 160)
+        # Where 5 % is the wider band, it is the band.
+        calm = np.concatenate((np.zeros(100), np.full(300, 100.0)))
+        self.assertEqual(148, measures.convergence(calm, np.ones(400), measures.NOISE))
+
+    def test_a_run_that_never_converges_counts_in_the_median(self):
+        self.assertEqual(300.0, measures.median_convergence([100, 300, None]))
+        self.assertIsNone(measures.median_convergence([100, None, None]))
+        self.assertIsNone(measures.median_convergence([None]))
+
     def test_an_interquartile_mean_leaves_out_a_quarter_at_either_end(self):
         self.assertAlmostEqual(3.5, measures.interquartile_mean([100, 1, 2, 3, 4, 5, 6, -50]))
         self.assertAlmostEqual(2.0, measures.interquartile_mean([1, 2, 3]))
@@ -62,10 +78,11 @@ class MeasuresTest(unittest.TestCase):
                                                      "e": 900}))
         self.assertEqual({"a": 4, "b": 4}, measures.convergence_ranks({"a": 70, "b": 70}))
 
-    def test_ea_gives_what_the_paper_prints_but_for_random(self):
+    def test_ea_is_equation_16(self):
+        # LSTM-DQN's row of Table 1.
         self.assertAlmostEqual(1.67, measures.ea_paper(1.67, 1.0, 4, 1.0), places=2)
-        # RANDOM's row gives -0.80; the paper prints -0.7.
-        self.assertAlmostEqual(-0.80, measures.ea_paper(-10.0, 0.0, 1, 0.0))
+        self.assertAlmostEqual(0.1 * -3.0 + 0.3 * 0.5 + 0.2 * 2 + 0.4 * 0.25,
+                               measures.ea_paper(-3.0, 0.5, 2, 0.25))
 
     def test_the_normalised_ea_lies_between_nothing_and_one(self):
         self.assertEqual(0.0, measures.ea_normalised(-5.0, 0.0, None, 0.0, 100))
@@ -75,13 +92,14 @@ class MeasuresTest(unittest.TestCase):
 
     def test_the_table_shows_the_papers_rows_beneath_ours(self):
         row = {"name": "lstm_dqn", "label": "LSTM-DQN", "return_per_step": 4.5,
-               "success_rate": 1.0, "convergence": 120.0, "stability": 1.0, "ea_paper": 1.95,
+               "success_rate": 1.0, "convergence": 420.0, "stability": 0.9, "settled": 280.0,
+               "stability_settled": 1.0, "ea_paper": 1.95,
                "ea_normalised": 0.97, "return_iqm": 265.0, "return_interval": [260.0, 270.0],
                "share_of_optimum": 0.955}
         lines = results.table([row]).splitlines()
-        self.assertEqual("| LSTM-DQN | 4.50 | 1.000 | 120 | 1.0 | 1.95 | 0.97 | 265.0 "
+        self.assertEqual("| LSTM-DQN | 4.50 | 1.000 | 420 | 0.9 | 280 (1.0) | 1.95 | 0.97 | 265.0 "
                          "(260.0 … 270.0) | 0.955 |", lines[2])
-        self.assertEqual("| *LSTM-DQN, paper* | 1.67 | 1.0 | 300 | 1.0 | 1.67 | – | – | – |",
+        self.assertEqual("| *LSTM-DQN, paper* | 1.67 | 1.0 | 300 | 1.0 | – | 1.67 | – | – | – |",
                          lines[3])
 
 

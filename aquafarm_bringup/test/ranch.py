@@ -69,7 +69,7 @@ class Ranch:
             raise AssertionError(f"still running: {error}\n{self.words()[-4000:]}") from None
         if not self._exit_file.exists():
             raise AssertionError(f"no exit code was left:\n{self.words()[-4000:]}")
-        return int(self._exit_file.read_text())
+        return int(self._exit_file.read_text().split()[0])
 
     def wait_for(self, what, limit_s):
         """Waits until what() is true; returns its value."""

@@ -32,6 +32,15 @@ class RunNodeTest(unittest.TestCase):
         self.assertEqual(7, self.run_node("sh", "-c", "exit 7").returncode)
         self.assertEqual("7\n", self.exit_file.read_text())
 
+    def test_a_failures_last_words_are_kept_and_shown(self):
+        done = self.run_node("sh", "-c", r"echo fine; printf '\033[31mno such farm\033[0m\n\n' >&2; "
+                             "exit 2")
+        self.assertEqual("2\nno such farm\n", self.exit_file.read_text())
+        self.assertIn("no such farm", done.stdout)
+        self.exit_file.unlink()
+        self.run_node("sh", "-c", "echo a warning >&2")
+        self.assertEqual("0\n", self.exit_file.read_text())
+
     def test_a_crash_is_kept(self):
         self.run_node("sh", "-c", "kill -9 $$")
         self.assertEqual("137\n", self.exit_file.read_text())

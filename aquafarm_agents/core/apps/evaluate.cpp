@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "app.h"
+#include "aquafarm/agents/dqn.h"
 #include "aquafarm/agents/evaluation.h"
 #include "aquafarm/agents/exit_code.h"
 #include "aquafarm/agents/local_environment.h"
@@ -43,6 +44,8 @@ ExitCode Run(Arguments arguments) {
   const auto scenario = arguments.scenario.Load();
   LocalEnvironment environment(scenario, arguments.environment);
   const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
+  const std::string warning = TakeTorchWarning();
+  if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
   const Evaluation evaluation =
       Evaluate(environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
                [&arguments](std::size_t over) {
@@ -52,18 +55,21 @@ ExitCode Run(Arguments arguments) {
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
   std::fflush(stdout);  // before what may still go wrong
+  // The evaluation comes last: where it is, all is there.
+  if (!arguments.route.empty() && evaluation.complete) {
+    const auto make_policy = [&saved](const EnvironmentSpec& spec) {
+      return MakePolicy(saved, spec);
+    };
+    const Route route =
+        TraceRoute(scenario, saved.encodings, make_policy, arguments.seed, 0, &stop_requested);
+    if (stop_requested) return ExitCode::kInterrupted;
+    WriteRoute(arguments.route, route, environment.spec());
+  }
   if (!arguments.output.empty()) {
     const EnvironmentSpec& spec = environment.spec();
     WriteEvaluation(arguments.output, evaluation,
                     {saved.path, saved.checkpoint.algorithm, saved.checkpoint.steps,
                      spec.scenario_name, spec.scenario_hash, spec.version, spec.farms});
-  }
-  if (!arguments.route.empty()) {
-    const auto make_policy = [&saved](const EnvironmentSpec& spec) {
-      return MakePolicy(saved, spec);
-    };
-    const Route route = TraceRoute(scenario, saved.encodings, make_policy, arguments.seed, 0);
-    WriteRoute(arguments.route, route, environment.spec());
   }
   return evaluation.complete ? ExitCode::kOk : ExitCode::kInterrupted;
 }

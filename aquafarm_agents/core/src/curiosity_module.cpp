@@ -41,18 +41,9 @@ CuriosityNetwork::Output CuriosityNetwork::Forward(const torch::Tensor& from,
   const torch::Tensor b = phi_->forward(to);
   const torch::Tensor chosen = inverse_->forward(torch::cat({a, b}, 1));
   const torch::Tensor taken = torch::one_hot(actions, kActionCount).to(a.dtype());
-  // φ is taught by the inverse model alone, or the forward model would flatten it to foresee it.
   const torch::Tensor foreseen = forward_->forward(torch::cat({a.detach(), taken}, 1));
   return {(foreseen - b.detach()).square().sum(1) * 0.5,
           torch::nn::functional::cross_entropy(chosen, actions)};
-}
-
-torch::Tensor CuriosityNetwork::Error(const torch::Tensor& from, const torch::Tensor& to,
-                                      const torch::Tensor& actions) {
-  const torch::NoGradGuard no_grad;
-  const torch::Tensor taken = torch::one_hot(actions, kActionCount).to(from.dtype());
-  const torch::Tensor foreseen = forward_->forward(torch::cat({phi_->forward(from), taken}, 1));
-  return (foreseen - phi_->forward(to)).square().sum(1) * 0.5;
 }
 
 CuriosityModule::CuriosityModule(std::int64_t features, std::uint64_t seed)
@@ -67,9 +58,13 @@ CuriosityModule::CuriosityModule(std::int64_t features, std::uint64_t seed)
 void CuriosityModule::Step(std::vector<float>& from, std::vector<float>& to,
                            std::vector<std::int64_t>& actions, std::vector<float>& errors) {
   const auto count = static_cast<std::int64_t>(actions.size());
-  const torch::Tensor error = network_->Error(View(from, {count, features_}),
-                                              View(to, {count, features_}), View(actions, {count}));
-  errors.assign(error.data_ptr<float>(), error.data_ptr<float>() + count);
+  {
+    const torch::NoGradGuard no_grad;
+    const auto output = network_->Forward(View(from, {count, features_}),
+                                          View(to, {count, features_}), View(actions, {count}));
+    const float* const error = output.error.data_ptr<float>();
+    errors.assign(error, error + count);
+  }
   from_.insert(from_.end(), from.begin(), from.end());
   to_.insert(to_.end(), to.begin(), to.end());
   actions_.insert(actions_.end(), actions.begin(), actions.end());

@@ -25,9 +25,6 @@ class CuriosityNetwork final : public torch::nn::Module {
   /// @param from, to [B, F] observations
   /// @param actions [B] int64
   Output Forward(const torch::Tensor& from, const torch::Tensor& to, const torch::Tensor& actions);
-  /// The error alone; [B]
-  torch::Tensor Error(const torch::Tensor& from, const torch::Tensor& to,
-                      const torch::Tensor& actions);
 
  private:
   torch::nn::Sequential phi_{nullptr};

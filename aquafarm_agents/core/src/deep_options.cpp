@@ -97,6 +97,12 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   if (recurrent) {
     ReadWhole(reader, "sequence", 1, 1000, options.sequence);
     ReadWhole(reader, "burn_in", 0, 1000, options.burn_in);
+    // Beyond it, steps near an episode's beginning would never be learnt from.
+    if (options.burn_in > 0 && options.burn_in >= options.sequence) {
+      throw InputError("burn_in: got " + std::to_string(options.burn_in) +
+                       ", expected less than sequence, which is " +
+                       std::to_string(options.sequence));
+    }
   }
   constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
   enum class Device : std::uint8_t { kAuto, kCpu, kCuda };

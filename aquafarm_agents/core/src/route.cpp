@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/route.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "aquafarm/agents/evaluation.h"
@@ -28,26 +29,37 @@ std::vector<Cell> FreeCells(const Farm& farm) {
   return cells;
 }
 
-// One farm a cell, so that the policy is asked once for all.
+constexpr std::size_t kCellsAtOnce = 64;
+
+bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop; }
+
+// A farm for each of many cells, so that the policy is asked once for all of them.
 std::vector<BestMove> BestMoves(const Farm& farm, const std::shared_ptr<const Scenario>& scenario,
-                                std::uint8_t encodings, const MakePolicyFor& make_policy) {
+                                std::uint8_t encodings, const MakePolicyFor& make_policy,
+                                const std::atomic<bool>* stop) {
   if (scenario->width * scenario->height > kMaxCells) return {};
   const std::vector<Cell> cells = FreeCells(farm);
   const std::string state = farm.Save();
-  FarmBatch farms(scenario, static_cast<std::int32_t>(cells.size()));
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    Farm& one = farms.farm(static_cast<std::int32_t>(i));
-    one.Load(state);
-    one.PlaceShip(0, cells[i]);
-  }
-  LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
-  const std::unique_ptr<Policy> policy = make_policy(environment.spec());
-  policy->Begin(farm.seed(), farms.farms());
-  std::vector<std::uint8_t> actions;
-  policy->Act(environment.Load(farms.Save()), actions);
-  const auto agents = static_cast<std::size_t>(environment.spec().agents);
   std::vector<BestMove> moves;
-  for (std::size_t i = 0; i < cells.size(); ++i) moves.push_back({cells[i], actions[i * agents]});
+  std::vector<std::uint8_t> actions;
+  while (moves.size() < cells.size() && !IsStopped(stop)) {
+    const std::size_t first = moves.size();
+    const std::size_t count = std::min(kCellsAtOnce, cells.size() - first);
+    FarmBatch farms(scenario, static_cast<std::int32_t>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      Farm& one = farms.farm(static_cast<std::int32_t>(i));
+      one.Load(state);
+      one.PlaceShip(0, cells[first + i]);
+    }
+    LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
+    const std::unique_ptr<Policy> policy = make_policy(environment.spec());
+    policy->Begin(farm.seed(), farms.farms());
+    policy->Act(environment.Load(farms.Save()), actions);
+    const auto agents = static_cast<std::size_t>(environment.spec().agents);
+    for (std::size_t i = 0; i < count; ++i) {
+      moves.push_back({cells[first + i], actions[i * agents]});
+    }
+  }
   return moves;
 }
 
@@ -109,7 +121,8 @@ RouteStep Look(const Farm& farm) {
 }  // namespace
 
 Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
-                 const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode) {
+                 const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
+                 const std::atomic<bool>* stop) {
   LocalEnvironment environment(scenario, {1, encodings, false, 1});
   const std::unique_ptr<Policy> policy = make_policy(environment.spec());
   policy->Begin(EvaluationSeed(seed), 1);
@@ -117,16 +130,16 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
   const Farm& farm = environment.batch().farm(0);
   const Results* results = &environment.Reset(EvaluationSeed(seed), episode);
   route.layout = farm.shared_layout();
-  route.at_start = BestMoves(farm, scenario, encodings, make_policy);
+  route.at_start = BestMoves(farm, scenario, encodings, make_policy, stop);
   route.steps.push_back(Look(farm));
   std::vector<std::uint8_t> actions;
-  while (!farm.over()) {
+  while (!farm.over() && !IsStopped(stop)) {
     policy->Act(*results, actions);
     route.steps.back().action = actions[0];
     results = &environment.Step(actions);
     route.steps.push_back(Look(farm));
     if (route.after_pickup.empty() && farm.ships()[0].aboard > 0 && !farm.over()) {
-      route.after_pickup = BestMoves(farm, scenario, encodings, make_policy);
+      route.after_pickup = BestMoves(farm, scenario, encodings, make_policy, stop);
     }
   }
   route.result = ToResult(farm.record(), 0);

@@ -61,9 +61,9 @@ void ValueOptimizer::Update(const torch::Tensor& predicted, const torch::Tensor&
 void ValueOptimizer::Measure(const torch::Tensor& predicted, const torch::Tensor& targets,
                              const torch::Tensor& weights) {
   const torch::NoGradGuard no_grad;
-  const double sum = ((predicted - targets).square_() * weights).sum().item<double>();
-  const double error = sum / (options_.reward_scale * options_.reward_scale);
-  const auto value = static_cast<float>(error);
+  const torch::Tensor mean = ((predicted - targets).square_() * weights).sum() / weights.sum();
+  const double scale = options_.reward_scale * options_.reward_scale;
+  const auto value = static_cast<float>(mean.item<double>() / scale);
   loss_ = std::isnan(loss_) ? value : loss_ + kErrorShare * (value - loss_);
 }
 

@@ -41,8 +41,8 @@ class ValueOptimizer {
   void Update(const torch::Tensor& predicted, const torch::Tensor& targets,
               const torch::Tensor& weights, const BatchOrigin& origin);
 
-  /// Its loss is the mean square error in squared units of reward, whatever loss is minimised and
-  /// however rewards are scaled (Fig. 12).
+  /// Its loss is the mean square error, weighted as the updates are, in squared units of reward,
+  /// whatever loss is minimised and however rewards are scaled (Fig. 12).
   LearnerStatus status(double exploration) const;
   const FlatParameters& online() const { return online_.parameters(); }
   std::uint64_t updates() const { return updates_; }

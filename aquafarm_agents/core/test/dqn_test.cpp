@@ -112,6 +112,12 @@ TEST(Dqn, WrongOptionsAreAnsweredWithWhatIsAllowed) {
   }
 }
 
+TEST(RecurrentDqn, WarmsUpForLessThanItLearnsFrom) {
+  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("sequence=4 burn_in=4"); }),
+                  "burn_in: got 4, expected less than sequence, which is 4");
+  RecurrentDqnEncodings("sequence=1 burn_in=0");
+}
+
 TEST(Dqn, ALossThatIsNoNumberEndsTheTraining) {
   const std::string options = "hidden=8 batch=8 start=10 replay=500";
   LocalEnvironment environment(TinyFarm(), {8, kFeaturesBit, false, 1});

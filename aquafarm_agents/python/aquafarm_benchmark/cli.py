@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The program aquafarm_benchmark."""
 import argparse
+import fcntl
 import json
 import os
 import pathlib
@@ -9,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 from aquafarm_benchmark import results, runs
@@ -19,14 +21,23 @@ _EPILOG = """exit codes: 0 all is there, 1 some runs failed (the others are kept
 3 storage, 130 interrupted (the same command goes on)"""
 
 
+_LOCK_LIMIT_S = 15.0  # that trainings of a killed benchmark are given to save and end
+
+
 class BadInput(ValueError):
     """One line: what it got, what it expected."""
+
+
+class _Parser(argparse.ArgumentParser):
+
+    def error(self, message):
+        raise BadInput(message)
 
 
 def parse(arguments):
     """Arguments with the profile's numbers filled in."""
     names = [one.name for one in CONTESTANTS]
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="aquafarm_benchmark", epilog=_EPILOG,
         description="Trains every learner several times, measures them as the paper's §4.2 does, "
         "and ends with Table 1 beside ours and the figures. Killed or interrupted, the same "
@@ -46,8 +57,8 @@ def parse(arguments):
                         help="episodes of a training (default: the profile's)")
     parser.add_argument("--evaluation-episodes", type=int, default=0,
                         help="greedy episodes never trained on (default: the profile's)")
-    parser.add_argument("--max-steps", type=int, default=5000,
-                        help="step limit of an episode (default: 5000)")
+    parser.add_argument("--max-steps", type=int, default=0,
+                        help="step limit of an episode (default: the scenario's own)")
     parser.add_argument("--evaluation-seed", type=int, default=1000,
                         help="seed of those episodes, the same for all (default: 1000)")
     parser.add_argument("--jobs", type=int, default=0,
@@ -64,9 +75,10 @@ def parse(arguments):
         if getattr(options, name) == 0:
             setattr(options, name, getattr(profile, name))
     options.jobs = options.jobs or len(os.sched_getaffinity(0))
-    for name in ("runs", "episodes", "evaluation_episodes", "max_steps", "jobs"):
-        if getattr(options, name) < 1:
-            raise BadInput(f"{name}: got {getattr(options, name)}, expected 1 or more")
+    for name, least in (("runs", 1), ("episodes", 1), ("evaluation_episodes", 1), ("jobs", 1),
+                        ("max_steps", 0), ("evaluation_seed", 0)):
+        if getattr(options, name) < least:
+            raise BadInput(f"{name}: got {getattr(options, name)}, expected {least} or more")
     if options.algorithms == "all":
         options.algorithms = ",".join(names)
     options.algorithms = [name for name in options.algorithms.split(",") if name]
@@ -94,31 +106,33 @@ def find_program(name, folder):
 
 
 def make_jobs(options, contestants, folder):
-    """All runs: a job a seed for learners, one for those who only play."""
+    """All runs: a job a seed, one for those whom another seed teaches nothing else."""
     train = find_program("aquafarm_train", options.programs)
     evaluate = find_program("aquafarm_evaluate", options.programs)
     farm = [options.scenario, "--max-steps", str(options.max_steps)]
     jobs = []
     for one in contestants:
-        for seed in range(1, options.runs + 1) if one.learns else (1,):
+        for seed in range(1, options.runs + 1) if one.repeats else (1,):
+            resumes = False
             run = folder / "runs" / one.name / f"seed_{seed}"
             commands = []
             if one.learns:
+                resumes = _has_begun(run)
                 commands.append([
                     train, *farm, "--algorithm", one.name, "--episodes", str(options.episodes),
                     "--seed", str(seed), "--run-dir", str(run), "--evaluate", "0", "--random", "0",
                     "--checkpoint-period", "120",
                     *(["--exploration", one.exploration] if one.exploration else []),
                     *(word for option in one.options for word in ("--set", option)),
-                    *(["--resume"] if _has_begun(run) else [])])
+                    *(["--resume"] if resumes else [])])
             episodes = options.evaluation_episodes
             episodes = min(episodes, one.episodes) if one.episodes else episodes
             commands.append([
                 evaluate, str(run) if one.learns else one.name, *farm, "--episodes", str(episodes),
                 "--seed", str(options.evaluation_seed), "--write", str(run / "evaluation"),
                 *(["--route", str(run / "route.json")] if seed == 1 else [])])
-            jobs.append(runs.Job(one.name, f"{one.name} {seed}" if one.learns else one.name, run,
-                                 run / "evaluation.json", commands, one.cost))
+            jobs.append(runs.Job(one.name, f"{one.name} {seed}" if one.repeats else one.name, run,
+                                 run / "evaluation.json", commands, one.cost, resumes))
     return jobs
 
 
@@ -126,9 +140,9 @@ def _has_begun(run):
     return (run / "run.json").exists() or any((run / "checkpoints").glob("step_*.ckpt"))
 
 
-def settings_of(options, contestants):
+def settings_of(options, contestants, farm):
     """What decides the results; a folder holds results of one such set."""
-    return {"scenario": options.scenario, "runs": options.runs, "episodes": options.episodes,
+    return {**farm, "runs": options.runs, "episodes": options.episodes,
             "evaluation_episodes": options.evaluation_episodes, "max_steps": options.max_steps,
             "evaluation_seed": options.evaluation_seed,
             "learners": {one.name: {"exploration": one.exploration, "options": list(one.options)}
@@ -136,15 +150,23 @@ def settings_of(options, contestants):
 
 
 def claim(folder, settings):
-    """Makes the folder, or refuses one that holds another benchmark."""
+    """Makes the folder, or refuses one that holds another benchmark or is at work.
+
+    Returns the descriptor that keeps it claimed, for as long as any process has it open."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "benchmark.json"
+    there = None
     if path.exists():
         try:
             there = json.loads(path.read_text())
         except ValueError:
             raise BadInput(f"{path}: is damaged; name another folder") from None
-        for key in ("scenario", "episodes", "evaluation_episodes", "max_steps", "evaluation_seed"):
+    elif any(folder.iterdir()):
+        raise BadInput(f"{folder}: is not empty and holds no benchmark; name another folder")
+    lock = _lock(folder)
+    if there is not None:
+        for key in (*_FARM_KEYS, "episodes", "evaluation_episodes", "max_steps",
+                    "evaluation_seed"):
             if there.get(key) != settings[key]:
                 raise BadInput(f"{folder}: holds a benchmark with {key} {there.get(key)}, got "
                                f"{settings[key]}; name another folder")
@@ -153,47 +175,85 @@ def claim(folder, settings):
                 raise BadInput(f"{folder}: holds runs of {name} with other settings; name another "
                                "folder")
         settings = dict(settings, learners={**there.get("learners", {}), **settings["learners"]})
-    elif any(folder.iterdir()):
-        raise BadInput(f"{folder}: is not empty and holds no benchmark; name another folder")
     results.write_atomically(path, json.dumps(settings, indent=2) + "\n")
+    return lock
 
 
-def check_scenario(options):
-    """Refuses a scenario that no one can play, before anything is made."""
+def _lock(folder):
+    lock = os.open(folder / "lock", os.O_RDWR | os.O_CREAT, 0o644)
+    end = time.monotonic() + _LOCK_LIMIT_S
+    told = False
+    while True:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return lock
+        except BlockingIOError:
+            if time.monotonic() > end:
+                os.close(lock)
+                raise BadInput(f"{folder}: is in use by another benchmark") from None
+            if not told:
+                _say(f"{folder} is in use; waiting up to {_LOCK_LIMIT_S:.0f} s for that to end")
+                told = True
+            time.sleep(0.1)
+
+
+_FARM_KEYS = ("scenario", "scenario_hash", "version")
+
+
+def look_at_farm(options):
+    """Name, hash and version of the farm; refuses a scenario that no one can play."""
     evaluate = find_program("aquafarm_evaluate", options.programs)
-    one = subprocess.run([evaluate, "random", options.scenario, "--episodes", "1", "--max-steps",
-                          str(options.max_steps)], capture_output=True, text=True, check=False)
-    if one.returncode != 0:
-        lines = one.stderr.strip().splitlines()
-        raise BadInput(lines[-1] if lines else f"scenario: got '{options.scenario}'")
+    with tempfile.TemporaryDirectory(prefix="aquafarm_") as folder:
+        one = subprocess.run([evaluate, "random", options.scenario, "--episodes", "1",
+                              "--max-steps", str(options.max_steps), "--write", f"{folder}/one"],
+                             capture_output=True, text=True, check=False)
+        if one.returncode != 0:
+            lines = one.stderr.strip().splitlines()
+            raise BadInput(lines[-1] if lines else f"scenario: got '{options.scenario}'")
+        found = json.loads(pathlib.Path(folder, "one.json").read_text())
+    return {key: found[key] for key in _FARM_KEYS}
+
+
+def _require_alike(name, of_one):
+    """Refuses to pool runs that learnt with other settings than their neighbours."""
+    kinds = set()
+    for run in of_one:
+        path = run["folder"] / "run.json"
+        kinds.add(json.loads(path.read_text())["options"] if path.exists() else "")
+    if len(kinds) > 1:
+        raise BadInput(f"{name}: its runs were made with different options ({'; '.join(kinds)}); "
+                       "remove their folders or name another one")
 
 
 def run(options):
     """The whole protocol: trains, measures, writes and draws."""
-    check_scenario(options)
     contestants = [one for one in CONTESTANTS if one.name in options.algorithms]
     folder = options.output.resolve()
-    settings = settings_of(options, contestants)
+    settings = settings_of(options, contestants, look_at_farm(options))
+    lock = claim(folder, settings)
     jobs = make_jobs(options, [*contestants, OPTIMUM], folder)
-    claim(folder, settings)
+    is_whole = not any(job.resumes or runs.is_complete(job.result) for job in jobs)
     start = time.monotonic()
     _say(f"{len(jobs)} runs, {options.jobs} side by side, in {folder}")
-    declined = runs.run_all(jobs, options.jobs, _say)
+    declined = runs.run_all(jobs, options.jobs, _say, lock)
     for name, reason in declined.items():
         _say(f"{name} does not take part: {reason}")
-    if len(declined) > len(contestants):
+    if all(one.name in declined for one in contestants):
         raise BadInput("nobody takes part")
     found = {}
     for job in jobs:
         if job.contestant not in declined:
             found.setdefault(job.contestant, []).append(results.read_run(job.folder))
+    for name, of_one in found.items():
+        _require_alike(name, of_one)
     seconds = time.monotonic() - start
-    _conclude(folder, [one for one in contestants if one.name in found], found, settings, seconds,
-              options)
+    settings.update(jobs=options.jobs, wall_s=round(seconds, 1) if is_whole else None)
+    _conclude(folder, [one for one in contestants if one.name in found], found, settings,
+              options.episodes)
     print(f"took {runs.describe_seconds(seconds)}; tables and figures are in {folder}")
 
 
-def _conclude(folder, contestants, found, settings, seconds, options):
+def _conclude(folder, contestants, found, settings, episodes):
     from aquafarm_benchmark import figures  # matplotlib takes a second that --help need not wait
 
     everyone = [*contestants, *([OPTIMUM] if OPTIMUM.name in found else [])]
@@ -204,14 +264,11 @@ def _conclude(folder, contestants, found, settings, seconds, options):
         # Some play fewer episodes; the optimum is then that of the same ones.
         count = found[one.name][0]["evaluation"]["episodes"]
         yardstick = results.mean_return(best["folder"] / "evaluation.csv", count) if best else None
-        rows.append(results.summarise(one, found[one.name], yardstick, options.episodes))
+        rows.append(results.summarise(one, found[one.name], yardstick, episodes))
     results.add_ea(rows)
-    evaluation = next(iter(found.values()))[0]["evaluation"]
-    settings = dict(
-        settings, version=evaluation["version"], scenario_name=evaluation["scenario"],
-        scenario_hash=evaluation["scenario_hash"], wall_s=round(seconds, 1), jobs=options.jobs,
-        machine={"processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg(),
-                 "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE")})
+    settings = dict(settings, machine={
+        "processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg(),
+        "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE")})
     results.write(folder, settings, rows, found)
 
     pictures = folder / "figures"
@@ -257,8 +314,8 @@ def main(arguments=None):
     except runs.RunFailed as error:
         print(f"some runs failed; the others are kept:\n{error}", file=sys.stderr)
         return _FAILED
-    except runs.Interrupted as error:
-        print(error, file=sys.stderr)
+    except (runs.Interrupted, KeyboardInterrupt) as error:
+        print(str(error) or "interrupted", file=sys.stderr)
         return _INTERRUPTED
     except (OSError, subprocess.SubprocessError) as error:
         print(f"storage: {error}", file=sys.stderr)

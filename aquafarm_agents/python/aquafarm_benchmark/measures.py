@@ -7,6 +7,7 @@ import numpy as np
 WINDOW = 50  # episodes in a moving mean
 BAND = 0.05  # share of the plateau within which a converged learner stays
 PLATEAU_SHARE = 0.25  # the last part of a training, whose mean is the plateau
+NOISE = 3.0  # standard errors that the wider band allows a settled mean
 PLATEAU_SUCCESS = 0.95  # a plateau with fewer successes is none
 WEIGHTS = {"return": 0.1, "success": 0.3, "convergence": 0.2, "stability": 0.4}  # Eq. 16
 BEST_RANK, FAILED_RANK = 4, 1  # of convergence in Table 1
@@ -24,18 +25,24 @@ def plateau(values):
     return float(values[-max(1, int(len(values) * PLATEAU_SHARE)):].mean())
 
 
-def convergence(returns, successes):
+def convergence(returns, successes, standard_errors=0.0):
     """First episode, counted from 1, from which the 50-episode mean return stays within 5 % of its
     final plateau.
 
     The number is that of the last episode in the first such mean. None when it never comes to
     stay: the plateau is no success, or the mean still leaves the band in the plateau's own
     episodes.
+
+    standard_errors: a band of so many standard errors of a 50-episode mean on the plateau, where
+    that is wider. Without it a policy that has long settled but whose episodes differ by more than
+    a tenth is said to converge late or never, by chance alone.
     """
     if len(returns) < 2 * WINDOW or plateau(successes) < PLATEAU_SUCCESS:
         return None
     level = plateau(returns)
-    outside = np.flatnonzero(np.abs(moving_mean(returns) - level) > BAND * abs(level))
+    tail = np.asarray(returns, dtype=float)[-int(len(returns) * PLATEAU_SHARE):]
+    band = max(BAND * abs(level), standard_errors * tail.std() / math.sqrt(WINDOW))
+    outside = np.flatnonzero(np.abs(moving_mean(returns) - level) > band)
     first = 0 if len(outside) == 0 else int(outside[-1]) + 1
     episode = first + WINDOW
     return episode if episode <= len(returns) * (1.0 - PLATEAU_SHARE) else None
@@ -66,6 +73,13 @@ def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2
     drawn = [statistic(values[pick]) for pick in picks]
     low, high = np.quantile(drawn, [(1.0 - level) / 2.0, (1.0 + level) / 2.0])
     return (float(low), float(high))
+
+
+def median_convergence(episodes):
+    """Median over runs, in which one that never converges (None) counts as endless; None when
+    that is the median."""
+    middle = float(np.median([math.inf if one is None else one for one in episodes]))
+    return middle if math.isfinite(middle) else None
 
 
 def convergence_ranks(episodes):

@@ -38,9 +38,10 @@ def read_run(folder):
     curve = read_curve(metrics) if metrics.exists() else None
     run = {name: evaluation[name] for name in _EVALUATED}
     run.update(seed=int(folder.name.rsplit("_", maxsplit=1)[-1]), folder=folder, curve=curve,
-               convergence=None, evaluation=evaluation)
+               convergence=None, settled=None, evaluation=evaluation)
     if curve is not None:
         run["convergence"] = measures.convergence(curve["return"], curve["success"])
+        run["settled"] = measures.convergence(curve["return"], curve["success"], measures.NOISE)
     return run
 
 
@@ -57,7 +58,7 @@ def _interval(values):
     return [low, high]
 
 
-def summarise(contestant, runs, optimum, episodes):
+def summarise(contestant, runs, optimum, training_episodes):
     """Measures of a contestant over its runs, but for the ranks, which need all contestants.
 
     optimum: mean return of the clairvoyant on the episodes that it was evaluated on; None: unknown.
@@ -66,21 +67,25 @@ def summarise(contestant, runs, optimum, episodes):
         return np.array([run[name] for run in runs], dtype=float)
 
     returns = column("return_per_episode")
-    converged = [run["convergence"] for run in runs if run["convergence"] is not None]
-    row = {"name": contestant.name, "label": contestant.label, "runs": len(runs),
-           "learns": contestant.learns and contestant.name != "random"}
+    row = {"name": contestant.name, "label": contestant.label, "runs": len(runs)}
     for name in _EVALUATED:
         row[name] = float(column(name).mean())
     row["success_worst"] = float(column("success_rate").min())
     row["return_iqm"] = measures.interquartile_mean(returns)
     row["return_interval"] = _interval(returns)
     row["return_per_step_interval"] = _interval(column("return_per_step"))
-    row["share_of_optimum"] = None if optimum is None else row["return_per_episode"] / optimum
-    row["convergence"] = float(np.median(converged)) if converged else None
-    row["convergence_runs"] = [run["convergence"] for run in runs]
-    row["stability"] = len(converged) / len(runs) if contestant.learns else None
+    row["share_of_optimum"] = None
+    if optimum is not None and optimum > 0.0:  # of a loss there is no share
+        row["share_of_optimum"] = row["return_per_episode"] / optimum
+    row["stability"] = row["stability_settled"] = None
+    for name, stability in (("convergence", "stability"), ("settled", "stability_settled")):
+        episodes = [run[name] for run in runs]
+        row[name] = measures.median_convergence(episodes)
+        row[name + "_runs"] = episodes
+        if contestant.learns:
+            row[stability] = sum(one is not None for one in episodes) / len(episodes)
     row["training_steps"] = float(np.mean([run["evaluation"]["training_steps"] for run in runs]))
-    row["episodes"] = episodes
+    row["episodes"] = training_episodes
     return row
 
 
@@ -108,25 +113,32 @@ def _text(value, form="{:.2f}"):
     return form.format(value)
 
 
+def _share(value):
+    return "below 0" if value is not None and value < 0.0 else _text(value, "{:.3f}")
+
+
 def table(rows):
     """Table 1 beside ours, as Markdown."""
-    lines = ["| | return per step | success | converged at | stability | EA | EA in [0, 1] | "
-             "return per episode, 95 % interval | share of the optimum |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    lines = ["| | return per step | success | converged at | stability | settled at | EA | "
+             "EA in [0, 1] | return per episode, 95 % interval | share of the optimum |",
+             "| --- " * 10 + "|"]
     for row in rows:
         printed = PAPER_TABLE.get(row["name"])
         low, high = row["return_interval"]
         interval = "" if math.isnan(low) else f" ({low:.1f} … {high:.1f})"
+        settled = _text(row["settled"], "{:.0f}")
+        if row["settled"] is not None:
+            settled += f" ({_text(row['stability_settled'], '{:.1f}')})"
         lines.append("| " + " | ".join((
             row["label"], _text(row["return_per_step"]), _text(row["success_rate"], "{:.3f}"),
-            _text(row["convergence"], "{:.0f}"), _text(row["stability"], "{:.1f}"),
+            _text(row["convergence"], "{:.0f}"), _text(row["stability"], "{:.1f}"), settled,
             _text(row["ea_paper"]), _text(row["ea_normalised"]),
-            f"{row['return_iqm']:.1f}{interval}", _text(row["share_of_optimum"], "{:.3f}"))) + " |")
+            f"{row['return_iqm']:.1f}{interval}", _share(row["share_of_optimum"]))) + " |")
         if printed:
             lines.append("| " + " | ".join((
                 f"*{row['label']}, paper*", _text(printed["return_per_step"]),
                 _text(printed["success"], "{:.1f}"), _text(printed.get("convergence"), "{:.0f}"),
-                _text(printed["stability"], "{:.1f}"), _text(printed["ea_paper"]), "–", "–",
+                _text(printed["stability"], "{:.1f}"), "–", _text(printed["ea_paper"]), "–", "–",
                 "–")) + " |")
     return "\n".join(lines) + "\n"
 
@@ -134,8 +146,8 @@ def table(rows):
 def write(folder, settings, rows, runs):
     """results.json (everything), table.csv and runs.csv (a line each), table.md."""
     columns = ["name", "runs", "return_per_step", "success_rate", "success_worst", "convergence",
-               "stability", "rank", "ea_paper", "ea_normalised", "return_per_episode",
-               "return_iqm", "return_low", "return_high", "share_of_optimum", "steps_per_episode",
+               "stability", "settled", "stability_settled", "rank", "ea_paper", "ea_normalised",
+               "return_per_episode", "return_iqm", "return_low", "return_high", "share_of_optimum", "steps_per_episode",
                "crashes_per_episode", "steps_in_disaster_per_episode", "training_steps"]
     lines = [",".join(columns)]
     for row in rows:
@@ -144,7 +156,7 @@ def write(folder, settings, rows, runs):
         lines.append(",".join("" if flat[name] is None else str(flat[name]) for name in columns))
     write_atomically(folder / "table.csv", "\n".join(lines) + "\n")
 
-    run_columns = ["seed", "convergence", *_EVALUATED]
+    run_columns = ["seed", "convergence", "settled", *_EVALUATED]
     lines = [",".join(["name", *run_columns])]
     for name, of_one in runs.items():
         for run in of_one:

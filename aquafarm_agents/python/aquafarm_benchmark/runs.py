@@ -13,7 +13,7 @@ import time
 import typing
 
 _REFUSED = 2  # exit code of a program whose input does not fit
-_LINGER_S = 60.0  # that a process is given to save after Ctrl-C
+_LINGER_S = 10.0  # that processes are given to save after Ctrl-C; roslaunch gives 15
 _DONE = re.compile(r"(steps|episodes) ([\d,]+) / ([\d,]+)")
 
 
@@ -21,9 +21,11 @@ _LIBC = ctypes.CDLL(None, use_errno=True)
 _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 
 
-def _end_with_parent():
-    """In a child: should this program be killed, the child saves and ends as at Ctrl-C."""
+def _end_with(parent):
+    """In a child: should its parent be killed, the child saves and ends as at Ctrl-C."""
     _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
+    if os.getppid() != parent:
+        os._exit(1)  # it was killed before it was asked
 
 
 class RunFailed(RuntimeError):
@@ -43,22 +45,26 @@ class Job:
     result: pathlib.Path
     commands: typing.List[typing.List[str]]
     cost: float
+    resumes: bool = False  # its folder holds a run already
     next_command: int = 0
     process: typing.Optional[subprocess.Popen] = None
     started: float = 0.0
+    done_at_start: float = 0.0
 
     @property
     def log(self):
         return self.folder.with_name(self.folder.name + ".log")
 
-    def start_next(self):
-        """Starts the next command; its words are appended to the log."""
+    def start_next(self, lock):
+        """Starts the next command; its words are appended to the log. It keeps `lock` open."""
         self.folder.mkdir(parents=True, exist_ok=True)
+        parent = os.getpid()
         with open(self.log, "ab") as log:
             self.process = subprocess.Popen(self.commands[self.next_command], stdout=log,
                                             stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
                                             start_new_session=True,
-                                            preexec_fn=_end_with_parent)
+                                            pass_fds=[] if lock is None else [lock],
+                                            preexec_fn=lambda: _end_with(parent))
         self.next_command += 1
 
     def last_words(self):
@@ -84,11 +90,12 @@ def is_complete(result):
         return False
 
 
-def run_all(jobs, at_once, report, period_s=10.0):
+def run_all(jobs, at_once, report, lock=None, period_s=10.0):
     """Runs the jobs that have no result yet, the longest first, `at_once` side by side.
 
     report(text) is told what is going on every period_s. Returns {name of contestant: reason} of
     those who refused to take part (exit code 2, such as a table on a farm with too many states).
+    lock is a file descriptor that every process keeps open until it has ended.
     Raises RunFailed when some failed (the others are run all the same), Interrupted on Ctrl-C after
     every process has saved and ended.
     """
@@ -103,8 +110,9 @@ def run_all(jobs, at_once, report, period_s=10.0):
         while waiting or running:
             while waiting and len(running) < at_once:
                 job = waiting.pop(0)
+                job.done_at_start = job.done() if job.resumes else 0.0
                 job.started = time.monotonic()
-                job.start_next()
+                job.start_next(lock)
                 running.append(job)
             time.sleep(0.05)
             for job in list(running):
@@ -112,13 +120,13 @@ def run_all(jobs, at_once, report, period_s=10.0):
                 if code is None:
                     continue
                 if code == 0 and job.next_command < len(job.commands):
-                    job.start_next()
+                    job.start_next(lock)
                     continue
                 running.remove(job)
                 if code == 0 and is_complete(job.result):
                     progress.finish(job)
                     shutil.rmtree(job.folder / "checkpoints", ignore_errors=True)
-                elif code == _REFUSED:
+                elif code == _REFUSED and not job.resumes:
                     declined.setdefault(job.contestant, job.last_words())
                     waiting = [one for one in waiting if one.contestant != job.contestant]
                 else:
@@ -138,6 +146,8 @@ def run_all(jobs, at_once, report, period_s=10.0):
 
 
 def _end(running):
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)  # this ends soon, whoever asks again
     for job in running:
         job.process.send_signal(signal.SIGINT)
     end = time.monotonic() + _LINGER_S
@@ -153,28 +163,32 @@ class _Progress:
     """How far all runs are, and how long they still take by what finished ones took."""
 
     def __init__(self, jobs, over, waiting, at_once):
+        self._jobs = jobs
         self._count = len(jobs)
         self._over = over
         self._at_once = min(at_once, max(1, len(waiting)))
-        self._took = {}  # seconds of finished jobs by cost
+        self._took = {}  # seconds of whole jobs by contestant
 
     def finish(self, job):
         self._over += 1
-        self._took.setdefault(job.cost, []).append(time.monotonic() - job.started)
+        if not job.resumes:
+            self._took.setdefault(job.contestant, []).append(time.monotonic() - job.started)
 
     def describe(self, running, waiting):
         now = time.monotonic()
-        seconds = {cost: sum(took) / len(took) for cost, took in self._took.items()}
+        seconds = {name: sum(took) / len(took) for name, took in self._took.items()}
         for job in running:
-            if job.cost not in seconds and job.done() > 0.02:
-                seconds[job.cost] = (now - job.started) / job.done()
+            done = job.done() - job.done_at_start
+            if job.contestant not in seconds and done > 0.02:
+                seconds[job.contestant] = (now - job.started) / done
         words = ", ".join(f"{job.name} {100.0 * job.done():.0f} %" for job in running)
         text = f"{self._over} of {self._count} runs over; {words}"
+        costs = {job.contestant: job.cost for job in self._jobs}
         if seconds:
-            rate = max(took / cost for cost, took in seconds.items() if cost > 0)
-            left = sum(seconds.get(job.cost, rate * job.cost) for job in waiting)
-            left += sum(seconds.get(job.cost, rate * job.cost) * (1.0 - job.done())
-                        for job in running)
+            of_unit = max(took / costs[name] for name, took in seconds.items())
+            left = sum(seconds.get(job.contestant, of_unit * job.cost) *
+                       (1.0 - (job.done() if job in running else 0.0))
+                       for job in [*running, *waiting])
             text += f"; about {describe_seconds(left / self._at_once)} left"
         return text
 

@@ -9,9 +9,12 @@
 ///   s' ── φ ──┼──────────────┘
 ///             └── forward model (with a) ──> φ(s')?   its error e = ½ ‖φ̂(s') − φ(s')‖² pays
 ///
+/// They learn by (1 − β) L_inverse + β e, β = 0.2, but φ by the inverse model alone: in Pathak et
+/// al. e reaches φ too, which flattens what is hard to foresee.
+///
 /// The learner is given r + w · min(e / ē, 5), where ē is the mean error of late: w is so the mean
 /// pay of a step in units of reward, on any farm (Pathak's η stands for both; the division is that
-/// of Burda et al. 2019). Both models and φ learn by (1 − β) L_inverse + β e, β = 0.2.
+/// of Burda et al. 2019).
 
 #include <cstdint>
 #include <memory>

@@ -4,6 +4,7 @@
 /// One episode as a policy plays it, and what it would do if the ship were elsewhere: what Fig. 11
 /// shows as a coloured route and an arrow at each cell.
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -47,10 +48,12 @@ struct Route {
 
 /// Plays one episode of EvaluationSeed(seed), ship 0's route; other agents play along.
 /// @param scenario at most kMaxCells cells; larger ones get no best moves
+/// @param stop may be set by a signal handler: the route then ends where it is; null: never
 /// @throws InputError when the scenario or the policy do not fit
 Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
-                 const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode);
-inline constexpr std::int32_t kMaxCells = 40000;
+                 const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
+                 const std::atomic<bool>* stop = nullptr);
+inline constexpr std::int32_t kMaxCells = 10000;
 
 /// Writes it as JSON: the chart, an entry a step, and the best moves. @throws StorageError
 void WriteRoute(const std::string& path, const Route& route, const EnvironmentSpec& spec);

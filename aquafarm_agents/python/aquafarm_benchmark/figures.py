@@ -110,7 +110,7 @@ def draw_mean_score(path, contestants, rows):
     axes.axhline(0.0, color="black", linewidth=0.5)
     axes.set_yscale("symlog", linthresh=100.0)
     axes.margins(y=0.15)
-    axes.set_xticks(range(len(contestants)), [one.label for one in contestants])
+    axes.set_xticks(range(len(contestants)), [one.label for one in contestants], rotation=15)
     _save(figure, path)
 
 

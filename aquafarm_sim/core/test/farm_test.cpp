@@ -146,7 +146,7 @@ TEST(Step, HoldingStaysAndCostsTheStep) {
 TEST(PlaceShip, PutsItOnFreeWaterAloneAndItGoesOnFromThere) {
   auto scenario = TinyScenario();
   scenario.ships.count = 2;
-  Farm farm = Start(scenario);
+  Farm farm = MakeFarm(scenario);
   farm.PlaceShip(1, {4, 4});
   farm.PlaceShip(0, {2, 2});
   for (const Cell cell : {Cell{-1, 0}, Cell{5, 0}, Cell{3, 3}, Cell{0, 0}, Cell{4, 4}}) {

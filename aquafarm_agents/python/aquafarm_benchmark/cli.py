@@ -79,9 +79,8 @@ def parse(arguments):
                         ("max_steps", 0), ("evaluation_seed", 0)):
         if getattr(options, name) < least:
             raise BadInput(f"{name}: got {getattr(options, name)}, expected {least} or more")
-    if options.algorithms == "all":
-        options.algorithms = ",".join(names)
-    options.algorithms = [name for name in options.algorithms.split(",") if name]
+    options.algorithms = (names if options.algorithms == "all" else
+                          [name for name in options.algorithms.split(",") if name])
     for name in options.algorithms:
         if name not in names:
             raise BadInput(f"algorithms: got '{name}', expected some of: {', '.join(names)}")
@@ -165,11 +164,12 @@ def claim(folder, settings):
         raise BadInput(f"{folder}: is not empty and holds no benchmark; name another folder")
     lock = _lock(folder)
     if there is not None:
-        for key in (*_FARM_KEYS, "episodes", "evaluation_episodes", "max_steps",
-                    "evaluation_seed"):
-            if there.get(key) != settings[key]:
+        for key, value in settings.items():
+            if key in ("runs", "learners"):  # more of either may be added
+                continue
+            if there.get(key) != value:
                 raise BadInput(f"{folder}: holds a benchmark with {key} {there.get(key)}, got "
-                               f"{settings[key]}; name another folder")
+                               f"{value}; name another folder")
         for name, learner in settings["learners"].items():
             if there.get("learners", {}).get(name, learner) != learner:
                 raise BadInput(f"{folder}: holds runs of {name} with other settings; name another "

@@ -19,10 +19,10 @@ def moving_mean(values, window=WINDOW):
     return (sums[window:] - sums[:-window]) / window
 
 
-def plateau(values):
-    """Mean of the last quarter."""
+def last_quarter(values):
+    """The plateau's episodes, one at least."""
     values = np.asarray(values, dtype=float)
-    return float(values[-max(1, int(len(values) * PLATEAU_SHARE)):].mean())
+    return values[-max(1, int(len(values) * PLATEAU_SHARE)):]
 
 
 def convergence(returns, successes, standard_errors=0.0):
@@ -37,11 +37,11 @@ def convergence(returns, successes, standard_errors=0.0):
     that is wider. Without it a policy that has long settled but whose episodes differ by more than
     a tenth is said to converge late or never, by chance alone.
     """
-    if len(returns) < 2 * WINDOW or plateau(successes) < PLATEAU_SUCCESS:
+    if len(returns) < 2 * WINDOW or last_quarter(successes).mean() < PLATEAU_SUCCESS:
         return None
-    level = plateau(returns)
-    tail = np.asarray(returns, dtype=float)[-int(len(returns) * PLATEAU_SHARE):]
-    band = max(BAND * abs(level), standard_errors * tail.std() / math.sqrt(WINDOW))
+    plateau = last_quarter(returns)
+    level = plateau.mean()
+    band = max(BAND * abs(level), standard_errors * plateau.std() / math.sqrt(WINDOW))
     outside = np.flatnonzero(np.abs(moving_mean(returns) - level) > band)
     first = 0 if len(outside) == 0 else int(outside[-1]) + 1
     episode = first + WINDOW

@@ -23,7 +23,7 @@ def write_atomically(path, text):
 
 def read_curve(metrics):
     """Columns of a training's metrics.csv: dict of arrays over episodes."""
-    columns = {"return": [], "success": [], "steps": [], "loss": [], "total_steps": []}
+    columns = {"return": [], "success": [], "loss": []}
     with open(metrics, newline="") as file:
         for row in csv.DictReader(file):
             for name, values in columns.items():
@@ -147,8 +147,9 @@ def write(folder, settings, rows, runs):
     """results.json (everything), table.csv and runs.csv (a line each), table.md."""
     columns = ["name", "runs", "return_per_step", "success_rate", "success_worst", "convergence",
                "stability", "settled", "stability_settled", "rank", "ea_paper", "ea_normalised",
-               "return_per_episode", "return_iqm", "return_low", "return_high", "share_of_optimum", "steps_per_episode",
-               "crashes_per_episode", "steps_in_disaster_per_episode", "training_steps"]
+               "return_per_episode", "return_iqm", "return_low", "return_high",
+               "share_of_optimum", "steps_per_episode", "crashes_per_episode",
+               "steps_in_disaster_per_episode", "training_steps"]
     lines = [",".join(columns)]
     for row in rows:
         low, high = row["return_interval"]

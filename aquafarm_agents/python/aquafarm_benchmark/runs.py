@@ -14,8 +14,7 @@ import typing
 
 _REFUSED = 2  # exit code of a program whose input does not fit
 _LINGER_S = 10.0  # that processes are given to save after Ctrl-C; roslaunch gives 15
-_DONE = re.compile(r"(steps|episodes) ([\d,]+) / ([\d,]+)")
-
+_DONE = re.compile(r"(?:steps|episodes) ([\d,]+) / ([\d,]+)")
 
 _LIBC = ctypes.CDLL(None, use_errno=True)
 _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
@@ -78,7 +77,7 @@ class Job:
         if self.next_command > 1:
             return 1.0
         found = [(int(done.replace(",", "")) / max(1, int(limit.replace(",", ""))))
-                 for _, done, limit in _DONE.findall(self.last_words())]
+                 for done, limit in _DONE.findall(self.last_words())]
         return min(1.0, max(found, default=0.0))
 
 
@@ -163,8 +162,8 @@ class _Progress:
     """How far all runs are, and how long they still take by what finished ones took."""
 
     def __init__(self, jobs, over, waiting, at_once):
-        self._jobs = jobs
         self._count = len(jobs)
+        self._costs = {job.contestant: job.cost for job in jobs}
         self._over = over
         self._at_once = min(at_once, max(1, len(waiting)))
         self._took = {}  # seconds of whole jobs by contestant
@@ -183,9 +182,8 @@ class _Progress:
                 seconds[job.contestant] = (now - job.started) / done
         words = ", ".join(f"{job.name} {100.0 * job.done():.0f} %" for job in running)
         text = f"{self._over} of {self._count} runs over; {words}"
-        costs = {job.contestant: job.cost for job in self._jobs}
         if seconds:
-            of_unit = max(took / costs[name] for name, took in seconds.items())
+            of_unit = max(took / self._costs[name] for name, took in seconds.items())
             left = sum(seconds.get(job.contestant, of_unit * job.cost) *
                        (1.0 - (job.done() if job in running else 0.0))
                        for job in [*running, *waiting])

@@ -37,6 +37,7 @@ EnvironmentSpec FromMsg(const aquafarm_msgs::FarmSpec& message) {
   spec.version = message.version;
   spec.farms = message.farms;
   spec.agents = message.agents;
+  spec.team_reward = message.rewards.team;
   spec.state_count = message.state_count;
   spec.feature_count = message.feature_count;
   spec.plane_count = message.plane_count;
@@ -172,6 +173,7 @@ void RosEnvironment::Take(StepResult& result) {
   results_.rewards.swap(result.rewards);
   results_.outcomes.swap(result.outcomes);
   results_.legal.swap(result.legal);
+  results_.in_play.swap(result.in_play);
   results_.reasons.swap(result.reasons);
   results_.started.swap(result.started);
   results_.hashes.swap(result.hashes);

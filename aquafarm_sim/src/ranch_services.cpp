@@ -135,6 +135,7 @@ aquafarm::BatchOutput Ranch::Prepare(std::uint8_t encodings, StepResult& result)
       Sized(wants(StepResult::TERMS), entries * aquafarm::kRewardTermCount, result.terms);
   output.outcomes = Sized(true, entries, result.outcomes);
   output.legal = Sized(true, entries, result.legal);
+  output.in_play = Sized(true, entries, result.in_play);
   output.reasons = Sized(true, farms, result.reasons);
   output.started = Sized(true, farms, result.started);
   output.hashes = Sized(wants(StepResult::HASHES), farms, result.hashes);

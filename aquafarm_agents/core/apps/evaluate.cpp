@@ -10,6 +10,7 @@
 #include "aquafarm/agents/local_environment.h"
 #include "aquafarm/agents/route.h"
 #include "aquafarm/agents/saved_policy.h"
+#include "aquafarm/agents/team_bound.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -19,6 +20,7 @@ struct Arguments {
   ScenarioChoice scenario;
   std::string output;
   std::string route;
+  bool bound{};
   std::uint64_t seed{1000};
   std::int32_t episodes{1000};
   EnvironmentOptions environment{64, 0, false, 1};
@@ -37,6 +39,18 @@ std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
   throw InputError("scenario: got nothing, and there is no scenario.yaml beside " + saved.path);
 }
 
+// Mean of the bounds of the episodes that were played.
+double MeanBound(const std::shared_ptr<const Scenario>& scenario, const Evaluation& evaluation) {
+  const auto count = static_cast<std::int32_t>(evaluation.episodes.size());
+  double sum = 0.0;
+  Farm farm(scenario);
+  for (std::int32_t episode = 0; episode < count && !stop_requested; ++episode) {
+    farm.Reset(evaluation.seed, static_cast<std::uint64_t>(episode));
+    sum += TeamBound(farm);
+  }
+  return sum / count;
+}
+
 ExitCode Run(Arguments arguments) {
   const SavedPolicy saved = FindPolicy(arguments.policy);
   arguments.environment.encodings = saved.encodings;
@@ -46,7 +60,7 @@ ExitCode Run(Arguments arguments) {
   const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
-  const Evaluation evaluation =
+  Evaluation evaluation =
       Evaluate(environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
                [&arguments](std::size_t over) {
                  std::printf("%zu of %d episodes played\n", over, arguments.episodes);
@@ -55,6 +69,12 @@ ExitCode Run(Arguments arguments) {
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
   std::fflush(stdout);  // before what may still go wrong
+  if (arguments.bound && evaluation.complete) {
+    evaluation.mean_bound = MeanBound(scenario, evaluation);
+    if (stop_requested) return ExitCode::kInterrupted;
+    std::printf("upper bound %.1f per episode, share of it %.3f\n", *evaluation.mean_bound,
+                evaluation.mean_return / *evaluation.mean_bound);
+  }
   // The evaluation comes last: where it is, all is there.
   if (!arguments.route.empty() && evaluation.complete) {
     const auto make_policy = [&saved](const EnvironmentSpec& spec) {
@@ -95,6 +115,9 @@ int Main(int argc, char** argv) {
       "--route", arguments.route,
       "write the first episode's route and the best move in each cell to this JSON file; "
       "empty: nothing");
+  app.add_flag("--bound", arguments.bound,
+               "say what share this is of an upper bound: each device by its best ship, no "
+               "conflicts, the disasters known");
   AddScenarioOptions(app, arguments.scenario);
   try {
     app.parse(argc, argv);

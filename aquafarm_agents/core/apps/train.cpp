@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trains an agent in this process, without ROS.
 
+#include <algorithm>
 #include <cstdio>
 
 #include "app.h"
@@ -12,10 +13,15 @@ namespace aquafarm::agents {
 namespace {
 
 std::string ListAlgorithms() {
+  std::size_t widest = 0;
+  for (const Algorithm& one : Algorithms()) {
+    widest = std::max(widest, std::string_view(one.name).size());
+  }
   std::string text = "algorithms:";
   for (const Algorithm& one : Algorithms()) {
-    text += std::string("\n  ") + one.name + std::string(14 - std::string(one.name).size(), ' ') +
-            one.summary;
+    std::string name = one.name;
+    name.resize(widest, ' ');
+    text += "\n  " + name + "  " + one.summary;
   }
   return text;
 }

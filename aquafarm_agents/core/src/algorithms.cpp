@@ -3,10 +3,12 @@
 
 #include "aquafarm/agents/curiosity.h"
 #include "aquafarm/agents/dqn.h"
+#include "aquafarm/agents/independent.h"
 #include "aquafarm/agents/options.h"
 #include "aquafarm/agents/planner_policy.h"
 #include "aquafarm/agents/random_policy.h"
 #include "aquafarm/agents/tabular.h"
+#include "aquafarm/agents/team_planner.h"
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
 #include "networks.h"
@@ -22,6 +24,7 @@ std::unique_ptr<Learner> Make(const EnvironmentSpec& spec, std::uint64_t seed,
 
 template <Foresight foresight>
 std::unique_ptr<Policy> MakePlannerPolicy(const Checkpoint&, const EnvironmentSpec& spec) {
+  if (spec.agents > 1) return std::make_unique<TeamPlannerPolicy>(spec, foresight);
   return std::make_unique<PlannerPolicy>(spec, foresight);
 }
 
@@ -65,6 +68,22 @@ std::unique_ptr<Learner> MakeExplorer(const EnvironmentSpec& spec, std::uint64_t
   return WithCuriosity(make(spec, seed, options), spec, seed, exploration);
 }
 
+template <MakeLearner make>
+std::unique_ptr<Learner> MakeEach(const EnvironmentSpec& spec, std::uint64_t seed,
+                                  const std::string& options) {
+  return MakeIndependent(spec, seed,
+                         [&options](const EnvironmentSpec& one, std::uint64_t own_seed) {
+                           return make(one, own_seed, options);
+                         });
+}
+
+using MakeSavedPolicy = std::unique_ptr<Policy> (*)(const Checkpoint&, const EnvironmentSpec&);
+
+template <MakeSavedPolicy make>
+std::unique_ptr<Policy> MakeEachPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {
+  return MakeIndependentPolicy(checkpoint, spec, make);
+}
+
 // "one rescue ship decides", "4 self-propelled devices decide"
 std::string DescribeDeciders(const EnvironmentSpec& spec) {
   const Scenario scenario = ParseScenario(spec.scenario_yaml, spec.scenario_name);
@@ -93,10 +112,18 @@ const std::vector<Algorithm>& Algorithms() {
       {"lstm_dqn", "deep Q-network with a memory (Algorithm 2)", true, 150000,
        WithCuriosityToo<RecurrentDqnEncodings>, MakeExplorer<MakeRecurrentDqn>,
        MakeRecurrentDqnPolicy},
-      {"planner", "plans anew each step, trusting that disasters hold their heading", false, 0,
-       WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kHeadingHolds>},
-      {"clairvoyant", "plans with the disasters' true future: the best there can be", false, 0,
-       WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kClairvoyant>},
+      {"independent_dqn", "a DQN for each agent", true, 400000, WithCuriosityToo<DqnEncodings>,
+       MakeEach<MakeExplorer<MakeDqn>>, MakeEachPolicy<MakeDqnPolicy>},
+      {"independent_lstm_dqn", "an LSTM-DQN for each agent", true, 400000,
+       WithCuriosityToo<RecurrentDqnEncodings>, MakeEach<MakeExplorer<MakeRecurrentDqn>>,
+       MakeEachPolicy<MakeRecurrentDqnPolicy>},
+      {"vdn", "value decomposition: one DQN plays all agents, their values add up", true, 400000,
+       WithCuriosityToo<DqnEncodings>, MakeExplorer<MakeVdn>, MakeDqnPolicy},
+      {"planner",
+       "plans on the forecast that disasters hold their heading; several agents cooperate", false,
+       0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kHeadingHolds>},
+      {"clairvoyant", "plans with the disasters' true future: for one ship the best there can be",
+       false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kClairvoyant>},
   };
   return algorithms;
 }
@@ -114,8 +141,11 @@ Choice ChooseAlgorithm(const EnvironmentSpec& spec) {
   if (spec.agents == 1) {
     return {"lstm_dqn", DescribeDeciders(spec) + ", so a single-agent learner"};
   }
-  return {"dqn", DescribeDeciders(spec) +
-                     ": multi-agent learners are not here yet, so all share one network of dqn"};
+  if (!spec.team_reward) {
+    return {"independent_dqn",
+            DescribeDeciders(spec) + ", each for its own reward, so independent learners"};
+  }
+  return {"vdn", DescribeDeciders(spec) + " for a shared reward, so a multi-agent learner"};
 }
 
 }  // namespace aquafarm::agents

@@ -39,10 +39,11 @@ class CuriousLearner final : public Learner {
   const std::size_t agents_;
   const Schedule weight_;
   CuriosityModule module_;
-  Results paid_;                     // what the learner is shown
-  std::vector<float> seen_;          // [N, S, F] at the last step; empty: none
-  std::vector<std::uint8_t> taken_;  // [N, S] there
-  float mean_error_{};               // of late; 0: none yet
+  Results paid_;                           // what the learner is shown
+  std::vector<float> seen_;                // [N, S, F] at the last step; empty: none
+  std::vector<std::uint8_t> taken_;        // [N, S] there
+  std::vector<std::uint8_t> was_in_play_;  // [N, S] there
+  float mean_error_{};                     // of late; 0: none yet
   // Scratch: the transitions of this step.
   std::vector<float> from_;
   std::vector<float> to_;
@@ -62,6 +63,7 @@ void CuriousLearner::Step(const Results& results, double progress,
   }
   seen_ = results.features;
   taken_ = actions;
+  was_in_play_ = results.in_play;
 }
 
 void CuriousLearner::Pay(const Results& results, float weight) {
@@ -70,7 +72,7 @@ void CuriousLearner::Pay(const Results& results, float weight) {
   actions_.clear();
   entries_.clear();
   for (std::size_t entry = 0; entry < taken_.size(); ++entry) {
-    if (results.started[entry / agents_] != 0) continue;  // no transition
+    if (results.started[entry / agents_] != 0 || was_in_play_[entry] == 0) continue;
     const auto begin = static_cast<std::ptrdiff_t>(entry * features_);
     const auto end = begin + static_cast<std::ptrdiff_t>(features_);
     from_.insert(from_.end(), seen_.begin() + begin, seen_.begin() + end);
@@ -96,20 +98,24 @@ void CuriousLearner::Save(Checkpoint& checkpoint) const {
   module_.Save(checkpoint);
   checkpoint.SetArray("curiosity.seen", seen_);
   checkpoint.SetArray("curiosity.taken", taken_);
+  checkpoint.SetArray("curiosity.in_play", was_in_play_);
   checkpoint.SetArray("curiosity.mean", std::vector<float>{mean_error_});
 }
 
 void CuriousLearner::Load(const Checkpoint& checkpoint) {
   std::vector<float> seen;
   std::vector<std::uint8_t> taken;
+  std::vector<std::uint8_t> in_play;
   std::vector<float> mean;
   checkpoint.GetArray("curiosity.taken", checkpoint.Section("curiosity.taken").size(), taken);
   checkpoint.GetArray("curiosity.seen", taken.size() * features_, seen);
+  checkpoint.GetArray("curiosity.in_play", taken.size(), in_play);
   checkpoint.GetArray("curiosity.mean", 1, mean);
   learner_->Load(checkpoint);
   module_.Load(checkpoint);
   seen_ = std::move(seen);
   taken_ = std::move(taken);
+  was_in_play_ = std::move(in_play);
   mean_error_ = mean[0];
 }
 

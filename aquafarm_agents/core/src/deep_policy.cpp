@@ -13,6 +13,7 @@ void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, Networ
                      " does not fit scenario " + spec.scenario_name + ": " + what + ": it knows " +
                      std::to_string(got) + ", the farm has " + std::to_string(expected));
   };
+  compare("agents", own.agents, spec.agents);
   if (network == NetworkKind::kCnn) {
     compare("planes", own.plane_count, spec.plane_count);
     compare("width", own.width, spec.width);

@@ -55,27 +55,30 @@ class GreedyDqnPolicy final : public Policy {
   FlatParameters parameters_;
 };
 
-/// A minibatch on its way from the replay to the network.
+/// A minibatch of B samples on its way from the replay to the network; a sample is one agent's
+/// transition, or those of all agents of a farm: R rows in all.
 template <typename Scalar>
 struct Batch {
   std::vector<Scalar> from;
   std::vector<Scalar> to;
   std::vector<std::int64_t> actions;
-  std::vector<float> rewards;
-  std::vector<float> discounts;
-  std::vector<float> forbidden;  // [B, kActionCount] by MarkForbidden, of the next actions
-  std::vector<float> weights;
-  std::vector<std::size_t> rows;
+  std::vector<float> present;      // [R] 1: in play, 0: done before
+  std::vector<float> rewards;      // [B]
+  std::vector<float> discounts;    // [R] of the value at `to`
+  std::vector<float> forbidden;    // [R, kActionCount] by MarkForbidden, of the next actions
+  std::vector<float> weights;      // [B]
+  std::vector<std::size_t> drawn;  // [B] row of the replay
 
-  Batch(std::size_t size, std::size_t observation_size)
-      : from(size * observation_size),
-        to(size * observation_size),
-        actions(size),
+  Batch(std::size_t size, std::size_t rows, std::size_t observation_size)
+      : from(rows * observation_size),
+        to(rows * observation_size),
+        actions(rows),
+        present(rows, 1.0F),
         rewards(size),
-        discounts(size),
-        forbidden(size * kActionCount),
+        discounts(rows),
+        forbidden(rows * kActionCount),
         weights(size, 1.0F / static_cast<float>(size)),
-        rows(size) {}
+        drawn(size) {}
 };
 
 template <typename Scalar>
@@ -102,6 +105,8 @@ class DqnLearner final : public Learner {
 
  private:
   std::size_t size() const { return static_cast<std::size_t>(options_.batch); }
+  std::size_t group() const { return options_.joint ? static_cast<std::size_t>(spec_.agents) : 1; }
+  std::size_t rows() const { return size() * group(); }
   torch::Tensor ToInput(const Scalar* rows, std::size_t count) const {
     return Sight<Scalar>::ToInput(rows, WithCount(count, shape_), device_);
   }
@@ -112,6 +117,10 @@ class DqnLearner final : public Learner {
   void Choose(const Results& results, std::vector<std::uint8_t>& actions);
   void Update();
   void Draw();
+  void DrawAlone(std::size_t i, const Moment& moment);
+  void DrawJoint(std::size_t i, const Moment& moment);
+  void Fill(std::size_t k, std::size_t from, std::size_t to, float discount);
+  torch::Tensor SumOfGroups(const torch::Tensor& values) const;
   torch::Tensor Targets();
   void Reprioritise(const torch::Tensor& errors);
 
@@ -152,7 +161,7 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents,
                observation_size_, 0}),
       sampler_(replay_, options, static_cast<std::size_t>(options.n_step)),
-      batch_(size(), observation_size_) {}
+      batch_(size(), rows(), observation_size_) {}
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Step(const Results& results, double progress,
@@ -182,20 +191,14 @@ void DqnLearner<Scalar>::Choose(const Results& results, std::vector<std::uint8_t
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Draw() {
-  const auto steps = static_cast<std::size_t>(options_.n_step);
   for (std::size_t i = 0; i < size(); ++i) {
-    const auto [age, entry] = sampler_.Draw(chance_, i);
-    const Transition one = replay_.At(age, entry, steps, static_cast<float>(options_.discount));
-    std::copy_n(replay_.observation(one.from), observation_size_,
-                batch_.from.data() + i * observation_size_);
-    std::copy_n(replay_.observation(one.to), observation_size_,
-                batch_.to.data() + i * observation_size_);
-    batch_.actions[i] = one.action;
-    batch_.rewards[i] = one.reward * static_cast<float>(options_.reward_scale);
-    batch_.discounts[i] = one.discount;
-    batch_.rows[i] = one.from;
-    const ActionMask allowed = Allowed(replay_.legal(one.to), options_.mask_illegal);
-    MarkForbidden(allowed, batch_.forbidden.data() + i * kActionCount);
+    const Moment moment = sampler_.Draw(chance_, i);
+    batch_.drawn[i] = replay_.Row(moment.age, moment.entry);
+    if (options_.joint) {
+      DrawJoint(i, moment);
+    } else {
+      DrawAlone(i, moment);
+    }
   }
   const std::vector<float>& weights = sampler_.Weigh(progress_);
   for (std::size_t i = 0; i < size(); ++i) {
@@ -204,10 +207,55 @@ void DqnLearner<Scalar>::Draw() {
 }
 
 template <typename Scalar>
+void DqnLearner<Scalar>::DrawAlone(std::size_t i, const Moment& moment) {
+  const Transition one =
+      replay_.At(moment.age, moment.entry, static_cast<std::size_t>(options_.n_step),
+                 static_cast<float>(options_.discount));
+  batch_.rewards[i] = one.reward * static_cast<float>(options_.reward_scale);
+  Fill(i, one.from, one.to, one.discount);
+}
+
+// An agent that is done adds nothing to the team's value, before or after.
+template <typename Scalar>
+void DqnLearner<Scalar>::DrawJoint(std::size_t i, const Moment& moment) {
+  const std::size_t first = moment.entry / group() * group();
+  const JointTransition all =
+      replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
+                      static_cast<float>(options_.discount), spec_.team_reward);
+  batch_.rewards[i] = all.reward * static_cast<float>(options_.reward_scale);
+  const std::size_t from = replay_.Row(moment.age, first);
+  for (std::size_t agent = 0; agent < group(); ++agent) {
+    const std::size_t k = i * group() + agent;
+    const bool is_done = IsTerminated(replay_.reason(all.to + agent));
+    batch_.present[k] = replay_.reason(from + agent) == EndReason::kNone ? 1.0F : 0.0F;
+    Fill(k, from + agent, all.to + agent, is_done ? 0.0F : all.discount);
+  }
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Fill(std::size_t k, std::size_t from, std::size_t to, float discount) {
+  std::copy_n(replay_.observation(from), observation_size_,
+              batch_.from.data() + k * observation_size_);
+  std::copy_n(replay_.observation(to), observation_size_, batch_.to.data() + k * observation_size_);
+  batch_.actions[k] = replay_.action(from);
+  batch_.discounts[k] = discount;
+  MarkForbidden(Allowed(replay_.legal(to), options_.mask_illegal),
+                batch_.forbidden.data() + k * kActionCount);
+}
+
+// [R] → [B]: value decomposition adds up the values of a team (Sunehag et al. 2018).
+template <typename Scalar>
+torch::Tensor DqnLearner<Scalar>::SumOfGroups(const torch::Tensor& values) const {
+  if (!options_.joint) return values;
+  return values.view({static_cast<std::int64_t>(size()), static_cast<std::int64_t>(group())})
+      .sum(1);
+}
+
+template <typename Scalar>
 torch::Tensor DqnLearner<Scalar>::Targets() {
   const torch::NoGradGuard no_grad;
-  const auto count = static_cast<std::int64_t>(size());
-  const torch::Tensor to = ToInput(batch_.to.data(), size());
+  const auto count = static_cast<std::int64_t>(rows());
+  const torch::Tensor to = ToInput(batch_.to.data(), rows());
   const torch::Tensor forbidden = ToDevice(batch_.forbidden, {count, kActionCount});
   torch::Tensor next = target_->Forward(to);
   if (options_.double_q) {
@@ -216,7 +264,8 @@ torch::Tensor DqnLearner<Scalar>::Targets() {
   } else {
     next = next.add_(forbidden).amax(1);
   }
-  return ToDevice(batch_.rewards, {count}) + ToDevice(batch_.discounts, {count}) * next;
+  return ToDevice(batch_.rewards, {static_cast<std::int64_t>(size())}) +
+         SumOfGroups(ToDevice(batch_.discounts, {count}) * next);
 }
 
 template <typename Scalar>
@@ -224,12 +273,14 @@ void DqnLearner<Scalar>::Update() {
   if (!sampler_.IsReady()) return;
   const BatchOrigin origin{seed_, chance_.position()};
   Draw();
-  const auto count = static_cast<std::int64_t>(size());
+  const auto count = static_cast<std::int64_t>(rows());
   const torch::Tensor targets = Targets();
   const torch::Tensor actions = ToDevice(batch_.actions, {count, 1});
-  const torch::Tensor predicted =
-      online_->Forward(ToInput(batch_.from.data(), size())).gather(1, actions).squeeze(1);
-  optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {count}), origin);
+  torch::Tensor predicted =
+      online_->Forward(ToInput(batch_.from.data(), rows())).gather(1, actions).squeeze(1);
+  if (options_.joint) predicted = SumOfGroups(predicted * ToDevice(batch_.present, {count}));
+  optimizer_.Update(predicted, targets,
+                    ToDevice(batch_.weights, {static_cast<std::int64_t>(size())}), origin);
   if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
 }
 
@@ -237,7 +288,7 @@ template <typename Scalar>
 void DqnLearner<Scalar>::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor values = errors.cpu();
   const float* error = values.template data_ptr<float>();
-  for (std::size_t i = 0; i < size(); ++i) sampler_.SetError(batch_.rows[i], error[i]);
+  for (std::size_t i = 0; i < size(); ++i) sampler_.SetError(batch_.drawn[i], error[i]);
 }
 
 template <typename Scalar>
@@ -266,6 +317,18 @@ DeepOptions Parse(const std::string& text, std::string& resolved) {
   return DeepOptions::Parse(text, /*recurrent=*/false, resolved);
 }
 
+std::unique_ptr<Learner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                                     const std::string& text, bool joint) {
+  std::string resolved;
+  DeepOptions options = Parse(text, resolved);
+  options.joint = joint;
+  PrepareTorch(options.threads);
+  if (options.network == NetworkKind::kCnn) {
+    return std::make_unique<DqnLearner<std::uint8_t>>(spec, seed, options, resolved);
+  }
+  return std::make_unique<DqnLearner<float>>(spec, seed, options, resolved);
+}
+
 }  // namespace
 
 std::uint8_t DqnEncodings(const std::string& options) {
@@ -275,13 +338,12 @@ std::uint8_t DqnEncodings(const std::string& options) {
 
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& text) {
-  std::string resolved;
-  const DeepOptions options = Parse(text, resolved);
-  PrepareTorch(options.threads);
-  if (options.network == NetworkKind::kCnn) {
-    return std::make_unique<DqnLearner<std::uint8_t>>(spec, seed, options, resolved);
-  }
-  return std::make_unique<DqnLearner<float>>(spec, seed, options, resolved);
+  return MakeLearner(spec, seed, text, /*joint=*/false);
+}
+
+std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed,
+                                 const std::string& text) {
+  return MakeLearner(spec, seed, text, /*joint=*/true);
 }
 
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {

@@ -39,25 +39,27 @@ void Summarise(Evaluation& evaluation) {
 }
 
 nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& context) {
-  return {{"policy", context.policy},
-          {"algorithm", context.algorithm},
-          {"training_steps", context.training_steps},
-          {"scenario", context.scenario_name},
-          {"scenario_hash", context.scenario_hash},
-          {"version", context.version},
-          {"farms", context.farms},
-          {"seed", evaluation.seed & ~kEvaluationSeedBit},
-          {"farm_seed", evaluation.seed},
-          {"episodes", evaluation.episodes.size()},
-          {"complete", evaluation.complete},
-          {"return_per_episode", evaluation.mean_return},
-          {"return_per_step", evaluation.return_per_step},
-          {"success_rate", evaluation.success_rate},
-          {"steps_per_episode", evaluation.mean_steps},
-          {"delivered_health", evaluation.mean_delivered_health},
-          {"crashes_per_episode", evaluation.mean_crashes},
-          {"steps_in_disaster_per_episode", evaluation.mean_steps_in_disaster},
-          {"wall_s", evaluation.wall_s}};
+  nlohmann::json json = {{"policy", context.policy},
+                         {"algorithm", context.algorithm},
+                         {"training_steps", context.training_steps},
+                         {"scenario", context.scenario_name},
+                         {"scenario_hash", context.scenario_hash},
+                         {"version", context.version},
+                         {"farms", context.farms},
+                         {"seed", evaluation.seed & ~kEvaluationSeedBit},
+                         {"farm_seed", evaluation.seed},
+                         {"episodes", evaluation.episodes.size()},
+                         {"complete", evaluation.complete},
+                         {"return_per_episode", evaluation.mean_return},
+                         {"return_per_step", evaluation.return_per_step},
+                         {"success_rate", evaluation.success_rate},
+                         {"steps_per_episode", evaluation.mean_steps},
+                         {"delivered_health", evaluation.mean_delivered_health},
+                         {"crashes_per_episode", evaluation.mean_crashes},
+                         {"steps_in_disaster_per_episode", evaluation.mean_steps_in_disaster},
+                         {"wall_s", evaluation.wall_s}};
+  if (evaluation.mean_bound) json["upper_bound_per_episode"] = *evaluation.mean_bound;
+  return json;
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ EnvironmentSpec MakeSpec(const Scenario& scenario, const Encoder& encoder, std::
   spec.version = kVersion;
   spec.farms = farms;
   spec.agents = scenario.AgentCount();
+  spec.team_reward = scenario.rewards.sharing == RewardSharing::kTeam;
   spec.state_count = encoder.state_count();
   spec.feature_count = encoder.feature_count();
   spec.plane_count = encoder.plane_count();
@@ -59,6 +60,7 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
   results_.rewards.resize(entries);
   results_.outcomes.resize(entries);
   results_.legal.resize(entries);
+  results_.in_play.resize(entries);
   results_.reasons.resize(farms);
   results_.started.resize(farms);
   results_.finished.reserve(farms);
@@ -80,6 +82,7 @@ BatchOutput LocalEnvironment::Output() {
   output.rewards = results_.rewards.data();
   output.outcomes = results_.outcomes.data();
   output.legal = results_.legal.data();
+  output.in_play = results_.in_play.data();
   output.reasons = results_.reasons.data();
   output.started = results_.started.data();
   output.hashes = data_or_null(results_.hashes);

@@ -38,8 +38,8 @@ struct Option {
 
 class Planner::Solver {
  public:
-  explicit Solver(const Scenario& scenario);
-  Plan Solve(const Farm& farm, Foresight foresight);
+  Solver(const Scenario& scenario, std::int32_t slots);
+  Plan Solve(const Farm& farm, Foresight foresight, const Task& task);
   std::size_t state_count() const { return sets_.size() * cells_; }
 
  private:
@@ -64,6 +64,7 @@ class Planner::Solver {
   void Prepare(const Farm& farm);
   void ListOptions(const Farm& farm);
   void SolveBound();
+  bool IsOfTask(std::size_t set) const;
   void AddGains(std::size_t set, std::vector<double>& best) const;
   void FollowDisasters(const Farm& farm, Foresight foresight);
   void AdvanceDisasters(const Farm& farm, std::int32_t step);
@@ -80,15 +81,17 @@ class Planner::Solver {
   void Narrow(std::size_t widest);
   void EndOfTime();
   Plan Trace() const;
+  bool IsInTheWay(std::int32_t step, std::size_t cell) const;
 
   const Scenario& scenario_;
   std::size_t cells_;
-  std::size_t devices_;
+  std::size_t devices_;                    // slots of a task
   std::vector<std::uint32_t> sets_;        // two bits a device: its Fate
   std::vector<std::int32_t> set_of_bits_;  // back; kNone: more aboard than capacity
   std::size_t all_gone_{};
 
-  // Of the farm planned for.
+  // Of the farm and the task planned for.
+  const Task* task_{};
   const Layout* layout_{};
   std::vector<std::vector<Option>> options_;  // by cell
   std::vector<std::int32_t> site_;            // by device: its cell
@@ -111,19 +114,15 @@ class Planner::Solver {
   std::uint8_t best_action_{};
 };
 
-Planner::Solver::Solver(const Scenario& scenario)
+Planner::Solver::Solver(const Scenario& scenario, std::int32_t slots)
     : scenario_(scenario),
       cells_(static_cast<std::size_t>(scenario.CellCount())),
-      devices_(static_cast<std::size_t>(scenario.devices.Total())) {
+      devices_(static_cast<std::size_t>(slots > 0 ? slots : scenario.devices.Total())) {
   constexpr std::size_t kMostDevices = 12;
   if (scenario.rewards.step > 0.0F) {
     throw InputError(
         "planner: rewards.step: got more than 0, expected at most 0: there would be "
         "no end to what dawdling earns");
-  }
-  if (scenario.AgentCount() != 1) {
-    throw InputError("planner: got " + std::to_string(scenario.AgentCount()) +
-                     " agents, expected 1 rescue ship");
   }
   if (devices_ > kMostDevices) {
     throw InputError("planner: got " + std::to_string(devices_) + " devices, expected at most " +
@@ -228,6 +227,14 @@ void Planner::Solver::AddGains(std::size_t set, std::vector<double>& best) const
   }
 }
 
+// Slots that a task does not need count as gone from the start.
+bool Planner::Solver::IsOfTask(std::size_t set) const {
+  for (std::size_t d = task_->devices.size(); d < devices_; ++d) {
+    if (FateOf(set, d) != kGone) return false;
+  }
+  return true;
+}
+
 // Device sets only ever advance, so each layer of cells is solved once, the last ones first: the
 // most that any cell can still earn, a step costing what it costs in quiet water.
 void Planner::Solver::SolveBound() {
@@ -241,7 +248,7 @@ void Planner::Solver::SolveBound() {
   using Entry = std::pair<double, std::size_t>;
   std::priority_queue<Entry> queue;
   for (const std::size_t set : order) {
-    if (set == all_gone_) continue;
+    if (set == all_gone_ || !IsOfTask(set)) continue;
     std::fill(best.begin(), best.end(), 0.0);  // doing nothing more is no better than free
     AddGains(set, best);
     for (std::size_t cell = 0; cell < cells_; ++cell) {
@@ -289,14 +296,15 @@ void Planner::Solver::AdvanceDisasters(const Farm& farm, std::int32_t step) {
   FillRisk(disasters_, risk_);
   const float probability = scenario_.damage.crash_probability;
   const auto draws =
-      Draw({farm.seed(), farm.episode(), Purpose::kDamage, 0}, static_cast<std::uint32_t>(step));
+      Draw({farm.seed(), farm.episode(), Purpose::kDamage, static_cast<std::uint32_t>(task_->ship)},
+           static_cast<std::uint32_t>(step));
   crash_hurts_ = probability >= 1.0F || ToUnit(draws[0]) < probability;
 }
 
 // What still waits where it was deployed, after the damage of this step.
 void Planner::Solver::WearDown() {
   const float exposure = scenario_.damage.exposure_damage;
-  for (std::size_t d = 0; d < devices_ && exposure > 0.0F; ++d) {
+  for (std::size_t d = 0; d < task_->devices.size() && exposure > 0.0F; ++d) {
     health_[d] = std::max(0.0F, health_[d] + exposure * risk_.data()[site_[d]]);
   }
 }
@@ -305,8 +313,8 @@ void Planner::Solver::WearDown() {
 
 void Planner::Solver::Prepare(const Farm& farm) {
   ListOptions(farm);
-  for (std::size_t d = 0; d < devices_; ++d) {
-    const Device& device = farm.devices()[d];
+  for (std::size_t d = 0; d < task_->devices.size(); ++d) {
+    const Device& device = farm.devices()[static_cast<std::size_t>(task_->devices[d])];
     site_[d] = LinearIndex(device.cell, scenario_.width);
     value_[d] = device.value;
     health_[d] = device.health;
@@ -371,8 +379,11 @@ void Planner::Solver::Expand(std::int32_t step, std::size_t index) {
       reward += static_cast<double>(scenario_.rewards.step);
     const float crash = crash_hurts_ ? option.damage : 0.0F;
     reward -= Loss(set, crash) + Loss(set, -exposure * risk);
-    Reach(step, state(set, to), so_far + reward, parent, option.action);
+    if (!IsInTheWay(step, to)) {
+      Reach(step, state(set, to), so_far + reward, parent, option.action);
+    }
   }
+  if (IsInTheWay(step, cell)) return;
   const float risk = risk_.data()[cell];
   // The farm picks up the lowest id of those that wait in a cell.
   for (std::size_t d = 0; d < devices_; ++d) {
@@ -404,8 +415,19 @@ void Planner::Solver::Expand(std::int32_t step, std::size_t index) {
   }
 }
 
-Plan Planner::Solver::Solve(const Farm& farm, Foresight foresight) {
+// Ports block nobody.
+bool Planner::Solver::IsInTheWay(std::int32_t step, std::size_t cell) const {
+  if (task_->others == nullptr) return false;
+  const auto index = static_cast<std::int32_t>(cell);
+  const Cell at{index % scenario_.width, index / scenario_.width};
+  if ((layout_->bits(at) & kPortBit) != 0) return false;
+  return task_->others->IsTaken(task_->ship, step, index);
+}
+
+Plan Planner::Solver::Solve(const Farm& farm, Foresight foresight, const Task& task) {
+  AQUAFARM_CHECK_LE(task.devices.size(), devices_);
   if (farm.over()) return {};
+  task_ = &task;
   Prepare(farm);
   // A narrow search first: what it finds prunes the exact one.
   Search(farm, foresight, kBeam);
@@ -416,12 +438,15 @@ Plan Planner::Solver::Solve(const Farm& farm, Foresight foresight) {
 
 void Planner::Solver::Search(const Farm& farm, Foresight foresight, std::size_t widest) {
   FollowDisasters(farm, foresight);
-  for (std::size_t d = 0; d < devices_; ++d) health_[d] = farm.devices()[d].health;
+  for (std::size_t d = 0; d < task_->devices.size(); ++d) {
+    health_[d] = farm.devices()[static_cast<std::size_t>(task_->devices[d])].health;
+  }
   std::fill(open_.begin(), open_.end(), Open{});
   layers_.clear();
   std::int32_t step = farm.step();
   ReachStart(farm);
-  const std::int32_t last = LastStep(step);
+  std::int32_t last = LastStep(step);
+  if (task_->until > 0) last = std::min(last, task_->until);
   while (step < last && !layers_.back().empty()) {
     ++step;
     AdvanceDisasters(farm, step);
@@ -446,11 +471,18 @@ std::int32_t Planner::Solver::LastStep(std::int32_t step) const {
 void Planner::Solver::ReachStart(const Farm& farm) {
   layers_.emplace_back();
   next_values_.clear();
-  const auto cell = static_cast<std::size_t>(LinearIndex(farm.ships()[0].cell, scenario_.width));
+  const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
+  const auto cell = static_cast<std::size_t>(LinearIndex(ship.cell, scenario_.width));
   std::vector<std::pair<std::size_t, double>> starts{{0, 0.0}};
   for (std::size_t d = 0; d < devices_; ++d) {
-    const Device& device = farm.devices()[d];
-    if (device.status == DeviceStatus::kDeployed) continue;
+    if (d >= task_->devices.size()) {  // a slot that this task does not need
+      for (auto& start : starts) start.first = With(start.first, d, kGone);
+      continue;
+    }
+    const std::int32_t id = task_->devices[d];
+    const Device& device = farm.devices()[static_cast<std::size_t>(id)];
+    // A ship that is a device has itself aboard.
+    if (device.status == DeviceStatus::kDeployed && id != ship.own_device) continue;
     const std::size_t count = starts.size();
     for (std::size_t i = 0; i < count; ++i) {
       const auto [set, held] = starts[i];
@@ -494,7 +526,7 @@ void Planner::Solver::EndOfTime() {
   for (std::size_t index = 0; index < layers_.back().size(); ++index) {
     const Node& node = layers_.back()[index];
     bool broken = false;
-    for (std::size_t d = 0; d < devices_; ++d) {
+    for (std::size_t d = 0; d < task_->devices.size(); ++d) {
       broken = broken || FateOf(node.state / cells_, d) == kForValue;
     }
     if (!broken) Complete(node.parent, node.action, next_values_[index]);
@@ -516,13 +548,43 @@ Plan Planner::Solver::Trace() const {
   return plan;
 }
 
-Planner::Planner(const Scenario& scenario) : solver_(std::make_unique<Solver>(scenario)) {}
+void Reservations::Add(std::int32_t id, std::int32_t first, const std::vector<std::int32_t>& path) {
+  for (std::size_t k = 0; k < path.size(); ++k) {
+    const std::int32_t step = first + static_cast<std::int32_t>(k);
+    taken_[Key(step, path[k])].push_back({id, 0});
+    // Ships move in id order: a higher id finds it gone on, a lower one where it was, and may not
+    // be where it is about to go.
+    taken_[Key(step - 1, path[k])].push_back({id, 1});
+    taken_[Key(step + 1, path[k])].push_back({id, -1});
+  }
+}
+
+bool Reservations::IsTaken(std::int32_t id, std::int32_t step, std::int32_t cell) const {
+  const auto found = taken_.find(Key(step, cell));
+  if (found == taken_.end()) return false;
+  return std::any_of(found->second.begin(), found->second.end(), [id](const Visit& visit) {
+    if (visit.ship == id) return false;
+    if (visit.offset == 0) return true;
+    return visit.offset > 0 ? visit.ship < id : visit.ship > id;
+  });
+}
+
+Planner::Planner(const Scenario& scenario, std::int32_t slots)
+    : solver_(std::make_unique<Solver>(scenario, slots)) {}
 Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 std::size_t Planner::state_count() const { return solver_->state_count(); }
+Plan Planner::Solve(const Farm& farm, Foresight foresight, const Task& task) {
+  return solver_->Solve(farm, foresight, task);
+}
 Plan Planner::Solve(const Farm& farm, Foresight foresight) {
-  return solver_->Solve(farm, foresight);
+  AQUAFARM_CHECK_EQ(farm.ships().size(), 1U);
+  Task task;
+  for (std::size_t id = 0; id < farm.devices().size(); ++id) {
+    task.devices.push_back(static_cast<std::int32_t>(id));
+  }
+  return Solve(farm, foresight, task);
 }
 
 }  // namespace aquafarm::agents

@@ -59,7 +59,9 @@ void Replay<Scalar>::Add(const Results& results, const Scalar* observations, con
   std::copy_n(results.legal.data(), entries, legal_.data() + row);
   for (std::size_t i = 0; i < entries; ++i) {
     const std::size_t farm = i / static_cast<std::size_t>(options_.agents);
-    reasons_[row + i] = results.reasons[farm];
+    // An agent out of play is done, whatever its farm still does.
+    constexpr auto kDone = static_cast<std::uint8_t>(EndReason::kAllRetrieved);
+    reasons_[row + i] = results.in_play[i] != 0 ? results.reasons[farm] : kDone;
     started_[row + i] = results.started[farm];
   }
 }
@@ -85,6 +87,29 @@ Transition Replay<Scalar>::At(std::size_t age, std::size_t entry, std::size_t st
     const EndReason reason = this->reason(row);
     if (IsTerminated(reason)) transition.discount = 0.0F;
     if (reason != EndReason::kNone) break;
+  }
+  return transition;
+}
+
+template <typename Scalar>
+JointTransition Replay<Scalar>::JointAt(std::size_t age, std::size_t first, std::size_t steps,
+                                        float discount, bool team_reward) const {
+  const auto agents = static_cast<std::size_t>(options_.agents);
+  JointTransition transition;
+  transition.discount = 1.0F;
+  for (std::size_t k = 1; k <= steps; ++k) {
+    const std::size_t row = Row(age + k, first);
+    float reward = 0.0F;
+    bool goes_on = false;
+    for (std::size_t agent = 0; agent < agents; ++agent) {
+      reward += rewards_[row + agent];
+      goes_on = goes_on || reason(row + agent) == EndReason::kNone;
+    }
+    if (team_reward) reward = rewards_[row];
+    transition.reward += transition.discount * reward;
+    transition.discount *= discount;
+    transition.to = row;
+    if (!goes_on) break;
   }
   return transition;
 }

@@ -2,6 +2,7 @@
 #include "aquafarm/agents/tabular.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "aquafarm/agents/options.h"
@@ -10,6 +11,8 @@
 namespace aquafarm::agents {
 namespace {
 
+// Stands for the last action of an agent that is out of play.
+constexpr auto kNoAction = std::numeric_limits<std::uint64_t>::max();
 constexpr float kLossShare = 0.01F;  // of one step in the moving average of the loss
 
 std::size_t Entries(const EnvironmentSpec& spec) {
@@ -69,7 +72,6 @@ void TabularLearner<Rule>::Step(const Results& results, double progress,
   for (std::int32_t farm = 0; farm < farms_; ++farm) {
     const auto f = static_cast<std::size_t>(farm);
     const bool is_transition = results.started[f] == 0;
-    const bool goes_on = !IsTerminated(static_cast<EndReason>(results.reasons[f]));
     for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++entry) {
       const ActionMask allowed = options_.mask_illegal
                                      ? static_cast<ActionMask>(results.legal[entry] & kAllActions)
@@ -77,7 +79,8 @@ void TabularLearner<Rule>::Step(const Results& results, double progress,
       const std::size_t row = table_.Row(agent, results.index[entry]);
       const Best best = BestOf(values + row, allowed);
       const std::uint8_t action = explorer_.Choose(values + row, allowed, best, entry);
-      if (is_transition) {
+      if (is_transition && pending_[entry] != kNoAction) {
+        const bool goes_on = !results.IsDone(entry, f);
         const float next = goes_on ? Rule::NextValue(best.value, values[row + action]) : 0.0F;
         float& value = values[pending_[entry]];
         const float error = results.rewards[entry] + discount * next - value;
@@ -85,7 +88,7 @@ void TabularLearner<Rule>::Step(const Results& results, double progress,
         error_sum += error * error;
         ++learnt;
       }
-      pending_[entry] = row + action;
+      pending_[entry] = results.in_play[entry] != 0 ? row + action : kNoAction;
       actions[entry] = action;
     }
   }
@@ -129,7 +132,8 @@ void TabularLearner<Rule>::Load(const Checkpoint& checkpoint) {
   checkpoint.GetArray("pending", pending_.size(), pending);
   checkpoint.GetArray("loss", 1, loss);
   for (const std::uint64_t offset : pending) {
-    if (offset >= values.size()) throw InputError("checkpoint: section 'pending': out of range");
+    if (offset != kNoAction && offset >= values.size())
+      throw InputError("checkpoint: section 'pending': out of range");
   }
   table_.values = std::move(values);
   explorer_.Seek(positions);

@@ -10,8 +10,7 @@ namespace {
 TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
   EXPECT_EQ(MessageOf<InputError>([] { FindAlgorithm("dqm"); }),
             "algorithm: got 'dqm', expected one of: random, q_learning, sarsa, dqn, "
-            "lstm_dqn, planner, "
-            "clairvoyant");
+            "lstm_dqn, independent_dqn, independent_lstm_dqn, vdn, planner, clairvoyant");
 }
 
 TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
@@ -30,10 +29,9 @@ TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
 // Deep learners learn too rarely for a short test unless told otherwise.
 std::string Lively(const Algorithm& algorithm) {
   const std::string name = algorithm.name;
-  if (name == "dqn") return "hidden=8 batch=8 start=20 replay=300 priority=0.5";
-  if (name == "lstm_dqn")
-    return "hidden=8 batch=8 start=20 replay=300 sequence=4 burn_in=2 priority=0.5";
-  return "";
+  const std::string small = "hidden=8 batch=8 start=20 replay=300 priority=0.5";
+  if (name.find("lstm_dqn") != std::string::npos) return small + " sequence=4 burn_in=2";
+  return name == "dqn" || name == "independent_dqn" || name == "vdn" ? small : "";
 }
 
 void ExpectContinues(const Algorithm& algorithm, const std::string& options) {
@@ -81,7 +79,13 @@ TEST(Algorithms, AutoChoosesByThoseWhoDecideAndSaysWhy) {
   EXPECT_EQ(single.reason, "one rescue ship decides, so a single-agent learner");
   Scenario several = aquafarm::test::TinyScenario();
   several.ships.count = 2;
-  EXPECT_CONTAINS(choose(several).reason, "2 rescue ships decide: multi-agent");
+  EXPECT_EQ(choose(several).algorithm, "independent_dqn");
+  EXPECT_EQ(choose(several).reason,
+            "2 rescue ships decide, each for its own reward, so independent learners");
+  several.rewards.sharing = RewardSharing::kTeam;
+  EXPECT_EQ(choose(several).algorithm, "vdn");
+  EXPECT_EQ(choose(several).reason,
+            "2 rescue ships decide for a shared reward, so a multi-agent learner");
 }
 
 TEST(RandomPolicy, TakesEveryActionAlikeAndReproduces) {

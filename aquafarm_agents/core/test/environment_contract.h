@@ -42,6 +42,7 @@ inline void ExpectSame(const Results& a, const Results& b) {
   EXPECT_EQ(a.legal, b.legal);
   EXPECT_EQ(a.reasons, b.reasons);
   EXPECT_EQ(a.started, b.started);
+  EXPECT_EQ(a.in_play, b.in_play);
   EXPECT_EQ(a.hashes, b.hashes);
   EXPECT_EQ(a.index, b.index);
   EXPECT_EQ(a.features, b.features);
@@ -54,6 +55,7 @@ inline void ExpectFirstObservations(const EnvironmentSpec& spec, const Results& 
   EXPECT_EQ(results.reasons, std::vector<std::uint8_t>(farms, 0));
   EXPECT_EQ(results.rewards, std::vector<float>(Entries(spec), 0.0F));
   EXPECT_EQ(results.legal.size(), Entries(spec));
+  EXPECT_EQ(results.in_play, std::vector<std::uint8_t>(Entries(spec), 1));
   EXPECT_EQ(results.outcomes.size(), Entries(spec));
   EXPECT_EQ(results.hashes.size(), farms);
   EXPECT_TRUE(results.finished.empty());
@@ -88,6 +90,13 @@ inline void ExpectStepsKeepTheRules(Environment& environment, std::uint64_t seed
         const std::size_t k = farm * static_cast<std::size_t>(spec.agents) + agent;
         if (!now.index.empty()) {
           EXPECT_LT(now.index[k], spec.state_count);
+        }
+        if (now.started[farm] != 0) {
+          EXPECT_EQ(now.in_play[k], 1) << "every agent begins";
+        } else {
+          EXPECT_LE(now.in_play[k], last.in_play[k]) << "none comes back";
+          EXPECT_EQ(now.outcomes[k] == static_cast<std::uint8_t>(Outcome::kOutOfPlay),
+                    last.in_play[k] == 0);
         }
         if (now.started[farm] != 0) {
           EXPECT_EQ(now.rewards[k], 0.0F);

@@ -157,14 +157,6 @@ TEST(RecedingHorizon, IsNeverBetterThanClairvoyant) {
 }
 
 TEST(Planner, SaysWhatItCannotPlanFor) {
-  Scenario squads;
-  squads.ships.count = 2;
-  try {
-    Planner planner(squads);
-    FAIL() << "was let through";
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "planner: got 2 agents, expected 1 rescue ship");
-  }
   Scenario many;
   many.devices.count = 30;
   EXPECT_THROW(Planner{many}, InputError);
@@ -214,11 +206,17 @@ TEST_F(PlannerPolicies, EarnWhatTheClairvoyantPlanPromises) {
   }
 }
 
-TEST_F(PlannerPolicies, RefuseAFarmOfTwoShips) {
-  Scenario scenario = TinyScenario(40, 0.02F, 1);
+TEST_F(PlannerPolicies, PlanForTheTeamOnAFarmOfTwoShips) {
+  Scenario scenario = aquafarm::test::TinyScenario();
   scenario.ships.count = 2;
-  LocalEnvironment environment(test::Share(scenario), {1, kStatesBit, false, 1});
-  EXPECT_THROW(MakePolicy(FindPolicy("planner"), environment.spec()), InputError);
+  scenario.step_limit = 60;
+  for (const char* name : {"planner", "clairvoyant"}) {
+    LocalEnvironment environment(test::Share(scenario), {4, kStatesBit, false, 1});
+    const auto policy = MakePolicy(FindPolicy(name), environment.spec());
+    const Evaluation evaluation = agents::Evaluate(environment, *policy, 3, 20);
+    EXPECT_EQ(evaluation.success_rate, 1.0);
+    EXPECT_EQ(evaluation.mean_steps, 6.0);  // two north, pickup, two south, drop-off
+  }
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ class TwoFarms {
     Results results;
     const auto t = static_cast<float>(moment_);
     results.rewards = {t, 10 * t};
+    results.in_play = {1, 1};
     results.legal = {static_cast<ActionMask>(moment_), 1};
     results.reasons = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(second)};
     results.started = {started ? std::uint8_t{1} : std::uint8_t{0}, 0};

@@ -155,7 +155,7 @@ TEST_F(Programs, ExplainThemselves) {
 TEST_F(Programs, RefuseWhatTheyDoNotKnow) {
   const std::string run = folder_ + "/run";
   EXPECT_EQ(Run({AQUAFARM_TRAIN, "nowhere", "-d", run}), 2);
-  EXPECT_CONTAINS(output_, "scenario: got 'nowhere', expected a file or one of: paper");
+  EXPECT_CONTAINS(output_, "scenario: got 'nowhere', expected a file or one of: four_squads");
   EXPECT_EQ(Run({AQUAFARM_TRAIN, "paper", "-d", run, "-a", "dqm"}), 2);
   EXPECT_EQ(Run({AQUAFARM_TRAIN, "paper", "-d", run, "--farms", "0"}), 2);
   EXPECT_EQ(Run({AQUAFARM_TRAIN, "--no-such-option"}), 2);

@@ -24,6 +24,7 @@ struct Chain {
     results.legal = {kAllActions};
     results.reasons = {0};
     results.started = {1};
+    results.in_play = {1};
     results.index = {0};
   }
   template <typename L>
@@ -117,9 +118,10 @@ void ExpectLikeOracle(bool sarsa) {
     for (std::size_t farm = 0; farm < 3; ++farm) {
       const bool terminated = IsTerminated(static_cast<EndReason>(results.reasons[farm]));
       for (std::int32_t agent = 0; agent < spec.agents; ++agent, ++k) {
-        if (results.started[farm] != 0) continue;
+        if (results.started[farm] != 0 || before.in_play[k] == 0) continue;
         oracle.Learn(learner.table().Row(agent, before.index[k]), taken[k], results.rewards[k],
-                     terminated, learner.table().Row(agent, results.index[k]), actions[k]);
+                     terminated || results.in_play[k] == 0,
+                     learner.table().Row(agent, results.index[k]), actions[k]);
       }
     }
     ASSERT_EQ(learner.table().values == oracle.q, true) << "step " << step;

@@ -15,7 +15,7 @@ constexpr std::int32_t kSelfFeatures = 5;
 constexpr std::int32_t kDeviceFeatures = 5;
 constexpr std::int32_t kPortFeatures = 2;
 constexpr std::int32_t kDisasterFeatures = 7;
-constexpr std::int32_t kShipFeatures = 3;
+constexpr std::int32_t kShipFeatures = 4;
 // Scales: devices' highest paper value, the worst risk of §2.1.
 constexpr float kValueScale = 1.0F / 100.0F;
 constexpr float kRiskScale = 1.0F / 20.0F;
@@ -27,6 +27,11 @@ enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, k
 
 std::uint8_t ToByte(float part) {
   return static_cast<std::uint8_t>(std::min(std::max(part, 0.0F), 1.0F) * 255.0F + 0.5F);
+}
+
+// Which of several agents it is, so that one network can play all of them. Alone, none is needed.
+std::int32_t IdentityFeatures(const Scenario& scenario) {
+  return scenario.AgentCount() > 1 ? scenario.AgentCount() : 0;
 }
 
 // The part of an episode's time that is left.
@@ -122,7 +127,7 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
                          : static_cast<std::int32_t>(scenario.ports.cells.size());
   feature_count_ = kSelfFeatures + kMoveCount + devices * kDeviceFeatures + ports * kPortFeatures +
                    static_cast<std::int32_t>(scenario.disasters.size()) * kDisasterFeatures +
-                   (scenario.AgentCount() - 1) * kShipFeatures;
+                   (scenario.AgentCount() - 1) * kShipFeatures + IdentityFeatures(scenario);
 
   // Base-3 codes grow as 3^D: beyond this many devices no table would fit anyway.
   constexpr std::int32_t kMostDevices = 14;
@@ -220,7 +225,12 @@ void Encoder::Features(const View& view, float* out) const {
     *out++ = other.visible ? 1.0F : 0.0F;
     *out++ = other.visible ? east(other.cell) : 0.0F;
     *out++ = other.visible ? north(other.cell) : 0.0F;
+    *out++ =
+        other.visible ? static_cast<float>(other.aboard) / static_cast<float>(view.capacity) : 0.0F;
   }
+  const std::int32_t identities = IdentityFeatures(scenario_);
+  std::fill_n(out, identities, 0.0F);
+  if (identities > 0) out[view.ship] = 1.0F;
 }
 
 void Encoder::Planes(const View& view, std::uint8_t* out) const {
@@ -274,8 +284,9 @@ std::vector<std::string> Encoder::feature_names() const {
         {"known", "east", "north", "motion_east", "motion_north", "reach", "age"});
   }
   for (std::int32_t i = 0; i + 1 < scenario_.AgentCount(); ++i) {
-    add("other", i, {"visible", "east", "north"});
+    add("other", i, {"visible", "east", "north", "aboard"});
   }
+  for (std::int32_t i = 0; i < IdentityFeatures(scenario_); ++i) add("agent", i, {"self"});
   return names;
 }
 

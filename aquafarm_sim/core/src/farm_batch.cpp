@@ -90,6 +90,7 @@ void FarmBatch::WriteOne(std::int32_t i, std::int32_t thread, bool started,
     }
     if (output.outcomes != nullptr) output.outcomes[k] = static_cast<std::uint8_t>(ship.outcome);
     if (output.legal != nullptr) output.legal[k] = one.LegalActions(id);
+    if (output.in_play != nullptr) output.in_play[k] = ship.in_play ? 1 : 0;
     if (output.index != nullptr) output.index[k] = encoder_.Index(one, id);
     if (output.features == nullptr && output.planes == nullptr) continue;
     View& view = views_[static_cast<std::size_t>(thread)];

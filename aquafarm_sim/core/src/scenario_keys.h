@@ -198,6 +198,7 @@ void VisitView(Archive& a, S& s) {
     b.Leaf("sensor_radius", s.view.sensor_radius, kRadius);
     b.Leaf("bulletin_period", s.view.bulletin_period, Interval<std::int32_t>{0, kMaxSteps});
     b.Leaf("bulletin_noise", s.view.bulletin_noise, Interval<float>{0.0F, 1000.0F});
+    b.Leaf("shared_sight", s.view.shared_sight, AnyFlag{});
     b.Always();
   });
 }

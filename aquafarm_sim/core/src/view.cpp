@@ -13,8 +13,23 @@ float SquaredDistance(Cell a, float x, float y) {
   return dx * dx + dy * dy;
 }
 
-bool Within(Cell a, Cell b, float radius) {
-  return SquaredDistance(a, static_cast<float>(b.x), static_cast<float>(b.y)) <= radius * radius;
+// Whether a point is within `radius` of any place it is seen from.
+bool IsSeen(const std::vector<Cell>& eyes, float x, float y, float radius) {
+  return std::any_of(eyes.begin(), eyes.end(),
+                     [&](Cell eye) { return SquaredDistance(eye, x, y) <= radius * radius; });
+}
+
+bool IsSeen(const std::vector<Cell>& eyes, Cell cell, float radius) {
+  return IsSeen(eyes, static_cast<float>(cell.x), static_cast<float>(cell.y), radius);
+}
+
+void OpenEyes(const Farm& farm, Cell self, std::vector<Cell>& eyes) {
+  eyes.clear();
+  eyes.push_back(self);
+  if (!farm.scenario().view.shared_sight) return;
+  for (const Ship& ship : farm.ships()) {
+    if (ship.in_play) eyes.push_back(ship.cell);
+  }
 }
 
 // Rings, risks and grade as they were when the last bulletin was issued: what came after it is not
@@ -34,14 +49,15 @@ void TakeBackToBulletin(const std::vector<Waypoint>& track, std::int32_t age, Di
   }
 }
 
-void ObserveDisaster(const Farm& farm, std::size_t id, bool full, Cell self, KnownDisaster& known) {
+void ObserveDisaster(const Farm& farm, std::size_t id, bool full, const std::vector<Cell>& eyes,
+                     KnownDisaster& known) {
   const Disaster& disaster = farm.disasters()[id];
   const ViewSpec& view = farm.scenario().view;
   known.belief = disaster;
   known.age = 0;
   // A ship senses a disaster when its edge is within the sensors' range [decided].
   const float range = view.sensor_radius + disaster.reach();
-  known.visible = full || SquaredDistance(self, disaster.x, disaster.y) <= range * range;
+  known.visible = full || IsSeen(eyes, disaster.x, disaster.y, range);
   known.known = known.visible || disaster.bulletin.step != kNone;
   if (known.visible || !known.known) return;
   const Bulletin& bulletin = disaster.bulletin;
@@ -72,6 +88,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   view.capacity = scenario.ships.capacity;
   view.scenario = &scenario;
   view.layout = &farm.layout();
+  OpenEyes(farm, view.self, view.eyes);
 
   view.others.resize(ships.size() - 1);
   for (std::size_t id = 0, k = 0; id < ships.size(); ++id) {
@@ -79,7 +96,8 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     KnownShip& known = view.others[k++];
     known.id = static_cast<std::int32_t>(id);
     known.cell = ships[id].cell;
-    known.visible = ships[id].in_play && (full || Within(self.cell, known.cell, radius));
+    known.aboard = ships[id].aboard;
+    known.visible = ships[id].in_play && (full || IsSeen(view.eyes, known.cell, radius));
   }
 
   view.devices.resize(farm.devices().size());
@@ -87,7 +105,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     const Device& device = farm.devices()[id];
     KnownDevice& known = view.devices[id];
     const Cell cell = farm.CellOf(static_cast<std::int32_t>(id));
-    const bool visible = full || Within(self.cell, cell, radius);
+    const bool visible = full || IsSeen(view.eyes, cell, radius);
     // Out of sight, where another ship has carried it is not known, only where it was deployed.
     known.cell = visible ? cell : view.layout->devices[id].cell;
     known.status = device.status;
@@ -100,7 +118,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
 
   view.disasters.resize(farm.disasters().size());
   for (std::size_t id = 0; id < view.disasters.size(); ++id) {
-    ObserveDisaster(farm, id, full, self.cell, view.disasters[id]);
+    ObserveDisaster(farm, id, full, view.eyes, view.disasters[id]);
   }
 }
 

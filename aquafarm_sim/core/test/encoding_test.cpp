@@ -124,7 +124,24 @@ float Feature(const Farm& farm, const std::string& name, std::int32_t ship = 0) 
 TEST(Features, AreAsManyAsNamedOnEveryFarm) {
   EXPECT_EQ(FeaturesOf(MakeFarm(TinyScenario()), 0).size(), 5U + 8 + 5 + 2);
   Farm crowded = MakeFarm(CrowdedScenario(3, 2));
-  EXPECT_EQ(FeaturesOf(crowded, 4).size(), 5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 3);
+  EXPECT_EQ(FeaturesOf(crowded, 4).size(), 5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 4 + 5);
+}
+
+TEST(Features, TellSeveralAgentsApartAndWhatTheOthersCarry) {
+  Scenario scenario = TinyScenario();
+  scenario.ships.count = 2;
+  Farm farm = MakeFarm(scenario);
+  EXPECT_EQ(Feature(farm, "agent0.self", 0), 1.0F);
+  EXPECT_EQ(Feature(farm, "agent1.self", 0), 0.0F);
+  EXPECT_EQ(Feature(farm, "agent0.self", 1), 0.0F);
+  EXPECT_EQ(Feature(farm, "agent1.self", 1), 1.0F);
+  EXPECT_EQ(Feature(farm, "other0.aboard", 1), 0.0F);
+  for (const Action action : {Action::kNorth, Action::kNorth, Action::kPickup}) {
+    const std::uint8_t codes[] = {test::Act(action), test::Act(Action::kHold)};
+    farm.Step(codes);
+  }
+  EXPECT_EQ(Feature(farm, "other0.aboard", 1), 1.0F);
+  EXPECT_EQ(Feature(farm, "other0.aboard", 0), 0.0F);
 }
 
 TEST(Features, SayWhereThingsAre) {

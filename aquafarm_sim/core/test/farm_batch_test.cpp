@@ -54,6 +54,7 @@ struct Buffers {
     terms.resize(k * kRewardTermCount);
     outcomes.resize(k);
     legal.resize(k);
+    in_play.resize(k);
     reasons.resize(n);
     started.resize(n);
     hashes.resize(n);
@@ -62,11 +63,12 @@ struct Buffers {
     planes.resize(k * batch.encoder().planes_size());
   }
   BatchOutput View() {
-    return {rewards.data(), terms.data(),  outcomes.data(), legal.data(),    reasons.data(),
-            started.data(), hashes.data(), index.data(),    features.data(), planes.data()};
+    return {rewards.data(), terms.data(),    outcomes.data(), legal.data(),
+            in_play.data(), reasons.data(),  started.data(),  hashes.data(),
+            index.data(),   features.data(), planes.data()};
   }
   std::vector<float> rewards, terms, features;
-  std::vector<std::uint8_t> outcomes, reasons, started, planes;
+  std::vector<std::uint8_t> outcomes, in_play, reasons, started, planes;
   std::vector<ActionMask> legal;
   std::vector<std::uint64_t> hashes;
   std::vector<std::uint32_t> index;
@@ -200,6 +202,32 @@ TEST(FarmBatch, AFarmsStateIsUnderAKibibyteBesidesItsChart) {
   };
   const std::size_t of_one = bytes_of(1);
   EXPECT_LT((bytes_of(101) - of_one) / 100, 1024U);
+}
+
+TEST(FarmBatch, SaysWhichAgentsAreDoneUntilTheirNextEpisode) {
+  Scenario scenario = test::TinyScenario();
+  scenario.devices.sites.push_back({{2, 1}, DeviceKind::kBreedingRelease, 90.0F, true});
+  scenario.step_limit = 4;
+  FarmBatch batch(Shared(scenario), 1);
+  Buffers buffers(batch);
+  batch.Reset(1, 0, buffers.View());
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+  const auto step = [&](Action device) {
+    const std::uint8_t actions[] = {test::Act(Action::kHold), test::Act(device)};
+    batch.Step(actions, buffers.View());
+  };
+  step(Action::kSouth);
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+  step(Action::kDropOff);
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(buffers.rewards[1], 110.0F);
+  step(Action::kNorth);
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 0}));
+  step(Action::kNorth);
+  EXPECT_EQ(buffers.reasons[0], static_cast<std::uint8_t>(EndReason::kStepLimit));
+  step(Action::kNorth);
+  EXPECT_EQ(buffers.started[0], 1);
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ Scenario UnusualScenario() {
   s.rewards.pickup = 0.1F;
   s.rewards.sharing = RewardSharing::kTeam;
   s.damage.exposure_damage = std::nextafter(0.001F, 1.0F);
-  s.view = {ViewMode::kPartial, 7.7F, 3, 1.0e-30F};
+  s.view = {ViewMode::kPartial, 7.7F, 3, 1.0e-30F, true};
   s.disasters[0].heading_deg = 359;
   s.disasters[0].start = {{-3.3F, 1.0e5F}};
   DisasterSpec tracked;
@@ -179,6 +179,7 @@ TEST(Writer, GivesTextThatReadsBackToTheSameBits) {
   EXPECT_EQ(back.layout_seed, s.layout_seed);
   EXPECT_EQ(back.damage.exposure_damage, s.damage.exposure_damage);
   EXPECT_EQ(back.view.bulletin_noise, s.view.bulletin_noise);
+  EXPECT_EQ(back.view.shared_sight, s.view.shared_sight);
   EXPECT_EQ(back.disasters[0].heading_deg, s.disasters[0].heading_deg);
   EXPECT_EQ(back.disasters[0].start, s.disasters[0].start);
   EXPECT_EQ(back.disasters[1].heading_deg, std::nullopt);

@@ -33,8 +33,10 @@ Scenario Load(const std::string& name) {
 }
 
 TEST(Shipped, AreThese) {
-  EXPECT_EQ(ShippedNames(), (std::vector<std::string>{"paper", "partial", "procedural", "red_tide",
-                                                      "two_squads", "zhoushan_infa_2021"}));
+  EXPECT_EQ(ShippedNames(),
+            (std::vector<std::string>{"four_squads", "networked_devices", "paper", "partial",
+                                      "procedural", "red_tide", "smart_devices", "two_squads",
+                                      "zhoushan_infa_2021"}));
 }
 
 class Shipped : public testing::TestWithParam<std::string> {};

@@ -157,6 +157,27 @@ TEST(PartialView, OtherShipsAndWhatTheyCarryAreSeenInRangeOnly) {
   EXPECT_TRUE(view.devices[0].aboard_self);
 }
 
+TEST(PartialView, NetworkedAgentsSeeWithEachOthersSensors) {
+  Scenario scenario = PartialScenario();
+  scenario.devices.sites = {{{2, 3}, DeviceKind::kMonitoring, 80.0F, false},
+                            {{26, 26}, DeviceKind::kMonitoring, 80.0F, true},
+                            {{14, 14}, DeviceKind::kMonitoring, 80.0F, true}};
+  scenario.view.bulletin_period = 0;
+  scenario.disasters = {StillDisaster(27, 27, {2}, {-20})};
+  View view;
+  Observe(MakeFarm(scenario), 0, view);
+  EXPECT_FALSE(view.others[0].visible);
+  EXPECT_FALSE(view.devices[1].health_known);
+  EXPECT_FALSE(view.disasters[0].known);
+  scenario.view.shared_sight = true;
+  Farm farm = MakeFarm(scenario);
+  Observe(farm, 0, view);
+  EXPECT_TRUE(view.others[0].visible);
+  EXPECT_TRUE(view.others[1].visible);
+  EXPECT_TRUE(view.devices[1].health_known);
+  EXPECT_TRUE(view.disasters[0].visible);
+}
+
 TEST(View, KnownRiskIsTheWorstOfWhatIsKnown) {
   Scenario scenario = PartialScenario();
   scenario.view.bulletin_period = 0;

@@ -22,6 +22,7 @@ struct BatchOutput {
   float* terms{};            ///< [N, S, kRewardTermCount]
   std::uint8_t* outcomes{};  ///< [N, S] Outcome
   ActionMask* legal{};       ///< [N, S] legal actions of the next step
+  std::uint8_t* in_play{};   ///< [N, S] 0: a delivered self-propelled device, whose agent is done
   std::uint8_t* reasons{};   ///< [N] EndReason; kNone while the episode goes on
   std::uint8_t* started{};   ///< [N] 1: this entry is an episode's first observation, no step
   std::uint64_t* hashes{};   ///< [N] state hash

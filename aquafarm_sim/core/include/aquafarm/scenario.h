@@ -141,6 +141,7 @@ struct ViewSpec {
   float sensor_radius{5.0F};
   std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
   float bulletin_noise{0.0F};        ///< centre off by up to this on each axis [cells]
+  bool shared_sight{};               ///< agents are networked: what one of them sees, all know
 };
 
 /// A whole farm.

@@ -3,7 +3,8 @@
 
 /// What one ship may know of a farm (§2.3). Full view: everything. Partial view: the chart and the
 /// places and status of devices are known; health, other ships and disasters only within
-/// sensor_radius; between sightings the last bulletin stands, with its age.
+/// sensor_radius; between sightings the last bulletin stands, with its age. Networked agents
+/// (shared_sight) see with the sensors of all that are in play and know where each of them is.
 
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,7 @@ struct KnownShip {
   std::int32_t id{};
   Cell cell{};  ///< meaningless when not visible
   bool visible{};
+  std::int32_t aboard{};  ///< devices aboard; meaningless when not visible
 };
 
 struct KnownDevice {
@@ -48,6 +50,8 @@ struct View {
   std::vector<KnownDisaster> disasters;
   const Scenario* scenario{};
   const Layout* layout{};
+  std::vector<Cell>
+      eyes;  ///< where it is seen from: its own cell, or those of all networked agents
 };
 
 /// Fills `view` with what `ship` knows now.

@@ -53,6 +53,9 @@ struct DeepOptions {
   std::int32_t sequence{4};  ///< steps learnt from; 1 with burn_in 0: the paper's literal tuples
   std::int32_t burn_in{2};   ///< steps before them that only warm up the state
 
+  /// Learn the sum of all agents' values instead of each on its own (VDN); set by the algorithm.
+  bool joint{};
+
   std::string device{"auto"};  ///< auto, cpu or cuda
   std::int32_t threads{1};     ///< of the network library on the CPU
 

@@ -23,6 +23,13 @@ std::uint8_t DqnEncodings(const std::string& options);
 /// @throws InputError
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
+/// Value decomposition (VDN, Sunehag et al. 2018): one network plays all agents and their values
+/// add up to the team's, learnt from the sum of their rewards; a policy like any DQN's.
+///
+///   Q_team(s, a) = Σ over agents i of Q(o_i, a_i)
+/// @throws InputError
+std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed,
+                                 const std::string& options);
 /// @throws InputError when the policy does not fit farms of `spec`, with the reason
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 

@@ -6,6 +6,10 @@
 ///
 /// A farm whose episode is over (its reason is not kNone) ignores the action of the next Step and
 /// starts its next episode: that entry has started = 1, reward 0 and no transition to learn from.
+///
+/// An agent may be done before its farm is: a self-propelled device that is delivered is out of
+/// play (as in PettingZoo's parallel API). The transition that takes it out of play terminates it;
+/// what follows until the next episode is none of its own.
 
 #include <cstdint>
 #include <stdexcept>
@@ -33,6 +37,7 @@ struct EnvironmentSpec {
   std::string version;
   std::int32_t farms{};
   std::int32_t agents{};        ///< ships and self-propelled devices of one farm
+  bool team_reward{};           ///< every agent is given the sum of all agents' rewards
   std::uint32_t state_count{};  ///< tabular states; 0: too many for a table
   std::int32_t feature_count{};
   std::int32_t plane_count{};
@@ -60,9 +65,15 @@ struct EpisodeResult {
 
 /// Results of one Reset or Step; owned by the environment, valid until its next call. Row-major.
 struct Results {
+  /// Whether the work of an agent (entry farm · S + agent) is over after this transition.
+  bool IsDone(std::size_t entry, std::size_t farm) const {
+    return in_play[entry] == 0 || IsTerminated(static_cast<EndReason>(reasons[farm]));
+  }
+
   std::vector<float> rewards;           ///< [N, S]
   std::vector<std::uint8_t> outcomes;   ///< [N, S] Outcome
   std::vector<ActionMask> legal;        ///< [N, S] for the next step
+  std::vector<std::uint8_t> in_play;    ///< [N, S] 0: this agent is done until the next episode
   std::vector<std::uint8_t> reasons;    ///< [N] EndReason; kNone while the episode goes on
   std::vector<std::uint8_t> started;    ///< [N] 1: an episode's first observation
   std::vector<std::uint64_t> hashes;    ///< [N]; empty unless asked for

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,8 @@ struct Evaluation {
   double mean_crashes{};
   double mean_steps_in_disaster{};
   double wall_s{};
-  bool complete{};  ///< false when it was stopped
+  bool complete{};                   ///< false when it was stopped
+  std::optional<double> mean_bound;  ///< of these episodes (team_bound.h), if asked for
 };
 
 /// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). The result does not depend on the

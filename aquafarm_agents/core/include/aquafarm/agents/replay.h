@@ -55,6 +55,13 @@ struct Transition {
   float discount{};  ///< of the value at `to`; 0 after termination
 };
 
+/// What became of all agents of a farm together over n steps, or until their episode ended.
+struct JointTransition {
+  std::size_t to{};  ///< row of the farm's first agent in the moment that the target looks at
+  float reward{};    ///< discounted sum of the team's rewards over the steps between
+  float discount{};  ///< of the value at `to`, of those agents that are not done there
+};
+
 /// Numbers of type Scalar: float features, or bytes of planes.
 template <typename Scalar>
 class Replay {
@@ -79,6 +86,11 @@ class Replay {
   }
   /// @returns the transition over `steps` steps that begins at a row where Begins holds
   Transition At(std::size_t age, std::size_t entry, std::size_t steps, float discount) const;
+
+  /// @param first entry of a farm's first agent
+  /// @param team_reward every agent's reward is the team's already
+  JointTransition JointAt(std::size_t age, std::size_t first, std::size_t steps, float discount,
+                          bool team_reward) const;
 
   /// Row of a moment's entry in the arrays; stays while the moment is kept.
   std::size_t Row(std::size_t age, std::size_t entry) const {

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/team_bound.h"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "aquafarm/check.h"
+#include "water_distance.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+/// The best trip for one device, found forward in time.
+class Trip {
+ public:
+  Trip(const Farm& farm, std::size_t id, const std::vector<std::int32_t>& to_port)
+      : scenario_(farm.scenario()),
+        layout_(farm.layout()),
+        device_(farm.devices()[id]),
+        to_port_(to_port),
+        site_(Index(device_.cell)),
+        health_(device_.health),
+        empty_(to_port.size(), kNever),
+        laden_(to_port.size(), kNever),
+        next_(to_port.size()) {
+    const bool free_moves = scenario_.ships.capacity > 1 && !device_.self_propelled;
+    move_ = free_moves ? 0.0 : static_cast<double>(scenario_.rewards.step);
+    if (device_.self_propelled) laden_[site_] = worth();
+  }
+
+  /// Goes on by a step. @param risk [H, W] in it
+  void Step(const Grid<float>& risk) {
+    StartTrips();
+    PickUpAndDropOff(risk);
+    const double exposure = static_cast<double>(scenario_.damage.exposure_damage);
+    Spread(risk, 0.0, empty_);
+    Spread(risk, exposure * static_cast<double>(device_.value), laden_);
+    for (const auto& [cell, value] : picked_up_) laden_[cell] = std::max(laden_[cell], value);
+    picked_up_.clear();
+    if (!device_.self_propelled) {
+      health_ = std::max(0.0F, health_ + scenario_.damage.exposure_damage * risk.data()[site_]);
+    }
+  }
+
+  double best() const { return best_; }
+
+  /// Whether no trip can beat the best any more, were there no disaster from now on.
+  bool IsOver() const {
+    double most = kNever;
+    for (std::size_t cell = 0; cell < laden_.size(); ++cell) {
+      most = std::max(most, laden_[cell] + drop_off() + move_ * to_port_[cell]);
+    }
+    if (!device_.self_propelled) {
+      const double pickup = static_cast<double>(scenario_.rewards.pickup);
+      most = std::max(most, pickup + worth() + drop_off() + 2.0 * move_ * to_port_[site_]);
+    }
+    return most <= best_;
+  }
+
+ private:
+  std::size_t Index(Cell cell) const {
+    return static_cast<std::size_t>(LinearIndex(cell, scenario_.width));
+  }
+  double worth() const { return static_cast<double>(health_) * static_cast<double>(device_.value); }
+  double drop_off() const { return static_cast<double>(scenario_.rewards.drop_off); }
+
+  void StartTrips() {
+    if (device_.self_propelled) return;
+    for (const Cell port : layout_.ports) empty_[Index(port)] = std::max(empty_[Index(port)], 0.0);
+  }
+
+  void PickUpAndDropOff(const Grid<float>& risk) {
+    for (const Cell port : layout_.ports) {
+      const auto here = static_cast<double>(risk(port.y, port.x));
+      best_ = std::max(best_, laden_[Index(port)] + drop_off() + here);
+    }
+    if (device_.self_propelled || empty_[site_] == kNever) return;
+    const auto here = static_cast<double>(risk.data()[site_]);
+    const double wear =
+        static_cast<double>(scenario_.damage.exposure_damage * device_.value) * here;
+    picked_up_.emplace_back(site_, empty_[site_] + static_cast<double>(scenario_.rewards.pickup) +
+                                       here + worth() + wear);
+  }
+
+  // One move, or one step of staying, from every cell; a cell is worth its best way to it.
+  void Spread(const Grid<float>& risk, double value_per_risk, std::vector<double>& values) {
+    std::fill(next_.begin(), next_.end(), kNever);
+    for (std::int32_t y = 0; y < scenario_.height; ++y) {
+      for (std::int32_t x = 0; x < scenario_.width; ++x) {
+        const double value = values[Index({x, y})];
+        if (value == kNever) continue;
+        Raise({x, y}, value);
+        for (const Cell by : kMoves) {
+          const Cell to{x + by.x, y + by.y};
+          const bool on_map =
+              to.x >= 0 && to.y >= 0 && to.x < scenario_.width && to.y < scenario_.height;
+          if (on_map && (layout_.bits(to) & kBlockedBits) == 0) Raise(to, value);
+        }
+      }
+    }
+    for (std::size_t cell = 0; cell < next_.size(); ++cell) {
+      if (next_[cell] == kNever) continue;
+      const auto here = static_cast<double>(risk.data()[cell]);
+      next_[cell] += here < 0.0 ? here * (1.0 + value_per_risk) : move_;
+    }
+    values.swap(next_);
+  }
+  void Raise(Cell cell, double value) {
+    double& known = next_[Index(cell)];
+    known = std::max(known, value);
+  }
+
+  const Scenario& scenario_;
+  const Layout& layout_;
+  const Device device_;
+  const std::vector<std::int32_t>& to_port_;
+  std::size_t site_;
+  float health_;
+  double move_{};
+  double best_{0.0};           // not to fetch it at all
+  std::vector<double> empty_;  // best return so far, by cell: on the way to the device
+  std::vector<double> laden_;  // the same with it, its worth paid in
+  std::vector<double> next_;
+  std::vector<std::pair<std::size_t, double>> picked_up_;
+};
+
+}  // namespace
+
+double TeamBound(const Farm& farm) {
+  const Scenario& scenario = farm.scenario();
+  if (scenario.rewards.step > 0.0F) {
+    throw InputError("bound: rewards.step: got more than 0, expected at most 0");
+  }
+  AQUAFARM_CHECK_EQ(farm.step(), 0);
+  const std::vector<std::int32_t> to_port =
+      WaterDistance(farm.layout(), scenario.width, scenario.height, farm.layout().ports);
+  std::vector<Trip> trips;
+  for (std::size_t id = 0; id < farm.devices().size(); ++id) trips.emplace_back(farm, id, to_port);
+  std::vector<Disaster> disasters = farm.disasters();
+  Grid<float> risk(scenario.height, scenario.width);
+  bool over = false;
+  for (std::int32_t step = 1; step <= scenario.step_limit && !over; ++step) {
+    for (std::size_t id = 0; id < disasters.size(); ++id) {
+      const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
+                          static_cast<std::uint32_t>(id)};
+      MoveDisaster(disasters[id], farm.tracks()[id], key, step, scenario.width, scenario.height);
+    }
+    FillRisk(disasters, risk);
+    over = !disasters.empty() &&
+           std::none_of(disasters.begin(), disasters.end(),
+                        [](const Disaster& disaster) { return disaster.active(); });
+    bool goes_on = false;
+    for (Trip& trip : trips) {
+      if (trip.IsOver()) continue;
+      trip.Step(risk);
+      goes_on = true;
+    }
+    over = over || !goes_on;
+  }
+  double bound = 0.0;
+  for (const Trip& trip : trips) bound += trip.best();
+  return bound;
+}
+
+}  // namespace aquafarm::agents

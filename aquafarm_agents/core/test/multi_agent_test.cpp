@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Learners of several agents: each solves a tiny farm of two ships, agents that are done learn no
+// more, and what is saved goes on bit for bit.
+#include <gtest/gtest.h>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/algorithms.h"
+#include "aquafarm/agents/evaluation.h"
+#include "aquafarm/agents/replay.h"
+#include "aquafarm/agents/tabular.h"
+#include "aquafarm/agents/trainer.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+constexpr const char* kSmall =
+    "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
+    "learning_rate=linear:0.002:0.0001:1";
+
+/// Two ships at two ports, two devices; neither can bring both home within the limit.
+Scenario TwoShips() {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.ships.count = 2;
+  scenario.ports.cells = {{2, 0}, {2, 1}};
+  scenario.devices.sites = {{{2, 3}, DeviceKind::kMonitoring, 60.0F, false},
+                            {{4, 2}, DeviceKind::kMonitoring, 80.0F, false}};
+  scenario.rewards.sharing = RewardSharing::kTeam;
+  scenario.step_limit = 60;
+  return scenario;
+}
+
+/// Two devices that drive themselves, and a ship that fetches a third.
+Scenario SmartDevices() {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.devices.sites.push_back({{4, 1}, DeviceKind::kMonitoring, 70.0F, true});
+  scenario.devices.sites.push_back({{1, 3}, DeviceKind::kMonitoring, 60.0F, true});
+  scenario.step_limit = 60;
+  return scenario;
+}
+
+double SuccessAfter(const std::string& algorithm, const std::string& options, std::uint64_t steps,
+                    const Scenario& scenario) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(Share(scenario), {8, entry.encodings(options), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  const double before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
+  EXPECT_LT(before, 0.5) << algorithm;
+  TrainerOptions trainer;
+  trainer.algorithm = algorithm;
+  trainer.steps = steps;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  return Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
+}
+
+TEST(TwoShips, AreLedHomeByEveryLearner) {
+  EXPECT_GE(SuccessAfter("q_learning", "", 200000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("dqn", kSmall, 24000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, TwoShips()), 0.98);
+}
+
+TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {
+  EXPECT_GE(SuccessAfter("q_learning", "", 200000, SmartDevices()), 0.98);
+  EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, SmartDevices()), 0.98);
+  EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, SmartDevices()), 0.98);
+}
+
+TEST(DoneAgents, LearnNothingMoreFromATable) {
+  EnvironmentSpec spec;
+  spec.farms = 1;
+  spec.agents = 2;
+  spec.state_count = 3;
+  TabularLearner<QLearningRule> learner(
+      spec, 1, "learning_rate=0.5 discount=0.9 exploration=epsilon_greedy:0");
+  Results results;
+  results.legal = {kAllActions, kAllActions};
+  results.reasons = {0};
+  std::vector<std::uint8_t> actions;
+  const auto tell = [&](bool started, std::uint8_t in_play, float reward) {
+    results.started = {started ? std::uint8_t{1} : std::uint8_t{0}};
+    results.index = {0, 1};
+    results.in_play = {1, in_play};
+    results.rewards = {0.0F, reward};
+    learner.Step(results, 0.0, actions);
+  };
+  tell(true, 1, 0.0F);
+  tell(false, 0, 10.0F);  // the second agent delivers itself
+  const std::vector<float> once = learner.table().values;
+  EXPECT_EQ(once[3 * kActionCount + kActionCount], 5.0F) << "no bootstrap past its end";
+  tell(false, 0, 99.0F);
+  tell(false, 0, 99.0F);
+  EXPECT_EQ(learner.table().values, once);
+}
+
+TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
+  Replay<float> replay({100, 2, 2, 1, 0});
+  Results results;
+  results.legal = {kAllActions, kAllActions};
+  const float observations[] = {0.0F, 0.0F};
+  for (int t = 0; t < 6; ++t) {
+    results.rewards = {1.0F, 2.0F};
+    results.reasons = {0};
+    results.started = {t == 0 ? std::uint8_t{1} : std::uint8_t{0}};
+    results.in_play = {1, t < 2 ? std::uint8_t{1} : std::uint8_t{0}};
+    replay.Add(results, observations);
+    replay.SetActions({0, 0});
+  }
+  EXPECT_TRUE(replay.Begins(1, 1, 2));
+  EXPECT_FALSE(replay.Begins(2, 1, 2));
+  EXPECT_TRUE(replay.Begins(2, 0, 2));
+  const Transition last = replay.At(0, 1, 3, 0.5F);
+  EXPECT_FLOAT_EQ(last.reward, 2.0F + 0.5F * 2.0F);
+  EXPECT_EQ(last.discount, 0.0F);
+  // For the team it goes on; a team's reward is that of any of its agents.
+  const JointTransition all = replay.JointAt(0, 0, 3, 0.5F, /*team_reward=*/false);
+  EXPECT_FLOAT_EQ(all.reward, 3.0F * 1.75F);
+  EXPECT_FLOAT_EQ(all.discount, 0.125F);
+  EXPECT_EQ(all.to, replay.Row(3, 0));
+  EXPECT_FLOAT_EQ(replay.JointAt(0, 0, 3, 0.5F, /*team_reward=*/true).reward, 1.75F);
+}
+
+class Saved : public testing::TestWithParam<std::string> {};
+
+TEST_P(Saved, LearnersOfSeveralAgentsGoOnBitForBit) {
+  const std::string options = "hidden=8 batch=8 start=50 replay=500";
+  const Algorithm& entry = FindAlgorithm(GetParam());
+  LocalEnvironment environment(Share(SmartDevices()), {2, entry.encodings(options), false, 1});
+  const auto one = entry.make(environment.spec(), 1, options);
+  const auto other = entry.make(environment.spec(), 1, options);
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint8_t> again;
+  const Results* now = &environment.Reset(1);
+  for (int i = 0; i < 200; ++i) {
+    one->Step(*now, 0.1, actions);
+    now = &environment.Step(actions);
+  }
+  Checkpoint checkpoint;
+  one->Save(checkpoint);
+  other->Load(checkpoint);
+  for (int i = 0; i < 100; ++i) {
+    one->Step(*now, 0.2, actions);
+    other->Step(*now, 0.2, again);
+    ASSERT_EQ(actions, again) << "step " << i;
+    now = &environment.Step(actions);
+  }
+  Checkpoint a;
+  Checkpoint b;
+  one->SavePolicy(a);
+  other->SavePolicy(b);
+  EXPECT_TRUE(a.sections == b.sections);
+}
+
+TEST_P(Saved, PoliciesForTwoShipsAreRefusedByAFarmWithFour) {
+  const Algorithm& entry = FindAlgorithm(GetParam());
+  Scenario scenario = TwoShips();
+  scenario.name = "two";
+  LocalEnvironment two(Share(scenario), {1, kFeaturesBit, false, 1});
+  const auto learner = entry.make(two.spec(), 1, "hidden=8");
+  Checkpoint checkpoint;
+  checkpoint.algorithm = GetParam();
+  checkpoint.options = learner->options();
+  checkpoint.spec = two.spec();
+  learner->SavePolicy(checkpoint);
+  EXPECT_NE(entry.make_policy(checkpoint, two.spec()), nullptr);
+  scenario.name = "four";
+  scenario.ships.count = 4;
+  LocalEnvironment four(Share(scenario), {1, kFeaturesBit, false, 1});
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([&] { entry.make_policy(checkpoint, four.spec()); }),
+      GetParam() +
+          " of scenario two does not fit scenario four: agents: it knows 2, the farm has 4");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Saved,
+                         testing::Values("dqn", "lstm_dqn", "independent_dqn",
+                                         "independent_lstm_dqn", "vdn"),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -2,6 +2,7 @@
 #include <ros/console.h>
 #include <ros/node_handle.h>
 
+#include <algorithm>
 #include <climits>
 #include <cstdio>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "aquafarm/agents/exit_code.h"
 #include "aquafarm/agents/saved_policy.h"
 #include "aquafarm/check.h"
+#include "aquafarm_agents/agent_driver.h"
 #include "aquafarm_agents/node.h"
 #include "aquafarm_agents/ros_environment.h"
 #include "aquafarm_agents/ship_driver.h"
@@ -93,8 +95,26 @@ ExitCode Evaluate(const ros::NodeHandle& node, const PolicyParams& params,
   return evaluation.complete ? ExitCode::kOk : ExitCode::kInterrupted;
 }
 
+void TellEnded(std::size_t successes, std::size_t episodes) {
+  std::printf("%zu of %zu episodes ended with every device delivered\n", successes, episodes);
+}
+
+// One ship's own agent, which knows what its ship does.
+ExitCode ActAlone(const ros::NodeHandle& node, const PolicyParams& params,
+                  const agents::SavedPolicy& saved) {
+  AgentDriver driver(node, saved.encodings, {params.ship, params.sim_timeout_s, &stop_requested});
+  const auto policy = MakeAndWarn(saved, driver.spec());
+  ROS_INFO("driving ship %d with %s", params.ship, saved.path.c_str());
+  const auto ended =
+      driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);
+  TellEnded(static_cast<std::size_t>(std::count(ended.begin(), ended.end(), true)), ended.size());
+  return ExitCode::kOk;
+}
+
 ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
              const agents::SavedPolicy& saved) {
+  const bool needs_whole_farm = (saved.encodings & agents::kStatesBit) != 0;
+  if (params.ship >= 0 && !needs_whole_farm) return ActAlone(node, params, saved);
   ShipDriverOptions options;
   options.ship = params.ship;
   options.wait_limit_s = params.sim_timeout_s;
@@ -106,7 +126,7 @@ ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
       driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);
   std::size_t successes = 0;
   for (const agents::EpisodeResult& result : ended) successes += result.Success() ? 1 : 0;
-  std::printf("%zu of %zu episodes ended with every device delivered\n", successes, ended.size());
+  TellEnded(successes, ended.size());
   return ExitCode::kOk;
 }
 

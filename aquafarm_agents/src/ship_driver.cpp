@@ -15,7 +15,7 @@
 
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
-#include "aquafarm_agents/call_limit.h"
+#include "aquafarm_agents/service_link.h"
 #include "aquafarm_sim/names.h"
 
 namespace aquafarm_agents {
@@ -29,34 +29,6 @@ using aquafarm_msgs::Outcome;
 constexpr double kPollPeriod_s = 0.01;
 constexpr double kRetryPeriod_s = 0.1;
 constexpr double kWarnPeriod_s = 5.0;
-constexpr double kCallLimit_s = 30.0;
-
-/// One connection, made again when it breaks, with limits.
-class Link {
- public:
-  Link(ros::NodeHandle node, const ShipDriverOptions& options)
-      : node_(std::move(node)), options_(options), limit_(kCallLimit_s) {}
-
-  template <typename Service>
-  void Call(const std::string& name, Service& service) {
-    const ros::WallTime start = ros::WallTime::now();
-    for (;;) {
-      if (!client_.isValid()) client_ = node_.serviceClient<Service>(name, true);
-      if (client_.isValid() && limit_.Call(client_, service)) return;
-      const bool stopped = !ros::ok() || (options_.stop != nullptr && *options_.stop);
-      if (stopped || (ros::WallTime::now() - start).toSec() >= options_.wait_limit_s) {
-        throw EnvironmentLost("sim node: no answer from service " + node_.resolveName(name));
-      }
-      ros::WallDuration(kRetryPeriod_s).sleep();
-    }
-  }
-
- private:
-  ros::NodeHandle node_;
-  const ShipDriverOptions& options_;
-  CallLimit limit_;
-  ros::ServiceClient client_;
-};
 
 }  // namespace
 
@@ -64,9 +36,9 @@ class ShipDriver::Impl {
  public:
   Impl(const ros::NodeHandle& node, std::uint8_t encodings, ShipDriverOptions options)
       : options_(std::move(options)),
-        get_(node, options_),
-        save_(node, options_),
-        reset_(node, options_) {
+        get_(node, options_.wait_limit_s, options_.stop),
+        save_(node, options_.wait_limit_s, options_.stop),
+        reset_(node, options_.wait_limit_s, options_.stop) {
     aquafarm_msgs::GetState get;
     get.request.with_spec = true;
     get_.Call(names::kGetState, get);
@@ -85,7 +57,8 @@ class ShipDriver::Impl {
     for (std::int32_t ship = 0; ship < spec.agents; ++ship) {
       if (options_.ship >= 0 && ship != options_.ship) continue;
       ships_.push_back(ship);
-      commands_.push_back(std::make_unique<Link>(node, options_));
+      commands_.push_back(
+          std::make_unique<ServiceLink>(node, options_.wait_limit_s, options_.stop));
     }
   }
 
@@ -147,7 +120,9 @@ class ShipDriver::Impl {
   void StartNext() {
     if (State().pace == aquafarm_msgs::FarmState::PACED) return;
     aquafarm_msgs::Reset reset;
-    reset.request.sequence = ++token_;
+    // Several drivers may ask for it: with the same number it is done once.
+    reset.request.sequence =
+        ResetNumber(mirror_->batch().farm(0).seed(), mirror_->batch().farm(0).episode());
     reset_.Call(names::kReset, reset);
     if (!reset.response.ok) throw EnvironmentLost("sim node: reset: " + reset.response.message);
   }
@@ -204,11 +179,11 @@ class ShipDriver::Impl {
   }
 
   const ShipDriverOptions options_;
-  Link get_;
-  Link save_;
-  Link reset_;
+  ServiceLink get_;
+  ServiceLink save_;
+  ServiceLink reset_;
   std::vector<std::int32_t> ships_;
-  std::vector<std::unique_ptr<Link>> commands_;  // one a ship
+  std::vector<std::unique_ptr<ServiceLink>> commands_;  // one a ship
   std::unique_ptr<LocalEnvironment> mirror_;
   std::vector<std::uint8_t> actions_;
   std::atomic<bool> again_{};  // a command was dropped: look and send anew

@@ -3,6 +3,7 @@
 """Every launch file parses, documents its arguments and stays on the loopback address."""
 import pathlib
 import sys
+import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -17,6 +18,8 @@ FILES = sorted(LAUNCH.rglob("*.launch"))
 ARGUMENTS = {"replay": ["bag:=/tmp/none.bag"]}
 VARIANTS = {
     "train": [["run_dir:=/tmp/run", "resume:=true", "rviz:=true"], ["viz:=false"]],
+    "agents": [["scenario:=four_squads", "ships:=4", "pace:=paced"], ["ships:=0"]],
+    "agent": [["ship:=3", "episodes:=2"]],
     "sim": [["headless:=true"], ["policy:=random"]],
     "record": [["of:=train"], ["of:=evaluate", "bag:=/tmp/day.bag"], ["policy:=none"]],
     "replay": [["bag:=/tmp/none.bag", "headless:=true", "play_options:=--loop"]],
@@ -31,10 +34,11 @@ def load(path, arguments):
 
 class LaunchFilesTest(unittest.TestCase):
 
-    def test_the_seven_launch_files_are_there(self):
+    def test_the_launch_files_are_there(self):
         names = {path.stem for path in FILES}
         self.assertLessEqual(
-            {"train", "evaluate", "benchmark", "sim", "play", "record", "replay"}, names)
+            {"train", "evaluate", "benchmark", "sim", "play", "record", "replay", "agents", "agent"},
+            names)
 
     def test_every_argument_says_what_it_is_and_has_a_default(self):
         for path in FILES:
@@ -51,6 +55,24 @@ class LaunchFilesTest(unittest.TestCase):
                 with self.subTest(file=path.name, arguments=arguments):
                     config = load(path, arguments)
                     self.assertEqual([], config.config_errors)
+
+    def test_every_ship_gets_a_node_of_its_own(self):
+        nodes = load(LAUNCH / "agents.launch", ["scenario:=four_squads", "ships:=4"]).nodes
+        self.assertEqual([f"agent_{ship}" for ship in range(4)],
+                         sorted(node.name for node in nodes if node.name.startswith("agent_")))
+
+    def test_an_agent_can_be_placed_on_another_host(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".launch") as file:
+            file.write(f"""<launch>
+              <machine name="boat" address="10.0.0.11" env-loader="/opt/ranch/env.sh" user="crew"/>
+              <include file="{LAUNCH / 'agent.launch'}">
+                <arg name="ship" value="1"/> <arg name="machine" value="boat"/>
+              </include>
+            </launch>""")
+            file.flush()
+            config = load(file.name, [])
+        self.assertEqual([], config.config_errors)
+        self.assertEqual(["boat"], [node.machine_name for node in config.nodes])
 
     def test_every_node_is_bound_to_the_loopback_address(self):
         for path in FILES:

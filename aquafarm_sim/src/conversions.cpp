@@ -51,6 +51,11 @@ void FillOtherShip(const aquafarm::Farm& farm, const aquafarm::KnownShip& known,
   message.own_device = ship.own_device;
   message.capacity = ship.own_device == kNone ? farm.scenario().ships.capacity : 0;
   message.active = ship.in_play;
+  for (std::size_t i = 0; known.visible && i < farm.devices().size(); ++i) {
+    if (farm.devices()[i].carrier == known.id) {
+      message.aboard.push_back(static_cast<std::int32_t>(i));
+    }
+  }
   message.action = static_cast<std::uint8_t>(aquafarm::Action::kHold);
   message.outcome = static_cast<std::uint8_t>(aquafarm::Outcome::kHeld);
 }
@@ -200,6 +205,8 @@ void ToMsg(const aquafarm::Disaster& disaster, std::int32_t id,
   message.y = disaster.y;
   message.heading_deg = disaster.heading_deg;
   message.speed = disaster.speed;
+  message.motion_x = disaster.dx;
+  message.motion_y = disaster.dy;
   message.radii.assign(disaster.radius.begin(), disaster.radius.begin() + rings);
   message.risks.assign(disaster.risk.begin(), disaster.risk.begin() + rings);
   message.steps_left = disaster.steps_left;

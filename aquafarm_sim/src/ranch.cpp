@@ -53,6 +53,10 @@ aquafarm_msgs::CommandResult Ranch::Command(const ShipCommand& command) {
     }
     if (const auto refusal = Check(command))
       return Refuse(command.ship, refusal->code, refusal->message);
+    if (const auto refusal = CheckHolder(command)) {
+      return Refuse(command.ship, refusal->code, refusal->message);
+    }
+    slots_[static_cast<std::size_t>(command.ship)]->is_absent = false;
     if (context_.paced) return AcceptPaced(command);
     if (agents_ > 1) return WaitForOthers(command, lock);
     slots_[0]->pending = command;
@@ -152,6 +156,10 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
         command.ship, Outcome::SUPERSEDED,
         "ship " + std::to_string(command.ship) + " gave a newer command for the same step");
   }
+  if (!woken && !ending_ && options_.late_ships_hold) {
+    GoOnWithoutTheLate();
+    return slot.answer;
+  }
   slot.pending.reset();
   if (ending_) return Refuse(command.ship, Outcome::SHUTTING_DOWN, "the sim node is ending");
   if (woken) {
@@ -168,9 +176,57 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
 bool Ranch::EveryShipHasACommand() const {
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     const bool in_play = batch_->farm(0).ships()[static_cast<std::size_t>(ship)].in_play;
-    if (in_play && !slots_[static_cast<std::size_t>(ship)]->pending) return false;
+    const Slot& slot = *slots_[static_cast<std::size_t>(ship)];
+    if (in_play && !slot.is_absent && !slot.pending) return false;
   }
   return true;
+}
+
+// A ship whose node died or is late holds, and is not waited for again until it is back.
+void Ranch::GoOnWithoutTheLate() {
+  for (std::int32_t ship = 0; ship < agents_; ++ship) {
+    Slot& slot = *slots_[static_cast<std::size_t>(ship)];
+    const bool in_play = batch_->farm(0).ships()[static_cast<std::size_t>(ship)].in_play;
+    if (!in_play || slot.pending || slot.is_absent) continue;
+    slot.is_absent = true;
+    ++counters_.late_ships;
+  }
+  StepPublishedFarm();
+}
+
+bool Ranch::IsHeldByAnother(Slot& slot, const std::string& caller) const {
+  if (slot.holder.empty() || slot.holder == caller) return false;
+  const std::chrono::duration<double> silence = Clock::now() - slot.heard_at;
+  // A holder whose command waits for the other ships is there.
+  if (slot.pending || silence.count() < options_.claim_timeout_s) return true;
+  slot.holder.clear();
+  return false;
+}
+
+std::optional<Ranch::Refusal> Ranch::CheckHolder(const ShipCommand& command) {
+  Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
+  if (IsHeldByAnother(slot, command.caller)) {
+    return Refusal{Outcome::CLAIMED,
+                   "ship " + std::to_string(command.ship) + " is held by " + slot.holder};
+  }
+  if (!slot.holder.empty()) slot.heard_at = Clock::now();
+  return std::nullopt;
+}
+
+void Ranch::Claim(std::int32_t ship, const std::string& caller, bool release,
+                  aquafarm_msgs::Claim::Response& response) {
+  const Lock lock(mutex_);
+  Slot& slot = *slots_[static_cast<std::size_t>(ship)];
+  response.ok = !IsHeldByAnother(slot, caller);
+  response.code = response.ok ? Outcome::OK : Outcome::CLAIMED;
+  if (response.ok) {
+    slot.holder = release ? std::string() : caller;
+    slot.heard_at = Clock::now();
+  } else {
+    ++counters_.refused;
+    response.message = "ship " + std::to_string(ship) + " is held by " + slot.holder;
+  }
+  response.holder = slot.holder;
 }
 
 void Ranch::StepPublishedFarm() {
@@ -309,7 +365,9 @@ void Ranch::Changed() {
   if (listener_ != nullptr) listener_->OnChange(View());
 }
 
-RanchView Ranch::View() const { return {*batch_, yaml_, context_, episode_count_, version_}; }
+RanchView Ranch::View() const {
+  return {*batch_, yaml_, context_, episode_count_, version_, in_joint_step_};
+}
 
 void Ranch::Inspect(const std::function<void(const RanchView&)>& look) {
   const Lock lock(mutex_);

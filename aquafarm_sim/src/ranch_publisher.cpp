@@ -54,8 +54,17 @@ RanchPublisher::RanchPublisher(const ros::NodeHandle& node_handle, const SimPara
   Advertise(node, names::kState, state_);
   Advertise(node, names::kRisk, risk_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
-    observations_.push_back(std::make_unique<Topic<aquafarm_msgs::FarmState>>());
-    Advertise(node, names::Observation(ship), *observations_.back());
+    // A ship's driver that comes late sees at once where it is.
+    const ros::SubscriberStatusCallback greet =
+        [this, ship](const ros::SingleSubscriberPublisher& subscriber) {
+          ranch_.Inspect([&](const RanchView& view) {
+            const std::lock_guard<std::mutex> lock(observation_mutex_);
+            subscriber.publish(ObservationOf(view, ship));
+          });
+        };
+    observations_.emplace_back();
+    observations_.back().publisher =
+        node.advertise<aquafarm_msgs::FarmState>(names::Observation(ship), queue, greet);
   }
   bearings_.assign(static_cast<std::size_t>(ranch_.agents()), 0);
   ranch_.SetListener(this);
@@ -83,6 +92,7 @@ bool RanchPublisher::WaitForRecorder(double limit_s) {
 }
 
 void RanchPublisher::OnChange(const RanchView& view) {
+  if (!view.joint) PublishObservations(view);
   if (params_.record) {
     const std::lock_guard<std::mutex> lock(message_mutex_);
     std::this_thread::sleep_until(next_record_);
@@ -147,17 +157,27 @@ void RanchPublisher::Fill(const RanchView& view) {
   episode_is_new_ = view.episode_count != published_episode_;
   if (episode_is_new_) FillEpisode(view);
   ToMsg(farm, context_, state_.message);
-  for (std::size_t ship = 0; ship < observations_.size(); ++ship) {
-    if (observations_[ship]->publisher.getNumSubscribers() == 0) {
-      observations_[ship]->valid = false;
-      continue;
-    }
-    aquafarm::Observe(farm, static_cast<std::int32_t>(ship), view_);
-    ToMsg(farm, view_, context_, observations_[ship]->message);
-    observations_[ship]->valid = true;
-  }
+  if (view.joint) PublishObservations(view);
   disasters_ = farm.disasters();
   FillFrames(view);
+}
+
+// Whoever drives a ship by what it sees must see each step; nobody else needs to.
+void RanchPublisher::PublishObservations(const RanchView& view) {
+  const std::lock_guard<std::mutex> lock(observation_mutex_);
+  for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
+    const ros::Publisher& publisher = observations_[static_cast<std::size_t>(ship)].publisher;
+    if (publisher.getNumSubscribers() > 0) publisher.publish(ObservationOf(view, ship));
+  }
+}
+
+const aquafarm_msgs::FarmState& RanchPublisher::ObservationOf(const RanchView& view,
+                                                              std::int32_t ship) {
+  const aquafarm::Farm& farm = view.batch.farm(0);
+  aquafarm_msgs::FarmState& message = observations_[static_cast<std::size_t>(ship)].message;
+  aquafarm::Observe(farm, ship, view_);
+  ToMsg(farm, view_, view.context, message);
+  return message;
 }
 
 void RanchPublisher::FillEpisode(const RanchView& view) {
@@ -203,9 +223,6 @@ void RanchPublisher::Send() {
   }
   state_.publisher.publish(state_.message);
   state_.valid = true;
-  for (const auto& observation : observations_) {
-    if (observation->valid) observation->publisher.publish(observation->message);
-  }
   if (risk_.publisher.getNumSubscribers() > 0) {
     RiskToMsg(disasters_, scenario, context_, risk_.message);
     risk_.publisher.publish(risk_.message);

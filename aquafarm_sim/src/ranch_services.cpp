@@ -68,10 +68,13 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
     Answer(Outcome::OK, "", step_answer_);
     batch_->Step(request.actions.data(), Prepare(request.encodings, step_answer_.result));
     DropPending();
+    in_joint_step_ = true;
     Complete(step_answer_.result);
+    in_joint_step_ = false;
     last_sequence_ = request.sequence;
     return step_answer_;
   } catch (const std::exception& error) {
+    in_joint_step_ = false;
     Answer(Outcome::INTERNAL_ERROR, error.what(), step_refusal_);
     return step_refusal_;
   }

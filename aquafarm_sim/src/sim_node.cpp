@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_sim/sim_node.h"
 
+#include <aquafarm_msgs/Claim.h>
 #include <aquafarm_msgs/Command.h>
 #include <aquafarm_msgs/DropOff.h>
 #include <aquafarm_msgs/Move.h>
@@ -58,10 +59,29 @@ ros::ServiceServer Serve(ros::NodeHandle& node, const std::string& name, Handle 
   return node.advertiseService(name, callback);
 }
 
+/// The same for a service of a ship, which is told who calls.
+template <typename Service, typename Handle>
+ros::ServiceServer ServeCaller(ros::NodeHandle& node, const std::string& name, Handle handle) {
+  using Event = ros::ServiceEvent<typename Service::Request, typename Service::Response>;
+  const boost::function<bool(Event&)> callback = [name, handle](Event& event) {
+    try {
+      handle(event.getRequest(), event.getResponse(), event.getCallerName());
+      return true;
+    } catch (const std::exception& error) {
+      ROS_ERROR("%s: %s", name.c_str(), error.what());
+      return false;
+    }
+  };
+  ros::AdvertiseServiceOptions options;
+  options.initBySpecType<Event>(name, callback);
+  return node.advertiseService(options);
+}
+
 /// The command that a ship's request is.
 template <typename Request>
-ShipCommand ToCommand(std::int32_t ship, std::uint8_t action, const Request& request) {
-  return {ship, action, request.episode, request.step, request.token};
+ShipCommand ToCommand(std::int32_t ship, std::uint8_t action, const Request& request,
+                      const std::string& caller) {
+  return {ship, action, request.episode, request.step, request.token, caller};
 }
 
 ros::NodeHandle OnQueue(const ros::NodeHandle& node, ros::CallbackQueue& queue) {
@@ -117,27 +137,36 @@ SimNode::~SimNode() {
 
 void SimNode::AdvertiseShip(std::int32_t ship) {
   using aquafarm::Action;
-  services_.push_back(Serve<aquafarm_msgs::Move>(
-      ship_node_, names::Move(ship), [this, ship](const auto& request, auto& response) {
-        response.result = ranch_.MoveShip(ToCommand(ship, request.direction, request));
+  services_.push_back(ServeCaller<aquafarm_msgs::Move>(
+      ship_node_, names::Move(ship),
+      [this, ship](const auto& request, auto& response, const std::string& caller) {
+        response.result = ranch_.MoveShip(ToCommand(ship, request.direction, request, caller));
       }));
-  services_.push_back(Serve<aquafarm_msgs::Pickup>(
-      ship_node_, names::Pickup(ship), [this, ship](const auto& request, auto& response) {
+  services_.push_back(ServeCaller<aquafarm_msgs::Pickup>(
+      ship_node_, names::Pickup(ship),
+      [this, ship](const auto& request, auto& response, const std::string& caller) {
         constexpr auto kPickup = static_cast<std::uint8_t>(Action::kPickup);
-        response.result = ranch_.Command(ToCommand(ship, kPickup, request));
+        response.result = ranch_.Command(ToCommand(ship, kPickup, request, caller));
       }));
-  services_.push_back(Serve<aquafarm_msgs::DropOff>(
-      ship_node_, names::DropOff(ship), [this, ship](const auto& request, auto& response) {
+  services_.push_back(ServeCaller<aquafarm_msgs::DropOff>(
+      ship_node_, names::DropOff(ship),
+      [this, ship](const auto& request, auto& response, const std::string& caller) {
         constexpr auto kDropOff = static_cast<std::uint8_t>(Action::kDropOff);
-        response.result = ranch_.Command(ToCommand(ship, kDropOff, request));
+        response.result = ranch_.Command(ToCommand(ship, kDropOff, request, caller));
+      }));
+  services_.push_back(ServeCaller<aquafarm_msgs::Claim>(
+      ship_node_, names::Claim(ship),
+      [this, ship](const auto& request, auto& response, const std::string& caller) {
+        ranch_.Claim(ship, caller, request.release != 0, response);
       }));
 }
 
 void SimNode::AdvertiseFarm() {
   namespace msgs = aquafarm_msgs;
-  services_.push_back(Serve<msgs::Command>(
-      ship_node_, names::kCommand, [this](const auto& request, auto& response) {
-        response.result = ranch_.Command(ToCommand(request.ship, request.action, request));
+  services_.push_back(ServeCaller<msgs::Command>(
+      ship_node_, names::kCommand,
+      [this](const auto& request, auto& response, const std::string& caller) {
+        response.result = ranch_.Command(ToCommand(request.ship, request.action, request, caller));
       }));
   services_.push_back(ReusingService<msgs::Step>::Advertise(
       node_,

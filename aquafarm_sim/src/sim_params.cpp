@@ -38,6 +38,8 @@ SimParams ReadSimParams(const ros::NodeHandle& private_node) {
   reader.Text("pace", pace);
   reader.Number("rate_hz", kMinRate_hz, kMaxRate_hz, params.ranch.rate_hz);
   reader.Number("barrier_timeout_s", 0.01, 3600.0, params.ranch.barrier_timeout_s);
+  reader.Flag("late_ships_hold", params.ranch.late_ships_hold);
+  reader.Number("claim_timeout_s", 0.1, 3600.0, params.ranch.claim_timeout_s);
   reader.Number("publish_hz", 0.0, kMaxRate_hz, params.publish_hz);
   reader.Flag("record", params.record);
   reader.Number("recorder_wait_s", 0.0, 3600.0, params.recorder_wait_s);

@@ -12,6 +12,7 @@
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm/version.h"
+#include "aquafarm_sim/observation.h"
 #include "tiny_farms.h"
 
 namespace aquafarm_sim {
@@ -132,6 +133,59 @@ TEST(Conversions, PartialObservationHidesWhatIsFar) {
   ASSERT_EQ(1U, seen.disasters.size());
   EXPECT_FALSE(seen.disasters[0].known);
   EXPECT_TRUE(seen.disasters[0].radii.empty());
+}
+
+// What a ship's own agent makes of its observation is what it was trained on, bit for bit.
+TEST(Conversions, AnObservationBringsTheViewBack) {
+  for (const bool full : {true, false}) {
+    aquafarm::Scenario scenario = aquafarm::test::CrowdedScenario(3, 2);
+    scenario.view.mode = full ? aquafarm::ViewMode::kFull : aquafarm::ViewMode::kPartial;
+    scenario.view.sensor_radius = 3.0F;
+    scenario.view.bulletin_period = 7;
+    scenario.view.bulletin_noise = 1.5F;
+    aquafarm::Farm farm = aquafarm::test::MakeFarm(scenario);
+    const aquafarm::Encoder encoder(farm.scenario());
+    const auto features = static_cast<std::size_t>(encoder.feature_count());
+    std::vector<float> expected(features);
+    std::vector<float> got(features);
+    std::vector<std::uint8_t> planes(encoder.planes_size());
+    std::vector<std::uint8_t> got_planes(encoder.planes_size());
+    aquafarm::View view;
+    aquafarm::View back;
+    aquafarm_msgs::FarmState message;
+    for (std::uint64_t episode = 0; episode < 10; ++episode) {
+      farm.Reset(5, episode);
+      for (int step = 0; step < 20 && !farm.over(); ++step) {
+        aquafarm::test::RandomSteps(farm, 3, episode * 100 + static_cast<std::uint64_t>(step));
+        for (std::int32_t ship = 0; ship < 5; ++ship) {
+          Observe(farm, ship, view);
+          ToMsg(farm, view, {}, message);
+          FromMsg(message, farm.scenario(), farm.layout(), back);
+          encoder.Features(view, expected.data());
+          encoder.Features(back, got.data());
+          ASSERT_EQ(got, expected) << "ship " << ship << " step " << farm.step();
+          encoder.Planes(view, planes.data());
+          encoder.Planes(back, got_planes.data());
+          ASSERT_EQ(got_planes, planes);
+          ASSERT_EQ(encoder.Index(back), encoder.Index(farm, ship));
+        }
+      }
+    }
+  }
+}
+
+TEST(Conversions, AnObservationOfAnotherFarmIsRefused) {
+  const aquafarm::Farm farm = aquafarm::test::MakeFarm(aquafarm::test::TinyScenario());
+  aquafarm_msgs::FarmState message;
+  aquafarm::View view;
+  ToMsg(farm, {}, message);
+  try {
+    FromMsg(message, farm.scenario(), farm.layout(), view);
+    FAIL() << "a whole state is no observation";
+  } catch (const aquafarm::InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "observation: got observer -1 of 1 ships and 1 devices, expected 1 and 1");
+  }
 }
 
 TEST(Conversions, FullObservationEqualsTheStateButForItsObserver) {

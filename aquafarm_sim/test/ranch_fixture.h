@@ -21,6 +21,12 @@ inline constexpr std::uint8_t kPickup = 8;
 inline constexpr std::uint8_t kHold = 10;
 
 /// A ranch of the tiny farm of core/test, in lockstep with a short barrier.
+inline std::unique_ptr<Ranch> MakeRanchOf(const aquafarm::Scenario& scenario,
+                                          const RanchOptions& options) {
+  aquafarm::ValidateScenario(scenario);
+  return std::make_unique<Ranch>(std::make_shared<const aquafarm::Scenario>(scenario), options);
+}
+
 inline std::unique_ptr<Ranch> MakeRanch(const aquafarm::Scenario& scenario, std::int32_t farms = 1,
                                         bool paced = false) {
   RanchOptions options;
@@ -28,8 +34,7 @@ inline std::unique_ptr<Ranch> MakeRanch(const aquafarm::Scenario& scenario, std:
   options.seed = 5;
   options.paced = paced;
   options.barrier_timeout_s = 0.2;
-  aquafarm::ValidateScenario(scenario);
-  return std::make_unique<Ranch>(std::make_shared<const aquafarm::Scenario>(scenario), options);
+  return MakeRanchOf(scenario, options);
 }
 
 inline aquafarm::Scenario TwoShips() {

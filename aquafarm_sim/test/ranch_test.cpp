@@ -112,6 +112,56 @@ TEST(Ranch, ALoneCommandTimesOutAndIsTakenBack) {
   EXPECT_EQ(2U, ranch->counters().barrier_timeouts);
 }
 
+TEST(Ranch, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
+  RanchOptions options;
+  options.barrier_timeout_s = 0.2;
+  options.late_ships_hold = true;
+  const auto ranch = MakeRanchOf(TwoShips(), options);
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_EQ(Outcome::OK, ranch->Command({0, kNorth, 0, 0, 1}).code);
+  EXPECT_GE(std::chrono::steady_clock::now() - began, milliseconds(200));
+  const auto again = std::chrono::steady_clock::now();
+  for (std::uint64_t token = 2; token < 12; ++token) {
+    EXPECT_EQ(Outcome::HELD, ranch->Command({0, kHold, 0, 0, token}).code);
+  }
+  EXPECT_LT(std::chrono::steady_clock::now() - again, milliseconds(200)) << "it waits but once";
+  EXPECT_EQ(1U, ranch->counters().late_ships);
+  // Back again, it joins in the running episode and is waited for.
+  auto back = std::async(std::launch::async, [&] { return ranch->Command({1, kHold, 0, 0, 1}); });
+  std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_EQ(Outcome::HELD, ranch->Command({0, kHold, 0, 0, 12}).code);
+  const auto answer = back.get();
+  EXPECT_EQ(Outcome::HELD, answer.code);
+  EXPECT_EQ(12U, answer.step);
+}
+
+TEST(Ranch, AClaimedShipObeysItsHolderAlone) {
+  RanchOptions options;
+  options.claim_timeout_s = 0.2;
+  const auto ranch = MakeRanchOf(aquafarm::test::TinyScenario(), options);
+  const auto claim = [&](const std::string& caller, bool release) {
+    aquafarm_msgs::Claim::Response response;
+    ranch->Claim(0, caller, release, response);
+    return response;
+  };
+  EXPECT_TRUE(claim("/one", false).ok);
+  const auto refused = claim("/two", false);
+  EXPECT_FALSE(refused.ok);
+  EXPECT_EQ(Outcome::CLAIMED, refused.code);
+  EXPECT_EQ("ship 0 is held by /one", refused.message);
+  const auto foreign = ranch->Command({0, kNorth, 0, 0, 1, "/two"});
+  EXPECT_EQ(Outcome::CLAIMED, foreign.code);
+  EXPECT_EQ("ship 0 is held by /one", foreign.message);
+  EXPECT_EQ(0U, foreign.step) << "the farm is untouched";
+  EXPECT_EQ(Outcome::OK, ranch->Command({0, kNorth, 0, 0, 2, "/one"}).code);
+  EXPECT_FALSE(claim("/two", true).ok) << "nobody releases another's claim";
+  EXPECT_TRUE(claim("/one", true).ok);
+  EXPECT_EQ("", claim("/one", true).holder);
+  EXPECT_TRUE(claim("/two", false).ok);
+  std::this_thread::sleep_for(milliseconds(250));  // it says no more
+  EXPECT_TRUE(claim("/three", false).ok);
+}
+
 TEST(Ranch, ANewerCommandOfTheSameShipSupersedesTheWaitingOne) {
   const auto ranch = MakeRanch(TwoShips());
   auto old = std::async(std::launch::async, [&] { return ranch->Command({0, kNorth, 0, 0, 1}); });

@@ -4,6 +4,7 @@
 #include "aquafarm/agents/curiosity.h"
 #include "aquafarm/agents/dqn.h"
 #include "aquafarm/agents/independent.h"
+#include "aquafarm/agents/maddpg.h"
 #include "aquafarm/agents/options.h"
 #include "aquafarm/agents/planner_policy.h"
 #include "aquafarm/agents/random_policy.h"
@@ -119,6 +120,8 @@ const std::vector<Algorithm>& Algorithms() {
        MakeEachPolicy<MakeRecurrentDqnPolicy>},
       {"vdn", "value decomposition: one DQN plays all agents, their values add up", true, 400000,
        WithCuriosityToo<DqnEncodings>, MakeExplorer<MakeVdn>, MakeDqnPolicy},
+      {"maddpg", "an actor for each agent, a critic that sees all of them (§3.3)", true, 800000,
+       WithCuriosityToo<MaddpgEncodings>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
       {"planner",
        "plans on the forecast that disasters hold their heading; several agents cooperate", false,
        0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kHeadingHolds>},

@@ -3,40 +3,13 @@
 
 #include <array>
 
-#include "aquafarm/agents/options.h"
-#include "aquafarm/check.h"
+#include "option_words.h"
 
 namespace aquafarm::agents {
 namespace {
 
 constexpr std::array<std::string_view, kNetworkKindCount> kNetworks{"mlp", "cnn"};
 constexpr std::array<std::string_view, kLossKindCount> kLosses{"huber", "mse"};
-
-template <typename Kind, std::size_t size>
-Kind ReadWord(OptionReader& reader, const std::string& key, Kind otherwise,
-              const std::array<std::string_view, size>& words) {
-  const std::string text =
-      reader.Text(key, std::string(words[static_cast<std::size_t>(otherwise)]));
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < size; ++i) {
-    if (text == words[i]) return static_cast<Kind>(i);
-    names.emplace_back(words[i]);
-  }
-  throw InputError(key + ": got '" + text + "', expected one of: " + Join(names));
-}
-
-template <typename Whole>
-void ReadWhole(OptionReader& reader, const std::string& key, double min, double max, Whole& value) {
-  const double got = reader.Number(key, static_cast<double>(value), min, max);
-  value = static_cast<Whole>(got);
-  if (static_cast<double>(value) == got) return;
-  throw InputError(key + ": got " + FormatNumber(got) + ", expected a whole number");
-}
-
-void ReadNumber(OptionReader& reader, const std::string& key, double min, double max,
-                double& value) {
-  value = reader.Number(key, value, min, max);
-}
 
 DeepOptions Tuned(bool recurrent) {
   DeepOptions options;
@@ -104,10 +77,7 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
                        std::to_string(options.sequence));
     }
   }
-  constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
-  enum class Device : std::uint8_t { kAuto, kCpu, kCuda };
-  options.device =
-      kDevices[static_cast<std::size_t>(ReadWord(reader, "device", Device::kAuto, kDevices))];
+  options.device = ReadDevice(reader);
   ReadWhole(reader, "threads", 1, 256, options.threads);
   reader.Finish();
   resolved = reader.Resolved();

@@ -140,6 +140,7 @@ class DqnLearner final : public Learner {
   MomentSampler<Scalar> sampler_;
   double progress_{};
   Batch<Scalar> batch_;
+  std::vector<float> team_rewards_;  // scratch, [agents]
 };
 
 template <typename Scalar>
@@ -161,7 +162,8 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents,
                observation_size_, 0}),
       sampler_(replay_, options, static_cast<std::size_t>(options.n_step)),
-      batch_(size(), rows(), observation_size_) {}
+      batch_(size(), rows(), observation_size_),
+      team_rewards_(static_cast<std::size_t>(spec.agents)) {}
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Step(const Results& results, double progress,
@@ -221,8 +223,11 @@ void DqnLearner<Scalar>::DrawJoint(std::size_t i, const Moment& moment) {
   const std::size_t first = moment.entry / group() * group();
   const JointTransition all =
       replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
-                      static_cast<float>(options_.discount), spec_.team_reward);
-  batch_.rewards[i] = all.reward * static_cast<float>(options_.reward_scale);
+                      static_cast<float>(options_.discount), team_rewards_.data());
+  const float sum = std::accumulate(team_rewards_.begin(), team_rewards_.end(), 0.0F);
+  // A shared reward is the team's already.
+  const float reward = spec_.team_reward ? team_rewards_[0] : sum;
+  batch_.rewards[i] = reward * static_cast<float>(options_.reward_scale);
   const std::size_t from = replay_.Row(moment.age, first);
   for (std::size_t agent = 0; agent < group(); ++agent) {
     const std::size_t k = i * group() + agent;

@@ -93,20 +93,18 @@ Transition Replay<Scalar>::At(std::size_t age, std::size_t entry, std::size_t st
 
 template <typename Scalar>
 JointTransition Replay<Scalar>::JointAt(std::size_t age, std::size_t first, std::size_t steps,
-                                        float discount, bool team_reward) const {
+                                        float discount, float* rewards) const {
   const auto agents = static_cast<std::size_t>(options_.agents);
   JointTransition transition;
   transition.discount = 1.0F;
+  std::fill_n(rewards, agents, 0.0F);
   for (std::size_t k = 1; k <= steps; ++k) {
     const std::size_t row = Row(age + k, first);
-    float reward = 0.0F;
     bool goes_on = false;
     for (std::size_t agent = 0; agent < agents; ++agent) {
-      reward += rewards_[row + agent];
+      rewards[agent] += transition.discount * rewards_[row + agent];
       goes_on = goes_on || reason(row + agent) == EndReason::kNone;
     }
-    if (team_reward) reward = rewards_[row];
-    transition.reward += transition.discount * reward;
     transition.discount *= discount;
     transition.to = row;
     if (!goes_on) break;

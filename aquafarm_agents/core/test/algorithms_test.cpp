@@ -10,7 +10,8 @@ namespace {
 TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
   EXPECT_EQ(MessageOf<InputError>([] { FindAlgorithm("dqm"); }),
             "algorithm: got 'dqm', expected one of: random, q_learning, sarsa, dqn, "
-            "lstm_dqn, independent_dqn, independent_lstm_dqn, vdn, planner, clairvoyant");
+            "lstm_dqn, independent_dqn, independent_lstm_dqn, vdn, "
+            "maddpg, planner, clairvoyant");
 }
 
 TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
@@ -31,6 +32,7 @@ std::string Lively(const Algorithm& algorithm) {
   const std::string name = algorithm.name;
   const std::string small = "hidden=8 batch=8 start=20 replay=300 priority=0.5";
   if (name.find("lstm_dqn") != std::string::npos) return small + " sequence=4 burn_in=2";
+  if (name == "maddpg") return "hidden=8 batch=8 start=20 replay=300 recurrent=true";
   return name == "dqn" || name == "independent_dqn" || name == "vdn" ? small : "";
 }
 

@@ -111,12 +111,13 @@ TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
   const Transition last = replay.At(0, 1, 3, 0.5F);
   EXPECT_FLOAT_EQ(last.reward, 2.0F + 0.5F * 2.0F);
   EXPECT_EQ(last.discount, 0.0F);
-  // For the team it goes on; a team's reward is that of any of its agents.
-  const JointTransition all = replay.JointAt(0, 0, 3, 0.5F, /*team_reward=*/false);
-  EXPECT_FLOAT_EQ(all.reward, 3.0F * 1.75F);
+  // For the team it goes on.
+  float rewards[2];
+  const JointTransition all = replay.JointAt(0, 0, 3, 0.5F, rewards);
+  EXPECT_FLOAT_EQ(rewards[0], 1.0F * 1.75F);
+  EXPECT_FLOAT_EQ(rewards[1], 2.0F * 1.75F);
   EXPECT_FLOAT_EQ(all.discount, 0.125F);
   EXPECT_EQ(all.to, replay.Row(3, 0));
-  EXPECT_FLOAT_EQ(replay.JointAt(0, 0, 3, 0.5F, /*team_reward=*/true).reward, 1.75F);
 }
 
 class Saved : public testing::TestWithParam<std::string> {};
@@ -173,7 +174,7 @@ TEST_P(Saved, PoliciesForTwoShipsAreRefusedByAFarmWithFour) {
 
 INSTANTIATE_TEST_SUITE_P(All, Saved,
                          testing::Values("dqn", "lstm_dqn", "independent_dqn",
-                                         "independent_lstm_dqn", "vdn"),
+                                         "independent_lstm_dqn", "vdn", "maddpg"),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

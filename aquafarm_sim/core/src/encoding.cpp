@@ -29,6 +29,12 @@ std::uint8_t ToByte(float part) {
   return static_cast<std::uint8_t>(std::min(std::max(part, 0.0F), 1.0F) * 255.0F + 0.5F);
 }
 
+// A device's digit in a status code: deployed, aboard the ship, or gone.
+std::int32_t Standing(DeviceStatus status, bool aboard_self) {
+  if (status == DeviceStatus::kDeployed) return 0;
+  return aboard_self ? 1 : 2;
+}
+
 // Which of several agents it is, so that one network can play all of them. Alone, none is needed.
 std::int32_t IdentityFeatures(const Scenario& scenario) {
   return scenario.AgentCount() > 1 ? scenario.AgentCount() : 0;
@@ -148,17 +154,24 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
 }
 
 std::uint32_t Encoder::Index(const Farm& farm, std::int32_t ship) const {
-  AQUAFARM_CHECK_NE(state_count_, 0U);
   std::int32_t code = 0;
   for (const Device& device : farm.devices()) {
-    if (device.self_propelled) continue;
-    const std::int32_t status = device.status == DeviceStatus::kDeployed ? 0
-                                : device.carrier == ship                 ? 1
-                                                                         : 2;
-    code = code * 3 + status;
+    if (!device.self_propelled) code = code * 3 + Standing(device.status, device.carrier == ship);
   }
+  return IndexOf(code, farm.ships()[static_cast<std::size_t>(ship)].cell);
+}
+
+std::uint32_t Encoder::Index(const View& view) const {
+  std::int32_t code = 0;
+  for (const KnownDevice& device : view.devices) {
+    if (!device.self_propelled) code = code * 3 + Standing(device.status, device.aboard_self);
+  }
+  return IndexOf(code, view.self);
+}
+
+std::uint32_t Encoder::IndexOf(std::int32_t code, Cell cell) const {
+  AQUAFARM_CHECK_NE(state_count_, 0U);
   const std::int32_t rank = status_rank_[static_cast<std::size_t>(code)];
-  const Cell cell = farm.ships()[static_cast<std::size_t>(ship)].cell;
   return static_cast<std::uint32_t>(rank * scenario_.CellCount() +
                                     LinearIndex(cell, scenario_.width));
 }

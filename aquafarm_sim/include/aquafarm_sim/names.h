@@ -35,6 +35,7 @@ inline std::string Ship(std::int32_t id) { return "ship_" + std::to_string(id); 
 /// Name of a disaster's tf frame.
 inline std::string Disaster(std::int32_t id) { return "disaster_" + std::to_string(id); }
 inline std::string Observation(std::int32_t ship) { return Ship(ship) + "/observation"; }
+inline std::string Claim(std::int32_t ship) { return Ship(ship) + "/claim"; }
 inline std::string Move(std::int32_t ship) { return Ship(ship) + "/move"; }
 inline std::string Pickup(std::int32_t ship) { return Ship(ship) + "/pickup"; }
 inline std::string DropOff(std::int32_t ship) { return Ship(ship) + "/drop_off"; }

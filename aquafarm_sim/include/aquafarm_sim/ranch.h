@@ -9,6 +9,7 @@
 ///              ship 1 -----------------Command-----+--> answer of step k+1   (or TIMEOUT)
 ///   paced:     ship 0 --Command--> ACCEPTED for step k+1, which the clock takes
 
+#include <aquafarm_msgs/Claim.h>
 #include <aquafarm_msgs/CommandResult.h>
 #include <aquafarm_msgs/GetState.h>
 #include <aquafarm_msgs/LoadState.h>
@@ -50,6 +51,8 @@ struct RanchOptions {
   bool paced{};
   double rate_hz{10.0};
   double barrier_timeout_s{10.0};
+  bool late_ships_hold{};  ///< lockstep: after the timeout the farm goes on without who is late
+  double claim_timeout_s{10.0};  ///< without a command of its holder a claim ends
   std::string map_frame{"map"};
 };
 
@@ -60,6 +63,7 @@ struct ShipCommand {
   std::uint64_t episode{};
   std::uint64_t step{};
   std::uint64_t token{};
+  std::string caller{};  ///< node that gave it; empty: not known
   friend bool operator==(const ShipCommand& a, const ShipCommand& b) {
     return a.ship == b.ship && a.action == b.action && a.episode == b.episode && a.step == b.step &&
            a.token == b.token;
@@ -87,6 +91,7 @@ struct RanchView {
   MessageContext context;
   std::uint64_t episode_count{};  ///< episodes that farm 0 has begun; tells a new one
   std::uint64_t version{};        ///< changes whenever farm 0 does
+  bool joint{};  ///< it changed by a joint step: nobody waits to see each ship's observation
 };
 
 /// Is told of changes while nothing moves; must be quick and must not call the ranch.
@@ -108,7 +113,10 @@ class Ranch {
 
   /// Lockstep: returns when the step was taken, refused or timed out. Paced: at once.
   aquafarm_msgs::CommandResult Command(const ShipCommand& command);
-  /// The same for a move, whose action must be one.
+  /// Takes a ship for the calling node alone, or gives it back.
+  void Claim(std::int32_t ship, const std::string& caller, bool release,
+             aquafarm_msgs::Claim::Response& response);
+  /// The same as Command for a move, whose action must be one.
   aquafarm_msgs::CommandResult MoveShip(const ShipCommand& command);
   /// The answer stays valid until the next call of Step, which the caller must not overlap.
   const aquafarm_msgs::Step::Response& Step(const aquafarm_msgs::Step::Request& request);
@@ -151,6 +159,9 @@ class Ranch {
     std::optional<ShipCommand> last;     // the last accepted command and its answer
     aquafarm_msgs::CommandResult answer;
     std::condition_variable changed;
+    bool is_absent{};            // it was late, and nobody waits for it until it is back
+    std::string holder;          // node that has claimed it; empty: none
+    Clock::time_point heard_at;  // of the holder's last command or claim
   };
   struct Refusal {
     std::uint8_t code{};
@@ -163,6 +174,9 @@ class Ranch {
   aquafarm_msgs::CommandResult AcceptPaced(const ShipCommand& command);
   aquafarm_msgs::CommandResult WaitForOthers(const ShipCommand& command, Lock& lock);
   bool EveryShipHasACommand() const;
+  std::optional<Refusal> CheckHolder(const ShipCommand& command);
+  bool IsHeldByAnother(Slot& slot, const std::string& caller) const;
+  void GoOnWithoutTheLate();
   void StepPublishedFarm();
   void DropPending();
   void DropCommands();
@@ -196,6 +210,7 @@ class Ranch {
   std::uint64_t episode_count_{};
   std::uint64_t version_{};
   bool ending_{};
+  bool in_joint_step_{};
   std::condition_variable pace_changed_;
   std::vector<std::unique_ptr<Slot>> slots_;
   std::vector<std::uint8_t> actions_;  // scratch, one per ship

@@ -60,6 +60,8 @@ class RanchPublisher : public RanchListener {
   template <typename Message>
   void Advertise(ros::NodeHandle& node, const std::string& name, Topic<Message>& topic);
   void Fill(const RanchView& view);
+  void PublishObservations(const RanchView& view);
+  const aquafarm_msgs::FarmState& ObservationOf(const RanchView& view, std::int32_t ship);
   void FillEpisode(const RanchView& view);
   void FillFrames(const RanchView& view);
   void Send();
@@ -76,7 +78,6 @@ class RanchPublisher : public RanchListener {
   ros::Publisher episode_;
   Topic<aquafarm_msgs::FarmState> state_;
   Topic<nav_msgs::OccupancyGrid> risk_;
-  std::vector<std::unique_ptr<Topic<aquafarm_msgs::FarmState>>> observations_;
 
   std::mutex message_mutex_;  // guards the messages below and those of the topics
   std::uint64_t published_episode_{};
@@ -88,7 +89,14 @@ class RanchPublisher : public RanchListener {
   std::vector<aquafarm::Disaster> disasters_;  // to fill the risk grid from, when unlocked
   std::vector<geometry_msgs::TransformStamped> frame_messages_;
   std::vector<std::int32_t> bearings_;  // of each ship's last move
-  aquafarm::View view_;                 // scratch
+
+  std::mutex observation_mutex_;  // guards what ships see
+  struct Observation {
+    ros::Publisher publisher;
+    aquafarm_msgs::FarmState message;  // its memory is reused
+  };
+  std::vector<Observation> observations_;
+  aquafarm::View view_;  // scratch
 
   std::mutex queue_mutex_;  // guards the rest; taken last
   std::condition_variable wake_;

@@ -16,7 +16,8 @@ namespace aquafarm_sim {
 
 struct SimParams {
   std::string scenario{"paper"};  ///< a shipped scenario's name, or a path
-  /// ~farms, ~threads, ~seed (-1: from the wall clock), ~pace, ~rate_hz, ~barrier_timeout_s
+  /// ~farms, ~threads, ~seed (-1: from the wall clock), ~pace, ~rate_hz, ~barrier_timeout_s,
+  /// ~late_ships_hold, ~claim_timeout_s
   RanchOptions ranch;
   double publish_hz{10.0};   ///< most states a second for people; 0: none
   bool record{};             ///< publish every step of farm 0

@@ -38,6 +38,7 @@ class Encoder {
   /// In [0, state_count()), which must not be 0. The same in full and partial view: chart, places
   /// and status are known.
   std::uint32_t Index(const Farm& farm, std::int32_t ship) const;
+  std::uint32_t Index(const View& view) const;
   /// The ship's cell and the status of each device that can be fetched, back from an index.
   struct TabularState {
     Cell cell{};
@@ -51,6 +52,8 @@ class Encoder {
   void Planes(const View& view, std::uint8_t* out) const;
 
  private:
+  std::uint32_t IndexOf(std::int32_t code, Cell cell) const;
+
   const Scenario& scenario_;
   std::vector<std::int32_t> status_rank_;  // by base-3 code; kNone: more aboard than capacity
   std::vector<std::int32_t> status_code_;  // by rank

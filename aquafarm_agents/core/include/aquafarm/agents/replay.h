@@ -58,8 +58,7 @@ struct Transition {
 /// What became of all agents of a farm together over n steps, or until their episode ended.
 struct JointTransition {
   std::size_t to{};  ///< row of the farm's first agent in the moment that the target looks at
-  float reward{};    ///< discounted sum of the team's rewards over the steps between
-  float discount{};  ///< of the value at `to`, of those agents that are not done there
+  float discount{};  ///< of the value at `to`, for those agents that are not done there
 };
 
 /// Numbers of type Scalar: float features, or bytes of planes.
@@ -88,9 +87,9 @@ class Replay {
   Transition At(std::size_t age, std::size_t entry, std::size_t steps, float discount) const;
 
   /// @param first entry of a farm's first agent
-  /// @param team_reward every agent's reward is the team's already
+  /// @param rewards [agents] gets each agent's discounted sum over the steps between
   JointTransition JointAt(std::size_t age, std::size_t first, std::size_t steps, float discount,
-                          bool team_reward) const;
+                          float* rewards) const;
 
   /// Row of a moment's entry in the arrays; stays while the moment is kept.
   std::size_t Row(std::size_t age, std::size_t entry) const {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/init.h>
+#include <ros/node_handle.h>
+
+#include <atomic>
+#include <string>
+#include <utility>
+
+#include "aquafarm/agents/environment.h"
+#include "aquafarm/hash.h"
+#include "aquafarm_agents/call_limit.h"
+
+namespace aquafarm_agents {
+
+/// One persistent connection to a service, made again when it breaks, with limits.
+class ServiceLink {
+ public:
+  /// @param wait_limit_s for an answer, over all attempts
+  /// @param stop may be set by a signal handler; null: never
+  ServiceLink(ros::NodeHandle node, double wait_limit_s, const std::atomic<bool>* stop)
+      : node_(std::move(node)), wait_limit_s_(wait_limit_s), stop_(stop), limit_(kCallLimit_s) {}
+
+  /// @throws EnvironmentLost when there is no answer within the limit
+  template <typename Service>
+  void Call(const std::string& name, Service& service) {
+    const ros::WallTime start = ros::WallTime::now();
+    for (;;) {
+      if (!client_.isValid()) client_ = node_.serviceClient<Service>(name, true);
+      if (client_.isValid() && limit_.Call(client_, service)) return;
+      const bool stopped = !ros::ok() || (stop_ != nullptr && *stop_);
+      if (stopped || (ros::WallTime::now() - start).toSec() >= wait_limit_s_) {
+        throw aquafarm::agents::EnvironmentLost("sim node: no answer from service " +
+                                                node_.resolveName(name));
+      }
+      ros::WallDuration(kRetryPeriod_s).sleep();
+    }
+  }
+
+ private:
+  inline static constexpr double kCallLimit_s = 30.0;
+  inline static constexpr double kRetryPeriod_s = 0.1;
+
+  ros::NodeHandle node_;
+  double wait_limit_s_;
+  const std::atomic<bool>* stop_;
+  CallLimit limit_;
+  ros::ServiceClient client_;
+};
+
+/// The number of the reset after an episode: all who drive ships of one farm ask with the same, so
+/// that it is done once.
+inline std::uint64_t ResetNumber(std::uint64_t seed, std::uint64_t episode) {
+  aquafarm::Hasher hasher;
+  hasher.Add(seed);
+  hasher.Add(episode);
+  return hasher.value() | 1U;  // 0 would stand for none
+}
+
+}  // namespace aquafarm_agents

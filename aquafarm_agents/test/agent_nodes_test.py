@@ -1,0 +1,160 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""One node for each ship: they solve a farm together, in lockstep and paced; one that dies holds its
+own ship only and joins again; ships are held by one node each."""
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import time
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from aquafarm_msgs.srv import GetState
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import DATA, Program, program, start_sim  # noqa: E402
+
+TEAM = DATA / "team.yaml"
+WIDE = DATA / "wide.yaml"
+HOLD = 10
+
+
+class AgentNodesTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_agents_"))
+        cls.addClassCleanup(lambda: __import__("shutil").rmtree(cls.folder))
+
+    def setUp(self):
+        self.namespace = "/" + self.id().rsplit(".", maxsplit=1)[-1]
+
+    def trained(self):
+        """Run folder of a policy that always solves the team's farm; trained once."""
+        folder = self.folder / "trained"
+        if not folder.exists():
+            run = Program(self, program("aquafarm_agents", "aquafarm_train"), TEAM, "-a", "vdn",
+                          "--steps", "24000", "--farms", "8", "--run-dir", folder, "--evaluate",
+                          "100", "-o", "hidden=32", "-o", "batch=32", "-o", "start=500", "-o",
+                          "replay=5000", "-o", "target_period=50", "-o", "steps_per_update=4", "-o",
+                          "learning_rate=linear:0.002:0.0001:1")
+            self.assertEqual(0, run.code(), run.words())
+            self.assertIn("success 100.0 %", run.words())
+        return folder
+
+    def sim(self, scenario, *parameters):
+        start_sim(self, self.namespace, scenario, *parameters)
+        self.get_state = rospy.ServiceProxy(f"{self.namespace}/get_state", GetState)
+        self.get_state.wait_for_service(20)
+
+    def agent(self, ship, policy, *parameters, name=None, before=()):
+        return Program(self, *before, program("aquafarm_agents", "policy_node"),
+                       f"__ns:={self.namespace}", f"__name:={name or f'agent_{ship}'}",
+                       "_mode:=act", f"_ship:={ship}", f"_policy:={policy}", *parameters)
+
+    def is_seen_by(self, name):
+        """Whether a node has subscribed to an observation, which it does once it holds its ship."""
+        subscribers = rosgraph.Master("/test").getSystemState()[1]
+        return any(topic.startswith(self.namespace) and topic.endswith("/observation")
+                   and f"{self.namespace}/{name}" in nodes for topic, nodes in subscribers)
+
+    def state(self):
+        return self.get_state().state
+
+    def wait_until(self, condition, what, limit_s=30):
+        end = time.monotonic() + limit_s
+        while not condition(self.state()):
+            self.assertLess(time.monotonic(), end, f"waited in vain for {what}")
+            time.sleep(0.02)
+
+    def expect_solved(self, runs, episodes):
+        for run in runs:
+            self.assertEqual(0, run.code(), run.words())
+            self.assertIn(f"{episodes} of {episodes} episodes ended with every device delivered",
+                          run.words())
+
+    def test_they_solve_a_farm_step_by_step(self):
+        self.sim(TEAM)
+        policy = self.trained()
+        self.expect_solved([self.agent(ship, policy, "_episodes:=5") for ship in (0, 1)], 5)
+
+    def test_they_solve_a_farm_that_does_not_wait(self):
+        self.sim(TEAM, "_pace:=paced", "_rate_hz:=20")
+        policy = self.trained()
+        self.expect_solved([self.agent(ship, policy, "_episodes:=2") for ship in (0, 1)], 2)
+
+    def test_an_agent_may_live_at_another_address(self):
+        self.sim(TEAM)
+        policy = self.trained()
+        runs = [self.agent(0, policy, "_episodes:=3"),
+                self.agent(1, policy, "_episodes:=3", before=("env", "ROS_IP=127.0.0.2"))]
+        self.expect_solved(runs, 3)
+
+    def die_and_join_again(self, *parameters):
+        self.sim(WIDE, *parameters)
+        self.agent(0, "random")
+        victim = self.agent(1, "random")
+        self.wait_until(lambda state: state.step > 20 and state.ships[1].action != HOLD,
+                        "both ships at work")
+        victim.send(signal.SIGKILL)
+        self.wait_until(lambda state: state.ships[1].action == HOLD, "the ship to hold")
+        died = self.state()
+        self.wait_until(lambda state: state.step > died.step + 20, "the farm to go on")
+        on = self.state()
+        self.assertEqual(HOLD, on.ships[1].action)
+        self.assertEqual(died.ships[1].x, on.ships[1].x)
+        self.assertEqual(died.ships[1].y, on.ships[1].y)
+        self.agent(1, "random")
+        self.wait_until(lambda state: state.ships[1].action != HOLD, "the ship to move again")
+        self.assertEqual(on.episode, self.state().episode)
+
+    def test_one_that_dies_holds_its_ship_only_and_joins_again(self):
+        self.die_and_join_again("_late_ships_hold:=true", "_barrier_timeout_s:=0.5")
+
+    def test_one_that_dies_holds_its_ship_only_and_joins_again_when_paced(self):
+        self.die_and_join_again("_pace:=paced", "_rate_hz:=50")
+
+    def test_one_that_is_late_holds_its_ship_until_it_is_back(self):
+        self.sim(WIDE, "_late_ships_hold:=true", "_barrier_timeout_s:=0.5")
+        self.agent(0, "random")
+        late = self.agent(1, "random")
+        self.wait_until(lambda state: state.step > 20, "both ships at work")
+        late.send(signal.SIGSTOP)
+        self.wait_until(lambda state: state.ships[1].action == HOLD, "the ship to hold")
+        step = self.state().step
+        self.wait_until(lambda state: state.step > step + 20, "the farm to go on")
+        late.send(signal.SIGCONT)
+        self.wait_until(lambda state: state.ships[1].action != HOLD, "the ship to move again")
+
+    def test_a_ship_that_another_holds_is_refused(self):
+        self.sim(WIDE, "_barrier_timeout_s:=3600")
+        first = self.agent(1, "random")
+        first.wait_for(lambda: self.is_seen_by("agent_1"), "its ship")
+        before = self.state().hash
+        second = self.agent(1, "random", name="other")
+        self.assertEqual(2, second.code(), second.words())
+        self.assertIn(f"~ship: ship 1 is held by {self.namespace}/agent_1", second.words())
+        self.assertEqual(before, self.state().hash)
+
+    def test_a_policy_for_another_number_of_ships_is_refused(self):
+        self.sim("four_squads")
+        before = self.state().hash
+        run = self.agent(0, self.trained())
+        self.assertEqual(2, run.code(), run.words())
+        self.assertIn("vdn of scenario team does not fit scenario four_squads: agents: it knows 2, "
+                      "the farm has 4", run.words())
+        self.assertEqual(before, self.state().hash)
+
+    def test_without_a_sim_node_it_says_so_and_ends(self):
+        run = self.agent(0, "random", "_sim_timeout_s:=2")
+        self.assertEqual(4, run.code(), run.words())
+        self.assertIn(f"no answer from service {self.namespace}/get_state", run.words())
+
+
+if __name__ == "__main__":
+    rospy.init_node("agent_nodes_test")
+    rostest.rosrun("aquafarm_agents", "agent_nodes", AgentNodesTest, sys.argv)

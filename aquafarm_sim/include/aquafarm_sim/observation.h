@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// A ship's observation as agents read it, in a header alone: they link no library of this package
+/// but the core.
+
+#include <aquafarm_msgs/FarmState.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+
+#include "aquafarm/check.h"
+#include "aquafarm/view.h"
+
+namespace aquafarm_sim {
+
+/// What is known of a disaster.
+inline aquafarm::KnownDisaster FromMsg(const aquafarm_msgs::DisasterState& message) {
+  aquafarm::KnownDisaster known;
+  known.known = message.known != 0;
+  known.visible = message.visible != 0;
+  known.age = message.age;
+  aquafarm::Disaster& belief = known.belief;
+  const std::size_t rings = std::min(
+      {message.radii.size(), message.risks.size(), static_cast<std::size_t>(aquafarm::kMaxRings)});
+  belief.kind = static_cast<aquafarm::DisasterKind>(message.kind);
+  belief.grade = message.grade;
+  belief.rings = static_cast<std::int32_t>(rings);
+  for (std::size_t k = 0; k < rings; ++k) {
+    const float radius = message.radii[k];
+    belief.radius[k] = radius;
+    belief.radius_squared[k] = radius > 0.0F ? radius * radius : -1.0F;
+    belief.risk[k] = message.risks[k];
+  }
+  belief.x = message.x;
+  belief.y = message.y;
+  belief.dx = message.motion_x;
+  belief.dy = message.motion_y;
+  belief.speed = message.speed;
+  belief.heading_deg = message.heading_deg;
+  belief.steps_left = message.steps_left;
+  return known;
+}
+
+/// What a ship knows, back from its observation, as Observe would have filled it; `eyes` and what a
+/// view does not tell of a disaster excepted.
+/// @param layout of the observation's episode; scenario and layout must outlive the view
+/// @throws InputError when it is no ship's observation of a farm of `scenario`
+inline void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Scenario& scenario,
+                    const aquafarm::Layout& layout, aquafarm::View& view) {
+  const auto ship = static_cast<std::size_t>(message.observer);
+  if (message.observer < 0 || ship >= message.ships.size() ||
+      message.ships.size() != static_cast<std::size_t>(scenario.AgentCount()) ||
+      message.devices.size() != layout.devices.size()) {
+    throw aquafarm::InputError("observation: got observer " + std::to_string(message.observer) +
+                               " of " + std::to_string(message.ships.size()) + " ships and " +
+                               std::to_string(message.devices.size()) + " devices, expected " +
+                               std::to_string(scenario.AgentCount()) + " and " +
+                               std::to_string(layout.devices.size()));
+  }
+  const aquafarm_msgs::ShipState& self = message.ships[ship];
+  view.ship = message.observer;
+  view.self = {self.x, self.y};
+  view.in_play = self.active != 0;
+  view.step = static_cast<std::int32_t>(message.step);
+  view.aboard = static_cast<std::int32_t>(self.aboard.size());
+  view.capacity = scenario.ships.capacity;
+  view.scenario = &scenario;
+  view.layout = &layout;
+  view.others.clear();
+  for (const aquafarm_msgs::ShipState& other : message.ships) {
+    if (other.id == message.observer) continue;
+    view.others.push_back({other.id,
+                           {other.x, other.y},
+                           other.visible && other.active,
+                           static_cast<std::int32_t>(other.aboard.size())});
+  }
+  view.devices.resize(message.devices.size());
+  for (std::size_t id = 0; id < message.devices.size(); ++id) {
+    const aquafarm_msgs::DeviceState& device = message.devices[id];
+    view.devices[id] = {{device.x, device.y},
+                        static_cast<aquafarm::DeviceStatus>(device.status),
+                        device.carrier == message.observer,
+                        device.self_propelled != 0,
+                        device.health_known != 0,
+                        device.health,
+                        device.value};
+  }
+  view.disasters.resize(message.disasters.size());
+  for (std::size_t id = 0; id < message.disasters.size(); ++id) {
+    view.disasters[id] = FromMsg(message.disasters[id]);
+  }
+}
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Joint steps a second with a policy_node for each of eight ships, in lockstep through ROS.
+
+Prints `metric value unit` lines, the median of a few rounds. Needs a built workspace in the
+environment; starts a master of its own when there is none."""
+import argparse
+import pathlib
+import signal
+import socket
+import statistics
+import subprocess
+import tempfile
+import time
+
+import rosgraph
+import roslib.packages
+import rospkg
+import rospy
+from aquafarm_msgs.srv import GetState
+
+LIMIT_S = 30.0
+
+
+def start(*command):
+    """Starts a program whose words nobody reads."""
+    return subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL,
+                            stderr=subprocess.DEVNULL)
+
+
+def program(package, name):
+    """Path of an executable of a package."""
+    found = roslib.packages.find_node(package, name)
+    if not found:
+        raise SystemExit(f"bench_agents: {package} has no {name}; run ./aquafarm build")
+    return found[0]
+
+
+def scenario_of(ships, folder):
+    """A copy of two_squads with so many ships."""
+    source = pathlib.Path(rospkg.RosPack().get_path("aquafarm_sim")) / "scenarios/two_squads.yaml"
+    text = source.read_text(encoding="utf-8")
+    changed = text.replace("ships: {count: 2,", f"ships: {{count: {ships},")
+    assert changed != text, "two_squads.yaml no longer has 2 ships"
+    path = pathlib.Path(folder) / "ships.yaml"
+    path.write_text(changed, encoding="utf-8")
+    return path
+
+
+def measure(get_state, rounds, round_s):
+    """Joint steps a second of each round that stayed within an episode."""
+    rates = []
+    while len(rates) < rounds:
+        before, begin = get_state().state, time.monotonic()
+        time.sleep(round_s)
+        after, elapsed = get_state().state, time.monotonic() - begin
+        if after.episode == before.episode:
+            rates.append((after.step - before.step) / elapsed)
+    return rates
+
+
+def main():
+    """Starts the farm and its agents, measures, ends them."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--ships", type=int, default=8)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--round-s", type=float, default=1.0)
+    arguments = parser.parse_args()
+    children = []
+    with tempfile.TemporaryDirectory(prefix="aquafarm_bench_") as folder:
+        try:
+            if not rosgraph.is_master_online():
+                children.append(start("roscore", "-p", rosgraph.network.parse_http_host_and_port(
+                    rosgraph.get_master_uri())[1]))
+            end = time.monotonic() + LIMIT_S
+            while not rosgraph.is_master_online():
+                if time.monotonic() > end:
+                    raise SystemExit("bench_agents: no ROS master came up")
+                time.sleep(0.2)
+            space = f"/bench_agents_{socket.gethostname().replace('-', '_')}"
+            children.append(start(program("aquafarm_sim", "sim_node"), f"__ns:={space}",
+                                  "__name:=sim", "_publish_clock:=false",
+                                  f"_scenario:={scenario_of(arguments.ships, folder)}"))
+            for ship in range(arguments.ships):
+                children.append(start(program("aquafarm_agents", "policy_node"), f"__ns:={space}",
+                                      f"__name:=agent_{ship}", "_mode:=act", "_policy:=random",
+                                      f"_ship:={ship}"))
+            rospy.init_node("bench_agents", anonymous=True, disable_signals=True)
+            get_state = rospy.ServiceProxy(f"{space}/get_state", GetState, persistent=True)
+            get_state.wait_for_service(LIMIT_S)
+            end = time.monotonic() + LIMIT_S
+            while get_state().state.step < 100:
+                if time.monotonic() > end:
+                    raise SystemExit("bench_agents: the agents take no steps")
+                time.sleep(0.1)
+            rates = measure(get_state, arguments.rounds, arguments.round_s)
+            print(f"ros_{arguments.ships}_agent_nodes {statistics.median(rates):.0f} joint_steps/s")
+        finally:
+            for child in reversed(children):
+                child.send_signal(signal.SIGINT)
+            for child in reversed(children):
+                try:
+                    child.wait(10)
+                except subprocess.TimeoutExpired:
+                    child.kill()
+
+
+if __name__ == "__main__":
+    main()

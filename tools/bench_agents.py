@@ -50,7 +50,10 @@ def scenario_of(ships, folder):
 def measure(get_state, rounds, round_s):
     """Joint steps a second of each round that stayed within an episode."""
     rates = []
+    end = time.monotonic() + LIMIT_S
     while len(rates) < rounds:
+        if time.monotonic() > end:
+            raise SystemExit("bench_agents: no round stayed within an episode; shorten --round-s")
         before, begin = get_state().state, time.monotonic()
         time.sleep(round_s)
         after, elapsed = get_state().state, time.monotonic() - begin
@@ -64,7 +67,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--ships", type=int, default=8)
     parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--round-s", type=float, default=1.0)
+    parser.add_argument("--round-s", type=float, default=0.5)
     arguments = parser.parse_args()
     children = []
     with tempfile.TemporaryDirectory(prefix="aquafarm_bench_") as folder:

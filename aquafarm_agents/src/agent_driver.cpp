@@ -11,7 +11,6 @@
 #include <aquafarm_msgs/Reset.h>
 #include <ros/callback_queue.h>
 #include <ros/console.h>
-#include <ros/service.h>
 
 #include <algorithm>
 #include <optional>
@@ -34,8 +33,11 @@ using aquafarm::InputError;
 using aquafarm_msgs::FarmState;
 using aquafarm_msgs::Outcome;
 
-// Without an observation for so long, the claim is renewed and the sim node asked whether it lives.
+// Without an observation for so long, the last one is acted on again.
 constexpr double kSilence_s = 2.0;
+// Claiming anew also finds out whether the sim node is there, within the limit.
+constexpr double kClaimPeriod_s = 3.0;
+constexpr double kReleaseLimit_s = 1.0;
 constexpr double kWarnPeriod_s = 5.0;
 constexpr std::uint32_t kQueue = 10;
 
@@ -82,7 +84,11 @@ class AgentDriver::Impl {
   ~Impl() {
     aquafarm_msgs::Claim claim;
     claim.request.release = true;
-    ros::service::call(node_.resolveName(names::Claim(options_.ship)), claim);
+    try {
+      ServiceLink(node_, kReleaseLimit_s, nullptr, kReleaseLimit_s)
+          .Call(names::Claim(options_.ship), claim);
+    } catch (const EnvironmentLost&) {  // the claim ends by itself
+    }
   }
 
   const EnvironmentSpec& spec() const { return spec_; }
@@ -96,8 +102,9 @@ class AgentDriver::Impl {
         const bool success = over->reason == FarmState::ALL_RETRIEVED;
         ROS_INFO("episode %llu: %s, return %.1f", static_cast<unsigned long long>(over->episode),
                  success ? "all retrieved" : "over", static_cast<double>(over->joint_return));
-        ended.push_back(success);
-        StartNext(*over);
+        if (acted_in_ == std::pair(over->seed, over->episode)) ended.push_back(success);
+        // Whoever is late must not reset what the others have begun meanwhile.
+        if (over == newest_) StartNext(*over);
       }
       if (!now || now->reason != FarmState::NONE) continue;
       if (!now->ships[static_cast<std::size_t>(options_.ship)].active) continue;
@@ -138,6 +145,7 @@ class AgentDriver::Impl {
   void Claim() {
     aquafarm_msgs::Claim claim;
     claim_.Call(names::Claim(options_.ship), claim);
+    claimed_at_ = ros::WallTime::now();
     if (!claim.response.ok) throw InputError("~ship: " + claim.response.message);
   }
 
@@ -146,14 +154,14 @@ class AgentDriver::Impl {
     const ros::WallTime start = ros::WallTime::now();
     while (!Stopped()) {
       queue_.callAvailable(ros::WallDuration(0.05));
-      if (newest_ && (!seen_ || again_ || newest_->episode != seen_->first ||
-                      newest_->step != seen_->second)) {
-        seen_ = {newest_->episode, newest_->step};
+      if ((ros::WallTime::now() - claimed_at_).toSec() >= kClaimPeriod_s) Claim();
+      if (newest_ && (again_ || newest_ != seen_)) {
+        seen_ = newest_;
         again_ = false;
         return newest_;
       }
       if ((ros::WallTime::now() - start).toSec() < kSilence_s) continue;
-      Claim();  // also finds out whether the sim node is there, within the limit
+      again_ = true;  // perhaps a command was lost; one too many is answered STALE
       return nullptr;
     }
     return nullptr;
@@ -191,6 +199,7 @@ class AgentDriver::Impl {
 
   void Send(const FarmState& now, std::uint8_t action) {
     results_.started[0] = 0;
+    acted_in_ = {now.seed, now.episode};
     if (action < aquafarm::kMoveCount) {
       aquafarm_msgs::Move move;
       move.request.direction = action;
@@ -249,7 +258,9 @@ class AgentDriver::Impl {
   FarmState::ConstPtr newest_;
   std::vector<FarmState::ConstPtr> over_;  // the last of each episode that is not dealt with yet
   std::optional<std::pair<std::uint64_t, std::uint64_t>> over_seen_;  // seed and episode
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> seen_;       // episode and step
+  FarmState::ConstPtr seen_;                                          // what was acted on last
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> acted_in_;   // seed and episode
+  ros::WallTime claimed_at_;
   bool again_{};
   std::uint64_t token_{ros::WallTime::now().toNSec()};
   ros::Subscriber observation_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_agents/ship_driver.h"
 
+#include <aquafarm_msgs/Claim.h>
 #include <aquafarm_msgs/Command.h>
 #include <aquafarm_msgs/GetState.h>
 #include <aquafarm_msgs/Outcome.h>
@@ -38,7 +39,8 @@ class ShipDriver::Impl {
       : options_(std::move(options)),
         get_(node, options_.wait_limit_s, options_.stop),
         save_(node, options_.wait_limit_s, options_.stop),
-        reset_(node, options_.wait_limit_s, options_.stop) {
+        reset_(node, options_.wait_limit_s, options_.stop),
+        claim_(node, options_.wait_limit_s, options_.stop) {
     aquafarm_msgs::GetState get;
     get.request.with_spec = true;
     get_.Call(names::kGetState, get);
@@ -57,6 +59,7 @@ class ShipDriver::Impl {
     for (std::int32_t ship = 0; ship < spec.agents; ++ship) {
       if (options_.ship >= 0 && ship != options_.ship) continue;
       ships_.push_back(ship);
+      if (options_.ship >= 0) Claim(ship);
       commands_.push_back(
           std::make_unique<ServiceLink>(node, options_.wait_limit_s, options_.stop));
     }
@@ -93,6 +96,13 @@ class ShipDriver::Impl {
 
  private:
   bool Stopped() const { return !ros::ok() || (options_.stop != nullptr && *options_.stop); }
+
+  // Its commands renew it.
+  void Claim(std::int32_t ship) {
+    aquafarm_msgs::Claim claim;
+    claim_.Call(names::Claim(ship), claim);
+    if (!claim.response.ok) throw InputError("~ship: " + claim.response.message);
+  }
 
   const Results& Look() {
     aquafarm_msgs::SaveState save;
@@ -150,6 +160,7 @@ class ShipDriver::Impl {
     const bool usual = command.response.result.ok || code == Outcome::STALE ||
                        code == Outcome::EPISODE_OVER || code == Outcome::PAUSED ||
                        code == Outcome::TIMEOUT || code == Outcome::SUPERSEDED;
+    if (code == Outcome::CLAIMED) throw InputError("~ship: " + command.response.result.message);
     if (!usual) {
       throw EnvironmentLost("sim node: command refused: " + command.response.result.message);
     }
@@ -182,6 +193,7 @@ class ShipDriver::Impl {
   ServiceLink get_;
   ServiceLink save_;
   ServiceLink reset_;
+  ServiceLink claim_;
   std::vector<std::int32_t> ships_;
   std::vector<std::unique_ptr<ServiceLink>> commands_;  // one a ship
   std::unique_ptr<LocalEnvironment> mirror_;

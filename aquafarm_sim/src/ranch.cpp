@@ -51,12 +51,11 @@ aquafarm_msgs::CommandResult Ranch::Command(const ShipCommand& command) {
       const Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
       if (slot.last && *slot.last == command) return slot.answer;
     }
-    if (const auto refusal = Check(command))
-      return Refuse(command.ship, refusal->code, refusal->message);
     if (const auto refusal = CheckHolder(command)) {
       return Refuse(command.ship, refusal->code, refusal->message);
     }
-    slots_[static_cast<std::size_t>(command.ship)]->is_absent = false;
+    if (const auto refusal = Check(command))
+      return Refuse(command.ship, refusal->code, refusal->message);
     if (context_.paced) return AcceptPaced(command);
     if (agents_ > 1) return WaitForOthers(command, lock);
     slots_[0]->pending = command;
@@ -156,7 +155,8 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
         command.ship, Outcome::SUPERSEDED,
         "ship " + std::to_string(command.ship) + " gave a newer command for the same step");
   }
-  if (!woken && !ending_ && options_.late_ships_hold) {
+  slot.heard_at = Clock::now();  // it was there all the time
+  if (!woken && !ending_ && options_.late_ships_hold && !context_.paused && !context_.paced) {
     GoOnWithoutTheLate();
     return slot.answer;
   }
@@ -203,13 +203,16 @@ bool Ranch::IsHeldByAnother(Slot& slot, const std::string& caller) const {
   return false;
 }
 
+// Whoever may command a ship and says something, even too late, is there.
 std::optional<Ranch::Refusal> Ranch::CheckHolder(const ShipCommand& command) {
+  if (command.ship < 0 || command.ship >= agents_) return std::nullopt;
   Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
   if (IsHeldByAnother(slot, command.caller)) {
     return Refusal{Outcome::CLAIMED,
                    "ship " + std::to_string(command.ship) + " is held by " + slot.holder};
   }
-  if (!slot.holder.empty()) slot.heard_at = Clock::now();
+  slot.heard_at = Clock::now();
+  slot.is_absent = false;
   return std::nullopt;
 }
 
@@ -354,19 +357,20 @@ void Ranch::AdvanceClock() {
 }
 
 // Begins with a tick of its own, so that an episode's end and the next one's start differ in stamp.
-void Ranch::EpisodeBegan() {
+void Ranch::EpisodeBegan(bool by_joint_step) {
   ++episode_count_;
   AdvanceClock();
-  Changed();
+  Changed(by_joint_step);
 }
 
-void Ranch::Changed() {
+void Ranch::Changed(bool by_joint_step) {
+  changed_jointly_ = by_joint_step;
   ++version_;
   if (listener_ != nullptr) listener_->OnChange(View());
 }
 
 RanchView Ranch::View() const {
-  return {*batch_, yaml_, context_, episode_count_, version_, in_joint_step_};
+  return {*batch_, yaml_, context_, episode_count_, version_, changed_jointly_};
 }
 
 void Ranch::Inspect(const std::function<void(const RanchView&)>& look) {

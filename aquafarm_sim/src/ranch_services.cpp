@@ -68,13 +68,10 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
     Answer(Outcome::OK, "", step_answer_);
     batch_->Step(request.actions.data(), Prepare(request.encodings, step_answer_.result));
     DropPending();
-    in_joint_step_ = true;
     Complete(step_answer_.result);
-    in_joint_step_ = false;
     last_sequence_ = request.sequence;
     return step_answer_;
   } catch (const std::exception& error) {
-    in_joint_step_ = false;
     Answer(Outcome::INTERNAL_ERROR, error.what(), step_refusal_);
     return step_refusal_;
   }
@@ -160,11 +157,12 @@ void Ranch::DescribeEnds(StepResult& result) {
 
 void Ranch::Complete(StepResult& result) {
   DescribeEnds(result);
+  constexpr bool kByJointStep = true;
   if (result.started[0] != 0) {
-    EpisodeBegan();
+    EpisodeBegan(kByJointStep);
   } else {
     AdvanceClock();
-    Changed();
+    Changed(kByJointStep);
   }
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
     counters_.farm_steps += result.started[i] == 0 ? 1 : 0;

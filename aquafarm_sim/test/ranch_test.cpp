@@ -135,6 +135,38 @@ TEST(Ranch, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   EXPECT_EQ(12U, answer.step);
 }
 
+TEST(Ranch, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
+  RanchOptions options;
+  options.barrier_timeout_s = 0.2;
+  options.late_ships_hold = true;
+  const auto ranch = MakeRanchOf(TwoShips(), options);
+  ranch->Command({0, kNorth, 0, 0, 1});  // ship 1 is given up
+  EXPECT_EQ(Outcome::STALE, ranch->Command({1, kHold, 9, 9, 1}).code);
+  auto waiting = std::async(std::launch::async, [&] {
+    return ranch->Command({0, kHold, 0, 0, 2});
+  });
+  std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_EQ(2U, ranch->Command({1, kHold, 0, 0, 2}).step);
+  EXPECT_EQ(2U, waiting.get().step);
+}
+
+TEST(Ranch, APausedFarmDoesNotGoOnWithoutTheLate) {
+  RanchOptions options;
+  options.barrier_timeout_s = 0.2;
+  options.late_ships_hold = true;
+  const auto ranch = MakeRanchOf(TwoShips(), options);
+  auto waiting = std::async(std::launch::async, [&] {
+    return ranch->Command({0, kHold, 0, 0, 1});
+  });
+  std::this_thread::sleep_for(milliseconds(50));
+  aquafarm_msgs::Pause::Request pause;
+  aquafarm_msgs::Pause::Response paused;
+  pause.paused = true;
+  ranch->Pause(pause, paused);
+  EXPECT_EQ(Outcome::TIMEOUT, waiting.get().code);
+  EXPECT_EQ(0U, StateOf(*ranch).step);
+}
+
 TEST(Ranch, AClaimedShipObeysItsHolderAlone) {
   RanchOptions options;
   options.claim_timeout_s = 0.2;

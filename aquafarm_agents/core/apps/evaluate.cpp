@@ -58,6 +58,7 @@ ExitCode Run(Arguments arguments) {
   const auto scenario = arguments.scenario.Load();
   LocalEnvironment environment(scenario, arguments.environment);
   const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
+  if (arguments.bound) TeamBound(Farm(scenario));  // refuses at once what it cannot bound
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
   Evaluation evaluation =
@@ -72,8 +73,11 @@ ExitCode Run(Arguments arguments) {
   if (arguments.bound && evaluation.complete) {
     evaluation.mean_bound = MeanBound(scenario, evaluation);
     if (stop_requested) return ExitCode::kInterrupted;
-    std::printf("upper bound %.1f per episode, share of it %.3f\n", *evaluation.mean_bound,
-                evaluation.mean_return / *evaluation.mean_bound);
+    std::printf("upper bound %.1f per episode", *evaluation.mean_bound);
+    if (*evaluation.mean_bound > 0.0) {
+      std::printf(", share of it %.3f", evaluation.mean_return / *evaluation.mean_bound);
+    }
+    std::printf("\n");
   }
   // The evaluation comes last: where it is, all is there.
   if (!arguments.route.empty() && evaluation.complete) {

@@ -225,8 +225,8 @@ void DqnLearner<Scalar>::DrawJoint(std::size_t i, const Moment& moment) {
       replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
                       static_cast<float>(options_.discount), team_rewards_.data());
   const float sum = std::accumulate(team_rewards_.begin(), team_rewards_.end(), 0.0F);
-  // A shared reward is the team's already.
-  const float reward = spec_.team_reward ? team_rewards_[0] : sum;
+  // A shared reward is the team's already, to each of them.
+  const float reward = spec_.team_reward ? sum / static_cast<float>(group()) : sum;
   batch_.rewards[i] = reward * static_cast<float>(options_.reward_scale);
   const std::size_t from = replay_.Row(moment.age, first);
   for (std::size_t agent = 0; agent < group(); ++agent) {

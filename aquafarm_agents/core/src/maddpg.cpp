@@ -32,6 +32,11 @@ float Gumbel(RandomStream& chance) {
   return -std::log(-std::log(unit));
 }
 
+void MarkOne(std::uint8_t action, float mark, float* out) {
+  std::fill_n(out, kActionCount, 0.0F);
+  out[action] = mark;
+}
+
 // What each agent carries, on the host between steps: [entries, carry_size], empty without memory.
 void ClearStarted(const Results& results, std::size_t size_of_farm, std::vector<float>& carry) {
   for (std::size_t farm = 0; farm < results.started.size() && !carry.empty(); ++farm) {
@@ -180,7 +185,8 @@ class MaddpgLearner final : public Learner {
   // The minibatch of B moments.
   Window from_;
   Window to_;
-  std::vector<float> taken_;          // [B, S, kActionCount] one-hot
+  std::vector<float> taken_;          // [B, S, kActionCount] one-hot; 0 for an agent that is done
+  std::vector<float> judged_;         // the same, but action 0 for an agent that is done
   std::vector<float> rewards_;        // [B, S]
   std::vector<float> discounts_;      // [B, S]
   std::vector<float> weights_;        // [B, S] 0: an agent that was done before
@@ -221,6 +227,7 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       from_(MakeWindow()),
       to_(MakeWindow()),
       taken_(batch() * agents() * kActionCount),
+      judged_(batch() * agents() * kActionCount),
       rewards_(batch() * agents()),
       discounts_(batch() * agents()),
       weights_(batch() * agents()),
@@ -246,6 +253,7 @@ void MaddpgLearner::Step(const Results& results, double progress,
   progress_ = progress;
   ClearStarted(results, agents() * carry_size(), carry_);
   replay_.Add(results, results.features.data(), carry_.data());
+  sampler_.Remember();
   const std::uint64_t steps = FarmSteps(results);
   steps_ += steps;
   if (steps_ > options_.start) due_ += static_cast<double>(steps) / options_.steps_per_update;
@@ -292,9 +300,11 @@ void MaddpgLearner::Draw() {
     const std::size_t row = replay_.Row(moment.age, first);
     bool all_done = true;
     for (std::size_t agent = 0; agent < agents(); ++agent) {
-      float* const taken = taken_.data() + (i * agents() + agent) * kActionCount;
-      std::fill_n(taken, kActionCount, 0.0F);
-      if (from_.present[i * agents() + agent] > 0.0F) taken[replay_.action(row + agent)] = 1.0F;
+      const std::size_t k = i * agents() + agent;
+      const bool present = from_.present[k] > 0.0F;
+      const std::uint8_t action = present ? replay_.action(row + agent) : std::uint8_t{0};
+      MarkOne(action, 1.0F, judged_.data() + k * kActionCount);
+      MarkOne(action, from_.present[k], taken_.data() + k * kActionCount);
       all_done = all_done && IsTerminated(replay_.reason(all.to + agent));
     }
     for (std::size_t agent = 0; agent < agents(); ++agent) {
@@ -304,7 +314,8 @@ void MaddpgLearner::Draw() {
           spec_.team_reward ? all_done : IsTerminated(replay_.reason(all.to + agent));
       rewards_[k] = agent_rewards_[agent] * scale;
       discounts_[k] = is_done ? 0.0F : all.discount;
-      weights_[k] = from_.present[k];
+      // So the values of agents that are done, on which others' targets rest, are learnt too.
+      weights_[k] = spec_.team_reward ? 1.0F : from_.present[k];
     }
   }
 }
@@ -380,17 +391,19 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
   torch::Tensor targets;
   {
     const torch::NoGradGuard no_grad;
-    const torch::Tensor logits =
-        Logits(target_actors_, to_) + ToDevice(to_.forbidden, joint) + GumbelNoise();
-    const torch::Tensor chosen = torch::one_hot(logits.argmax(2), kActionCount).to(torch::kFloat);
-    const torch::Tensor present = ToDevice(to_.present, {options_.batch, spec_.agents, 1});
-    const torch::Tensor next =
-        (target_critic_.Forward(Observations(to_)[options_.window - 1], chosen * present) * chosen)
-            .sum(2);
+    const torch::Tensor logits = Logits(target_actors_, to_) + ToDevice(to_.forbidden, joint);
+    const torch::Tensor present = ToDevice(to_.present, each);
+    const torch::Tensor best = logits.argmax(2) * present.to(torch::kLong);  // 0 for those done
+    const torch::Tensor chosen = torch::one_hot(best, kActionCount).to(torch::kFloat);
+    const torch::Tensor next = (target_critic_.Forward(Observations(to_)[options_.window - 1],
+                                                       chosen * present.unsqueeze(2)) *
+                                chosen)
+                                   .sum(2);
     targets = ToDevice(rewards_, each) + ToDevice(discounts_, each) * next;
   }
   const torch::Tensor taken = ToDevice(taken_, joint);
-  const torch::Tensor predicted = (critic_.Forward(observations, taken) * taken).sum(2);
+  const torch::Tensor predicted =
+      (critic_.Forward(observations, taken) * ToDevice(judged_, joint)).sum(2);
   const torch::Tensor weights = ToDevice(weights_, each) / std::max(1.0F, Sum(weights_));
   const double scale = options_.reward_scale * options_.reward_scale;
   const auto error = static_cast<float>(
@@ -413,7 +426,7 @@ void MaddpgLearner::UpdateActors(const torch::Tensor& observations) {
   const torch::Tensor hard = torch::one_hot(soft.argmax(2), kActionCount).to(torch::kFloat);
   const torch::Tensor action = hard + soft - soft.detach();
   const torch::Tensor weights =
-      ToDevice(weights_, {options_.batch, spec_.agents}) / std::max(1.0F, Sum(weights_));
+      ToDevice(from_.present, {options_.batch, spec_.agents}) / std::max(1.0F, Sum(from_.present));
   const torch::Tensor loss =
       -((action * slope).sum(2) * weights).sum() + options_.logit_penalty * logits.square().mean();
   CheckLoss(loss.item<float>(), "actors", chance_.position());
@@ -463,6 +476,7 @@ void MaddpgLearner::Load(const Checkpoint& checkpoint) {
   actor_.Load(checkpoint);
   judge_.Load(checkpoint, "critic.");
   replay_.Load(checkpoint);
+  sampler_.Load(checkpoint);
   actor_target_.FromVector(actors);
   judge_target_.FromVector(critic);
   carry_ = std::move(carry);

@@ -68,22 +68,25 @@ torch::Tensor ActorTeam::ForwardOne(std::size_t network, const torch::Tensor& ob
 
 JointCritic::JointCritic(const EnvironmentSpec& spec, std::int64_t hidden)
     : first_(register_module(
-          "first", nn::Linear(spec.agents * (spec.feature_count + kActionCount + 1), hidden))),
+          "first",
+          nn::Linear(spec.agents * spec.feature_count + (spec.agents - 1) * kActionCount, hidden))),
       second_(register_module("second", nn::Linear(hidden, hidden))),
       head_(register_module("head", nn::Linear(hidden, kActionCount))) {}
 
+// The judged agent comes first and the others after it in turn, so that what is learnt of one
+// holds for all.
 torch::Tensor JointCritic::Forward(const torch::Tensor& observations,
                                    const torch::Tensor& actions) {
   const std::int64_t count = observations.size(0);
   const std::int64_t agents = observations.size(1);
-  const torch::Tensor self = torch::eye(agents, observations.options());
-  const torch::Tensor others =
-      actions.unsqueeze(1) * (1.0 - self).view({1, agents, agents, 1});  // [B, judged, agent, A]
-  const torch::Tensor input =
-      torch::cat({observations.flatten(1).unsqueeze(1).expand({-1, agents, -1}), others.flatten(2),
-                  self.unsqueeze(0).expand({count, -1, -1})},
-                 2);
-  return head_(second_(first_(input).relu_()).relu_());
+  const torch::Tensor ids =
+      torch::arange(agents, torch::TensorOptions(torch::kLong).device(observations.device()));
+  const torch::Tensor turn = (ids.unsqueeze(1) + ids.unsqueeze(0)).remainder(agents);
+  const torch::Tensor seen = observations.index_select(1, turn.flatten()).view({count, agents, -1});
+  if (agents == 1) return head_(second_(first_(seen).relu_()).relu_());
+  const torch::Tensor others = turn.narrow(1, 1, agents - 1).flatten();
+  const torch::Tensor done = actions.index_select(1, others).view({count, agents, -1});
+  return head_(second_(first_(torch::cat({seen, done}, 2)).relu_()).relu_());
 }
 
 }  // namespace aquafarm::agents

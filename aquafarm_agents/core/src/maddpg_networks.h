@@ -40,7 +40,7 @@ class ActorTeam final : public torch::nn::Module {
 };
 
 /// Each agent's Q of each of its actions, from all observations and the others' actions: one
-/// network, told which agent it judges.
+/// network that judges them all.
 class JointCritic final : public torch::nn::Module {
  public:
   JointCritic(const EnvironmentSpec& spec, std::int64_t hidden);

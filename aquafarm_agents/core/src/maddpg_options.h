@@ -11,19 +11,19 @@ namespace aquafarm::agents {
 /// Numbers and switches of MADDPG; docs/algorithms.md gives their sources.
 struct MaddpgOptions {
   std::int32_t hidden{128};  ///< units of a hidden layer; of the LSTM when recurrent
-  Schedule actor_rate{ScheduleKind::kLinear, 3e-4, 1e-5, 1.0};   ///< learning rate of Adam
+  Schedule actor_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};   ///< learning rate of Adam
   Schedule critic_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};  ///< learning rate of Adam
   double discount{0.97};
   ExplorationOptions exploration{
-      ExplorationKind::kEpsilonGreedy, {ScheduleKind::kLinear, 1.0, 0.01, 0.2}, {}};
+      ExplorationKind::kEpsilonGreedy, {ScheduleKind::kLinear, 1.0, 0.05, 0.4}, {}};
   std::int32_t batch{256};       ///< moments of an update, all agents of a farm each
   double steps_per_update{8.0};  ///< farm steps between updates
   std::uint64_t start{5000};     ///< farm steps before the first update
   std::uint64_t replay{200000};  ///< transitions kept
   double target_rate{0.01};      ///< share copied to the target networks at each update
-  std::int32_t n_step{3};
+  std::int32_t n_step{1};
   double temperature{1.0};     ///< of the Gumbel-softmax
-  double logit_penalty{1e-3};  ///< keeps actors from becoming sure too early
+  double logit_penalty{0.01};  ///< keeps actors from becoming sure too early
   double reward_scale{0.05};
   double gradient_limit{10.0};  ///< largest norm of a gradient; 0: none
   bool mask_illegal{true};

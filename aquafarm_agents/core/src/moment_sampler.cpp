@@ -18,25 +18,31 @@ MomentSampler<Scalar>::MomentSampler(const Replay<Scalar>& replay, const DeepOpt
       priority_(options.priority),
       importance_(options.importance),
       steps_(steps),
+      beginnings_(replay.rows()),
       weights_(static_cast<std::size_t>(options.batch), 1.0F) {
   if (priority_ > 0.0) priorities_ = std::make_unique<SumTree>(replay.rows());
 }
 
 template <typename Scalar>
 void MomentSampler<Scalar>::Remember() {
-  if (!priorities_) return;
   for (std::size_t entry = 0; entry < replay_.entries(); ++entry) {
-    priorities_->Set(replay_.Row(replay_.size() - 1, entry), 0.0F);  // whatever was there is gone
+    Mark(replay_.Row(replay_.size() - 1, entry), false);  // whatever was there is gone
     if (replay_.size() <= steps_) continue;
     const std::size_t age = replay_.size() - 1 - steps_;
-    const bool begins = replay_.Begins(age, entry, steps_);
-    priorities_->Set(replay_.Row(age, entry), begins ? largest_priority_ : 0.0F);
+    Mark(replay_.Row(age, entry), replay_.Begins(age, entry, steps_));
   }
 }
 
 template <typename Scalar>
+void MomentSampler<Scalar>::Mark(std::size_t row, bool begins) {
+  beginning_count_ += (begins ? 1U : 0U) - beginnings_[row];
+  beginnings_[row] = begins ? 1 : 0;
+  if (priorities_) priorities_->Set(row, begins ? largest_priority_ : 0.0F);
+}
+
+template <typename Scalar>
 bool MomentSampler<Scalar>::IsReady() const {
-  return replay_.size() > steps_ && (!priorities_ || priorities_->Total() > 0.0F);
+  return beginning_count_ > 0 && (!priorities_ || priorities_->Total() > 0.0F);
 }
 
 template <typename Scalar>
@@ -50,7 +56,7 @@ Moment MomentSampler<Scalar>::Draw(RandomStream& chance, std::size_t i) {
     return {replay_.Age(row), row % replay_.entries()};
   }
   const auto moments = static_cast<std::uint32_t>(replay_.size() - steps_);
-  for (;;) {  // few moments are an episode's last
+  for (;;) {  // most moments begin a transition, and IsReady has seen one
     const std::size_t age = chance.Below(moments);
     const std::size_t entry = chance.Below(static_cast<std::uint32_t>(replay_.entries()));
     if (replay_.Begins(age, entry, steps_)) return {age, entry};
@@ -91,6 +97,13 @@ void MomentSampler<Scalar>::Save(Checkpoint& checkpoint) const {
 
 template <typename Scalar>
 void MomentSampler<Scalar>::Load(const Checkpoint& checkpoint) {
+  std::fill(beginnings_.begin(), beginnings_.end(), std::uint8_t{0});
+  beginning_count_ = 0;
+  for (std::size_t age = 0; age < replay_.size(); ++age) {
+    for (std::size_t entry = 0; entry < replay_.entries(); ++entry) {
+      Mark(replay_.Row(age, entry), replay_.Begins(age, entry, steps_));
+    }
+  }
   if (!priorities_) return;
   std::vector<float> priorities;
   checkpoint.GetArray("priorities", replay_.rows() + 1, priorities);

@@ -30,7 +30,7 @@ class MomentSampler {
 
   /// The replay got a moment more.
   void Remember();
-  /// Whether there is a moment to draw.
+  /// Whether there is a moment to draw; Draw must not be called otherwise.
   bool IsReady() const;
   /// Draws the i-th moment of a batch.
   Moment Draw(RandomStream& chance, std::size_t i);
@@ -41,14 +41,18 @@ class MomentSampler {
   void SetError(std::size_t row, float error);
 
   void Save(Checkpoint& checkpoint) const;
-  /// @throws InputError
+  /// The replay must have been loaded before. @throws InputError
   void Load(const Checkpoint& checkpoint);
 
  private:
+  void Mark(std::size_t row, bool begins);
+
   const Replay<Scalar>& replay_;
   const double priority_;    // α; 0: all alike
   const double importance_;  // β at the start
   const std::size_t steps_;
+  std::vector<std::uint8_t> beginnings_;  // by row: 1 where a transition begins
+  std::size_t beginning_count_{};
   std::unique_ptr<SumTree> priorities_;  // by row; null: all alike
   float largest_priority_{1.0F};
   std::vector<float> weights_;  // P(i) until they are weighed

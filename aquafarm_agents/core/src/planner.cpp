@@ -281,10 +281,7 @@ void Planner::Solver::FollowDisasters(const Farm& farm, Foresight foresight) {
   disasters_ = farm.disasters();
   foresight_ = foresight;
   if (foresight == Foresight::kClairvoyant) return;
-  for (Disaster& disaster : disasters_) {
-    disaster.turn_threshold = 0;
-    disaster.waypoint = kNone;
-  }
+  HoldHeadings(disasters_);
 }
 
 void Planner::Solver::AdvanceDisasters(const Farm& farm, std::int32_t step) {
@@ -546,6 +543,13 @@ Plan Planner::Solver::Trace() const {
   }
   std::reverse(plan.actions.begin(), plan.actions.end());
   return plan;
+}
+
+void HoldHeadings(std::vector<Disaster>& disasters) {
+  for (Disaster& disaster : disasters) {
+    disaster.turn_threshold = 0;
+    disaster.waypoint = kNone;
+  }
 }
 
 void Reservations::Add(std::int32_t id, std::int32_t first, const std::vector<std::int32_t>& path) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "aquafarm/check.h"
@@ -25,10 +27,14 @@ class Trip {
         health_(device_.health),
         empty_(to_port.size(), kNever),
         laden_(to_port.size(), kNever),
+        bare_(to_port.size(), kNever),
         next_(to_port.size()) {
-    const bool free_moves = scenario_.ships.capacity > 1 && !device_.self_propelled;
-    move_ = free_moves ? 0.0 : static_cast<double>(scenario_.rewards.step);
-    if (device_.self_propelled) laden_[site_] = worth();
+    shares_way_ = scenario_.ships.capacity > 1 && !device_.self_propelled;
+    move_ = shares_way_ ? 0.0 : static_cast<double>(scenario_.rewards.step);
+    if (device_.self_propelled) {
+      laden_[site_] = worth();
+      bare_[site_] = 0.0;
+    }
   }
 
   /// Goes on by a step. @param risk [H, W] in it
@@ -38,8 +44,9 @@ class Trip {
     const double exposure = static_cast<double>(scenario_.damage.exposure_damage);
     Spread(risk, 0.0, empty_);
     Spread(risk, exposure * static_cast<double>(device_.value), laden_);
-    for (const auto& [cell, value] : picked_up_) laden_[cell] = std::max(laden_[cell], value);
-    picked_up_.clear();
+    Spread(risk, 0.0, bare_);
+    laden_[site_] = std::max(laden_[site_], picked_up_for_value_);
+    bare_[site_] = std::max(bare_[site_], picked_up_bare_);
     if (!device_.self_propelled) {
       health_ = std::max(0.0F, health_ + scenario_.damage.exposure_damage * risk.data()[site_]);
     }
@@ -51,7 +58,8 @@ class Trip {
   bool IsOver() const {
     double most = kNever;
     for (std::size_t cell = 0; cell < laden_.size(); ++cell) {
-      most = std::max(most, laden_[cell] + drop_off() + move_ * to_port_[cell]);
+      const double held = std::max(laden_[cell], bare_[cell]);
+      most = std::max(most, held + drop_off() + move_ * to_port_[cell]);
     }
     if (!device_.self_propelled) {
       const double pickup = static_cast<double>(scenario_.rewards.pickup);
@@ -75,14 +83,17 @@ class Trip {
   void PickUpAndDropOff(const Grid<float>& risk) {
     for (const Cell port : layout_.ports) {
       const auto here = static_cast<double>(risk(port.y, port.x));
-      best_ = std::max(best_, laden_[Index(port)] + drop_off() + here);
+      const double held = std::max(laden_[Index(port)], bare_[Index(port)]);
+      best_ = std::max(best_, held + drop_off() + Risk(here));
     }
+    picked_up_for_value_ = picked_up_bare_ = kNever;
     if (device_.self_propelled || empty_[site_] == kNever) return;
     const auto here = static_cast<double>(risk.data()[site_]);
     const double wear =
         static_cast<double>(scenario_.damage.exposure_damage * device_.value) * here;
-    picked_up_.emplace_back(site_, empty_[site_] + static_cast<double>(scenario_.rewards.pickup) +
-                                       here + worth() + wear);
+    picked_up_bare_ = empty_[site_] + static_cast<double>(scenario_.rewards.pickup) + Risk(here);
+    picked_up_for_value_ = picked_up_bare_ + worth() + wear;
+    best_ = std::max(best_, picked_up_bare_);  // and never brought home
   }
 
   // One move, or one step of staying, from every cell; a cell is worth its best way to it.
@@ -104,10 +115,12 @@ class Trip {
     for (std::size_t cell = 0; cell < next_.size(); ++cell) {
       if (next_[cell] == kNever) continue;
       const auto here = static_cast<double>(risk.data()[cell]);
-      next_[cell] += here < 0.0 ? here * (1.0 + value_per_risk) : move_;
+      next_[cell] += here < 0.0 ? Risk(here) + here * value_per_risk : move_;
     }
     values.swap(next_);
   }
+  // What a ship pays for a risk; one that has others aboard as well pays it once for all.
+  double Risk(double here) const { return shares_way_ ? 0.0 : here; }
   void Raise(Cell cell, double value) {
     double& known = next_[Index(cell)];
     known = std::max(known, value);
@@ -119,20 +132,28 @@ class Trip {
   const std::vector<std::int32_t>& to_port_;
   std::size_t site_;
   float health_;
+  bool shares_way_{};
   double move_{};
   double best_{0.0};           // not to fetch it at all
   std::vector<double> empty_;  // best return so far, by cell: on the way to the device
-  std::vector<double> laden_;  // the same with it, its worth paid in
+  std::vector<double> laden_;  // the same with it, its worth paid in, wear paid as it comes
+  std::vector<double> bare_;   // the same with it, for nothing: wear takes no more than its worth
   std::vector<double> next_;
-  std::vector<std::pair<std::size_t, double>> picked_up_;
+  double picked_up_for_value_{kNever};  // in this step
+  double picked_up_bare_{kNever};
 };
 
 }  // namespace
 
 double TeamBound(const Farm& farm) {
   const Scenario& scenario = farm.scenario();
-  if (scenario.rewards.step > 0.0F) {
-    throw InputError("bound: rewards.step: got more than 0, expected at most 0");
+  const RewardSpec& rewards = scenario.rewards;
+  for (const auto& [name, value] : {std::pair{"step", rewards.step},
+                                    {"illegal", rewards.illegal},
+                                    {"collision", rewards.collision}}) {
+    if (value <= 0.0F) continue;
+    throw InputError("bound: rewards." + std::string(name) +
+                     ": got more than 0, expected at most 0");
   }
   AQUAFARM_CHECK_EQ(farm.step(), 0);
   const std::vector<std::int32_t> to_port =

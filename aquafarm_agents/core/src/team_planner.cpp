@@ -196,7 +196,7 @@ class TeamPlanner::Impl {
     if (best != shares.size()) shares[best].push_back(device);
   }
 
-  bool IsOnCourse(const Farm& farm, const Course& course) const {
+  bool IsOnCourse(const Farm& farm, Course& course) const {
     if (course.actions.empty() || course.seed != farm.seed() || course.episode != farm.episode() ||
         farm.step() < course.start) {
       return false;
@@ -208,9 +208,27 @@ class TeamPlanner::Impl {
       if (at >= course.actions[id].size()) return false;
       if (course.path[id][at] != LinearIndex(ship.cell, scenario_.width)) return false;
     }
-    if (foresight_ == Foresight::kClairvoyant) return true;
-    for (std::size_t id = 0; id < farm.disasters().size(); ++id) {
-      if (farm.disasters()[id].heading_deg != course.headings[id]) return false;
+    return AreAsForeseen(farm, course);
+  }
+
+  // A bulletin, or a turn that the forecast did not know of, changes everything.
+  bool AreAsForeseen(const Farm& farm, Course& course) const {
+    if (farm.disasters().size() != course.disasters.size()) return false;
+    for (; course.foreseen < farm.step(); ++course.foreseen) {
+      for (std::size_t id = 0; id < course.disasters.size(); ++id) {
+        const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
+                            static_cast<std::uint32_t>(id)};
+        MoveDisaster(course.disasters[id], farm.tracks()[id], key, course.foreseen + 1,
+                     scenario_.width, scenario_.height);
+      }
+    }
+    for (std::size_t id = 0; id < course.disasters.size(); ++id) {
+      const Disaster& real = farm.disasters()[id];
+      const Disaster& foreseen = course.disasters[id];
+      const bool alike = real.x == foreseen.x && real.y == foreseen.y && real.dx == foreseen.dx &&
+                         real.dy == foreseen.dy && real.radius == foreseen.radius &&
+                         real.risk == foreseen.risk && real.steps_left == foreseen.steps_left;
+      if (!alike) return false;
     }
     return true;
   }
@@ -223,10 +241,9 @@ class TeamPlanner::Impl {
     course.start = farm.step();
     course.actions.assign(agents, {});
     course.path.assign(agents, {});
-    course.headings.clear();
-    for (const Disaster& disaster : farm.disasters()) {
-      course.headings.push_back(disaster.heading_deg);
-    }
+    course.disasters = farm.disasters();
+    course.foreseen = farm.step();
+    if (foresight_ == Foresight::kHeadingHolds) HoldHeadings(course.disasters);
     reserved_.Clear();
     for (std::size_t id = 0; id < agents; ++id) {
       const Ship& ship = farm.ships()[id];

@@ -17,7 +17,7 @@ constexpr const char* kSmall =
     "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
     "learning_rate=linear:0.002:0.0001:1";
 
-/// Two ships at two ports, two devices; neither can bring both home within the limit.
+/// Two ships at two ports, two devices, one reward.
 Scenario TwoShips() {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.ships.count = 2;
@@ -52,11 +52,18 @@ double SuccessAfter(const std::string& algorithm, const std::string& options, st
   return Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
 }
 
-TEST(TwoShips, AreLedHomeByEveryLearner) {
+TEST(TwoShips, AreLedHomeByLearnersOfValues) {
   EXPECT_GE(SuccessAfter("q_learning", "", 200000, TwoShips()), 0.98);
   EXPECT_GE(SuccessAfter("dqn", kSmall, 24000, TwoShips()), 0.98);
   EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, TwoShips()), 0.98);
   EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, TwoShips()), 0.98);
+}
+
+TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
+  constexpr const char* kSmallActors =
+      "hidden=32 batch=64 start=500 replay=20000 steps_per_update=4 actor_rate=0.001 "
+      "exploration=epsilon_greedy:linear:1:0.05:0.5";
+  EXPECT_GE(SuccessAfter("maddpg", kSmallActors, 20000, TwoShips()), 0.98);
 }
 
 TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {

@@ -130,6 +130,66 @@ TEST(TeamBound, CountsEachTripAloneInQuietWater) {
   EXPECT_DOUBLE_EQ(TeamBound(farm), far + near);
 }
 
+TEST(TeamBound, CountsAPickupThatNeverGetsHome) {
+  Scenario scenario = TinyTeam();
+  scenario.disasters.clear();
+  scenario.ships.count = 1;
+  scenario.devices.sites.resize(1);
+  scenario.step_limit = 5;
+  Farm farm = aquafarm::test::MakeFarm(scenario);
+  EXPECT_DOUBLE_EQ(TeamBound(farm), 20 - 3);
+}
+
+TEST(TeamBound, ChargesARiskOnceWhereDevicesShareAShip) {
+  Scenario scenario = TinyTeam();
+  scenario.ships = {1, 2};
+  scenario.damage.exposure_damage = 0.0F;
+  scenario.step_limit = 40;
+  scenario.disasters = {StillDisaster(1.0F, 1.0F, {9.0F}, {-6.0F})};
+  Farm farm = aquafarm::test::MakeFarm(scenario);
+  // Risk is everywhere, so a ship that fetches both at once pays it once, not for each.
+  Planner planner(farm.scenario());
+  const double best = planner.Solve(farm, Foresight::kClairvoyant).expected_return;
+  EXPECT_GT(best, 0.0);
+  EXPECT_LE(best, TeamBound(farm));
+}
+
+TEST(TeamBound, NeverCountsLessThanNothingForADeviceThatIsWornOut) {
+  Scenario scenario = TinyTeam();
+  scenario.ships.count = 1;
+  scenario.devices.sites.resize(1);
+  scenario.damage.exposure_damage = 0.5F;
+  scenario.step_limit = 30;
+  scenario.disasters = {StillDisaster(0.0F, 1.0F, {1.1F}, {-5.0F})};
+  Farm farm = aquafarm::test::MakeFarm(scenario);
+  Planner planner(farm.scenario());
+  const double best = planner.Solve(farm, Foresight::kClairvoyant).expected_return;
+  EXPECT_LE(best, TeamBound(farm) + 1e-6);
+}
+
+TEST(TeamBound, RefusesRewardsForDawdling) {
+  Scenario scenario = TinyTeam();
+  scenario.rewards.collision = 2.0F;
+  EXPECT_EQ(MessageOf<InputError>([&] { TeamBound(aquafarm::test::MakeFarm(scenario)); }),
+            "bound: rewards.collision: got more than 0, expected at most 0");
+}
+
+TEST(TeamPlanner, PlansAnewWhenABulletinArrives) {
+  Scenario scenario = TinyTeam();
+  scenario.disasters = {StillDisaster(-9.0F, 3.0F, {1.5F}, {-6.0F})};
+  Farm farm = aquafarm::test::MakeFarm(scenario);
+  TeamPlanner planner(farm.scenario(), Foresight::kHeadingHolds);
+  TeamPlanner::Course course;
+  std::vector<std::uint8_t> actions(2);
+  planner.Act(farm, course, actions.data());
+  farm.Step(actions.data());
+  planner.Act(farm, course, actions.data());
+  EXPECT_EQ(course.start, 0) << "on course";
+  farm.SetDisaster(0, StillDisaster(2.0F, 3.0F, {1.5F}, {-6.0F}));
+  planner.Act(farm, course, actions.data());
+  EXPECT_EQ(course.start, 1) << "planned anew";
+}
+
 TEST(TeamBound, OfADeviceThatDrivesItselfIsItsWayHome) {
   Scenario scenario = TinyTeam();
   scenario.disasters.clear();

@@ -17,10 +17,14 @@ namespace aquafarm_agents {
 /// One persistent connection to a service, made again when it breaks, with limits.
 class ServiceLink {
  public:
+  inline static constexpr double kCallLimit_s = 30.0;
+
   /// @param wait_limit_s for an answer, over all attempts
   /// @param stop may be set by a signal handler; null: never
-  ServiceLink(ros::NodeHandle node, double wait_limit_s, const std::atomic<bool>* stop)
-      : node_(std::move(node)), wait_limit_s_(wait_limit_s), stop_(stop), limit_(kCallLimit_s) {}
+  /// @param call_limit_s for an answer to one attempt
+  ServiceLink(ros::NodeHandle node, double wait_limit_s, const std::atomic<bool>* stop,
+              double call_limit_s = kCallLimit_s)
+      : node_(std::move(node)), wait_limit_s_(wait_limit_s), stop_(stop), limit_(call_limit_s) {}
 
   /// @throws EnvironmentLost when there is no answer within the limit
   template <typename Service>
@@ -39,7 +43,6 @@ class ServiceLink {
   }
 
  private:
-  inline static constexpr double kCallLimit_s = 30.0;
   inline static constexpr double kRetryPeriod_s = 0.1;
 
   ros::NodeHandle node_;

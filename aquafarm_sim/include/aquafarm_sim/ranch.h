@@ -74,8 +74,8 @@ struct ShipCommand {
 
 /// What went on so far; for diagnostics.
 struct RanchCounters {
-  std::uint64_t farm_steps{};        ///< over all farms
-  std::uint64_t late_ships{};        ///< paced: held for want of a command
+  std::uint64_t farm_steps{};  ///< over all farms
+  std::uint64_t late_ships{};  ///< held for want of a command; in lockstep each that was given up
   std::uint64_t barrier_timeouts{};  ///< lockstep: commands answered TIMEOUT
   std::uint64_t superseded{};        ///< clients that were overtaken by another of the same ship
   std::uint64_t refused{};           ///< requests answered with any other code of refusal
@@ -91,7 +91,7 @@ struct RanchView {
   MessageContext context;
   std::uint64_t episode_count{};  ///< episodes that farm 0 has begun; tells a new one
   std::uint64_t version{};        ///< changes whenever farm 0 does
-  bool joint{};  ///< it changed by a joint step: nobody waits to see each ship's observation
+  bool joint{};  ///< the last change was a joint step's: nobody waits to see each observation
 };
 
 /// Is told of changes while nothing moves; must be quick and must not call the ranch.
@@ -194,8 +194,8 @@ class Ranch {
   void ForgetAnswers();
 
   void AdvanceClock();
-  void Changed();
-  void EpisodeBegan();
+  void Changed(bool by_joint_step = false);
+  void EpisodeBegan(bool by_joint_step = false);
   RanchView View() const;
 
   const std::shared_ptr<const aquafarm::Scenario> scenario_;
@@ -210,7 +210,7 @@ class Ranch {
   std::uint64_t episode_count_{};
   std::uint64_t version_{};
   bool ending_{};
-  bool in_joint_step_{};
+  bool changed_jointly_{};  // the last change was a joint step's
   std::condition_variable pace_changed_;
   std::vector<std::unique_ptr<Slot>> slots_;
   std::vector<std::uint8_t> actions_;  // scratch, one per ship

@@ -6,7 +6,7 @@
 ///
 ///   o_i ─ actor i ─ logits ─ Gumbel-softmax ─ a_i       critic i (o_1 … o_S, a_others) → Q_i(a_i)
 ///
-///   critic   y_i = r_i + γ Q_i'(o', a'), a' drawn from the target actors; Huber loss
+///   critic   y_i = r_i + γ Q_i'(o', a'), a' the target actors' likeliest; Huber loss
 ///   actor i  ascends Q_i(o, a) with its own a_i relaxed and the others' as they were taken, less
 ///            logit_penalty · mean logits²
 ///

@@ -63,6 +63,9 @@ struct Task {
   const Reservations* others{};  ///< null: nobody is in the way
 };
 
+/// Makes disasters go straight on, whatever chance or their tracks would have them do.
+void HoldHeadings(std::vector<Disaster>& disasters);
+
 /// What to do from a farm's present step on.
 struct Plan {
   std::vector<std::uint8_t> actions;  ///< one per step, to the end of the episode or of all work

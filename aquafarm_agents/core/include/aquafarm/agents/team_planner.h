@@ -10,7 +10,7 @@
 ///   3. all of it again when a disaster does not hold its heading, a ship is not where its plan put
 ///      it, or one has done its share
 ///
-/// Self-propelled devices plan their own way home. Not an optimum: bound.h bounds it.
+/// Self-propelled devices plan their own way home. Not an optimum: team_bound.h bounds it.
 
 #include <cstdint>
 #include <memory>
@@ -38,7 +38,8 @@ class TeamPlanner {
     std::uint64_t seed{};
     std::uint64_t episode{};
     std::int32_t start{};
-    std::vector<std::int32_t> headings;  ///< of the disasters, as planned with [degrees]
+    std::vector<Disaster> disasters;  ///< as they should be at `foreseen`
+    std::int32_t foreseen{};
   };
 
   /// Chooses for the next step of a farm that is not over, planning anew where it must.

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Farms behind a sim node's services, as arrays; the same numbers as LocalFarms, bit for bit."""
+import itertools
+import os
+import socket
+import threading
+import time
+
+import aquafarm_core as core
+import numpy as np
+import rospy
+from aquafarm_msgs.msg import Outcome, StepResult
+from aquafarm_msgs.srv import GetState, Reset, Step
+from rospy.impl.tcpros_base import TCPROSTransport
+
+from aquafarm_gym.farms import check_encoding
+
+RETRY_PERIOD_S = 0.1
+BITS = {"index": StepResult.INDEX, "features": StepResult.FEATURES, "planes": StepResult.PLANES}
+
+
+class Service(rospy.ServiceProxy):
+    """A persistent service whose every call has a limit, which rospy's own lacks."""
+
+    def __init__(self, name, kind, limit_s):
+        super().__init__(name, kind, persistent=True)
+        self._limit_s = limit_s
+
+    def call(self, request):
+        """Calls; raises rospy.ServiceException when there is no answer within the limit."""
+        try:
+            if self.transport is None:
+                self._connect(request)
+            return super().call(request)
+        except (rospy.ServiceException, rospy.exceptions.TransportException, OSError) as error:
+            self.close()
+            self.transport = None
+            raise rospy.ServiceException(str(error)) from error
+
+    def _connect(self, request):
+        uri = self._get_service_uri(request)
+        transport = TCPROSTransport(self.protocol, self.resolved_name)
+        transport.buff_size = self.buff_size
+        # rospy reads the handshake without a limit: cut it off from outside.
+        watch = threading.Timer(self._limit_s, lambda: transport.socket.shutdown(socket.SHUT_RDWR))
+        watch.daemon = True
+        watch.start()
+        try:
+            transport.connect(*rospy.core.parse_rosrpc_uri(uri), uri, timeout=self._limit_s)
+        finally:
+            watch.cancel()
+        transport.socket.settimeout(self._limit_s)
+        self.transport = transport
+
+
+class RosFarms:
+    """Farms behind the sim node of a namespace.
+
+    A call that was lost is sent again with its number, so no farm steps twice. A sim node that
+    came back without its farms, or stays away for longer than wait_limit_s, is a ConnectionError.
+    """
+
+    def __init__(self, namespace="/aquafarm", farms=1, observation="features", hashes=False,
+                 wait_limit_s=20.0, call_limit_s=30.0):
+        if not rospy.core.is_initialized():
+            rospy.init_node("aquafarm_gym", anonymous=True, disable_signals=True)
+        self._limit_s = wait_limit_s
+        self._services = {name: Service(f"{namespace}/{name}", kind, call_limit_s)
+                          for name, kind in (("step", Step), ("reset", Reset),
+                                             ("get_state", GetState))}
+        spec = self._call("get_state", farm=0, with_spec=True).spec
+        check_encoding(observation, spec.state_count, spec.scenario_name)
+        self.name, self.yaml = spec.scenario_name, spec.scenario_yaml
+        self.farms, self.agents, self.ships = farms, spec.agents, spec.ships
+        self.state_count, self.feature_count = spec.state_count, spec.feature_count
+        self.plane_count, self.height, self.width = spec.plane_count, spec.height, spec.width
+        self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
+        # Different from those of another client, so that its last answer is never taken for ours.
+        self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)
+        self._place = None  # (seed, episode, step, over) of farm 0
+        self._finished = []
+        entries = (farms, self.agents)
+        shape = {"index": (*entries,), "features": (*entries, self.feature_count),
+                 "planes": (*entries, self.plane_count, self.height, self.width)}[observation]
+        dtype = {"index": np.uint32, "features": np.float32, "planes": np.uint8}[observation]
+        self.buffers = {"rewards": np.zeros(entries, np.float32),
+                        "outcomes": np.zeros(entries, np.uint8),
+                        "legal": np.zeros(entries, np.uint16),
+                        "reasons": np.zeros(farms, np.uint8),
+                        "started": np.zeros(farms, np.uint8), observation: np.zeros(shape, dtype)}
+        if hashes:
+            self.buffers["hashes"] = np.zeros(farms, np.uint64)
+
+    def reset(self, seed, first_episode=0):
+        """As FarmBatch.reset."""
+        self._place = None
+        answer = self._call("reset", has_seed=True, seed=seed, has_episode=True,
+                            episode=first_episode, farms=self.farms, encodings=self._encodings,
+                            sequence=next(self._sequence))
+        self._place = (seed, first_episode, 0, False)
+        self._take(answer.result)
+
+    def step(self, actions):
+        """As FarmBatch.step."""
+        if self._place is None:
+            raise ValueError("step: got no reset before, expected one")
+        answer = self._call("step", sequence=next(self._sequence), actions=actions.tobytes(),
+                            encodings=self._encodings)
+        self._place = self._next_place()
+        self._take(answer.result)
+
+    def finished(self):
+        """As FarmBatch.finished."""
+        return self._finished
+
+    def close(self):
+        """Ends the connections."""
+        for service in self._services.values():
+            service.close()
+
+    def _take(self, result):
+        for name, array in self.buffers.items():
+            got = getattr(result, name)
+            flat = np.frombuffer(got, np.uint8) if isinstance(got, bytes) else got
+            array.reshape(-1)[:] = flat
+        self._place = (*self._place[:3], bool(self.buffers["reasons"][0]))
+        self._finished = [
+            {**{key: getattr(one, key) for key in (
+                "farm", "seed", "episode", "steps", "episode_return", "devices", "delivered",
+                "delivered_health", "crashes", "collisions", "steps_in_disaster")},
+             "reason": core.REASONS[one.reason], "success": bool(one.success)}
+            for one in result.finished]
+
+    def _next_place(self):
+        seed, episode, step, over = self._place
+        return (seed, episode + self.farms, 0, False) if over else (seed, episode, step + 1, False)
+
+    def _call(self, name, **fields):
+        service, lost = self._services[name], False
+        end = time.monotonic() + self._limit_s
+        while True:
+            try:
+                if lost and name == "step":
+                    self._check_place(service)
+                answer = service.call(service.request_class(**fields))
+                if answer.ok:
+                    return answer
+                why = answer.message
+                if answer.code not in (Outcome.PAUSED, Outcome.SHUTTING_DOWN):
+                    raise ValueError(f"sim node: {name} refused: {why}")
+            except rospy.ServiceException as error:
+                why, lost = str(error), True
+            if rospy.is_shutdown() or time.monotonic() > end:
+                raise ConnectionError(f"sim node: no answer from {service.resolved_name} for "
+                                      f"{self._limit_s:g} s: {why}")
+            time.sleep(RETRY_PERIOD_S)
+
+    def _check_place(self, service):
+        """After a loss: the farms are where they were, or where the lost call brought them."""
+        get = self._services["get_state"]
+        state = get.call(get.request_class(farm=0)).state
+        place = (state.seed, state.episode, state.step)
+        if place not in (self._place[:3], self._next_place()[:3]):
+            self._place = None
+            service.close()
+            raise ConnectionError("sim node: came back without its farms; reset to go on")

@@ -1,0 +1,164 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gymnasium's and PettingZoo's own checks, and the same steps in process and through ROS.
+
+Runs in a virtual environment of its own, made in the folder that --venv names; where PyPI is out
+of reach all cases are skipped, with a word.
+"""
+import importlib.util
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+HERE = pathlib.Path(__file__).resolve().parent
+VENV = pathlib.Path(sys.argv[sys.argv.index("--venv") + 1])
+# The last Stable-Baselines3 that Debian 12's python3-torch satisfies, and the Gymnasium it takes.
+WANTED = ["gymnasium==1.0.0", "pettingzoo==1.25.0", "stable-baselines3==2.4.1",
+          "farama-notifications==0.0.4", "cloudpickle", "typing-extensions"]
+LIMIT_S = 150
+
+
+def enter_venv():
+    """Goes on as the Python of the virtual environment, made if need be; returns why not."""
+    if pathlib.Path(sys.prefix) == VENV:
+        return ""
+    ready = VENV / "ready"
+    try:
+        if not ready.is_file() or ready.read_text() != " ".join(WANTED):
+            for command in (["/usr/bin/python3", "-m", "venv", "--clear",
+                             "--system-site-packages", VENV],
+                            [VENV / "bin/python", "-m", "pip", "install", "-q", "--no-deps",
+                             "--timeout", "10", "--retries", "1", *WANTED]):
+                subprocess.run(command, check=True, timeout=LIMIT_S, capture_output=True,
+                               text=True)
+            ready.write_text(" ".join(WANTED))
+    except (subprocess.SubprocessError, OSError) as error:
+        words = (getattr(error, "stderr", None) or str(error)).strip().splitlines()
+        return f"no virtual environment, PyPI is out of reach? {words[-1] if words else error}"
+    os.execv(VENV / "bin/python", [str(VENV / "bin/python"), *sys.argv])
+
+
+WHY_NOT = enter_venv()
+import rostest  # noqa: E402
+
+if not WHY_NOT:
+    import aquafarm_core as core
+    import aquafarm_gym
+    import gymnasium
+    import numpy as np
+    from aquafarm_gym import FarmEnv, FarmParallelEnv, FarmVectorEnv, RosFarms
+    from gymnasium.utils.env_checker import check_env, data_equivalence
+    from pettingzoo.test import parallel_api_test, parallel_seed_test
+
+REEF = str(HERE / "data" / "reef.yaml")
+
+
+@unittest.skipIf(WHY_NOT, WHY_NOT)
+class GymTest(unittest.TestCase):
+    def test_gymnasiums_own_check_passes(self):
+        for observation in ("index", "features", "planes"):
+            check_env(FarmEnv("paper", observation))
+        env = gymnasium.make("aquafarm/Farm-v0", scenario="procedural")
+        self.assertTrue(env.observation_space.contains(env.reset(seed=1)[0]))
+
+    def test_pettingzoos_own_checks_pass(self):
+        for scenario in ("two_squads", REEF):
+            for observation in ("index", "features", "planes"):
+                parallel_api_test(FarmParallelEnv(scenario, observation), 500)
+                parallel_seed_test(lambda: FarmParallelEnv(scenario, observation), 200)
+
+    def test_both_own_checks_pass_through_ros(self):
+        check_env(FarmEnv(farms=RosFarms("/ranch")))
+        parallel_api_test(FarmParallelEnv(farms=RosFarms("/reef")), 300)
+        names = iter(["/reef", "/other_reef"])
+        parallel_seed_test(lambda: FarmParallelEnv(farms=RosFarms(next(names))))
+
+    def test_one_ship_plays_the_same_in_process_and_through_ros(self):
+        for observation in ("index", "features", "planes"):
+            local = FarmEnv("paper", observation)
+            ros = FarmEnv(observation=observation, farms=RosFarms("/ranch", 1, observation))
+            self.assertEqual(local.observation_space, ros.observation_space)
+            self.assert_same(local.reset(seed=3), ros.reset(seed=3))
+            for action in np.random.default_rng(1).integers(0, 10, 400):
+                one = local.step(action)
+                self.assert_same(one, ros.step(action))
+                if one[2] or one[3]:
+                    self.assert_same(local.reset(), ros.reset())
+
+    def test_several_agents_play_the_same_in_process_and_through_ros_also_when_some_end(self):
+        local = FarmParallelEnv(REEF)
+        ros = FarmParallelEnv(farms=RosFarms("/reef"))
+        self.assert_same(local.reset(seed=1), ros.reset(seed=1))
+        chance = np.random.default_rng(2)
+        early = 0
+        for _ in range(3000):
+            actions = {agent: int(chance.integers(10)) for agent in local.agents}
+            one = local.step(actions)
+            self.assert_same(one, ros.step(actions))
+            self.assertEqual(local.agents, ros.agents)
+            if not local.agents:
+                self.assert_same(local.reset(), ros.reset())
+            elif len(local.agents) < len(actions):
+                early += 1
+                self.assertTrue(set(actions) - set(local.agents) <= {"ship_1", "ship_2"})
+        self.assertGreater(early, 3)
+
+    def test_many_farms_are_the_same_in_process_and_through_ros_and_one_by_one(self):
+        local = FarmVectorEnv(8, "paper")
+        ros = FarmVectorEnv(farms=RosFarms("/ranch", 8))
+        single = FarmEnv("paper")
+        self.assert_same(local.reset(seed=9), ros.reset(seed=9))
+        np.testing.assert_array_equal(single.reset(seed=9)[0], local.reset(seed=9)[0][0])
+        ros.reset(seed=9)
+        for actions in np.random.default_rng(3).integers(0, 10, (1200, 8)):
+            one = local.step(actions)
+            self.assert_same(one, ros.step(actions))
+            if one[4]["started"][0]:
+                alone = single.reset(options={"episode": single._episodes.episode + 8})[0]
+            else:
+                alone, reward, *_ = single.step(actions[0])
+                self.assertEqual(reward, one[1][0])
+            np.testing.assert_array_equal(alone, one[0][0])
+
+    def test_an_array_that_is_not_copied_is_the_farms_own(self):
+        env = FarmVectorEnv(4, "paper", copy=False)
+        first = env.reset(seed=1)[0]
+        self.assertIs(first.base, env.farms.buffers["features"])
+        self.assertIs(env.step(np.zeros(4, int))[0].base, first.base)
+
+    def test_what_does_not_fit_is_refused_in_one_line(self):
+        for call, words in (
+                (lambda: FarmEnv("papre"), "scenario: got 'papre', expected a file or one of: "
+                 "paper, "),
+                (lambda: FarmEnv("two_squads"), "scenario two_squads: got 2 agents, expected 1"),
+                (lambda: FarmEnv(observation="pixels"), "observation: got 'pixels', expected one"),
+                (lambda: FarmEnv().step(10), "action: got 10, expected a whole number in"),
+                (lambda: FarmVectorEnv(2).step(np.array([0, 10])), "actions: got 0 to 10, "),
+                (lambda: FarmVectorEnv(2).step(np.array([0])), r"actions: got int64 \[1\], "),
+                (lambda: FarmParallelEnv().step({"ship_7": 0}), r"actions: got those of \['ship_7"),
+                (lambda: RosFarms("/ranch", 5000).reset(1), "sim node: reset refused: ")):
+            with self.assertRaisesRegex(ValueError, f"^{words}"):
+                call()
+        with self.assertRaisesRegex(ConnectionError, "^sim node: no answer from /nowhere/get_state"
+                                    " for 0.5 s"):
+            RosFarms("/nowhere", wait_limit_s=0.5)
+
+    def test_the_example_trains_with_stable_baselines3(self):
+        for name in ("torch", "pandas"):
+            if importlib.util.find_spec(name) is None:
+                self.skipTest(f"there is no {name}: apt-get install python3-{name}")
+        path = HERE.parent / "examples" / "train_sb3.py"
+        spec = importlib.util.spec_from_file_location("train_sb3", path)
+        example = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(example)
+        self.assertGreater(example.main(example.STEPS), 80)
+
+    def assert_same(self, one, other):
+        """Bit for bit, whatever it is made of."""
+        self.assertTrue(data_equivalence(one, other, exact=True), f"{one}\n{other}")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_gym", "gym", GymTest)

@@ -42,6 +42,17 @@ void Ranch::SetListener(RanchListener* listener) {
   if (listener_ != nullptr) listener_->OnChange(View());
 }
 
+void Ranch::SetRecorder(RanchRecorder* recorder) {
+  const Lock lock(mutex_);
+  recorder_ = recorder;
+  RecordStarts();
+}
+
+void Ranch::RecordStarts() {
+  if (recorder_ == nullptr) return;
+  for (std::int32_t i = 0; i < batch_->farms(); ++i) recorder_->OnStart(batch_->farm(i), i);
+}
+
 // --- commands of single ships -------------------------------------------------------------------
 
 aquafarm_msgs::CommandResult Ranch::Command(const ShipCommand& command) {
@@ -239,6 +250,7 @@ void Ranch::StepPublishedFarm() {
     actions_[ship] = pending ? pending->action : static_cast<std::uint8_t>(aquafarm::Action::kHold);
   }
   farm.Step(actions_.data());
+  if (recorder_ != nullptr) recorder_->OnStep(farm, 0, actions_.data());
   ++counters_.farm_steps;
   AdvanceClock();
   for (std::size_t ship = 0; ship < slots_.size(); ++ship) {
@@ -303,6 +315,7 @@ void Ranch::Tick() {
     if (ending_ || context_.paused) return;
     if (batch_->farm(0).over()) {
       batch_->StartNext(0);
+      if (recorder_ != nullptr) recorder_->OnStart(batch_->farm(0), 0);
       DropCommands();
       EpisodeBegan();
       return;

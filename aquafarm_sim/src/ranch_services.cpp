@@ -68,7 +68,7 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
     Answer(Outcome::OK, "", step_answer_);
     batch_->Step(request.actions.data(), Prepare(request.encodings, step_answer_.result));
     DropPending();
-    Complete(step_answer_.result);
+    Complete(request.actions.data(), step_answer_.result);
     last_sequence_ = request.sequence;
     return step_answer_;
   } catch (const std::exception& error) {
@@ -155,9 +155,16 @@ void Ranch::DescribeEnds(StepResult& result) {
   }
 }
 
-void Ranch::Complete(StepResult& result) {
+void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
   DescribeEnds(result);
   constexpr bool kByJointStep = true;
+  for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
+    if (result.started[static_cast<std::size_t>(i)] != 0) {
+      recorder_->OnStart(batch_->farm(i), i);
+    } else {
+      recorder_->OnStep(batch_->farm(i), i, actions + std::ptrdiff_t{i} * agents_);
+    }
+  }
   if (result.started[0] != 0) {
     EpisodeBegan(kByJointStep);
   } else {
@@ -235,6 +242,7 @@ void Ranch::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t 
   } else {
     batch_->Reset(seed, first, {});
   }
+  RecordStarts();
   ForgetAnswers();
   EpisodeBegan();
 }
@@ -291,6 +299,7 @@ void Ranch::LoadState(const aquafarm_msgs::LoadState::Request& request,
       return Answer(refusal->code, refusal->message, response);
     }
     batch_->Load(std::string(request.data.begin(), request.data.end()));
+    RecordStarts();
     ForgetAnswers();
     EpisodeBegan();
     batch_->Write(Prepare(request.encodings, response.result));
@@ -367,7 +376,10 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
       }
     }
     // All that could differ between farms is checked, so what the first accepts, all accept.
-    for (std::int32_t i = first; i < end; ++i) batch_->farm(i).SetDisaster(request.id, spec);
+    for (std::int32_t i = first; i < end; ++i) {
+      batch_->farm(i).SetDisaster(request.id, spec);
+      if (recorder_ != nullptr) recorder_->OnIntervention(batch_->farm(i), i);
+    }
     if (first == 0) Changed();
     Answer(Outcome::OK, "", response);
   });

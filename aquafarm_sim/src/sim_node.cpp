@@ -16,6 +16,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "aquafarm/check.h"
@@ -112,6 +113,7 @@ SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_nod
   if (wait_s > 0.0 && !publisher_.WaitForRecorder(wait_s)) {
     ROS_WARN("nobody recorded within ~recorder_wait_s, %g s; going on", wait_s);
   }
+  KeepEpisodes();
   const std::int32_t agents = ranch_.agents();
   for (std::int32_t ship = 0; ship < agents; ++ship) AdvertiseShip(ship);
   AdvertiseFarm();
@@ -133,6 +135,22 @@ SimNode::~SimNode() {
   for (ros::ServiceServer& service : services_) service.shutdown();
   ship_spinner_->stop();
   pacer_.join();
+  ranch_.SetRecorder(nullptr);
+}
+
+void SimNode::KeepEpisodes() {
+  const Keep keep = ParseKeep(params_.keep);
+  if (keep.which == Keep::Which::kNone) return;
+  BagFormat format;
+  format.ns = node_.resolveName(names::kState);
+  format.ns.resize(format.ns.size() - std::string(names::kState).size());
+  format.map_frame = params_.map_frame;
+  format.rate_hz = params_.ranch.rate_hz;
+  format.farms = params_.ranch.farms;
+  const std::string folder = std::filesystem::absolute(params_.keep_dir).string();
+  recorder_ = std::make_unique<EpisodeRecorder>(ranch_.shared_scenario(), keep, folder, format);
+  ranch_.SetRecorder(recorder_.get());
+  ROS_INFO("keeping episodes (%s) in %s", params_.keep.c_str(), folder.c_str());
 }
 
 void SimNode::AdvertiseShip(std::int32_t ship) {
@@ -208,6 +226,7 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("superseded commands", now.superseded);
   status.add("refused requests", now.refused);
   status.add("dropped episode summaries", publisher_.dropped_summaries());
+  if (recorder_ != nullptr) status.add("kept episodes", recorder_->kept());
   status.add("memory [MiB]", ResidentMebibytes());
   diagnosed_ = now;
   diagnosed_at_ = time;

@@ -42,6 +42,8 @@ SimParams ReadSimParams(const ros::NodeHandle& private_node) {
   reader.Number("claim_timeout_s", 0.1, 3600.0, params.ranch.claim_timeout_s);
   reader.Number("publish_hz", 0.0, kMaxRate_hz, params.publish_hz);
   reader.Flag("record", params.record);
+  reader.Text("keep", params.keep);
+  reader.Text("keep_dir", params.keep_dir);
   reader.Number("recorder_wait_s", 0.0, 3600.0, params.recorder_wait_s);
   reader.Flag("publish_clock", params.publish_clock);
   reader.Text("map_frame", params.map_frame);

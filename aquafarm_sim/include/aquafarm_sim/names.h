@@ -11,6 +11,7 @@ namespace aquafarm_sim::names {
 
 inline constexpr const char* kSpec = "spec";
 inline constexpr const char* kState = "state";
+inline constexpr const char* kSavedState = "saved_state";
 inline constexpr const char* kChart = "chart";
 inline constexpr const char* kRisk = "risk";
 inline constexpr const char* kEpisode = "episode";

@@ -103,6 +103,20 @@ class RanchListener {
   virtual void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) = 0;
 };
 
+/// Is told of all that decides the farms' episodes, in order, while nothing moves; must not call
+/// the ranch.
+class RanchRecorder {
+ public:
+  virtual ~RanchRecorder() = default;
+  /// Farm `number` has begun an episode, or goes on with a loaded one.
+  virtual void OnStart(const aquafarm::Farm& farm, std::int32_t number) = 0;
+  /// It has taken a step. @param actions [agents]
+  virtual void OnStep(const aquafarm::Farm& farm, std::int32_t number,
+                      const std::uint8_t* actions) = 0;
+  /// Something from outside has changed it between two steps.
+  virtual void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) = 0;
+};
+
 class Ranch {
  public:
   /// @throws InputError when the scenario cannot be laid out
@@ -110,6 +124,8 @@ class Ranch {
 
   /// @param listener must outlive the ranch's use; null: none
   void SetListener(RanchListener* listener);
+  /// The same; it is told at once of the episodes that the farms are in.
+  void SetRecorder(RanchRecorder* recorder);
 
   /// Lockstep: returns when the step was taken, refused or timed out. Paced: at once.
   aquafarm_msgs::CommandResult Command(const ShipCommand& command);
@@ -146,6 +162,7 @@ class Ranch {
   RanchCounters counters();
   std::int32_t agents() const { return agents_; }
   const aquafarm::Scenario& scenario() const { return *scenario_; }
+  const std::shared_ptr<const aquafarm::Scenario>& shared_scenario() const { return scenario_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -187,7 +204,8 @@ class Ranch {
   std::optional<Refusal> CheckAnswerSize(std::int32_t farms, std::uint8_t encodings) const;
   aquafarm::BatchOutput Prepare(std::uint8_t encodings, aquafarm_msgs::StepResult& result) const;
   static void DescribeEnds(aquafarm_msgs::StepResult& result);
-  void Complete(aquafarm_msgs::StepResult& result);
+  void Complete(const std::uint8_t* actions, aquafarm_msgs::StepResult& result);
+  void RecordStarts();
   std::uint64_t NextEpisode() const;
   void StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first);
   void FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const;
@@ -216,6 +234,7 @@ class Ranch {
   std::vector<std::uint8_t> actions_;  // scratch, one per ship
   aquafarm::View view_;                // scratch
   RanchListener* listener_{};
+  RanchRecorder* recorder_{};
   RanchCounters counters_;
   Clock::time_point joint_step_at_{};  // of the last joint step; the clock's zero: none
 

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "aquafarm_sim/episode_recorder.h"
 #include "aquafarm_sim/ranch.h"
 #include "aquafarm_sim/ranch_publisher.h"
 #include "aquafarm_sim/sim_params.h"
@@ -34,6 +35,7 @@ class SimNode {
   SimNode& operator=(const SimNode&) = delete;
 
  private:
+  void KeepEpisodes();
   void AdvertiseFarm();
   void AdvertiseShip(std::int32_t ship);
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -42,6 +44,7 @@ class SimNode {
   ros::NodeHandle node_;
   Ranch ranch_;
   RanchPublisher publisher_;
+  std::unique_ptr<EpisodeRecorder> recorder_;  // null: no episodes are kept
   // Commands may wait for other ships; on threads of their own they keep nobody else waiting.
   ros::CallbackQueue ship_queue_;
   ros::NodeHandle ship_node_;

@@ -19,10 +19,12 @@ struct SimParams {
   /// ~farms, ~threads, ~seed (-1: from the wall clock), ~pace, ~rate_hz, ~barrier_timeout_s,
   /// ~late_ships_hold, ~claim_timeout_s
   RanchOptions ranch;
-  double publish_hz{10.0};   ///< most states a second for people; 0: none
-  bool record{};             ///< publish every step of farm 0
-  double recorder_wait_s{};  ///< most seconds to wait at the start for someone who records
-  bool publish_clock{true};  ///< false where another node owns /clock
+  double publish_hz{10.0};           ///< most states a second for people; 0: none
+  bool record{};                     ///< publish every step of farm 0
+  std::string keep{"none"};          ///< which episodes become bags: ParseKeep
+  std::string keep_dir{"episodes"};  ///< folder of those bags
+  double recorder_wait_s{};          ///< most seconds to wait at the start for someone who records
+  bool publish_clock{true};          ///< false where another node owns /clock
   std::string map_frame{names::kMapFrame};
   std::string earth_frame{names::kEarthFrame};
   std::string frame_prefix;  ///< put before ship_<id> and disaster_<id>

@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/bag_check.h"
+
+#include <aquafarm_msgs/EpisodeSummary.h>
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/SavedState.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "aquafarm/check.h"
+#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/version.h"
+#include "aquafarm_sim/conversions.h"
+#include "aquafarm_sim/message_difference.h"
+#include "aquafarm_sim/names.h"
+
+namespace aquafarm_sim {
+namespace {
+
+using aquafarm::Farm;
+using aquafarm::InputError;
+using aquafarm_msgs::EpisodeSummary;
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+using aquafarm_msgs::SavedState;
+using nav_msgs::OccupancyGrid;
+
+std::string Number(std::uint64_t value) { return std::to_string(value); }
+
+/// One episode of a bag, simulated along.
+class Simulation {
+ public:
+  /// @throws InputError when the spec's scenario is none
+  explicit Simulation(const FarmSpec& spec)
+      : scenario_(std::make_shared<const aquafarm::Scenario>(
+            aquafarm::ParseScenario(spec.scenario_yaml, "spec.scenario_yaml"))),
+        farm_(scenario_),
+        spec_stamp_(spec.header.stamp) {
+    farm_.Reset(spec.seed, spec.episode);
+  }
+
+  /// Each answers with the first difference, or nothing.
+  std::string Check(const FarmSpec& spec) const {
+    const aquafarm::Encoder encoder(*scenario_);
+    FarmSpec simulated;
+    ToMsg(farm_, encoder, spec.farms, aquafarm::ToYaml(*scenario_), {}, simulated);
+    simulated.header = spec.header;
+    const std::string difference = FirstDifference(spec, simulated);
+    return difference.empty() ? "" : "spec." + difference;
+  }
+
+  std::string Check(const FarmState& state) {
+    const auto step = static_cast<std::uint64_t>(farm_.step());
+    const std::uint64_t expected = seen_ ? step + 1 : step;
+    if (state.step > expected) {
+      return (expected + 1 == state.step
+                  ? "step " + Number(expected) + " is missing"
+                  : "steps " + Number(expected) + " to " + Number(state.step - 1) + " are missing");
+    }
+    if (state.step + 1 < expected) return "steps are out of order";
+    if (state.step > step) {
+      if (const std::string fault = Step(state); !fault.empty()) return fault;
+    }
+    seen_ = true;
+    stamp_ = state.header.stamp;
+    MessageContext context;
+    context.paced = state.pace == FarmState::PACED;
+    context.rate_hz = state.rate_hz;
+    context.paused = state.paused != 0;
+    FarmState simulated;
+    ToMsg(farm_, context, simulated);
+    simulated.header = state.header;
+    const std::string difference = FirstDifference(state, simulated);
+    return difference.empty() ? "" : "state." + difference;
+  }
+
+  std::string Check(const EpisodeSummary& summary) const {
+    EpisodeSummary simulated = ToMsg(farm_.record(), summary.farm, {});
+    simulated.header = summary.header;
+    const std::string difference = FirstDifference(summary, simulated);
+    return difference.empty() ? "" : "episode." + difference;
+  }
+
+  /// A grid of the present state; one of another moment is passed over.
+  std::string Check(const OccupancyGrid& grid, bool is_chart) const {
+    OccupancyGrid simulated;
+    if (is_chart) {
+      if (grid.header.stamp != spec_stamp_) return "";
+      simulated = ChartToMsg(farm_, {});
+    } else {
+      if (!seen_ || grid.header.stamp != stamp_) return "";
+      RiskToMsg(farm_.disasters(), *scenario_, {}, simulated);
+    }
+    simulated.header = grid.header;
+    simulated.info.map_load_time = grid.info.map_load_time;
+    const std::string difference = FirstDifference(grid, simulated);
+    if (difference.empty()) return "";
+    return (is_chart ? "chart." : "risk.") + difference;
+  }
+
+  std::string Load(const SavedState& saved) {
+    try {
+      Farm loaded(scenario_);
+      loaded.Reset(farm_.seed(), farm_.episode());
+      loaded.Load(std::string(saved.data.begin(), saved.data.end()));
+      if (static_cast<std::uint64_t>(loaded.step()) != saved.step) {
+        return "saved_state.step: got " + Number(saved.step) + ", its data says " +
+               std::to_string(loaded.step());
+      }
+      farm_.Load(std::string(saved.data.begin(), saved.data.end()));
+    } catch (const InputError& error) {
+      return std::string("saved_state.data: ") + error.what();
+    }
+    seen_ = false;  // the state after the change follows
+    return "";
+  }
+
+  const Farm& farm() const { return farm_; }
+
+ private:
+  std::string Step(const FarmState& state) {
+    if (farm_.over()) return "the episode is over since step " + std::to_string(farm_.step());
+    const std::size_t agents = farm_.ships().size();
+    if (state.ships.size() != agents) {
+      return "state.ships: got " + Number(state.ships.size()) + " entries, simulated " +
+             Number(agents);
+    }
+    std::vector<std::uint8_t> actions;
+    for (const auto& ship : state.ships) {
+      if (ship.action > static_cast<std::uint8_t>(aquafarm::Action::kHold)) {
+        return "state.ships[" + Number(actions.size()) + "].action: got " + Number(ship.action) +
+               ", expected [0, 10]";
+      }
+      actions.push_back(ship.action);
+    }
+    farm_.Step(actions.data());
+    return "";
+  }
+
+  std::shared_ptr<const aquafarm::Scenario> scenario_;
+  Farm farm_;
+  ros::Time spec_stamp_;
+  bool seen_{};      // the state where the farm stands was compared
+  ros::Time stamp_;  // of that state
+};
+
+/// Seed and episode.
+using Key = std::pair<std::uint64_t, std::uint64_t>;
+
+/// Takes a bag's messages in, in order. Topics come over connections of their own, so a live
+/// recording may hold an episode's first state before its spec and its summary before its end.
+class Checker {
+ public:
+  Checker(std::map<Key, FarmSpec> specs, std::multimap<Key, EpisodeSummary> summaries)
+      : specs_(std::move(specs)), summaries_(std::move(summaries)) {}
+
+  /// @returns false at the first difference
+  bool Take(const rosbag::MessageInstance& message, bool is_chart) {
+    if (const auto state = message.instantiate<FarmState>()) {
+      if (state->observer != aquafarm::kNone) return true;
+      return Enter({state->seed, state->episode}, state->step) &&
+             Compared(state->step, simulation_->Check(*state));
+    }
+    if (const auto saved = message.instantiate<SavedState>()) {
+      return Enter({saved->seed, saved->episode}, saved->step) &&
+             Compared(saved->step, simulation_->Load(*saved));
+    }
+    const auto grid = message.instantiate<OccupancyGrid>();
+    if (!grid || !simulation_) return true;
+    return Compared(Step(), simulation_->Check(*grid, is_chart));
+  }
+
+  /// @returns false at a difference
+  bool EndEpisode() {
+    if (!simulation_) return true;
+    const Farm& farm = simulation_->farm();
+    if (const auto found = summaries_.find(key_); found != summaries_.end()) {
+      const EpisodeSummary summary = found->second;
+      summaries_.erase(found);
+      if (summary.steps > farm.step()) {
+        return Compared(static_cast<std::uint64_t>(summary.steps),
+                        "missing: the bag's states end with step " + std::to_string(farm.step()));
+      }
+      if (!Compared(Step(), simulation_->Check(summary))) return false;
+    }
+    char words[160];
+    std::snprintf(words, sizeof(words), "episode %llu of seed %llu: %d steps, return %g, %s",
+                  static_cast<unsigned long long>(farm.episode()),
+                  static_cast<unsigned long long>(farm.seed()), farm.step(),
+                  static_cast<double>(farm.record().episode_return),
+                  farm.over() ? std::string(ToString(farm.reason())).c_str() : "not over");
+    check_.episodes_in_words.emplace_back(words);
+    ++check_.episodes;
+    check_.steps += Step();
+    check_.unfinished += farm.over() ? 0 : 1;
+    simulation_.reset();
+    return true;
+  }
+
+  const BagCheck& check() const { return check_; }
+
+ private:
+  std::uint64_t Step() const { return static_cast<std::uint64_t>(simulation_->farm().step()); }
+
+  /// Goes on with an episode, or begins it; a step 0 after others begins it again.
+  bool Enter(const Key& key, std::uint64_t step) {
+    if (simulation_ && key == key_ && (step != 0 || Step() == 0)) return true;
+    if (!EndEpisode()) return false;
+    key_ = key;
+    const auto spec = specs_.find(key);
+    if (spec == specs_.end()) return Compared(step, "the bag holds no spec of this episode");
+    simulation_.emplace(spec->second);
+    return Compared(0, simulation_->Check(spec->second));
+  }
+
+  bool Compared(std::uint64_t step, const std::string& difference) {
+    if (difference.empty()) return true;
+    check_.difference =
+        "episode " + Number(key_.second) + " step " + Number(step) + ": " + difference;
+    return false;
+  }
+
+  const std::map<Key, FarmSpec> specs_;
+  std::multimap<Key, EpisodeSummary> summaries_;  // those not yet compared
+  Key key_;                                       // of the simulation
+  std::optional<Simulation> simulation_;
+  BagCheck check_;
+};
+
+/// All messages of a topic by seed and episode.
+template <typename Map>
+Map ReadAll(const rosbag::Bag& bag, const std::string& topic) {
+  Map all;
+  for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
+    if (const auto one = message.instantiate<typename Map::mapped_type>()) {
+      all.insert({{one->seed, one->episode}, *one});
+    }
+  }
+  return all;
+}
+
+/// @throws InputError when an episode was recorded by another version
+void CheckVersions(const std::map<Key, FarmSpec>& specs, const std::string& path) {
+  for (const auto& [key, spec] : specs) {
+    if (spec.version == aquafarm::kVersion) continue;
+    throw InputError(path + ": recorded by version " + spec.version + ", this is " +
+                     aquafarm::kVersion + "; verify it with the version that it was recorded by");
+  }
+}
+
+/// Namespace of the ranch in a bag, with the slash after it.
+std::string FindRanch(const rosbag::Bag& bag, const std::string& path, const std::string& ns) {
+  std::set<std::string> found;
+  rosbag::View specs(bag, rosbag::TypeQuery(ros::message_traits::datatype<FarmSpec>()));
+  const std::string name = names::kSpec;
+  for (const auto* connection : specs.getConnections()) {
+    const std::string& topic = connection->topic;
+    const std::size_t end = topic.size() < name.size() ? 0 : topic.size() - name.size();
+    if (topic.substr(end) == name) found.insert(topic.substr(0, end));
+  }
+  const std::string wanted = ns.empty() || ns.back() == '/' ? ns : ns + "/";
+  if (!wanted.empty() && found.count(wanted) != 0) return wanted;
+  if (wanted.empty() && found.size() == 1) return *found.begin();
+  std::string all;
+  for (const std::string& one : found) all += (all.empty() ? "" : ", ") + one;
+  throw InputError(path + (found.empty()    ? ": no topic spec, so nothing says what was played"
+                           : wanted.empty() ? ": several ranches, choose one with --ns: " + all
+                                            : ": no ranch " + wanted + ", there is: " + all));
+}
+
+/// @throws InputError when a connection of this type is described otherwise than the suite does
+template <typename Message>
+void CheckDefinition(const rosbag::ConnectionInfo& connection, const std::string& path) {
+  namespace traits = ros::message_traits;
+  if (connection.datatype != traits::datatype<Message>()) return;
+  if (connection.md5sum == traits::md5sum<Message>() &&
+      connection.msg_def == traits::definition<Message>()) {
+    return;
+  }
+  throw InputError(path + ": topic " + connection.topic + " has another " + connection.datatype +
+                   " than this version; verify it with the version that it was recorded by");
+}
+
+}  // namespace
+
+BagCheck CheckBag(const std::string& path, const std::string& ns) {
+  try {
+    rosbag::Bag bag(path, rosbag::bagmode::Read);
+    const std::string ranch = FindRanch(bag, path, ns);
+    rosbag::View all(bag);
+    for (const auto* connection : all.getConnections()) {
+      CheckDefinition<FarmSpec>(*connection, path);
+      CheckDefinition<FarmState>(*connection, path);
+      CheckDefinition<SavedState>(*connection, path);
+      CheckDefinition<EpisodeSummary>(*connection, path);
+      CheckDefinition<OccupancyGrid>(*connection, path);
+    }
+    auto specs = ReadAll<std::map<Key, FarmSpec>>(bag, ranch + names::kSpec);
+    CheckVersions(specs, path);
+    Checker checker(std::move(specs),
+                    ReadAll<std::multimap<Key, EpisodeSummary>>(bag, ranch + names::kEpisode));
+    const std::string chart = ranch + names::kChart;
+    rosbag::View view(bag, rosbag::TopicQuery({ranch + names::kState, ranch + names::kSavedState,
+                                               chart, ranch + names::kRisk}));
+    for (const rosbag::MessageInstance& message : view) {
+      if (!checker.Take(message, message.getTopic() == chart)) return checker.check();
+    }
+    if (!checker.EndEpisode()) return checker.check();
+    if (checker.check().episodes == 0) throw InputError(path + ": no state follows its spec");
+    return checker.check();
+  } catch (const rosbag::BagUnindexedException&) {
+    throw InputError(path + ": its recording was killed; 'rosbag reindex' it first");
+  } catch (const rosbag::BagException& error) {
+    throw InputError(path + ": damaged or no bag: " + error.what());
+  } catch (const ros::Exception& error) {
+    throw InputError(path + ": damaged: " + error.what());
+  }
+}
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/episode_recorder.h"
+
+#include <ros/console.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <exception>
+#include <filesystem>
+#include <utility>
+
+#include "aquafarm/check.h"
+
+namespace aquafarm_sim {
+namespace {
+
+// Steps are written at some 100,000 a second: the farms wait no longer than a few seconds, nor
+// does the end of the node.
+constexpr std::size_t kMaxWaitingBytes = 300'000;
+constexpr int kNiceness = 10;  // whoever steps goes first
+
+}  // namespace
+
+Keep ParseKeep(const std::string& text) {
+  using Which = Keep::Which;
+  if (text == "none") return {Which::kNone, 0};
+  if (text == "all") return {Which::kAll, 0};
+  if (text == "best") return {Which::kBest, 0};
+  if (text == "worst") return {Which::kWorst, 0};
+  if (text == "failures") return {Which::kFailures, 0};
+  const std::string every = "every:";
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  if (text.rfind(every, 0) == 0) {
+    const auto read = std::from_chars(text.data() + every.size(), end, number);
+    if (read.ec == std::errc() && read.ptr == end && number > 0) return {Which::kEvery, number};
+  }
+  throw aquafarm::InputError("~keep: got '" + text +
+                             "', expected none, all, every:N, best, worst or failures");
+}
+
+EpisodeRecorder::EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep,
+                                 std::string folder, BagFormat format)
+    : scenario_(std::move(scenario)),
+      keep_(keep),
+      folder_(std::move(folder)),
+      format_(std::move(format)) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error || access(folder_.c_str(), W_OK) != 0) {
+    throw aquafarm::InputError("~keep_dir: got '" + folder_ + "', expected a folder to write to");
+  }
+  thread_ = std::thread([this] { Run(); });
+}
+
+EpisodeRecorder::~EpisodeRecorder() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void EpisodeRecorder::OnStart(const aquafarm::Farm& farm, std::int32_t number) {
+  const auto i = static_cast<std::size_t>(number);
+  if (tapes_.size() <= i) tapes_.resize(i + 1);
+  EpisodeTape tape;
+  tape.farm = number;
+  tape.seed = farm.seed();
+  tape.episode = farm.episode();
+  tape.first_step = farm.step();
+  if (farm.step() != 0) tape.changes.push_back({farm.step(), farm.Save()});
+  tapes_[i] = std::move(tape);
+}
+
+void EpisodeRecorder::OnStep(const aquafarm::Farm& farm, std::int32_t number,
+                             const std::uint8_t* actions) {
+  EpisodeTape& tape = tapes_[static_cast<std::size_t>(number)];
+  tape.actions.insert(tape.actions.end(), actions, actions + farm.ships().size());
+  if (!farm.over()) return;
+  tape.record = farm.record();
+  if (Wants(tape)) Enqueue(std::move(tape));
+}
+
+void EpisodeRecorder::OnIntervention(const aquafarm::Farm& farm, std::int32_t number) {
+  tapes_[static_cast<std::size_t>(number)].changes.push_back({farm.step(), farm.Save()});
+}
+
+bool EpisodeRecorder::Wants(const EpisodeTape& tape) {
+  const float value = tape.record.episode_return;
+  switch (keep_.which) {
+    case Keep::Which::kAll:
+      return true;
+    case Keep::Which::kEvery:
+      return tape.episode % keep_.every == 0;
+    case Keep::Which::kFailures:
+      return !tape.record.Success();
+    case Keep::Which::kBest:
+    case Keep::Which::kWorst:
+      if (extreme_ && !(keep_.which == Keep::Which::kBest ? value > *extreme_ : value < *extreme_))
+        return false;
+      extreme_ = value;
+      return true;
+    case Keep::Which::kNone:
+      break;
+  }
+  return false;
+}
+
+void EpisodeRecorder::Enqueue(EpisodeTape tape) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait(lock, [this] { return waiting_bytes_ < kMaxWaitingBytes || !fault_.empty(); });
+  if (!fault_.empty()) return;
+  if (keep_.which == Keep::Which::kBest || keep_.which == Keep::Which::kWorst) {
+    for (const EpisodeTape& overtaken : queue_) waiting_bytes_ -= overtaken.actions.size();
+    queue_.clear();
+  }
+  waiting_bytes_ += tape.actions.size();
+  queue_.push_back(std::move(tape));
+  changed_.notify_all();
+}
+
+void EpisodeRecorder::Run() {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);  // of this thread alone
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return ending_ || !queue_.empty(); });
+    if (queue_.empty()) return;
+    const EpisodeTape tape = std::move(queue_.front());
+    queue_.pop_front();
+    lock.unlock();
+    std::string fault;
+    try {
+      Write(tape);
+    } catch (const std::exception& error) {
+      fault = error.what();
+      ROS_ERROR("no more episodes are kept: %s", error.what());
+    }
+    lock.lock();
+    waiting_bytes_ -= tape.actions.size();
+    kept_ += fault.empty() ? 1 : 0;
+    if (!fault.empty()) {
+      fault_ = fault;
+      queue_.clear();
+      waiting_bytes_ = 0;
+    }
+    changed_.notify_all();
+  }
+}
+
+void EpisodeRecorder::Write(const EpisodeTape& tape) {
+  const std::string path = folder_ + "/" + BagName(tape);
+  WriteEpisodeBag(scenario_, tape, format_, path);
+  if (keep_.which != Keep::Which::kBest && keep_.which != Keep::Which::kWorst) return;
+  std::error_code ignored;
+  if (!extreme_path_.empty() && extreme_path_ != path) {
+    std::filesystem::remove(extreme_path_, ignored);
+  }
+  extreme_path_ = path;
+}
+
+std::uint64_t EpisodeRecorder::kept() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return kept_;
+}
+
+std::string EpisodeRecorder::fault() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return fault_;
+}
+
+}  // namespace aquafarm_sim

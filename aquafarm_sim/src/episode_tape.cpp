@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/episode_tape.h"
+
+#include <aquafarm_msgs/SavedState.h>
+#include <rosbag/bag.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+
+#include "aquafarm/scenario_yaml.h"
+#include "aquafarm_sim/conversions.h"
+#include "aquafarm_sim/names.h"
+
+namespace aquafarm_sim {
+namespace {
+
+using aquafarm::Farm;
+
+constexpr std::int32_t kRiskPeriod = 10;  // steps
+constexpr std::int32_t kMoment_ns = 1000;
+constexpr std::uint32_t kChunkBytes = 256 * 1024;  // what a kill may cost at most
+
+/// Writes one episode as it is played.
+class Writer {
+ public:
+  Writer(rosbag::Bag& bag, const BagFormat& format) : bag_(bag), format_(format) {
+    context_.map_frame = format.map_frame;
+    context_.rate_hz = format.rate_hz;
+  }
+
+  void Start(const Farm& farm) {
+    SetTime(0);
+    const aquafarm::Encoder encoder(farm.scenario());
+    aquafarm_msgs::FarmSpec spec;
+    ToMsg(farm, encoder, format_.farms, aquafarm::ToYaml(farm.scenario()), context_, spec);
+    Write(names::kSpec, spec);
+    Write(names::kChart, ChartToMsg(farm, context_));
+  }
+
+  void Change(const Farm& farm, const std::string& data) {
+    SetTime(farm.step());
+    aquafarm_msgs::SavedState saved;
+    saved.header.stamp = context_.stamp;
+    saved.header.frame_id = context_.map_frame;
+    saved.seed = farm.seed();
+    saved.episode = farm.episode();
+    saved.step = static_cast<std::uint64_t>(farm.step());
+    saved.data.assign(data.begin(), data.end());
+    Write(names::kSavedState, saved);
+  }
+
+  void State(const Farm& farm) {
+    SetTime(farm.step());
+    ToMsg(farm, context_, state_);
+    Write(names::kState, state_);
+    if (farm.step() % kRiskPeriod != 0 && !farm.over()) return;
+    RiskToMsg(farm.disasters(), farm.scenario(), context_, risk_);
+    Write(names::kRisk, risk_);
+  }
+
+  void End(const EpisodeTape& tape) {
+    Write(names::kEpisode, ToMsg(tape.record, tape.farm, context_));
+  }
+
+ private:
+  // A bag knows no time 0, so an episode begins one period after it.
+  void SetTime(std::int32_t step) {
+    const ros::Time stamp(static_cast<double>(step + 1) / format_.rate_hz);
+    if (stamp != context_.stamp) order_ = 0;
+    context_.stamp = stamp;
+  }
+
+  // Readers get messages of one time in any order, so each comes a moment after the one before.
+  template <typename Message>
+  void Write(const char* name, const Message& message) {
+    bag_.write(format_.ns + name, context_.stamp + ros::Duration(0, kMoment_ns * order_++),
+               message);
+  }
+
+  rosbag::Bag& bag_;
+  const BagFormat& format_;
+  MessageContext context_;
+  std::int32_t order_{};  // of the next message among those of this stamp
+  aquafarm_msgs::FarmState state_;
+  nav_msgs::OccupancyGrid risk_;
+};
+
+void Play(Farm& farm, const EpisodeTape& tape, Writer& writer) {
+  farm.Reset(tape.seed, tape.episode);
+  writer.Start(farm);
+  auto change = tape.changes.begin();
+  const auto take_changes = [&] {
+    for (; change != tape.changes.end() && change->step == farm.step(); ++change) {
+      farm.Load(change->state);
+      writer.Change(farm, change->state);
+      writer.State(farm);
+    }
+  };
+  if (tape.first_step == 0) {
+    writer.State(farm);
+  } else {
+    farm.Load(tape.changes.front().state);  // so that the first change is of the farm's step
+  }
+  take_changes();
+  const std::size_t agents = farm.ships().size();
+  for (std::size_t i = 0; i + agents <= tape.actions.size() && !farm.over(); i += agents) {
+    farm.Step(tape.actions.data() + i);
+    writer.State(farm);
+    take_changes();
+  }
+  if (farm.record().steps != tape.record.steps ||
+      farm.record().episode_return != tape.record.episode_return ||
+      farm.record().reason != tape.record.reason) {
+    throw std::runtime_error("episode " + std::to_string(tape.episode) +
+                             ": its actions do not give its result again");
+  }
+}
+
+}  // namespace
+
+std::string BagName(const EpisodeTape& tape) {
+  char name[120];
+  std::snprintf(name, sizeof(name), "episode_%08llu_seed_%llu_return_%+.1f.bag",
+                static_cast<unsigned long long>(tape.episode),
+                static_cast<unsigned long long>(tape.seed),
+                static_cast<double>(tape.record.episode_return));
+  return name;
+}
+
+void WriteEpisodeBag(const std::shared_ptr<const aquafarm::Scenario>& scenario,
+                     const EpisodeTape& tape, const BagFormat& format, const std::string& path) {
+  const std::string active = path + ".active";
+  try {
+    rosbag::Bag bag(active, rosbag::bagmode::Write);
+    bag.setCompression(rosbag::compression::LZ4);
+    bag.setChunkThreshold(kChunkBytes);
+    Farm farm(scenario);
+    Writer writer(bag, format);
+    Play(farm, tape, writer);
+    writer.End(tape);
+    bag.close();
+  } catch (const rosbag::BagException& error) {
+    throw std::runtime_error(active + ": cannot be written: " + error.what());
+  }
+  std::error_code error;
+  std::filesystem::rename(active, path, error);
+  if (error) throw std::runtime_error(path + ": cannot be written: " + error.message());
+}
+
+}  // namespace aquafarm_sim

@@ -6,13 +6,18 @@
 #include <rosbag/view.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <functional>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <vector>
 
+#include "aquafarm_viz/film.h"
 #include "aquafarm_viz/image.h"
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/pairing.h"
@@ -27,9 +32,11 @@ using aquafarm_viz::names::kTraining;
 struct Request {
   std::string bag;
   std::string output{"farm.png"};
-  std::string ns;  // empty: the only one there is
-  std::uint64_t step{};
+  std::string ns;                    // empty: the only one there is
+  std::vector<std::uint64_t> steps;  // empty: 0, or all for a film
   bool at_end{};
+  double rate_hz{10.0};
+  std::uint64_t every{1};
   std::optional<std::uint64_t> episode;
   aquafarm_viz::ImageSize size;
 };
@@ -74,16 +81,23 @@ std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
   throw std::runtime_error(request.bag + ": holds several ranches, choose one with --ns:" + all);
 }
 
-cv::Mat Render(const Request& request) {
+/// What is drawn: a state with what a picture shows besides.
+struct Scene {
+  const aquafarm_msgs::FarmSpec& spec;
+  const FarmState& state;
+  aquafarm_viz::Extras extras;
+};
+
+/// Shows each state of the bag (of the episode asked for) until `look` has seen enough.
+/// @param look returns false to end
+Found ForEachScene(const Request& request, const std::function<bool(const Scene&)>& look) {
   rosbag::Bag bag(request.bag, rosbag::bagmode::Read);
   const std::string prefix = FindPrefix(bag, request);
   rosbag::View view(bag, rosbag::TopicQuery({prefix + kSpec, prefix + kState, prefix + kTraining}));
   aquafarm_viz::Pairing pairing;
   aquafarm_viz::Wake wake;
-  aquafarm_viz::FarmPainter painter(request.size);
   aquafarm_msgs::TrainingStatusConstPtr training;
   Found found;
-  cv::Mat last;
   for (const auto& message : view) {
     if (const auto spec = message.instantiate<aquafarm_msgs::FarmSpec>()) {
       if (const auto fault = pairing.AddSpec(spec); !fault.empty()) throw std::runtime_error(fault);
@@ -99,23 +113,84 @@ cv::Mat Render(const Request& request) {
     found.last_episode = state->episode;
     found.last_step = std::max(found.last_step, state->step);
     if (request.episode && *request.episode != state->episode) continue;
-    const bool asked =
-        request.at_end ? state->terminated || state->truncated : state->step == request.step;
-    if (asked) return painter.Draw(*pairing.shown().spec, *state, {&wake, training.get()}).clone();
+    if (!look({*pairing.shown().spec, *state, {&wake, training.get()}})) break;
   }
-  throw std::runtime_error(Missing(request, found));
+  return found;
+}
+
+/// The steps asked for, side by side.
+void RenderPicture(const Request& request) {
+  aquafarm_viz::FarmPainter painter(request.size);
+  const std::vector<std::uint64_t> steps =
+      request.steps.empty() ? std::vector<std::uint64_t>{0} : request.steps;
+  std::vector<cv::Mat> pictures(request.at_end ? 1 : steps.size());
+  std::optional<std::uint64_t> episode;  // all pictures are of the first that has one of them
+  std::size_t missing = pictures.size();
+  const Found found = ForEachScene(request, [&](const Scene& scene) {
+    if (episode && *episode != scene.state.episode) return true;
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      const bool asked = request.at_end ? scene.state.terminated || scene.state.truncated
+                                        : scene.state.step == steps[i];
+      if (!asked || !pictures[i].empty()) continue;
+      pictures[i] = painter.Draw(scene.spec, scene.state, scene.extras).clone();
+      episode = scene.state.episode;
+      --missing;
+    }
+    return missing > 0;
+  });
+  if (missing > 0) throw std::runtime_error(Missing(request, found));
+  cv::Mat picture;
+  cv::hconcat(pictures, picture);
+  if (!cv::imwrite(request.output, picture, {cv::IMWRITE_PNG_COMPRESSION, 9})) {
+    throw std::runtime_error(request.output + ": could not be written");
+  }
+}
+
+/// One episode from its first to its last state; the end stays for two seconds.
+void RenderFilm(Request request) {
+  request.size.width -= request.size.width % 2;  // codecs want even sides
+  request.size.height -= request.size.height % 2;
+  aquafarm_viz::FarmPainter painter(request.size);
+  std::unique_ptr<aquafarm_viz::Film> film;
+  std::optional<std::uint64_t> episode;
+  cv::Mat last;
+  const Found found = ForEachScene(request, [&](const Scene& scene) {
+    if (episode && *episode != scene.state.episode) return false;
+    episode = scene.state.episode;
+    const bool over = scene.state.terminated || scene.state.truncated;
+    if (scene.state.step % request.every != 0 && !over) return true;
+    const cv::Mat& picture = painter.Draw(scene.spec, scene.state, scene.extras);
+    if (film == nullptr)
+      film = aquafarm_viz::Film::Open(request.output, picture.size(), request.rate_hz);
+    film->Add(picture);
+    picture.copyTo(last);
+    return true;
+  });
+  if (film == nullptr) throw std::runtime_error(Missing(request, found));
+  for (int i = 0; i < cvRound(2.0 * request.rate_hz); ++i) film->Add(last);
+  film->Close();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Request request;
-  CLI::App app("Draws one step of a recorded ranch as a picture.", "render");
-  app.add_option("--bag", request.bag, "bag with spec and state")->required();
-  app.add_option("-o,--output", request.output, "picture to write, by its ending: png, jpg")
+  CLI::App app(
+      "Draws a recorded ranch, with no ROS running: steps as a picture (png, jpg), side by side "
+      "if\n"
+      "several, or an episode as a film (mp4, webm, gif).",
+      "render");
+  app.add_option("--bag,bag", request.bag, "bag with spec and state")->required();
+  app.add_option("-o,--output", request.output, "file to write; its ending says what it becomes")
       ->capture_default_str();
-  auto* step = app.add_option("--step", request.step, "step of the episode")->capture_default_str();
+  auto* step = app.add_option("--step", request.steps, "step of the episode (default 0)");
   app.add_flag("--end", request.at_end, "the episode's last step")->excludes(step);
+  app.add_option("--fps", request.rate_hz, "film: pictures a second")
+      ->check(CLI::Range(0.5, 60.0))
+      ->capture_default_str();
+  app.add_option("--every", request.every, "film: a picture every so many steps")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
   app.add_option("--episode", request.episode, "episode (default: the first that has the step)");
   app.add_option("--ns", request.ns, "namespace of the ranch (default: the only one in the bag)");
   app.add_option("--width", request.size.width, "pixels")
@@ -126,10 +201,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
-    const cv::Mat picture = Render(request);
-    if (!cv::imwrite(request.output, picture, {cv::IMWRITE_PNG_COMPRESSION, 9})) {
-      throw std::runtime_error(request.output + ": could not be written");
-    }
+    aquafarm_viz::Film::Is(request.output) ? RenderFilm(request) : RenderPicture(request);
   } catch (const std::exception& fault) {
     std::fprintf(stderr, "render: %s\n", fault.what());
     return 1;

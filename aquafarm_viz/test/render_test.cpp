@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,8 @@ struct Result {
   std::string output;
 };
 
-Result Render(const std::string& arguments) {
-  const std::string command = std::string(RENDER) + " " + arguments + " 2>&1";
+Result Render(const std::string& arguments, const std::string& environment = "") {
+  const std::string command = environment + " " + std::string(RENDER) + " " + arguments + " 2>&1";
   Result result;
   FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 256> part{};
@@ -108,6 +109,67 @@ TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
   const Result unknown = Render("--bag " + bag + " -o " + Path("x.nonsense"));
   EXPECT_NE(unknown.code, 0);
   EXPECT_EQ(unknown.output.substr(0, 8), "render: ");
+}
+
+TEST_F(RenderTest, PutsSeveralStepsOfOneEpisodeSideBySide) {
+  const std::string bag = MakeBag({"/aquafarm/"});
+  const Result both =
+      Render(bag + " --step 2 --step 8 --width 320 --height 240 -o " + Path("x.png"));
+  EXPECT_EQ(both.code, 0) << both.output;
+  const Result one = Render(bag + " --step 8 --width 320 --height 240 -o " + Path("y.png"));
+  EXPECT_EQ(one.code, 0) << one.output;
+  const cv::Mat picture = cv::imread(Path("x.png"));
+  ASSERT_EQ(picture.size(), cv::Size(640, 240));
+  EXPECT_EQ(cv::norm(picture.colRange(320, 640), cv::imread(Path("y.png"))), 0.0);
+}
+
+// Pictures of a film, as a player sees them.
+std::vector<cv::Mat> Pictures(const std::string& path) {
+  cv::VideoCapture film(path, cv::CAP_FFMPEG);
+  std::vector<cv::Mat> pictures;
+  for (cv::Mat picture; film.read(picture);) pictures.push_back(picture.clone());
+  return pictures;
+}
+
+TEST_F(RenderTest, MakesAFilmOfOneEpisode) {
+  const std::string bag = MakeBag({"/aquafarm/"});
+  ASSERT_EQ(Render(bag + " --step 4 --width 320 --height 240 -o " + Path("four.png")).code, 0);
+  const cv::Mat four = cv::imread(Path("four.png"));
+  for (const char* ending : {".mp4", ".webm", ".gif"}) {
+    const std::string path = Path(std::string("film") + ending);
+    const Result result = Render(bag + " --width 321 --height 241 --fps 5 -o " + path);
+    ASSERT_EQ(result.code, 0) << result.output;
+    const std::vector<cv::Mat> pictures = Pictures(path);
+    ASSERT_NEAR(double(pictures.size()), 20.0, 1.0) << ending;  // ten steps, and two seconds more
+    ASSERT_EQ(pictures[4].size(), cv::Size(320, 240)) << ending;
+    EXPECT_LT(cv::norm(pictures[4], four, cv::NORM_L1) / double(four.total() * 3), 12.0) << ending;
+  }
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
+  }
+}
+
+TEST_F(RenderTest, AFilmMayLeaveStepsOut) {
+  const std::string bag = MakeBag({"/aquafarm/"});
+  ASSERT_EQ(
+      Render(bag + " --episode 13 --every 4 --fps 1 --width 160 --height 160 -o " + Path("x.gif"))
+          .code,
+      0);
+  EXPECT_NEAR(double(Pictures(Path("x.gif")).size()), 6.0, 1.0);  // steps 0, 4, 8, 9, and two more
+}
+
+TEST_F(RenderTest, WithoutACodecItSaysWhatElseThereIs) {
+  const std::string bag = MakeBag({"/aquafarm/"});
+  const Result result = Render(bag + " -o " + Path("x.mp4"), "OPENCV_VIDEOIO_PRIORITY_FFMPEG=0");
+  EXPECT_NE(result.code, 0);
+  EXPECT_NE(result.output.find("x.mp4: no codec for .mp4 here (tried avc1, mp4v), or no place to "
+                               "write; a .gif needs none, or install libavcodec"),
+            std::string::npos)
+      << result.output;
+  EXPECT_FALSE(fs::exists(Path("x.mp4")));
+  const Result gif = Render(bag + " -o " + Path("no/such/folder/x.gif"));
+  EXPECT_NE(gif.code, 0);
+  EXPECT_NE(gif.output.find("x.gif: could not be written"), std::string::npos) << gif.output;
 }
 
 }  // namespace

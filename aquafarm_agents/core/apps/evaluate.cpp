@@ -20,6 +20,7 @@ struct Arguments {
   ScenarioChoice scenario;
   std::string output;
   std::string route;
+  std::uint64_t route_episode{};
   bool bound{};
   std::uint64_t seed{1000};
   std::int32_t episodes{1000};
@@ -84,8 +85,8 @@ ExitCode Run(Arguments arguments) {
     const auto make_policy = [&saved](const EnvironmentSpec& spec) {
       return MakePolicy(saved, spec);
     };
-    const Route route =
-        TraceRoute(scenario, saved.encodings, make_policy, arguments.seed, 0, &stop_requested);
+    const Route route = TraceRoute(scenario, saved.encodings, make_policy, arguments.seed,
+                                   arguments.route_episode, &stop_requested);
     if (stop_requested) return ExitCode::kInterrupted;
     WriteRoute(arguments.route, route, environment.spec());
   }
@@ -117,8 +118,9 @@ int Main(int argc, char** argv) {
                  "write <this>.csv and <this>.json; empty: nothing");
   app.add_option(
       "--route", arguments.route,
-      "write the first episode's route and the best move in each cell to this JSON file; "
+      "write an episode's route and actions, and the best move in each cell, to this JSON file; "
       "empty: nothing");
+  app.add_option("--route-episode", arguments.route_episode, "episode that --route is of");
   app.add_flag("--bound", arguments.bound,
                "say what share this is of an upper bound: each device by its best ship, no "
                "conflicts, the disasters known");

@@ -136,6 +136,7 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
   while (!farm.over() && !IsStopped(stop)) {
     policy->Act(*results, actions);
     route.steps.back().action = actions[0];
+    route.actions.insert(route.actions.end(), actions.begin(), actions.end());
     results = &environment.Step(actions);
     route.steps.push_back(Look(farm));
     if (route.after_pickup.empty() && farm.ships()[0].aboard > 0 && !farm.over()) {
@@ -167,6 +168,7 @@ void WriteRoute(const std::string& path, const Route& route, const EnvironmentSp
                   {"return", route.result.episode_return},
                   {"chart", ToJson(*route.layout)},
                   {"steps", steps},
+                  {"actions", route.actions},
                   {"best_moves_at_start", ToJson(route.at_start)},
                   {"best_moves_after_pickup", ToJson(route.after_pickup)}};
   WriteFileAtomically(path, text.dump() + "\n");

@@ -52,6 +52,7 @@ TEST_F(RouteFile, SaysWhatFarmAndEpisodeItWas) {
   EXPECT_EQ(text.at("reason"), "all_retrieved");
   EXPECT_EQ(text.at("chart").at("ports"), nlohmann::json::parse("[[2, 0]]"));
   EXPECT_EQ(text.at("steps").size(), 7U);
+  EXPECT_EQ(text.at("actions"), nlohmann::json::parse("[0, 0, 8, 1, 1, 9]"));
   EXPECT_EQ(text.at("steps")[2].at("action"), "pickup");
   EXPECT_EQ(text.at("best_moves_after_pickup").size(), 20U);
 }

@@ -15,6 +15,7 @@ std::vector<BufferType> BufferTypes(const FarmBatch& batch) {
       {"terms", "float32", {n, s, kRewardTermCount}},
       {"outcomes", "uint8", {n, s}},
       {"legal", "uint16", {n, s}},
+      {"in_play", "uint8", {n, s}},
       {"reasons", "uint8", {n}},
       {"started", "uint8", {n}},
       {"hashes", "uint64", {n}},
@@ -48,6 +49,7 @@ void Point(BatchOutput& output, std::string_view name, void* data) {
   if (name == "terms") output.terms = static_cast<float*>(data);
   if (name == "outcomes") output.outcomes = static_cast<std::uint8_t*>(data);
   if (name == "legal") output.legal = static_cast<ActionMask*>(data);
+  if (name == "in_play") output.in_play = static_cast<std::uint8_t*>(data);
   if (name == "reasons") output.reasons = static_cast<std::uint8_t*>(data);
   if (name == "started") output.started = static_cast<std::uint8_t*>(data);
   if (name == "hashes") output.hashes = static_cast<std::uint64_t*>(data);

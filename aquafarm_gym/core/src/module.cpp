@@ -157,9 +157,7 @@ void DefineConstants(py::module_& module) {
   module.attr("SCENARIO_FOLDER") = AQUAFARM_SCENARIO_DIR;
   module.attr("ACTIONS") = Names(kActionCount, NameOf<Action>);
   module.attr("HOLD") = static_cast<int>(Action::kHold);
-  module.attr("DROP_OFF") = static_cast<int>(Action::kDropOff);
   module.attr("OUTCOMES") = Names(kOutcomeCount, NameOf<Outcome>);
-  module.attr("OK") = static_cast<int>(Outcome::kOk);
   module.attr("REASONS") = Names(kEndReasonCount, NameOf<EndReason>);
   module.attr("STEP_LIMIT") = static_cast<int>(EndReason::kStepLimit);
   module.attr("TERMS") = std::vector<std::string>(kRewardTermNames.begin(), kRewardTermNames.end());
@@ -194,7 +192,7 @@ void DefineBatch(py::module_& module) {
 
 `buffers` holds the arrays named in `write`; reset and step write into them and copy nothing.
 N farms, S agents: rewards float32 [N, S], terms float32 [N, S, 7], outcomes uint8 [N, S], legal
-uint16 [N, S], reasons uint8 [N], started uint8 [N], hashes uint64 [N], index uint32 [N, S],
+uint16 [N, S], in_play uint8 [N, S], reasons uint8 [N], started uint8 [N], hashes uint64 [N], index uint32 [N, S],
 features float32 [N, S, F], planes uint8 [N, S, P, H, W].
 A farm whose reason is not 0 ignores the action of the next step and starts its next episode.)")
       .def(py::init([](std::shared_ptr<Scenario> scenario, std::int32_t farms,

@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """N farms with S agents each, as arrays: what every environment here stands on.
 
-A backend has the attributes farms, agents, ships (rescue ships; other agents are self-propelled
-devices), state_count, feature_count, plane_count, height, width and buffers (see
+A backend has the attributes name, yaml, farms, agents, state_count, feature_count, plane_count, height, width and buffers (see
 aquafarm_core.FarmBatch), and the calls reset(seed, first_episode), step(actions), finished() and
 close(). LocalFarms is the farm in this process; aquafarm_gym.ros.RosFarms the one behind ROS.
 """
 import pathlib
 
 import aquafarm_core as core
-import numpy as np
 
 ENCODINGS = ("index", "features", "planes")
-ALWAYS = ("rewards", "outcomes", "legal", "reasons", "started")
+ALWAYS = ("rewards", "outcomes", "legal", "in_play", "reasons", "started")
 
 
 def scenario_folder():
@@ -55,7 +53,7 @@ class LocalFarms:
         self.buffers = self.batch.buffers
         self.name = scenario.name
         self.yaml = scenario.yaml
-        self.farms, self.agents, self.ships = farms, scenario.agents, scenario.ships
+        self.farms, self.agents = farms, scenario.agents
         self.state_count = self.batch.state_count
         self.feature_count = len(self.batch.feature_names)
         self.plane_count = len(core.PLANES)
@@ -65,25 +63,3 @@ class LocalFarms:
 
     def close(self):
         """Nothing is held but memory."""
-
-
-class Ends:
-    """Which agents are done: all when the farm's episode is over, a self-propelled device besides
-    when it has dropped itself off."""
-
-    def __init__(self, farms):
-        self._buffers = farms.buffers
-        self._self_propelled = np.arange(farms.agents) >= farms.ships
-        self.delivered = np.zeros((farms.farms, farms.agents), bool)
-
-    def reset(self):
-        """New episodes have begun in all farms."""
-        self.delivered[:] = False
-
-    def step(self, actions):
-        """Takes in a step that was just taken with `actions` [N, S]."""
-        if not self._self_propelled.any():
-            return
-        dropped_off = (actions == core.DROP_OFF) & (self._buffers["outcomes"] == core.OK)
-        self.delivered |= dropped_off & self._self_propelled
-        self.delivered[self._buffers["started"] != 0] = False

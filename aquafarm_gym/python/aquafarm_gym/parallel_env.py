@@ -7,7 +7,7 @@ from pettingzoo import ParallelEnv
 
 from aquafarm_gym import spaces
 from aquafarm_gym.env import Episodes
-from aquafarm_gym.farms import Ends, LocalFarms
+from aquafarm_gym.farms import LocalFarms
 
 
 class FarmParallelEnv(ParallelEnv):
@@ -33,7 +33,6 @@ class FarmParallelEnv(ParallelEnv):
         self._buffers = self.farms.buffers
         self._observation = self._buffers[observation]
         self._episodes = Episodes()
-        self._ends = Ends(self.farms)
         self._number = {agent: i for i, agent in enumerate(self.possible_agents)}
 
     def observation_space(self, agent):
@@ -44,7 +43,6 @@ class FarmParallelEnv(ParallelEnv):
 
     def reset(self, seed=None, options=None):
         self.farms.reset(*self._episodes.next(seed, options, lambda: seeding.np_random()[1]))
-        self._ends.reset()
         self.agents = self.possible_agents[:]
         return self._of_agents(self._observe), self._of_agents(self._info)
 
@@ -60,15 +58,14 @@ class FarmParallelEnv(ParallelEnv):
                                  "[0, 9]")
             joint[0, self._number[agent]] = action
         self.farms.step(joint)
-        self._ends.step(joint)
         reason = int(self._buffers["reasons"][0])
         truncated = reason == core.STEP_LIMIT
         over = reason != 0 and not truncated
-        delivered = self._ends.delivered[0]
+        delivered = self._buffers["in_play"][0] == 0
         terminations = self._of_agents(lambda i: bool(over or delivered[i]))
         results = (self._of_agents(self._observe),
                    self._of_agents(lambda i: float(self._buffers["rewards"][0, i])), terminations,
-                   self._of_agents(lambda i: truncated and not delivered[i]),
+                   self._of_agents(lambda i: bool(truncated and not delivered[i])),
                    self._of_agents(self._info))
         self.agents = [] if reason else [a for a in self.agents if not terminations[a]]
         return results

@@ -71,7 +71,7 @@ class RosFarms:
         spec = self._call("get_state", farm=0, with_spec=True).spec
         check_encoding(observation, spec.state_count, spec.scenario_name)
         self.name, self.yaml = spec.scenario_name, spec.scenario_yaml
-        self.farms, self.agents, self.ships = farms, spec.agents, spec.ships
+        self.farms, self.agents = farms, spec.agents
         self.state_count, self.feature_count = spec.state_count, spec.feature_count
         self.plane_count, self.height, self.width = spec.plane_count, spec.height, spec.width
         self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
@@ -86,6 +86,7 @@ class RosFarms:
         self.buffers = {"rewards": np.zeros(entries, np.float32),
                         "outcomes": np.zeros(entries, np.uint8),
                         "legal": np.zeros(entries, np.uint16),
+                        "in_play": np.zeros(entries, np.uint8),
                         "reasons": np.zeros(farms, np.uint8),
                         "started": np.zeros(farms, np.uint8), observation: np.zeros(shape, dtype)}
         if hashes:

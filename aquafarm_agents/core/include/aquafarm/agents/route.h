@@ -38,6 +38,8 @@ struct RouteStep {
 struct Route {
   std::shared_ptr<const Layout> layout;
   std::vector<RouteStep> steps;
+  std::vector<std::uint8_t>
+      actions;  ///< [steps, agents] of all agents: with them it is played again
   EpisodeResult result;
   /// The greedy action of ship 0 in every free cell, as the farm stands at the episode's start and
   /// (empty when that never comes) right after the first pickup. A policy with a memory is asked

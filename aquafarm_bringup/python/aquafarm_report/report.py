@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What a report of a run and of a benchmark holds."""
+import csv
+import io
+import json
+import os
+import pathlib
+import tempfile
+
+import matplotlib
+
+matplotlib.use("svg")  # no display is asked for
+import numpy as np  # noqa: E402
+from matplotlib import pyplot as plt  # noqa: E402
+
+from aquafarm_report import films, page  # noqa: E402
+from aquafarm_report.films import ReportError  # noqa: E402
+
+WINDOW = 50  # episodes of the moving mean, as in the paper's measures
+POINTS = 800  # of a curve, at most
+EPISODES = 100
+
+
+def read_metrics(path):
+    """Columns of metrics.csv as arrays; empty when nothing was trained."""
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name] or "nan") for row in rows])
+            for name in ("return", "success", "loss", "exploration")} if rows else {}
+
+
+def draw_curves(columns):
+    """Return, success and loss by episode, as SVG."""
+    figure, axes = plt.subplots(3, 1, figsize=(7, 7), sharex=True)
+    window = min(WINDOW, len(columns["return"]))
+    for axis, name in zip(axes, ("return", "success", "loss")):
+        values = columns[name]
+        mean = np.convolve(values, np.ones(window) / window, mode="valid")
+        episodes = np.arange(window, len(values) + 1)
+        keep = np.unique(np.linspace(0, len(mean) - 1, POINTS).astype(int))
+        axis.plot(episodes[keep], mean[keep], color="#1b4f78")
+        axis.set_ylabel(name)
+        axis.grid(alpha=0.3)
+    axes[0].set_yscale("symlog", linthresh=100.0)
+    axes[1].set_ylim(-0.03, 1.03)
+    axes[-1].set_xlabel(f"episode (means of {window})")
+    figure.tight_layout()
+    text = io.StringIO()
+    figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
+    plt.close(figure)
+    svg = text.getvalue()
+    return f'<div class="chart">{svg[svg.index("<svg"):]}</div>'
+
+
+def show_episodes(run, folder, episodes):
+    """Sections with the table, the map and the films of a run's policy, and its summary."""
+    summary, rows = films.evaluate(run, folder, episodes)
+    shown, chart = [], None
+    for name, row in films.choose(rows):
+        bag = films.bag_of(run, folder, int(row["episode"]))
+        chart = chart or films.draw_map(bag)
+        caption = (f"{name}: episode {row['episode']} of seed {films.SEED}, return "
+                   f"{float(row['return']):.1f} in {row['steps']} steps, {row['delivered']} of "
+                   f"{row['devices']} home, {row['reason'].replace('_', ' ')}")
+        shown.append(page.film(films.draw_film(bag, int(row["steps"])), caption))
+    keys = (("return_per_episode", "return per episode", "{:.1f}"),
+            ("success_rate", "success", "{:.1%}"), ("steps_per_episode", "steps", "{:.1f}"),
+            ("crashes_per_episode", "crashes", "{:.2f}"),
+            ("steps_in_disaster_per_episode", "steps in disaster", "{:.2f}"),
+            ("delivered_health", "health of what came home", "{:.3f}"))
+    table = page.table(["mean of an episode", ""], [
+        (name, form.format(summary[key])) for key, name, form in keys if key in summary])
+    return summary, [
+        page.section(f"Greedy play, {len(rows)} episodes it never trained on", table),
+        page.section("The ranch", page.picture(chart, "at the start of an episode")),
+        page.section("Best, median and worst episode",
+                     f'<div class="films">{"".join(shown)}</div>')]
+
+
+def report_run(run, folder, episodes):
+    """The page of a run folder."""
+    settings = json.loads((run / "run.json").read_text())
+    columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
+    summary, sections = show_episodes(run, folder, episodes)
+    curves = [page.section("Training", draw_curves(columns))] if columns else []
+    tiles = page.tiles([
+        (settings["algorithm"], "learner"), (settings["scenario"], "scenario"),
+        (f"{summary['return_per_episode']:.1f}", "return per episode"),
+        (f"{summary['success_rate']:.0%}", "success"),
+        (f"{len(columns.get('return', [])):,}", "episodes trained"),
+        (settings["seed"], "seed of the training"), (films.SEED, "seed of the films"),
+        (settings["version"], "version")])
+    return page.page(
+        f"{settings['algorithm']} on {settings['scenario']}", tiles, *sections, *curves,
+        page.section("Configuration",
+                     page.details("run.json", json.dumps(settings, indent=2)),
+                     page.details("scenario.yaml", (run / "scenario.yaml").read_text())))
+
+
+def read_table(path):
+    """Head and rows of table.md."""
+    rows = [[cell.strip().strip("*") for cell in line.strip().strip("|").split("|")]
+            for line in path.read_text().splitlines() if line.startswith("|")]
+    return [cell or "learner" for cell in rows[0]], rows[2:]
+
+
+def best_run(benchmark):
+    """The first run folder of the learner with the highest return; None when none is left."""
+    results = json.loads((benchmark / "results.json").read_text())
+    for row in sorted(results["table"], key=lambda row: -row["return_per_episode"]):
+        run = benchmark / "runs" / row["name"] / "seed_1"
+        if (run / "run.json").is_file():
+            return run
+    return None
+
+
+def report_benchmark(benchmark, folder, episodes):
+    """The page of a benchmark's folder."""
+    settings = json.loads((benchmark / "benchmark.json").read_text())
+    results = json.loads((benchmark / "results.json").read_text())
+    tiles = page.tiles([
+        (settings.get("scenario", "–"), "scenario"), (len(results["table"]), "contestants"),
+        (max(row["runs"] for row in results["table"]), "runs of each"),
+        (settings.get("episodes", "–"), "episodes of a training"),
+        (settings.get("evaluation_seed", "–"), "seed of the evaluation"),
+        (settings.get("version", "–"), "version")])
+    figures = [page.picture(path, path.stem.replace("_", " "))
+               for path in sorted((benchmark / "figures").glob("*.png"))]
+    run = best_run(benchmark)
+    shown = []
+    if run is not None:
+        name = run.parent.name
+        shown = [page.section(f"The best learner: {name}, seed 1")]
+        shown += show_episodes(run, folder, episodes)[1]
+    seeds = sorted({run["seed"] for of_one in results["runs"].values() for run in of_one})
+    return page.page(
+        f"Benchmark on {settings.get('scenario', 'a ranch')}", tiles,
+        page.section("Table 1, the paper's and ours", page.table(*read_table(benchmark /
+                                                                             "table.md"))),
+        page.section("Figures", *figures), *shown,
+        page.section("Configuration", f"<p>Seeds of the trainings: {page.escape(seeds)}</p>",
+                     page.details("benchmark.json", json.dumps(settings, indent=2))))
+
+
+def make(source, output, episodes=EPISODES):
+    """Writes the report of a run folder or a benchmark's folder; returns its path."""
+    source = pathlib.Path(source).resolve()
+    output = pathlib.Path(output).resolve() if output else source / "report.html"
+    kinds = {"run.json": report_run, "results.json": report_benchmark}
+    for name, report in kinds.items():
+        if (source / name).is_file():
+            break
+    else:
+        raise ReportError(f"{source}: neither a run (run.json) nor a benchmark (results.json)")
+    with tempfile.TemporaryDirectory(prefix="aquafarm_report_") as folder:
+        try:
+            text = report(source, pathlib.Path(folder), episodes)
+        except (OSError, ValueError, KeyError) as error:
+            raise ReportError(f"{source}: cannot be reported on: {error!r}") from error
+    try:
+        beside = output.with_name(output.name + ".part")
+        beside.write_text(text)
+        os.replace(beside, output)
+    except OSError as error:
+        raise ReportError(f"{output}: cannot be written: {error.strerror}") from None
+    return output

@@ -1,0 +1,222 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report of a run and of a benchmark: what must be in it, and what it is refused for."""
+import base64
+import html.parser
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import cv2
+import numpy as np
+import roslib.packages
+import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import Ranch  # noqa: E402
+
+SCENARIO = """
+name: cove
+grid: {width: 6, height: 6}
+time: {step_limit: 60}
+layout: {rocks: {count: [2, 2]}, ports: {count: 1}, devices: {count: 1}}
+"""
+
+
+def program(package, name):
+    """Path of one of the suite's programs."""
+    return roslib.packages.find_node(package, name)[0]
+
+
+def run(package, name, *arguments, **options):
+    """(exit code, words) of a program."""
+    done = subprocess.run([program(package, name), *map(str, arguments)], timeout=120, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, **options)
+    return done.returncode, done.stdout
+
+
+class Page(html.parser.HTMLParser):
+    """A page's elements, words and addresses; its tags must match."""
+
+    def __init__(self, path):
+        super().__init__()
+        self.text = pathlib.Path(path).read_text()
+        self.open, self.names, self.addresses, self.words, self.meta = [], [], [], "", {}
+        self.feed(self.text)
+        assert not self.open, f"left open: {self.open}"
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        self.names.append(tag)
+        self.addresses += [attributes[key] for key in ("src", "href", "xlink:href")
+                           if key in attributes]
+        if tag == "meta" and "name" in attributes:
+            self.meta[attributes["name"]] = attributes["content"]
+        if tag not in ("meta", "img"):
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.handle_starttag(tag, attrs)
+        if tag not in ("meta", "img"):
+            self.open.pop()
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag, tag
+
+    def handle_data(self, data):
+        self.words += data
+
+    def embedded(self, kind):
+        """The files of a kind that the page carries."""
+        head = f"data:{kind};base64,"
+        return [base64.b64decode(one[len(head):]) for one in self.addresses
+                if one.startswith(head)]
+
+
+class ReportTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_report_test_"))
+        cls.scenario = cls.folder / "cove.yaml"
+        cls.scenario.write_text(SCENARIO)
+        cls.trained = cls.folder / "run"
+        code, words = run("aquafarm_agents", "aquafarm_train", cls.scenario, "--algorithm",
+                          "q_learning", "--episodes", 300, "--seed", 7, "--run-dir", cls.trained, "--evaluate", 0,
+                          "--random", 0)
+        assert code == 0, words
+        code, cls.words = run("aquafarm_bringup", "make_report", cls.trained)
+        assert code == 0, cls.words
+        cls.page = Page(cls.trained / "report.html")
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder, ignore_errors=True)
+
+    def test_the_last_line_is_its_address(self):
+        self.assertEqual(f"report     {(self.trained / 'report.html').as_uri()}",
+                         self.words.splitlines()[-1])
+
+    def test_it_loads_nothing_from_anywhere(self):
+        for address in self.page.addresses:
+            self.assertTrue(address.startswith(("data:", "#")), address[:80])
+        self.assertNotIn("script", self.page.names)
+        self.assertNotIn("@import", self.page.text)
+        self.assertFalse([one for one in re.findall(r"url\(([^)]*)\)", self.page.text)
+                          if not one.startswith(("#", "data:"))])
+
+    def test_it_fits_a_phone(self):
+        self.assertEqual("width=device-width, initial-scale=1", self.page.meta["viewport"])
+        self.assertTrue("img,video,svg{max-width:100%" in self.page.text)
+
+    def test_it_tells_learner_scenario_seeds_and_version(self):
+        settings = json.loads((self.trained / "run.json").read_text())
+        for word in ("q_learning on cove", "seed of the training", settings["version"],
+                     "layout:", settings["options"]):
+            self.assertIn(word, self.page.words)
+        count = len((self.trained / "metrics.csv").read_text().splitlines()) - 1
+        for tile in ("<b>7</b><span>seed of the training", f"<b>{count}</b><span>episodes trained"):
+            self.assertTrue(tile in self.page.text, tile)
+
+    def test_it_holds_curves_of_return_success_and_loss(self):
+        self.assertIn("svg", self.page.names)
+        curve = self.page.text[self.page.text.index("<svg"):self.page.text.index("</svg>")]
+        for name in ("return", "success", "loss", "episode"):
+            self.assertIn(f"<!-- {name}", curve)
+
+    def test_the_map_shows_the_ranch(self):
+        pictures = [cv2.imdecode(np.frombuffer(one, np.uint8), cv2.IMREAD_COLOR)
+                    for one in self.page.embedded("image/png")]
+        self.assertEqual(1, len(pictures))
+        self.assertEqual((560, 640, 3), pictures[0].shape)
+        self.assertGreater(len(np.unique(pictures[0].reshape(-1, 3), axis=0)), 100)
+
+    def test_the_films_are_of_the_best_the_median_and_the_worst_episode(self):
+        films = self.page.embedded("video/mp4") + self.page.embedded("image/gif")
+        returns = [float(one) for one in re.findall(r"return (-?[0-9.]+) in", self.page.words)]
+        self.assertEqual(len(films), len(returns))
+        self.assertEqual(sorted(returns, reverse=True), returns)
+        self.assertIn("best: episode ", self.page.words)
+        for film in films:
+            path = self.folder / "film"
+            path.write_bytes(film)
+            capture = cv2.VideoCapture(str(path))
+            pictures = 0
+            while capture.read()[0]:
+                pictures += 1
+            self.assertGreater(pictures, 24)  # its steps, and two seconds of its end
+
+    def test_a_benchmark_shows_its_table_figures_and_best_learner(self):
+        output = self.folder / "benchmark"
+        code, words = run("aquafarm_agents", "aquafarm_benchmark", self.scenario, "--output",
+                          output, "--runs", 1, "--episodes", 60, "--evaluation-episodes", 10,
+                          "--algorithms", "random,q_learning", "--programs",
+                          pathlib.Path(program("aquafarm_agents", "aquafarm_train")).parent)
+        self.assertEqual(0, code, words)
+        code, words = run("aquafarm_bringup", "make_report", output, "-o", self.folder / "b.html",
+                          "--episodes", 10)
+        self.assertEqual(0, code, words)
+        page = Page(self.folder / "b.html")
+        figures = list((output / "figures").glob("*.png"))
+        self.assertEqual(len(figures) + 1, len(page.embedded("image/png")))
+        for word in ("Benchmark on cove", "Q-learning, paper", "RANDOM", "The best learner",
+                     "Seeds of the trainings", "evaluation_episodes"):
+            self.assertIn(word, page.words)
+
+    def test_a_launch_ends_with_the_report(self):
+        folder = self.folder / "launched"
+        with Ranch("train", f"scenario:={self.scenario}", "episodes:=40", "farms:=4",
+                   "evaluation_episodes:=0", "random_episodes:=0", "viz:=false",
+                   f"run_dir:={folder}", f"report:={folder}") as ranch:
+            self.assertEqual(0, ranch.exit_code(90), ranch.words())
+            self.assertIn(f"report     {(folder / 'report.html').as_uri()}", ranch.words())
+        Page(folder / "report.html")
+
+    def test_a_route_becomes_a_bag_only_of_its_own_scenario(self):
+        route, bag = self.folder / "route.json", self.folder / "route.bag"
+        code, words = run("aquafarm_agents", "aquafarm_evaluate", self.trained, "--episodes", 1,
+                          "--route", route, "--route-episode", 5)
+        self.assertEqual(0, code, words)
+        own = self.trained / "scenario.yaml"
+        self.assertEqual((0, ""), run("aquafarm_sim", "episode_bag", own, route, "-o", bag))
+        code, words = run("aquafarm_sim", "verify_bag", bag)
+        self.assertEqual(0, code, words)
+        self.assertIn("episode 5 of seed ", words)
+        other = self.folder / "other.yaml"
+        other.write_text(SCENARIO.replace("width: 6", "width: 7"))
+        code, words = run("aquafarm_sim", "episode_bag", other, route, "-o", bag)
+        self.assertEqual((2, f"episode_bag: {route}: is of another scenario than {other}\n"),
+                         (code, words))
+        code, words = run("aquafarm_sim", "episode_bag", own, other, "-o", bag)
+        self.assertEqual(2, code)
+        self.assertIn(f"episode_bag: {other}: no route: ", words)
+
+    def test_what_cannot_be_reported_on_has_its_line(self):
+        empty = self.folder / "empty"
+        empty.mkdir()
+        code, words = run("aquafarm_bringup", "make_report", empty)
+        self.assertEqual(2, code)
+        self.assertEqual(f"make_report: {empty}: neither a run (run.json) nor a benchmark "
+                         "(results.json)\n", words)
+        broken = self.folder / "broken"
+        shutil.copytree(self.trained, broken)
+        for path in [broken / "policy.ckpt", *broken.glob("checkpoints/*")]:
+            path.unlink()
+        code, words = run("aquafarm_bringup", "make_report", broken)
+        self.assertEqual(2, code)
+        self.assertIn("make_report: ", words)
+        self.assertEqual(1, len(words.splitlines()), words)
+        code, words = run("aquafarm_bringup", "make_report", self.trained, "--episodes", 3, "-o",
+                          "/proc/none.html", env=dict(os.environ))
+        self.assertEqual(2, code)
+        self.assertIn("make_report: /proc/none.html: cannot be written: ", words)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_bringup", "report", ReportTest, sys.argv)

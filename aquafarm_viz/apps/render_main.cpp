@@ -37,6 +37,7 @@ struct Request {
   bool at_end{};
   double rate_hz{10.0};
   std::uint64_t every{1};
+  aquafarm_viz::Layers layers;
   std::optional<std::uint64_t> episode;
   aquafarm_viz::ImageSize size;
 };
@@ -96,6 +97,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   rosbag::View view(bag, rosbag::TopicQuery({prefix + kSpec, prefix + kState, prefix + kTraining}));
   aquafarm_viz::Pairing pairing;
   aquafarm_viz::Wake wake;
+  aquafarm_viz::Wake route(aquafarm_viz::Wake::kWhole);
   aquafarm_msgs::TrainingStatusConstPtr training;
   Found found;
   for (const auto& message : view) {
@@ -109,11 +111,14 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
     if (const auto fault = pairing.AddState(state); !fault.empty()) throw std::runtime_error(fault);
     if (pairing.shown().state != state) continue;
     wake.Update(*state);
+    route.Update(*state);
     if (found.states++ == 0) found.first_episode = state->episode;
     found.last_episode = state->episode;
     found.last_step = std::max(found.last_step, state->step);
     if (request.episode && *request.episode != state->episode) continue;
-    if (!look({*pairing.shown().spec, *state, {&wake, training.get()}})) break;
+    if (!look({*pairing.shown().spec, *state, {&wake, training.get(), &route, request.layers}})) {
+      break;
+    }
   }
   return found;
 }
@@ -175,6 +180,7 @@ void RenderFilm(Request request) {
 
 int main(int argc, char** argv) {
   Request request;
+  std::string layers{"wake,risk"};
   CLI::App app(
       "Draws a recorded ranch, with no ROS running: steps as a picture (png, jpg), side by side "
       "if\n"
@@ -185,6 +191,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   auto* step = app.add_option("--step", request.steps, "step of the episode (default 0)");
   app.add_flag("--end", request.at_end, "the episode's last step")->excludes(step);
+  app.add_option("--layers", layers, "some of wake, risk, route, sight, with commas; or none")
+      ->capture_default_str();
   app.add_option("--fps", request.rate_hz, "film: pictures a second")
       ->check(CLI::Range(0.5, 60.0))
       ->capture_default_str();
@@ -201,6 +209,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   try {
+    request.layers = aquafarm_viz::ParseLayers(layers);
     aquafarm_viz::Film::Is(request.output) ? RenderFilm(request) : RenderPicture(request);
   } catch (const std::exception& fault) {
     std::fprintf(stderr, "render: %s\n", fault.what());

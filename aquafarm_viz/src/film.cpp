@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_viz/film.h"
 
+#include <fcntl.h>
 #include <gif_lib.h>
 
 #include <algorithm>
@@ -104,7 +105,9 @@ class GifFilm final : public Film {
   GifFilm(const std::string& path, cv::Size size, double rate_hz)
       : path_(path), size_(size), pause_(std::max(2, cvRound(100.0 / rate_hz))) {
     int error = 0;
-    file_ = EGifOpenFileName(Beside(path).c_str(), false, &error);
+    // giflib's own opening would let nobody else read it.
+    const int handle = open(Beside(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (handle >= 0) file_ = EGifOpenFileHandle(handle, &error);
     if (file_ == nullptr) throw std::runtime_error(path + ": could not be written");
     EGifSetGifVersion(file_, true);
   }

@@ -58,8 +58,11 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   }
   p.background.copyTo(p.image);
   cv::Mat map = p.image(p.layout.map);
-  if (extras.wake != nullptr) DrawWakes(map, state, *extras.wake, p.layout);
-  ShadeDisasters(map, state, p.layout);
+  const Layers& layers = extras.layers;
+  if (layers.wake && extras.wake != nullptr) DrawWakes(map, state, *extras.wake, p.layout);
+  if (layers.risk) ShadeDisasters(map, state, p.layout);
+  if (layers.route && extras.route != nullptr) DrawRoutes(map, state, *extras.route, p.layout);
+  if (layers.sight) DrawSight(map, spec, state, p.layout);
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
   DrawDisasterSigns(map, spec, state, p.layout, p.fonts);

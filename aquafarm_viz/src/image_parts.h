@@ -65,6 +65,14 @@ void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 void DrawWakes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Wake& wake,
                const Layout& layout);
 
+/// Draws the ways that ships came since the episode began, from violet over red to yellow.
+void DrawRoutes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Wake& route,
+                const Layout& layout);
+
+/// Draws how far each ship sees in partial view.
+void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+               const aquafarm_msgs::FarmState& state, const Layout& layout);
+
 /// Draws ports with their letters.
 void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                const Fonts& fonts);

@@ -143,6 +143,33 @@ void DrawWakes(cv::Mat& map, const FarmState& state, const Wake& wake, const Lay
   }
 }
 
+void DrawRoutes(cv::Mat& map, const FarmState& state, const Wake& route, const Layout& layout) {
+  constexpr Rgb kFirst{0x5c, 0x2d, 0x91};
+  constexpr Rgb kMiddle{0xe6, 0x4a, 0x6b};
+  constexpr Rgb kLast{0xff, 0xe0, 0x66};
+  for (const auto& ship : state.ships) {
+    const ShipWake* way = ship.visible ? route.Find(ship.id) : nullptr;
+    if (way == nullptr) continue;
+    for (std::size_t i = 1; i < way->places.size(); ++i) {
+      const double share = double(i) / double(way->places.size());
+      const Rgb color =
+          share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share) : Mix(kMiddle, kLast, 2.0 * share - 1.0);
+      DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
+               layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color), layout.Px(2.5));
+    }
+  }
+}
+
+void DrawSight(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
+  if (spec.view_mode != FarmSpec::PARTIAL) return;
+  const double radius_px = double(spec.sensor_radius) * layout.view.cell_px();
+  if (!(radius_px > 0.0 && radius_px < map.rows + map.cols)) return;  // NaN, or beyond the map
+  for (const auto& ship : state.ships) {
+    if (!ship.visible || !ship.active || !InGrid(spec, ship.x, ship.y)) continue;
+    StrokeCircle(map, layout.view.ToPixel(ship.x, ship.y), radius_px, Bgr(kPaper), layout.Px(1.5));
+  }
+}
+
 void DrawPorts(cv::Mat& map, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
   for (const auto& port : spec.ports) {
     if (!InGrid(spec, port.cell.x, port.cell.y)) continue;

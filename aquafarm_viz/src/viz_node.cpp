@@ -2,10 +2,12 @@
 #include "aquafarm_viz/viz_node.h"
 
 #include <cv_bridge/cv_bridge.h>
+#include <nav_msgs/Path.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <stdexcept>
@@ -18,6 +20,7 @@ namespace {
 
 constexpr double kWarnEvery_s = 5.0;
 constexpr int kJpegQuality = 90;
+constexpr std::int32_t kMostRoutes = 64;  // ships with a topic of their own
 
 template <typename Value>
 void Read(const ros::NodeHandle& node, const char* name, Value& value, Value low, Value high) {
@@ -42,11 +45,14 @@ VizParams ReadVizParams(const ros::NodeHandle& node) {
   VizParams params;
   Read(node, names::kRateParam, params.rate_hz, 0.1, 1000.0);
   Read(node, names::kWidthParam, params.image.width, kMinImageSide, kMaxImageSide);
+  std::string layers;
+  if (node.getParam(names::kLayersParam, layers)) params.layers = ParseLayers(layers);
   Read(node, names::kHeightParam, params.image.height, kMinImageSide, kMaxImageSide);
   return params;
 }
 
-VizNode::VizNode(ros::NodeHandle node, const VizParams& params) : painter_(params.image) {
+VizNode::VizNode(ros::NodeHandle node, const VizParams& params)
+    : node_(node), layers_(params.layers), painter_(params.image) {
   markers_ = node.advertise<visualization_msgs::MarkerArray>(
       names::kMarkers, 10,
       [this](const ros::SingleSubscriberPublisher& subscriber) { OnMarkerSubscriber(subscriber); });
@@ -67,7 +73,13 @@ void VizNode::OnSpec(const aquafarm_msgs::FarmSpecConstPtr& spec) {
     ROS_WARN_THROTTLE(kWarnEvery_s, "spec refused: %s", fault.c_str());
     return;
   }
-  marked_ = pictured_ = false;
+  marked_ = pictured_ = routed_ = false;
+  for (auto ship = static_cast<std::int32_t>(routes_.size());
+       ship < std::min(spec->agents, kMostRoutes); ++ship) {
+    routes_.push_back(node_.advertise<nav_msgs::Path>(
+        "ship_" + std::to_string(ship) + "/" + names::kRoute, 2,
+        [this](const ros::SingleSubscriberPublisher&) { routed_ = false; }));
+  }
 }
 
 void VizNode::OnState(const aquafarm_msgs::FarmStateConstPtr& state) {
@@ -76,7 +88,8 @@ void VizNode::OnState(const aquafarm_msgs::FarmStateConstPtr& state) {
     return;
   }
   wake_.Update(*state);
-  marked_ = pictured_ = false;
+  route_.Update(*state);
+  marked_ = pictured_ = routed_ = false;
 }
 
 void VizNode::OnTraining(const aquafarm_msgs::TrainingStatusConstPtr& training) {
@@ -100,8 +113,9 @@ void VizNode::Draw() {
   try {
     if (!marked_) PublishMarkers(shown);
     if (!pictured_) PublishImages(shown);
+    if (!routed_) PublishRoutes(shown);
   } catch (const std::exception& fault) {
-    marked_ = pictured_ = true;  // the same state would fail again
+    marked_ = pictured_ = routed_ = true;  // the same state would fail again
     ROS_ERROR_THROTTLE(kWarnEvery_s, "state not drawn: %s", fault.what());
   }
 }
@@ -115,11 +129,31 @@ void VizNode::PublishMarkers(const Shown& shown) {
   marked_ = true;
 }
 
+void VizNode::PublishRoutes(const Shown& shown) {
+  for (std::size_t ship = 0; ship < routes_.size(); ++ship) {
+    const ShipWake* way = route_.Find(static_cast<std::int32_t>(ship));
+    if (way == nullptr || routes_[ship].getNumSubscribers() == 0) continue;
+    nav_msgs::Path path;
+    path.header = shown.state->header;
+    path.header.frame_id = names::kMapFrame;
+    path.poses.resize(way->places.size());
+    for (std::size_t i = 0; i < way->places.size(); ++i) {
+      path.poses[i].header = path.header;
+      path.poses[i].pose.position.x = way->places[i].x * shown.spec->cell_size_m;
+      path.poses[i].pose.position.y = way->places[i].y * shown.spec->cell_size_m;
+      path.poses[i].pose.orientation.w = 1.0;
+    }
+    routes_[ship].publish(path);
+  }
+  routed_ = true;
+}
+
 void VizNode::PublishImages(const Shown& shown) {
   const bool raw = image_.getNumSubscribers() > 0;
   const bool compressed = compressed_.getNumSubscribers() > 0;
   if (!raw && !compressed) return;
-  const cv::Mat& picture = painter_.Draw(*shown.spec, *shown.state, {&wake_, training_.get()});
+  const cv::Mat& picture =
+      painter_.Draw(*shown.spec, *shown.state, {&wake_, training_.get(), &route_, layers_});
   std_msgs::Header header = shown.state->header;
   header.frame_id = names::kMapFrame;
   if (raw) image_.publish(cv_bridge::CvImage(header, "bgr8", picture).toImageMsg());

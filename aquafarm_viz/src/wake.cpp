@@ -29,7 +29,7 @@ void Wake::Update(const aquafarm_msgs::FarmState& state) {
       }
     }
     wake.places.push_back(place);
-    if (wake.places.size() > kLength) wake.places.pop_front();
+    if (wake.places.size() > length_) wake.places.pop_front();
   }
 }
 

@@ -266,6 +266,50 @@ TEST(Image, SurvivesWhatAnObservationOrAnAttackerMaySend) {
   EXPECT_NO_THROW(DrawFarm(spec, state, kSize, {&wake, &training}));
 }
 
+// How many pixels a layer changes.
+int Changed(const char* layers, const char* others) {
+  auto spec = test::MakeSpec();
+  spec.view_mode = aquafarm_msgs::FarmSpec::PARTIAL;
+  spec.sensor_radius = 5.0F;
+  auto state = test::MakeState();
+  Wake wake;
+  Wake route(Wake::kWhole);
+  for (int i = 0; i < 60; ++i) {
+    state.ships.front().x = 2 + (i < 18 ? i : 18);
+    state.ships.front().y = 2 + (i < 18 ? 0 : i % 18);
+    state.ships.front().action = 3;
+    ++state.step;
+    wake.Update(state);
+    route.Update(state);
+  }
+  const cv::Mat one = DrawFarm(spec, state, kSize, {&wake, nullptr, &route, ParseLayers(layers)});
+  const cv::Mat other = DrawFarm(spec, state, kSize, {&wake, nullptr, &route, ParseLayers(others)});
+  cv::Mat difference;
+  cv::absdiff(one, other, difference);
+  return cv::countNonZero(difference.reshape(1));
+}
+
+TEST(Image, EachLayerShowsSomethingAndCanBeLeftOut) {
+  for (const char* layer : {"wake", "risk", "route", "sight"}) {
+    EXPECT_GT(Changed(layer, "none"), 300) << layer;
+  }
+  EXPECT_GT(Changed("wake", "route"), 300);
+  EXPECT_EQ(Changed("wake,risk,route,sight", "sight,route,risk,wake"), 0);
+}
+
+TEST(Image, LayersThatThereAreNotHaveTheirLine) {
+  for (const char* wrong : {"rain", "", "wake,", "wake,rain"}) {
+    try {
+      ParseLayers(wrong);
+      FAIL() << wrong;
+    } catch (const std::invalid_argument& fault) {
+      const std::string name = std::string(wrong).find("rain") == std::string::npos ? "" : "rain";
+      EXPECT_EQ("layers: got '" + name + "', expected some of: wake, risk, route, sight; or none",
+                fault.what());
+    }
+  }
+}
+
 TEST(Image, RefusesWhatCannotBeDrawn) {
   auto spec = test::MakeSpec();
   spec.width = -1;

@@ -167,6 +167,11 @@ TEST_F(RenderTest, WithoutACodecItSaysWhatElseThereIs) {
             std::string::npos)
       << result.output;
   EXPECT_FALSE(fs::exists(Path("x.mp4")));
+  const Result layers = Render(bag + " --layers rain -o " + Path("y.png"));
+  EXPECT_NE(layers.code, 0);
+  EXPECT_NE(layers.output.find("render: layers: got 'rain', expected some of: wake, risk, route, "
+                               "sight; or none"),
+            std::string::npos);
   const Result gif = Render(bag + " -o " + Path("no/such/folder/x.gif"));
   EXPECT_NE(gif.code, 0);
   EXPECT_NE(gif.output.find("x.gif: could not be written"), std::string::npos) << gif.output;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
+#include <nav_msgs/Path.h>
 #include <ros/ros.h>
 #include <sensor_msgs/CompressedImage.h>
 #include <sensor_msgs/Image.h>
@@ -105,6 +106,28 @@ TEST_F(VizNodeTest, CompressesOnlyWhatIsAskedFor) {
   const cv::Mat picture = cv::imdecode(images.back()->data, cv::IMREAD_COLOR);
   EXPECT_EQ(picture.size(), cv::Size(640, 640));
   EXPECT_EQ(images.back()->format, "bgr8; jpeg compressed bgr8");
+}
+
+TEST_F(VizNodeTest, TellsEachShipsRouteAsAPathInMetres) {
+  nav_msgs::PathConstPtr path;
+  const auto subscriber = node_.subscribe<nav_msgs::Path>(
+      "ship_0/route", 10, [&](const nav_msgs::PathConstPtr& got) { path = got; });
+  Announce(80);
+  ASSERT_TRUE(Until([&] { return subscriber.getNumPublishers() > 0; }));
+  for (int step = 1; step <= 4; ++step) {
+    auto state = test::MakeState();
+    state.episode = 80;
+    state.step = static_cast<std::uint64_t>(step);
+    state.ships.front().x = 4 + step;
+    state.ships.front().y = 7;
+    state_.publish(state);
+  }
+  ASSERT_TRUE(Until([&] { return path != nullptr && path->poses.size() == 4; }));
+  EXPECT_EQ(path->header.frame_id, "map");
+  const double cell_m = test::MakeSpec().cell_size_m;
+  EXPECT_EQ(path->poses.front().pose.position.x, 5 * cell_m);
+  EXPECT_EQ(path->poses.back().pose.position.x, 8 * cell_m);
+  EXPECT_EQ(path->poses.back().pose.position.y, 7 * cell_m);
 }
 
 // Counts what comes on `markers`.

@@ -32,6 +32,12 @@ TEST(Wake, HasALimit) {
   EXPECT_LE(wake.Find(0)->places.size(), Wake::kLength);
 }
 
+TEST(Wake, WithRoomForItIsTheWholeRoute) {
+  Wake route(Wake::kWhole);
+  for (int i = 0; i < 100; ++i) route.Update(At(static_cast<std::uint64_t>(i), i % 2, 3));
+  EXPECT_EQ(route.Find(0)->places.size(), 100U);
+}
+
 TEST(Wake, BreaksOffWhereStatesAreMissing) {
   Wake wake;
   wake.Update(At(0, 5, 3));

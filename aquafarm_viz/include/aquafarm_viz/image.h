@@ -23,6 +23,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
+#include "aquafarm_viz/layers.h"
 #include "aquafarm_viz/map_view.h"
 #include "aquafarm_viz/wake.h"
 
@@ -41,6 +42,8 @@ struct ImageSize {
 struct Extras {
   const Wake* wake{};                               ///< the ways ships came
   const aquafarm_msgs::TrainingStatus* training{};  ///< how the learner gets on
+  const Wake* route{};                              ///< of the whole episode so far
+  Layers layers{};                                  ///< which of them, and of the state, are drawn
 };
 
 /// Where the map lies in a picture.

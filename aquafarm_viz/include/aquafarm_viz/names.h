@@ -12,6 +12,9 @@ inline constexpr char kMarkers[] = "markers";
 inline constexpr char kImage[] = "image";
 inline constexpr char kCompressed[] = "image/compressed";
 
+inline constexpr char kRoute[] = "route";  ///< beneath ship_<id>
+
+inline constexpr char kLayersParam[] = "layers";
 inline constexpr char kRateParam[] = "rate_hz";
 inline constexpr char kWidthParam[] = "image_width";
 inline constexpr char kHeightParam[] = "image_height";

@@ -8,6 +8,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include "aquafarm_viz/image.h"
 #include "aquafarm_viz/pairing.h"
@@ -18,14 +19,16 @@ namespace aquafarm_viz {
 struct VizParams {
   double rate_hz{20.0};  ///< most drawings a second of wall time, (0, 1000]
   ImageSize image;       ///< pixels, each side in [kMinImageSide, kMaxImageSide]
+  Layers layers;         ///< of the pictures
 };
 
 /// Reads the parameters.
 /// @throws std::invalid_argument naming the parameter, what it is and what is allowed.
 VizParams ReadVizParams(const ros::NodeHandle& node);
 
-/// Publishes `markers`, `image` and `image/compressed`, at most rate_hz times a second of wall
-/// time, only of states that are new, and each only while somebody subscribes.
+/// Publishes `markers`, `image`, `image/compressed` and each ship's `ship_<id>/route`, at most
+/// rate_hz times a second of wall time, only of states that are new, and each only while somebody
+/// subscribes.
 class VizNode {
  public:
   /// @param node  namespace of the topics.
@@ -39,18 +42,24 @@ class VizNode {
   void Draw();
   void PublishMarkers(const Shown& shown);
   void PublishImages(const Shown& shown);
+  void PublishRoutes(const Shown& shown);
 
+  ros::NodeHandle node_;
   Pairing pairing_;
   Wake wake_;
+  Wake route_{Wake::kWhole};
+  const Layers layers_;
   FarmPainter painter_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
   bool marked_{};         // state of `markers`: whether it is up to date
   bool pictured_{};       // the same of the images
+  bool routed_{};         // and of the routes
   Shown marked_episode_;  // the episode whose standing markers were sent
 
   ros::Publisher markers_;
   ros::Publisher image_;
   ros::Publisher compressed_;
+  std::vector<ros::Publisher> routes_;  // by ship
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_topic_;

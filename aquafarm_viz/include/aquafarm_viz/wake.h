@@ -18,11 +18,14 @@ struct ShipWake {
   std::deque<cv::Point> places;  ///< cells it stood at, oldest first, the present one last
 };
 
-/// Remembers the recent way of each ship of one farm.
+/// Remembers the recent way of each ship of one farm; with room for it, its whole route.
 class Wake {
  public:
-  static constexpr std::size_t kLength = 24;  ///< places remembered
-  static constexpr int kMaxJump = 2;          ///< cells; farther apart means states were missed
+  static constexpr std::size_t kLength = 24;        ///< places remembered of a wake
+  static constexpr std::size_t kWhole = 1'000'000;  ///< the same of a route
+  static constexpr int kMaxJump = 2;                ///< cells; farther apart: states were missed
+
+  explicit Wake(std::size_t length = kLength) : length_(length) {}
 
   /// Takes the next state in; another episode or an earlier step starts anew.
   void Update(const aquafarm_msgs::FarmState& state);
@@ -31,6 +34,7 @@ class Wake {
   const ShipWake* Find(std::int32_t ship) const;
 
  private:
+  std::size_t length_;
   std::uint64_t seed_{};
   std::uint64_t episode_{};
   std::uint64_t step_{};

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+namespace aquafarm_viz {
+
+/// What a picture shows besides the chart, ships and devices.
+struct Layers {
+  bool wake{true};  ///< the recent way of each ship
+  bool risk{true};  ///< the rings of disasters, shaded by severity
+  bool route{};     ///< the whole way of each ship, coloured in time order (Fig. 11)
+  bool sight{};     ///< in partial view: how far each ship sees
+};
+
+/// Reads names with commas between them, such as "risk,route"; "none" for nothing.
+/// @throws std::invalid_argument "layers: got 'rain', expected some of: wake, risk, route, sight"
+Layers ParseLayers(const std::string& names);
+
+}  // namespace aquafarm_viz

@@ -45,7 +45,7 @@ class KeepEpisodesTest(unittest.TestCase):
         self.assertEqual({self.folder / "run" / "episodes"}, {bag.parent for bag in self.bags()})
         code, words = verify(*self.bags())
         self.assertEqual(0, code, words)
-        self.assertEqual(8, words.count(": identical: 1 episodes, "), words)
+        self.assertEqual(8, words.count(": identical: 1 episode, "), words)
         with rosbag.Bag(str(self.bags()[0])) as bag:
             topics = bag.get_type_and_topic_info().topics
             self.assertLessEqual({f"/aquafarm/{name}" for name in (

@@ -11,6 +11,7 @@ import pathlib
 import subprocess
 import sys
 import unittest
+from xml.etree import ElementTree
 
 HERE = pathlib.Path(__file__).resolve().parent
 VENV = pathlib.Path(sys.argv[sys.argv.index("--venv") + 1])
@@ -160,5 +161,21 @@ class GymTest(unittest.TestCase):
         self.assertTrue(data_equivalence(one, other, exact=True), f"{one}\n{other}")
 
 
+def tell_skipped():
+    """Leaves a result that says so: rosunit's own counts what was skipped as passed."""
+    path = next(one.split("xml:")[1] for one in sys.argv if one.startswith("--gtest_output=xml:"))
+    suite = ElementTree.Element("testsuite", name="gym", failures="0", errors="0")
+    for name in unittest.TestLoader().getTestCaseNames(GymTest):
+        case = ElementTree.SubElement(suite, "testcase", classname="GymTest", name=name)
+        ElementTree.SubElement(case, "skipped", message=WHY_NOT)
+    suite.set("tests", str(len(suite)))
+    pathlib.Path(path).parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(suite).write(path)
+    print(f"skipped: {WHY_NOT}")
+
+
 if __name__ == "__main__":
+    if WHY_NOT and any(one.startswith("--gtest_output=xml:") for one in sys.argv):
+        tell_skipped()
+        sys.exit(0)
     rostest.rosrun("aquafarm_gym", "gym", GymTest)

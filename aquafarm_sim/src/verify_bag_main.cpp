@@ -26,8 +26,8 @@ int main(int argc, char** argv) {
         std::printf("%s: %s\n", bag.c_str(), episode.c_str());
       }
       if (check.difference.empty()) {
-        std::printf("%s: identical: %llu episodes, %llu steps%s\n", bag.c_str(),
-                    static_cast<unsigned long long>(check.episodes),
+        std::printf("%s: identical: %llu episode%s, %llu steps%s\n", bag.c_str(),
+                    static_cast<unsigned long long>(check.episodes), check.episodes == 1 ? "" : "s",
                     static_cast<unsigned long long>(check.steps),
                     check.unfinished == 0 ? "" : ", the end of one is not in the bag");
       } else {

@@ -125,6 +125,11 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
 
 /// The steps asked for, side by side.
 void RenderPicture(const Request& request) {
+  if (!cv::haveImageWriter(request.output)) {
+    throw std::runtime_error(request.output +
+                             ": got an ending that is no picture's and no film's, "
+                             "expected .png, .jpg, .mp4, .webm or .gif");
+  }
   aquafarm_viz::FarmPainter painter(request.size);
   const std::vector<std::uint64_t> steps =
       request.steps.empty() ? std::vector<std::uint64_t>{0} : request.steps;

@@ -108,7 +108,10 @@ TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
   EXPECT_NE(unwritable.output.find("could not be written"), std::string::npos);
   const Result unknown = Render("--bag " + bag + " -o " + Path("x.nonsense"));
   EXPECT_NE(unknown.code, 0);
-  EXPECT_EQ(unknown.output.substr(0, 8), "render: ");
+  EXPECT_EQ(unknown.output,
+            "render: " + Path("x.nonsense") +
+                ": got an ending that is no picture's and no film's, expected .png, "
+                ".jpg, .mp4, .webm or .gif\n");
 }
 
 TEST_F(RenderTest, PutsSeveralStepsOfOneEpisodeSideBySide) {

@@ -88,8 +88,8 @@ class ReportTest(unittest.TestCase):
         cls.scenario.write_text(SCENARIO)
         cls.trained = cls.folder / "run"
         code, words = run("aquafarm_agents", "aquafarm_train", cls.scenario, "--algorithm",
-                          "q_learning", "--episodes", 300, "--seed", 7, "--run-dir", cls.trained, "--evaluate", 0,
-                          "--random", 0)
+                          "q_learning", "--episodes", 300, "--seed", 7, "--run-dir", cls.trained,
+                          "--evaluate", 0, "--random", 0)
         assert code == 0, words
         code, cls.words = run("aquafarm_bringup", "make_report", cls.trained)
         assert code == 0, cls.words

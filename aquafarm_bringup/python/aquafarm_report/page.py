@@ -5,7 +5,8 @@ import html
 import mimetypes
 
 STYLE = """
-:root{color-scheme:light dark;--ink:#12202e;--paper:#f4f7f9;--card:#fff;--rule:#d5dde4;--accent:#1b4f78}
+:root{color-scheme:light dark;--ink:#12202e;--paper:#f4f7f9;--card:#fff;--rule:#d5dde4;
+--accent:#1b4f78}
 @media(prefers-color-scheme:dark){:root{--ink:#e6edf3;--paper:#0c1620;--card:#12202e;--rule:#2b3d4f;
 --accent:#7fc1e8}.chart{background:#f4f7f9;border-radius:6px}}
 *{box-sizing:border-box}body{margin:0 auto;max-width:60rem;padding:1rem;background:var(--paper);
@@ -15,8 +16,9 @@ h2{font-size:1.15rem;margin:1.6rem 0 .5rem;color:var(--accent)}
 .tile{background:var(--card);border:1px solid var(--rule);border-radius:8px;padding:.6rem .8rem}
 .tile b{display:block;font-size:1.25rem}.tile span{font-size:.85rem;opacity:.75}
 .films{display:grid;grid-template-columns:repeat(auto-fit,minmax(17rem,1fr));gap:.8rem}
-figure{margin:0}figcaption{font-size:.9rem;margin:.2rem 0 .6rem}img,video,svg{max-width:100%;height:auto;
-display:block;border-radius:6px}.wide{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem}
+figure{margin:0}figcaption{font-size:.9rem;margin:.2rem 0 .6rem}
+img,video,svg{max-width:100%;height:auto;display:block;border-radius:6px}
+.wide{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem}
 th,td{padding:.3rem .6rem;border-bottom:1px solid var(--rule);text-align:right;white-space:nowrap}
 th:first-child,td:first-child{text-align:left}details{background:var(--card);border:1px solid
 var(--rule);border-radius:8px;padding:.5rem .8rem;margin:.5rem 0}summary{cursor:pointer}

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """N farms with S agents each, as arrays: what every environment here stands on.
 
-A backend has the attributes name, yaml, farms, agents, state_count, feature_count, plane_count, height, width and buffers (see
-aquafarm_core.FarmBatch), and the calls reset(seed, first_episode), step(actions), finished() and
-close(). LocalFarms is the farm in this process; aquafarm_gym.ros.RosFarms the one behind ROS.
+A backend has the attributes name, yaml, farms, agents, state_count, feature_count, plane_count,
+height, width and buffers (see aquafarm_core.FarmBatch), and the calls reset(seed, first_episode),
+step(actions), finished() and close(). LocalFarms is the farm in this process;
+aquafarm_gym.ros.RosFarms the one behind ROS.
 """
 import pathlib
 

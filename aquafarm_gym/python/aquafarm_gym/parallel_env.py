@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A PettingZoo environment: one farm whose ships, and devices that drive themselves, act at once."""
+"""A PettingZoo environment: one farm whose ships, and devices that drive themselves, act."""
 import aquafarm_core as core
 import numpy as np
 from gymnasium.utils import seeding

@@ -160,15 +160,20 @@ bool ParseTime(const std::string& text, std::int64_t& seconds) {
   const auto part = [&text](std::size_t at, std::size_t n) {
     return std::stoi(text.substr(at, n));
   };
-  const int year = part(0, 4);
-  const int month = part(5, 2);
-  const int day = part(8, 2);
-  if (year < kFirstYear || year > kLastYear || month < 1 || month > 12) return false;
-  if (day < 1 || day > DaysInMonth(year, month)) return false;
-  if (part(11, 2) > 23 || part(14, 2) > 59 || part(17, 2) > 59) return false;
-  seconds =
-      DaysFromCivil(year, month, day) * 86400 + part(11, 2) * 3600 + part(14, 2) * 60 + part(17, 2);
-  return true;
+  const std::optional<std::int64_t> utc =
+      UtcSeconds(part(0, 4), part(5, 2), part(8, 2), part(11, 2), part(14, 2), part(17, 2));
+  if (utc) seconds = *utc;
+  return utc.has_value();
+}
+
+std::optional<std::int64_t> UtcSeconds(int year, int month, int day, int hour, int minute,
+                                       int second) {
+  if (year < kFirstYear || year > kLastYear || month < 1 || month > 12) return std::nullopt;
+  if (day < 1 || day > DaysInMonth(year, month)) return std::nullopt;
+  if (hour < 0 || hour > 23 || minute < 0 || minute > 59 || second < 0 || second > 59) {
+    return std::nullopt;
+  }
+  return DaysFromCivil(year, month, day) * 86400 + hour * 3600 + minute * 60 + second;
 }
 
 std::optional<std::string> Nearest(const std::string& text, const std::vector<std::string>& names) {

@@ -77,6 +77,9 @@ bool Parse(const std::string& text, double& value);
 bool Parse(const std::string& text, std::int32_t& value);
 bool Parse(const std::string& text, std::uint64_t& value);
 bool ParseTime(const std::string& text, std::int64_t& seconds);
+/// UTC seconds since 1970 of a date and time; none: there is no such day or hour.
+std::optional<std::int64_t> UtcSeconds(int year, int month, int day, int hour, int minute,
+                                       int second);
 
 template <typename T>
 std::string Describe(const Interval<T>& domain) {

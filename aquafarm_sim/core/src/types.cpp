@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/types.h"
 
-#include <cstddef>
-
-#include "aquafarm/check.h"
+#include "name_of.h"
 
 namespace aquafarm {
-namespace {
 
-template <typename Enum, std::size_t N>
-std::string_view NameOf(Enum value, const std::array<std::string_view, N>& names) {
-  const auto i = static_cast<std::size_t>(value);
-  AQUAFARM_CHECK_LT(i, N);
-  return names[i];
-}
-
-}  // namespace
+using internal::NameOf;
 
 std::string_view ToString(Action value) {
   static constexpr std::array<std::string_view, kActionCount + 1> kNames{

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -11,6 +10,7 @@
 #include "aquafarm/farm.h"
 #include "aquafarm/geo_frame.h"
 #include "aquafarm/scenario_yaml.h"
+#include "shared_data.h"
 
 namespace aquafarm {
 namespace {
@@ -98,11 +98,6 @@ TEST(Paper, IsTheFarmOfThePaper) {
   EXPECT_EQ(scenario.step_limit, 5000);
   ASSERT_EQ(scenario.disasters.size(), 1U);
   EXPECT_EQ(scenario.disasters[0].start, std::nullopt);
-}
-
-fs::path SharedData() {
-  if (const char* path = std::getenv("AQUAFARM_SHARED_DATA")) return path;
-  return fs::path(AQUAFARM_CORE_DIR).parent_path().parent_path().parent_path() / "shared" / "data";
 }
 
 struct BestTrackPoint {

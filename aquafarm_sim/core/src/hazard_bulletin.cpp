@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Typhoon bulletins as JSON: a list of storms, each with its points, and forecasts with some of
+// them. No document exists; the shape is that of some two thousand files. A second spelling of
+// the keys (moveDir for move_dir, r7 for radius7) is as good as the first.
+#include <algorithm>
+#include <array>
+
+#include "field_error.h"
+#include "hazard_json.h"
+
+namespace aquafarm::internal {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::int64_t kBeijing_s = 8 * 3600;  // times have no zone
+constexpr std::int32_t kAveraging_min = 2;
+constexpr double kMostRadius_km = 3000.0;
+
+// "强台风(STY)", "台风", "Super TY" …
+StormGrade GradeOfText(const std::string& text) {
+  // The longer words first: they hold the shorter ones.
+  constexpr std::array<std::pair<std::string_view, StormGrade>, 14> kWords{{
+      {"SUPER TY", StormGrade::kSuperTyphoon},
+      {"SUPERTY", StormGrade::kSuperTyphoon},
+      {"超强台风", StormGrade::kSuperTyphoon},
+      {"STY", StormGrade::kSevereTyphoon},
+      {"强台风", StormGrade::kSevereTyphoon},
+      {"STS", StormGrade::kSevereTropicalStorm},
+      {"强热带风暴", StormGrade::kSevereTropicalStorm},
+      {"TD", StormGrade::kTropicalDepression},
+      {"热带低压", StormGrade::kTropicalDepression},
+      {"TS", StormGrade::kTropicalStorm},
+      {"热带风暴", StormGrade::kTropicalStorm},
+      {"TY", StormGrade::kTyphoon},
+      {"台风", StormGrade::kTyphoon},
+      {"", StormGrade::kUnknown},
+  }};
+  const std::string upper = Upper(text);
+  return std::find_if(
+             kWords.begin(), kWords.end(),
+             [&upper](const auto& word) { return upper.find(word.first) != std::string::npos; })
+      ->second;
+}
+
+void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys whole,
+              JsonObject::Keys quadrants, HazardFix& fix, HazardPlace& place) {
+  std::array<double, kQuadrantCount> radius{};
+  radius.fill(point.Number(whole, 0.0, kMostRadius_km).value_or(0.0));
+  if (const Json* value = point.Find(quadrants)) {
+    const JsonObject quad(*value, Join(point.path(), *quadrants.begin()), place);
+    constexpr std::array<const char*, kQuadrantCount> kKeys{"ne", "se", "sw", "nw"};
+    std::array<double, kQuadrantCount> each{};
+    for (std::size_t q = 0; q < each.size(); ++q) {
+      each[q] = quad.Number({kKeys[q]}, 0.0, kMostRadius_km).value_or(0.0);
+    }
+    if (*std::max_element(each.begin(), each.end()) > 0.0) radius = each;
+  }
+  AddSaidRing(wind_kt, radius, fix);
+}
+
+HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
+  HazardFix fix;
+  fix.time = point.NeedTime({"time"}, kBeijing_s);
+  fix.position = point.NeedPosition({"lat"}, {"lng", "lon"});
+  const double wind = point.Number({"speed"}, 0.0, 150.0).value_or(0.0);
+  if (wind > 0.0) fix.wind_mps = wind;  // 0: of old storms, not known
+  fix.averaging_min = kAveraging_min;
+  const double pressure = point.Number({"pressure"}, 0.0, 1100.0).value_or(0.0);
+  if (pressure > 0.0) fix.pressure_hpa = pressure;
+  const std::string strong = point.Text({"strong"});
+  fix.grade = GradeOfText(strong);
+  if (fix.grade == StormGrade::kUnknown) {
+    if (fix.wind_mps) fix.grade = GradeOfWind(*fix.wind_mps);
+    if (!strong.empty()) point.Here().Warn("strong: " + Quoted(strong) + " is no grade known here");
+  }
+  ReadRing(point, 34, {"radius7", "r7"}, {"radius7_quad", "r7Quad", "radius7Quad"}, fix, place);
+  ReadRing(point, 50, {"radius10", "r10"}, {"radius10_quad", "r10Quad", "radius10Quad"}, fix,
+           place);
+  ReadRing(point, 64, {"radius12", "r12"}, {"radius12_quad", "r12Quad", "radius12Quad"}, fix,
+           place);
+  fix.speed_kmh = point.Number({"move_speed", "moveSpeed"}, 0.0, 300.0);
+  const std::string direction = point.Text({"move_dir", "moveDir"});
+  fix.heading_deg = ParseDirection(direction);
+  if (!fix.heading_deg && !direction.empty()) {
+    point.Here().Warn("move_dir: " + Quoted(direction) + " is no direction known here");
+  }
+  return fix;
+}
+
+void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& track,
+                   HazardPlace& place) {
+  const Json* forecasts = point.List({"forecast"});
+  for (std::size_t i = 0; forecasts != nullptr && i < forecasts->size(); ++i) {
+    const JsonObject one((*forecasts)[i], At(Join(point.path(), "forecast"), i), place);
+    HazardForecast forecast;
+    forecast.agency = one.Text({"sets", "tm"});
+    forecast.issued = issued;
+    const Json* points = one.List({"points", "forecastpoints"});
+    for (std::size_t k = 0; points != nullptr && k < points->size(); ++k) {
+      const JsonObject entry((*points)[k], At(Join(one.path(), "points"), k), place);
+      HazardFix fix = ReadPoint(entry, place);
+      AppendFix(std::move(fix), forecast.fixes, entry.Here());
+    }
+    if (!forecast.fixes.empty()) track.forecasts.push_back(std::move(forecast));
+  }
+}
+
+void ReadLandfalls(const JsonObject& storm, HazardTrack& track, HazardPlace& place) {
+  const Json* land = storm.List({"land"});
+  for (std::size_t i = 0; land != nullptr && i < land->size(); ++i) {
+    const JsonObject entry((*land)[i], At(Join(storm.path(), "land"), i), place);
+    track.landfalls.push_back({entry.NeedTime({"land_time", "landTime"}, kBeijing_s),
+                               entry.NeedPosition({"lat"}, {"lng", "lon"}),
+                               entry.Text({"position"})});
+  }
+  std::stable_sort(track.landfalls.begin(), track.landfalls.end(),
+                   [](const Landfall& a, const Landfall& b) { return a.time < b.time; });
+}
+
+HazardTrack ReadStorm(const JsonObject& storm, HazardPlace& place) {
+  HazardTrack track;
+  track.id = storm.Text({"tfbh", "ident"});
+  if (track.id.empty()) storm.Here().Refuse("tfbh: got nothing, expected a storm's number");
+  const auto named = [](const std::string& text) { return text == "-" ? std::string() : text; };
+  track.name = named(storm.Text({"ename"}));
+  track.local_name = named(storm.Text({"name"}));
+  track.agency = "bulletin";
+  const Json* points = storm.List({"points"});
+  for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
+    const JsonObject point((*points)[i], At(Join(storm.path(), "points"), i), place);
+    HazardFix fix = ReadPoint(point, place);
+    const std::int64_t time = fix.time;
+    AppendFix(std::move(fix), track.fixes, point.Here());
+    ReadForecasts(point, time, track, place);
+  }
+  ReadLandfalls(storm, track, place);
+  FinishTrack(track, storm.Here());
+  return track;
+}
+
+}  // namespace
+
+std::vector<HazardTrack> ReadBulletin(const std::string& text, HazardPlace& place) {
+  const Json document = ParseJson(text, place);
+  std::vector<HazardTrack> tracks;
+  if (document.is_object()) {  // one storm without the list around it
+    tracks.push_back(ReadStorm(JsonObject(document, "", place), place));
+    return tracks;
+  }
+  if (!document.is_array() || document.empty()) {
+    place.RefuseValue("bulletin", "got an empty list, expected a list of storms");
+  }
+  for (std::size_t i = 0; i < document.size(); ++i) {
+    tracks.push_back(ReadStorm(JsonObject(document[i], At("", i), place), place));
+  }
+  return tracks;
+}
+
+}  // namespace aquafarm::internal

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/hazard_file.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "aquafarm/check.h"
+#include "field_domain.h"
+#include "hazard_json.h"
+
+namespace aquafarm {
+namespace {
+
+constexpr std::size_t kMaxFileBytes = 512U << 20U;  // all of IBTrACS is some 300 MiB
+
+std::string WithoutMark(const std::string& text) {
+  return text.compare(0, 3, "\xEF\xBB\xBF") == 0 ? text.substr(3) : text;
+}
+
+// The first line from `text` that is not blank; takes it off.
+std::string_view TakeLine(std::string_view& text) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = internal::Trim(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (!line.empty()) return line;
+  }
+  return {};
+}
+
+bool IsDigits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// CMA and JMA: times of ten digits against eight.
+std::optional<HazardFormat> DetectBestTrack(std::string_view text) {
+  const std::vector<std::string_view> words = internal::SplitWords(TakeLine(text));
+  if (words.empty() || !IsDigits(words[0])) return std::nullopt;
+  if (words[0].size() == 8 && words.size() > 1 && words[1] == "002") return HazardFormat::kJma;
+  return HazardFormat::kCma;
+}
+
+bool HasKey(std::string_view text, std::string_view key) {
+  return text.find(key) != std::string_view::npos;
+}
+
+}  // namespace
+
+std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
+  std::string_view rest = text;
+  if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
+  const std::string_view whole = rest;
+  const std::string_view first = TakeLine(rest);
+  if (first.substr(0, 5) == "66666") return DetectBestTrack(rest);
+  if (first.substr(0, 4) == "SID,") return HazardFormat::kIbtracs;
+  std::vector<std::string_view> fields;
+  internal::SplitFields(first.substr(0, 1000), fields);
+  if (fields.size() > 7 && fields[0].size() == 2 && IsDigits(fields[2])) {
+    return HazardFormat::kAtcf;
+  }
+  const bool json = !first.empty() && (first[0] == '[' || first[0] == '{' || first[0] == '`');
+  if (!json) return std::nullopt;
+  if (HasKey(whole, "\"tfbh\"") || (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
+    return HazardFormat::kBulletin;
+  }
+  if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"")) {
+    return HazardFormat::kWeatherService;
+  }
+  return std::nullopt;
+}
+
+HazardFile ParseHazardFile(const std::string& text, const std::string& origin_name) {
+  HazardFile file;
+  internal::HazardPlace place(origin_name, file.warnings);
+  place.line = 1;
+  const std::string clean = internal::CleanJson(text);
+  std::string_view content = clean;
+  const std::string_view first = TakeLine(content);
+  if (first.empty()) place.Refuse("got an empty file, expected tracks of storms");
+  if (first == "[]") place.Refuse("got an empty list, expected a list of storms");
+  const std::size_t binary = text.find('\0');
+  if (binary != std::string::npos) place.Refuse("got a binary file, expected tracks of storms");
+  const std::optional<HazardFormat> format = DetectHazardFormat(text);
+  if (!format) {
+    place.Refuse("got " + internal::Quoted(first) +
+                 ", expected a CMA or JMA best track, an ATCF b-deck, IBTrACS CSV, or JSON of a "
+                 "bulletin or a weather service's track");
+  }
+  file.format = *format;
+  const std::string plain = WithoutMark(text);
+  switch (file.format) {
+    case HazardFormat::kCma:
+      file.tracks = internal::ReadCma(plain, place);
+      break;
+    case HazardFormat::kJma:
+      file.tracks = internal::ReadJma(plain, place);
+      break;
+    case HazardFormat::kAtcf:
+      file.tracks = internal::ReadAtcf(plain, place);
+      break;
+    case HazardFormat::kIbtracs:
+      file.tracks = internal::ReadIbtracs(plain, place);
+      break;
+    case HazardFormat::kBulletin:
+    case HazardFormat::kWeatherService:
+      place.line = 0;
+      place.locate = [&clean](const std::string& path) {
+        return internal::LineOfJson(clean, path);
+      };
+      file.tracks = file.format == HazardFormat::kBulletin
+                        ? internal::ReadBulletin(clean, place)
+                        : internal::ReadWeatherService(clean, place);
+      break;
+  }
+  return file;
+}
+
+HazardFile LoadHazardFile(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
+  if (size > static_cast<std::streamoff>(kMaxFileBytes)) {
+    throw InputError(path + ": got " + std::to_string(size) + " bytes, expected at most " +
+                     std::to_string(kMaxFileBytes));
+  }
+  std::string text(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
+  file.seekg(0);
+  if (size < 0 || !file.read(text.data(), size)) {
+    throw InputError(path +
+                     ": cannot read: " + (errno != 0 ? std::strerror(errno) : "not a plain file"));
+  }
+  return ParseHazardFile(text, path);
+}
+
+const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {
+  const std::string wanted = internal::Upper(storm);
+  std::vector<const HazardTrack*> found;
+  std::vector<std::string> names;
+  for (const HazardTrack& track : file.tracks) {
+    if (internal::Upper(track.id) == wanted || internal::Upper(track.name) == wanted ||
+        (!storm.empty() && track.local_name == storm)) {
+      found.push_back(&track);
+    }
+    constexpr std::size_t kMostNamed = 60;
+    if (names.size() < kMostNamed) {
+      names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
+    }
+  }
+  if (found.size() == 1) return *found[0];
+  std::string where;
+  for (const HazardTrack* track : found) {
+    where += (where.empty() ? "" : ", ") + track->id + " from " +
+             internal::FormatTime(track->fixes.front().time);
+  }
+  throw InputError(
+      "storm: got '" + storm + "', expected " +
+      (found.empty() ? "one of: " + internal::List(names) : "an id, as there are " + where));
+}
+
+}  // namespace aquafarm

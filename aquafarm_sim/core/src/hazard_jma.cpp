@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// JMA / RSMC Tokyo best track: fixed columns. (jma.go.jp, e_format_bst.html)
+#include <cmath>
+
+#include "hazard_text.h"
+
+namespace aquafarm::internal {
+namespace {
+
+constexpr std::int32_t kAveraging_min = 10;
+
+std::string_view Columns(std::string_view line, std::size_t first, std::size_t end) {
+  if (first >= line.size()) return {};
+  return line.substr(first, end - first);
+}
+
+// The JMA's wind area is a circle about a centre that may lie aside of the storm's: the longest
+// radius points to one side, the shortest to the other. A quadrant is told by its middle.
+std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double longest,
+                                             double shortest) {
+  std::array<double, kQuadrantCount> radius{};
+  constexpr std::int32_t kSymmetric = 9;
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  const double towards = direction == kSymmetric ? 0.0 : direction * 45.0;  // 1 NE … 8 N
+  const double middle = (longest + shortest) / 2.0;
+  const double aside = (longest - shortest) / 2.0;
+  for (std::size_t q = 0; q < radius.size(); ++q) {
+    const double angle = (45.0 + 90.0 * static_cast<double>(q) - towards) * kDegree;
+    const double across = aside * std::sin(angle);
+    radius[q] = aside * std::cos(angle) + std::sqrt(middle * middle - across * across);
+  }
+  return radius;
+}
+
+// Blank: not said. All zero: no such wind.
+void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, HazardFix& fix,
+              const HazardPlace& place) {
+  const std::string_view direction = Columns(line, at, at + 1);
+  const std::string_view longest = Columns(line, at + 1, at + 5);
+  if (Trim(direction).empty() && Trim(longest).empty()) return;
+  const std::int32_t code = ReadWhole(direction, "direction of the longest radius", 0, 9, place);
+  const double far = ReadWhole(longest, "longest radius", 0, 2000, place) * kKmPerNauticalMile;
+  const double near = ReadWhole(Columns(line, at + 6, at + 10), "shortest radius", 0, 2000, place) *
+                      kKmPerNauticalMile;
+  if (near > far) {
+    place.Refuse("shortest radius: got one longer than the longest, of " + std::to_string(wind_kt) +
+                 " kt");
+  }
+  AddRing({wind_kt, Quadrants(code, far, near), false}, fix.rings);
+}
+
+BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
+  BestTrackHeader header;
+  header.points = ReadWhole(Columns(line, 12, 15), "number of points", 1, 999, place);
+  const std::string_view number = Trim(Columns(line, 6, 10));
+  ReadWhole(number, "number", 0, 9999, place);
+  header.track.id = number;
+  header.track.name = Trim(Columns(line, 30, 50));
+  header.track.agency = "JMA";
+  return header;
+}
+
+StormGrade Grade(std::int32_t code, const std::optional<double>& wind_mps) {
+  switch (code) {
+    case 2:
+      return StormGrade::kTropicalDepression;
+    case 3:
+      return StormGrade::kTropicalStorm;
+    case 4:
+      return StormGrade::kSevereTropicalStorm;
+    default:  // TY has no upper end here; 6, 7 and 9 do not say
+      if (wind_mps) return GradeOfWind(*wind_mps);
+      return code == 5 ? StormGrade::kTyphoon : StormGrade::kUnknown;
+  }
+}
+
+HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
+  constexpr std::size_t kThroughPressure = 28;
+  if (line.size() < kThroughPressure || Columns(line, 9, 12) != "002") {
+    place.Refuse("got " + Quoted(line) + ", expected a point: yymmddhh 002 …");
+  }
+  const std::string_view hour = Columns(line, 0, 8);
+  HazardFix fix;
+  // The file starts in 1951.
+  fix.time = ReadHour((hour < "51" ? "20" : "19") + std::string(hour), place);
+  const std::int32_t code = ReadWhole(Columns(line, 13, 14), "grade", 2, 9, place);
+  if (code == 8) place.Refuse("grade: got 8, expected one of 2 to 7 or 9");
+  fix.position = {ReadLatitudeTenths(Columns(line, 15, 18), place),
+                  ReadLongitudeTenths(Columns(line, 19, 23), place)};
+  const std::int32_t pressure = ReadWhole(Columns(line, 24, 28), "pressure", 0, 1100, place);
+  if (pressure > 0) fix.pressure_hpa = pressure;
+  const std::int32_t wind_kt =
+      ReadWholeOrBlank(Columns(line, 33, 36), "wind", 0, 250, place).value_or(0);
+  if (wind_kt > 0) fix.wind_mps = wind_kt * kMpsPerKnot;
+  fix.averaging_min = kAveraging_min;
+  fix.extratropical = code == 6;
+  fix.grade = Grade(code, fix.wind_mps);
+  ReadRing(line, 41, 50, fix, place);
+  ReadRing(line, 52, 30, fix, place);
+  fix.landfall = Columns(line, 71, 72) == "#";
+  return fix;
+}
+
+}  // namespace
+
+std::vector<HazardTrack> ReadJma(std::string_view text, HazardPlace& place) {
+  return ReadBestTracks(text, place, ReadHeader, ReadPoint);
+}
+
+}  // namespace aquafarm::internal

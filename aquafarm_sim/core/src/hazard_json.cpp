@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "hazard_json.h"
+
+#include <algorithm>
+#include <array>
+
+#include "field_domain.h"
+
+namespace aquafarm::internal {
+namespace {
+
+using Json = nlohmann::json;
+
+std::int32_t LineAt(const std::string& text, std::size_t offset) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
+  return static_cast<std::int32_t>(1 + std::count(text.begin(), end, '\n'));
+}
+
+// Gives a text to the parser and remembers how far it has read.
+class ReadingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+  ReadingIterator(const char* at, const char** read) : at_(at), read_(read) {}
+  reference operator*() const { return *at_; }
+  ReadingIterator& operator++() {
+    *read_ = ++at_;
+    return *this;
+  }
+  ReadingIterator operator++(int) {
+    const ReadingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  friend bool operator==(const ReadingIterator& a, const ReadingIterator& b) {
+    return a.at_ == b.at_;
+  }
+  friend bool operator!=(const ReadingIterator& a, const ReadingIterator& b) { return !(a == b); }
+
+ private:
+  const char* at_;
+  const char** read_;
+};
+
+// Walks to a path and stops there.
+class PathFinder : public nlohmann::json_sax<Json> {
+ public:
+  explicit PathFinder(const std::string& wanted) : wanted_(wanted) {}
+  bool null() override { return Value(); }
+  bool boolean(bool) override { return Value(); }
+  bool number_integer(number_integer_t) override { return Value(); }
+  bool number_unsigned(number_unsigned_t) override { return Value(); }
+  bool number_float(number_float_t, const string_t&) override { return Value(); }
+  bool string(string_t&) override { return Value(); }
+  bool binary(binary_t&) override { return Value(); }
+  bool start_object(std::size_t) override { return Open(false); }
+  bool start_array(std::size_t) override { return Open(true); }
+  bool end_object() override { return Close(); }
+  bool end_array() override { return Close(); }
+  bool key(string_t& key) override {
+    levels_.back().key = key;
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
+    return false;
+  }
+
+ private:
+  struct Level {
+    bool array{};
+    std::size_t index{};
+    std::string key;
+    std::string path;
+  };
+  std::string Path() const {
+    if (levels_.empty()) return "";
+    const Level& level = levels_.back();
+    return level.array ? internal::At(level.path, level.index) : Join(level.path, level.key);
+  }
+  bool Value() {
+    if (Path() == wanted_) return false;
+    if (!levels_.empty()) ++levels_.back().index;
+    return true;
+  }
+  bool Open(bool array) {
+    const std::string path = Path();
+    if (path == wanted_) return false;
+    levels_.push_back({array, 0, "", path});
+    return true;
+  }
+  bool Close() {
+    levels_.pop_back();
+    if (!levels_.empty()) ++levels_.back().index;
+    return true;
+  }
+  const std::string& wanted_;
+  std::vector<Level> levels_;
+};
+
+std::string Shown(const Json* value) {
+  if (value == nullptr) return "nothing";
+  if (value->is_object()) return "an object";
+  if (value->is_array()) return "a list";
+  if (value->is_string()) return Quoted(value->get_ref<const std::string&>());
+  return value->dump();
+}
+
+std::string InRange(double min, double max) {
+  return "a number in [" + Format(min) + ", " + Format(max) + "]";
+}
+
+}  // namespace
+
+std::string CleanJson(const std::string& text) {
+  std::string clean = text;
+  const auto blank = [&clean](std::size_t first, std::size_t end) {
+    std::fill(clean.begin() + static_cast<std::ptrdiff_t>(first),
+              clean.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+  };
+  if (clean.compare(0, 3, "\xEF\xBB\xBF") == 0) blank(0, 3);
+  const std::size_t fence = clean.find_first_not_of(" \t\r\n");
+  if (fence == std::string::npos || clean.compare(fence, 3, "```") != 0) return clean;
+  blank(fence, std::min(clean.find('\n', fence), clean.size()));
+  const std::size_t end = clean.rfind("```");
+  if (end != std::string::npos) blank(end, std::min(clean.find('\n', end), clean.size()));
+  return clean;
+}
+
+Json ParseJson(const std::string& text, HazardPlace& place) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    place.path.clear();
+    place.line = LineAt(text, error.byte == 0 ? 0 : error.byte - 1);
+    const std::string what = error.what();
+    const std::size_t reason = what.find("; ");  // after the library's own words for the place
+    place.Refuse("got no valid JSON: " +
+                 (reason == std::string::npos ? what : what.substr(reason + 2)));
+  }
+}
+
+std::int32_t LineOfJson(const std::string& text, const std::string& path) {
+  const char* read = text.data();
+  PathFinder finder(path);
+  // A number is known to end only with the character behind it.
+  const char* end = text.data() + text.size();
+  if (Json::sax_parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), &finder)) {
+    return 1;
+  }
+  const auto offset = static_cast<std::size_t>(read - text.data());
+  return LineAt(text, offset == 0 ? 0 : offset - 1);
+}
+
+JsonObject::JsonObject(const Json& value, std::string path, HazardPlace& place)
+    : value_(value), path_(std::move(path)), place_(place) {
+  if (value.is_object()) return;
+  place_.RefuseValue(path_, "got " + Shown(&value) + ", expected an object");
+}
+
+const Json* JsonObject::Find(Keys keys) const {
+  for (const char* key : keys) {
+    const auto found = value_.find(key);
+    if (found == value_.end() || found->is_null()) continue;
+    if (found->is_string()) {
+      const std::string& text = found->get_ref<const std::string&>();
+      if (Trim(text).empty() || text == "null") continue;
+    }
+    return &*found;
+  }
+  return nullptr;
+}
+
+void JsonObject::Refuse(Keys keys, const Json* got, const std::string& expected) const {
+  std::string key = *keys.begin();
+  for (const char* spelling : keys) {
+    if (value_.contains(spelling)) key = spelling;
+  }
+  place_.RefuseValue(Join(path_, key), "got " + Shown(got) + ", expected " + expected);
+}
+
+std::optional<double> JsonObject::Number(Keys keys, double min, double max) const {
+  const Json* value = Find(keys);
+  if (value == nullptr) return std::nullopt;
+  std::optional<double> number;
+  if (value->is_number()) number = value->get<double>();
+  if (value->is_string()) number = ParseNumber(value->get_ref<const std::string&>());
+  if (number && *number >= min && *number <= max) return number;
+  Refuse(keys, value, InRange(min, max));
+}
+
+double JsonObject::NeedNumber(Keys keys, double min, double max) const {
+  const std::optional<double> number = Number(keys, min, max);
+  if (number) return *number;
+  Refuse(keys, nullptr, InRange(min, max));
+}
+
+std::string JsonObject::Text(Keys keys) const {
+  const Json* value = Find(keys);
+  if (value == nullptr) return "";
+  if (!value->is_string()) return value->is_number() ? value->dump() : "";
+  return value->get<std::string>();
+}
+
+std::int64_t JsonObject::NeedTime(Keys keys, std::int64_t zone_s) const {
+  const std::optional<std::int64_t> time = ParseDateTime(Text(keys), zone_s);
+  if (!time) Refuse(keys, Find(keys), "a time as 2021-07-25T14:00:00");
+  return *time;
+}
+
+GeoPoint JsonObject::NeedPosition(Keys latitude, Keys longitude) const {
+  return {NeedNumber(latitude, -90.0, 90.0), NormalLongitude(NeedNumber(longitude, -180.0, 360.0))};
+}
+
+const Json* JsonObject::List(Keys keys) const {
+  const Json* value = Find(keys);
+  if (value != nullptr && !value->is_array()) Refuse(keys, value, "a list");
+  return value;
+}
+
+HazardPlace& JsonObject::Here() const {
+  place_.line = 0;
+  place_.path = path_;
+  return place_;
+}
+
+void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
+                 HazardFix& fix) {
+  const bool given = *std::max_element(radius_km.begin(), radius_km.end()) > 0.0;
+  const bool blows = !fix.wind_mps || *fix.wind_mps >= wind_kt * kMpsPerKnot;
+  if (given || !blows) AddRing({wind_kt, radius_km, false}, fix.rings);
+}
+
+}  // namespace aquafarm::internal

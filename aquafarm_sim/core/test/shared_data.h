@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace aquafarm {
+
+/// Folder of the real files, beside the project; tests skip where it is not.
+inline std::filesystem::path SharedData() {
+  namespace fs = std::filesystem;
+  if (const char* path = std::getenv("AQUAFARM_SHARED_DATA")) return path;
+  return fs::path(AQUAFARM_CORE_DIR).parent_path().parent_path().parent_path() / "shared" / "data";
+}
+
+}  // namespace aquafarm

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hazard_text.h"
 #include "name_of.h"
 
 namespace aquafarm {
@@ -124,18 +125,15 @@ void ComputeMotion(std::vector<HazardFix>& fixes) {
   }
 }
 
-bool EstimateRings(HazardFix& fix) {
-  if (!fix.rings.empty() || !fix.wind_mps || *fix.wind_mps <= 0.0) return false;
-  const HollandProfile profile(fix);
-  for (const std::int32_t wind_kt : {34, 50, 64}) {
-    const double wind_mps = wind_kt * kMpsPerKnot;
-    WindRing ring;
-    ring.wind_kt = wind_kt;
-    ring.radius_km.fill(*fix.wind_mps >= wind_mps ? RadiusOf(wind_mps, profile) / 1000.0 : 0.0);
-    ring.estimated = true;
-    fix.rings.push_back(ring);
-  }
-  return true;
+bool EstimateRing(HazardFix& fix, std::int32_t wind_kt) {
+  if (fix.Ring(wind_kt) != nullptr || !fix.wind_mps || *fix.wind_mps <= 0.0) return false;
+  const double wind_mps = wind_kt * kMpsPerKnot;
+  WindRing ring;
+  ring.wind_kt = wind_kt;
+  ring.radius_km.fill(*fix.wind_mps >= wind_mps ? RadiusOf(wind_mps, HollandProfile(fix)) / 1000.0
+                                                : 0.0);
+  ring.estimated = true;
+  return internal::AddRing(ring, fix.rings);
 }
 
 }  // namespace aquafarm

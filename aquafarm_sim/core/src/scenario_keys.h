@@ -65,8 +65,11 @@ void VisitGeoPoint(Archive& a, Point& point) {
   a.Leaf("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
 }
 
+/// Risks of the rings by grade, 1 to 4; empty where a scenario gives none.
+using GradeRisks = std::vector<std::vector<float>>;
+
 template <typename Archive, typename W>
-void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame) {
+void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const GradeRisks& by_grade) {
   const ListOf<Interval<float>> radii{kRadius, 1, kMaxRings};
   const bool real = a.Has("time", false);
   a.When(!real, "there is no time");
@@ -87,14 +90,27 @@ void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame) {
   }
   a.Always();
   a.Leaf("grade", waypoint.grade, kGrade, Need::kRequired);
+  if constexpr (Archive::kReads) {
+    if (!by_grade.empty()) waypoint.risks = by_grade[static_cast<std::size_t>(waypoint.grade - 1)];
+  }
   a.Leaf("risks", waypoint.risks, ListOf<Interval<float>>{kRisk, 1, kMaxRings});
 }
 
 template <typename Archive, typename D>
 void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   const bool tracked = a.Has("track", !disaster.track.empty());
+  const ListOf<Interval<float>> risks{kRisk, 1, kMaxRings};
+  const bool graded = a.Has("grade_risks", false);
+  GradeRisks by_grade;
   a.Leaf("kind", disaster.kind, OneOfNames{}, Need::kRequired);
-  a.Leaf("risks", disaster.risks, ListOf<Interval<float>>{kRisk, 1, kMaxRings});
+  a.When(!graded, "there are no grade_risks");
+  a.Leaf("risks", disaster.risks, risks);
+  a.Always();
+  if constexpr (Archive::kReads) {
+    a.When(tracked, "there is a track");
+    a.Leaf("grade_risks", by_grade, ListOf<ListOf<Interval<float>>>{risks, 4, 4});
+    a.Always();
+  }
   a.Leaf("duration", disaster.duration, Interval<std::int32_t>{1, kMaxSteps});
   a.When(!tracked, "there is no track");
   a.Leaf("grade", disaster.grade, kGrade);
@@ -109,9 +125,10 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   if (!tracked) return;
   a.Objects("track", disaster.track, {1, kMaxWaypoints}, [&](auto& b, auto& waypoint) {
     if constexpr (Archive::kReads) waypoint.risks = disaster.risks;
-    VisitWaypoint(b, waypoint, frame);
+    VisitWaypoint(b, waypoint, frame, by_grade);
   });
   if constexpr (Archive::kReads) {  // a tracked disaster is first what its first waypoint is
+    if (graded) disaster.risks = disaster.track.front().risks;
     disaster.grade = disaster.track.front().grade;
     disaster.radii = disaster.track.front().radii;
   }

@@ -289,27 +289,29 @@ TEST(Grades, AreThoseOfTheStandard) {
 TEST(EstimatedRings, FallOffAsHollandsWindAndAreMarked) {
   HazardFix fix;
   fix.position = {30.0, 122.2};
-  EXPECT_FALSE(EstimateRings(fix)) << "no wind";
+  EXPECT_FALSE(EstimateRing(fix, 34)) << "no wind";
   fix.wind_mps = 38.0;
   fix.pressure_hpa = 965.0;
-  ASSERT_TRUE(EstimateRings(fix));
+  for (const std::int32_t wind_kt : {64, 34, 50}) EXPECT_TRUE(EstimateRing(fix, wind_kt));
   ASSERT_EQ(fix.rings.size(), 3U);
   // Rmax = 46.4 exp(-0.589 + 0.507) = 42.7 km; B = 1.00; f = 7.292e-5 /s. At 214 km:
   // a = 0.2, Vc^2 = 1562, sqrt(1562 · 0.2 · e^0.8 + 61) - 7.8 = 19.7 m/s, so that 17.5 is beyond.
-  const double gale = fix.Ring(34)->radius_km[0];
+  EXPECT_EQ(fix.rings[0].wind_kt, 34) << "the weakest first";
+  const double gale = fix.rings[0].radius_km[0];
   EXPECT_GT(gale, 214.0);
   EXPECT_LT(gale, 260.0);
-  EXPECT_GT(fix.Ring(64)->radius_km[0], 42.7);
-  EXPECT_GT(fix.Ring(50)->radius_km[0], fix.Ring(64)->radius_km[0]);
+  EXPECT_GT(fix.rings[2].radius_km[0], 42.7);
+  EXPECT_GT(fix.rings[1].radius_km[0], fix.rings[2].radius_km[0]);
   EXPECT_TRUE(fix.rings[0].estimated);
-  EXPECT_FALSE(EstimateRings(fix)) << "there are rings";
+  EXPECT_FALSE(EstimateRing(fix, 34)) << "there is one";
 }
 
 TEST(EstimatedRings, AreNoneAboveTheStormsOwnWind) {
   HazardFix fix;
   fix.position = {30.0, 122.2};
   fix.wind_mps = 20.0;
-  ASSERT_TRUE(EstimateRings(fix));
+  ASSERT_TRUE(EstimateRing(fix, 34));
+  ASSERT_TRUE(EstimateRing(fix, 50));
   EXPECT_GT(fix.Ring(34)->radius_km[0], 0.0);
   EXPECT_EQ(fix.Ring(50)->radius_km[0], 0.0);
 }

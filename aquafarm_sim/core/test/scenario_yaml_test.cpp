@@ -203,12 +203,33 @@ TEST(Writer, KeepsExplicitPlaces) {
   EXPECT_EQ(back.AgentCount(), 2);
 }
 
+TEST(Tracks, TakeTheirRisksFromTheirGrade) {
+  const Scenario scenario = ParseScenario(R"(
+name: x
+disasters:
+  - kind: typhoon
+    grade_risks: [[-8, -5], [-12, -5], [-16, -6], [-20, -7]]
+    track:
+      - {step: 0, x: 0, y: 0, radii: [1, 2], grade: 3}
+      - {step: 5, x: 9, y: 0, radii: [1, 2], grade: 1}
+      - {step: 9, x: 9, y: 9, radii: [1, 2], grade: 1, risks: [-19, -9]}
+)",
+                                          "graded");
+  const DisasterSpec& disaster = scenario.disasters.at(0);
+  EXPECT_EQ(disaster.risks, (std::vector<float>{-16.0F, -6.0F}));
+  EXPECT_EQ(disaster.track[0].risks, (std::vector<float>{-16.0F, -6.0F}));
+  EXPECT_EQ(disaster.track[1].risks, (std::vector<float>{-8.0F, -5.0F}));
+  EXPECT_EQ(disaster.track[2].risks, (std::vector<float>{-19.0F, -9.0F}));
+  EXPECT_EQ(ParseScenario(ToYaml(scenario), "again").hash, scenario.hash);
+}
+
 TEST(Documentation, NamesEveryKey) {
   std::ifstream file(AQUAFARM_CORE_DIR "/../../docs/scenario.md");
   if (!file) GTEST_SKIP() << "no docs beside this copy of the core";
   const std::string docs((std::istreambuf_iterator<char>(file)), {});
   std::istringstream keys(ToYaml(UnusualScenario()) + ToYaml(test::TinyScenario()) +
-                          "time:\nlatitude:\nlongitude:\nradii_km:\npressure_hpa:\nwind_mps:\n");
+                          "time:\nlatitude:\nlongitude:\nradii_km:\npressure_hpa:\nwind_mps:\n"
+                          "grade_risks:\n");
   for (std::string line; std::getline(keys, line);) {
     const std::size_t first = line.find_first_not_of(" -");
     const std::string key = line.substr(first, line.find(':') - first);

@@ -65,7 +65,7 @@ inline constexpr int kQuadrantCount = 4;
 struct WindRing {
   std::int32_t wind_kt{};  ///< 34, 50, 64, or 30 of the JMA; Beaufort 7, 10, 12 are the first three
   std::array<double, kQuadrantCount> radius_km{};  ///< NE, SE, SW, NW; 0: not in this quadrant
-  bool estimated{};                                ///< by EstimateRings, not by the source
+  bool estimated{};                                ///< by EstimateRing, not by the source
 };
 
 /// One position of a storm.
@@ -124,16 +124,16 @@ std::int32_t DisasterGrade(StormGrade grade);
 /// fix, at the last fix from the one before. @param fixes in order of time
 void ComputeMotion(std::vector<HazardFix>& fixes);
 
-/// Adds rings of 34, 50 and 64 kt to a fix that was said none of, marked as estimated.
+/// Adds the ring of a wind to a fix that was said none of it, marked as estimated.
 ///
-/// Radii follow from Holland's gradient wind (Holland 1980, Mon. Wea. Rev. 108, 1212-1218),
+/// Its radius follows from Holland's gradient wind (Holland 1980, Mon. Wea. Rev. 108, 1212-1218),
 ///   V(r) = sqrt(Vc^2 a exp(1 - a) + (f r / 2)^2) - f r / 2,   a = (Rmax / r)^B,
 /// with Vc such that V(Rmax) is the fix's wind, taken as it stands. Rmax is the fix's own, else
 /// 46.4 exp(-0.0155 Vmax + 0.0169 |latitude|) km, Vmax in m/s (Willoughby, Darling and Rahn 2006,
 /// Mon. Wea. Rev. 134, 1102-1120, Eq. 7a). B is e rho Vmax^2 / (1010 hPa - pressure) with
 /// rho = 1.15 kg/m3, kept in Holland's range [1, 2.5]; 1.3 without a pressure. Circles: asymmetry
 /// is not guessed.
-/// @returns whether it added any; without a wind it cannot
-bool EstimateRings(HazardFix& fix);
+/// @returns whether it added one; without a wind it cannot
+bool EstimateRing(HazardFix& fix, std::int32_t wind_kt);
 
 }  // namespace aquafarm

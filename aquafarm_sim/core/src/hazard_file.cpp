@@ -2,9 +2,6 @@
 #include "aquafarm/hazard_file.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 
 #include "aquafarm/check.h"
 #include "field_domain.h"
@@ -12,8 +9,6 @@
 
 namespace aquafarm {
 namespace {
-
-constexpr std::size_t kMaxFileBytes = 512U << 20U;  // all of IBTrACS is some 300 MiB
 
 std::string WithoutMark(const std::string& text) {
   return text.compare(0, 3, "\xEF\xBB\xBF") == 0 ? text.substr(3) : text;
@@ -118,20 +113,7 @@ HazardFile ParseHazardFile(const std::string& text, const std::string& origin_na
 }
 
 HazardFile LoadHazardFile(const std::string& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
-  if (size > static_cast<std::streamoff>(kMaxFileBytes)) {
-    throw InputError(path + ": got " + std::to_string(size) + " bytes, expected at most " +
-                     std::to_string(kMaxFileBytes));
-  }
-  std::string text(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
-  file.seekg(0);
-  if (size < 0 || !file.read(text.data(), size)) {
-    throw InputError(path +
-                     ": cannot read: " + (errno != 0 ? std::strerror(errno) : "not a plain file"));
-  }
-  return ParseHazardFile(text, path);
+  return ParseHazardFile(internal::ReadTextFile(path), path);
 }
 
 const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {

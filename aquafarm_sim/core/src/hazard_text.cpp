@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <utility>
 
 #include "aquafarm/check.h"
@@ -11,6 +15,8 @@
 
 namespace aquafarm::internal {
 namespace {
+
+constexpr std::size_t kMostWarnings = 100;  // of a file made to fill memory
 
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -88,13 +94,19 @@ std::string HazardPlace::At(const std::string& what) const {
   return file_ + ":" + std::to_string(where) + ": " + Join(path, what);
 }
 void HazardPlace::Refuse(const std::string& what) const { throw InputError(At(what)); }
-void HazardPlace::RefuseValue(const std::string& value_path, const std::string& what) const {
+std::string HazardPlace::AtValue(const std::string& value_path, const std::string& what) const {
   const std::int32_t where = locate ? locate(value_path) : line;
-  throw InputError(file_ + ":" + std::to_string(where) + ": " + value_path + ": " + what);
+  return file_ + ":" + std::to_string(where) + ": " +
+         (value_path.empty() ? what : value_path + ": " + what);
+}
+void HazardPlace::RefuseValue(const std::string& value_path, const std::string& what) const {
+  throw InputError(AtValue(value_path, what));
 }
 void HazardPlace::Warn(const std::string& what) {
-  constexpr std::size_t kMostWarnings = 100;  // of a file made to fill memory
   if (warnings_.size() < kMostWarnings) warnings_.push_back(At(what));
+}
+void HazardPlace::WarnValue(const std::string& value_path, const std::string& what) {
+  if (warnings_.size() < kMostWarnings) warnings_.push_back(AtValue(value_path, what));
 }
 
 bool LineReader::Next(std::string_view& line) {
@@ -105,6 +117,26 @@ bool LineReader::Next(std::string_view& line) {
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   ++place_.line;
   return true;
+}
+
+std::string ReadTextFile(const std::string& path) {
+  constexpr std::streamoff kMostBytes = std::streamoff{512} << 20U;
+  errno = 0;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
+  if (size > kMostBytes && !std::filesystem::is_directory(path)) {
+    throw InputError(path + ": got " + std::to_string(size) + " bytes, expected at most " +
+                     std::to_string(kMostBytes));
+  }
+  std::string text(
+      size > kMostBytes ? 0 : static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
+  file.seekg(0);
+  if (size < 0 || size > kMostBytes ||
+      !file.read(text.data(), static_cast<std::streamsize>(text.size()))) {
+    throw InputError(path +
+                     ": cannot read: " + (errno != 0 ? std::strerror(errno) : "not a plain file"));
+  }
+  return text;
 }
 
 std::string_view Trim(std::string_view text) {

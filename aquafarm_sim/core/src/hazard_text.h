@@ -32,9 +32,11 @@ class HazardPlace {
   /// @throws InputError "file:line: value_path: what", with the line of that value
   [[noreturn]] void RefuseValue(const std::string& value_path, const std::string& what) const;
   void Warn(const std::string& what);
+  void WarnValue(const std::string& value_path, const std::string& what);
 
  private:
   std::string At(const std::string& what) const;
+  std::string AtValue(const std::string& value_path, const std::string& what) const;
   const std::string& file_;
   std::vector<std::string>& warnings_;
 };
@@ -52,6 +54,10 @@ class LineReader {
   std::string_view rest_;
   HazardPlace& place_;
 };
+
+/// A whole file. @throws InputError when it cannot be read, or is larger than 512 MiB: all of
+/// IBTrACS is some 300.
+std::string ReadTextFile(const std::string& path);
 
 std::string_view Trim(std::string_view text);
 std::vector<std::string_view> SplitWords(std::string_view text);

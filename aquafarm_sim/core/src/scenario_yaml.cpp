@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/scenario_yaml.h"
 
-#include <yaml-cpp/eventhandler.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -63,66 +61,6 @@ namespace {
 
 constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints are under 2 MiB
 
-std::string Place(const std::string& origin_name, int line) {
-  return line > 0 ? origin_name + ":" + std::to_string(line) + ": " : origin_name + ": ";
-}
-
-void CheckText(const std::string& text, const std::string& origin_name) {
-  if (text.size() > kMaxFileBytes) {
-    throw InputError(origin_name + ": got more than " + std::to_string(kMaxFileBytes) +
-                     " bytes, expected a scenario file");
-  }
-  int line = 1;
-  for (const char c : text) {
-    if (c == '\n') ++line;
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20U || c == '\n' || c == '\t' || c == '\r') continue;
-    throw InputError(Place(origin_name, line) + "got byte " + std::to_string(byte) +
-                     ", expected text (is this a binary file?)");
-  }
-}
-
-// Counts nothing but the documents that start.
-class DocumentStarts : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark& mark) override { line_ = mark.line + 1; }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                       YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
-                  YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-  int line() const { return line_; }
-
- private:
-  int line_{};
-};
-
-// YAML::LoadAll never ends on a stray closing bracket, and YAML::Load ignores what follows the
-// first document.
-YAML::Node ParseDocument(const std::string& text, const std::string& origin_name) {
-  try {
-    std::istringstream stream(text);
-    YAML::Parser parser(stream);
-    DocumentStarts starts;
-    if (!parser.HandleNextDocument(starts)) {
-      throw InputError(origin_name + ": got no keys, expected a scenario");
-    }
-    if (parser.HandleNextDocument(starts)) {
-      throw InputError(Place(origin_name, starts.line()) +
-                       "got a second document, expected one YAML document");
-    }
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
-  }
-}
-
 std::string Write(const Scenario& scenario) {
   internal::YamlWriter writer;
   internal::WorldFrame unused;
@@ -146,24 +84,20 @@ Scenario LoadScenario(const std::string& path) {
 }
 
 Scenario ParseScenario(const std::string& text, const std::string& origin_name) {
-  CheckText(text, origin_name);
-  const YAML::Node document = ParseDocument(text, origin_name);
-  internal::LineMap lines;
-  lines.Put("", document);
-  try {
-    Scenario scenario;
-    internal::WorldFrame frame;
-    internal::YamlReader reader(document, "", lines);
-    internal::VisitScenario(reader, scenario, frame);
-    reader.Finish();
-    ValidateScenario(scenario);
-    scenario.hash = HashScenario(scenario);
-    return scenario;
-  } catch (const internal::FieldError& error) {
-    throw InputError(Place(origin_name, lines.Find(error.path)) + error.what());
-  } catch (const YAML::Exception& error) {
-    throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
+  if (text.size() > kMaxFileBytes) {
+    throw InputError(origin_name + ": got more than " + std::to_string(kMaxFileBytes) +
+                     " bytes, expected a scenario file");
   }
+  Scenario scenario;
+  internal::ReadYaml(
+      text, origin_name, "a scenario",
+      [&scenario](internal::YamlReader& reader) {
+        internal::WorldFrame frame;
+        internal::VisitScenario(reader, scenario, frame);
+      },
+      [&scenario] { ValidateScenario(scenario); });
+  scenario.hash = HashScenario(scenario);
+  return scenario;
 }
 
 std::string ToYaml(const Scenario& scenario) { return Write(scenario); }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "yaml_reader.h"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
+#include <sstream>
 
 namespace aquafarm::internal {
 namespace {
@@ -25,6 +28,63 @@ std::string KindOf(const YAML::Node& node) {
       return "'" + Shortened(node.Scalar()) + "'";
     default:
       return "nothing";
+  }
+}
+
+std::string Place(const std::string& origin_name, int line) {
+  return line > 0 ? origin_name + ":" + std::to_string(line) + ": " : origin_name + ": ";
+}
+
+void CheckText(const std::string& text, const std::string& origin_name) {
+  int line = 1;
+  for (const char c : text) {
+    if (c == '\n') ++line;
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20U || c == '\n' || c == '\t' || c == '\r') continue;
+    throw InputError(Place(origin_name, line) + "got byte " + std::to_string(byte) +
+                     ", expected text (is this a binary file?)");
+  }
+}
+
+// Counts nothing but the documents that start.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { line_ = mark.line + 1; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+  int line() const { return line_; }
+
+ private:
+  int line_{};
+};
+
+// YAML::LoadAll never ends on a stray closing bracket, and YAML::Load ignores what follows the
+// first document.
+YAML::Node ParseDocument(const std::string& text, const std::string& origin_name,
+                         const std::string& what) {
+  try {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    DocumentStarts starts;
+    if (!parser.HandleNextDocument(starts)) {
+      throw InputError(origin_name + ": got no keys, expected " + what);
+    }
+    if (parser.HandleNextDocument(starts)) {
+      throw InputError(Place(origin_name, starts.line()) +
+                       "got a second document, expected one YAML document");
+    }
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
   }
 }
 
@@ -124,6 +184,24 @@ std::size_t YamlReader::ReadName(const std::string& path, const YAML::Node& node
   const std::optional<std::string> nearest = Nearest(text, names);
   throw Refusal(path, node,
                 "one of " + List(names) + (nearest ? " (did you mean '" + *nearest + "'?)" : ""));
+}
+
+void ReadYaml(const std::string& text, const std::string& origin_name, const std::string& what,
+              const std::function<void(YamlReader&)>& visit, const std::function<void()>& check) {
+  CheckText(text, origin_name);
+  const YAML::Node document = ParseDocument(text, origin_name, what);
+  LineMap lines;
+  lines.Put("", document);
+  try {
+    YamlReader reader(document, "", lines);
+    visit(reader);
+    reader.Finish();
+    check();
+  } catch (const FieldError& error) {
+    throw InputError(Place(origin_name, lines.Find(error.path)) + error.what());
+  } catch (const YAML::Exception& error) {
+    throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
+  }
 }
 
 }  // namespace aquafarm::internal

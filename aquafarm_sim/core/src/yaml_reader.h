@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <functional>
 #include <map>
 
 #include "scenario_keys.h"
@@ -177,5 +178,12 @@ class YamlReader {
   bool used_{true};
   const char* condition_{""};
 };
+
+/// Reads a YAML text of one block of keys: `visit` takes them, what it leaves is refused, then
+/// `check` may refuse what was read.
+/// @param what such a file is, for messages: "a scenario"
+/// @throws InputError "file:line: key: …"
+void ReadYaml(const std::string& text, const std::string& origin_name, const std::string& what,
+              const std::function<void(YamlReader&)>& visit, const std::function<void()>& check);
 
 }  // namespace aquafarm::internal

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/ascii_grid.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "hazard_text.h"
+#include "map_image.h"
+
+namespace aquafarm {
+namespace {
+
+using internal::HazardPlace;
+
+float LandAt(float value, float sea_level) {
+  return std::isnan(value) || value > sea_level ? 1.0F : 0.0F;
+}
+
+// The keys of the header under one name each.
+std::string KeyOf(std::string_view word) {
+  const std::string key = internal::Upper(word);
+  if (key == "XLOWER" || key == "XLL") return "XLLCORNER";
+  if (key == "YLOWER" || key == "YLL") return "YLLCORNER";
+  return key == "NODATA" ? "NODATA_VALUE" : key;
+}
+
+struct Header {
+  std::map<std::string, double> values;
+
+  bool Has(const char* key) const { return values.count(key) != 0; }
+  double Get(const char* key, double min, double max, const HazardPlace& place) const {
+    const auto found = values.find(key);
+    if (found != values.end() && found->second >= min && found->second <= max) {
+      return found->second;
+    }
+    place.Refuse(std::string(key) + ": got " +
+                 (found == values.end() ? "nothing" : std::to_string(found->second)) +
+                 ", expected a number from " + std::to_string(min) + " to " + std::to_string(max));
+  }
+};
+
+bool IsWord(std::string_view text) {
+  const char c = text.empty() ? ' ' : text[0];
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+// True when a line was one of the header.
+bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
+                    const HazardPlace& place) {
+  if (words.size() < 2) return false;
+  const bool name_first = IsWord(words[0]);
+  if (!name_first && !IsWord(words[1])) return false;
+  const std::string key = KeyOf(words[name_first ? 0 : 1]);
+  header.values[key] =
+      internal::ReadNumber(words[name_first ? 1 : 0], key.c_str(), -1.0e9, 1.0e9, place);
+  return true;
+}
+
+}  // namespace
+
+bool AsciiGrid::IsGeographic() const {
+  return cell_size < 1.0 && std::abs(west) <= 360.0 && std::abs(south) <= 90.0;
+}
+
+AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name) {
+  std::vector<std::string> unused;
+  HazardPlace place(origin_name, unused);
+  internal::LineReader lines(text, place);
+  std::string_view line;
+  Header header;
+  std::vector<std::string_view> words;
+  bool more = false;
+  while ((more = lines.Next(line))) {
+    words = internal::SplitWords(line);
+    if (!words.empty() && !ReadHeaderLine(words, header, place)) break;
+  }
+  if (place.line == 0) place.line = 1;
+  constexpr double kMost = internal::kMaxMapSide;
+  const auto columns = static_cast<Eigen::Index>(header.Get("NCOLS", 1.0, kMost, place));
+  const auto rows = static_cast<Eigen::Index>(header.Get("NROWS", 1.0, kMost, place));
+  AsciiGrid grid;
+  grid.cell_size = header.Get("CELLSIZE", 1.0e-6, 1.0e6, place);
+  constexpr double kFar = 1.0e9;
+  const double half = grid.cell_size / 2.0;
+  grid.west = header.Has("XLLCENTER") ? header.Get("XLLCENTER", -kFar, kFar, place)
+                                      : header.Get("XLLCORNER", -kFar, kFar, place) + half;
+  grid.south = header.Has("YLLCENTER") ? header.Get("YLLCENTER", -kFar, kFar, place)
+                                       : header.Get("YLLCORNER", -kFar, kFar, place) + half;
+  const double nodata = header.Has("NODATA_VALUE") ? header.values["NODATA_VALUE"] : -9999.0;
+  const auto wanted = static_cast<std::size_t>(columns * rows);
+  if (text.size() / 2 + 1 < wanted) {  // a value has a digit and a blank
+    place.Refuse("got " + std::to_string(text.size()) + " bytes, expected " +
+                 std::to_string(columns) + " x " + std::to_string(rows) + " values");
+  }
+  grid.value.resize(rows, columns);
+  std::size_t count = 0;
+  while (more) {
+    for (const std::string_view word : words) {
+      const double value = internal::ReadNumber(word, "value", -1.0e9, 1.0e9, place);
+      if (count >= wanted) {
+        place.Refuse("got more than the " + std::to_string(wanted) + " values of the header");
+      }
+      const auto i = static_cast<Eigen::Index>(count++);
+      grid.value(rows - 1 - i / columns, i % columns) =
+          value == nodata ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value);
+    }
+    more = lines.Next(line);
+    words = more ? internal::SplitWords(line) : std::vector<std::string_view>();
+  }
+  if (count < wanted) {
+    place.Refuse("got " + std::to_string(count) + " values, expected the " +
+                 std::to_string(wanted) + " of the header");
+  }
+  return grid;
+}
+
+AsciiGrid LoadAsciiGrid(const std::string& path) {
+  return ParseAsciiGrid(internal::ReadTextFile(path), path);
+}
+
+LandShare ShareOfLand(const AsciiGrid& grid, const GeoFrame& frame, std::int32_t width,
+                      std::int32_t height, float sea_level) {
+  constexpr int kSamples = 5;
+  LandShare share = LandShare::Zero(height, width);
+  for (std::int32_t y = 0; y < height; ++y) {
+    for (std::int32_t x = 0; x < width; ++x) {
+      for (int k = 0; k < kSamples * kSamples; ++k) {
+        const GeoPoint point = frame.ToGeo(x + (k % kSamples + 0.5) / kSamples - 0.5,
+                                           y + (k / kSamples + 0.5) / kSamples - 0.5);
+        const auto column = std::lround((point.longitude - grid.west) / grid.cell_size);
+        const auto row = std::lround((point.latitude - grid.south) / grid.cell_size);
+        const bool inside =
+            column >= 0 && column < grid.value.cols() && row >= 0 && row < grid.value.rows();
+        share(y, x) += inside ? LandAt(grid.value(row, column), sea_level) : 1.0F;
+      }
+      share(y, x) /= kSamples * kSamples;
+    }
+  }
+  return share;
+}
+
+LandShare ShareOfLand(const AsciiGrid& grid, float sea_level) {
+  return grid.value.unaryExpr([sea_level](float value) { return LandAt(value, sea_level); });
+}
+
+}  // namespace aquafarm

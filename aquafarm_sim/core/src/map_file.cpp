@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "aquafarm/check.h"
+#include "aquafarm/layout.h"
 #include "hazard_text.h"
 #include "map_image.h"
 #include "yaml_reader.h"
@@ -145,13 +146,16 @@ LandShare ShareOfLand(const MapFile& map) {
               map.occupancy.cast<float>() / 100.0F);
 }
 
-MapFile ToMap(const Terrain& terrain, double cell_size_m) {
+MapFile ToMap(const Scenario& scenario) {
+  Layout layout;
+  LayoutGenerator(scenario).Generate(scenario.layout_seed, 0, layout);
   MapFile map;
-  map.cell_size_m = cell_size_m;
+  map.cell_size_m = scenario.cell_size_m;
   // From the middle of cell (0, 0), the farm's origin, to its corner.
-  map.origin = {-cell_size_m / 2.0, -cell_size_m / 2.0, 0.0};
-  map.occupancy = terrain.land.cast<std::int8_t>() * static_cast<std::int8_t>(100);
-  for (const Cell rock : terrain.rocks) map.occupancy(rock.y, rock.x) = 100;
+  map.origin = {-scenario.cell_size_m / 2.0, -scenario.cell_size_m / 2.0, 0.0};
+  map.occupancy = layout.cells.unaryExpr([](std::uint8_t bits) {
+    return static_cast<std::int8_t>((bits & kBlockedBits) != 0 ? 100 : 0);
+  });
   return map;
 }
 

@@ -109,4 +109,10 @@ std::uint64_t HashScenario(const Scenario& scenario) {
   return HashBytes(Write(rules));
 }
 
+std::int64_t ParseUtc(const std::string& name, const std::string& text) {
+  std::int64_t seconds = 0;
+  if (internal::ParseTime(text, seconds)) return seconds;
+  throw InputError(name + ": got '" + text + "', expected a UTC time as 2021-07-24T12:00:00Z");
+}
+
 }  // namespace aquafarm

@@ -150,7 +150,7 @@ TEST(GoldenPlaythrough, EveryShippedScenarioPlaysAsWritten) {
     EXPECT_EQ(text, ReadFile(golden)) << golden;
     ++played;
   }
-  EXPECT_GE(played, 6);
+  EXPECT_GE(played, 8);
 }
 
 }  // namespace

@@ -132,11 +132,16 @@ TEST_F(MapFiles, OfATurnedMapGiveNoRanch) {
 }
 
 TEST_F(MapFiles, AreWrittenAndReadBack) {
-  LandShare share = LandShare::Zero(3, 5);
-  share(0, 4) = share(2, 1) = 1.0F;
-  share(1, 1) = 0.2F;
-  const Terrain terrain = ToTerrain(share);
-  const MapFile map = ToMap(terrain, 200.0);
+  Scenario scenario;
+  scenario.width = 5;
+  scenario.height = 3;
+  scenario.cell_size_m = 200.0;
+  scenario.islands = {{{4, 0}, 1, 1}, {{1, 2}, 1, 1}};
+  scenario.rocks.cells = {{1, 1}};
+  scenario.ports.count = scenario.devices.count = 1;
+  const MapFile map = ToMap(scenario);
+  EXPECT_EQ(map.occupancy.cast<int>().sum(), 300);
+  EXPECT_EQ(map.occupancy(2, 1), 100);
   SaveMap(map, Path("out.yaml"));
   const MapFile back = LoadMap(Path("out.yaml"));
   EXPECT_EQ(Values(back.occupancy), Values(map.occupancy));

@@ -36,7 +36,8 @@ TEST(Shipped, AreThese) {
   EXPECT_EQ(ShippedNames(),
             (std::vector<std::string>{"four_squads", "networked_devices", "paper", "partial",
                                       "procedural", "red_tide", "smart_devices", "two_squads",
-                                      "zhoushan_infa_2021"}));
+                                      "zhoushan_danas_2019", "zhoushan_infa_2021",
+                                      "zhoushan_mitag_2019"}));
 }
 
 class Shipped : public testing::TestWithParam<std::string> {};
@@ -175,6 +176,26 @@ TEST(InFa, BringsItsRingsOverTheRanchWhenTheFileSays) {
   EXPECT_NEAR(nearest, 29.0F, 0.5F);
   EXPECT_EQ(farm.reason(), EndReason::kDisasterEnded);
   EXPECT_EQ(farm.step(), 315);
+}
+
+// The worst risk in the middle of a ranch while its storm passes.
+float WorstInTheMiddle(const std::string& name) {
+  const auto scenario = std::make_shared<const Scenario>(Load(name));
+  Farm farm(scenario);
+  farm.Reset(1, 0);
+  float worst = 0.0F;
+  const auto hold = static_cast<std::uint8_t>(Action::kHold);
+  while (!farm.over()) {
+    farm.Step(&hold);
+    worst = std::min(worst, RiskAt(farm.disasters(), {scenario->width / 2, scenario->height / 2}));
+  }
+  return worst;
+}
+
+TEST(Storms, AreAsBadAsTheyWere) {
+  EXPECT_EQ(WorstInTheMiddle("zhoushan_danas_2019"), -5.0F) << "no 50 kt at all";
+  EXPECT_LE(WorstInTheMiddle("zhoushan_mitag_2019"), -9.0F) << "50 kt pass over it";
+  EXPECT_EQ(WorstInTheMiddle("zhoushan_infa_2021"), -20.0F);
 }
 
 }  // namespace

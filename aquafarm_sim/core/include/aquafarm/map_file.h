@@ -40,7 +40,7 @@ void SaveMap(const MapFile& map, const std::string& yaml_path);
 /// @throws InputError for a map that is turned: a ranch's grid points north
 LandShare ShareOfLand(const MapFile& map);
 
-/// A ranch's land as a map.
-MapFile ToMap(const Terrain& terrain, double cell_size_m);
+/// The land and rocks of a scenario's first episode as a map.
+MapFile ToMap(const Scenario& scenario);
 
 }  // namespace aquafarm

@@ -23,4 +23,7 @@ std::string ToYaml(const Scenario& scenario);
 /// ParseScenario sets Scenario::hash to.
 std::uint64_t HashScenario(const Scenario& scenario);
 
+/// UTC seconds since 1970 of YYYY-MM-DDTHH:MM:SSZ. @throws InputError "name: got …"
+std::int64_t ParseUtc(const std::string& name, const std::string& text);
+
 }  // namespace aquafarm

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Makes a scenario file from a chart, a place and a storm, shows it and says what it decided.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "aquafarm/check.h"
+#include "aquafarm/map_file.h"
+#include "aquafarm/ranch_builder.h"
+#include "aquafarm/scenario_yaml.h"
+
+namespace aquafarm {
+namespace {
+
+struct Arguments {
+  RanchRequest ranch;
+  std::string center;
+  std::vector<std::string> ports;
+  std::string size{"25x25"};
+  std::string cell{"200m"};
+  std::string layout{"random"};
+  std::string rings{"equal_area"};
+  std::string start;
+  std::string output;
+  std::string map;
+};
+
+// "30.2,122.7" or "25x25" as two numbers.
+std::pair<double, double> Pair(const std::string& name, const std::string& text, char between,
+                               const char* expected) {
+  const std::size_t at = text.find(between);
+  double first = 0.0;
+  double second = 0.0;
+  if (at != std::string::npos && CLI::detail::lexical_cast(text.substr(0, at), first) &&
+      CLI::detail::lexical_cast(text.substr(at + 1), second)) {
+    return {first, second};
+  }
+  throw InputError(name + ": got '" + text + "', expected " + expected);
+}
+
+GeoPoint Place(const std::string& name, const std::string& text) {
+  const auto [latitude, longitude] = Pair(name, text, ',', "LATITUDE,LONGITUDE in degrees");
+  if (latitude >= -90.0 && latitude <= 90.0 && longitude >= -180.0 && longitude <= 180.0) {
+    return {latitude, longitude};
+  }
+  throw InputError(name + ": got '" + text +
+                   "', expected a latitude in [-90, 90] and a longitude in [-180, 180]");
+}
+
+// "200m" or "0.2km".
+double Metres(const std::string& text) {
+  const bool km = text.size() > 2 && text.compare(text.size() - 2, 2, "km") == 0;
+  const std::size_t unit = km ? 2 : !text.empty() && text.back() == 'm' ? 1 : 0;
+  double value = 0.0;
+  if (!CLI::detail::lexical_cast(text.substr(0, text.size() - unit), value)) {
+    throw InputError("cell: got '" + text + "', expected a length as 200m or 0.2km");
+  }
+  return km ? value * 1000.0 : value;
+}
+
+template <typename Enum>
+Enum Named(const char* name, const std::string& text, int count) {
+  std::string names;
+  for (int i = 0; i < count; ++i) {
+    const auto value = static_cast<Enum>(i);
+    if (ToString(value) == text) return value;
+    names += (i > 0 ? ", " : "") + std::string(ToString(value));
+  }
+  throw InputError(std::string(name) + ": got '" + text + "', expected one of " + names);
+}
+
+RanchRequest Finished(const Arguments& arguments) {
+  RanchRequest ranch = arguments.ranch;
+  if (!arguments.center.empty()) ranch.center = Place("center", arguments.center);
+  for (const std::string& port : arguments.ports) ranch.port_places.push_back(Place("port", port));
+  const auto [width, height] = Pair("size", arguments.size, 'x', "WIDTHxHEIGHT in cells");
+  const auto whole = [&](double side) {
+    if (side >= 2.0 && side <= kMaxSide && side == std::floor(side)) {
+      return static_cast<std::int32_t>(side);
+    }
+    throw InputError("size: got '" + arguments.size + "', expected whole numbers in [2, " +
+                     std::to_string(kMaxSide) + "]");
+  };
+  ranch.width = whole(width);
+  ranch.height = whole(height);
+  ranch.cell_size_m = Metres(arguments.cell);
+  constexpr int kDrawnPlacements = 3;  // explicit needs sites, which a file has
+  ranch.placement = Named<DevicePlacement>("layout", arguments.layout, kDrawnPlacements);
+  ranch.reduction = Named<RingReduction>("rings", arguments.rings, kRingReductionCount);
+  if (!arguments.start.empty()) ranch.start = ParseUtc("start", arguments.start);
+  if (!arguments.output.empty()) {
+    ranch.name = std::filesystem::path(arguments.output).stem().string();
+  }
+  return ranch;
+}
+
+void WriteFile(const std::string& path, const std::string& text) {
+  const std::string beside = path + ".part";
+  std::ofstream file(beside, std::ios::trunc);
+  file << text;
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(beside, path, error);
+  if (!file || error) throw InputError(path + ": cannot write");
+}
+
+void Run(const Arguments& arguments) {
+  const Ranch ranch = BuildRanch(Finished(arguments));
+  for (const std::string& warning : ranch.warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+  if (ranch.scenario.width <= 200) std::printf("%s\n", Sketch(ranch.scenario).c_str());
+  for (const std::string& line : ranch.decided) std::printf("%s\n", line.c_str());
+  if (!arguments.map.empty()) SaveMap(ToMap(ranch.scenario), arguments.map);
+  if (arguments.output.empty()) return;
+  WriteFile(arguments.output, ranch.yaml);
+  std::printf("written: %s\nnow: ./aquafarm train scenario:=%s\n", arguments.output.c_str(),
+              arguments.output.c_str());
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  RanchRequest& ranch = arguments.ranch;
+  CLI::App app("Makes a ranch from a chart, a place and a storm, shows it and what it decided.",
+               "aquafarm scenario");
+  app.footer("exit codes: 0 made, 2 bad argument or file");
+  app.option_defaults()->always_capture_default();
+  app.add_option("--chart", ranch.chart,
+                 "GeoJSON coast, map_server YAML or ASCII grid (.asc, .tt2); empty: open sea");
+  app.add_option("--center", arguments.center, "LATITUDE,LONGITUDE of the ranch's middle");
+  app.add_option("--size", arguments.size, "WIDTHxHEIGHT in cells");
+  app.add_option("--cell", arguments.cell, "side of a cell, as 200m or 0.2km");
+  app.add_option("--sea-level", ranch.sea_level, "heights above it are land (ASCII grids)");
+  app.add_option("--track", ranch.track, "file with the storm's track; empty: calm");
+  app.add_option("--storm", ranch.storm, "name or number of the storm in that file");
+  app.add_option("--radii", ranch.radii, "file with radii of winds, for a track that has none");
+  app.add_option("--rings", arguments.rings, "quadrants become a circle: equal_area or largest");
+  app.add_option("--ports", ranch.ports, "ports, spread along the shore")
+      ->check(CLI::Range(1, 256));
+  app.add_option("--port", arguments.ports,
+                 "LATITUDE,LONGITUDE of a port, put on the nearest shore; any number of times");
+  app.add_option("--devices", ranch.devices, "devices")->check(CLI::Range(1, 1000));
+  app.add_option("--layout", arguments.layout, "of the devices: uniform, linear or random");
+  app.add_option("--ships", ranch.ships, "rescue squads")->check(CLI::Range(1, 64));
+  app.add_option("--speed", ranch.speed_kn, "knots of a ship with a device in tow")
+      ->check(CLI::Range(0.1, 60.0));
+  app.add_option("--step", ranch.step_s, "seconds a step, instead of --speed");
+  app.add_option("--lead", ranch.lead_h, "hours before the widest ring comes")
+      ->check(CLI::Range(0.0, 240.0));
+  app.add_option("--start", arguments.start, "UTC as 2021-07-24T12:00:00Z, instead of --lead");
+  app.add_option("--seed", ranch.seed, "of the layout");
+  app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
+  app.add_option("-o,--output", arguments.output, "scenario file; empty: only shown");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    Run(arguments);
+    return 0;
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm
+
+int main(int argc, char** argv) { return aquafarm::Main(argc, argv); }

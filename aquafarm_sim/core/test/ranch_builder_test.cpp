@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/ranch_builder.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "aquafarm/check.h"
+#include "aquafarm/farm.h"
+#include "aquafarm/scenario_yaml.h"
+#include "shared_data.h"
+
+namespace aquafarm {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kData = fs::path(AQUAFARM_CORE_DIR) / "test" / "data";
+constexpr std::int64_t kHour_s = 3600;
+constexpr std::int64_t kMidnight = 1627171200;  // 2021-07-25 00:00 UTC
+
+// The square island with a lake of coast.json, and the storm of cma.txt, which passes 20 km north.
+RanchRequest Request() {
+  RanchRequest request;
+  request.chart = (kData / "coast.json").string();
+  request.center = GeoPoint{30.03, 122.05};
+  request.width = 24;
+  request.height = 20;
+  request.cell_size_m = 500.0;
+  request.track = (kData / "cma.txt").string();
+  request.storm = "In-fa";
+  return request;
+}
+
+bool Says(const std::vector<std::string>& lines, const std::string& words) {
+  return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+    return line.find(words) != std::string::npos;
+  });
+}
+
+std::string Refused(const RanchRequest& request) {
+  try {
+    BuildRanch(request);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was made";
+}
+
+TEST(Ranch, StandsOnTheChartWithPortsAtTheShore) {
+  const Ranch ranch = BuildRanch(Request());
+  const Scenario& scenario = ranch.scenario;
+  EXPECT_EQ(scenario.width, 24);
+  EXPECT_EQ(scenario.cell_size_m, 500.0);
+  EXPECT_EQ(scenario.ports.cells.size(), 4U);
+  std::int32_t land = 0;
+  for (const IslandBlock& block : scenario.islands) land += block.width * block.height;
+  // 4.8 x 5.5 km with its lake filled, and a triangle of half a square kilometre.
+  EXPECT_NEAR(land * 0.25, 4.82 * 5.54 + 0.53, 3.0);
+  EXPECT_TRUE(Says(ranch.decided, "island cells"));
+  EXPECT_TRUE(Says(ranch.decided, "of enclosed water filled"));
+  const std::string sketch = Sketch(scenario);
+  EXPECT_EQ(sketch.size(), 20U * 25U);
+  EXPECT_EQ(std::count(sketch.begin(), sketch.end(), 'P'), 4);
+  EXPECT_EQ(std::count(sketch.begin(), sketch.end(), 'd'), 4);
+  EXPECT_EQ(std::count(sketch.begin(), sketch.end(), '#'), land);
+}
+
+TEST(Ranch, HasTheStormAsItsFileSays) {
+  const Ranch ranch = BuildRanch(Request());
+  ASSERT_EQ(ranch.scenario.disasters.size(), 1U);
+  const DisasterSpec& storm = ranch.scenario.disasters[0];
+  ASSERT_EQ(storm.track.size(), 3U);
+  EXPECT_EQ(ranch.scenario.start_time, kMidnight) << "the track's first fix";
+  EXPECT_EQ(storm.track[2].step, 6.0F * 3600.0F / 243.0F) << "500 m at 4 knots take 243 s";
+  EXPECT_EQ(storm.track[0].grade, 3);
+  EXPECT_EQ(storm.track[0].risks, DefaultRiskTable()[2]);
+  EXPECT_EQ(storm.duration, 89) << "to the last fix";
+  EXPECT_TRUE(Says(ranch.decided, "In-fa (2106), CMA best track cma.txt, 3 fixes, winds of 2 min"));
+  EXPECT_TRUE(Says(ranch.decided, "radii estimated at 3, unknown at 0"));
+  EXPECT_TRUE(Says(ranch.decided, "34 kt over the ranch for 6."));
+  EXPECT_TRUE(Says(ranch.warnings, "cma.txt:9: time: 2021-07-25T06:00:00Z is there twice"));
+  Farm farm(std::make_shared<const Scenario>(ranch.scenario));
+  farm.Reset(1, 0);
+  EXPECT_LT(RiskAt(farm.disasters(), {12, 10}), 0.0F);
+}
+
+TEST(Ranch, BorrowsRadiiAndHasItsOwnStart) {
+  RanchRequest request = Request();
+  request.radii = (kData / "bulletin.json").string();
+  request.storm = "2106";
+  request.start = kMidnight + kHour_s;
+  request.step_s = 60.0;
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_TRUE(Says(ranch.decided, "radii of 3 from bulletin.json"));
+  EXPECT_EQ(ranch.scenario.start_time, kMidnight + kHour_s);
+  EXPECT_EQ(ranch.scenario.step_duration_s, 60.0);
+  EXPECT_FLOAT_EQ(ranch.scenario.disasters[0].track[0].step, -60.0F);
+}
+
+TEST(Ranch, PutsAPortAskedForAtTheNearestShore) {
+  RanchRequest request = Request();
+  request.port_places = {{30.025, 122.025}};  // in the lake
+  const Ranch ranch = BuildRanch(request);
+  ASSERT_EQ(ranch.scenario.ports.cells.size(), 1U);
+  EXPECT_TRUE(Says(ranch.decided, "port: asked for at (7, 8), put at the shore at ("));
+}
+
+TEST(Ranch, MayBeCalmAndOnOpenSea) {
+  RanchRequest request;
+  request.devices = 12;
+  request.placement = DevicePlacement::kLinear;
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_TRUE(ranch.scenario.disasters.empty());
+  EXPECT_EQ(ranch.scenario.origin, std::nullopt);
+  EXPECT_EQ(ranch.scenario.ports.count, 4);
+  EXPECT_TRUE(Says(ranch.decided, "no shore, so 4 drawn at the edge"));
+}
+
+TEST(Ranch, TakesItsSizeFromAGridInMetres) {
+  const fs::path path = fs::temp_directory_path() / ("bay." + std::to_string(getpid()) + ".asc");
+  std::ofstream(path) << "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 150\n"
+                         "-1 -1 -1 -1\n-1 5 -1 -1\n-1 -1 -1 -1\n";
+  RanchRequest request;
+  request.chart = path.string();
+  request.ports = 2;
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_EQ(ranch.scenario.width, 4);
+  EXPECT_EQ(ranch.scenario.cell_size_m, 150.0);
+  EXPECT_EQ(Sketch(ranch.scenario)[5 + 1], '#');
+  fs::remove(path);
+}
+
+TEST(Ranch, IsRefusedWithTheReason) {
+  RanchRequest request = Request();
+  request.center.reset();
+  EXPECT_EQ(Refused(request), "center: got nothing, expected the place of the ranch for its storm");
+  request.track.clear();
+  EXPECT_EQ(Refused(request), "center: got nothing, expected the place of the ranch on the chart");
+  request = Request();
+  request.storm = "Rai";
+  EXPECT_EQ(Refused(request).substr(0, 37), "storm: got 'Rai', expected one of: 71");
+  request = Request();
+  request.start = kMidnight + 24 * kHour_s;
+  EXPECT_EQ(Refused(request),
+            "start: got 2021-07-26T00:00:00Z, expected a time before 2021-07-25T06:00:00Z, when "
+            "the storm is over");
+  request = Request();
+  request.center = GeoPoint{30.01, 122.01};
+  request.width = request.height = 3;
+  EXPECT_EQ(Refused(request), "chart: got no water, expected some for ships to sail on");
+  request = Request();
+  request.devices = 1000;
+  EXPECT_NE(Refused(request).find("devices"), std::string::npos);
+}
+
+TEST(Ranch, IsNotLedAstrayByAName) {
+  const fs::path path = fs::temp_directory_path() / ("evil." + std::to_string(getpid()) + ".json");
+  std::ofstream(path) << R"([{"tfbh": "1", "ename": "X\nships: {count: 9} # \"", "points": [
+    {"time": "2021-07-25T08:00:00", "lat": 30, "lng": 122, "speed": 30},
+    {"time": "2021-07-25T20:00:00", "lat": 30.1, "lng": 122, "speed": 30}]}])";
+  RanchRequest request = Request();
+  request.track = path.string();
+  request.storm.clear();
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_EQ(ranch.scenario.ships.count, 1);
+  EXPECT_NE(ranch.scenario.description.find("X?ships: {count: 9} # \""), std::string::npos);
+  fs::remove(path);
+}
+
+// Runs the program; gives its exit code and what it wrote.
+std::pair<int, std::string> RunApp(const std::string& arguments) {
+  FILE* pipe = popen((AQUAFARM_SCENARIO_APP " " + arguments + " 2>&1").c_str(), "r");
+  std::string text;
+  std::array<char, 4096> part{};
+  while (fgets(part.data(), part.size(), pipe) != nullptr) text += part.data();
+  return {WEXITSTATUS(pclose(pipe)), text};
+}
+
+TEST(Program, MakesAFileAndSaysWhatItDecided) {
+  const fs::path path = fs::temp_directory_path() / ("bay_" + std::to_string(getpid()) + ".yaml");
+  const std::string data = kData.string();
+  const auto [code, text] = RunApp(
+      "--chart " + data + "/coast.json --center 30.03,122.05 --size 24x20 --cell 0.5km --track " +
+      data + "/cma.txt --storm in-fa --devices 6 --layout linear -o " + path.string());
+  EXPECT_EQ(code, 0) << text;
+  EXPECT_NE(text.find("nearest: "), std::string::npos);
+  EXPECT_NE(text.find("now: ./aquafarm train scenario:=" + path.string()), std::string::npos);
+  const Scenario scenario = LoadScenario(path.string());
+  EXPECT_EQ(scenario.name, path.stem().string());
+  EXPECT_EQ(scenario.devices.count, 6);
+  fs::remove(path);
+}
+
+TEST(Program, RefusesWrongArguments) {
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"--center 30", "center: got '30', expected LATITUDE,LONGITUDE in degrees"},
+      {"--center 95,120", "expected a latitude in [-90, 90] and a longitude in [-180, 180]"},
+      {"--size 25", "size: got '25', expected WIDTHxHEIGHT in cells"},
+      {"--size 1x25", "size: got '1x25', expected whole numbers in [2, 4096]"},
+      {"--cell 20furlongs", "cell: got '20furlongs', expected a length as 200m or 0.2km"},
+      {"--layout explicit", "layout: got 'explicit', expected one of uniform, linear, random"},
+      {"--rings oval", "rings: got 'oval', expected one of equal_area, largest"},
+      {"--start noon", "start: got 'noon', expected a UTC time as 2021-07-24T12:00:00Z"},
+      {"--chart /nowhere.json --center 30,122", "/nowhere.json: cannot read: No such file"},
+      {"--devices 0", "--devices: Value 0 not in range"},
+      {"--frob", "The following argument was not expected: --frob"},
+      {"-o /nowhere/x.yaml", "/nowhere/x.yaml: cannot write"}};
+  for (const auto& [arguments, words] : cases) {
+    const auto [code, text] = RunApp(arguments);
+    EXPECT_EQ(code, 2) << arguments;
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+  }
+}
+
+TEST(RealFiles, MakeARanchOffDongji) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  RanchRequest request;
+  request.chart = (data / "coast" / "zhoushan_330900.json").string();
+  request.center = GeoPoint{30.2, 122.7};
+  request.track = (data / "tracks" / "CH2021BST.txt").string();
+  request.storm = "IN-FA";
+  request.radii = (data / "bulletins" / "202106.json").string();
+  request.devices = 12;
+  request.placement = DevicePlacement::kLinear;
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_TRUE(ranch.warnings.empty());
+  EXPECT_TRUE(Says(ranch.decided, "nearest: 32 km at 2021-07-25T03:30:00Z")) << ranch.yaml;
+  EXPECT_TRUE(Says(ranch.decided, "strongest ring 64 kt"));
+}
+
+// Scenario files that a person may edit; what decides the play is still what the command makes.
+TEST(RealFiles, MakeTheShippedRanches) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  const fs::path shipped = fs::path(AQUAFARM_CORE_DIR).parent_path() / "scenarios";
+  RanchRequest request;
+  request.chart = (data / "coast" / "zhoushan_330900.json").string();
+  request.center = GeoPoint{30.19, 122.70};
+  request.width = 22;
+  request.height = 18;
+  request.cell_size_m = 500.0;
+  request.track = (data / "tracks" / "CH2019BST.txt").string();
+  request.radii = (data / "tracks" / "bst_all_2015-2021.txt").string();
+  request.ports = 3;
+  request.storm = "DANAS";
+  request.devices = 4;
+  request.placement = DevicePlacement::kUniform;
+  EXPECT_EQ(BuildRanch(request).scenario.hash,
+            LoadScenario((shipped / "zhoushan_danas_2019.yaml").string()).hash);
+  request.storm = "MITAG";
+  request.devices = 6;
+  request.placement = DevicePlacement::kLinear;
+  EXPECT_EQ(BuildRanch(request).scenario.hash,
+            LoadScenario((shipped / "zhoushan_mitag_2019.yaml").string()).hash);
+}
+
+}  // namespace
+}  // namespace aquafarm

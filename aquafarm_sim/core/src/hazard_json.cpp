@@ -139,6 +139,13 @@ Json ParseJson(const std::string& text, HazardPlace& place) {
     const std::size_t reason = what.find("; ");  // after the library's own words for the place
     place.Refuse("got no valid JSON: " +
                  (reason == std::string::npos ? what : what.substr(reason + 2)));
+  } catch (const Json::out_of_range& error) {  // a number too large; the library says which
+    const std::string what = error.what();
+    const std::size_t from = what.find('\'') + 1;
+    const std::string number = what.substr(from, what.rfind('\'') - from);
+    place.path.clear();
+    place.line = LineAt(text, std::min(text.find(number), text.size()));
+    place.Refuse("got " + Quoted(number) + ", expected a number that a double can hold");
   }
 }
 

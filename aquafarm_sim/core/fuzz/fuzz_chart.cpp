@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bytes as a chart: a picture, a coast or a grid of heights, by the first byte.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "aquafarm/ascii_grid.h"
+#include "aquafarm/check.h"
+#include "aquafarm/coast.h"
+#include "map_image.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace aquafarm;
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
+  const GeoFrame frame({30.0, 122.0}, 1000.0);
+  const char first = bytes.empty() ? ' ' : bytes[0];
+  try {
+    if (first == 'P' || first == 'B' || first == '\x89') {
+      internal::ParseMapImage(bytes, "fuzz");
+    } else if (first == '{' || first == '[') {
+      ShareOfLand(ParseCoast(bytes, "fuzz"), frame, 12, 8);
+    } else {
+      ShareOfLand(ParseAsciiGrid(bytes, "fuzz"), frame, 6, 4, 0.0F);
+    }
+  } catch (const InputError&) {  // a refusal; all else is a find
+  }
+  return 0;
+}

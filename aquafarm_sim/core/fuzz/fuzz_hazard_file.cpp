@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bytes as a file of storm tracks: every format, by its content.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "aquafarm/check.h"
+#include "aquafarm/hazard_disaster.h"
+#include "aquafarm/hazard_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace aquafarm;
+  try {
+    const HazardFile file =
+        ParseHazardFile(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
+    for (const HazardTrack& track : file.tracks) ToRings(track, RingReduction::kEqualArea);
+  } catch (const InputError&) {  // a refusal; all else is a find
+  }
+  return 0;
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stands in for libFuzzer where the compiler is not clang: feeds every sample of a folder to the
+// target, then changed ones, the same each time. A crash, a hang or a stray exception is the find.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "aquafarm/rng.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void Feed(const std::string& bytes) {
+  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+}
+
+std::size_t Below(aquafarm::RandomStream& chance, std::size_t end) {
+  return chance.Below(static_cast<std::uint32_t>(end));
+}
+
+// One change: bytes overwritten, taken out, doubled or cut off, or something that readers mind.
+void Mutate(aquafarm::RandomStream& chance, std::string& bytes) {
+  static const std::vector<std::string> kMinded{
+      "",   "-1", "1e999",        "nan",   "99999999999", "null", "[",    "{",  "\"",
+      "\n", "\r", "\xef\xbb\xbf", "66666", ",",           "#",    "\xff", "0x1"};
+  if (bytes.empty()) bytes = " ";
+  const std::size_t at = Below(chance, bytes.size());
+  const std::size_t length = 1 + Below(chance, std::min<std::size_t>(bytes.size() - at, 24));
+  switch (Below(chance, 6)) {
+    case 0:
+      bytes[at] = static_cast<char>(chance.Below(256));
+      break;
+    case 1:
+      bytes.erase(at, length);
+      break;
+    case 2:
+      bytes.insert(at, bytes.substr(at, length));
+      break;
+    case 3:
+      bytes.resize(at);
+      break;
+    case 4:
+      bytes[at] = static_cast<char>('0' + Below(chance, 10));
+      break;
+    default:
+      bytes.replace(at, std::min<std::size_t>(length, 4), kMinded[Below(chance, kMinded.size())]);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: %s CHANGES_A_SAMPLE FOLDER\n", argv[0]);
+    return 2;
+  }
+  std::vector<std::string> samples;
+  for (const auto& entry : fs::directory_iterator(argv[2])) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    samples.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  }
+  std::sort(samples.begin(), samples.end());
+  // So that a run takes as long however many samples there are.
+  const auto changes =
+      std::atoi(argv[1]) * 6 / static_cast<int>(std::max<std::size_t>(samples.size(), 1));
+  aquafarm::RandomStream chance({1, 0, aquafarm::Purpose::kExploration, 0});
+  for (const std::string& sample : samples) {
+    Feed(sample);
+    for (int i = 0; i < changes; ++i) {
+      std::string changed = sample;
+      for (std::size_t k = 1 + Below(chance, 3); k > 0; --k) Mutate(chance, changed);
+      Feed(changed);
+    }
+  }
+  std::printf("%zu samples, %d changes each\n", samples.size(), changes);
+  return 0;
+}

@@ -23,6 +23,7 @@ struct Arguments {
   std::string layout{"random"};
   std::string rings{"equal_area"};
   std::string start;
+  std::vector<std::string> sea;
   std::string output;
   std::string map;
 };
@@ -60,6 +61,17 @@ double Metres(const std::string& text) {
   return km ? value * 1000.0 : value;
 }
 
+// "salinity=sea.nc:so"; the file may have a colon, the variable none.
+SeaLayerRequest SeaLayer(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::size_t colon = text.rfind(':');
+  if (equals == std::string::npos || colon == std::string::npos || colon < equals) {
+    throw InputError("sea: got '" + text + "', expected NAME=FILE:VARIABLE");
+  }
+  return {text.substr(0, equals), text.substr(equals + 1, colon - equals - 1),
+          text.substr(colon + 1)};
+}
+
 template <typename Enum>
 Enum Named(const char* name, const std::string& text, int count) {
   std::string names;
@@ -75,6 +87,7 @@ RanchRequest Finished(const Arguments& arguments) {
   RanchRequest ranch = arguments.ranch;
   if (!arguments.center.empty()) ranch.center = Place("center", arguments.center);
   for (const std::string& port : arguments.ports) ranch.port_places.push_back(Place("port", port));
+  for (const std::string& sea : arguments.sea) ranch.sea.push_back(SeaLayer(sea));
   const auto [width, height] = Pair("size", arguments.size, 'x', "WIDTHxHEIGHT in cells");
   const auto whole = [&](double side) {
     if (side >= 2.0 && side <= kMaxSide && side == std::floor(side)) {
@@ -151,6 +164,11 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 240.0));
   app.add_option("--start", arguments.start, "UTC as 2021-07-24T12:00:00Z, instead of --lead");
   app.add_option("--seed", ranch.seed, "of the layout");
+  app.add_option("--sea", arguments.sea,
+                 "NAME=FILE:VARIABLE of a netCDF field; any number of times");
+  app.add_option("--sea-depth", ranch.sea_depth_m, "metres below the surface of those fields");
+  app.add_option("--value", ranch.value,
+                 "expression of the fields for each device's value, such as '100 - 2 * warmth'");
   app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
   app.add_option("-o,--output", arguments.output, "scenario file; empty: only shown");
   try {

@@ -13,6 +13,7 @@
 #include "aquafarm/layout.h"
 #include "aquafarm/map_file.h"
 #include "aquafarm/scenario_yaml.h"
+#include "aquafarm/sea_field.h"
 #include "field_domain.h"
 #include "hazard_text.h"
 
@@ -70,8 +71,10 @@ class Builder {
     PlaceTerrain();
     const std::vector<Cell> ports = PlacePorts();
     SetTime();
+    ReadSea();
     Write(ports);
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
+    if (!request_.value.empty()) ValueDevices();
     return std::move(ranch_);
   }
 
@@ -233,6 +236,57 @@ class Builder {
            all.begin() + static_cast<std::ptrdiff_t>(to)};
   }
 
+  NamedLayer ReadLayer(const SeaLayerRequest& sea) {
+    const GeoFrame frame = Frame();
+    const std::optional<std::int64_t> time =
+        request_.track.empty() ? request_.start : std::optional<std::int64_t>(start_);
+    const SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
+                                        width(), height());
+    NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
+    const Layer known = layer.layer.isNaN().select(Layer::Zero(height(), width()), layer.layer);
+    const auto cells = static_cast<float>((!layer.layer.isNaN()).count());
+    if (cells == 0.0F) {
+      throw InputError(sea.file + ": " + field.name + ": has no value on this ranch");
+    }
+    Say(sea.name + ": " + field.name + " of " + FileName(sea.file) +
+        (field.time ? " at " + FormatTime(*field.time) : "") +
+        Text(", mean %.4g %s, on %.0f of %d cells", static_cast<double>(known.sum() / cells),
+             field.units.c_str(), static_cast<double>(cells), width() * height()));
+    return layer;
+  }
+
+  void ReadSea() {
+    std::vector<NamedLayer> layers;
+    for (const SeaLayerRequest& sea : request_.sea) layers.push_back(ReadLayer(sea));
+    if (request_.value.empty()) return;
+    value_ = Evaluate(request_.value, layers);
+    Say("values: " + request_.value);
+  }
+
+  // The devices stay where they were drawn, each with the value of its cell.
+  void ValueDevices() {
+    Layout layout;
+    LayoutGenerator(ranch_.scenario).Generate(request_.seed, 0, layout);
+    std::string sites = "  devices:\n    placement: explicit\n    sites:\n";
+    for (const PlacedDevice& device : layout.devices) {
+      const float worth = value_(device.cell.y, device.cell.x);
+      if (!(worth >= 0.0F && worth <= 10000.0F)) {
+        throw InputError("value: got " + Format(worth) + " at the device at " +
+                         CellText(device.cell) + ", expected a number in [0, 10000]");
+      }
+      sites += "      - {cell: " + CellText(device.cell) +
+               ", kind: " + std::string(ToString(device.kind)) +
+               ", value: " + Short(static_cast<double>(worth), 2) + "}\n";
+    }
+    ranch_.yaml.replace(ranch_.yaml.find(DevicesLine()), DevicesLine().size(), sites);
+    ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
+  }
+
+  std::string DevicesLine() const {
+    return "  devices: {placement: " + std::string(ToString(request_.placement)) +
+           Text(", count: %d}\n", request_.devices);
+  }
+
   void Line(const std::string& line) { ranch_.yaml += line + "\n"; }
 
   void Write(const std::vector<Cell>& ports) {
@@ -280,8 +334,7 @@ class Builder {
                                 : "  rocks: {cells: " + CellList(terrain_.rocks) + "}");
     Line(ports.empty() ? Text("  ports: {count: %d}", request_.ports)
                        : "  ports: {cells: " + CellList(ports) + "}");
-    Line("  devices: {placement: " + std::string(ToString(request_.placement)) +
-         Text(", count: %d}", request_.devices));
+    ranch_.yaml += DevicesLine();
   }
 
   void WriteStorm() {
@@ -322,6 +375,7 @@ class Builder {
   Terrain terrain_;
   StormRings storm_;
   std::string storm_text_;
+  Layer value_;  // of a device, by cell
   std::optional<GeoPoint> origin_;
   double cell_size_m_{};
   double step_s_{};

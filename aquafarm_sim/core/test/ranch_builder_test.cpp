@@ -205,6 +205,8 @@ TEST(Program, RefusesWrongArguments) {
       {"--size 1x25", "size: got '1x25', expected whole numbers in [2, 4096]"},
       {"--cell 20furlongs", "cell: got '20furlongs', expected a length as 200m or 0.2km"},
       {"--layout explicit", "layout: got 'explicit', expected one of uniform, linear, random"},
+      {"--sea salt:so", "sea: got 'salt:so', expected NAME=FILE:VARIABLE"},
+      {"--value 3", "value: got no layer to evaluate '3' on"},
       {"--rings oval", "rings: got 'oval', expected one of equal_area, largest"},
       {"--start noon", "start: got 'noon', expected a UTC time as 2021-07-24T12:00:00Z"},
       {"--chart /nowhere.json --center 30,122", "/nowhere.json: cannot read: No such file"},
@@ -233,6 +235,29 @@ TEST(RealFiles, MakeARanchOffDongji) {
   EXPECT_TRUE(ranch.warnings.empty());
   EXPECT_TRUE(Says(ranch.decided, "nearest: 32 km at 2021-07-25T03:30:00Z")) << ranch.yaml;
   EXPECT_TRUE(Says(ranch.decided, "strongest ring 64 kt"));
+}
+
+TEST(RealFiles, GiveDevicesTheirValueFromTheSea) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  RanchRequest request;
+  request.center = GeoPoint{24.8, 57.9};
+  request.cell_size_m = 2000.0;
+  const std::string file = (data / "ocean" / "HYCOM_ST_GoO_20160428to20160503.nc").string();
+  request.sea = {{"salt", file, "so"}, {"warmth", file, "thetao"}};
+  request.value = "warmth > 26 ? 80 : 40 + salt";
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_TRUE(Says(ranch.decided, "salt: so of HYCOM_ST_GoO_20160428to20160503.nc at 2016-04-28T"));
+  ASSERT_EQ(ranch.scenario.devices.sites.size(), 4U);
+  for (const DeviceSite& site : ranch.scenario.devices.sites) {
+    EXPECT_TRUE(*site.value == 80.0F || (*site.value > 75.0F && *site.value < 79.0F));
+  }
+  request.value = "-salt";
+  EXPECT_NE(Refused(request).find("expected a number in [0, 10000]"), std::string::npos);
+  request.value = "salty";
+  EXPECT_NE(Refused(request).find("expected an expression"), std::string::npos);
+  request.center = GeoPoint{30.0, 122.0};
+  EXPECT_NE(Refused(request).find("has no value on this ranch"), std::string::npos);
 }
 
 // Scenario files that a person may edit; what decides the play is still what the command makes.

@@ -12,6 +12,13 @@
 
 namespace aquafarm {
 
+/// A field of the sea over the ranch, for expressions.
+struct SeaLayerRequest {
+  std::string name;      ///< in expressions
+  std::string file;      ///< netCDF
+  std::string variable;  ///< name or standard_name
+};
+
 /// What a ranch shall be. What is left open is decided, and said.
 struct RanchRequest {
   std::string name{"my_ranch"};
@@ -38,6 +45,10 @@ struct RanchRequest {
   double lead_h{3.0};                 ///< from the start until the widest ring reaches the ranch
   std::optional<std::int64_t> start;  ///< UTC of step 0, instead of lead_h
   std::uint64_t seed{1};
+
+  std::vector<SeaLayerRequest> sea;  ///< at the start's time, or the first of the file
+  double sea_depth_m{0.0};
+  std::string value;  ///< expression of the layers for each device's value; empty: drawn
 };
 
 /// A ranch made.

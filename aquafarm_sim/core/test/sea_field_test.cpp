@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/sea_field.h"
+
+#include <gtest/gtest.h>
+#include <netcdf.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "aquafarm/check.h"
+#include "shared_data.h"
+
+namespace aquafarm {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How a file is written; the field is 10 + 100 · (latitude - 30) + 10 · (longitude - 122) + depth.
+struct Shape {
+  bool north_first{};
+  bool depth_up{};
+  double turn{};  ///< added to longitudes
+  bool packed{true};
+  const char* time_units{"hours since 2021-07-25 00:00:00"};
+  bool curvilinear{};
+};
+
+constexpr int kLatitudes = 5;
+constexpr int kLongitudes = 6;
+
+class SeaFields : public testing::Test {
+ protected:
+  SeaFields()
+      : path_((fs::temp_directory_path() / ("sea." + std::to_string(getpid()) + ".nc")).string()) {}
+  ~SeaFields() override { fs::remove(path_); }
+
+  void Write(const Shape& shape) const {
+    int file = 0;
+    ASSERT_EQ(nc_create(path_.c_str(), NC_CLOBBER, &file), NC_NOERR);
+    std::array<int, 4> dims{};
+    nc_def_dim(file, "time", 2, &dims[0]);
+    nc_def_dim(file, "depth", 3, &dims[1]);
+    nc_def_dim(file, shape.curvilinear ? "eta" : "lat", kLatitudes, &dims[2]);
+    nc_def_dim(file, shape.curvilinear ? "xi" : "lon", kLongitudes, &dims[3]);
+    std::array<int, 4> axes{};
+    const std::array<const char*, 4> names{"time", "depth", "lat", "lon"};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const bool flat = shape.curvilinear && i >= 2;
+      nc_def_var(file, names[i], NC_DOUBLE, flat ? 2 : 1, flat ? &dims[2] : &dims[i], &axes[i]);
+    }
+    Put(file, axes[0], "units", shape.time_units);
+    Put(file, axes[1], "positive", shape.depth_up ? "up" : "down");
+    Put(file, axes[2], "units", "degrees_north");
+    Put(file, axes[3], "units", "degrees_east");
+    int variable = 0;
+    nc_def_var(file, "so", shape.packed ? NC_SHORT : NC_FLOAT, 4, dims.data(), &variable);
+    Put(file, variable, "standard_name", "sea_water_salinity");
+    Put(file, variable, "units", "psu");
+    const double scale = 0.01;
+    const double offset = 20.0;
+    const short fill = -30000;
+    if (shape.packed) {
+      nc_put_att_double(file, variable, "scale_factor", NC_DOUBLE, 1, &scale);
+      nc_put_att_double(file, variable, "add_offset", NC_DOUBLE, 1, &offset);
+      nc_put_att_short(file, variable, "_FillValue", NC_SHORT, 1, &fill);
+    }
+    ASSERT_EQ(nc_enddef(file), NC_NOERR);
+    if (!shape.curvilinear) PutAxes(file, axes, shape);
+    std::vector<double> values;
+    for (int time = 0; time < 2; ++time) {
+      for (int depth = 0; depth < 3; ++depth) {
+        for (int row = 0; row < kLatitudes; ++row) {
+          for (int column = 0; column < kLongitudes; ++column) {
+            const double value = 10.0 + 100.0 * (Latitude(row, shape) - 30.0) +
+                                 10.0 * (0.1 * column) + 5.0 * depth + 0.5 * time;
+            const bool land = row == 0 && column == 0;
+            values.push_back(!shape.packed ? value : land ? fill : (value - offset) / scale);
+          }
+        }
+      }
+    }
+    for (double& value : values) value = shape.packed ? std::round(value) : value;
+    ASSERT_EQ(nc_put_var_double(file, variable, values.data()), NC_NOERR);
+    nc_close(file);
+  }
+
+  std::string Refused(const SeaFieldChoice& choice = {"so", {}, 0.0}) const {
+    try {
+      LoadSeaField(path_, choice, frame_, 4, 4);
+    } catch (const InputError& error) {
+      return std::string(error.what()).substr(path_.size() + 2);
+    }
+    return "was read";
+  }
+
+  static double Latitude(int row, const Shape& shape) {
+    return 30.0 + 0.1 * (shape.north_first ? kLatitudes - 1 - row : row);
+  }
+
+  const std::string path_;
+  const GeoFrame frame_{{30.15, 122.15}, 1000.0};
+
+ private:
+  static void Put(int file, int variable, const char* key, const char* text) {
+    nc_put_att_text(file, variable, key, std::char_traits<char>::length(text), text);
+  }
+  static void PutAxes(int file, const std::array<int, 4>& axes, const Shape& shape) {
+    const std::array<double, 2> times{0.0, 24.0};
+    std::array<double, 3> depths{0.0, 5.0, 10.0};
+    for (double& depth : depths) depth *= shape.depth_up ? -1.0 : 1.0;
+    std::array<double, kLatitudes> latitudes{};
+    std::array<double, kLongitudes> longitudes{};
+    for (int i = 0; i < kLatitudes; ++i)
+      latitudes[static_cast<std::size_t>(i)] = Latitude(i, shape);
+    for (int i = 0; i < kLongitudes; ++i) {
+      longitudes[static_cast<std::size_t>(i)] = 122.0 + 0.1 * i + shape.turn;
+    }
+    nc_put_var_double(file, axes[0], times.data());
+    nc_put_var_double(file, axes[1], depths.data());
+    nc_put_var_double(file, axes[2], latitudes.data());
+    nc_put_var_double(file, axes[3], longitudes.data());
+  }
+};
+
+// At 30.15 N 122.15 E: 10 + 15 + 1.5.
+constexpr float kThere = 26.5F;
+
+TEST_F(SeaFields, AreUnpackedAndCutToTheRanch) {
+  Write({});
+  const SeaField field = LoadSeaField(path_, {"so", {}, 0.0}, frame_, 4, 4);
+  EXPECT_EQ(field.units, "psu");
+  EXPECT_EQ(field.time, 1627171200);
+  EXPECT_EQ(field.depth_m, 0.0);
+  EXPECT_LT(field.latitude.size(), static_cast<std::size_t>(kLatitudes)) << "cut";
+  const Layer layer = ToLayer(field, frame_, 4, 4);
+  EXPECT_NEAR(layer(0, 0), kThere, 0.02F);
+  // Three cells of 1 km to the north are 0.02706 degrees: 2.7 more.
+  EXPECT_NEAR(layer(3, 0) - layer(0, 0), 2.706F, 0.02F);
+  EXPECT_GT(layer(0, 3), layer(0, 0));
+}
+
+TEST_F(SeaFields, RunEitherWayInLatitudeDepthAndLongitude) {
+  for (const Shape& shape : {Shape{true}, Shape{false, true}, Shape{false, false, -360.0},
+                             Shape{true, true, 0.0, false}}) {
+    Write(shape);
+    const SeaField field = LoadSeaField(path_, {"sea_water_salinity", {}, 4.0}, frame_, 4, 4);
+    EXPECT_EQ(field.depth_m, 5.0);
+    EXPECT_NEAR(ToLayer(field, frame_, 4, 4)(0, 0), kThere + 5.0F, 0.02F);
+  }
+}
+
+TEST_F(SeaFields, GiveTheNearestTime) {
+  Write({});
+  const SeaField field = LoadSeaField(path_, {"so", 1627171200 + 13 * 3600, 0.0}, frame_, 4, 4);
+  EXPECT_EQ(field.time, 1627171200 + 24 * 3600);
+  EXPECT_NEAR(ToLayer(field, frame_, 4, 4)(0, 0), kThere + 0.5F, 0.02F);
+}
+
+TEST_F(SeaFields, HaveNothingOnLandAndFarAway) {
+  Write({});
+  const GeoFrame corner({30.0, 122.0}, 1000.0);
+  const Layer layer = ToLayer(LoadSeaField(path_, {"so", {}, 0.0}, corner, 6, 6), corner, 6, 6);
+  EXPECT_TRUE(std::isnan(layer(0, 0))) << "the value there is land";
+  EXPECT_FALSE(std::isnan(layer(5, 5))) << "three others are near";
+  const GeoFrame far({50.0, 150.0}, 1000.0);
+  EXPECT_TRUE(ToLayer(LoadSeaField(path_, {"so", {}, 0.0}, far, 3, 3), far, 3, 3).isNaN().all());
+}
+
+TEST_F(SeaFields, AreRefusedWithTheReason) {
+  Write({});
+  EXPECT_EQ(Refused({"temperature", {}, 0.0}),
+            "temperature: there is no such variable; there are: time, depth, lat, lon, so");
+  EXPECT_EQ(Refused({"depth", {}, 0.0}).substr(0, 42),
+            "depth: got no latitude and longitude of on");
+  Shape shape;
+  shape.curvilinear = true;
+  Write(shape);
+  EXPECT_EQ(Refused(),
+            "so: got no latitude and longitude of one dimension each (a curvilinear "
+            "grid?), expected them along the variable's dimensions");
+  shape = {};
+  shape.time_units = "fortnights since 2021-07-25";
+  Write(shape);
+  EXPECT_EQ(Refused(),
+            "time: units: got 'fortnights since 2021-07-25', expected such as 'hours "
+            "since 2000-01-01 00:00:00'");
+  std::ofstream(path_) << "not a netCDF file";
+  EXPECT_EQ(Refused(), "cannot read as netCDF: NetCDF: Unknown file format");
+  fs::remove(path_);
+  EXPECT_EQ(Refused(), "cannot read as netCDF: No such file or directory");
+}
+
+TEST_F(SeaFields, OfTenMegabytesAreCutInHalfASecond) {
+  int file = 0;
+  ASSERT_EQ(nc_create(path_.c_str(), NC_CLOBBER, &file), NC_NOERR);
+  constexpr std::size_t kSide = 1600;  // 2.56 million values of float: 10.2 MB
+  std::array<int, 2> dims{};
+  nc_def_dim(file, "lat", kSide, &dims[0]);
+  nc_def_dim(file, "lon", kSide, &dims[1]);
+  std::array<int, 3> variables{};
+  nc_def_var(file, "lat", NC_DOUBLE, 1, &dims[0], &variables[0]);
+  nc_def_var(file, "lon", NC_DOUBLE, 1, &dims[1], &variables[1]);
+  nc_def_var(file, "t", NC_FLOAT, 2, dims.data(), &variables[2]);
+  nc_enddef(file);
+  std::vector<double> axis(kSide);
+  for (std::size_t i = 0; i < kSide; ++i) axis[i] = 30.0 + 0.001 * static_cast<double>(i);
+  nc_put_var_double(file, variables[0], axis.data());
+  for (double& at : axis) at += 92.0;
+  nc_put_var_double(file, variables[1], axis.data());
+  const std::vector<float> values(kSide * kSide, 17.0F);
+  nc_put_var_float(file, variables[2], values.data());
+  nc_close(file);
+  const GeoFrame frame({30.1, 122.1}, 200.0);
+  const auto start = std::chrono::steady_clock::now();
+  const Layer layer =
+      ToLayer(LoadSeaField(path_, {"t", {}, 0.0}, frame, 500, 500), frame, 500, 500);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+  EXPECT_EQ(layer(499, 499), 17.0F);
+  // 500 x 500 cells are four hundred times the paper's farm; the bound is wide for a busy machine.
+  EXPECT_LT(took.count(), 2.0);
+  RecordProperty("milliseconds", static_cast<int>(took.count() * 1000.0));
+}
+
+TEST(Expressions, AreEvaluatedAtEveryCell) {
+  Layer salinity(1, 3);
+  salinity << 30.0F, 35.0F, std::numeric_limits<float>::quiet_NaN();
+  Layer warmth(1, 3);
+  warmth << 20.0F, 28.0F, 20.0F;
+  const std::vector<NamedLayer> layers{{"salinity", salinity}, {"warmth", warmth}};
+  const Layer value = Evaluate("salinity < 32 ? 50 : max(10, 2 * warmth)", layers);
+  EXPECT_EQ(value(0, 0), 50.0F);
+  EXPECT_EQ(value(0, 1), 56.0F);
+  EXPECT_TRUE(std::isnan(value(0, 2)));
+}
+
+TEST(Expressions, AreRefusedInOneLine) {
+  const auto refused = [](const std::string& expression, const std::string& name = "t") {
+    try {
+      Evaluate(expression, {{name, Layer::Zero(1, 1)}});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("was taken");
+  };
+  EXPECT_EQ(refused("2 * ").substr(0, 44), "value: got '2 * ', expected an expression: U");
+  EXPECT_NE(refused("2 * x").find("Unexpected token \"x\""), std::string::npos);
+  EXPECT_NE(refused("1", "2bad").find("expected an expression"), std::string::npos);
+}
+
+TEST(RealFiles, OfHycomHaveSaltAndWarmth) {
+  const fs::path path = SharedData() / "ocean" / "HYCOM_ST_GoO_20160428to20160503.nc";
+  if (!fs::exists(path)) GTEST_SKIP() << "no field at " << path;
+  const GeoFrame frame({24.6, 57.6}, 2000.0);
+  const SeaField salt = LoadSeaField(path.string(), {"so", {}, 0.0}, frame, 25, 25);
+  EXPECT_EQ(salt.depth_m, 0.0);
+  const Layer layer = ToLayer(salt, frame, 25, 25);
+  EXPECT_FALSE(layer.isNaN().any());
+  EXPECT_GT(layer.minCoeff(), 35.0F) << "the Gulf of Oman";
+  EXPECT_LT(layer.maxCoeff(), 40.0F);
+  const SeaField warmth = LoadSeaField(path.string(), {"thetao", {}, 0.0}, frame, 25, 25);
+  const Layer surface = ToLayer(warmth, frame, 25, 25);
+  EXPECT_GT(surface.minCoeff(), 22.0F);
+  EXPECT_LT(surface.maxCoeff(), 35.0F);
+  // What another reader (SciPy's) unpacks at 24.64 N 57.599 E.
+  const GeoFrame there({24.64000130, 57.5991}, 1000.0);
+  const auto at = [&](const char* name, double depth_m) {
+    return ToLayer(LoadSeaField(path.string(), {name, {}, depth_m}, there, 2, 2), there, 2, 2)(0,
+                                                                                               0);
+  };
+  EXPECT_NEAR(at("so", 0.0), 36.739F, 0.002F);
+  EXPECT_NEAR(at("thetao", 0.0), 26.594F, 0.002F);
+  EXPECT_NEAR(at("thetao", 10.0), 25.578F, 0.002F);
+  const SeaField deep = LoadSeaField(path.string(), {"thetao", {}, 500.0}, frame, 25, 25);
+  EXPECT_EQ(deep.depth_m, 500.0);
+  EXPECT_LT(ToLayer(deep, frame, 25, 25).mean(), surface.mean() - 8.0F);
+}
+
+}  // namespace
+}  // namespace aquafarm

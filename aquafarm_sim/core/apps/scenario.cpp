@@ -150,6 +150,10 @@ int Main(int argc, char** argv) {
   app.add_option("--storm", ranch.storm, "name or number of the storm in that file");
   app.add_option("--radii", ranch.radii, "file with radii of winds, for a track that has none");
   app.add_option("--rings", arguments.rings, "quadrants become a circle: equal_area or largest");
+  app.add_option(
+      "--disaster", ranch.disasters,
+      "another disaster as KIND:KEY=NUMBER,… such as wave:height_m=4,radius_km=5; kinds: "
+      "storm, storm_surge, wave, red_tide, oil_spill, chemical_spill");
   app.add_option("--ports", ranch.ports, "ports, spread along the shore")
       ->check(CLI::Range(1, 256));
   app.add_option("--port", arguments.ports,

@@ -9,6 +9,7 @@
 #include "aquafarm/ascii_grid.h"
 #include "aquafarm/check.h"
 #include "aquafarm/coast.h"
+#include "aquafarm/disaster_preset.h"
 #include "aquafarm/hazard_file.h"
 #include "aquafarm/layout.h"
 #include "aquafarm/map_file.h"
@@ -72,6 +73,7 @@ class Builder {
     const std::vector<Cell> ports = PlacePorts();
     SetTime();
     ReadSea();
+    AddPresets();
     Write(ports);
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
     if (!request_.value.empty()) ValueDevices();
@@ -194,7 +196,7 @@ class Builder {
     step_s_ = request_.step_s.value_or(
         std::max(1.0, std::round(cell_size_m_ / (request_.speed_kn * kMpsPerKnot))));
     internal::Check("step", step_s_, internal::Interval<double>{0.001, 1.0e6});
-    if (request_.track.empty()) return Say(Text("time: %g s a step; calm", step_s_));
+    if (request_.track.empty()) return Say(Text("time: %g s a step; no storm", step_s_));
     ReadTrack();
     const double half_diagonal_km = std::hypot(width(), height()) / 2.0 * cell_size_m_ / 1000.0;
     const Passage passage = PassOver(storm_, *request_.center, half_diagonal_km);
@@ -220,6 +222,7 @@ class Builder {
                        FormatTime(end) + ", when the storm is over");
     }
     duration_ = static_cast<std::int32_t>(std::ceil(static_cast<double>(end - start_) / step_s_));
+    storm_steps_ = duration_;
     Say(Text("time: %g s a step, from %s, over after %d steps", step_s_, FormatTime(start_).c_str(),
              duration_));
     Trim(end);
@@ -253,6 +256,18 @@ class Builder {
         Text(", mean %.4g %s, on %.0f of %d cells", static_cast<double>(known.sum() / cells),
              field.units.c_str(), static_cast<double>(cells), width() * height()));
     return layer;
+  }
+
+  void AddPresets() {
+    const bool south = request_.center && request_.center->latitude < 0.0;
+    for (const std::string& text : request_.disasters) {
+      const DisasterSpec disaster = ParseDisasterPreset(text, {cell_size_m_, step_s_, south});
+      presets_.push_back(disaster);
+      Say(Text("disaster: %s: grade %d, radius %.1f cells, %.3g cells a step, %d steps",
+               text.c_str(), disaster.grade, static_cast<double>(disaster.radii.back()),
+               static_cast<double>(disaster.speed), disaster.duration));
+      duration_ = std::max(duration_, disaster.duration);
+    }
   }
 
   void ReadSea() {
@@ -311,7 +326,9 @@ class Builder {
          Text(", step_limit: %d}", duration_ > 0 ? duration_ + 100 : 5000));
     WriteLayout(ports);
     Line(Text("ships: {count: %d, capacity: 1}", request_.ships));
+    if (!storm_.waypoints.empty() || !presets_.empty()) Line("disasters:");
     if (!storm_.waypoints.empty()) WriteStorm();
+    for (const DisasterSpec& disaster : presets_) WritePreset(disaster);
     Line("view: {mode: full}");
   }
 
@@ -337,9 +354,26 @@ class Builder {
     ranch_.yaml += DevicesLine();
   }
 
+  static std::string Numbers(const std::vector<float>& values) {
+    std::string text;
+    for (const float value : values) text += (text.empty() ? "[" : ", ") + Format(value);
+    return text + "]";
+  }
+
+  void WritePreset(const DisasterSpec& disaster) {
+    Line("  - kind: " + std::string(ToString(disaster.kind)));
+    Line(Text("    grade: %d\n    radii: ", disaster.grade) + Numbers(disaster.radii) +
+         "\n    risks: " + Numbers(disaster.risks));
+    Line("    speed: " + Format(disaster.speed) +
+         Text("\n    heading_deg: %d", disaster.heading_deg.value_or(0)) +
+         "\n    turn_probability: 0\n    radius_growth: " + Format(disaster.radius_growth));
+    Line("    border: " + std::string(ToString(disaster.border)) +
+         Text("\n    duration: %d", disaster.duration));
+  }
+
   void WriteStorm() {
     const RiskTable& table = DefaultRiskTable();
-    Line("disasters:\n  - kind: typhoon");
+    Line("  - kind: typhoon");
     std::string rows;
     for (const std::vector<float>& row : table) {
       rows += rows.empty() ? "[" : ", ";
@@ -354,7 +388,7 @@ class Builder {
       winds += (winds.empty() ? "" : ", ") + std::to_string(wind_kt);
     }
     Line("    grade_risks: [" + rows.substr(1) + "]  # grades 1 to 4, rings of " + winds + " kt");
-    Line(Text("    duration: %d\n    track:", duration_));
+    Line(Text("    duration: %d\n    track:", storm_steps_));
     for (const StormWaypoint& waypoint : storm_.waypoints) {
       std::string radii;
       for (const double radius : waypoint.radii_km) {
@@ -374,13 +408,15 @@ class Builder {
   Ranch ranch_;
   Terrain terrain_;
   StormRings storm_;
+  std::vector<DisasterSpec> presets_;
   std::string storm_text_;
   Layer value_;  // of a device, by cell
   std::optional<GeoPoint> origin_;
   double cell_size_m_{};
   double step_s_{};
   std::int64_t start_{};
-  std::int32_t duration_{};
+  std::int32_t duration_{};     // of all
+  std::int32_t storm_steps_{};  // of the storm
 };
 
 }  // namespace

@@ -122,6 +122,23 @@ TEST(Ranch, MayBeCalmAndOnOpenSea) {
   EXPECT_TRUE(Says(ranch.decided, "no shore, so 4 drawn at the edge"));
 }
 
+TEST(Ranch, HasOtherDisastersBesideItsStorm) {
+  RanchRequest request = Request();
+  request.disasters = {"red_tide:area_km2=120,current_mps=0.3,current_to_deg=45",
+                       "wave:height_m=4,radius_km=5,duration_h=48"};
+  const Ranch ranch = BuildRanch(request);
+  ASSERT_EQ(ranch.scenario.disasters.size(), 3U);
+  EXPECT_EQ(ranch.scenario.disasters[0].duration, 89);
+  EXPECT_EQ(ranch.scenario.disasters[1].kind, DisasterKind::kRedTide);
+  EXPECT_EQ(ranch.scenario.disasters[1].heading_deg, 45);
+  EXPECT_EQ(ranch.scenario.disasters[2].grade, 2);
+  EXPECT_EQ(ranch.scenario.disasters[2].duration, 712) << "48 h of 243 s";
+  EXPECT_EQ(ranch.scenario.step_limit, 812);
+  EXPECT_TRUE(Says(ranch.decided, "disaster: wave:height_m=4"));
+  request.disasters = {"wave:height_m=1,radius_km=5"};
+  EXPECT_EQ(Refused(request), "disaster: wave: height_m: got 1, expected [2.5, 30]");
+}
+
 TEST(Ranch, TakesItsSizeFromAGridInMetres) {
   const fs::path path = fs::temp_directory_path() / ("bay." + std::to_string(getpid()) + ".asc");
   std::ofstream(path) << "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 150\n"

@@ -34,6 +34,8 @@ struct RanchRequest {
   std::string radii;  ///< file with radii for a track without; empty: none
   RingReduction reduction{RingReduction::kEqualArea};
 
+  std::vector<std::string> disasters;  ///< others, as disaster_preset.h has them
+
   std::int32_t ports{4};
   std::vector<GeoPoint>
       port_places;  ///< each is put on the nearest shore water; instead of `ports`

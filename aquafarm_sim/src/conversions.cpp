@@ -362,6 +362,37 @@ aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message) {
   return spec;
 }
 
+aquafarm_msgs::DisasterInfo ToMsg(const aquafarm::DisasterSpec& spec) {
+  aquafarm_msgs::DisasterInfo message;
+  message.kind = static_cast<std::uint8_t>(spec.kind);
+  message.grade = static_cast<std::uint8_t>(spec.grade);
+  message.radii = spec.radii;
+  message.risks = spec.risks;
+  message.speed = spec.speed;
+  message.has_heading = spec.heading_deg.has_value();
+  message.heading_deg = spec.heading_deg.value_or(0);
+  message.turn_probability = spec.turn_probability;
+  message.radius_growth = spec.radius_growth;
+  message.border = static_cast<std::uint8_t>(spec.border);
+  message.duration = spec.duration;
+  message.has_start = spec.start.has_value();
+  if (spec.start) {
+    message.x = (*spec.start)[0];
+    message.y = (*spec.start)[1];
+  }
+  for (const aquafarm::Waypoint& from : spec.track) {
+    aquafarm_msgs::DisasterWaypoint waypoint;
+    waypoint.step = from.step;
+    waypoint.x = from.x;
+    waypoint.y = from.y;
+    waypoint.grade = static_cast<std::uint8_t>(from.grade);
+    waypoint.radii = from.radii;
+    waypoint.risks = from.risks;
+    message.track.push_back(std::move(waypoint));
+  }
+  return message;
+}
+
 ros::Time WorldTime(const aquafarm::Scenario& scenario, std::int64_t step) {
   const double start_s = static_cast<double>(scenario.start_time.value_or(0));
   const double time_s = start_s + static_cast<double>(step) * scenario.step_duration_s;

@@ -4,6 +4,7 @@
 #include <GeographicLib/Geodesic.hpp>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "aquafarm/check.h"
 #include "hazard_text.h"
@@ -158,6 +159,46 @@ DisasterSpec ToDisaster(const StormRings& storm, const RiskTable& risks, const G
   disaster.radii = first.radii;
   disaster.risks = first.risks;
   disaster.duration = std::max(1, static_cast<std::int32_t>(std::ceil(disaster.track.back().step)));
+  return disaster;
+}
+
+HazardTrack WithForecast(const HazardTrack& track) {
+  HazardTrack whole = track;
+  AQUAFARM_CHECK_GE(track.fixes.size(), 1U);
+  const HazardFix& now = track.fixes.back();
+  const HazardForecast* newest = nullptr;
+  for (const HazardForecast& forecast : track.forecasts) {
+    if (forecast.fixes.back().time <= now.time) continue;
+    if (newest == nullptr || forecast.issued > newest->issued) newest = &forecast;
+  }
+  if (newest != nullptr) {
+    std::copy_if(newest->fixes.begin(), newest->fixes.end(), std::back_inserter(whole.fixes),
+                 [&now](const HazardFix& fix) { return fix.time > now.time; });
+    return whole;
+  }
+  if (!now.heading_deg || !now.speed_kmh) return whole;
+  constexpr std::int64_t kAhead_s = 24 * 3600;
+  HazardFix later = now;
+  later.time += kAhead_s;
+  GeographicLib::Geodesic::WGS84().Direct(now.position.latitude, now.position.longitude,
+                                          *now.heading_deg,
+                                          *now.speed_kmh * static_cast<double>(kAhead_s) / 3.6,
+                                          later.position.latitude, later.position.longitude);
+  whole.fixes.push_back(std::move(later));
+  return whole;
+}
+
+DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario,
+                        std::int32_t step_now) {
+  if (!scenario.origin || !scenario.start_time) {
+    throw InputError("bulletin: needs a ranch with grid.origin and time.start");
+  }
+  const StormRings storm = ToRings(WithForecast(bulletin), RingReduction::kEqualArea);
+  DisasterSpec disaster =
+      ToDisaster(storm, DefaultRiskTable(), GeoFrame(*scenario.origin, scenario.cell_size_m),
+                 scenario.cell_size_m, scenario.step_duration_s, *scenario.start_time);
+  const double left = std::ceil(static_cast<double>(disaster.track.back().step)) - step_now;
+  disaster.duration = static_cast<std::int32_t>(std::clamp(left, 1.0, 1.0e7));
   return disaster;
 }
 

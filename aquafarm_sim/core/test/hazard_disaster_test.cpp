@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "aquafarm/check.h"
 #include "aquafarm/disaster.h"
 #include "aquafarm/hazard_file.h"
 #include "shared_data.h"
@@ -113,6 +114,46 @@ TEST(ToDisaster, PutsCellsAndStepsInThePlaceOfKilometresAndHours) {
   EXPECT_EQ(disaster.track[0].grade, 3);
   EXPECT_EQ(disaster.track[0].radii, (std::vector<float>{40.0F, 100.0F, 200.0F}));
   EXPECT_EQ(disaster.track[0].risks, DefaultRiskTable()[2]);
+}
+
+TEST(Bulletins, GoOnWithTheNewestForecast) {
+  HazardTrack track = WestGoing();
+  HazardForecast old;
+  old.issued = kStart;
+  old.fixes = {Fix(30, 119.0, 20.0)};
+  HazardForecast fresh;
+  fresh.issued = kStart + 20 * kHour_s;
+  fresh.fixes = {Fix(20, 120.0, 30.0), Fix(26, 119.5, 25.0), Fix(44, 118.0, 18.0)};
+  track.forecasts = {old, fresh};
+  const HazardTrack whole = WithForecast(track);
+  ASSERT_EQ(whole.fixes.size(), 5U);
+  EXPECT_EQ(whole.fixes[4].time, kStart + 44 * kHour_s);
+}
+
+TEST(Bulletins, GoOnAsTheStormMovesWithoutAForecast) {
+  HazardTrack track = WestGoing();
+  track.fixes.back().heading_deg = 0.0;
+  track.fixes.back().speed_kmh = 10.0;
+  const HazardTrack whole = WithForecast(track);
+  ASSERT_EQ(whole.fixes.size(), 4U);
+  EXPECT_EQ(whole.fixes[3].time, kStart + 44 * kHour_s);
+  EXPECT_NEAR(whole.fixes[3].position.latitude, 30.0 + 240.0 / 110.9, 0.01);
+  EXPECT_EQ(whole.fixes[3].rings.size(), 3U);
+}
+
+TEST(Bulletins, LastFromNowToTheirEnd) {
+  HazardTrack track = WestGoing();
+  track.fixes.back().heading_deg = 0.0;
+  track.fixes.back().speed_kmh = 10.0;
+  Scenario scenario;
+  EXPECT_THROW(ToDisaster(track, scenario, 0), InputError);
+  scenario.origin = kRanch;
+  scenario.start_time = kStart;
+  scenario.step_duration_s = 3600.0;
+  const DisasterSpec disaster = ToDisaster(track, scenario, 5);
+  EXPECT_EQ(disaster.duration, 39) << "44 hours, 5 are over";
+  EXPECT_NO_THROW(ValidateDisaster(disaster));
+  EXPECT_EQ(ToDisaster(track, scenario, 1000).duration, 1) << "long over";
 }
 
 TEST(PassOver, TellsWhenAStormIsNearestAndHowLongItsWindLasts) {

@@ -80,6 +80,9 @@ inline constexpr std::size_t kMaxWaypoints = 10000;
 /// @throws InputError "info.radii: got 1000000 entries, expected at most 4"
 aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message);
 
+/// The same the other way.
+aquafarm_msgs::DisasterInfo ToMsg(const aquafarm::DisasterSpec& spec);
+
 /// Time in the scenario's world after `step` steps; 0 when it cannot be a ros::Time.
 ros::Time WorldTime(const aquafarm::Scenario& scenario, std::int64_t step);
 

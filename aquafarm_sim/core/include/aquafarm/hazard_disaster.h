@@ -67,11 +67,22 @@ const RiskTable& DefaultRiskTable();
 DisasterSpec ToDisaster(const StormRings& storm, const RiskTable& risks, const GeoFrame& frame,
                         double cell_size_m, double step_duration_s, std::int64_t start_time);
 
+/// A storm as a bulletin leaves it: the fixes so far, then the newest forecast that was issued with
+/// one, of the agency named first. Without a forecast it goes on for 24 hours as it moves now, with
+/// the wind and rings it has now (persistence).
+HazardTrack WithForecast(const HazardTrack& track);
+
+/// The disaster that a bulletin announces to a running episode.
+/// @param step_now of the episode: the disaster lasts from it to the last waypoint, at least a step
+/// @throws InputError for a scenario without grid.origin or time.start
+DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario,
+                        std::int32_t step_now);
+
 /// When a ring of a storm lies over a place.
 struct Passage {
   std::int64_t nearest_time{};   ///< UTC [s since 1970]
   double nearest_km{};           ///< of the centre
-  double widest_h{};            ///< how long the widest ring was over the place [hours]
+  double widest_h{};             ///< how long the widest ring was over the place [hours]
   std::int64_t first{};          ///< when it first was; 0 with widest_h == 0
   std::int64_t last{};           ///< and last
   std::int32_t worst_wind_kt{};  ///< of the strongest ring that came over it; 0: none

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/bulletin_folder.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+
+#include "aquafarm/check.h"
+
+namespace aquafarm_sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BulletinFolderTest : public testing::Test {
+ protected:
+  BulletinFolderTest()
+      : path_(fs::temp_directory_path() / ("bulletins." + std::to_string(getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~BulletinFolderTest() override { fs::remove_all(path_); }
+
+  // With a time of its own, as a clock may be coarse.
+  void Write(const std::string& name, const std::string& text, int seconds) const {
+    std::ofstream(path_ / name) << text;
+    fs::last_write_time(path_ / name, fs::file_time_type(std::chrono::seconds(1000 + seconds)));
+  }
+  std::string Path(const std::string& name) const { return (path_ / name).string(); }
+
+  const fs::path path_;
+};
+
+using Files = std::vector<std::string>;
+
+TEST_F(BulletinFolderTest, GivesEachFileOnceTheOldestFirst) {
+  BulletinFolder folder(path_.string());
+  EXPECT_EQ(folder.TakeNew(), Files{});
+  Write("b.json", "1", 2);
+  Write("c.json", "1", 1);
+  EXPECT_EQ(folder.TakeNew(), (Files{Path("c.json"), Path("b.json")}));
+  EXPECT_EQ(folder.TakeNew(), Files{});
+}
+
+TEST_F(BulletinFolderTest, GivesAFileAgainWhenItChanged) {
+  BulletinFolder folder(path_.string());
+  Write("b.json", "1", 2);
+  folder.TakeNew();
+  Write("b.json", "2", 3);
+  EXPECT_EQ(folder.TakeNew(), Files{Path("b.json")});
+  fs::remove(path_ / "b.json");
+  EXPECT_EQ(folder.TakeNew(), Files{});
+  Write("b.json", "2", 3);
+  EXPECT_EQ(folder.TakeNew(), Files{Path("b.json")}) << "it was gone between";
+}
+
+TEST_F(BulletinFolderTest, PassesOverWhatIsBeingWritten) {
+  BulletinFolder folder(path_.string());
+  Write("b.json.part", "1", 1);
+  Write(".b.json", "1", 1);
+  fs::create_directories(path_ / "folder");
+  EXPECT_EQ(folder.TakeNew(), Files{});
+}
+
+TEST_F(BulletinFolderTest, IsRefusedWhereThereIsNone) {
+  BulletinFolder folder(Path("nowhere"));
+  try {
+    folder.TakeNew();
+    FAIL();
+  } catch (const aquafarm::InputError& error) {
+    EXPECT_EQ(error.what(),
+              Path("nowhere") + ": cannot read this folder: No such file or directory");
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm_sim

@@ -1,0 +1,104 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bulletins put into a folder reach the running episode, and what the ship sees."""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import rospy
+import rostest
+from aquafarm_msgs.msg import FarmState
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from sim_client import LIMIT_S, call, message, state  # noqa: E402
+
+NORTH = 0
+
+
+def storm(latitude, radius_km, forecast=None):
+    """A bulletin of 2021-07-24 00:00 UTC, the scenario's start, in Beijing time."""
+    point = {"time": "2021-07-24T08:00:00", "lat": latitude, "lng": 122.7, "strong": "台风(TY)",
+             "speed": 35, "move_dir": "北", "move_speed": 10, "radius7": radius_km,
+             "radius10": radius_km / 2, "radius12": radius_km / 4, "forecast": forecast}
+    return json.dumps([{"tfbh": "202106", "ename": "In-Fa", "points": [point]}])
+
+
+class BulletinNodeTest(unittest.TestCase):
+
+    def start(self, folder):
+        """The node as rosrun starts it, in the ranch's namespace, each with a name of its own."""
+        self.started = getattr(self, "started", 0) + 1
+        name = f"{self._testMethodName[:12]}_{self.started}"
+        return subprocess.Popen(
+            ["rosrun", "aquafarm_sim", "bulletin_node", f"_folder:={folder}", "_period_s:=0.1",
+             "__name:=" + name, "__ns:=" + rospy.get_namespace().rstrip("/")],
+            stderr=subprocess.PIPE, text=True)
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="bulletins.")
+        self.node = self.start(self.folder)
+
+    def put(self, name, text):
+        """As writers should: beside, then renamed."""
+        path = os.path.join(self.folder, name)
+        with open(path + ".part", "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(path + ".part", path)
+
+    def wait(self, condition, what):
+        end = time.monotonic() + LIMIT_S
+        while time.monotonic() < end:
+            disaster = state().disasters[0]
+            if condition(disaster):
+                return disaster
+            time.sleep(0.05)
+        self.fail(f"waited in vain for {what}: {disaster}")
+
+    def test_a_bulletin_reaches_the_episode_and_the_next_observation(self):
+        message("spec", rospy.AnyMsg)
+        self.assertEqual(2, state().disasters[0].grade)
+        self.put("first.json", storm(30.0, 50.0))
+        got = self.wait(lambda d: d.grade == 3, "the storm")
+        # 0.2 degrees south of the ranch, in cells of 100 m.
+        self.assertAlmostEqual(-221.7, got.y, delta=1.0)
+        self.assertEqual([125.0, 250.0, 500.0], [round(r, 3) for r in got.radii])
+
+        # What is no bulletin changes nothing, and the node lives on.
+        self.put("broken.json", '[{"tfbh": "202106", "points": [')
+        self.put("other.txt", "not a bulletin at all")
+        time.sleep(0.5)
+        self.assertEqual(3, state().disasters[0].grade)
+
+        ahead = [{"sets": "中国", "points": [
+            {"time": "2021-07-25T08:00:00", "lat": 30.2, "lng": 122.7, "speed": 45,
+             "strong": "强台风(STY)", "radius7": 80}]}]
+        self.put("second.json", storm(30.1, 60.0, ahead))
+        got = self.wait(lambda d: d.y > -120.0, "the correction")
+        self.assertEqual([150.0, 300.0, 600.0], [round(r, 3) for r in got.radii])
+        result = call("ship_0/move", direction=NORTH).result
+        self.assertTrue(result.message == "" or result.code == 0, result.message)
+        seen = message("ship_0/observation", FarmState, lambda s: s.step > 0)
+        self.assertEqual(3, seen.disasters[0].grade)
+        self.assertLess(seen.disasters[0].y, -100.0)
+
+    def test_a_folder_that_is_not_there_is_refused(self):
+        missing = os.path.join(self.folder, "missing")
+        node = self.start(missing)
+        _, error = node.communicate(timeout=LIMIT_S)
+        self.assertEqual(2, node.returncode)
+        self.assertIn(f"bulletin_node: {missing}: cannot read this folder: No such file", error)
+
+    def tearDown(self):
+        self.node.terminate()
+        self.node.communicate(timeout=LIMIT_S)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    rospy.init_node("bulletin_node_test")
+    rostest.rosrun("aquafarm_sim", "bulletin_node_test", BulletinNodeTest, sys.argv)

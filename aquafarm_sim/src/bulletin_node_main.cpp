@@ -8,7 +8,10 @@
 
 #include <chrono>
 #include <future>
+#include <memory>
 #include <optional>
+#include <stdexcept>
+#include <thread>
 
 #include "aquafarm/hazard_disaster.h"
 #include "aquafarm/hazard_file.h"
@@ -23,6 +26,20 @@ namespace {
 
 constexpr double kLookPeriod_s = 0.05;
 constexpr std::chrono::seconds kCallLimit{10};
+constexpr std::chrono::seconds kEndLimit{2};  // from the shutdown of a connection to its call's end
+
+/// The ranch is away or hangs: the file is sent again.
+class NoAnswer : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A call with what its thread needs, which may outlive the wait for it.
+struct Call {
+  ros::ServiceClient client;
+  aquafarm_msgs::SetDisaster message;
+  std::promise<bool> answered;
+};
 
 struct BulletinParams {
   std::string folder;
@@ -42,7 +59,7 @@ BulletinParams ReadParams() {
   if (params.folder.empty()) {
     throw aquafarm::InputError("~folder: missing, expected the folder of the bulletins");
   }
-  BulletinFolder(params.folder).TakeNew();  // refuses a folder that is not there
+  BulletinFolder(params.folder).New();  // refuses a folder that is not there
   return params;
 }
 
@@ -63,12 +80,15 @@ class BulletinNode {
         });
   }
 
-  /// Sends what is new in the folder, once the ranch is known.
+  /// Sends what is new in the folder, once the ranch and its step are known.
   void Look() {
-    if (!scenario_) return;
+    if (!scenario_ || !step_) return;
     try {
-      for (const std::string& path : folder_.TakeNew()) TrySend(path);
-    } catch (const aquafarm::InputError& error) {  // the folder may come back
+      for (const std::string& path : folder_.New()) {
+        TrySend(path);
+        folder_.Mark(path);
+      }
+    } catch (const std::exception& error) {  // the folder or the ranch may come back
       ROS_ERROR_THROTTLE(10.0, "%s", error.what());
     }
   }
@@ -77,7 +97,9 @@ class BulletinNode {
   void TrySend(const std::string& path) {
     try {
       Send(path);
-    } catch (const aquafarm::InputError& error) {
+    } catch (const NoAnswer&) {
+      throw;
+    } catch (const std::exception& error) {
       ROS_ERROR("%s", error.what());
     }
   }
@@ -88,17 +110,23 @@ class BulletinNode {
     const aquafarm::HazardTrack& storm = params_.storm.empty() && file.tracks.size() == 1
                                              ? file.tracks[0]
                                              : aquafarm::FindTrack(file, params_.storm);
-    aquafarm_msgs::SetDisaster call;
-    call.request.farm = -1;
-    call.request.id = params_.id;
-    call.request.info = ToMsg(aquafarm::ToDisaster(storm, *scenario_, step_));
-    ros::ServiceClient client =
-        node_.serviceClient<aquafarm_msgs::SetDisaster>(names::kSetDisaster);
-    std::future<bool> answer =
-        std::async(std::launch::async, [&client, &call] { return client.call(call); });
-    if (answer.wait_for(kCallLimit) != std::future_status::ready) client.shutdown();
-    if (!answer.get()) throw aquafarm::InputError(path + ": the ranch did not answer");
-    if (!call.response.ok) throw aquafarm::InputError(path + ": refused: " + call.response.message);
+    const auto call = std::make_shared<Call>();
+    call->message.request.farm = -1;
+    call->message.request.id = params_.id;
+    call->message.request.info = ToMsg(aquafarm::ToDisaster(storm, *scenario_, *step_));
+    // Only a persistent client has a connection that shutdown() can drop.
+    call->client = node_.serviceClient<aquafarm_msgs::SetDisaster>(names::kSetDisaster, true);
+    std::future<bool> answer = call->answered.get_future();
+    std::thread([call] { call->answered.set_value(call->client.call(call->message)); }).detach();
+    if (answer.wait_for(kCallLimit) != std::future_status::ready) {
+      call->client.shutdown();
+      answer.wait_for(kEndLimit);
+    }
+    if (answer.wait_for(std::chrono::seconds(0)) != std::future_status::ready || !answer.get()) {
+      throw NoAnswer(path + ": the ranch did not answer; it is sent again");
+    }
+    const auto& response = call->message.response;
+    if (!response.ok) throw aquafarm::InputError(path + ": refused: " + response.message);
     ROS_INFO("%s: %s is now disaster %d", path.c_str(),
              (storm.name.empty() ? storm.id : storm.name).c_str(), params_.id);
   }
@@ -109,7 +137,7 @@ class BulletinNode {
   ros::Subscriber spec_;
   ros::Subscriber state_;
   std::optional<aquafarm::Scenario> scenario_;
-  std::int32_t step_{};
+  std::optional<std::int32_t> step_;
 };
 
 int Run() {

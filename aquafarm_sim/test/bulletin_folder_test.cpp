@@ -34,25 +34,43 @@ class BulletinFolderTest : public testing::Test {
 
 using Files = std::vector<std::string>;
 
+Files Take(BulletinFolder& folder) {
+  Files files = folder.New();
+  for (const std::string& file : files) folder.Mark(file);
+  return files;
+}
+
 TEST_F(BulletinFolderTest, GivesEachFileOnceTheOldestFirst) {
   BulletinFolder folder(path_.string());
-  EXPECT_EQ(folder.TakeNew(), Files{});
+  EXPECT_EQ(Take(folder), Files{});
   Write("b.json", "1", 2);
   Write("c.json", "1", 1);
-  EXPECT_EQ(folder.TakeNew(), (Files{Path("c.json"), Path("b.json")}));
-  EXPECT_EQ(folder.TakeNew(), Files{});
+  EXPECT_EQ(Take(folder), (Files{Path("c.json"), Path("b.json")}));
+  EXPECT_EQ(Take(folder), Files{});
 }
 
 TEST_F(BulletinFolderTest, GivesAFileAgainWhenItChanged) {
   BulletinFolder folder(path_.string());
   Write("b.json", "1", 2);
-  folder.TakeNew();
+  Take(folder);
   Write("b.json", "2", 3);
-  EXPECT_EQ(folder.TakeNew(), Files{Path("b.json")});
+  EXPECT_EQ(Take(folder), Files{Path("b.json")});
   fs::remove(path_ / "b.json");
-  EXPECT_EQ(folder.TakeNew(), Files{});
+  EXPECT_EQ(Take(folder), Files{});
   Write("b.json", "2", 3);
-  EXPECT_EQ(folder.TakeNew(), Files{Path("b.json")}) << "it was gone between";
+  EXPECT_EQ(Take(folder), Files{Path("b.json")}) << "it was gone between";
+}
+
+TEST_F(BulletinFolderTest, GivesAFileUntilItIsMarked) {
+  BulletinFolder folder(path_.string());
+  Write("b.json", "1", 2);
+  EXPECT_EQ(folder.New(), Files{Path("b.json")});
+  EXPECT_EQ(folder.New(), Files{Path("b.json")}) << "the ranch was away";
+  Write("b.json", "22", 3);
+  folder.Mark(Path("b.json"));
+  EXPECT_EQ(folder.New(), Files{Path("b.json")}) << "changed after the look";
+  folder.Mark(Path("b.json"));
+  EXPECT_EQ(folder.New(), Files{});
 }
 
 TEST_F(BulletinFolderTest, PassesOverWhatIsBeingWritten) {
@@ -60,13 +78,13 @@ TEST_F(BulletinFolderTest, PassesOverWhatIsBeingWritten) {
   Write("b.json.part", "1", 1);
   Write(".b.json", "1", 1);
   fs::create_directories(path_ / "folder");
-  EXPECT_EQ(folder.TakeNew(), Files{});
+  EXPECT_EQ(Take(folder), Files{});
 }
 
 TEST_F(BulletinFolderTest, IsRefusedWhereThereIsNone) {
   BulletinFolder folder(Path("nowhere"));
   try {
-    folder.TakeNew();
+    Take(folder);
     FAIL();
   } catch (const aquafarm::InputError& error) {
     EXPECT_EQ(error.what(),

@@ -26,6 +26,8 @@ struct Arguments {
   std::vector<std::string> sea;
   std::string output;
   std::string map;
+  bool own_size{};  // --size was given
+  bool own_cell{};
 };
 
 // "30.2,122.7" or "25x25" as two numbers.
@@ -119,11 +121,23 @@ void WriteFile(const std::string& path, const std::string& text) {
   if (!file || error) throw InputError(path + ": cannot write");
 }
 
+// A chart in metres has a size and cells of its own.
+void RefuseUnused(const Arguments& arguments, const Scenario& made) {
+  const RanchRequest asked = Finished(arguments);
+  if (arguments.own_size && (made.width != asked.width || made.height != asked.height)) {
+    throw InputError("size: got '" + arguments.size + "', expected none, as the chart has its own");
+  }
+  if (arguments.own_cell && made.cell_size_m != asked.cell_size_m) {
+    throw InputError("cell: got '" + arguments.cell + "', expected none, as the chart has its own");
+  }
+}
+
 void Run(const Arguments& arguments) {
   const Ranch ranch = BuildRanch(Finished(arguments));
   for (const std::string& warning : ranch.warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
+  RefuseUnused(arguments, ranch.scenario);
   if (ranch.scenario.width <= 200) std::printf("%s\n", Sketch(ranch.scenario).c_str());
   for (const std::string& line : ranch.decided) std::printf("%s\n", line.c_str());
   if (!arguments.map.empty()) SaveMap(ToMap(ranch.scenario), arguments.map);
@@ -143,13 +157,16 @@ int Main(int argc, char** argv) {
   app.add_option("--chart", ranch.chart,
                  "GeoJSON coast, map_server YAML or ASCII grid (.asc, .tt2); empty: open sea");
   app.add_option("--center", arguments.center, "LATITUDE,LONGITUDE of the ranch's middle");
-  app.add_option("--size", arguments.size, "WIDTHxHEIGHT in cells");
-  app.add_option("--cell", arguments.cell, "side of a cell, as 200m or 0.2km");
+  CLI::Option* size = app.add_option("--size", arguments.size, "WIDTHxHEIGHT in cells");
+  CLI::Option* cell = app.add_option("--cell", arguments.cell, "side of a cell, as 200m or 0.2km");
   app.add_option("--sea-level", ranch.sea_level, "heights above it are land (ASCII grids)");
-  app.add_option("--track", ranch.track, "file with the storm's track; empty: calm");
-  app.add_option("--storm", ranch.storm, "name or number of the storm in that file");
-  app.add_option("--radii", ranch.radii, "file with radii of winds, for a track that has none");
-  app.add_option("--rings", arguments.rings, "quadrants become a circle: equal_area or largest");
+  CLI::Option* track =
+      app.add_option("--track", ranch.track, "file with the storm's track; empty: calm");
+  app.add_option("--storm", ranch.storm, "name or number of the storm in that file")->needs(track);
+  app.add_option("--radii", ranch.radii, "file with radii of winds, for a track that has none")
+      ->needs(track);
+  app.add_option("--rings", arguments.rings, "quadrants become a circle: equal_area or largest")
+      ->needs(track);
   app.add_option(
       "--disaster", ranch.disasters,
       "another disaster as KIND:KEY=NUMBER,… such as wave:height_m=4,radius_km=5; kinds: "
@@ -165,14 +182,16 @@ int Main(int argc, char** argv) {
       ->check(CLI::Range(0.1, 60.0));
   app.add_option("--step", ranch.step_s, "seconds a step, instead of --speed");
   app.add_option("--lead", ranch.lead_h, "hours before the widest ring comes")
-      ->check(CLI::Range(0.0, 240.0));
+      ->check(CLI::Range(0.0, 240.0))
+      ->needs(track);
   app.add_option("--start", arguments.start, "UTC as 2021-07-24T12:00:00Z, instead of --lead");
   app.add_option("--seed", ranch.seed, "of the layout");
-  app.add_option("--sea", arguments.sea,
-                 "NAME=FILE:VARIABLE of a netCDF field; any number of times");
+  CLI::Option* sea = app.add_option("--sea", arguments.sea,
+                                    "NAME=FILE:VARIABLE of a netCDF field; any number of times");
   app.add_option("--sea-depth", ranch.sea_depth_m, "metres below the surface of those fields");
   app.add_option("--value", ranch.value,
                  "expression of the fields for each device's value, such as '100 - 2 * warmth'");
+  sea->needs("--value");
   app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
   app.add_option("-o,--output", arguments.output, "scenario file; empty: only shown");
   try {
@@ -181,6 +200,8 @@ int Main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
+    arguments.own_size = size->count() > 0;
+    arguments.own_cell = cell->count() > 0;
     Run(arguments);
     return 0;
   } catch (const InputError& error) {

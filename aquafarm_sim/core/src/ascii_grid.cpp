@@ -20,8 +20,11 @@ float LandAt(float value, float sea_level) {
 // The keys of the header under one name each.
 std::string KeyOf(std::string_view word) {
   const std::string key = internal::Upper(word);
-  if (key == "XLOWER" || key == "XLL") return "XLLCORNER";
-  if (key == "YLOWER" || key == "YLL") return "YLLCORNER";
+  // GeoClaw's xlower and ylower are where the first value lies.
+  if (key == "XLOWER") return "XLLCENTER";
+  if (key == "YLOWER") return "YLLCENTER";
+  if (key == "XLL") return "XLLCORNER";
+  if (key == "YLL") return "YLLCORNER";
   return key == "NODATA" ? "NODATA_VALUE" : key;
 }
 

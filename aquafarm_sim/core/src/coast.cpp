@@ -143,6 +143,70 @@ class CoastReader {
   std::size_t points_{};
 };
 
+// A part of the globe; longitudes are relative to `middle`.
+struct GeoBox {
+  double middle{};
+  std::array<double, 2> longitude{};
+  std::array<double, 2> latitude{};
+};
+
+// The ranch with as much around it, and a degree at least.
+GeoBox BoxOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) {
+  GeoBox box;
+  box.middle = frame.ToGeo(width / 2.0, height / 2.0).longitude;
+  box.longitude = {0.0, 0.0};
+  box.latitude = {90.0, -90.0};
+  constexpr int kParts = 8;
+  for (int i = 0; i <= kParts; ++i) {
+    for (int k = 0; k <= kParts; ++k) {
+      const GeoPoint at = frame.ToGeo(-0.5 + width * (static_cast<double>(i) / kParts),
+                                      -0.5 + height * (static_cast<double>(k) / kParts));
+      const double east = std::remainder(at.longitude - box.middle, 360.0);
+      box.longitude = {std::min(box.longitude[0], east), std::max(box.longitude[1], east)};
+      box.latitude = {std::min(box.latitude[0], at.latitude),
+                      std::max(box.latitude[1], at.latitude)};
+    }
+  }
+  for (auto* span : {&box.longitude, &box.latitude}) {
+    const double margin = std::max(1.0, (*span)[1] - (*span)[0]);
+    *span = {(*span)[0] - margin, (*span)[1] + margin};
+  }
+  return box;
+}
+
+// The part of a closed ring where sign * (coordinate - limit) >= 0 (Sutherland and Hodgman 1974).
+CoastRing Clip(const CoastRing& ring, double GeoPoint::*coordinate, double limit, double sign) {
+  CoastRing kept;
+  for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
+    const GeoPoint& a = ring[i];
+    const GeoPoint& b = ring[i + 1];
+    const double from = sign * (a.*coordinate - limit);
+    const double to = sign * (b.*coordinate - limit);
+    if (from >= 0.0) kept.push_back(a);
+    if ((from >= 0.0) == (to >= 0.0)) continue;
+    const double part = from / (from - to);
+    GeoPoint border{a.latitude + (b.latitude - a.latitude) * part,
+                    a.longitude + (b.longitude - a.longitude) * part};
+    border.*coordinate = limit;
+    kept.push_back(border);
+  }
+  if (!kept.empty()) kept.push_back(kept.front());
+  return kept;
+}
+
+// A ring within a box, its longitudes moved by `shift`.
+CoastRing Clip(CoastRing ring, double shift, const GeoBox& box) {
+  for (GeoPoint& point : ring) point.longitude += shift;
+  ring = Clip(ring, &GeoPoint::longitude, box.longitude[0], 1.0);
+  ring = Clip(ring, &GeoPoint::longitude, box.longitude[1], -1.0);
+  ring = Clip(ring, &GeoPoint::latitude, box.latitude[0], 1.0);
+  ring = Clip(ring, &GeoPoint::latitude, box.latitude[1], -1.0);
+  for (GeoPoint& point : ring) {
+    point.longitude = std::remainder(point.longitude + box.middle, 360.0);
+  }
+  return ring;
+}
+
 constexpr int kSamples = 5;  // a side
 
 // The x at which the rings of a polygon cross a line of constant y, ascending.
@@ -194,18 +258,22 @@ LandShare ShareOfLand(const Coast& coast, const GeoFrame& frame, std::int32_t wi
   Grid<std::uint16_t> samples = Grid<std::uint16_t>::Zero(height, width);
   std::vector<std::vector<std::array<double, 2>>> rings;
   std::vector<double> crossings;
+  const GeoBox box = BoxOf(frame, width, height);
   for (const CoastPolygon& polygon : coast.polygons) {
     rings.clear();
     double low = 1.0e9;
     double high = -1.0e9;
-    for (const CoastRing& ring : polygon) {
-      rings.emplace_back();
-      for (const GeoPoint& point : ring) {
-        rings.back().push_back(frame.ToGrid(point));
-        low = std::min(low, rings.back().back()[1]);
-        high = std::max(high, rings.back().back()[1]);
+    for (const CoastRing& whole : polygon) {
+      for (const double turn : {-360.0, 0.0, 360.0}) {
+        rings.emplace_back();
+        for (const GeoPoint& point : Clip(whole, turn - box.middle, box)) {
+          rings.back().push_back(frame.ToGrid(point));
+          low = std::min(low, rings.back().back()[1]);
+          high = std::max(high, rings.back().back()[1]);
+        }
       }
     }
+    if (low > high) continue;  // far away
     const auto first = static_cast<std::int32_t>(std::max(std::floor(low), 0.0));
     const auto last =
         static_cast<std::int32_t>(std::min(std::ceil(high), static_cast<double>(height - 1)));

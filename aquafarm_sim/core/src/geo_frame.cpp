@@ -14,6 +14,16 @@ std::array<double, 2> GeoFrame::ToGrid(GeoPoint point) const {
   return {east / cell_size_m_, north / cell_size_m_};
 }
 
+bool GeoFrame::Faces(GeoPoint point) const {
+  const GeographicLib::LocalCartesian plane(origin_.latitude, origin_.longitude);
+  double east = 0.0;
+  double north = 0.0;
+  double up = 0.0;
+  plane.Forward(point.latitude, point.longitude, 0.0, east, north, up);
+  constexpr double kHalfRadius_m = 6.371e6 / 2.0;  // 1 - cos 60 degrees
+  return up > -kHalfRadius_m;
+}
+
 GeoPoint GeoFrame::ToGeo(double x, double y) const {
   const GeographicLib::LocalCartesian plane(origin_.latitude, origin_.longitude);
   GeoPoint point;

@@ -80,6 +80,7 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
   ReadRing(point, 64, {"radius12", "r12"}, {"radius12_quad", "r12Quad", "radius12Quad"}, fix,
            place);
   fix.speed_kmh = point.Number({"move_speed", "moveSpeed"}, 0.0, 300.0);
+  if (fix.speed_kmh == 0.0) fix.speed_kmh.reset();  // not said; a storm at rest is computed
   const std::string direction = point.Text({"move_dir", "moveDir"});
   fix.heading_deg = ParseDirection(direction);
   if (!fix.heading_deg && !direction.empty()) {

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "aquafarm/check.h"
+#include "field_domain.h"
 #include "hazard_text.h"
 #include "name_of.h"
 
@@ -49,7 +50,33 @@ GeoPoint Between(GeoPoint a, GeoPoint b, double part) {
           internal::NormalLongitude(a.longitude + step * part)};
 }
 
+// The waypoints on the ranch's side of the globe, from the first to the last.
+std::vector<StormWaypoint> Facing(const StormRings& storm, const GeoFrame& frame) {
+  const auto faces = [&frame](const StormWaypoint& at) { return frame.Faces(at.position); };
+  const auto& all = storm.waypoints;
+  const auto first = std::find_if(all.begin(), all.end(), faces);
+  const auto last = std::find_if(all.rbegin(), all.rend(), faces).base();
+  if (first == all.end()) {
+    throw InputError(
+        "storm: got a track on the far side of the globe, expected one that comes "
+        "within 60 degrees of the ranch");
+  }
+  if (!std::all_of(first, last, faces)) {
+    throw InputError(
+        "storm: got a track that leaves the ranch's side of the globe and comes back, "
+        "expected one within 60 degrees of the ranch");
+  }
+  return {first, last};
+}
+
 }  // namespace
+
+std::int32_t StepsToCover(double span_s, double step_duration_s) {
+  const double steps = std::ceil(span_s / step_duration_s);
+  if (steps <= 1.0e7) return std::max(1, static_cast<std::int32_t>(std::max(steps, 1.0)));
+  throw InputError("duration: got " + internal::Format(steps) +
+                   " steps, expected at most 10000000; the storm is too long for such steps");
+}
 
 std::string_view ToString(RingReduction value) {
   return internal::NameOf(
@@ -138,7 +165,7 @@ DisasterSpec ToDisaster(const StormRings& storm, const RiskTable& risks, const G
   AQUAFARM_CHECK_GE(storm.waypoints.size(), 1U);
   DisasterSpec disaster;
   disaster.kind = DisasterKind::kTyphoon;
-  for (const StormWaypoint& from : storm.waypoints) {
+  for (const StormWaypoint& from : Facing(storm, frame)) {
     const std::array<double, 2> place = frame.ToGrid(from.position);
     Waypoint waypoint;
     waypoint.step =
@@ -158,7 +185,7 @@ DisasterSpec ToDisaster(const StormRings& storm, const RiskTable& risks, const G
   disaster.grade = first.grade;
   disaster.radii = first.radii;
   disaster.risks = first.risks;
-  disaster.duration = std::max(1, static_cast<std::int32_t>(std::ceil(disaster.track.back().step)));
+  disaster.duration = StepsToCover(static_cast<double>(disaster.track.back().step), 1.0);
   return disaster;
 }
 
@@ -198,7 +225,11 @@ DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario,
       ToDisaster(storm, DefaultRiskTable(), GeoFrame(*scenario.origin, scenario.cell_size_m),
                  scenario.cell_size_m, scenario.step_duration_s, *scenario.start_time);
   const double left = std::ceil(static_cast<double>(disaster.track.back().step)) - step_now;
-  disaster.duration = static_cast<std::int32_t>(std::clamp(left, 1.0, 1.0e7));
+  if (left <= 0.0) {
+    throw InputError("bulletin: is over: got a last position before step " +
+                     std::to_string(step_now) + ", expected one of a storm that goes on");
+  }
+  disaster.duration = StepsToCover(left, 1.0);
   return disaster;
 }
 

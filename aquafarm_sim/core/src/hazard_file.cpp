@@ -119,17 +119,21 @@ HazardFile LoadHazardFile(const std::string& path) {
 const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {
   const std::string wanted = internal::Upper(storm);
   std::vector<const HazardTrack*> found;
+  std::vector<const HazardTrack*> named;
   std::vector<std::string> names;
   for (const HazardTrack& track : file.tracks) {
-    if (internal::Upper(track.id) == wanted || internal::Upper(track.name) == wanted ||
-        (!storm.empty() && track.local_name == storm)) {
+    if (!storm.empty() && internal::Upper(track.id) == wanted) {
       found.push_back(&track);
+    } else if (!storm.empty() &&
+               (internal::Upper(track.name) == wanted || track.local_name == storm)) {
+      named.push_back(&track);
     }
     constexpr std::size_t kMostNamed = 60;
     if (names.size() < kMostNamed) {
       names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
     }
   }
+  if (found.empty()) found = named;
   if (found.size() == 1) return *found[0];
   std::string where;
   for (const HazardTrack* track : found) {

@@ -100,6 +100,29 @@ class PathFinder : public nlohmann::json_sax<Json> {
   std::vector<Level> levels_;
 };
 
+// Refuses what is nested more deeply than any bulletin or chart.
+void CheckDepth(const std::string& text, HazardPlace& place) {
+  constexpr int kMostDepth = 64;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && (c == '[' || c == '{')) {
+      if (++depth <= kMostDepth) continue;
+      place.path.clear();
+      place.line = LineAt(text, i);
+      place.Refuse("got JSON nested more deeply than " + std::to_string(kMostDepth) +
+                   " levels, expected a bulletin or a chart");
+    } else if (!quoted && (c == ']' || c == '}')) {
+      --depth;
+    }
+  }
+}
+
 std::string Shown(const Json* value) {
   if (value == nullptr) return "nothing";
   if (value->is_object()) return "an object";
@@ -130,6 +153,7 @@ std::string CleanJson(const std::string& text) {
 }
 
 Json ParseJson(const std::string& text, HazardPlace& place) {
+  CheckDepth(text, place);
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {

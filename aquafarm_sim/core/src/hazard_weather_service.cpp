@@ -50,7 +50,9 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
     AddSaidRing(wind_kt, radius, fix);
   }
   fix.speed_kmh = point.Number({"moveSpeed"}, 0.0, 300.0);
-  fix.heading_deg = point.Number({"move360"}, 0.0, 359.9);
+  if (fix.speed_kmh == 0.0) fix.speed_kmh.reset();  // not said; a storm at rest is computed
+  fix.heading_deg = point.Number({"move360"}, 0.0, 360.0);
+  if (fix.heading_deg == 360.0) fix.heading_deg = 0.0;
   const std::string direction = point.Text({"moveDir"});
   if (!fix.heading_deg) fix.heading_deg = ParseDirection(direction);
   if (!fix.heading_deg && !direction.empty()) {

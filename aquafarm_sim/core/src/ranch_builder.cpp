@@ -63,6 +63,7 @@ class Builder {
     CheckSize("size", request.width);
     CheckSize("size", request.height);
     internal::Check("cell", request.cell_size_m, internal::Interval<double>{0.01, 1.0e6});
+    internal::Check("sea_level", request.sea_level, internal::Interval<float>{-1.0e5F, 1.0e5F});
     if (!request.center && (!request.track.empty() || !request.port_places.empty())) {
       throw InputError("center: got nothing, expected the place of the ranch for its storm");
     }
@@ -196,6 +197,7 @@ class Builder {
     step_s_ = request_.step_s.value_or(
         std::max(1.0, std::round(cell_size_m_ / (request_.speed_kn * kMpsPerKnot))));
     internal::Check("step", step_s_, internal::Interval<double>{0.001, 1.0e6});
+    start_ = request_.start.value_or(0);
     if (request_.track.empty()) return Say(Text("time: %g s a step; no storm", step_s_));
     ReadTrack();
     const double half_diagonal_km = std::hypot(width(), height()) / 2.0 * cell_size_m_ / 1000.0;
@@ -221,7 +223,7 @@ class Builder {
       throw InputError("start: got " + FormatTime(start_) + ", expected a time before " +
                        FormatTime(end) + ", when the storm is over");
     }
-    duration_ = static_cast<std::int32_t>(std::ceil(static_cast<double>(end - start_) / step_s_));
+    duration_ = StepsToCover(static_cast<double>(end - start_), step_s_);
     storm_steps_ = duration_;
     Say(Text("time: %g s a step, from %s, over after %d steps", step_s_, FormatTime(start_).c_str(),
              duration_));
@@ -322,7 +324,8 @@ class Builder {
            ", longitude: " + Format(origin_->longitude) + "}");
     }
     Line("time: {step_duration_s: " + Format(step_s_) +
-         (storm_.waypoints.empty() ? std::string() : ", start: " + FormatTime(start_)) +
+         (storm_.waypoints.empty() && !request_.start ? std::string()
+                                                      : ", start: " + FormatTime(start_)) +
          Text(", step_limit: %d}", duration_ > 0 ? duration_ + 100 : 5000));
     WriteLayout(ports);
     Line(Text("ships: {count: %d, capacity: 1}", request_.ships));

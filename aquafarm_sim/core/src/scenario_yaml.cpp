@@ -44,6 +44,11 @@ void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path
   if (!frame->start_time) {
     throw FieldError(Join(path, "time"), "needs time.start, which is missing");
   }
+  if (!frame->grid->Faces(fix.point)) {
+    throw FieldError(path,
+                     "got a place on the far side of the globe, expected one within 60 "
+                     "degrees of grid.origin");
+  }
   const std::array<double, 2> place = frame->grid->ToGrid(fix.point);
   const double seconds = static_cast<double>(fix.time - *frame->start_time);
   waypoint.step = static_cast<float>(seconds / frame->step_duration_s);

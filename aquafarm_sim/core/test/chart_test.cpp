@@ -103,6 +103,22 @@ TEST(Coast, FillsPolygonsAndLeavesTheirLakes) {
   EXPECT_NEAR(share.sum(), (5.0 * 5.0 - 1.0 + 0.5) * 1108.5 / 964.6, 0.8) << "in all";
 }
 
+// The plane at the ranch folds the far hemisphere onto it.
+TEST(Coast, OfTheFarSideIsNoLandHere) {
+  const auto land = [](const std::string& ring, GeoPoint origin) {
+    const Coast coast = ParseCoast(R"({"type": "Polygon", "coordinates": [)" + ring + "]}", "x");
+    return ShareOfLand(coast, GeoFrame(origin, 1000.0), 12, 8).sum();
+  };
+  EXPECT_EQ(land("[[-60, -33], [-54, -33], [-54, -27], [-60, -27], [-60, -33]]", {30.2, 122.7}),
+            0.0F);
+  EXPECT_NEAR(land("[[120, 28], [125, 28], [125, 33], [120, 33], [120, 28]]", {30.2, 122.7}), 96.0F,
+              1.0e-3F)
+      << "around the ranch";
+  EXPECT_NEAR(land("[[-180, 0], [-175, 0], [-175, 5], [-180, 5], [-180, 0]]", {2.0, 179.999}),
+              91.2F, 1.0e-3F)
+      << "behind the date line";
+}
+
 TEST(Coast, WarnsOfARingThatCrossesItself) {
   const Coast coast = ParseCoast(
       "{\"type\": \"Polygon\",\n\"coordinates\": [[[0,0],[2,2],[2,0],[0,2],[0,0]]]}", "x");

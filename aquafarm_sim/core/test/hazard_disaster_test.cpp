@@ -153,7 +153,60 @@ TEST(Bulletins, LastFromNowToTheirEnd) {
   const DisasterSpec disaster = ToDisaster(track, scenario, 5);
   EXPECT_EQ(disaster.duration, 39) << "44 hours, 5 are over";
   EXPECT_NO_THROW(ValidateDisaster(disaster));
-  EXPECT_EQ(ToDisaster(track, scenario, 1000).duration, 1) << "long over";
+  try {
+    ToDisaster(track, scenario, 1000);
+    FAIL() << "long over";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "bulletin: is over: got a last position before step 1000, expected one of a storm "
+                 "that goes on");
+  }
+}
+
+TEST(Tracks, BeginOnTheRanchsSideOfTheGlobe) {
+  HazardTrack track = WestGoing();
+  HazardFix antipode = track.fixes.front();
+  antipode.time -= 6 * kHour_s;
+  antipode.position = {-30.0, -58.0};
+  const GeoFrame frame(kRanch, 1000.0);
+  EXPECT_FALSE(frame.Faces(antipode.position));
+  EXPECT_TRUE(frame.Faces(kRanch));
+  const auto made = [&frame](const HazardTrack& of) {
+    return ToDisaster(ToRings(of, RingReduction::kEqualArea), DefaultRiskTable(), frame, 1000.0,
+                      3600.0, kStart);
+  };
+  const DisasterSpec without = made(track);
+  track.fixes.insert(track.fixes.begin(), antipode);
+  const DisasterSpec cut = made(track);
+  ASSERT_EQ(cut.track.size(), without.track.size());
+  EXPECT_EQ(cut.track[0].x, without.track[0].x);
+  const auto refused = [&made](const HazardTrack& of) -> std::string {
+    try {
+      made(of);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  HazardTrack back = WestGoing();
+  back.fixes[1].position = antipode.position;
+  EXPECT_NE(refused(back).find("leaves the ranch's side of the globe"), std::string::npos);
+  track.fixes.resize(1);
+  EXPECT_NE(refused(track).find("on the far side of the globe"), std::string::npos);
+}
+
+TEST(Steps, AreBounded) {
+  EXPECT_EQ(StepsToCover(3601.0, 3600.0), 2);
+  EXPECT_EQ(StepsToCover(-5.0, 1.0), 1);
+  try {
+    StepsToCover(3.0e8, 0.001);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "duration: got 300000000000 steps, expected at most 10000000; the storm is too long for "
+        "such steps");
+  }
 }
 
 TEST(PassOver, TellsWhenAStormIsNearestAndHowLongItsWindLasts) {

@@ -327,6 +327,43 @@ TEST(FindTrack, NamesWhatThereIs) {
   }
 }
 
+TEST(FindTrack, TakesIdsBeforeNamesAndNoEmptyWord) {
+  HazardFile file;
+  file.tracks.resize(3);
+  file.tracks[0].id = "1";
+  file.tracks[1].id = "2";
+  file.tracks[1].name = "One";
+  file.tracks[2].id = "One";
+  for (HazardTrack& track : file.tracks) track.fixes.emplace_back();
+  EXPECT_EQ(FindTrack(file, "one").id, "One") << "not the storm of that name";
+  file.tracks.pop_back();
+  EXPECT_EQ(FindTrack(file, "one").id, "2");
+  try {
+    FindTrack(file, "");
+    FAIL() << "took the storm without a name";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "storm: got '', expected one of: 1, 2 One");
+  }
+}
+
+TEST(Motion, OfZeroWasNotSaid) {
+  const auto speeds = [](const std::string& text) {
+    return ParseHazardFile(text, "x").tracks[0].fixes;
+  };
+  const auto bulletin = speeds(R"([{"tfbh": "1", "points": [
+    {"time": "2021-07-25T08:00:00", "lat": 30, "lng": 122, "move_speed": 0},
+    {"time": "2021-07-25T14:00:00", "lat": 31, "lng": 122, "move_speed": 0},
+    {"time": "2021-07-25T20:00:00", "lat": 31, "lng": 122, "move_speed": 0}]}])");
+  EXPECT_NEAR(bulletin[0].speed_kmh.value_or(-1.0), 110.9 / 6.0, 0.1);
+  EXPECT_EQ(bulletin[1].speed_kmh.value_or(-1.0), 0.0) << "the next is at the same place";
+  const auto service = speeds(R"({"code": "200", "track": [
+    {"time": "2021-07-25T08:00+08:00", "lat": "30", "lon": "122", "moveSpeed": "0",
+     "move360": "360", "windRadius30": null},
+    {"time": "2021-07-25T14:00+08:00", "lat": "31", "lon": "122", "moveSpeed": "9"}]})");
+  EXPECT_NEAR(service[0].speed_kmh.value_or(-1.0), 110.9 / 6.0, 0.1);
+  EXPECT_EQ(service[0].heading_deg.value_or(-1.0), 0.0);
+}
+
 struct Refusal {
   const char* name;
   const char* text;
@@ -445,6 +482,22 @@ TEST(Refusals, NameTheUnitsAndRowsOfIbtracs) {
   EXPECT_EQ(refused(text, "2024-05-16 15:00:00", "2024-05-16 25:00:00"),
             "x:4: ISO_TIME: got '2024-05-16 25:00:00', expected UTC as YYYY-MM-DD HH:MM:SS");
   EXPECT_EQ(refused(text, "IALY,", ""), "x:3: got 28 fields, expected the 29 of row 1");
+}
+
+TEST(Refusals, BoundTheDepthOfJson) {
+  const auto nested = [](std::size_t depth) -> std::string {
+    const std::string text = "[{\"tfbh\": \"]\\\"\",\n\"points\": " + std::string(depth, '[') +
+                             std::string(depth, ']') + "}]";
+    try {
+      ParseHazardFile(text, "x");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "was read";
+  };
+  EXPECT_EQ(nested(100'000),
+            "x:2: got JSON nested more deeply than 64 levels, expected a bulletin or a chart");
+  EXPECT_EQ(nested(62), "x:2: [0].points[0]: got a list, expected an object");
 }
 
 TEST(LoadHazardFile, NamesAFileThatIsNot) {

@@ -197,8 +197,11 @@ TEST(AsciiGrids, HaveTheirRowsFromTheNorth) {
 
 TEST(AsciiGrids, MayHaveTheirWordsBehind) {
   const AsciiGrid grid = ParseAsciiGrid(
-      "2 ncols\n1 nrows\n0.0 xlower\n0.0 ylower\n200.0 cellsize\n-9999 nodata_value\n1\n-1\n", "x");
+      "2 ncols\n1 nrows\n10.0 xlower\n20.0 ylower\n200.0 cellsize\n-9999 nodata_value\n1\n-1\n",
+      "x");
   EXPECT_FALSE(grid.IsGeographic());
+  EXPECT_EQ(grid.west, 10.0) << "of the first value, not of its corner";
+  EXPECT_EQ(grid.south, 20.0);
   EXPECT_EQ(grid.value(0, 1), -1.0F);
 }
 

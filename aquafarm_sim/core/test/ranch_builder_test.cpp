@@ -150,6 +150,8 @@ TEST(Ranch, TakesItsSizeFromAGridInMetres) {
   EXPECT_EQ(ranch.scenario.width, 4);
   EXPECT_EQ(ranch.scenario.cell_size_m, 150.0);
   EXPECT_EQ(Sketch(ranch.scenario)[5 + 1], '#');
+  request.start = kMidnight;
+  EXPECT_EQ(BuildRanch(request).scenario.start_time, kMidnight) << "without a storm";
   fs::remove(path);
 }
 
@@ -222,9 +224,15 @@ TEST(Program, RefusesWrongArguments) {
       {"--size 1x25", "size: got '1x25', expected whole numbers in [2, 4096]"},
       {"--cell 20furlongs", "cell: got '20furlongs', expected a length as 200m or 0.2km"},
       {"--layout explicit", "layout: got 'explicit', expected one of uniform, linear, random"},
-      {"--sea salt:so", "sea: got 'salt:so', expected NAME=FILE:VARIABLE"},
+      {"--sea salt:so --value 3", "sea: got 'salt:so', expected NAME=FILE:VARIABLE"},
       {"--value 3", "value: got no layer to evaluate '3' on"},
-      {"--rings oval", "rings: got 'oval', expected one of equal_area, largest"},
+      {"--rings oval --track x", "rings: got 'oval', expected one of equal_area, largest"},
+      {"--storm Rai", "--storm requires --track"},
+      {"--radii x", "--radii requires --track"},
+      {"--rings largest", "--rings requires --track"},
+      {"--lead 4", "--lead requires --track"},
+      {"--sea salt=x:so", "--sea requires --value"},
+      {"--sea-level nan", "sea_level: got nan, expected [-100000, 100000]"},
       {"--start noon", "start: got 'noon', expected a UTC time as 2021-07-24T12:00:00Z"},
       {"--chart /nowhere.json --center 30,122", "/nowhere.json: cannot read: No such file"},
       {"--devices 0", "--devices: Value 0 not in range"},
@@ -235,6 +243,21 @@ TEST(Program, RefusesWrongArguments) {
     EXPECT_EQ(code, 2) << arguments;
     EXPECT_NE(text.find(words), std::string::npos) << text;
   }
+}
+
+TEST(Program, RefusesASizeForAChartWithItsOwn) {
+  const fs::path path = fs::temp_directory_path() / ("own." + std::to_string(getpid()) + ".asc");
+  std::ofstream(path) << "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 150\n"
+                         "-1 -1 -1 -1\n-1 5 -1 -1\n-1 -1 -1 -1\n";
+  const std::string chart = "--ports 2 --chart " + path.string();
+  const auto [size_code, size] = RunApp(chart + " --size 9x9");
+  EXPECT_EQ(size_code, 2);
+  EXPECT_EQ(size, "size: got '9x9', expected none, as the chart has its own\n");
+  const auto [cell_code, cell] = RunApp(chart + " --cell 1km");
+  EXPECT_EQ(cell_code, 2);
+  EXPECT_EQ(cell, "cell: got '1km', expected none, as the chart has its own\n");
+  EXPECT_EQ(RunApp(chart).first, 0);
+  fs::remove(path);
 }
 
 TEST(RealFiles, MakeARanchOffDongji) {

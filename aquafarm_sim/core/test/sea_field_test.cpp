@@ -193,7 +193,7 @@ TEST_F(SeaFields, AreRefusedWithTheReason) {
   EXPECT_EQ(Refused(), "cannot read as netCDF: No such file or directory");
 }
 
-TEST_F(SeaFields, OfTenMegabytesAreCutInHalfASecond) {
+TEST_F(SeaFields, OfTenMegabytesAreCutInTwoSeconds) {
   int file = 0;
   ASSERT_EQ(nc_create(path_.c_str(), NC_CLOBBER, &file), NC_NOERR);
   constexpr std::size_t kSide = 1600;  // 2.56 million values of float: 10.2 MB

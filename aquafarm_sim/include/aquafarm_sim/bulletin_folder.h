@@ -15,15 +15,18 @@ class BulletinFolder {
  public:
   explicit BulletinFolder(std::string path) : path_(std::move(path)) {}
 
-  /// Files that are new or changed since the last look, the oldest first. Hidden files and those
+  /// Files that are new or changed since they were marked, the oldest first. Hidden files and those
   /// that end in ".part" are still being written. Files that cannot be looked at are passed over.
-  /// @throws InputError when there is no such folder
-  std::vector<std::string> TakeNew();
+  /// @throws InputError when there is no such folder, or it cannot be read to its end
+  std::vector<std::string> New();
+  /// Marks a file of the last New(): it is given again only when it changes after that look.
+  void Mark(const std::string& path);
 
  private:
-  using Mark = std::pair<std::filesystem::file_time_type, std::uintmax_t>;  // changed, size
+  using State = std::pair<std::filesystem::file_time_type, std::uintmax_t>;  // changed, size
   std::string path_;
-  std::map<std::string, Mark> seen_;
+  std::map<std::string, State> found_;  // by path, at the last look
+  std::map<std::string, State> marked_;
 };
 
 }  // namespace aquafarm_sim

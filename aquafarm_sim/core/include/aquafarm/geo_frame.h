@@ -18,6 +18,9 @@ class GeoFrame {
 
   /// Returns (x, y) of a point of the ellipsoid [cells]; its height over the plane is dropped.
   std::array<double, 2> ToGrid(GeoPoint point) const;
+  /// Whether a point is within 60 degrees of the origin. Beyond a quarter of the globe the plane
+  /// would fold it back onto the ranch.
+  bool Faces(GeoPoint point) const;
   /// Returns the position of a point of the plane [cells]; its height over the ellipsoid is
   /// dropped.
   GeoPoint ToGeo(double x, double y) const;

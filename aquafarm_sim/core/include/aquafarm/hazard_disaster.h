@@ -62,6 +62,10 @@ using RiskTable = std::array<std::vector<float>, 4>;
 /// What `aquafarm scenario` writes: [decided]
 const RiskTable& DefaultRiskTable();
 
+/// Whole steps that a span of time takes, one at least.
+/// @throws InputError beyond ten million, "duration: got …"
+std::int32_t StepsToCover(double span_s, double step_duration_s);
+
 /// The disaster that follows a storm on a grid.
 /// @param start_time UTC of step 0
 DisasterSpec ToDisaster(const StormRings& storm, const RiskTable& risks, const GeoFrame& frame,

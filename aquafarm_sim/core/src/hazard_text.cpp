@@ -275,6 +275,12 @@ void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place)
 
 void FinishTrack(HazardTrack& track, const HazardPlace& place) {
   if (track.fixes.empty()) place.Refuse("points: got none, expected at least one");
+  constexpr std::int64_t kDay_s = 86400;
+  const std::int64_t days = (track.fixes.back().time - track.fixes.front().time) / kDay_s;
+  if (days > 366) {
+    place.Refuse("points: got " + std::to_string(days) +
+                 " days of one storm, expected at most 366");
+  }
   ComputeMotion(track.fixes);
   for (HazardForecast& forecast : track.forecasts) ComputeMotion(forecast.fixes);
 }

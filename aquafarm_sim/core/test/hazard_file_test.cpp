@@ -427,6 +427,10 @@ const std::vector<Refusal> kRefusals{
     {"IbtracsColumn", "SID,NAME,LAT\n", "x:1: got no column ISO_TIME, expected those of IBTrACS"},
     {"BulletinPoints", R"([{"tfbh": "1", "points": []}])",
      "x:1: [0].points: got none, expected at least one"},
+    {"BulletinSpan", R"([{"tfbh": "1", "points": [
+      {"time": "2019-07-25T14:00:00", "lat": 30, "lng": 1},
+      {"time": "2021-07-25T14:00:00", "lat": 30, "lng": 1}]}])",
+     "[0].points: got 731 days of one storm, expected at most 366"},
     {"BulletinLatitude",
      "[{\"tfbh\": \"1\", \"points\": [\n{\"time\": \"2021-07-25T14:00:00\",\n\"lat\": 95, "
      "\"lng\": 1}]}]",

@@ -69,7 +69,7 @@ class Simulation {
     if (state.step > step) {
       if (const std::string fault = Step(state); !fault.empty()) return fault;
     }
-    seen_ = true;
+    seen_ = begun_ = true;
     stamp_ = state.header.stamp;
     MessageContext context;
     context.paced = state.pace == FarmState::PACED;
@@ -107,6 +107,11 @@ class Simulation {
   }
 
   std::string Load(const SavedState& saved) {
+    const auto step = static_cast<std::uint64_t>(farm_.step());
+    if (begun_ && saved.step > step) {
+      return "steps " + Number(step + 1) + " to " + Number(saved.step) + " are missing";
+    }
+    if (begun_ && saved.step < step) return "steps are out of order";
     try {
       Farm loaded(scenario_);
       loaded.Reset(farm_.seed(), farm_.episode());
@@ -120,6 +125,7 @@ class Simulation {
       return std::string("saved_state.data: ") + error.what();
     }
     seen_ = false;  // the state after the change follows
+    begun_ = true;
     return "";
   }
 
@@ -148,6 +154,7 @@ class Simulation {
   std::shared_ptr<const aquafarm::Scenario> scenario_;
   Farm farm_;
   ros::Time spec_stamp_;
+  bool begun_{};     // something of this episode was seen, so the next thing is where it stands
   bool seen_{};      // the state where the farm stands was compared
   ros::Time stamp_;  // of that state
 };
@@ -165,13 +172,12 @@ class Checker {
   /// @returns false at the first difference
   bool Take(const rosbag::MessageInstance& message, bool is_chart) {
     if (const auto state = message.instantiate<FarmState>()) {
-      if (state->observer != aquafarm::kNone) return true;
       return Enter({state->seed, state->episode}, state->step) &&
              Compared(state->step, simulation_->Check(*state));
     }
     if (const auto saved = message.instantiate<SavedState>()) {
       return Enter({saved->seed, saved->episode}, saved->step) &&
-             Compared(saved->step, simulation_->Load(*saved));
+             Compared(saved->step, simulation_->Load(*saved)) && NoteChange(saved->step);
     }
     const auto grid = message.instantiate<OccupancyGrid>();
     if (!grid || !simulation_) return true;
@@ -190,6 +196,8 @@ class Checker {
                         "missing: the bag's states end with step " + std::to_string(farm.step()));
       }
       if (!Compared(Step(), simulation_->Check(summary))) return false;
+    } else if (farm.over()) {
+      return Compared(Step(), "the episode is over, but its summary is missing");
     }
     char words[160];
     std::snprintf(words, sizeof(words), "episode %llu of seed %llu: %d steps, return %g, %s",
@@ -205,9 +213,28 @@ class Checker {
     return true;
   }
 
+  /// Looks at what no state belongs to. @returns false at a difference
+  bool End() {
+    if (!EndEpisode()) return false;
+    for (const auto& [key, summary] : summaries_) {
+      // Of a ranch of many farms a live recording has all summaries, but the states of one farm.
+      const bool of_other_farm = summary.farm != 0 && specs_.count(key) == 0 && check_.episodes > 0;
+      if (of_other_farm && specs_.begin()->second.farms > 1) continue;
+      check_.difference = "episode " + Number(key.second) + " of seed " + Number(key.first) +
+                          ": a summary that no states belong to";
+      return false;
+    }
+    return true;
+  }
+
   const BagCheck& check() const { return check_; }
 
  private:
+  bool NoteChange(std::uint64_t step) {
+    check_.changed_at.push_back(step);
+    return true;
+  }
+
   std::uint64_t Step() const { return static_cast<std::uint64_t>(simulation_->farm().step()); }
 
   /// Goes on with an episode, or begins it; a step 0 after others begins it again.
@@ -235,14 +262,32 @@ class Checker {
   BagCheck check_;
 };
 
-/// All messages of a topic by seed and episode.
-template <typename Map>
-Map ReadAll(const rosbag::Bag& bag, const std::string& topic) {
-  Map all;
+using Specs = std::map<Key, FarmSpec>;
+using Summaries = std::multimap<Key, EpisodeSummary>;
+
+Summaries ReadSummaries(const rosbag::Bag& bag, const std::string& topic) {
+  Summaries all;
   for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
-    if (const auto one = message.instantiate<typename Map::mapped_type>()) {
+    if (const auto one = message.instantiate<EpisodeSummary>()) {
       all.insert({{one->seed, one->episode}, *one});
     }
+  }
+  return all;
+}
+
+/// @param difference set where a spec says otherwise than one before of the same episode
+Specs ReadSpecs(const rosbag::Bag& bag, const std::string& topic, std::string& difference) {
+  Specs all;
+  for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
+    const auto one = message.instantiate<FarmSpec>();
+    if (!one) continue;
+    const auto [first, is_new] = all.insert({{one->seed, one->episode}, *one});
+    if (is_new || !difference.empty()) continue;
+    FarmSpec before = first->second;
+    before.header = one->header;
+    if (FirstDifference(*one, before).empty()) continue;
+    difference = "episode " + Number(one->episode) + " of seed " + Number(one->seed) +
+                 ": two specs that differ";
   }
   return all;
 }
@@ -291,6 +336,14 @@ void CheckDefinition(const rosbag::ConnectionInfo& connection, const std::string
 
 }  // namespace
 
+std::string ChangesInWords(const BagCheck& check) {
+  std::string words;
+  for (const std::uint64_t step : check.changed_at) {
+    words += (words.empty() ? ", changed from outside at step " : ", ") + Number(step);
+  }
+  return words;
+}
+
 BagCheck CheckBag(const std::string& path, const std::string& ns) {
   try {
     rosbag::Bag bag(path, rosbag::bagmode::Read);
@@ -303,10 +356,11 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
       CheckDefinition<EpisodeSummary>(*connection, path);
       CheckDefinition<OccupancyGrid>(*connection, path);
     }
-    auto specs = ReadAll<std::map<Key, FarmSpec>>(bag, ranch + names::kSpec);
+    BagCheck refused;
+    auto specs = ReadSpecs(bag, ranch + names::kSpec, refused.difference);
     CheckVersions(specs, path);
-    Checker checker(std::move(specs),
-                    ReadAll<std::multimap<Key, EpisodeSummary>>(bag, ranch + names::kEpisode));
+    if (!refused.difference.empty()) return refused;
+    Checker checker(std::move(specs), ReadSummaries(bag, ranch + names::kEpisode));
     const std::string chart = ranch + names::kChart;
     rosbag::View view(bag, rosbag::TopicQuery({ranch + names::kState, ranch + names::kSavedState,
                                                chart, ranch + names::kRisk}));
@@ -315,6 +369,7 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
     }
     if (!checker.EndEpisode()) return checker.check();
     if (checker.check().episodes == 0) throw InputError(path + ": no state follows its spec");
+    checker.End();
     return checker.check();
   } catch (const rosbag::BagUnindexedException&) {
     throw InputError(path + ": its recording was killed; 'rosbag reindex' it first");

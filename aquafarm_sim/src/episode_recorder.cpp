@@ -15,9 +15,6 @@
 namespace aquafarm_sim {
 namespace {
 
-// Steps are written at some 100,000 a second: the farms wait no longer than a few seconds, nor
-// does the end of the node.
-constexpr std::size_t kMaxWaitingBytes = 300'000;
 constexpr int kNiceness = 10;  // whoever steps goes first
 
 }  // namespace
@@ -41,11 +38,12 @@ Keep ParseKeep(const std::string& text) {
 }
 
 EpisodeRecorder::EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep,
-                                 std::string folder, BagFormat format)
+                                 std::string folder, BagFormat format, RecorderLimits limits)
     : scenario_(std::move(scenario)),
       keep_(keep),
       folder_(std::move(folder)),
-      format_(std::move(format)) {
+      format_(std::move(format)),
+      limits_(limits) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error || access(folder_.c_str(), W_OK) != 0) {
@@ -85,7 +83,9 @@ void EpisodeRecorder::OnStep(const aquafarm::Farm& farm, std::int32_t number,
 }
 
 void EpisodeRecorder::OnIntervention(const aquafarm::Farm& farm, std::int32_t number) {
-  tapes_[static_cast<std::size_t>(number)].changes.push_back({farm.step(), farm.Save()});
+  auto& changes = tapes_[static_cast<std::size_t>(number)].changes;
+  if (changes.empty() || changes.back().step != farm.step()) changes.emplace_back();
+  changes.back() = {farm.step(), farm.Save()};  // what a step begins with counts
 }
 
 bool EpisodeRecorder::Wants(const EpisodeTape& tape) {
@@ -111,12 +111,19 @@ bool EpisodeRecorder::Wants(const EpisodeTape& tape) {
 
 void EpisodeRecorder::Enqueue(EpisodeTape tape) {
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return waiting_bytes_ < kMaxWaitingBytes || !fault_.empty(); });
   if (!fault_.empty()) return;
   if (keep_.which == Keep::Which::kBest || keep_.which == Keep::Which::kWorst) {
     for (const EpisodeTape& overtaken : queue_) waiting_bytes_ -= overtaken.actions.size();
     queue_.clear();
   }
+  const bool follows = changed_.wait_for(lock, limits_.wait, [this] {
+    return waiting_bytes_ < limits_.waiting_bytes || !fault_.empty();
+  });
+  if (!follows) {
+    fault_ = "the disk does not follow";
+    ROS_ERROR("no more episodes are kept: %s", fault_.c_str());
+  }
+  if (!fault_.empty()) return;
   waiting_bytes_ += tape.actions.size();
   queue_.push_back(std::move(tape));
   changed_.notify_all();
@@ -132,15 +139,19 @@ void EpisodeRecorder::Run() {
     queue_.pop_front();
     lock.unlock();
     std::string fault;
+    bool written = false;
     try {
       Write(tape);
+      written = true;
+    } catch (const TapeError& error) {  // costs this one alone
+      ROS_ERROR("an episode is not kept: %s", error.what());
     } catch (const std::exception& error) {
       fault = error.what();
       ROS_ERROR("no more episodes are kept: %s", error.what());
     }
     lock.lock();
     waiting_bytes_ -= tape.actions.size();
-    kept_ += fault.empty() ? 1 : 0;
+    kept_ += written ? 1 : 0;
     if (!fault.empty()) {
       fault_ = fault;
       queue_.clear();
@@ -151,13 +162,16 @@ void EpisodeRecorder::Run() {
 }
 
 void EpisodeRecorder::Write(const EpisodeTape& tape) {
-  const std::string path = folder_ + "/" + BagName(tape);
+  const std::string name = BagName(tape);
+  std::string path = folder_ + "/" + name;
+  // One of the same name is another's: of a farm, a load or a run before.
+  for (int i = 2; std::filesystem::exists(path); ++i) {
+    path = folder_ + "/" + name.substr(0, name.size() - 4) + "_" + std::to_string(i) + ".bag";
+  }
   WriteEpisodeBag(scenario_, tape, format_, path);
   if (keep_.which != Keep::Which::kBest && keep_.which != Keep::Which::kWorst) return;
   std::error_code ignored;
-  if (!extreme_path_.empty() && extreme_path_ != path) {
-    std::filesystem::remove(extreme_path_, ignored);
-  }
+  if (!extreme_path_.empty()) std::filesystem::remove(extreme_path_, ignored);
   extreme_path_ = path;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm_sim/conversions.h"
@@ -112,8 +113,18 @@ void Play(Farm& farm, const EpisodeTape& tape, Writer& writer) {
   if (farm.record().steps != tape.record.steps ||
       farm.record().episode_return != tape.record.episode_return ||
       farm.record().reason != tape.record.reason) {
-    throw std::runtime_error("episode " + std::to_string(tape.episode) +
-                             ": its actions do not give its result again");
+    throw TapeError("episode " + std::to_string(tape.episode) +
+                    ": its actions do not give its result again");
+  }
+}
+
+/// Closes a bag that failed. What its end writes may fail as well, in its destructor too, which
+/// would end the process; then it is left, with its file open.
+void Abandon(std::unique_ptr<rosbag::Bag> bag) {
+  try {
+    bag->close();
+  } catch (...) {
+    static_cast<void>(bag.release());
   }
 }
 
@@ -131,21 +142,33 @@ std::string BagName(const EpisodeTape& tape) {
 void WriteEpisodeBag(const std::shared_ptr<const aquafarm::Scenario>& scenario,
                      const EpisodeTape& tape, const BagFormat& format, const std::string& path) {
   const std::string active = path + ".active";
-  try {
-    rosbag::Bag bag(active, rosbag::bagmode::Write);
-    bag.setCompression(rosbag::compression::LZ4);
-    bag.setChunkThreshold(kChunkBytes);
-    Farm farm(scenario);
-    Writer writer(bag, format);
-    Play(farm, tape, writer);
-    writer.End(tape);
-    bag.close();
-  } catch (const rosbag::BagException& error) {
-    throw std::runtime_error(active + ": cannot be written: " + error.what());
-  }
   std::error_code error;
+  try {
+    auto bag = std::make_unique<rosbag::Bag>(active, rosbag::bagmode::Write);
+    try {
+      bag->setCompression(rosbag::compression::LZ4);
+      bag->setChunkThreshold(kChunkBytes);
+      Farm farm(scenario);
+      Writer writer(*bag, format);
+      Play(farm, tape, writer);
+      writer.End(tape);
+      bag->close();
+    } catch (...) {
+      Abandon(std::move(bag));
+      throw;
+    }
+  } catch (const rosbag::BagException& fault) {
+    std::filesystem::remove(active, error);
+    throw std::runtime_error(active + ": cannot be written: " + fault.what());
+  } catch (...) {
+    std::filesystem::remove(active, error);
+    throw;
+  }
   std::filesystem::rename(active, path, error);
-  if (error) throw std::runtime_error(path + ": cannot be written: " + error.message());
+  if (!error) return;
+  const std::string why = error.message();
+  std::filesystem::remove(active, error);
+  throw std::runtime_error(path + ": cannot be written: " + why);
 }
 
 }  // namespace aquafarm_sim

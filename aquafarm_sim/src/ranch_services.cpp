@@ -300,6 +300,9 @@ void Ranch::LoadState(const aquafarm_msgs::LoadState::Request& request,
     }
     batch_->Load(std::string(request.data.begin(), request.data.end()));
     RecordStarts();
+    for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
+      recorder_->OnIntervention(batch_->farm(i), i);  // also at step 0 it may be changed
+    }
     ForgetAnswers();
     EpisodeBegan();
     batch_->Write(Prepare(request.encodings, response.result));

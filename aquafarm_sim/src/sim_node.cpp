@@ -215,6 +215,10 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(
       timed_out ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK,
       timed_out ? "a ship waited in vain for the others" : "running");
+  const std::string lost = recorder_ == nullptr ? "" : recorder_->fault();
+  if (!lost.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "episodes are no longer kept: " + lost);
+  }
   if (!now.fault.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "paused itself: " + now.fault);
   }

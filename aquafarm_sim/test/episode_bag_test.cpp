@@ -3,12 +3,15 @@
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/SavedState.h>
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -46,9 +49,11 @@ class EpisodeBag : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  std::unique_ptr<EpisodeRecorder> Record(Ranch& ranch, const std::string& keep) {
-    auto recorder = std::make_unique<EpisodeRecorder>(ranch.shared_scenario(), ParseKeep(keep),
-                                                      folder_, BagFormat{"/ranch/", "map", 10, 3});
+  std::unique_ptr<EpisodeRecorder> Record(Ranch& ranch, const std::string& keep,
+                                          RecorderLimits limits = {}) {
+    auto recorder =
+        std::make_unique<EpisodeRecorder>(ranch.shared_scenario(), ParseKeep(keep), folder_,
+                                          BagFormat{"/ranch/", "map", 10, 3}, limits);
     ranch.SetRecorder(recorder.get());
     return recorder;
   }
@@ -84,6 +89,32 @@ class EpisodeBag : public testing::Test {
     return Bags().front();
   }
 
+  static void SendStorm(Ranch& ranch) {
+    aquafarm_msgs::SetDisaster storm;
+    storm.request.id = 0;
+    storm.request.info.kind = 0;
+    storm.request.info.grade = 4;
+    storm.request.info.radii = {9.0F};
+    storm.request.info.risks = {-20.0F};
+    storm.request.info.duration = 100;
+    ranch.SetDisaster(storm.request, storm.response);
+    ASSERT_TRUE(storm.response.ok) << storm.response.message;
+  }
+
+  // One bag of a whole episode into which a storm was sent after 10 steps.
+  std::string StormBag() {
+    const auto ranch = MakeRanch(ShortScenario());
+    {
+      const auto recorder = Record(*ranch, "all");
+      Play(*ranch, 1, 10);
+      SendStorm(*ranch);
+      SendStorm(*ranch);  // the last of a step is what counts
+      Play(*ranch, 1, 31);
+      ranch->SetRecorder(nullptr);
+    }
+    return Bags().front();
+  }
+
   // Copies a bag, message by message, as `change` says: true keeps a message.
   std::string Changed(const std::string& bag, bool compressed,
                       const std::function<bool(FarmSpec*, FarmState*, EpisodeSummary*)>& change) {
@@ -95,6 +126,10 @@ class EpisodeBag : public testing::Test {
       const auto spec = message.instantiate<FarmSpec>();
       const auto state = message.instantiate<FarmState>();
       const auto summary = message.instantiate<EpisodeSummary>();
+      if (const auto saved = message.instantiate<aquafarm_msgs::SavedState>()) {
+        to.write(message.getTopic(), message.getTime(), *saved);
+        continue;
+      }
       if (!change(spec.get(), state.get(), summary.get())) continue;
       if (spec) to.write(message.getTopic(), message.getTime(), *spec);
       if (state) to.write(message.getTopic(), message.getTime(), *state);
@@ -173,15 +208,7 @@ TEST_F(EpisodeBag, WhatComesFromOutsideIsPartOfTheEpisode) {
     Play(*ranch, 1, 10);
     aquafarm_msgs::SaveState save;
     ranch->SaveState(save.response);
-    aquafarm_msgs::SetDisaster storm;
-    storm.request.id = 0;
-    storm.request.info.kind = 0;
-    storm.request.info.grade = 4;
-    storm.request.info.radii = {9.0F};
-    storm.request.info.risks = {-20.0F};
-    storm.request.info.duration = 100;
-    ranch->SetDisaster(storm.request, storm.response);
-    ASSERT_TRUE(storm.response.ok) << storm.response.message;
+    SendStorm(*ranch);
     Play(*ranch, 1, 32);
     aquafarm_msgs::LoadState load;
     load.request.data = save.response.data;
@@ -191,6 +218,165 @@ TEST_F(EpisodeBag, WhatComesFromOutsideIsPartOfTheEpisode) {
     ranch->SetRecorder(nullptr);
   }
   ASSERT_EQ(2U, Bags().size());  // the same episode twice, with and without the storm
+  for (const std::string& bag : Bags()) EXPECT_EQ("", CheckBag(bag, "").difference) << bag;
+}
+
+TEST_F(EpisodeBag, AnEpisodeLoadedAtItsStartBeginsAsItWasSaved) {
+  const auto ranch = MakeRanch(ShortScenario());
+  aquafarm_msgs::SaveState save;
+  SendStorm(*ranch);
+  ranch->SaveState(save.response);
+  Play(*ranch, 1, 41);
+  {
+    const auto recorder = Record(*ranch, "all");
+    aquafarm_msgs::LoadState load;
+    load.request.data = save.response.data;
+    ranch->LoadState(load.request, load.response);
+    ASSERT_TRUE(load.response.ok) << load.response.message;
+    Play(*ranch, 1, 41);
+    ranch->SetRecorder(nullptr);
+    EXPECT_EQ("", recorder->fault());
+  }
+  ASSERT_EQ(1U, Bags().size());
+  const BagCheck check = CheckBag(Bags()[0], "");
+  EXPECT_EQ("", check.difference);
+  EXPECT_EQ(std::vector<std::uint64_t>{0}, check.changed_at);
+}
+
+TEST_F(EpisodeBag, ChangesFromOutsideAreCountedAndHideNoMissingStep) {
+  const std::string whole = StormBag();
+  const BagCheck check = CheckBag(whole, "");
+  EXPECT_EQ("", check.difference);
+  EXPECT_EQ(", changed from outside at step 10", ChangesInWords(check));
+  int tenth = 0;
+  const std::string gap = Changed(whole, true, [&tenth](FarmSpec*, FarmState* state, auto*) {
+    if (state == nullptr || state->step < 5 || state->step > 10) return true;
+    return state->step == 10 && ++tenth == 2;  // that after the change
+  });
+  EXPECT_EQ("episode 0 step 10: steps 5 to 10 are missing", CheckBag(gap, "").difference);
+  tenth = 0;
+  const std::string back = Changed(whole, true, [&tenth](FarmSpec*, FarmState* state, auto*) {
+    if (state != nullptr && state->step == 10 && ++tenth == 1) state->step = 11;
+    return true;
+  });
+  EXPECT_EQ("episode 0 step 11: step 10 is missing", CheckBag(back, "").difference);
+}
+
+TEST_F(EpisodeBag, EverySummaryBelongsToItsEpisodeAndEveryEndHasOne) {
+  const std::string bag = OneBag();
+  const auto difference = [&](auto change) {
+    return CheckBag(Changed(bag, true, change), "").difference;
+  };
+  const std::string missing = "episode 0 step 40: the episode is over, but its summary is missing";
+  EXPECT_EQ(missing, difference([](FarmSpec*, FarmState*, EpisodeSummary* summary) {
+              if (summary != nullptr) summary->seed += 1;
+              return true;
+            }));
+  EXPECT_EQ(missing, difference([](FarmSpec*, FarmState*, EpisodeSummary* summary) {
+              if (summary != nullptr) summary->episode += 1;
+              return true;
+            }));
+  EXPECT_EQ(missing, difference([](FarmSpec*, FarmState*, EpisodeSummary* summary) {
+              return summary == nullptr;
+            }));
+  EXPECT_EQ("episode 7 of seed 5: a summary that no states belong to",
+            difference([](FarmSpec*, FarmState* state, EpisodeSummary* summary) {
+              if (summary != nullptr) summary->episode = 7;
+              return state == nullptr || state->step < 20;  // not over
+            }));
+  EXPECT_EQ("episode 0 step 5: state.observer: got 0, simulated -1",
+            difference([](FarmSpec*, FarmState* state, auto*) {
+              if (state != nullptr && state->step == 5) state->observer = 0;
+              return true;
+            }));
+}
+
+TEST_F(EpisodeBag, ASecondSpecThatDiffersIsFound) {
+  const std::string path = Changed(OneBag(), true, [](auto*, auto*, auto*) { return true; });
+  FarmSpec spec;
+  std::string topic;
+  {
+    rosbag::Bag bag(path);
+    for (const auto& message : rosbag::View(bag)) {
+      if (const auto one = message.instantiate<FarmSpec>()) spec = *one, topic = message.getTopic();
+    }
+  }
+  const auto append = [&] {
+    rosbag::Bag bag(path, rosbag::bagmode::Append);
+    bag.write(topic, ros::Time(100), spec);
+  };
+  append();
+  EXPECT_EQ("", CheckBag(path, "").difference);
+  spec.rewards.step = -2.0F;
+  append();
+  EXPECT_EQ("episode 0 of seed 5: two specs that differ", CheckBag(path, "").difference);
+}
+
+// The tape of an episode in which all hold.
+EpisodeTape HeldTape(const std::shared_ptr<const aquafarm::Scenario>& scenario) {
+  aquafarm::Farm farm(scenario);
+  farm.Reset(5, 0);
+  EpisodeTape tape;
+  tape.seed = 5;
+  const std::vector<std::uint8_t> hold(farm.ships().size(),
+                                       static_cast<std::uint8_t>(aquafarm::Action::kHold));
+  while (!farm.over()) {
+    farm.Step(hold.data());
+    tape.actions.insert(tape.actions.end(), hold.begin(), hold.end());
+  }
+  tape.record = farm.record();
+  return tape;
+}
+
+TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
+  const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
+  const EpisodeTape tape = HeldTape(scenario);
+  const BagFormat format{"/ranch/", "map", 10, 1};
+  const std::string path = folder_ + "/x.bag";
+  WriteEpisodeBag(scenario, tape, format, path);
+  const auto size = static_cast<rlim_t>(fs::file_size(path));
+  fs::remove(path);
+  fs::create_symlink("/dev/full", path + ".active");
+  EXPECT_THROW(WriteEpisodeBag(scenario, tape, format, path), std::runtime_error);
+  EXPECT_TRUE(Bags().empty());
+  const auto write_within = [&](rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit most;
+    most.rlim_cur = most.rlim_max = bytes;
+    setrlimit(RLIMIT_FSIZE, &most);
+    try {
+      WriteEpisodeBag(scenario, tape, format, path);
+    } catch (const std::runtime_error&) {
+      _exit(Bags().empty() ? 0 : 1);
+    }
+    _exit(2);
+  };
+  for (const rlim_t limit : {rlim_t{100}, rlim_t{4200}, size / 2, size - 10}) {
+    EXPECT_EXIT(write_within(limit), testing::ExitedWithCode(0), "")
+        << limit << " bytes of " << size;
+  }
+}
+
+TEST_F(EpisodeBag, ATapeThatDoesNotGiveItsResultLeavesNothing) {
+  const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
+  EpisodeTape tape = HeldTape(scenario);
+  tape.record.episode_return += 1.0F;
+  EXPECT_THROW(WriteEpisodeBag(scenario, tape, {}, folder_ + "/x.bag"), TapeError);
+  EXPECT_TRUE(Bags().empty());
+}
+
+TEST_F(EpisodeBag, ADiskThatDoesNotFollowEndsTheKeepingNotTheFarms) {
+  const auto ranch = MakeRanch(ShortScenario(), 32);
+  const auto recorder = Record(*ranch, "all", {1, std::chrono::milliseconds(0)});
+  Play(*ranch, 32, 90);  // 32 episodes end in one step
+  EXPECT_EQ("the disk does not follow", recorder->fault());
+  ranch->SetRecorder(nullptr);
+}
+
+TEST_F(EpisodeBag, ABagOfTheSameNameStays) {
+  OneBag();
+  OneBag();
+  ASSERT_EQ(2U, Bags().size());
   for (const std::string& bag : Bags()) EXPECT_EQ("", CheckBag(bag, "").difference) << bag;
 }
 

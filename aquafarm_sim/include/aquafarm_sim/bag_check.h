@@ -19,10 +19,14 @@ namespace aquafarm_sim {
 struct BagCheck {
   std::uint64_t episodes{};
   std::uint64_t steps{};
-  std::uint64_t unfinished{};  ///< episodes whose end is not in the bag
-  std::string difference;      ///< the first one: "episode 3 step 17: …"; empty: identical
+  std::uint64_t unfinished{};             ///< episodes whose end is not in the bag
+  std::vector<std::uint64_t> changed_at;  ///< steps at which something came from outside
+  std::string difference;  ///< the first one: "episode 3 step 17: …"; empty: identical
   std::vector<std::string> episodes_in_words;  ///< "episode 3: 321 steps, return 102.4, …"
 };
+
+/// ", changed from outside at step 20, 31"; empty where nothing came from outside.
+std::string ChangesInWords(const BagCheck& check);
 
 /// Checks every episode of a bag.
 /// @param ns namespace of the ranch; empty: the only one there is

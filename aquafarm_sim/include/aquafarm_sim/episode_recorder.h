@@ -4,6 +4,7 @@
 /// Keeps episodes as bags while the ranch runs, every step of them, without slowing it: the ranch
 /// leaves actions on a tape, a thread of its own plays the kept tapes again and writes them.
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -30,16 +31,23 @@ struct Keep {
 /// @throws InputError "~keep: got 'some', expected none, all, every:N, best, worst or failures"
 Keep ParseKeep(const std::string& text);
 
+/// How far the writing may fall behind.
+struct RecorderLimits {
+  // Steps are written at some 100,000 a second: this is a few seconds' work.
+  std::size_t waiting_bytes{300'000};      ///< of actions left to write; then the farms wait
+  std::chrono::milliseconds wait{10'000};  ///< that they wait at most; then nothing more is kept
+};
+
 class EpisodeRecorder final : public RanchRecorder {
  public:
   /// @throws InputError when the folder cannot be made
   EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep, std::string folder,
-                  BagFormat format);
+                  BagFormat format, RecorderLimits limits = {});
   /// Writes what is left first.
   ~EpisodeRecorder() override;
 
   void OnStart(const aquafarm::Farm& farm, std::int32_t number) override;
-  /// Waits while more is left to write than a few seconds take.
+  /// Waits while more is left to write than the limits say, but no longer than they say.
   void OnStep(const aquafarm::Farm& farm, std::int32_t number,
               const std::uint8_t* actions) override;
   void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) override;
@@ -57,6 +65,7 @@ class EpisodeRecorder final : public RanchRecorder {
   const Keep keep_;
   const std::string folder_;
   const BagFormat format_;
+  const RecorderLimits limits_;
   std::vector<EpisodeTape> tapes_;  // by farm; only the ranch's thread touches them
   std::optional<float> extreme_;    // best or worst return so far
   std::string extreme_path_;        // its bag; only the writer touches it

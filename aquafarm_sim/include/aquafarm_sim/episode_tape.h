@@ -6,12 +6,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "aquafarm/farm.h"
 
 namespace aquafarm_sim {
+
+/// A tape that does not give its record again.
+struct TapeError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// One farm's episode, as it goes.
 struct EpisodeTape {
@@ -42,7 +48,8 @@ std::string BagName(const EpisodeTape& tape);
 
 /// Plays a tape again and writes spec, chart, risk (every tenth step), every state, what came from
 /// outside, and the summary into an lz4 bag: first beside `path` as path.active, then renamed.
-/// @throws std::runtime_error when it cannot be written, or when the tape does not give its record
+/// @throws TapeError when the tape does not give its record
+/// @throws std::runtime_error when it cannot be written; nothing is left of it then
 void WriteEpisodeBag(const std::shared_ptr<const aquafarm::Scenario>& scenario,
                      const EpisodeTape& tape, const BagFormat& format, const std::string& path);
 

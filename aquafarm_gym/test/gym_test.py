@@ -8,6 +8,7 @@ of reach all cases are skipped, with a word.
 import importlib.util
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import unittest
@@ -50,6 +51,7 @@ if not WHY_NOT:
     import gymnasium
     import numpy as np
     from aquafarm_gym import FarmEnv, FarmParallelEnv, FarmVectorEnv, RosFarms
+    from aquafarm_gym.farms import LocalFarms
     from gymnasium.utils.env_checker import check_env, data_equivalence
     from pettingzoo.test import parallel_api_test, parallel_seed_test
 
@@ -123,6 +125,62 @@ class GymTest(unittest.TestCase):
                 self.assertEqual(reward, one[1][0])
             np.testing.assert_array_equal(alone, one[0][0])
 
+    def test_a_step_limit_truncates_and_all_else_terminates(self):
+        limit = core.REASONS[core.STEP_LIMIT]
+        paper = core.Scenario.load(f"{core.SCENARIO_FOLDER}/paper.yaml").yaml
+        reef = core.Scenario.load(REEF).yaml
+        for step_limit, limited in ((40, True), (100000, False)):
+            one, two = (core.Scenario.parse(re.sub("step_limit: [0-9]+",
+                                                   f"step_limit: {step_limit}", text))
+                        for text in (paper, reef))
+            self.check_ends_of_many(FarmVectorEnv(16, one), limit, limited)
+            chance = np.random.default_rng(4)
+            single, pair = FarmEnv(one), FarmParallelEnv(two)
+            single.reset(seed=1)
+            ends = (False, False)
+            while not any(ends):
+                *_, terminated, truncated, info = single.step(int(chance.integers(10)))
+                ends = terminated, truncated
+            self.assertEqual(ends, (not limited, limited))
+            self.assertEqual(info["summary"]["reason"] == limit, limited)
+            pair.reset(seed=1)
+            while pair.agents:
+                _, _, terminated, truncated, infos = pair.step(
+                    {agent: int(chance.integers(10)) for agent in pair.agents})
+            self.assertEqual(any(truncated.values()), limited)
+            for agent, info in infos.items():
+                self.assertNotEqual(terminated[agent], truncated[agent])
+                self.assertEqual(info["summary"]["reason"] == limit, limited)
+
+    def check_ends_of_many(self, env, limit, limited):
+        chance = np.random.default_rng(4)
+        env.reset(seed=1)
+        before, ended = np.zeros(env.num_envs, bool), 0
+        while ended < env.num_envs:
+            _, rewards, terminated, truncated, infos = env.step(chance.integers(0, 10,
+                                                                                env.num_envs))
+            np.testing.assert_array_equal(infos["started"], before)  # begins in the next step
+            self.assertFalse(rewards[before].any() or (terminated | truncated)[before].any())
+            before = terminated | truncated
+            self.assertFalse((terminated if limited else truncated).any())
+            reasons = {one["farm"]: one["reason"] for one in infos.get("summaries", ())}
+            self.assertEqual(sorted(reasons), list(np.flatnonzero(before)))
+            self.assertTrue(all((reason == limit) == limited for reason in reasons.values()))
+            ended += len(reasons)
+
+    def test_resets_of_many_farms_play_no_episode_twice(self):
+        env = FarmVectorEnv(4, "paper")
+        env.reset(seed=1)
+        chance = np.random.default_rng(5)
+        played = []
+        for i in range(6000):
+            played += [(one["seed"], one["episode"])
+                       for one in env.step(chance.integers(0, 10, 4))[4].get("summaries", ())]
+            if i % 1999 == 1998:
+                env.reset()
+        self.assertGreater(len(played), 8)
+        self.assertEqual(len(played), len(set(played)))
+
     def test_an_array_that_is_not_copied_is_the_farms_own(self):
         env = FarmVectorEnv(4, "paper", copy=False)
         first = env.reset(seed=1)[0]
@@ -135,6 +193,8 @@ class GymTest(unittest.TestCase):
                  ".*paper, partial, "),
                 (lambda: FarmEnv("two_squads"), "scenario two_squads: got 2 agents, expected 1"),
                 (lambda: FarmEnv(observation="pixels"), "observation: got 'pixels', expected one"),
+                (lambda: FarmEnv(observation="planes", farms=LocalFarms()), "observation: got "
+                 "'planes', but the farms given write features"),
                 (lambda: FarmEnv().step(10), "action: got 10, expected a whole number in"),
                 (lambda: FarmVectorEnv(2).step(np.array([0, 10])), "actions: got 0 to 10, "),
                 (lambda: FarmVectorEnv(2).step(np.array([0])), r"actions: got int64 \[1\], "),
@@ -145,6 +205,14 @@ class GymTest(unittest.TestCase):
         with self.assertRaisesRegex(ConnectionError, "^sim node: no answer from /nowhere/get_state"
                                     " for 0.5 s"):
             RosFarms("/nowhere", wait_limit_s=0.5)
+
+    def test_no_master_is_said_at_once(self):
+        code = ("from aquafarm_gym import RosFarms\n"
+                "try:\n    RosFarms()\nexcept ConnectionError as error:\n    print(error)")
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True,
+                              timeout=60, check=True,
+                              env={**os.environ, "ROS_MASTER_URI": "http://localhost:9"})
+        self.assertRegex(done.stdout, "^no ROS master at http://localhost:9: ")
 
     def test_the_example_trains_with_stable_baselines3(self):
         for name in ("torch", "pandas"):

@@ -6,7 +6,7 @@ import numpy as np
 from gymnasium.vector.utils import batch_space
 
 from aquafarm_gym import spaces
-from aquafarm_gym.farms import LocalFarms
+from aquafarm_gym.farms import ENCODINGS, LocalFarms
 
 SEED_MASK = (1 << 64) - 1
 
@@ -17,6 +17,14 @@ def one_agent(farms):
         raise ValueError(f"scenario {farms.name}: got {farms.agents} agents, expected 1; "
                          "FarmParallelEnv is for several")
     return farms
+
+
+def observation_of(farms, observation):
+    """The array of an observation; refuses farms that do not write it."""
+    if observation not in farms.buffers:
+        has = ", ".join(name for name in ENCODINGS if name in farms.buffers)
+        raise ValueError(f"observation: got '{observation}', but the farms given write {has}")
+    return farms.buffers[observation]
 
 
 class Episodes:
@@ -56,7 +64,7 @@ class FarmEnv(gymnasium.Env):
         self.observation_space = spaces.observation_space(self.farms, observation)
         self._is_index = observation == "index"
         self._buffers = self.farms.buffers
-        self._observation = self._buffers[observation]
+        self._observation = observation_of(self.farms, observation)
         self._episodes = Episodes()
         self._actions = np.zeros((1, 1), np.uint8)
 
@@ -121,18 +129,21 @@ class FarmVectorEnv(gymnasium.vector.VectorEnv):
         self.action_space = batch_space(self.single_action_space, self.num_envs)
         self.observation_space = batch_space(self.single_observation_space, self.num_envs)
         buffers = self.farms.buffers
-        self._observation = buffers[observation][:, 0]
+        self._observation = observation_of(self.farms, observation)[:, 0]
         self._rewards = buffers["rewards"][:, 0]
         self._reasons, self._started = buffers["reasons"], buffers["started"].view(bool)
         self._legal = buffers["legal"][:, 0]
         self._copy = copy
         self._actions = np.zeros((self.num_envs, 1), np.uint8)
         self._episodes = Episodes()
+        self._begun = np.zeros(self.num_envs, int)  # episodes since the last reset, by farm
 
     def reset(self, *, seed=None, options=None):
         super().reset(seed=seed)
-        self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed,
-                                              self.num_envs))
+        # Farm i of N plays every N-th episode: go on behind the farm that has come furthest.
+        by = self.num_envs * (1 + int(self._begun.max()))
+        self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed, by))
+        self._begun[:] = 0
         return self._out(self._observation), self._infos()
 
     def step(self, actions):
@@ -144,6 +155,7 @@ class FarmVectorEnv(gymnasium.vector.VectorEnv):
             raise ValueError(f"actions: got {actions.min()} to {actions.max()}, expected [0, 9]")
         self._actions[:, 0] = actions
         self.farms.step(self._actions)
+        self._begun += self._started
         truncated = self._reasons == core.STEP_LIMIT
         terminated = (self._reasons != 0) ^ truncated
         return (self._out(self._observation), self._out(self._rewards), terminated, truncated,

@@ -6,7 +6,7 @@ from gymnasium.utils import seeding
 from pettingzoo import ParallelEnv
 
 from aquafarm_gym import spaces
-from aquafarm_gym.env import Episodes
+from aquafarm_gym.env import Episodes, observation_of
 from aquafarm_gym.farms import LocalFarms
 
 
@@ -31,7 +31,7 @@ class FarmParallelEnv(ParallelEnv):
         self.action_spaces = {agent: spaces.action_space() for agent in self.possible_agents}
         self._is_index = observation == "index"
         self._buffers = self.farms.buffers
-        self._observation = self._buffers[observation]
+        self._observation = observation_of(self.farms, observation)
         self._episodes = Episodes()
         self._number = {agent: i for i, agent in enumerate(self.possible_agents)}
 

@@ -8,6 +8,7 @@ import time
 
 import aquafarm_core as core
 import numpy as np
+import rosgraph
 import rospy
 from aquafarm_msgs.msg import Outcome, StepResult
 from aquafarm_msgs.srv import GetState, Reset, Step
@@ -16,7 +17,18 @@ from rospy.impl.tcpros_base import TCPROSTransport
 from aquafarm_gym.farms import check_encoding
 
 RETRY_PERIOD_S = 0.1
+MASTER_LIMIT_S = 5.0
 BITS = {"index": StepResult.INDEX, "features": StepResult.FEATURES, "planes": StepResult.PLANES}
+
+
+def check_master(limit_s):
+    """Raises ConnectionError where no master listens, for which rospy would wait for ever."""
+    uri = rosgraph.get_master_uri()
+    try:
+        host, port = rosgraph.network.parse_http_host_and_port(uri)
+        socket.create_connection((host, port), timeout=limit_s).close()
+    except (OSError, ValueError) as error:
+        raise ConnectionError(f"no ROS master at {uri}: {error}") from error
 
 
 class Service(rospy.ServiceProxy):
@@ -63,6 +75,7 @@ class RosFarms:
     def __init__(self, namespace="/aquafarm", farms=1, observation="features", hashes=False,
                  wait_limit_s=20.0, call_limit_s=30.0):
         if not rospy.core.is_initialized():
+            check_master(min(wait_limit_s, MASTER_LIMIT_S))
             rospy.init_node("aquafarm_gym", anonymous=True, disable_signals=True)
         self._limit_s = wait_limit_s
         self._services = {name: Service(f"{namespace}/{name}", kind, call_limit_s)

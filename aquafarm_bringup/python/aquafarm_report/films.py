@@ -43,7 +43,7 @@ def evaluate(run, folder, episodes):
          "--write", folder / "evaluation")
     with open(folder / "evaluation.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    return json.loads((folder / "evaluation.json").read_text()), rows
+    return json.loads((folder / "evaluation.json").read_text(encoding="utf-8")), rows
 
 
 def choose(rows):

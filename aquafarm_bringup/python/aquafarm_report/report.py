@@ -79,7 +79,7 @@ def show_episodes(run, folder, episodes):
 
 def report_run(run, folder, episodes):
     """The page of a run folder."""
-    settings = json.loads((run / "run.json").read_text())
+    settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
     columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
     summary, sections = show_episodes(run, folder, episodes)
     curves = [page.section("Training", draw_curves(columns))] if columns else []
@@ -94,19 +94,20 @@ def report_run(run, folder, episodes):
         f"{settings['algorithm']} on {settings['scenario']}", tiles, *sections, *curves,
         page.section("Configuration",
                      page.details("run.json", json.dumps(settings, indent=2)),
-                     page.details("scenario.yaml", (run / "scenario.yaml").read_text())))
+                     page.details("scenario.yaml",
+                                  (run / "scenario.yaml").read_text(encoding="utf-8"))))
 
 
 def read_table(path):
     """Head and rows of table.md."""
     rows = [[cell.strip().strip("*") for cell in line.strip().strip("|").split("|")]
-            for line in path.read_text().splitlines() if line.startswith("|")]
+            for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("|")]
     return [cell or "learner" for cell in rows[0]], rows[2:]
 
 
 def best_run(benchmark):
     """The first run folder of the learner with the highest return; None when none is left."""
-    results = json.loads((benchmark / "results.json").read_text())
+    results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     for row in sorted(results["table"], key=lambda row: -row["return_per_episode"]):
         run = benchmark / "runs" / row["name"] / "seed_1"
         if (run / "run.json").is_file():
@@ -116,8 +117,8 @@ def best_run(benchmark):
 
 def report_benchmark(benchmark, folder, episodes):
     """The page of a benchmark's folder."""
-    settings = json.loads((benchmark / "benchmark.json").read_text())
-    results = json.loads((benchmark / "results.json").read_text())
+    settings = json.loads((benchmark / "benchmark.json").read_text(encoding="utf-8"))
+    results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     tiles = page.tiles([
         (settings.get("scenario", "–"), "scenario"), (len(results["table"]), "contestants"),
         (max(row["runs"] for row in results["table"]), "runs of each"),
@@ -159,7 +160,7 @@ def make(source, output, episodes=EPISODES):
             raise ReportError(f"{source}: cannot be reported on: {error!r}") from error
     try:
         beside = output.with_name(output.name + ".part")
-        beside.write_text(text)
+        beside.write_text(text, encoding="utf-8")
         os.replace(beside, output)
     except OSError as error:
         raise ReportError(f"{output}: cannot be written: {error.strerror}") from None

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python module aquafarm_core: what it writes, where it writes it, and what it refuses."""
 import pathlib
+import threading
 import time
 import unittest
 
@@ -103,6 +104,28 @@ class CoreTest(unittest.TestCase):
                 ended += 1
                 self.assertAlmostEqual(one["episode_return"], returns[one["farm"]], delta=0.5)
         self.assertGreater(ended, 8)
+
+    def test_calls_of_several_threads_at_once_are_refused(self):
+        batch = core.FarmBatch(PAPER, 512, ["planes"])
+        batch.reset(1)
+        before = time.monotonic()
+        words = []
+
+        def step():
+            for _ in range(200):
+                try:
+                    batch.step(np.zeros((512, 1), np.uint8))
+                except RuntimeError as error:
+                    words.append(str(error))
+
+        threads = [threading.Thread(target=step) for _ in range(2)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual({"FarmBatch: another thread's call still runs"}, set(words))
+        batch.step(np.zeros((512, 1), np.uint8))
+        self.assertLess(time.monotonic() - before, 30)
 
     def test_a_thousand_farms_make_millions_of_steps_a_second(self):
         batch = core.FarmBatch(PAPER, 1024, ["rewards", "reasons", "started", "index"])

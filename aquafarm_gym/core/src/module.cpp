@@ -37,6 +37,7 @@ class Batch {
   }
 
   void Bind(const std::string& name, const py::array& array) {
+    const Turn turn(busy_);
     const BufferType& type = TypeOf(name);
     if (!Fits(array, type)) {
       throw InputError(name + ": got " + Describe(array) + ", expected writeable row-major " +
@@ -46,12 +47,14 @@ class Batch {
   }
 
   void Reset(std::uint64_t seed, std::uint64_t first_episode) {
+    const Turn turn(busy_);
     const py::gil_scoped_release release;
     batch_.Reset(seed, first_episode, output_);
     is_reset_ = true;
   }
 
   void Step(const py::array& actions) {
+    const Turn turn(busy_);
     const std::vector<py::ssize_t> shape{batch_.farms(), batch_.agents()};
     if (!actions.dtype().equal(py::dtype::of<std::uint8_t>()) || actions.ndim() != 2 ||
         actions.shape(0) != shape[0] || actions.shape(1) != shape[1] ||
@@ -72,6 +75,7 @@ class Batch {
 
   /// How the episodes that are over went, by farm.
   py::list Finished() const {
+    const Turn turn(busy_);
     py::list finished;
     for (std::int32_t i = 0; i < batch_.farms(); ++i) {
       const EpisodeRecord& record = batch_.farm(i).record();
@@ -97,8 +101,12 @@ class Batch {
     return finished;
   }
 
-  py::bytes Save() const { return batch_.Save(); }
+  py::bytes Save() const {
+    const Turn turn(busy_);
+    return batch_.Save();
+  }
   void Load(const std::string& bytes) {
+    const Turn turn(busy_);
     batch_.Load(bytes);
     batch_.Write(output_);
     is_reset_ = true;
@@ -108,6 +116,22 @@ class Batch {
   const std::map<std::string, py::array>& buffers() const { return buffers_; }
 
  private:
+  /// Refuses a call while another thread's still runs; taken and given back under the GIL, which
+  /// reset and step release in between.
+  class Turn {
+   public:
+    explicit Turn(bool& busy) : busy_(busy) {
+      if (busy_) throw std::runtime_error("FarmBatch: another thread's call still runs");
+      busy_ = true;
+    }
+    ~Turn() { busy_ = false; }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    bool& busy_;
+  };
+
   static std::int32_t CheckFarms(std::int32_t farms) {
     if (farms < 1) {
       throw InputError("farms: got " + std::to_string(farms) + ", expected at least 1");
@@ -134,6 +158,7 @@ class Batch {
   std::map<std::string, py::array> buffers_;
   BatchOutput output_;
   bool is_reset_{};
+  mutable bool busy_{};
 };
 
 std::vector<std::string> Names(int count, std::string (*name)(int)) {

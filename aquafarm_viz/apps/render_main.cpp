@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
@@ -151,7 +153,19 @@ void RenderPicture(const Request& request) {
   if (missing > 0) throw std::runtime_error(Missing(request, found));
   cv::Mat picture;
   cv::hconcat(pictures, picture);
-  if (!cv::imwrite(request.output, picture, {cv::IMWRITE_PNG_COMPRESSION, 9})) {
+  const std::filesystem::path output(request.output);
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(output.extension().string(), picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  const std::string beside = request.output + ".part";
+  std::ofstream file(beside, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(beside, output, error);
+  if (!file || error) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
     throw std::runtime_error(request.output + ": could not be written");
   }
 }

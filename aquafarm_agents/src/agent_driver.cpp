@@ -104,12 +104,16 @@ class AgentDriver::Impl {
                  success ? "all retrieved" : "over", static_cast<double>(over->joint_return));
         if (acted_in_ == std::pair(over->seed, over->episode)) ended.push_back(success);
         // Whoever is late must not reset what the others have begun meanwhile.
-        if (over == newest_) StartNext(*over);
+        const bool is_now = newest_->seed == over->seed && newest_->episode == over->episode;
+        if (is_now) StartNext(*over);
       }
       if (!now || now->reason != FarmState::NONE) continue;
       if (!now->ships[static_cast<std::size_t>(options_.ship)].active) continue;
-      Look(*now);
-      policy.Act(results_, actions_);
+      if (now != acted_on_) {  // else its command is given again, and no memory moves on
+        Look(*now);
+        policy.Act(results_, actions_);
+        acted_on_ = now;
+      }
       Send(*now, actions_[static_cast<std::size_t>(options_.ship)]);
     }
     return ended;
@@ -258,8 +262,9 @@ class AgentDriver::Impl {
   FarmState::ConstPtr newest_;
   std::vector<FarmState::ConstPtr> over_;  // the last of each episode that is not dealt with yet
   std::optional<std::pair<std::uint64_t, std::uint64_t>> over_seen_;  // seed and episode
-  FarmState::ConstPtr seen_;                                          // what was acted on last
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> acted_in_;   // seed and episode
+  FarmState::ConstPtr acted_on_;  // what the present actions were chosen from
+  FarmState::ConstPtr seen_;      // what was handed out last
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> acted_in_;  // seed and episode
   ros::WallTime claimed_at_;
   bool again_{};
   std::uint64_t token_{ros::WallTime::now().toNSec()};

@@ -38,7 +38,7 @@ class AgentNodesTest(unittest.TestCase):
         folder = self.folder / "trained"
         if not folder.exists():
             run = Program(self, program("aquafarm_agents", "aquafarm_train"), TEAM, "-a", "vdn",
-                          "--steps", "24000", "--farms", "8", "--run-dir", folder, "--evaluate",
+                          "--steps", "40000", "--farms", "8", "--run-dir", folder, "--evaluate",
                           "100", "-o", "hidden=32", "-o", "batch=32", "-o", "start=500", "-o",
                           "replay=5000", "-o", "target_period=50", "-o", "steps_per_update=4", "-o",
                           "learning_rate=linear:0.002:0.0001:1")

@@ -185,7 +185,7 @@ class BenchmarkTest(unittest.TestCase):
                           "--output", self.folder / "out", "--programs",
                           pathlib.Path(program("aquafarm_agents", "aquafarm_train")).parent)
         self.assertEqual(2, unknown.code(), unknown.words())
-        self.assertIn("scenario: got 'atlantis', expected a file or one of: paper, partial",
+        self.assertIn("scenario: got 'atlantis', expected a file or one of: four_squads, ",
                       unknown.words())
         first = self.start("out", "--algorithms", "random", episodes=5)
         self.assertEqual(0, first.code(), first.words())

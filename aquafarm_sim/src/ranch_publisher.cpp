@@ -18,8 +18,8 @@ constexpr std::uint32_t kRecordQueue = 10000;
 // rosbag record keeps 100 messages a topic while it writes a chunk; what comes faster is lost.
 constexpr std::chrono::milliseconds kRecordPeriod{2};
 constexpr std::size_t kMaxSummaries = 1000;
-// A recorder connects to its topics one after the other.
-const ros::WallDuration kRecorderGrace(0.3);
+// A recorder connects to its topics one after the other: it is ready when none came for so long.
+const ros::WallDuration kRecorderGrace(0.5);
 
 }  // namespace
 
@@ -83,12 +83,27 @@ RanchPublisher::~RanchPublisher() {
 
 bool RanchPublisher::WaitForRecorder(double limit_s) {
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(limit_s);
-  while (episode_.getNumSubscribers() == 0) {
-    if (!ros::ok() || ros::WallTime::now() >= end) return false;
+  std::uint32_t connected = 0;
+  ros::WallTime changed_at = ros::WallTime::now();
+  for (;;) {
+    const ros::WallTime now = ros::WallTime::now();
+    const std::uint32_t subscribers = CountSubscribers();
+    if (subscribers != connected) changed_at = now;
+    connected = subscribers;
+    const bool records =
+        episode_.getNumSubscribers() > 0 && state_.publisher.getNumSubscribers() > 0;
+    if (records && now - changed_at >= kRecorderGrace) return true;
+    if (!ros::ok() || now >= end) return false;
     ros::WallDuration(0.02).sleep();
   }
-  kRecorderGrace.sleep();
-  return true;
+}
+
+std::uint32_t RanchPublisher::CountSubscribers() const {
+  std::uint32_t count = spec_.getNumSubscribers() + chart_.getNumSubscribers() +
+                        episode_.getNumSubscribers() + state_.publisher.getNumSubscribers() +
+                        risk_.publisher.getNumSubscribers();
+  for (const Observation& one : observations_) count += one.publisher.getNumSubscribers();
+  return count;
 }
 
 void RanchPublisher::OnChange(const RanchView& view) {

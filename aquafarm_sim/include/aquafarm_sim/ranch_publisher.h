@@ -59,6 +59,7 @@ class RanchPublisher : public RanchListener {
 
   template <typename Message>
   void Advertise(ros::NodeHandle& node, const std::string& name, Topic<Message>& topic);
+  std::uint32_t CountSubscribers() const;
   void Fill(const RanchView& view);
   void PublishObservations(const RanchView& view);
   const aquafarm_msgs::FarmState& ObservationOf(const RanchView& view, std::int32_t ship);

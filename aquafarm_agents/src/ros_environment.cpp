@@ -28,6 +28,9 @@ static_assert(int{StepResult::FEATURES} == int{aquafarm::agents::kFeaturesBit});
 static_assert(int{StepResult::PLANES} == int{aquafarm::agents::kPlanesBit});
 
 constexpr double kRetryPeriod_s = 0.1;
+// Those that the sim node knows as well.
+constexpr int kFarmEncodings =
+    aquafarm::agents::kIndexBit | aquafarm::agents::kFeaturesBit | aquafarm::agents::kPlanesBit;
 
 EnvironmentSpec FromMsg(const aquafarm_msgs::FarmSpec& message) {
   EnvironmentSpec spec;
@@ -73,7 +76,7 @@ std::string Seconds(double seconds) {
 RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOptions options)
     : node_(node),
       options_(std::move(options)),
-      encodings_(static_cast<std::uint8_t>((options_.encodings & ~aquafarm::agents::kStatesBit) |
+      encodings_(static_cast<std::uint8_t>((options_.encodings & kFarmEncodings) |
                                            (options_.hashes ? int{StepResult::HASHES} : 0))),
       limit_(options_.call_limit_s),
       // Numbers of an earlier client of the same farms must not come again.
@@ -86,6 +89,11 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
   }
   spec_ = FromMsg(now.spec);
   if (options_.farms > 0) spec_.farms = options_.farms;
+  own_rewards_ = (options_.encodings & aquafarm::agents::kOwnRewardsBit) != 0 && spec_.team_reward;
+  if (own_rewards_) {
+    spec_.team_reward = false;
+    encodings_ |= StepResult::TERMS;
+  }
   if ((options_.encodings & aquafarm::agents::kIndexBit) != 0 && spec_.state_count == 0) {
     throw InputError("scenario " + spec_.scenario_name +
                      ": too many states for a table; a tabular learner cannot play it");
@@ -171,6 +179,7 @@ const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
 void RosEnvironment::Take(StepResult& result) {
   if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) results_.states = Save();
   results_.rewards.swap(result.rewards);
+  if (own_rewards_) aquafarm::agents::AddUpTerms(result.terms, results_.rewards);
   results_.outcomes.swap(result.outcomes);
   results_.legal.swap(result.legal);
   results_.in_play.swap(result.in_play);

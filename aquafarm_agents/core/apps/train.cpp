@@ -64,6 +64,9 @@ int Main(int argc, char** argv) {
       "such as epsilon_greedy:linear:1:0.05:0.5, boltzmann:1 or icm+boltzmann:1; empty: the "
       "algorithm's");
   app.add_option("-o,--set", settings, "option of the learner, key=value");
+  app.add_option("--credit", options.credit,
+                 "where the scenario shares the reward, agents learn from their own part of it, or "
+                 "from the sum: own, shared");
   app.add_option("--checkpoint-period", options.checkpoint_period_s, "seconds between checkpoints");
   app.add_option("--evaluate", options.evaluation_episodes, "greedy episodes at the end; 0: none");
   app.add_option("--random", options.random_episodes, "episodes of RANDOM beside them; 0: none");

@@ -43,6 +43,7 @@ nlohmann::json ToIndex(const Checkpoint& c) {
           {"scenario_hash", c.spec.scenario_hash},
           {"farms", c.spec.farms},
           {"agents", c.spec.agents},
+          {"team_reward", c.spec.team_reward},
           {"state_count", c.spec.state_count},
           {"feature_count", c.spec.feature_count},
           {"plane_count", c.spec.plane_count},
@@ -65,6 +66,7 @@ Checkpoint FromIndex(const nlohmann::json& index) {
   index.at("scenario_hash").get_to(c.spec.scenario_hash);
   index.at("farms").get_to(c.spec.farms);
   index.at("agents").get_to(c.spec.agents);
+  c.spec.team_reward = index.value("team_reward", false);
   index.at("state_count").get_to(c.spec.state_count);
   index.at("feature_count").get_to(c.spec.feature_count);
   index.at("plane_count").get_to(c.spec.plane_count);
@@ -183,6 +185,10 @@ void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
   compare("seed", checkpoint.seed, seed);
   compare("farms", checkpoint.spec.farms, spec.farms);
   compare("agents", checkpoint.spec.agents, spec.agents);
+  const auto credit = [](bool team) { return team ? "shared" : "own"; };
+  if (checkpoint.spec.team_reward != spec.team_reward) {
+    refuse("credit", credit(checkpoint.spec.team_reward), credit(spec.team_reward));
+  }
 }
 
 }  // namespace aquafarm::agents

@@ -2,6 +2,7 @@
 #include "aquafarm/agents/local_environment.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "aquafarm/check.h"
@@ -27,6 +28,15 @@ EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
   result.steps_in_disaster = record.steps_in_disaster;
   result.reason = record.reason;
   return result;
+}
+
+void AddUpTerms(const std::vector<float>& terms, std::vector<float>& rewards) {
+  AQUAFARM_CHECK_EQ(terms.size(), rewards.size() * kRewardTermCount);
+  for (std::size_t entry = 0; entry < rewards.size(); ++entry) {
+    RewardTerms own;
+    std::memcpy(&own, terms.data() + entry * kRewardTermCount, sizeof(own));
+    rewards[entry] = own.Total();
+  }
 }
 
 EnvironmentSpec MakeSpec(const Scenario& scenario, const Encoder& encoder, std::int32_t farms) {
@@ -72,6 +82,10 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
   if ((options.encodings & kPlanesBit) != 0) {
     results_.planes.resize(entries * batch_.encoder().planes_size());
   }
+  if ((options.encodings & kOwnRewardsBit) != 0 && spec_.team_reward) {
+    spec_.team_reward = false;
+    terms_.resize(entries * kRewardTermCount);
+  }
   with_states_ = (options.encodings & kStatesBit) != 0;
   output_ = Output();
 }
@@ -80,6 +94,7 @@ BatchOutput LocalEnvironment::Output() {
   const auto data_or_null = [](auto& values) { return values.empty() ? nullptr : values.data(); };
   BatchOutput output;
   output.rewards = results_.rewards.data();
+  output.terms = data_or_null(terms_);
   output.outcomes = results_.outcomes.data();
   output.legal = results_.legal.data();
   output.in_play = results_.in_play.data();
@@ -94,6 +109,7 @@ BatchOutput LocalEnvironment::Output() {
 
 const Results& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
   batch_.Reset(seed, first_episode, output_);
+  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
   if (with_states_) results_.states = batch_.Save();
   results_.finished.clear();
   return results_;
@@ -103,6 +119,7 @@ const Results& LocalEnvironment::Step(const std::vector<std::uint8_t>& actions) 
   AQUAFARM_CHECK_EQ(actions.size(), results_.rewards.size());
   AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), kActionCount);
   batch_.Step(actions.data(), output_);
+  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
   if (with_states_) results_.states = batch_.Save();
   CollectFinished();
   return results_;
@@ -122,6 +139,7 @@ std::string LocalEnvironment::Save() { return batch_.Save(); }
 const Results& LocalEnvironment::Load(const std::string& bytes) {
   batch_.Load(bytes);
   batch_.Write(output_);
+  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
   if (with_states_) results_.states = bytes;
   results_.finished.clear();
   return results_;

@@ -391,14 +391,15 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
   torch::Tensor targets;
   {
     const torch::NoGradGuard no_grad;
-    const torch::Tensor logits = Logits(target_actors_, to_) + ToDevice(to_.forbidden, joint);
+    const torch::Tensor forbidden = ToDevice(to_.forbidden, joint);
+    const torch::Tensor logits = Logits(target_actors_, to_) + forbidden;
     const torch::Tensor present = ToDevice(to_.present, each);
     const torch::Tensor best = logits.argmax(2) * present.to(torch::kLong);  // 0 for those done
     const torch::Tensor chosen = torch::one_hot(best, kActionCount).to(torch::kFloat);
-    const torch::Tensor next = (target_critic_.Forward(Observations(to_)[options_.window - 1],
-                                                       chosen * present.unsqueeze(2)) *
-                                chosen)
-                                   .sum(2);
+    const torch::Tensor values = target_critic_.Forward(Observations(to_)[options_.window - 1],
+                                                        chosen * present.unsqueeze(2));
+    const torch::Tensor next = options_.best_response ? (values + forbidden).amax(2)
+                                                      : (values * chosen).sum(2);
     targets = ToDevice(rewards_, each) + ToDevice(discounts_, each) * next;
   }
   const torch::Tensor taken = ToDevice(taken_, joint);

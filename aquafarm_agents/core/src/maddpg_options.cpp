@@ -24,6 +24,7 @@ MaddpgOptions MaddpgOptions::Parse(const std::string& text, std::string& resolve
   ReadNumber(reader, "logit_penalty", 0.0, 1e3, options.logit_penalty);
   ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
   ReadNumber(reader, "gradient_limit", 0.0, 1e9, options.gradient_limit);
+  options.best_response = reader.Flag("best_response", options.best_response);
   options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
   options.shared = reader.Flag("shared", options.shared);
   options.recurrent = reader.Flag("recurrent", options.recurrent);

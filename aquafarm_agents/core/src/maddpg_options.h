@@ -26,6 +26,8 @@ struct MaddpgOptions {
   double logit_penalty{0.01};  ///< keeps actors from becoming sure too early
   double reward_scale{0.05};
   double gradient_limit{10.0};  ///< largest norm of a gradient; 0: none
+  bool best_response{true};  ///< targets: the best own answer to the others' target actors; else
+                             ///< the own target actor's, as printed
   bool mask_illegal{true};
   bool shared{true};       ///< one network for all actors, which tells them apart by their index
   bool recurrent{false};   ///< actors with a memory

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -85,8 +86,9 @@ void Run::All(const MakeEnvironment& make_environment) {
   RunFolder folder(options_.run_dir, options_.resume);
   if (options_.resume) TakeOverLimits(folder);
   if (options_.episodes == 0 && options_.steps == 0) options_.steps = algorithm.default_steps;
-  const std::unique_ptr<Environment> environment =
-      make_environment(algorithm.encodings(LearnerOptionsOf(options_)));
+  const std::unique_ptr<Environment> environment = make_environment(
+      static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
+                                (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0)));
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
   const std::string warning = TakeTorchWarning();
@@ -144,11 +146,17 @@ bool Run::Resume(Trainer& trainer, const RunFolder& folder) {
 void Run::Describe(const EnvironmentSpec& spec, const Learner& learner,
                    const RunFolder& folder) const {
   folder.Write("scenario.yaml", spec.scenario_yaml);
-  const nlohmann::json run{{"algorithm", options_.algorithm}, {"options", learner.options()},
-                           {"seed", options_.seed},           {"episodes", options_.episodes},
-                           {"steps", options_.steps},         {"farms", spec.farms},
-                           {"scenario", spec.scenario_name},  {"scenario_hash", spec.scenario_hash},
-                           {"version", spec.version},         {"arguments", options_.arguments}};
+  const nlohmann::json run{{"algorithm", options_.algorithm},
+                           {"options", learner.options()},
+                           {"credit", options_.credit},
+                           {"seed", options_.seed},
+                           {"episodes", options_.episodes},
+                           {"steps", options_.steps},
+                           {"farms", spec.farms},
+                           {"scenario", spec.scenario_name},
+                           {"scenario_hash", spec.scenario_hash},
+                           {"version", spec.version},
+                           {"arguments", options_.arguments}};
   folder.Write("run.json", run.dump(2) + "\n");
 }
 
@@ -283,6 +291,9 @@ void CheckAlgorithm(const RunOptions& options) {
 
 void CheckRunOptions(const RunOptions& options) {
   if (options.algorithm != kAutoAlgorithm) CheckAlgorithm(options);
+  if (std::find(kCredits.begin(), kCredits.end(), options.credit) == kCredits.end()) {
+    throw InputError("credit: got '" + options.credit + "', expected one of: own, shared");
+  }
   if ((options.seed & kEvaluationSeedBit) != 0) {
     throw InputError("seed: got " + std::to_string(options.seed) + ", expected less than 2^63");
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "agents_fixture.h"
 #include "environment_contract.h"
 
@@ -45,6 +47,33 @@ TEST(LocalEnvironment, GivesOnlyWhatWasAskedFor) {
   EXPECT_TRUE(results.hashes.empty());
   EXPECT_EQ(results.features.size(),
             2U * static_cast<std::size_t>(environment.spec().feature_count));
+}
+
+TEST(LocalEnvironment, TellsWhoseTheTeamsRewardIs) {
+  Scenario scenario = aquafarm::test::CrowdedScenario(2);
+  scenario.rewards.sharing = RewardSharing::kTeam;
+  LocalEnvironment shared(Share(scenario), {3, kIndexBit, false, 1});
+  LocalEnvironment own(Share(scenario), {3, kIndexBit | kOwnRewardsBit, false, 1});
+  EXPECT_TRUE(shared.spec().team_reward);
+  EXPECT_FALSE(own.spec().team_reward);
+  EXPECT_EQ(own.spec().scenario_hash, shared.spec().scenario_hash);
+  const auto agents = static_cast<std::size_t>(scenario.AgentCount());
+  RandomActions random(3);
+  shared.Reset(1);
+  own.Reset(1);
+  bool differ = false;
+  for (int i = 0; i < 300; ++i) {
+    const auto actions = random.Next(Entries(own.spec()));
+    const Results& all = shared.Step(actions);
+    const Results& each = own.Step(actions);
+    for (std::size_t farm = 0; farm < 3; ++farm) {
+      const auto from = each.rewards.begin() + static_cast<std::ptrdiff_t>(farm * agents);
+      const float sum = std::accumulate(from, from + static_cast<std::ptrdiff_t>(agents), 0.0F);
+      EXPECT_FLOAT_EQ(sum, all.rewards[farm * agents]);
+      differ = differ || *from != sum;
+    }
+  }
+  EXPECT_TRUE(differ);
 }
 
 TEST(LocalEnvironment, RefusesATableOfTooManyStates) {

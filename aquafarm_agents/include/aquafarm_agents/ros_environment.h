@@ -65,7 +65,8 @@ class RosEnvironment final : public aquafarm::agents::Environment {
 
   ros::NodeHandle node_;
   const RosEnvironmentOptions options_;
-  const std::uint8_t encodings_;
+  std::uint8_t encodings_;  // bits of StepResult
+  bool own_rewards_{};
   CallLimit limit_;
   ros::ServiceClient step_client_;
   ros::ServiceClient reset_client_;

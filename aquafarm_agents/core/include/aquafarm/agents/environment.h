@@ -20,12 +20,14 @@
 
 namespace aquafarm::agents {
 
-/// Which encodings of an observation are wanted; bits. kStatesBit asks for the whole farms, for
-/// planners; a learner never does.
+/// Which encodings of an observation are wanted; bits. kOwnRewardsBit asks for each agent's own
+/// reward where the scenario shares one sum among all (who did it is then in the reward).
+/// kStatesBit asks for the whole farms, for planners; a learner never does.
 enum EncodingBits : std::uint8_t {
   kIndexBit = 1,
   kFeaturesBit = 2,
   kPlanesBit = 4,
+  kOwnRewardsBit = 16,
   kStatesBit = 128
 };
 
@@ -37,7 +39,7 @@ struct EnvironmentSpec {
   std::string version;
   std::int32_t farms{};
   std::int32_t agents{};        ///< ships and self-propelled devices of one farm
-  bool team_reward{};           ///< every agent is given the sum of all agents' rewards
+  bool team_reward{};           ///< every agent is given the sum of all agents' rewards here
   std::uint32_t state_count{};  ///< tabular states; 0: too many for a table
   std::int32_t feature_count{};
   std::int32_t plane_count{};
@@ -97,6 +99,11 @@ class EnvironmentLost : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// Each agent's own rewards, the sums of its terms.
+/// @param terms [N, S, kRewardTermCount]
+/// @param rewards [N, S]
+void AddUpTerms(const std::vector<float>& terms, std::vector<float>& rewards);
 
 class Environment {
  public:

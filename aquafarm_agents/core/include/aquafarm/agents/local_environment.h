@@ -30,6 +30,7 @@ class LocalEnvironment final : public Environment {
 
   FarmBatch batch_;
   EnvironmentSpec spec_;
+  std::vector<float> terms_;  // [N, S, kRewardTermCount]; empty unless own rewards are asked for
   bool with_states_{};
   Results results_;
   BatchOutput output_;

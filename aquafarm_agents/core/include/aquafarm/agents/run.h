@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -14,11 +15,16 @@
 
 namespace aquafarm::agents {
 
+/// What agents learn from where a scenario shares the reward: `own`, each from its own part, or
+/// `shared`, all from the sum. Returns are the team's in any case.
+inline constexpr std::array<const char*, 2> kCredits{"own", "shared"};
+
 /// A training from its first argument to its summary, wherever the farms are.
 struct RunOptions {
   std::string algorithm{"q_learning"};  ///< or kAutoAlgorithm
   std::string exploration;              ///< empty: the algorithm's own
   std::string options;                  ///< key=value …; see OptionReader
+  std::string credit{"own"};            ///< own or shared; see kCredits
   std::uint64_t seed{1};
   std::uint64_t episodes{};  ///< 0 with steps 0: the algorithm's own limit
   std::uint64_t steps{};

@@ -2,7 +2,7 @@
 #include "aquafarm/agents/local_environment.h"
 
 #include <algorithm>
-#include <cstring>
+#include <numeric>
 #include <utility>
 
 #include "aquafarm/check.h"
@@ -33,9 +33,9 @@ EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
 void AddUpTerms(const std::vector<float>& terms, std::vector<float>& rewards) {
   AQUAFARM_CHECK_EQ(terms.size(), rewards.size() * kRewardTermCount);
   for (std::size_t entry = 0; entry < rewards.size(); ++entry) {
-    RewardTerms own;
-    std::memcpy(&own, terms.data() + entry * kRewardTermCount, sizeof(own));
-    rewards[entry] = own.Total();
+    // In their order, as RewardTerms::Total adds them.
+    const auto own = terms.begin() + static_cast<std::ptrdiff_t>(entry * kRewardTermCount);
+    rewards[entry] = std::accumulate(own, own + kRewardTermCount, 0.0F);
   }
 }
 

@@ -156,8 +156,7 @@ double TeamBound(const Farm& farm) {
                      ": got more than 0, expected at most 0");
   }
   AQUAFARM_CHECK_EQ(farm.step(), 0);
-  const std::vector<std::int32_t> to_port =
-      WaterDistance(farm.layout(), scenario.width, scenario.height, farm.layout().ports);
+  const std::vector<std::int32_t> to_port = WaterDistance(farm.layout(), farm.layout().ports);
   std::vector<Trip> trips;
   for (std::size_t id = 0; id < farm.devices().size(); ++id) trips.emplace_back(farm, id, to_port);
   std::vector<Disaster> disasters = farm.disasters();

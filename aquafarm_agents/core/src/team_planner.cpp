@@ -28,9 +28,8 @@ std::int32_t Slots(const Scenario& scenario) {
 class Work {
  public:
   explicit Work(const Farm& farm) : farm_(farm), capacity_(farm.scenario().ships.capacity) {
-    const Scenario& scenario = farm.scenario();
     const auto from = [&](const std::vector<Cell>& sources) {
-      return WaterDistance(farm.layout(), scenario.width, scenario.height, sources);
+      return WaterDistance(farm.layout(), sources);
     };
     port_ = from(farm.layout().ports);
     for (const Device& device : farm.devices()) device_.push_back(from({device.cell}));

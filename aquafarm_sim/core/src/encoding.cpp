@@ -16,6 +16,7 @@ constexpr std::int32_t kDeviceFeatures = 5;
 constexpr std::int32_t kPortFeatures = 2;
 constexpr std::int32_t kDisasterFeatures = 7;
 constexpr std::int32_t kShipFeatures = 4;
+constexpr std::int32_t kWayFeatures = 3;
 // Scales: devices' highest paper value, the worst risk of §2.1.
 constexpr float kValueScale = 1.0F / 100.0F;
 constexpr float kRiskScale = 1.0F / 20.0F;
@@ -124,7 +125,7 @@ void PaintDisaster(const Disaster& disaster, float ahead, std::int32_t width, st
 
 Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
   const std::int32_t devices = scenario.devices.Total();
-  fetchable_ = devices - scenario.SelfPropelledCount();
+  fetchable_ = scenario.FetchableCount();
   scale_ = 1.0F / static_cast<float>(std::max(scenario.width, scenario.height));
   planes_size_ =
       static_cast<std::size_t>(kPlaneCount) * static_cast<std::size_t>(scenario.CellCount());
@@ -133,7 +134,8 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
                          : static_cast<std::int32_t>(scenario.ports.cells.size());
   feature_count_ = kSelfFeatures + kMoveCount + devices * kDeviceFeatures + ports * kPortFeatures +
                    static_cast<std::int32_t>(scenario.disasters.size()) * kDisasterFeatures +
-                   (scenario.AgentCount() - 1) * kShipFeatures + IdentityFeatures(scenario);
+                   (scenario.AgentCount() - 1) * kShipFeatures + IdentityFeatures(scenario) +
+                   (scenario.view.waterways ? (ports + fetchable_) * kWayFeatures : 0);
 
   // Base-3 codes grow as 3^D: beyond this many devices no table would fit anyway.
   constexpr std::int32_t kMostDevices = 14;
@@ -244,6 +246,31 @@ void Encoder::Features(const View& view, float* out) const {
   const std::int32_t identities = IdentityFeatures(scenario_);
   std::fill_n(out, identities, 0.0F);
   if (identities > 0) out[view.ship] = 1.0F;
+  out += identities;
+  if (scenario_.view.waterways) Ways(view, out);
+}
+
+// The next move and how many are left to every port, and to every device that still waits.
+void Encoder::Ways(const View& view, float* out) const {
+  const auto write = [&](const Waterway& way) {
+    const std::int32_t cell = LinearIndex(view.self, scenario_.width);
+    const std::uint8_t move = way.move.data()[cell];
+    const Cell by = move == kNoMove ? Cell{0, 0} : kMoves[move];
+    *out++ = static_cast<float>(by.x);
+    *out++ = static_cast<float>(by.y);
+    *out++ = static_cast<float>(way.steps.data()[cell]) * scale_;
+  };
+  auto way = view.layout->ways.begin();
+  for (std::size_t port = 0; port < view.layout->ports.size(); ++port) write(*way++);
+  for (const KnownDevice& device : view.devices) {
+    if (device.self_propelled) continue;
+    if (device.status == DeviceStatus::kDeployed) {
+      write(*way);
+    } else {
+      out = std::fill_n(out, kWayFeatures, 0.0F);
+    }
+    ++way;
+  }
 }
 
 void Encoder::Planes(const View& view, std::uint8_t* out) const {
@@ -300,6 +327,14 @@ std::vector<std::string> Encoder::feature_names() const {
     add("other", i, {"visible", "east", "north", "aboard"});
   }
   for (std::int32_t i = 0; i < IdentityFeatures(scenario_); ++i) add("agent", i, {"self"});
+  if (!scenario_.view.waterways) return names;
+  for (std::int32_t i = 0; i < ports; ++i) add("port", i, {"way_east", "way_north", "way_steps"});
+  for (std::int32_t i = 0; i < scenario_.devices.Total(); ++i) {
+    const bool fetched = scenario_.devices.placement == DevicePlacement::kExplicit
+                             ? !scenario_.devices.sites[static_cast<std::size_t>(i)].self_propelled
+                             : i < fetchable_;
+    if (fetched) add("device", i, {"way_east", "way_north", "way_steps"});
+  }
   return names;
 }
 

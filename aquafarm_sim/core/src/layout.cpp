@@ -61,7 +61,9 @@ void LayoutGenerator::Generate(std::uint64_t seed, std::uint64_t episode, Layout
   }
   Reserve(layout);
   for (std::uint32_t attempt = 0; attempt < kMaxTries; ++attempt) {
-    if (TryPlace(seed, episode, attempt, layout)) return;
+    if (!TryPlace(seed, episode, attempt, layout)) continue;
+    if (scenario_.view.waterways) ChartWays(layout);
+    return;
   }
   throw InputError(std::string(crowded_) + ": too crowded: no layout of " +
                    std::to_string(scenario_.width) + " x " + std::to_string(scenario_.height) +
@@ -94,6 +96,16 @@ bool LayoutGenerator::TryPlace(std::uint64_t seed, std::uint64_t episode, std::u
              : scenario_.rocks.cells.empty() ? kRocksKey
                                              : kRockCellsKey;
   return false;
+}
+
+void LayoutGenerator::ChartWays(Layout& layout) {
+  way_queue_.reserve(static_cast<std::size_t>(scenario_.CellCount()));
+  layout.ways.resize(layout.ports.size() + static_cast<std::size_t>(scenario_.FetchableCount()));
+  auto way = layout.ways.begin();
+  for (const Cell port : layout.ports) ChartWaterway(layout.cells, port, *way++, way_queue_);
+  for (const PlacedDevice& device : layout.devices) {
+    if (!device.self_propelled) ChartWaterway(layout.cells, device.cell, *way++, way_queue_);
+  }
 }
 
 void LayoutGenerator::Reserve(Layout& layout) const {

@@ -166,7 +166,7 @@ void CheckAgents(const Scenario& scenario) {
                      "got " + Format(devices.self_propelled) +
                          ", expected at most layout.devices.count = " + Format(devices.count));
   }
-  const std::int32_t fetched = devices.Total() - scenario.SelfPropelledCount();
+  const std::int32_t fetched = scenario.FetchableCount();
   if (scenario.ships.count == 0 && fetched > 0) {
     throw FieldError("ships.count", "got 0, expected at least 1: " + Format(fetched) +
                                         " devices do not drive themselves");

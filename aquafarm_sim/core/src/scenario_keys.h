@@ -217,6 +217,7 @@ void VisitView(Archive& a, S& s) {
     b.Leaf("bulletin_noise", s.view.bulletin_noise, Interval<float>{0.0F, 1000.0F});
     b.Leaf("shared_sight", s.view.shared_sight, AnyFlag{});
     b.Always();
+    b.Leaf("waterways", s.view.waterways, AnyFlag{});
   });
 }
 

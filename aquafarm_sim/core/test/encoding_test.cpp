@@ -165,6 +165,30 @@ TEST(Features, SayWhereThingsAre) {
   EXPECT_FLOAT_EQ(Feature(farm, "time_left"), 1.0F - 3.0F / 1000.0F);
 }
 
+TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
+  Scenario scenario = TinyScenario();
+  scenario.view.waterways = true;
+  Farm farm = MakeFarm(scenario);
+  EXPECT_EQ(FeaturesOf(farm, 0).size(), 5U + 8 + 5 + 2 + 2 * 3);
+  EXPECT_EQ(Feature(farm, "device0.way_east"), 0.0F);
+  EXPECT_EQ(Feature(farm, "device0.way_north"), 1.0F);
+  EXPECT_FLOAT_EQ(Feature(farm, "device0.way_steps"), 2.0F / 5.0F);
+  EXPECT_EQ(Feature(farm, "port0.way_north"), 0.0F);
+  EXPECT_EQ(Feature(farm, "port0.way_steps"), 0.0F);
+  for (const Action action : {Action::kNorth, Action::kNorth, Action::kPickup, Action::kWest}) {
+    StepOne(farm, action);
+  }
+  EXPECT_EQ(Feature(farm, "device0.way_steps"), 0.0F);  // it is aboard
+  EXPECT_EQ(Feature(farm, "port0.way_east"), 1.0F);
+  EXPECT_EQ(Feature(farm, "port0.way_north"), -1.0F);
+  EXPECT_FLOAT_EQ(Feature(farm, "port0.way_steps"), 2.0F / 5.0F);
+
+  Scenario crowded = CrowdedScenario(3, 2);
+  crowded.view.waterways = true;
+  EXPECT_EQ(FeaturesOf(MakeFarm(crowded), 4).size(),
+            5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 4 + 5 + (2 + 3) * 3);
+}
+
 // What the planes must say, cell by cell, from look-ups.
 std::vector<std::uint8_t> SlowPlanes(const View& view) {
   const Layout& layout = *view.layout;

@@ -184,6 +184,9 @@ void ExpectNoAllocation(Scenario scenario) {
 
 TEST(FarmBatch, NeitherStepsNorEpisodesAllocate) {
   ExpectNoAllocation(CrowdedScenario(2));
+  Scenario charted = CrowdedScenario(2);
+  charted.view.waterways = true;
+  ExpectNoAllocation(charted);
   Scenario fixed = CrowdedScenario(1, 0);
   fixed.layout = LayoutMode::kFixed;
   ExpectNoAllocation(fixed);

@@ -148,7 +148,7 @@ Scenario UnusualScenario() {
   s.rewards.pickup = 0.1F;
   s.rewards.sharing = RewardSharing::kTeam;
   s.damage.exposure_damage = std::nextafter(0.001F, 1.0F);
-  s.view = {ViewMode::kPartial, 7.7F, 3, 1.0e-30F, true};
+  s.view = {ViewMode::kPartial, 7.7F, 3, 1.0e-30F, true, true};
   s.disasters[0].heading_deg = 359;
   s.disasters[0].start = {{-3.3F, 1.0e5F}};
   DisasterSpec tracked;
@@ -180,6 +180,7 @@ TEST(Writer, GivesTextThatReadsBackToTheSameBits) {
   EXPECT_EQ(back.damage.exposure_damage, s.damage.exposure_damage);
   EXPECT_EQ(back.view.bulletin_noise, s.view.bulletin_noise);
   EXPECT_EQ(back.view.shared_sight, s.view.shared_sight);
+  EXPECT_EQ(back.view.waterways, s.view.waterways);
   EXPECT_EQ(back.disasters[0].heading_deg, s.disasters[0].heading_deg);
   EXPECT_EQ(back.disasters[0].start, s.disasters[0].start);
   EXPECT_EQ(back.disasters[1].heading_deg, std::nullopt);

@@ -52,6 +52,7 @@ class Encoder {
   void Planes(const View& view, std::uint8_t* out) const;
 
  private:
+  void Ways(const View& view, float* out) const;
   std::uint32_t IndexOf(std::int32_t code, Cell cell) const;
 
   const Scenario& scenario_;

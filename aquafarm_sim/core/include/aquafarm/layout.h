@@ -10,6 +10,7 @@
 #include "aquafarm/grid.h"
 #include "aquafarm/rng.h"
 #include "aquafarm/scenario.h"
+#include "aquafarm/waterway.h"
 
 namespace aquafarm {
 
@@ -38,6 +39,9 @@ struct Layout {
   std::vector<Cell> ports;
   std::vector<Cell> rocks;
   std::vector<PlacedDevice> devices;
+  /// With ViewSpec::waterways the ways to each port and then to each device that can be fetched,
+  /// in their orders; else empty.
+  std::vector<Waterway> ways;
 
   std::uint8_t bits(Cell cell) const { return cells(cell.y, cell.x); }
 };
@@ -74,6 +78,7 @@ class LayoutGenerator {
   void AddPort(Cell cell, Layout& layout) const;
   void AddDevice(Cell cell, Layout& layout) const;
   void AddRock(Cell cell, float reward, Layout& layout) const;
+  void ChartWays(Layout& layout);
   bool AtShore(const Layout& layout, Cell cell) const;
   /// The free cell nearest to a wanted one, found ring by ring; x = kNone when there is none.
   Cell NearestFree(const Layout& layout, Cell wanted) const;
@@ -86,6 +91,7 @@ class LayoutGenerator {
   const Scenario& scenario_;
   std::vector<std::int32_t> candidates_;  // linear indices a thing may still be put on
   std::vector<std::int32_t> queue_;       // of the breadth-first search
+  std::vector<Cell> way_queue_;           // of the charting of ways
   std::vector<std::uint8_t> reached_;     // with a border of one cell all round
   const char* crowded_{""};
 };

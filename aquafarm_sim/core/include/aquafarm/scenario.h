@@ -142,6 +142,7 @@ struct ViewSpec {
   std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
   float bulletin_noise{0.0F};        ///< centre off by up to this on each axis [cells]
   bool shared_sight{};               ///< agents are networked: what one of them sees, all know
+  bool waterways{};  ///< features tell the way by water to ports and devices, as a chart plotter
 };
 
 /// A whole farm.
@@ -174,6 +175,8 @@ struct Scenario {
   std::int32_t CellCount() const { return width * height; }
   /// Devices that are agents of their own.
   std::int32_t SelfPropelledCount() const;
+  /// Devices that a ship must fetch.
+  std::int32_t FetchableCount() const { return devices.Total() - SelfPropelledCount(); }
   /// Ships and self-propelled devices: the number of actions a step takes. Rescue ships come first.
   std::int32_t AgentCount() const { return ships.count + SelfPropelledCount(); }
 };

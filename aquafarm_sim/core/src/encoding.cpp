@@ -252,24 +252,24 @@ void Encoder::Features(const View& view, float* out) const {
 
 // The next move and how many are left to every port, and to every device that still waits.
 void Encoder::Ways(const View& view, float* out) const {
-  const auto write = [&](const Waterway& way) {
-    const std::int32_t cell = LinearIndex(view.self, scenario_.width);
-    const std::uint8_t move = way.move.data()[cell];
-    const Cell by = move == kNoMove ? Cell{0, 0} : kMoves[move];
-    *out++ = static_cast<float>(by.x);
-    *out++ = static_cast<float>(by.y);
-    *out++ = static_cast<float>(way.steps.data()[cell]) * scale_;
+  const Layout& layout = *view.layout;
+  const auto cell = static_cast<std::size_t>(LinearIndex(view.self, scenario_.width));
+  const Way* way = layout.ways.data() + cell * layout.way_count();
+  const auto write = [&] {
+    *out++ = static_cast<float>(way->east);
+    *out++ = static_cast<float>(way->north);
+    *out++ = static_cast<float>(way->steps) * scale_;
+    ++way;
   };
-  auto way = view.layout->ways.begin();
-  for (std::size_t port = 0; port < view.layout->ports.size(); ++port) write(*way++);
+  for (std::size_t port = 0; port < layout.ports.size(); ++port) write();
   for (const KnownDevice& device : view.devices) {
     if (device.self_propelled) continue;
     if (device.status == DeviceStatus::kDeployed) {
-      write(*way);
+      write();
     } else {
       out = std::fill_n(out, kWayFeatures, 0.0F);
+      ++way;
     }
-    ++way;
   }
 }
 

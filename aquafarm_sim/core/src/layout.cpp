@@ -62,7 +62,7 @@ void LayoutGenerator::Generate(std::uint64_t seed, std::uint64_t episode, Layout
   Reserve(layout);
   for (std::uint32_t attempt = 0; attempt < kMaxTries; ++attempt) {
     if (!TryPlace(seed, episode, attempt, layout)) continue;
-    if (scenario_.view.waterways) ChartWays(layout);
+    if (scenario_.view.waterways) ChartAllWays(layout);
     return;
   }
   throw InputError(std::string(crowded_) + ": too crowded: no layout of " +
@@ -98,13 +98,18 @@ bool LayoutGenerator::TryPlace(std::uint64_t seed, std::uint64_t episode, std::u
   return false;
 }
 
-void LayoutGenerator::ChartWays(Layout& layout) {
+void LayoutGenerator::ChartAllWays(Layout& layout) {
+  const std::size_t places =
+      layout.ports.size() + static_cast<std::size_t>(scenario_.FetchableCount());
   way_queue_.reserve(static_cast<std::size_t>(scenario_.CellCount()));
-  layout.ways.resize(layout.ports.size() + static_cast<std::size_t>(scenario_.FetchableCount()));
-  auto way = layout.ways.begin();
-  for (const Cell port : layout.ports) ChartWaterway(layout.cells, port, *way++, way_queue_);
+  layout.ways.resize(static_cast<std::size_t>(scenario_.CellCount()) * places);
+  Way* ways = layout.ways.data();
+  for (const Cell port : layout.ports) {
+    ChartWays(layout.cells, port, ways++, places, way_steps_, way_queue_);
+  }
   for (const PlacedDevice& device : layout.devices) {
-    if (!device.self_propelled) ChartWaterway(layout.cells, device.cell, *way++, way_queue_);
+    if (device.self_propelled) continue;
+    ChartWays(layout.cells, device.cell, ways++, places, way_steps_, way_queue_);
   }
 }
 

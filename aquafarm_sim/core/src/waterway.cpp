@@ -34,22 +34,25 @@ void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::siz
   }
 }
 
-void ChartWaterway(const Grid<std::uint8_t>& cells, Cell target, Waterway& way,
-                   std::vector<Cell>& queue) {
-  StepsByWater(cells, &target, 1, way.steps, queue);
-  way.move.resize(cells.rows(), cells.cols());
-  way.move.setConstant(kNoMove);
+void ChartWays(const Grid<std::uint8_t>& cells, Cell target, Way* ways, std::size_t stride,
+               Grid<std::int32_t>& steps, std::vector<Cell>& queue) {
+  StepsByWater(cells, &target, 1, steps, queue);
+  const auto count = static_cast<std::size_t>(cells.size());
+  for (std::size_t cell = 0; cell < count; ++cell) ways[cell * stride] = {};
+  const auto width = static_cast<std::int32_t>(cells.cols());
   for (const Cell at : queue) {
-    const std::int32_t left = way.steps(at.y, at.x);
+    Way& way = ways[static_cast<std::size_t>(LinearIndex(at, width)) * stride];
+    way.steps = steps(at.y, at.x);
     std::int32_t nearest = std::numeric_limits<std::int32_t>::max();
-    for (std::uint8_t move = 0; move < kMoveCount; ++move) {
-      const Cell to{at.x + kMoves[move].x, at.y + kMoves[move].y};
-      if (!IsOnMap(cells, to) || way.steps(to.y, to.x) != left - 1) continue;
+    for (const Cell by : kMoves) {
+      const Cell to{at.x + by.x, at.y + by.y};
+      if (!IsOnMap(cells, to) || steps(to.y, to.x) != way.steps - 1) continue;
       const std::int32_t dx = target.x - to.x;
       const std::int32_t dy = target.y - to.y;
       if (dx * dx + dy * dy >= nearest) continue;
       nearest = dx * dx + dy * dy;
-      way.move(at.y, at.x) = move;
+      way.east = static_cast<std::int8_t>(by.x);
+      way.north = static_cast<std::int8_t>(by.y);
     }
   }
 }

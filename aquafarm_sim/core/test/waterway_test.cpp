@@ -37,6 +37,12 @@ Scenario WithWays(Scenario scenario) {
   return scenario;
 }
 
+Way WayFrom(const Layout& layout, Cell cell, std::size_t place) {
+  const auto index =
+      static_cast<std::size_t>(LinearIndex(cell, static_cast<std::int32_t>(layout.cells.cols())));
+  return layout.ways[index * layout.way_count() + place];
+}
+
 TEST(Waterway, IsChartedForEveryPortAndEveryDeviceThatIsFetched) {
   const Scenario scenario = WithWays(test::CrowdedScenario(2));
   LayoutGenerator generator(scenario);
@@ -48,18 +54,17 @@ TEST(Waterway, IsChartedForEveryPortAndEveryDeviceThatIsFetched) {
       if (!device.self_propelled) places.push_back(device.cell);
     }
     ASSERT_EQ(places.size(), 2U + 4U);
-    ASSERT_EQ(layout.ways.size(), places.size());
+    ASSERT_EQ(layout.way_count(), places.size());
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const Waterway& way = layout.ways[i];
-      EXPECT_TRUE((way.steps == SlowSteps(layout.cells, places[i])).all());
+      const Grid<std::int32_t> steps = SlowSteps(layout.cells, places[i]);
       for (std::int32_t y = 0; y < scenario.height; ++y) {
         for (std::int32_t x = 0; x < scenario.width; ++x) {
-          const std::int32_t left = way.steps(y, x);
-          const bool leads = left > 0 && left < kUnreachable;
-          ASSERT_EQ(way.move(y, x) != kNoMove, leads);
+          const Way way = WayFrom(layout, {x, y}, i);
+          ASSERT_EQ(way.steps, steps(y, x));
+          const bool leads = way.steps > 0 && way.steps < kUnreachable;
+          ASSERT_EQ(way.east != 0 || way.north != 0, leads);
           if (!leads) continue;
-          const Cell by = kMoves[way.move(y, x)];
-          EXPECT_EQ(way.steps(y + by.y, x + by.x), left - 1);
+          ASSERT_EQ(steps(y + way.north, x + way.east), way.steps - 1);
         }
       }
     }
@@ -68,13 +73,15 @@ TEST(Waterway, IsChartedForEveryPortAndEveryDeviceThatIsFetched) {
 
 TEST(Waterway, GoesRoundAnIslandAndStraightOnOpenWater) {
   const Farm farm = test::MakeFarm(WithWays(test::TinyScenario()));
-  const Waterway& to_port = farm.layout().ways[0];  // at (2, 0), the island west of it
-  EXPECT_EQ(to_port.steps(2, 0), 3);
-  EXPECT_EQ(to_port.move(2, 0), static_cast<std::uint8_t>(Action::kEast));
-  EXPECT_EQ(to_port.steps(4, 2), 4);
-  EXPECT_EQ(to_port.move(4, 2), static_cast<std::uint8_t>(Action::kSouth));
-  EXPECT_EQ(to_port.steps(0, 0), kUnreachable);
-  EXPECT_EQ(to_port.move(0, 2), kNoMove);
+  const auto to_port = [&](Cell cell) { return WayFrom(farm.layout(), cell, 0); };
+  EXPECT_EQ(to_port({0, 2}).steps, 3);  // the port is at (2, 0), the island west of it
+  EXPECT_EQ(to_port({0, 2}).east, 1);
+  EXPECT_EQ(to_port({0, 2}).north, 0);
+  EXPECT_EQ(to_port({2, 4}).steps, 4);
+  EXPECT_EQ(to_port({2, 4}).east, 0);
+  EXPECT_EQ(to_port({2, 4}).north, -1);
+  EXPECT_EQ(to_port({0, 0}).steps, kUnreachable);
+  EXPECT_EQ(to_port({2, 0}).north, 0);
 }
 
 TEST(Waterway, IsNotChartedUnlessAskedFor) {

@@ -39,10 +39,11 @@ struct Layout {
   std::vector<Cell> ports;
   std::vector<Cell> rocks;
   std::vector<PlacedDevice> devices;
-  /// With ViewSpec::waterways the ways to each port and then to each device that can be fetched,
-  /// in their orders; else empty.
-  std::vector<Waterway> ways;
+  /// [H, W, way_count()] with ViewSpec::waterways the ways from each cell to each port and then to
+  /// each device that can be fetched, in their orders; else empty.
+  std::vector<Way> ways;
 
+  std::size_t way_count() const { return ways.size() / static_cast<std::size_t>(cells.size()); }
   std::uint8_t bits(Cell cell) const { return cells(cell.y, cell.x); }
 };
 
@@ -78,7 +79,7 @@ class LayoutGenerator {
   void AddPort(Cell cell, Layout& layout) const;
   void AddDevice(Cell cell, Layout& layout) const;
   void AddRock(Cell cell, float reward, Layout& layout) const;
-  void ChartWays(Layout& layout);
+  void ChartAllWays(Layout& layout);
   bool AtShore(const Layout& layout, Cell cell) const;
   /// The free cell nearest to a wanted one, found ring by ring; x = kNone when there is none.
   Cell NearestFree(const Layout& layout, Cell wanted) const;
@@ -91,7 +92,8 @@ class LayoutGenerator {
   const Scenario& scenario_;
   std::vector<std::int32_t> candidates_;  // linear indices a thing may still be put on
   std::vector<std::int32_t> queue_;       // of the breadth-first search
-  std::vector<Cell> way_queue_;           // of the charting of ways
+  Grid<std::int32_t> way_steps_;          // of the charting of ways
+  std::vector<Cell> way_queue_;           // of the same
   std::vector<std::uint8_t> reached_;     // with a border of one cell all round
   const char* crowded_{""};
 };

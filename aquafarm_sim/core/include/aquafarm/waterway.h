@@ -21,17 +21,18 @@ inline constexpr std::int32_t kUnreachable = 1 << 28;
 void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::size_t count,
                   Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 
-/// The ways from every cell to one place.
-struct Waterway {
-  Grid<std::int32_t> steps;  ///< [H, W] moves that are left
-  /// [H, W] index into kMoves of the next move, of several the one that ends nearest to the place
-  /// as the crow flies, then the first; kNoMove at the place and where none leads to it.
-  Grid<std::uint8_t> move;
+/// The way from one cell to one place: the next move and how many are left, of several shortest
+/// ways the one whose next cell is nearest to the place as the crow flies.
+struct Way {
+  std::int32_t steps{kUnreachable};
+  std::int8_t east{};  ///< of the next move; both 0 at the place and where no way leads to it
+  std::int8_t north{};
 };
-inline constexpr std::uint8_t kNoMove = 255;
 
-/// Charts the ways to `target`. @param way and `queue` as in StepsByWater
-void ChartWaterway(const Grid<std::uint8_t>& cells, Cell target, Waterway& way,
-                   std::vector<Cell>& queue);
+/// Charts the ways from every cell to `target` into every `stride`-th of `ways`, by linear index.
+/// @param ways [H · W · stride]
+/// @param steps and `queue`: scratch, as in StepsByWater
+void ChartWays(const Grid<std::uint8_t>& cells, Cell target, Way* ways, std::size_t stride,
+               Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 
 }  // namespace aquafarm

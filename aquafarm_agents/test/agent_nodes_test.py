@@ -16,7 +16,7 @@ import rostest
 from aquafarm_msgs.srv import GetState
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import DATA, Program, program, start_sim  # noqa: E402
+from processes import DATA, Program, SecondHost, free_port, program, start_sim  # noqa: E402
 
 TEAM = DATA / "team.yaml"
 WIDE = DATA / "wide.yaml"
@@ -93,6 +93,18 @@ class AgentNodesTest(unittest.TestCase):
         runs = [self.agent(0, policy, "_episodes:=3"),
                 self.agent(1, policy, "_episodes:=3", before=("env", "ROS_IP=127.0.0.2"))]
         self.expect_solved(runs, 3)
+
+    def test_an_agent_may_live_on_another_host(self):
+        host = SecondHost(self)
+        policy = self.trained()
+        port = free_port()
+        here = host.environment(port, inside=False)
+        Program(self, *here, "rosmaster", "--core", "-p", port, "__log:=/dev/null")
+        Program(self, *here, program("aquafarm_sim", "sim_node"), f"__ns:={self.namespace}",
+                "__name:=sim", f"_scenario:={TEAM}", "_publish_clock:=false")
+        self.expect_solved([self.agent(0, policy, "_episodes:=3", before=here),
+                            self.agent(1, policy, "_episodes:=3",
+                                       before=host.environment(port, inside=True))], 3)
 
     def die_and_join_again(self, *parameters):
         self.sim(WIDE, *parameters)

@@ -3,9 +3,11 @@
 import os
 import pathlib
 import signal
+import socket
 import subprocess
 import tempfile
 import time
+import unittest
 
 import roslib.packages
 
@@ -57,6 +59,46 @@ class Program:
             assert self.process.poll() is None, f"ended before {what}:\n{self.words()}"
             assert time.monotonic() < end, f"waited in vain for {what}:\n{self.words()}"
             time.sleep(0.02)
+
+
+def free_port():
+    """A port that nobody listened at a moment ago."""
+    with socket.socket() as one:
+        one.bind(("", 0))
+        return one.getsockname()[1]
+
+
+class SecondHost:
+    """Another host: a network namespace with a cable of its own to this one; gone when a test ends.
+
+    Skips the test where namespaces are not allowed.
+    """
+
+    here = "198.18.7.1"  # of the range for tests between hosts (RFC 2544)
+    there = "198.18.7.2"
+
+    def __init__(self, test):
+        name = f"aquafarm{os.getpid()}"
+        cable = f"aqf{os.getpid()}"
+        self._inside = ("ip", "netns", "exec", name)
+        test.addCleanup(subprocess.run, ["ip", "netns", "del", name], check=False,
+                        stderr=subprocess.DEVNULL)
+        for command in (f"netns add {name}",
+                        f"link add {cable} type veth peer name eth0 netns {name}",
+                        f"addr add {self.here}/30 dev {cable}", f"link set {cable} up",
+                        f"-n {name} addr add {self.there}/30 dev eth0",
+                        f"-n {name} link set eth0 up", f"-n {name} link set lo up"):
+            try:
+                subprocess.run(["ip", *command.split()], check=True, capture_output=True, text=True)
+            except (OSError, subprocess.CalledProcessError) as error:
+                why = getattr(error, "stderr", None) or str(error)
+                raise unittest.SkipTest(f"no second host here: ip {command}: {why.strip()}")
+
+    def environment(self, port, inside):
+        """Words before a command that runs on this host, or inside the other, with a master here."""
+        words = ("env", "-u", "ROS_HOSTNAME", f"ROS_MASTER_URI=http://{self.here}:{port}",
+                 f"ROS_IP={self.there if inside else self.here}")
+        return (*self._inside, *words) if inside else words
 
 
 def start_sim(test, namespace, scenario, *parameters):

@@ -148,6 +148,7 @@ class MaddpgLearner final : public Learner {
   void Update();
   Moment DrawMoment(std::size_t i);
   void Draw();
+  void Reprioritise(const torch::Tensor& errors);
   void Fill(std::size_t i, std::size_t age, std::size_t first, Window& to);
   torch::Tensor Observations(Window& window) const;
   torch::Tensor Logits(ActorTeam& actors, Window& window);
@@ -185,6 +186,7 @@ class MaddpgLearner final : public Learner {
   // The minibatch of B moments.
   Window from_;
   Window to_;
+  std::vector<Moment> drawn_;         // [B]
   std::vector<float> taken_;          // [B, S, kActionCount] one-hot; 0 for an agent that is done
   std::vector<float> judged_;         // the same, but action 0 for an agent that is done
   std::vector<float> rewards_;        // [B, S]
@@ -194,9 +196,10 @@ class MaddpgLearner final : public Learner {
   std::vector<float> agent_rewards_;  // scratch, [S]
 };
 
-DeepOptions UniformSampling(const MaddpgOptions& options) {
+DeepOptions SamplingOf(const MaddpgOptions& options) {
   DeepOptions sampling;
-  sampling.priority = 0.0;
+  sampling.priority = options.priority;
+  sampling.importance = options.importance;
   sampling.batch = options.batch;
   return sampling;
 }
@@ -222,10 +225,11 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       carry_(EntryCount(spec) * carry_size()),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
                carry_size()}),
-      sampler_(replay_, UniformSampling(options), static_cast<std::size_t>(options.n_step)),
+      sampler_(replay_, SamplingOf(options), static_cast<std::size_t>(options.n_step)),
       loss_(std::nanf("")),
       from_(MakeWindow()),
       to_(MakeWindow()),
+      drawn_(batch()),
       taken_(batch() * agents() * kActionCount),
       judged_(batch() * agents() * kActionCount),
       rewards_(batch() * agents()),
@@ -292,6 +296,7 @@ void MaddpgLearner::Draw() {
   for (std::size_t i = 0; i < batch(); ++i) {
     const Moment moment = DrawMoment(i);
     const std::size_t first = moment.entry / agents() * agents();
+    drawn_[i] = moment;
     const JointTransition all =
         replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
                         static_cast<float>(options_.discount), agent_rewards_.data());
@@ -317,6 +322,19 @@ void MaddpgLearner::Draw() {
       // So the values of agents that are done, on which others' targets rest, are learnt too.
       weights_[k] = spec_.team_reward ? 1.0F : from_.present[k];
     }
+  }
+  const std::vector<float>& importance = sampler_.Weigh(progress_);
+  for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] *= importance[k / agents()];
+}
+
+// A moment is as surprising as the agent for whom it was drawn found it.
+void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
+  const torch::Tensor values = errors.cpu().contiguous();
+  const float* error = values.data_ptr<float>();
+  for (std::size_t i = 0; i < batch(); ++i) {
+    const Moment& moment = drawn_[i];
+    sampler_.SetError(replay_.Row(moment.age, moment.entry),
+                      error[i * agents() + moment.entry % agents()]);
   }
 }
 
@@ -398,8 +416,8 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
     const torch::Tensor chosen = torch::one_hot(best, kActionCount).to(torch::kFloat);
     const torch::Tensor values = target_critic_.Forward(Observations(to_)[options_.window - 1],
                                                         chosen * present.unsqueeze(2));
-    const torch::Tensor next = options_.best_response ? (values + forbidden).amax(2)
-                                                      : (values * chosen).sum(2);
+    const torch::Tensor next =
+        options_.best_response ? (values + forbidden).amax(2) : (values * chosen).sum(2);
     targets = ToDevice(rewards_, each) + ToDevice(discounts_, each) * next;
   }
   const torch::Tensor taken = ToDevice(taken_, joint);
@@ -410,6 +428,7 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
   const auto error = static_cast<float>(
       ((predicted.detach() - targets).square() * weights).sum().item<double>() / scale);
   loss_ = std::isnan(loss_) ? error : loss_ + kErrorShare * (error - loss_);
+  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
   return (torch::smooth_l1_loss(predicted, targets, at::Reduction::None) * weights).sum();
 }
 
@@ -454,6 +473,7 @@ void MaddpgLearner::Save(Checkpoint& checkpoint) const {
   checkpoint.SetArray("target.actors", actor_target_.ToVector());
   checkpoint.SetArray("target.critic", judge_target_.ToVector());
   replay_.Save(checkpoint);
+  sampler_.Save(checkpoint);
   checkpoint.SetArray("carry", carry_);
   checkpoint.SetArray("streams", explorer_.positions());
   checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position(), acting_.position(),

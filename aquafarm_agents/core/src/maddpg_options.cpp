@@ -18,6 +18,8 @@ MaddpgOptions MaddpgOptions::Parse(const std::string& text, std::string& resolve
   ReadNumber(reader, "steps_per_update", 0.01, 1e6, options.steps_per_update);
   ReadWhole(reader, "start", 0, 1e9, options.start);
   ReadWhole(reader, "replay", 100, 1e9, options.replay);
+  ReadNumber(reader, "priority", 0.0, 1.0, options.priority);
+  ReadNumber(reader, "importance", 0.0, 1.0, options.importance);
   ReadNumber(reader, "target_rate", 1e-6, 1.0, options.target_rate);
   ReadWhole(reader, "n_step", 1, 100, options.n_step);
   ReadNumber(reader, "temperature", 0.01, 100.0, options.temperature);

@@ -61,7 +61,7 @@ TEST(TwoShips, AreLedHomeByLearnersOfValues) {
 
 TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
   constexpr const char* kSmallActors =
-      "hidden=32 batch=64 start=500 replay=20000 steps_per_update=4 actor_rate=0.001 "
+      "hidden=32 start=500 replay=20000 actor_rate=0.001 logit_penalty=0.01 "
       "exploration=epsilon_greedy:linear:1:0.05:0.5";
   EXPECT_GE(SuccessAfter("maddpg", kSmallActors, 40000, TwoShips()), 0.98);
 }

@@ -17,6 +17,7 @@
 #include "aquafarm_agents/ros_environment.h"
 #include "aquafarm_agents/ship_driver.h"
 #include "aquafarm_agents/signals.h"
+#include "aquafarm_agents/values_publisher.h"
 #include "aquafarm_sim/params.h"
 
 namespace aquafarm_agents {
@@ -41,6 +42,7 @@ struct PolicyParams {
   int seed{1000};
   int ship{-1};
   double sim_timeout_s{20.0};
+  double values_period_s{2.0};
 };
 
 PolicyParams ReadPolicyParams(const ros::NodeHandle& node) {
@@ -53,6 +55,7 @@ PolicyParams ReadPolicyParams(const ros::NodeHandle& node) {
   reader.Int("seed", 0, INT_MAX, params.seed);
   reader.Int("ship", -1, INT_MAX, params.ship);
   reader.Number("sim_timeout_s", 0.0, 86400.0, params.sim_timeout_s);
+  reader.Number("values_period_s", 0.0, 86400.0, params.values_period_s);
   reader.RefuseOthers();
   if (params.policy.empty()) {
     throw aquafarm::InputError(
@@ -79,6 +82,8 @@ ExitCode Evaluate(const ros::NodeHandle& node, const PolicyParams& params,
   options.on_notice = [](const std::string& text) { ROS_WARN("%s", text.c_str()); };
   RosEnvironment environment(node, options);
   const auto policy = MakeAndWarn(saved, environment.spec());
+  ValuesPublisher values(node, params.values_period_s);
+  values.Offer(agents::MakePolicy(saved, environment.spec()));
   const agents::Evaluation evaluation =
       agents::Evaluate(environment, *policy, static_cast<std::uint64_t>(params.seed),
                        params.episodes, &stop_requested, [&params](std::size_t over) {
@@ -104,6 +109,8 @@ ExitCode ActAlone(const ros::NodeHandle& node, const PolicyParams& params,
                   const agents::SavedPolicy& saved) {
   AgentDriver driver(node, saved.encodings, {params.ship, params.sim_timeout_s, &stop_requested});
   const auto policy = MakeAndWarn(saved, driver.spec());
+  ValuesPublisher values(node, params.values_period_s);
+  values.Offer(agents::MakePolicy(saved, driver.spec()));
   ROS_INFO("driving ship %d with %s", params.ship, saved.path.c_str());
   const auto ended =
       driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);
@@ -121,6 +128,8 @@ ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
   options.stop = &stop_requested;
   ShipDriver driver(node, saved.encodings, options);
   const auto policy = MakeAndWarn(saved, driver.spec());
+  ValuesPublisher values(node, params.values_period_s);
+  values.Offer(agents::MakePolicy(saved, driver.spec()));
   ROS_INFO("driving with %s", saved.path.c_str());
   const auto ended =
       driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);

@@ -15,6 +15,7 @@
 #include "aquafarm_agents/node.h"
 #include "aquafarm_agents/ros_environment.h"
 #include "aquafarm_agents/signals.h"
+#include "aquafarm_agents/values_publisher.h"
 #include "aquafarm_sim/names.h"
 #include "aquafarm_sim/params.h"
 
@@ -31,6 +32,7 @@ constexpr double kPrintPeriod_s = 5.0;
 struct TrainParams {
   agents::RunOptions run;
   RosEnvironmentOptions environment;
+  double values_period_s{2.0};
 };
 
 TrainParams ReadTrainParams(const ros::NodeHandle& node) {
@@ -54,6 +56,7 @@ TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   reader.Int("random_episodes", 0, 10000000, params.run.random_episodes);
   reader.Number("sim_timeout_s", 0.0, 86400.0, params.environment.wait_limit_s);
   reader.Number("call_limit_s", 0.1, 86400.0, params.environment.call_limit_s);
+  reader.Number("values_period_s", 0.0, 86400.0, params.values_period_s);
   reader.RefuseOthers();
   params.run.episodes = static_cast<std::uint64_t>(episodes);
   params.run.steps = static_cast<std::uint64_t>(steps);
@@ -150,6 +153,7 @@ class Herald {
 
 agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {
   Herald herald(node, params.run);
+  ValuesPublisher values(node, params.values_period_s);
   params.environment.stop = &stop_requested;
   params.environment.on_notice = [&herald](const std::string& text) { herald.Warn(text); };
   agents::RunReport report = agents::Train(
@@ -158,8 +162,11 @@ agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {
         params.environment.encodings = encodings;
         return std::make_unique<RosEnvironment>(node, params.environment);
       },
-      [&herald](const agents::RunStatus& status) {
+      [&herald, &values](const agents::RunStatus& status) {
         if (status.phase != RunPhase::kEnded) herald.Tell(status);
+        if (status.learner != nullptr && values.Wants()) {
+          values.Offer(status.learner->GreedyPolicy());
+        }
       },
       &stop_requested);
   herald.End(report);

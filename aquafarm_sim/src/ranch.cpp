@@ -367,6 +367,7 @@ void Ranch::Shutdown() {
 void Ranch::AdvanceClock() {
   clock_ns_ += static_cast<std::uint64_t>(1e9 / context_.rate_hz);
   context_.stamp.fromNSec(clock_ns_);
+  if (steps_to_pause_ > 0 && --steps_to_pause_ == 0) context_.paused = true;
 }
 
 // Begins with a tick of its own, so that an episode's end and the next one's start differ in stamp.

@@ -318,8 +318,9 @@ void Ranch::LoadState(const aquafarm_msgs::LoadState::Request& request,
 void Ranch::Pause(const aquafarm_msgs::Pause::Request& request,
                   aquafarm_msgs::Pause::Response& response) {
   const Lock lock(mutex_);
-  context_.paused = request.paused != 0;
-  response.paused = request.paused;
+  steps_to_pause_ = request.paused != 0 ? request.steps : 0;
+  context_.paused = request.paused != 0 && request.steps == 0;
+  response.paused = context_.paused;
   pace_changed_.notify_all();
   Changed();
   Answer(Outcome::OK, "", response);

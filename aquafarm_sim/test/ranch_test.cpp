@@ -293,6 +293,20 @@ TEST(Ranch, PacedRunningTakesStepsOnTime) {
   pacer.join();
 }
 
+TEST(Ranch, APauseMayComeAfterSoManySteps) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::Pause pause;
+  pause.request.paused = true;
+  pause.request.steps = 2;
+  ranch->Pause(pause.request, pause.response);
+  EXPECT_FALSE(pause.response.paused);
+  EXPECT_EQ(Outcome::OK, ranch->Command({0, kNorth, 0, 0, 0}).code);
+  EXPECT_FALSE(StateOf(*ranch).paused);
+  EXPECT_EQ(Outcome::OK, ranch->Command({0, kSouth, 0, 0, 0}).code);
+  EXPECT_TRUE(StateOf(*ranch).paused);
+  EXPECT_EQ(Outcome::PAUSED, ranch->Command({0, kNorth, 0, 0, 0}).code);
+}
+
 TEST(Ranch, WhilePausedCommandsAreAnsweredPaused) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Pause pause;

@@ -17,6 +17,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "aquafarm_viz/film.h"
@@ -27,9 +28,11 @@
 namespace {
 
 using aquafarm_msgs::FarmState;
+using aquafarm_viz::names::kChoice;
 using aquafarm_viz::names::kSpec;
 using aquafarm_viz::names::kState;
 using aquafarm_viz::names::kTraining;
+using aquafarm_viz::names::kValuePoints;
 
 struct Request {
   std::string bag;
@@ -96,17 +99,25 @@ struct Scene {
 Found ForEachScene(const Request& request, const std::function<bool(const Scene&)>& look) {
   rosbag::Bag bag(request.bag, rosbag::bagmode::Read);
   const std::string prefix = FindPrefix(bag, request);
-  rosbag::View view(bag, rosbag::TopicQuery({prefix + kSpec, prefix + kState, prefix + kTraining}));
+  rosbag::View view(bag, rosbag::TopicQuery({prefix + kSpec, prefix + kState, prefix + kTraining,
+                                             prefix + kValuePoints, prefix + kChoice}));
   aquafarm_viz::Pairing pairing;
   aquafarm_viz::Wake wake;
   aquafarm_viz::Wake route(aquafarm_viz::Wake::kWhole);
   aquafarm_msgs::TrainingStatusConstPtr training;
+  std::optional<aquafarm_viz::Values> values;
+  sensor_msgs::PointCloud2ConstPtr cloud;  // not yet read: its spec may come after it
+  aquafarm_msgs::PolicyChoiceConstPtr choice;
   Found found;
   for (const auto& message : view) {
     if (const auto spec = message.instantiate<aquafarm_msgs::FarmSpec>()) {
       if (const auto fault = pairing.AddSpec(spec); !fault.empty()) throw std::runtime_error(fault);
     } else if (const auto status = message.instantiate<aquafarm_msgs::TrainingStatus>()) {
       training = status;
+    } else if (const auto points = message.instantiate<sensor_msgs::PointCloud2>()) {
+      cloud = points;
+    } else if (const auto chosen = message.instantiate<aquafarm_msgs::PolicyChoice>()) {
+      choice = chosen;
     }
     const auto state = message.instantiate<FarmState>();
     if (state == nullptr) continue;
@@ -118,7 +129,12 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
     found.last_episode = state->episode;
     found.last_step = std::max(found.last_step, state->step);
     if (request.episode && *request.episode != state->episode) continue;
-    if (!look({*pairing.shown().spec, *state, {&wake, training.get(), &route, request.layers}})) {
+    const aquafarm_msgs::FarmSpec& spec = *pairing.shown().spec;
+    if (cloud != nullptr) values = aquafarm_viz::ReadValues(*std::exchange(cloud, nullptr), spec);
+    if (!look({spec,
+               *state,
+               {&wake, training.get(), &route, request.layers, values ? &*values : nullptr,
+                choice.get()}})) {
       break;
     }
   }
@@ -210,7 +226,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   auto* step = app.add_option("--step", request.steps, "step of the episode (default 0)");
   app.add_flag("--end", request.at_end, "the episode's last step")->excludes(step);
-  app.add_option("--layers", layers, "some of wake, risk, route, sight, with commas; or none")
+  app.add_option("--layers", layers,
+                 "some of " + aquafarm_viz::LayerNames() + ", with commas; or none")
       ->capture_default_str();
   app.add_option("--fps", request.rate_hz, "film: pictures a second")
       ->check(CLI::Range(0.5, 60.0))

@@ -59,14 +59,22 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   p.background.copyTo(p.image);
   cv::Mat map = p.image(p.layout.map);
   const Layers& layers = extras.layers;
+  const Values* values = extras.values;
+  if (values != nullptr && (values->width != spec.width || values->height != spec.height)) {
+    values = nullptr;
+  }
+  if (layers.values && values != nullptr) DrawValues(map, *values);
   if (layers.wake && extras.wake != nullptr) DrawWakes(map, state, *extras.wake, p.layout);
   if (layers.risk) ShadeDisasters(map, state, p.layout);
   if (layers.route && extras.route != nullptr) DrawRoutes(map, state, *extras.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
+  if (layers.moves && values != nullptr) DrawMoves(map, *values, p.layout);
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
   DrawDisasterSigns(map, spec, state, p.layout, p.fonts);
   DrawShips(map, spec, state, extras.wake, p.layout, p.fonts);
+  if (extras.choice != nullptr) DrawChoice(map, state, *extras.choice, p.layout, p.fonts);
+  if (layers.values && values != nullptr) DrawValueScale(map, *values, p.layout, p.fonts);
   DrawWords(p.image, spec, state, extras, p.layout, p.fonts);
   return p.image;
 }

@@ -69,6 +69,20 @@ void DrawWakes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Wake& 
 void DrawRoutes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Wake& route,
                 const Layout& layout);
 
+/// Lays the colours of V_π over the map.
+void DrawValues(cv::Mat& map, const Values& values);
+
+/// Draws the scale of those colours into a corner of the map.
+void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, const Fonts& fonts);
+
+/// Draws the best move of each cell as an arrow, pickups as discs, drop-offs as rings.
+void DrawMoves(cv::Mat& map, const Values& values, const Layout& layout);
+
+/// Draws what another policy would do with each ship.
+void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
+                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout,
+                const Fonts& fonts);
+
 /// Draws how far each ship sees in partial view.
 void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Layout& layout);

@@ -9,11 +9,11 @@
 
 #include <algorithm>
 #include <opencv2/imgcodecs.hpp>
-#include <sstream>
 #include <stdexcept>
 
 #include "aquafarm_viz/markers.h"
 #include "aquafarm_viz/names.h"
+#include "aquafarm_viz/params.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -21,17 +21,6 @@ namespace {
 constexpr double kWarnEvery_s = 5.0;
 constexpr int kJpegQuality = 90;
 constexpr std::int32_t kMostRoutes = 64;  // ships with a topic of their own
-
-template <typename Value>
-void Read(const ros::NodeHandle& node, const char* name, Value& value, Value low, Value high) {
-  XmlRpc::XmlRpcValue raw;
-  if (!node.getParam(name, raw)) return;
-  if (node.getParam(name, value) && value >= low && value <= high) return;
-  std::ostringstream line;
-  line << node.resolveName(name) << ": got " << raw << ", expected a number in [" << low << ", "
-       << high << "]";
-  throw std::invalid_argument(line.str());
-}
 
 visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
                                        const visualization_msgs::MarkerArray& second) {
@@ -43,11 +32,11 @@ visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
 
 VizParams ReadVizParams(const ros::NodeHandle& node) {
   VizParams params;
-  Read(node, names::kRateParam, params.rate_hz, 0.1, 1000.0);
-  Read(node, names::kWidthParam, params.image.width, kMinImageSide, kMaxImageSide);
+  ReadParam(node, names::kRateParam, params.rate_hz, 0.1, 1000.0);
+  ReadParam(node, names::kWidthParam, params.image.width, kMinImageSide, kMaxImageSide);
   std::string layers;
   if (node.getParam(names::kLayersParam, layers)) params.layers = ParseLayers(layers);
-  Read(node, names::kHeightParam, params.image.height, kMinImageSide, kMaxImageSide);
+  ReadParam(node, names::kHeightParam, params.image.height, kMinImageSide, kMaxImageSide);
   return params;
 }
 
@@ -56,6 +45,8 @@ VizNode::VizNode(ros::NodeHandle node, const VizParams& params)
   markers_ = node.advertise<visualization_msgs::MarkerArray>(
       names::kMarkers, 10,
       [this](const ros::SingleSubscriberPublisher& subscriber) { OnMarkerSubscriber(subscriber); });
+  moves_ = node.advertise<visualization_msgs::MarkerArray>(
+      names::kMoves, 2, [this](const ros::SingleSubscriberPublisher&) { moved_ = !values_; });
   // A new onlooker gets a picture even of a farm that stands still.
   const auto redraw = [this](const ros::SingleSubscriberPublisher&) { pictured_ = false; };
   image_ = node.advertise<sensor_msgs::Image>(names::kImage, 2, redraw);
@@ -64,6 +55,11 @@ VizNode::VizNode(ros::NodeHandle node, const VizParams& params)
   state_ = node.subscribe(names::kState, 100, &VizNode::OnState, this,
                           ros::TransportHints().tcpNoDelay());
   training_topic_ = node.subscribe(names::kTraining, 1, &VizNode::OnTraining, this);
+  choice_topic_ = node.subscribe<aquafarm_msgs::PolicyChoice>(
+      names::kChoice, 2, [this](const aquafarm_msgs::PolicyChoiceConstPtr& choice) {
+        choice_ = choice;
+        pictured_ = false;
+      });
   timer_ = node.createWallTimer(ros::WallDuration(1.0 / params.rate_hz),
                                 [this](const ros::WallTimerEvent&) { Draw(); });
 }
@@ -104,18 +100,45 @@ void VizNode::OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscribe
       Joined(SpecMarkers(*shown.spec, false), StateMarkers(*shown.spec, *shown.state, &wake_)));
 }
 
+void VizNode::FollowValues() {
+  const bool pictures = image_.getNumSubscribers() > 0 || compressed_.getNumSubscribers() > 0;
+  const bool wanted =
+      moves_.getNumSubscribers() > 0 || (pictures && (layers_.values || layers_.moves));
+  if (!wanted) {
+    values_topic_.shutdown();
+    values_topic_ = ros::Subscriber();
+  } else if (!values_topic_) {
+    values_topic_ = node_.subscribe<sensor_msgs::PointCloud2>(
+        names::kValuePoints, 1,
+        [this](const sensor_msgs::PointCloud2ConstPtr& cloud) { cloud_ = cloud; });
+  }
+}
+
+void VizNode::ReadCloud(const Shown& shown) {
+  try {
+    values_ = ReadValues(*cloud_, *shown.spec);
+    moved_ = pictured_ = false;
+  } catch (const std::invalid_argument& fault) {
+    ROS_WARN_THROTTLE(kWarnEvery_s, "%s", fault.what());
+  }
+  cloud_.reset();
+}
+
 void VizNode::Draw() {
+  FollowValues();
   if (const auto waiting = pairing_.Waiting(); !waiting.empty()) {
     ROS_WARN_DELAYED_THROTTLE(kWarnEvery_s, "%s", waiting.c_str());
   }
   const Shown& shown = pairing_.shown();
   if (shown.spec == nullptr) return;
+  if (cloud_ != nullptr) ReadCloud(shown);
   try {
+    if (!moved_) PublishMoves(shown);
     if (!marked_) PublishMarkers(shown);
     if (!pictured_) PublishImages(shown);
     if (!routed_) PublishRoutes(shown);
   } catch (const std::exception& fault) {
-    marked_ = pictured_ = routed_ = true;  // the same state would fail again
+    marked_ = pictured_ = routed_ = moved_ = true;  // the same state would fail again
     ROS_ERROR_THROTTLE(kWarnEvery_s, "state not drawn: %s", fault.what());
   }
 }
@@ -127,6 +150,11 @@ void VizNode::PublishMarkers(const Shown& shown) {
   markers_.publish(array);
   marked_episode_ = shown;
   marked_ = true;
+}
+
+void VizNode::PublishMoves(const Shown& shown) {
+  if (moves_.getNumSubscribers() > 0) moves_.publish(MoveMarkers(*values_, *shown.spec));
+  moved_ = true;
 }
 
 void VizNode::PublishRoutes(const Shown& shown) {
@@ -152,8 +180,9 @@ void VizNode::PublishImages(const Shown& shown) {
   const bool raw = image_.getNumSubscribers() > 0;
   const bool compressed = compressed_.getNumSubscribers() > 0;
   if (!raw && !compressed) return;
-  const cv::Mat& picture =
-      painter_.Draw(*shown.spec, *shown.state, {&wake_, training_.get(), &route_, layers_});
+  const cv::Mat& picture = painter_.Draw(
+      *shown.spec, *shown.state,
+      {&wake_, training_.get(), &route_, layers_, values_ ? &*values_ : nullptr, choice_.get()});
   std_msgs::Header header = shown.state->header;
   header.frame_id = names::kMapFrame;
   if (raw) image_.publish(cv_bridge::CvImage(header, "bgr8", picture).toImageMsg());

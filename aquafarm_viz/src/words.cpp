@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <aquafarm_msgs/Outcome.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <ctime>
 #include <opencv2/imgproc.hpp>
 
+#include "aquafarm_viz/facts.h"
 #include "image_parts.h"
 
 namespace aquafarm_viz {
@@ -16,7 +15,6 @@ namespace {
 using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
-using aquafarm_msgs::RewardTerms;
 using aquafarm_msgs::ShipState;
 using aquafarm_msgs::TrainingStatus;
 
@@ -31,51 +29,6 @@ std::string WorldTime(const FarmSpec& spec, const FarmState& state) {
   std::array<char, 32> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc);
   return text.data();
-}
-
-std::string ActionName(std::uint8_t action) {
-  if (const int bearing = MoveBearingDeg(action); bearing >= 0) return CompassPoint(bearing);
-  return action == 8 ? "pickup" : action == 9 ? "drop-off" : "hold";
-}
-
-std::string OutcomeName(std::uint8_t outcome) {
-  using aquafarm_msgs::Outcome;
-  switch (outcome) {
-    case Outcome::EDGE:
-      return "edge";
-    case Outcome::CRASH:
-      return "crash";
-    case Outcome::COLLISION:
-      return "collision";
-    case Outcome::ILLEGAL_PICKUP:
-    case Outcome::ILLEGAL_DROP_OFF:
-      return "illegal";
-    case Outcome::OUT_OF_PLAY:
-      return "delivered";
-    default:
-      return "";
-  }
-}
-
-// Hours, minutes and seconds as 1:02:03; empty for what is no duration.
-std::string Duration(double seconds) {
-  if (!std::isfinite(seconds) || seconds < 0.0 || seconds > 1e8) return "";
-  const auto whole = static_cast<unsigned>(seconds);
-  std::array<char, 32> text{};
-  if (whole >= 3600) {
-    std::snprintf(text.data(), text.size(), "%u:%02u:%02u", whole / 3600, whole / 60 % 60,
-                  whole % 60);
-  } else {
-    std::snprintf(text.data(), text.size(), "%u:%02u", whole / 60, whole % 60);
-  }
-  return text.data();
-}
-
-// A rate with three digits and a thousands letter.
-std::string Rate(double value) {
-  if (value >= 1e6) return Number(value / 1e6, value < 1e7 ? 2 : 1) + " M";
-  if (value >= 1e3) return Number(value / 1e3, value < 1e4 ? 2 : 1) + " k";
-  return Number(value, 0);
 }
 
 // Writes pieces of text after one another until the room is used up.
@@ -121,38 +74,14 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   if (state.paused) line.Put(fonts.bold, "paused", GradeColor(2), gap);
 }
 
-RewardTerms SumOfTerms(const FarmState& state) {
-  RewardTerms sum;
-  for (const auto& ship : state.ships) {
-    sum.crash += ship.terms.crash;
-    sum.disaster += ship.terms.disaster;
-    sum.pickup += ship.terms.pickup;
-    sum.drop_off += ship.terms.drop_off;
-    sum.illegal += ship.terms.illegal;
-    sum.collision += ship.terms.collision;
-    sum.step += ship.terms.step;
-  }
-  return sum;
-}
-
-std::string Signed(double value) { return (value > 0.0 ? "+" : "") + Number(value, 1); }
-
 void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout,
                     const Fonts& fonts) {
-  const RewardTerms sum = SumOfTerms(state);
-  const std::array<std::pair<const char*, float>, 7> terms{{{"crash", sum.crash},
-                                                            {"disaster", sum.disaster},
-                                                            {"pickup", sum.pickup},
-                                                            {"drop-off", sum.drop_off},
-                                                            {"illegal", sum.illegal},
-                                                            {"collision", sum.collision},
-                                                            {"step", sum.step}}};
   Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(17)},
             layout.bottom.width - layout.Px(10));
   const auto color = [](float value) { return value == 0.0F ? kFaint : value < 0 ? kBad : kGood; };
   line.Put(fonts.bold, "reward", kWords, layout.Px(5));
   line.Put(fonts.bold, Signed(state.joint_reward), color(state.joint_reward), layout.Px(16));
-  for (const auto& [name, value] : terms) {
+  for (const auto& [name, value] : RewardTermsOf(state)) {
     line.Put(fonts.small, name, value == 0.0F ? kFaint : kWords, layout.Px(4));
     if (value == 0.0F) {
       line.Put(fonts.small, "0", kFaint, layout.Px(11));
@@ -164,8 +93,6 @@ void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout
 
 void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layout& layout,
                       const Fonts& fonts) {
-  static constexpr std::array<const char*, 7> kPhases{
-      "starting", "training", "evaluating", "waiting", "done", "interrupted", "failed"};
   Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(35)},
             layout.bottom.width - layout.Px(10));
   const int gap = layout.Px(11);
@@ -174,9 +101,7 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
     line.Put(fonts.small, value, kWords, gap);
   };
   line.Put(fonts.bold, training.algorithm, kWords, layout.Px(5));
-  if (training.phase < kPhases.size()) {
-    line.Put(fonts.small, kPhases[training.phase], kFaint, gap);
-  }
+  line.Put(fonts.small, PhaseName(training.phase), kFaint, gap);
   pair("episode",
        Count(training.episode) + (training.episodes > 0 ? " / " + Count(training.episodes) : ""));
   pair("mean return", Number(training.mean_return, 1));

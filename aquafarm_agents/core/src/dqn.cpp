@@ -40,9 +40,12 @@ class GreedyDqnPolicy final : public Policy {
             ->Forward(Sight<Scalar>::ToInput(Sight<Scalar>::Of(results),
                                              WithCount(actions.size(), shape_), device_))
             .cpu();
+    values_.resize(actions.size());
     const float* row = values.data_ptr<float>();
     for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
-      actions[i] = BestOf(row, Allowed(results.legal[i], mask_illegal_)).action;
+      const Best best = BestOf(row, Allowed(results.legal[i], mask_illegal_));
+      actions[i] = best.action;
+      values_[i] = best.value;
     }
   }
 

@@ -72,11 +72,11 @@ class Share {
   Results share_;
 };
 
-void Spread(const std::vector<std::uint8_t>& actions, std::size_t agent, std::size_t agents,
-            std::vector<std::uint8_t>& all) {
-  all.resize(actions.size() * agents);
-  for (std::size_t farm = 0; farm < actions.size(); ++farm) {
-    all[farm * agents + agent] = actions[farm];
+template <typename T>
+void Spread(const std::vector<T>& own, std::size_t agent, std::size_t agents, std::vector<T>& all) {
+  all.resize(own.size() * agents);
+  for (std::size_t farm = 0; farm < own.size(); ++farm) {
+    all[farm * agents + agent] = own[farm];
   }
 }
 
@@ -92,6 +92,7 @@ class IndependentPolicy final : public Policy {
     for (std::size_t i = 0; i < policies_.size(); ++i) {
       policies_[i]->Act(share_.Of(results, i, policies_.size()), own_);
       Spread(own_, i, policies_.size(), actions);
+      Spread(policies_[i]->values(), i, policies_.size(), values_);
     }
   }
 

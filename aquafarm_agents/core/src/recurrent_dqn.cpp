@@ -98,9 +98,12 @@ class RecurrentPolicy final : public Policy {
     carry_.ClearStarted(results, agents_);
     const torch::Tensor values = StepNetwork(*network_, results, features_, carry_, device_);
     actions.resize(results.legal.size());
+    values_.resize(actions.size());
     const float* row = values.data_ptr<float>();
     for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
-      actions[i] = BestOf(row, Allowed(results.legal[i], options_.mask_illegal)).action;
+      const Best best = BestOf(row, Allowed(results.legal[i], options_.mask_illegal));
+      actions[i] = best.action;
+      values_[i] = best.value;
     }
   }
 

@@ -13,55 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// Where ship 0 could be.
-std::vector<Cell> FreeCells(const Farm& farm) {
-  std::vector<Cell> cells;
-  for (std::int32_t y = 0; y < farm.scenario().height; ++y) {
-    for (std::int32_t x = 0; x < farm.scenario().width; ++x) {
-      const Cell cell{x, y};
-      bool is_free = (farm.layout().bits(cell) & kBlockedBits) == 0;
-      for (std::size_t id = 1; id < farm.ships().size(); ++id) {
-        is_free = is_free && farm.ships()[id].cell != cell;
-      }
-      if (is_free) cells.push_back(cell);
-    }
-  }
-  return cells;
-}
-
-constexpr std::size_t kCellsAtOnce = 64;
-
 bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop; }
-
-// A farm for each of many cells, so that the policy is asked once for all of them.
-std::vector<BestMove> BestMoves(const Farm& farm, const std::shared_ptr<const Scenario>& scenario,
-                                std::uint8_t encodings, const MakePolicyFor& make_policy,
-                                const std::atomic<bool>* stop) {
-  if (scenario->width * scenario->height > kMaxCells) return {};
-  const std::vector<Cell> cells = FreeCells(farm);
-  const std::string state = farm.Save();
-  std::vector<BestMove> moves;
-  std::vector<std::uint8_t> actions;
-  while (moves.size() < cells.size() && !IsStopped(stop)) {
-    const std::size_t first = moves.size();
-    const std::size_t count = std::min(kCellsAtOnce, cells.size() - first);
-    FarmBatch farms(scenario, static_cast<std::int32_t>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      Farm& one = farms.farm(static_cast<std::int32_t>(i));
-      one.Load(state);
-      one.PlaceShip(0, cells[first + i]);
-    }
-    LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
-    const std::unique_ptr<Policy> policy = make_policy(environment.spec());
-    policy->Begin(farm.seed(), farms.farms());
-    policy->Act(environment.Load(farms.Save()), actions);
-    const auto agents = static_cast<std::size_t>(environment.spec().agents);
-    for (std::size_t i = 0; i < count; ++i) {
-      moves.push_back({cells[first + i], actions[i * agents]});
-    }
-  }
-  return moves;
-}
 
 json ToJson(Cell cell) { return json::array({cell.x, cell.y}); }
 
@@ -128,9 +80,10 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
   policy->Begin(EvaluationSeed(seed), 1);
   Route route;
   const Farm& farm = environment.batch().farm(0);
+  const std::unique_ptr<Policy> elsewhere = make_policy(environment.spec());
   const Results* results = &environment.Reset(EvaluationSeed(seed), episode);
   route.layout = farm.shared_layout();
-  route.at_start = BestMoves(farm, scenario, encodings, make_policy, stop);
+  route.at_start = BestMoves(farm, encodings, *elsewhere, stop);
   route.steps.push_back(Look(farm));
   std::vector<std::uint8_t> actions;
   while (!farm.over() && !IsStopped(stop)) {
@@ -140,7 +93,7 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
     results = &environment.Step(actions);
     route.steps.push_back(Look(farm));
     if (route.after_pickup.empty() && farm.ships()[0].aboard > 0 && !farm.over()) {
-      route.after_pickup = BestMoves(farm, scenario, encodings, make_policy, stop);
+      route.after_pickup = BestMoves(farm, encodings, *elsewhere, stop);
     }
   }
   route.result = ToResult(farm.record(), 0);

@@ -178,7 +178,9 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
   Describe(environment.spec(), learner, folder);
   const TrainingEnd end = trainer.Run(stop_, [&](const TrainingProgress& progress) {
     report_.status.progress = progress;
+    report_.status.learner = &learner;
     Tell(RunPhase::kTraining, trainer.TakeNotice());
+    report_.status.learner = nullptr;
   });
   switch (end) {
     case TrainingEnd::kDone:

@@ -146,13 +146,16 @@ template class TabularLearner<SarsaRule>;
 
 void GreedyTabularPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
   actions.resize(results.index.size());
+  values_.resize(actions.size());
   std::size_t entry = 0;
   while (entry < actions.size()) {
     for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++entry) {
       const ActionMask allowed =
           mask_illegal_ ? static_cast<ActionMask>(results.legal[entry] & kAllActions) : kAllActions;
       const float* row = table_.values.data() + table_.Row(agent, results.index[entry]);
-      actions[entry] = BestOf(row, allowed).action;
+      const Best best = BestOf(row, allowed);
+      actions[entry] = best.action;
+      values_[entry] = best.value;
     }
   }
 }

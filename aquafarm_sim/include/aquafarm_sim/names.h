@@ -16,6 +16,9 @@ inline constexpr const char* kChart = "chart";
 inline constexpr const char* kRisk = "risk";
 inline constexpr const char* kEpisode = "episode";
 inline constexpr const char* kTraining = "training";
+inline constexpr const char* kValues = "values";
+inline constexpr const char* kValuePoints = "values/points";
+inline constexpr const char* kChoice = "choice";
 inline constexpr const char* kClock = "/clock";
 
 inline constexpr const char* kCommand = "command";

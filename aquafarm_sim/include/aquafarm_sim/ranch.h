@@ -225,6 +225,7 @@ class Ranch {
   std::unique_ptr<aquafarm::FarmBatch> batch_;
   MessageContext context_;
   std::uint64_t clock_ns_{};
+  std::uint32_t steps_to_pause_{};  // 0: it does not pause by itself
   std::uint64_t episode_count_{};
   std::uint64_t version_{};
   bool ending_{};

@@ -18,6 +18,7 @@
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/PolicyChoice.h>
 #include <aquafarm_msgs/TrainingStatus.h>
 
 #include <memory>
@@ -25,6 +26,7 @@
 
 #include "aquafarm_viz/layers.h"
 #include "aquafarm_viz/map_view.h"
+#include "aquafarm_viz/values.h"
 #include "aquafarm_viz/wake.h"
 
 namespace aquafarm_viz {
@@ -44,6 +46,8 @@ struct Extras {
   const aquafarm_msgs::TrainingStatus* training{};  ///< how the learner gets on
   const Wake* route{};                              ///< of the whole episode so far
   Layers layers{};                                  ///< which of them, and of the state, are drawn
+  const Values* values{};                           ///< what a policy thinks of each cell
+  const aquafarm_msgs::PolicyChoice* choice{};      ///< what another policy would do in this state
 };
 
 /// Where the map lies in a picture.

@@ -11,10 +11,15 @@ struct Layers {
   bool risk{true};  ///< the rings of disasters, shaded by severity
   bool route{};     ///< the whole way of each ship, coloured in time order (Fig. 11)
   bool sight{};     ///< in partial view: how far each ship sees
+  bool values{};    ///< V_π of each cell, where a policy publishes it
+  bool moves{};     ///< the policy's best move in each cell
 };
 
 /// Reads names with commas between them, such as "risk,route"; "none" for nothing.
-/// @throws std::invalid_argument "layers: got 'rain', expected some of: wake, risk, route, sight"
+/// @throws std::invalid_argument "layers: got 'rain', expected some of: wake, risk, …"
 Layers ParseLayers(const std::string& names);
+
+/// "wake, risk, …": all there are.
+std::string LayerNames();
 
 }  // namespace aquafarm_viz

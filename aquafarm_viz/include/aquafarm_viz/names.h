@@ -8,7 +8,10 @@ namespace aquafarm_viz::names {
 inline constexpr char kSpec[] = "spec";
 inline constexpr char kState[] = "state";
 inline constexpr char kTraining[] = "training";
+inline constexpr char kValuePoints[] = "values/points";
+inline constexpr char kChoice[] = "choice";
 inline constexpr char kMarkers[] = "markers";
+inline constexpr char kMoves[] = "moves";
 inline constexpr char kImage[] = "image";
 inline constexpr char kCompressed[] = "image/compressed";
 

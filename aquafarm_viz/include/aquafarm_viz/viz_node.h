@@ -5,8 +5,9 @@
 
 #include <aquafarm_msgs/TrainingStatus.h>
 #include <ros/ros.h>
+#include <sensor_msgs/PointCloud2.h>
 
-#include <set>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,9 @@ struct VizParams {
 /// @throws std::invalid_argument naming the parameter, what it is and what is allowed.
 VizParams ReadVizParams(const ros::NodeHandle& node);
 
-/// Publishes `markers`, `image`, `image/compressed` and each ship's `ship_<id>/route`, at most
-/// rate_hz times a second of wall time, only of states that are new, and each only while somebody
-/// subscribes.
+/// Publishes `markers`, `moves`, `image`, `image/compressed` and each ship's `ship_<id>/route`, at
+/// most rate_hz times a second of wall time, only of states that are new, and each only while
+/// somebody subscribes.
 class VizNode {
  public:
   /// @param node  namespace of the topics.
@@ -43,6 +44,9 @@ class VizNode {
   void PublishMarkers(const Shown& shown);
   void PublishImages(const Shown& shown);
   void PublishRoutes(const Shown& shown);
+  void PublishMoves(const Shown& shown);
+  void FollowValues();
+  void ReadCloud(const Shown& shown);
 
   ros::NodeHandle node_;
   Pairing pairing_;
@@ -51,18 +55,25 @@ class VizNode {
   const Layers layers_;
   FarmPainter painter_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
-  bool marked_{};         // state of `markers`: whether it is up to date
-  bool pictured_{};       // the same of the images
-  bool routed_{};         // and of the routes
+  bool marked_{};                           // state of `markers`: whether it is up to date
+  bool pictured_{};                         // the same of the images
+  bool routed_{};                           // and of the routes
+  bool moved_{true};                        // and of the moves
+  sensor_msgs::PointCloud2ConstPtr cloud_;  // of `values/points`, not yet read
+  std::optional<Values> values_;
+  aquafarm_msgs::PolicyChoiceConstPtr choice_;
   Shown marked_episode_;  // the episode whose standing markers were sent
 
   ros::Publisher markers_;
+  ros::Publisher moves_;
   ros::Publisher image_;
   ros::Publisher compressed_;
   std::vector<ros::Publisher> routes_;  // by ship
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_topic_;
+  ros::Subscriber values_topic_;  // only while somebody looks: it costs whoever computes it
+  ros::Subscriber choice_topic_;
   ros::WallTimer timer_;
 };
 

@@ -22,6 +22,13 @@ class Policy {
 
   /// Chooses for the step after `results`. @param actions is resized to [N, S]
   virtual void Act(const Results& results, std::vector<std::uint8_t>& actions) = 0;
+
+  /// V_π as it learnt it: what each action that Act chose last is expected to bring from then on
+  /// (discounted), [N, S]; empty: it holds no values.
+  const std::vector<float>& values() const { return values_; }
+
+ protected:
+  std::vector<float> values_;
 };
 
 }  // namespace aquafarm::agents

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "aquafarm/agents/best_moves.h"
 #include "aquafarm/agents/environment.h"
 #include "aquafarm/agents/policy.h"
 #include "aquafarm/farm.h"
@@ -18,12 +19,6 @@ namespace aquafarm::agents {
 
 /// Makes the policy for farms of a spec, afresh: without anything carried from earlier steps.
 using MakePolicyFor = std::function<std::unique_ptr<Policy>(const EnvironmentSpec&)>;
-
-/// The best action in a cell.
-struct BestMove {
-  Cell cell{};
-  std::uint8_t action{};
-};
 
 /// The farm before a step, or at the end.
 struct RouteStep {
@@ -49,13 +44,11 @@ struct Route {
 };
 
 /// Plays one episode of EvaluationSeed(seed), ship 0's route; other agents play along.
-/// @param scenario at most kMaxCells cells; larger ones get no best moves
 /// @param stop may be set by a signal handler: the route then ends where it is; null: never
 /// @throws InputError when the scenario or the policy do not fit
 Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
                  const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
                  const std::atomic<bool>* stop = nullptr);
-inline constexpr std::int32_t kMaxCells = 10000;
 
 /// Writes it as JSON: the chart, an entry a step, and the best moves. @throws StorageError
 void WriteRoute(const std::string& path, const Route& route, const EnvironmentSpec& spec);

@@ -46,7 +46,8 @@ struct RunStatus {
   TrainingProgress progress;
   Evaluation evaluation;  ///< of the learner; meaningful once phase is kEnded and has_evaluation
   bool has_evaluation{};
-  std::string message;  ///< one line for people; empty: nothing to say
+  std::string message;       ///< one line for people; empty: nothing to say
+  const Learner* learner{};  ///< while it trains; only for the time of the call
 };
 
 struct RunReport {

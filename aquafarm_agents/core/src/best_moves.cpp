@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/best_moves.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include "aquafarm/agents/local_environment.h"
+
+namespace aquafarm::agents {
+namespace {
+
+// Where ship 0 could be.
+std::vector<Cell> FreeCells(const Farm& farm) {
+  std::vector<Cell> cells;
+  for (std::int32_t y = 0; y < farm.scenario().height; ++y) {
+    for (std::int32_t x = 0; x < farm.scenario().width; ++x) {
+      const Cell cell{x, y};
+      bool is_free = (farm.layout().bits(cell) & kBlockedBits) == 0;
+      for (std::size_t id = 1; id < farm.ships().size(); ++id) {
+        is_free = is_free && farm.ships()[id].cell != cell;
+      }
+      if (is_free) cells.push_back(cell);
+    }
+  }
+  return cells;
+}
+
+constexpr std::size_t kCellsAtOnce = 64;
+
+}  // namespace
+
+// A farm for each of many cells, so that the policy is asked once for all of them.
+std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy& policy,
+                                const std::atomic<bool>* stop) {
+  const auto scenario = std::make_shared<const Scenario>(farm.scenario());
+  if (scenario->width * scenario->height > kMaxCells) return {};
+  const std::vector<Cell> cells = FreeCells(farm);
+  const std::string state = farm.Save();
+  std::vector<BestMove> moves;
+  std::vector<std::uint8_t> actions;
+  while (moves.size() < cells.size() && (stop == nullptr || !*stop)) {
+    const std::size_t first = moves.size();
+    const std::size_t count = std::min(kCellsAtOnce, cells.size() - first);
+    FarmBatch farms(scenario, static_cast<std::int32_t>(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      Farm& one = farms.farm(static_cast<std::int32_t>(i));
+      one.Load(state);
+      one.PlaceShip(0, cells[first + i]);
+    }
+    LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
+    policy.Begin(farm.seed(), farms.farms());
+    policy.Act(environment.Load(farms.Save()), actions);
+    const auto agents = static_cast<std::size_t>(environment.spec().agents);
+    for (std::size_t i = 0; i < count; ++i) {
+      BestMove move{cells[first + i], actions[i * agents]};
+      if (!policy.values().empty()) move.value = policy.values()[i * agents];
+      moves.push_back(move);
+    }
+  }
+  return moves;
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <sstream>
+#include <stdexcept>
+
+namespace aquafarm_viz {
+
+/// Reads a number; leaves `value` as it is where the parameter is absent.
+/// @throws std::invalid_argument "/viz/rate_hz: got x, expected a number in [low, high]"
+template <typename Value>
+void ReadParam(const ros::NodeHandle& node, const char* name, Value& value, Value low, Value high) {
+  XmlRpc::XmlRpcValue raw;
+  if (!node.getParam(name, raw)) return;
+  if (node.getParam(name, value) && value >= low && value <= high) return;
+  std::ostringstream line;
+  line << node.resolveName(name) << ": got " << raw << ", expected a number in [" << low << ", "
+       << high << "]";
+  throw std::invalid_argument(line.str());
+}
+
+}  // namespace aquafarm_viz

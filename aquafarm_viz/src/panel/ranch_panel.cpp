@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ranch_panel.h"
+
+#include <aquafarm_msgs/Command.h>
+#include <aquafarm_msgs/Jump.h>
+#include <aquafarm_msgs/Pause.h>
+#include <aquafarm_msgs/Reset.h>
+#include <aquafarm_msgs/SetDisaster.h>
+#include <aquafarm_msgs/SetPace.h>
+
+#include <QVBoxLayout>
+#include <pluginlib/class_list_macros.hpp>
+#include <string>
+
+#include "aquafarm_viz/facts.h"
+#include "aquafarm_viz/names.h"
+#include "aquafarm_viz/palette.h"
+#include "aquafarm_viz/text.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr double kCallLimit_s = 5.0;
+constexpr int kRefresh_ms = 200;
+
+std::string InWords(const aquafarm_msgs::Command& answer) {
+  const auto& result = answer.response.result;
+  const std::string what = "ship " + std::to_string(answer.request.ship) + " " +
+                           ActionName(answer.request.action) + ": ";
+  if (!result.ok) return what + result.message;
+  const std::string fault = OutcomeName(result.code);
+  return what + (fault.empty() ? "done" : fault) + ", step " + Count(result.step);
+}
+
+}  // namespace
+
+RanchPanel::RanchPanel(QWidget* parent)
+    : rviz::Panel(parent), widget_(new RanchWidget(model_, MakeButtons())) {
+  auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(widget_);
+  caller_ = std::make_unique<ServiceCaller>(node_, kCallLimit_s, [this](const std::string& line) {
+    QMetaObject::invokeMethod(
+        widget_, [this, line] { widget_->Tell(line); }, Qt::QueuedConnection);
+  });
+  // rviz spins in the thread of its windows, so these may touch the model.
+  spec_ = node_.subscribe<aquafarm_msgs::FarmSpec>(
+      names::kSpec, Pairing::kSpecs, [this](const aquafarm_msgs::FarmSpecConstPtr& spec) {
+        model_.Take(spec);
+        changed_ = true;
+      });
+  state_ = node_.subscribe<aquafarm_msgs::FarmState>(
+      names::kState, 2, [this](const aquafarm_msgs::FarmStateConstPtr& state) {
+        model_.Take(state);
+        changed_ = true;
+      });
+  training_ = node_.subscribe<aquafarm_msgs::TrainingStatus>(
+      names::kTraining, 10, [this](const aquafarm_msgs::TrainingStatusConstPtr& training) {
+        model_.Take(training);
+        changed_ = true;
+      });
+  connect(&timer_, &QTimer::timeout, this, [this] {
+    if (!changed_) return;
+    changed_ = false;
+    widget_->Refresh();
+  });
+  timer_.start(kRefresh_ms);
+}
+
+RanchButtons RanchPanel::MakeButtons() {
+  RanchButtons buttons;
+  buttons.pause = [this](bool paused, std::uint32_t steps) {
+    aquafarm_msgs::Pause call;
+    call.request.paused = paused;
+    call.request.steps = steps;
+    caller_->Call<aquafarm_msgs::Pause>("pause", call, [](const aquafarm_msgs::Pause& answer) {
+      const std::uint32_t wanted = answer.request.steps;
+      return std::string(wanted > 0               ? "one step, then paused"
+                         : answer.response.paused ? "paused"
+                                                  : "goes on");
+    });
+  };
+  buttons.reset = [this](std::uint64_t seed) {
+    aquafarm_msgs::Reset call;
+    call.request.has_seed = true;
+    call.request.seed = seed;
+    caller_->Call<aquafarm_msgs::Reset>("reset", call, [](const aquafarm_msgs::Reset& answer) {
+      return "seed " + std::to_string(answer.response.seed) + ", episode " +
+             Count(answer.response.episode);
+    });
+  };
+  buttons.set_pace = [this](const std::string& pace, double rate_hz) {
+    aquafarm_msgs::SetPace call;
+    call.request.pace = pace;
+    call.request.rate_hz = rate_hz;
+    caller_->Call<aquafarm_msgs::SetPace>(
+        "set_pace", call, [](const aquafarm_msgs::SetPace& answer) {
+          return answer.response.pace + ", " + Number(answer.response.rate_hz, 1) + " steps/s";
+        });
+  };
+  buttons.drive = [this](int ship, std::uint8_t action) {
+    aquafarm_msgs::Command call;
+    call.request.ship = ship;
+    call.request.action = action;
+    call.request.token = ++token_;
+    caller_->Call<aquafarm_msgs::Command>("command", call, InWords);
+  };
+  buttons.send_disaster = [this](int id, const aquafarm_msgs::DisasterInfo& info) {
+    aquafarm_msgs::SetDisaster call;
+    call.request.id = id;
+    call.request.info = info;
+    caller_->Call<aquafarm_msgs::SetDisaster>(
+        "set_disaster", call, [](const aquafarm_msgs::SetDisaster& answer) {
+          return DisasterName(answer.request.info.kind) + " sent as disaster " +
+                 std::to_string(answer.request.id);
+        });
+  };
+  buttons.jump = [this](std::uint64_t step) {
+    aquafarm_msgs::Jump call;
+    call.request.step = step;
+    caller_->Call<aquafarm_msgs::Jump>("jump", call, [](const aquafarm_msgs::Jump& answer) {
+      return "episode " + Count(answer.response.episode) + ", step " + Count(answer.response.step);
+    });
+  };
+  return buttons;
+}
+
+}  // namespace aquafarm_viz
+
+PLUGINLIB_EXPORT_CLASS(aquafarm_viz::RanchPanel, rviz::Panel)

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ranch_widget.h"
+
+#include <QGridLayout>
+#include <QHBoxLayout>
+#include <QHeaderView>
+#include <QVBoxLayout>
+#include <climits>
+#include <utility>
+
+#include "aquafarm_viz/palette.h"
+
+namespace aquafarm_viz {
+namespace {
+
+QString Text(const std::string& text) { return QString::fromStdString(text); }
+
+QTableWidget* MakeTable(const RanchModel::Row& columns, int rows_seen) {
+  auto* table = new QTableWidget(0, static_cast<int>(columns.size()));
+  QStringList names;
+  for (const std::string& column : columns) names << Text(column);
+  table->setHorizontalHeaderLabels(names);
+  table->horizontalHeader()->setSectionResizeMode(QHeaderView::Stretch);
+  table->horizontalHeader()->setMinimumSectionSize(30);
+  table->verticalHeader()->hide();
+  table->verticalHeader()->setDefaultSectionSize(20);
+  table->setEditTriggers(QAbstractItemView::NoEditTriggers);
+  table->setSelectionMode(QAbstractItemView::NoSelection);
+  table->setMinimumHeight(28 + 20 * rows_seen);
+  return table;
+}
+
+void Fill(QTableWidget* table, const std::vector<RanchModel::Row>& rows) {
+  table->setRowCount(static_cast<int>(rows.size()));
+  for (int y = 0; y < table->rowCount(); ++y) {
+    const RanchModel::Row& row = rows[static_cast<std::size_t>(y)];
+    for (int x = 0; x < table->columnCount(); ++x) {
+      if (table->item(y, x) == nullptr) table->setItem(y, x, new QTableWidgetItem());
+      table->item(y, x)->setText(Text(row[static_cast<std::size_t>(x)]));
+    }
+  }
+}
+
+}  // namespace
+
+RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget* parent)
+    : QWidget(parent), model_(model), buttons_(std::move(buttons)) {
+  auto* all = new QVBoxLayout(this);
+  all->setContentsMargins(6, 6, 6, 6);
+  all->setSpacing(4);
+  headline_ = AddLine(all);
+  QFont bold = headline_->font();
+  bold.setBold(true);
+  headline_->setFont(bold);
+  reward_ = AddLine(all);
+  all->addWidget(ships_ = MakeTable(RanchModel::ShipColumns(), 2), 1);
+  all->addWidget(devices_ = MakeTable(RanchModel::DeviceColumns(), 4), 2);
+  training_ = AddLine(all);
+  all->addWidget(curve_ = new CurveWidget(), 2);
+  AddTime(all);
+  AddPlaces(all);
+  AddHelm(all);
+  AddDisaster(all);
+  told_ = AddLine(all);
+  Refresh();
+}
+
+QLabel* RanchWidget::AddLine(QBoxLayout* layout) {
+  auto* line = new QLabel();
+  line->setWordWrap(true);
+  line->setTextFormat(Qt::PlainText);  // what comes from a network is no markup
+  line->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  layout->addWidget(line);
+  return line;
+}
+
+QPushButton* RanchWidget::AddButton(QBoxLayout* layout, const QString& text,
+                                    std::function<void()> act) {
+  auto* button = new QPushButton(text);
+  button->setObjectName(text);
+  button->setFocusPolicy(Qt::TabFocus);
+  connect(button, &QPushButton::clicked, this, [act = std::move(act)] { act(); });
+  layout->addWidget(button);
+  return button;
+}
+
+void RanchWidget::AddTime(QBoxLayout* layout) {
+  auto* row = new QHBoxLayout();
+  layout->addLayout(row);
+  AddButton(row, "pause", [this] { buttons_.pause(true, 0); });
+  AddButton(row, "go on", [this] { buttons_.pause(false, 0); });
+  AddButton(row, "step", [this] { buttons_.pause(true, 1); });
+  auto* pace = new QComboBox();
+  pace->addItems({"", "paced", "lockstep"});
+  pace->setToolTip("who advances time; empty: as it is");
+  auto* rate = new QDoubleSpinBox();
+  rate->setObjectName("rate");
+  rate->setRange(0.1, 1000.0);
+  rate->setValue(4.0);
+  rate->setSuffix(" steps/s");
+  row->addWidget(pace);
+  row->addWidget(rate);
+  AddButton(row, "pace", [this, pace, rate] {
+    buttons_.set_pace(pace->currentText().toStdString(), rate->value());
+  });
+}
+
+void RanchWidget::AddPlaces(QBoxLayout* layout) {
+  auto* row = new QHBoxLayout();
+  layout->addLayout(row);
+  const auto number = [row](const char* name) {
+    auto* box = new QSpinBox();
+    box->setObjectName(name);
+    box->setRange(0, INT_MAX);
+    box->setPrefix(QString(name) + " ");
+    row->addWidget(box, 1);
+    return box;
+  };
+  QSpinBox* seed = number("seed");
+  seed->setValue(1);
+  AddButton(row, "reset", [this, seed] { buttons_.reset(std::uint64_t(seed->value())); });
+  QSpinBox* step = number("step");
+  AddButton(row, "jump", [this, step] {
+    buttons_.jump(std::uint64_t(step->value()));
+  })->setToolTip("in a replay: to that step of the episode shown");
+}
+
+void RanchWidget::AddHelm(QBoxLayout* layout) {
+  auto* row = new QHBoxLayout();
+  layout->addLayout(row);
+  ship_ = new QSpinBox();
+  ship_->setPrefix("ship ");
+  ship_->setRange(0, 4095);
+  row->addWidget(ship_);
+  auto* rose = new QGridLayout();
+  rose->setSpacing(2);
+  row->addLayout(rose);
+  // Actions of FarmState by their place, north up; 10 holds.
+  static constexpr std::uint8_t kRose[3][3]{{4, 0, 5}, {2, 10, 3}, {6, 1, 7}};
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 3; ++x) {
+      const std::uint8_t action = kRose[y][x];
+      auto* cell = new QHBoxLayout();
+      rose->addLayout(cell, y, x);
+      const int bearing = MoveBearingDeg(action);
+      const QString name = bearing < 0 ? QString("hold") : Text(CompassPoint(bearing));
+      AddButton(cell, name, [this, action] {
+        buttons_.drive(ship_->value(), action);
+      })->setMinimumWidth(30);
+    }
+  }
+  auto* cargo = new QVBoxLayout();
+  row->addLayout(cargo);
+  AddButton(cargo, "pickup", [this] { buttons_.drive(ship_->value(), 8); });
+  AddButton(cargo, "drop-off", [this] { buttons_.drive(ship_->value(), 9); });
+}
+
+void RanchWidget::AddDisaster(QBoxLayout* layout) {
+  auto* row = new QHBoxLayout();
+  layout->addLayout(row);
+  auto* kind = new QComboBox();
+  for (std::uint8_t i = 0; i <= aquafarm_msgs::DisasterState::CHEMICAL_SPILL; ++i) {
+    kind->addItem(Text(DisasterName(i)));
+  }
+  auto* grade = new QComboBox();
+  grade->addItems({"blue", "yellow", "orange", "red"});
+  grade->setCurrentIndex(2);
+  auto* radius = new QDoubleSpinBox();
+  radius->setRange(0.5, 1000.0);
+  radius->setValue(4.0);
+  radius->setPrefix("radius ");
+  for (QWidget* box :
+       {static_cast<QWidget*>(kind), static_cast<QWidget*>(grade), static_cast<QWidget*>(radius)}) {
+    row->addWidget(box, 1);
+  }
+  AddButton(row, "send disaster", [this, kind, grade, radius] {
+    buttons_.send_disaster(
+        model_.NextDisaster(),
+        model_.MakeDisaster(static_cast<std::uint8_t>(kind->currentIndex()),
+                            static_cast<std::uint8_t>(grade->currentIndex() + 1), radius->value()));
+  })->setToolTip("one more, beginning at ship 0");
+}
+
+void RanchWidget::Refresh() {
+  headline_->setText(Text(model_.Headline()));
+  reward_->setText(Text(model_.RewardLine()));
+  training_->setText(Text(model_.TrainingLine()));
+  Fill(ships_, model_.Ships());
+  Fill(devices_, model_.Devices());
+  curve_->Show(model_.curve());
+}
+
+void RanchWidget::Tell(const std::string& line) { told_->setText(Text(line)); }
+
+}  // namespace aquafarm_viz

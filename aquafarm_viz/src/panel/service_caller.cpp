@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "service_caller.h"
+
+#include <cstdio>
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr std::size_t kMostWaiting = 8;  // more clicks than that are dropped
+
+}  // namespace
+
+ServiceCaller::ServiceCaller(ros::NodeHandle node, double limit_s, OnAnswer on_answer)
+    : node_(std::move(node)),
+      limit_(limit_s),
+      on_answer_(std::move(on_answer)),
+      worker_([this] { Work(); }),
+      watcher_([this] { Watch(); }) {}
+
+ServiceCaller::~ServiceCaller() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+    if (armed_ != nullptr) armed_->shutdown();
+  }
+  changed_.notify_all();
+  worker_.join();
+  watcher_.join();
+}
+
+void ServiceCaller::Enqueue(std::function<std::string()> job) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (jobs_.size() >= kMostWaiting) return;
+    jobs_.push_back(std::move(job));
+  }
+  changed_.notify_all();
+}
+
+std::string ServiceCaller::LimitInWords() const {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%g s", limit_.count());
+  return text;
+}
+
+void ServiceCaller::Arm(ros::ServiceClient* client) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  armed_ = client;
+  since_ = Clock::now();
+  cut_off_ = false;
+  changed_.notify_all();
+}
+
+bool ServiceCaller::Disarm() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  armed_ = nullptr;
+  return cut_off_;
+}
+
+void ServiceCaller::Work() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return ending_ || !jobs_.empty(); });
+    if (ending_) return;
+    const auto job = std::move(jobs_.front());
+    jobs_.pop_front();
+    lock.unlock();
+    const std::string line = job();
+    on_answer_(line);
+    lock.lock();
+  }
+}
+
+void ServiceCaller::Watch() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!ending_) {
+    if (armed_ == nullptr || cut_off_) {
+      changed_.wait(lock, [this] { return ending_ || (armed_ != nullptr && !cut_off_); });
+      continue;
+    }
+    const auto end = since_ + std::chrono::duration_cast<Clock::duration>(limit_);
+    changed_.wait_until(
+        lock, end, [this, end] { return ending_ || armed_ == nullptr || Clock::now() >= end; });
+    if (armed_ == nullptr || Clock::now() < end) continue;
+    cut_off_ = true;
+    armed_->shutdown();
+  }
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <aquafarm_msgs/Command.h>
+#include <ros/ros.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <type_traits>
+
+namespace aquafarm_viz {
+
+/// Calls services from a thread of its own, one after another, so that a window never waits; a call
+/// without an answer within the limit is cut off.
+class ServiceCaller {
+ public:
+  using OnAnswer = std::function<void(const std::string& line)>;
+
+  /// @param on_answer gets a line for people after each call, in this object's thread
+  ServiceCaller(ros::NodeHandle node, double limit_s, OnAnswer on_answer);
+  ~ServiceCaller();
+  ServiceCaller(const ServiceCaller&) = delete;
+  ServiceCaller& operator=(const ServiceCaller&) = delete;
+
+  /// Calls a service of the ranch whose answer has ok and message.
+  /// @param describe what to say of an answer that is ok
+  template <typename Service>
+  void Call(const std::string& name, Service service,
+            std::function<std::string(const Service&)> describe) {
+    Enqueue([this, name, service, describe = std::move(describe)]() mutable {
+      const std::string full = node_.resolveName(name);
+      ros::ServiceClient client = node_.serviceClient<Service>(name, true);
+      if (!client.isValid()) return full + ": there is no such service; does a ranch run?";
+      Arm(&client);
+      const bool answered = client.call(service);
+      if (Disarm()) return full + ": no answer within " + LimitInWords();
+      if (!answered) return full + ": the call failed";
+      return Describe(name, service, describe);
+    });
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  template <typename Service, typename Describer>
+  static std::string Describe(const std::string& name, const Service& service,
+                              const Describer& describe) {
+    if constexpr (std::is_same_v<Service, aquafarm_msgs::Command>) {
+      return describe(service);  // whose answer has words in a result of its own
+    } else {
+      return service.response.ok ? describe(service) : name + ": " + service.response.message;
+    }
+  }
+
+  void Enqueue(std::function<std::string()> job);
+  std::string LimitInWords() const;
+  void Arm(ros::ServiceClient* client);
+  bool Disarm();  // whether it was cut off
+  void Work();
+  void Watch();
+
+  ros::NodeHandle node_;
+  const std::chrono::duration<double> limit_;
+  const OnAnswer on_answer_;
+  std::mutex mutex_;  // guards the rest
+  std::condition_variable changed_;
+  std::deque<std::function<std::string()>> jobs_;
+  ros::ServiceClient* armed_{};
+  Clock::time_point since_;
+  bool cut_off_{};
+  bool ending_{};
+  std::thread worker_;
+  std::thread watcher_;
+};
+
+}  // namespace aquafarm_viz

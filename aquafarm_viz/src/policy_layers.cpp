@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "image_parts.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr double kValueShare = 0.62;     // of the colours of V_π over the sea
+constexpr double kLeastArrow_px = 11.0;  // between the middles of two arrows
+constexpr Rgb kChoiceColor{0xff, 0x4f, 0xd8};
+
+cv::Mat Colors(const cv::Mat& shares) {
+  cv::Mat colors;
+  cv::applyColorMap(shares, colors, cv::COLORMAP_VIRIDIS);
+  return colors;
+}
+
+void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px,
+               const cv::Scalar& color, int thickness) {
+  const Placing placing{middle, size_px, double(bearing_deg)};
+  const cv::Point2d tip = Place({0.0, 0.40}, placing);
+  DrawLine(map, Place({0.0, -0.36}, placing), tip, color, thickness);
+  DrawLine(map, Place({-0.20, 0.12}, placing), tip, color, thickness);
+  DrawLine(map, Place({0.20, 0.12}, placing), tip, color, thickness);
+}
+
+}  // namespace
+
+void DrawValues(cv::Mat& map, const Values& values) {
+  cv::Mat1b shares(values.height, values.width, std::uint8_t{0});
+  cv::Mat1b known(values.height, values.width, std::uint8_t{0});
+  for (int y = 0; y < values.height; ++y) {
+    for (int x = 0; x < values.width; ++x) {
+      const float value = values.values[values.Index(x, y)];
+      if (std::isnan(value)) continue;
+      const int row = values.height - 1 - y;
+      shares(row, x) = static_cast<std::uint8_t>(cvRound(255.0 * values.Share(value)));
+      known(row, x) = 255;
+    }
+  }
+  cv::Mat large;
+  cv::Mat mask;
+  cv::resize(Colors(shares), large, map.size(), 0, 0, cv::INTER_NEAREST);
+  cv::resize(known, mask, map.size(), 0, 0, cv::INTER_NEAREST);
+  cv::addWeighted(large, kValueShare, map, 1.0 - kValueShare, 0.0, large);
+  large.copyTo(map, mask);
+}
+
+void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, const Fonts& fonts) {
+  if (!(values.highest > values.lowest)) return;
+  const std::string low = "V " + Number(values.lowest, 1);
+  const std::string high = Number(values.highest, 1);
+  const int gap = layout.Px(5);
+  const int bar = layout.Px(80);
+  const int width = fonts.small.Width(low) + fonts.small.Width(high) + bar + 4 * gap;
+  const cv::Rect plate(layout.Px(6), map.rows - layout.Px(26), width, layout.Px(20));
+  if ((plate & cv::Rect({0, 0}, map.size())) != plate) return;
+  Tint(map, plate, Bgr(kPanel), 0.85);
+  const int base = plate.y + (plate.height + fonts.small.cap_height()) / 2;
+  int x = plate.x + gap;
+  x += fonts.small.Draw(map, low, {x, base}, Bgr(kWords)) + gap;
+  cv::Mat1b ramp(1, bar);
+  for (int i = 0; i < bar; ++i)
+    ramp(0, i) = static_cast<std::uint8_t>(255 * i / std::max(1, bar - 1));
+  cv::Mat part = map(cv::Rect(x, plate.y + gap, bar, plate.height - 2 * gap));
+  cv::resize(Colors(ramp), part, part.size(), 0, 0, cv::INTER_NEAREST);
+  fonts.small.Draw(map, high, {x + bar + gap, base}, Bgr(kWords));
+}
+
+void DrawMoves(cv::Mat& map, const Values& values, const Layout& layout) {
+  const double cell = layout.view.cell_px();
+  const int every = std::max(1, int(std::ceil(kLeastArrow_px * layout.unit / cell)));
+  const double size = 0.8 * every * cell;
+  const int thickness = size > 40.0 ? 2 : 1;
+  for (int y = every / 2; y < values.height; y += every) {
+    for (int x = every / 2; x < values.width; x += every) {
+      const std::uint8_t action = values.actions[values.Index(x, y)];
+      const cv::Point2d at = layout.view.ToPixel(x, y);
+      if (const int bearing = MoveBearingDeg(action); bearing >= 0) {
+        DrawArrow(map, at, bearing, size, Bgr(kInk), thickness + 2);
+        DrawArrow(map, at, bearing, size, Bgr(kPaper), thickness);
+      } else if (action == 8) {
+        FillCircle(map, at, 0.22 * size, Bgr(kPaper));
+      } else if (action == 9) {
+        StrokeCircle(map, at, 0.22 * size, Bgr(kPaper), layout.Px(1.5));
+      }
+    }
+  }
+}
+
+void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
+                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout,
+                const Fonts& fonts) {
+  if (choice.seed != state.seed || choice.episode != state.episode || choice.step != state.step) {
+    return;
+  }
+  std::string words = choice.policy + ":";
+  for (const auto& ship : state.ships) {
+    const auto id = static_cast<std::size_t>(ship.id);
+    if (ship.id < 0 || id >= choice.actions.size() || !ship.active) continue;
+    const std::uint8_t action = choice.actions[id];
+    const int bearing = MoveBearingDeg(action);
+    words += ' ';
+    words += bearing >= 0 ? CompassPoint(bearing) : action == 8 ? "pickup" : "drop-off";
+    if (id < choice.values.size()) words += " (V " + Number(choice.values[id], 1) + ")";
+    const cv::Point2d at = layout.view.ToPixel(ship.x, ship.y);
+    const double radius = layout.ship_radius_px();
+    if (bearing < 0) {
+      StrokeCircle(map, at, 1.5 * radius, Bgr(kChoiceColor), layout.Px(2.5));
+      continue;
+    }
+    const Placing placing{at, radius, double(bearing)};
+    DrawArrow(map, Place({0.0, 2.0}, placing), bearing, 2.4 * radius, Bgr(kInk), layout.Px(5));
+    DrawArrow(map, Place({0.0, 2.0}, placing), bearing, 2.4 * radius, Bgr(kChoiceColor),
+              layout.Px(2.5));
+  }
+  const int width = fonts.bold.Width(words) + layout.Px(12);
+  const cv::Rect plate(map.cols - width - layout.Px(6), map.rows - layout.Px(26), width,
+                       layout.Px(20));
+  Tint(map, plate, Bgr(kPanel), 0.85);
+  fonts.bold.Draw(map, words,
+                  {plate.x + layout.Px(6), plate.y + (plate.height + fonts.bold.cap_height()) / 2},
+                  Bgr(kChoiceColor));
+}
+
+}  // namespace aquafarm_viz

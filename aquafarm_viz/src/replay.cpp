@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/replay.h"
+
+#include <aquafarm_msgs/FarmSpec.h>
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "aquafarm_viz/wake.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+namespace traits = ros::message_traits;
+
+template <typename Message>
+bool Is(const rosbag::MessageInstance& message) {
+  return message.getDataType() == traits::datatype<Message>();
+}
+
+template <typename Message>
+void CheckVersion(const rosbag::ConnectionInfo& connection, const std::string& path) {
+  if (connection.datatype != traits::datatype<Message>()) return;
+  if (connection.md5sum == traits::md5sum<Message>()) return;
+  throw std::runtime_error(
+      path + ": topic " + connection.topic + " has another " + connection.datatype +
+      " than this version; replay it with the version that it was recorded by");
+}
+
+bool EndsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// Observations have the type of states, but tell of one ship.
+bool IsState(const rosbag::MessageInstance& message) {
+  return Is<FarmState>(message) && !EndsWith(message.getTopic(), "/observation");
+}
+
+}  // namespace
+
+ReplayTape::ReplayTape(const std::string& path) try {
+  bag_.open(path, rosbag::bagmode::Read);
+  view_.addQuery(bag_);
+  bool has_spec = false;
+  for (const auto* connection : view_.getConnections()) {
+    CheckVersion<FarmSpec>(*connection, path);
+    CheckVersion<FarmState>(*connection, path);
+    has_spec = has_spec || connection->datatype == traits::datatype<FarmSpec>();
+  }
+  if (!has_spec)
+    throw std::runtime_error(path + ": no topic spec, so nothing says what was played");
+  for (const rosbag::MessageInstance& message : view_) {
+    if (message.getTopic() == "/clock") continue;
+    if (IsState(message)) {
+      if (const auto state = message.instantiate<FarmState>()) {
+        steps_.push_back({messages_.size(), state->episode, state->step});
+      }
+    }
+    messages_.push_back(message);
+  }
+  if (steps_.empty()) throw std::runtime_error(path + ": no state follows its spec");
+} catch (const rosbag::BagUnindexedException&) {
+  throw std::runtime_error(path + ": its recording was killed; 'rosbag reindex' it first");
+} catch (const rosbag::BagException& error) {
+  throw std::runtime_error(path + ": damaged or no bag: " + error.what());
+} catch (const ros::Exception& error) {
+  throw std::runtime_error(path + ": damaged: " + error.what());
+}
+
+const ReplayTape::Step& ReplayTape::At(std::size_t position) const {
+  const auto after =
+      std::upper_bound(steps_.begin(), steps_.end(), position,
+                       [](std::size_t place, const Step& step) { return place < step.position; });
+  return after == steps_.begin() ? steps_.front() : *(after - 1);
+}
+
+std::optional<ReplayTape::Step> ReplayTape::Find(std::uint64_t episode, std::uint64_t step) const {
+  std::optional<Step> last;
+  for (const Step& one : steps_) {
+    if (one.episode != episode) continue;
+    last = one;
+    if (one.step >= step) break;
+  }
+  return last;
+}
+
+std::vector<std::size_t> ReplayTape::UpTo(const Step& step) const {
+  std::map<std::string, std::size_t> newest;  // by topic
+  std::vector<std::size_t> positions;
+  std::size_t states = 0;
+  for (std::size_t i = 0; i <= step.position; ++i) newest[messages_[i].getTopic()] = i;
+  for (const auto& [topic, position] : newest) positions.push_back(position);
+  for (auto one = steps_.rbegin(); one != steps_.rend() && states < Wake::kLength; ++one) {
+    if (one->position >= step.position || one->episode != step.episode) continue;
+    positions.push_back(one->position);
+    ++states;
+  }
+  std::sort(positions.begin(), positions.end());
+  positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+  return positions;
+}
+
+double ReplayTape::StepPeriod_s(std::uint64_t episode) const {
+  const Step* first = nullptr;
+  const Step* last = nullptr;
+  for (const Step& one : steps_) {
+    if (one.episode != episode) continue;
+    if (first == nullptr) first = &one;
+    last = &one;
+  }
+  constexpr double kDefault = 0.1;
+  if (first == nullptr || last->step <= first->step) return kDefault;
+  const double seconds =
+      (messages_[last->position].getTime() - messages_[first->position].getTime()).toSec();
+  return seconds > 0.0 ? seconds / double(last->step - first->step) : kDefault;
+}
+
+}  // namespace aquafarm_viz

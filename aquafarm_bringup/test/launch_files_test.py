@@ -22,7 +22,8 @@ VARIANTS = {
     "agent": [["ship:=3", "episodes:=2"]],
     "sim": [["headless:=true"], ["policy:=random"]],
     "record": [["of:=train"], ["of:=evaluate", "bag:=/tmp/day.bag"], ["policy:=none"]],
-    "replay": [["bag:=/tmp/none.bag", "headless:=true", "play_options:=--loop"]],
+    "replay": [["bag:=/tmp/none.bag", "headless:=true", "loop:=true"],
+               ["bag:=/tmp/none.bag", "policy:=random", "start_step:=17"]],
 }
 
 
@@ -90,7 +91,8 @@ class LaunchFilesTest(unittest.TestCase):
 
     def test_replay_runs_no_farm(self):
         nodes = load(LAUNCH / "replay.launch", ["bag:=/tmp/none.bag"]).nodes
-        self.assertEqual({("aquafarm_viz", "viz_node"), ("rviz", "rviz"), ("rosbag", "play")},
+        self.assertEqual({("aquafarm_viz", "viz_node"), ("rviz", "rviz"),
+                          ("aquafarm_bringup", "replay")},
                          {(node.package, node.type) for node in nodes})
 
     def test_rviz_is_absent_from_training_and_headless_running(self):

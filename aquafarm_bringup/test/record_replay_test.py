@@ -89,7 +89,7 @@ class RecordReplayTest(unittest.TestCase):
                 lambda: compressed and len({bytes(image.data) for image in images}) > 1, 30)
             nodes = rosgraph.Master("/replay_test").getSystemState()
             names = {name for kind in nodes for _, users in kind for name in users}
-            self.assertLessEqual({"/aquafarm/viz", "/play"}, names)
+            self.assertLessEqual({"/aquafarm/viz", "/aquafarm/replay"}, names)
             self.assertNotIn("/aquafarm/sim", names)
         self.assertGreater(images[0].width * images[0].height, 0)
 

@@ -49,6 +49,7 @@ struct Request {
 
 // What the bag holds, to say what may be asked for.
 struct Found {
+  std::uint64_t values{};
   std::uint64_t states{};
   std::uint64_t first_episode{};
   std::uint64_t last_episode{};
@@ -116,6 +117,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
       training = status;
     } else if (const auto points = message.instantiate<sensor_msgs::PointCloud2>()) {
       cloud = points;
+      ++found.values;
     } else if (const auto chosen = message.instantiate<aquafarm_msgs::PolicyChoice>()) {
       choice = chosen;
     }
@@ -139,6 +141,15 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
     }
   }
   return found;
+}
+
+/// What is asked for and not there is said, but a picture can do without.
+void WarnOfMissingValues(const Request& request, const Found& found) {
+  if (found.values > 0 || !(request.layers.values || request.layers.moves)) return;
+  std::fprintf(stderr,
+               "render: %s: no topic values/points, so layers values and moves are left out; "
+               "'./aquafarm render %s --policy RUN' asks a policy for them\n",
+               request.bag.c_str(), request.bag.c_str());
 }
 
 /// The steps asked for, side by side.
@@ -167,6 +178,7 @@ void RenderPicture(const Request& request) {
     return missing > 0;
   });
   if (missing > 0) throw std::runtime_error(Missing(request, found));
+  WarnOfMissingValues(request, found);
   cv::Mat picture;
   cv::hconcat(pictures, picture);
   const std::filesystem::path output(request.output);
@@ -207,6 +219,7 @@ void RenderFilm(Request request) {
     return true;
   });
   if (film == nullptr) throw std::runtime_error(Missing(request, found));
+  WarnOfMissingValues(request, found);
   for (int i = 0; i < cvRound(2.0 * request.rate_hz); ++i) film->Add(last);
   film->Close();
 }

@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kValueShare = 0.62;     // of the colours of V_π over the sea
 constexpr double kLeastArrow_px = 11.0;  // between the middles of two arrows
-constexpr Rgb kChoiceColor{0xff, 0x4f, 0xd8};
 
 cv::Mat Colors(const cv::Mat& shares) {
   cv::Mat colors;
@@ -95,9 +94,7 @@ void DrawMoves(cv::Mat& map, const Values& values, const Layout& layout) {
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                 const aquafarm_msgs::PolicyChoice& choice, const Layout& layout,
                 const Fonts& fonts) {
-  if (choice.seed != state.seed || choice.episode != state.episode || choice.step != state.step) {
-    return;
-  }
+  if (!IsOf(choice, state)) return;
   std::string words = choice.policy + ":";
   for (const auto& ship : state.ships) {
     const auto id = static_cast<std::size_t>(ship.id);

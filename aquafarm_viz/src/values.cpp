@@ -44,10 +44,10 @@ void Check(const PointCloud2& cloud) {
                               " bytes, expected " + std::to_string(points * cloud.point_step));
 }
 
-Marker MakeMarker(int id, int type, Rgb color) {
+Marker MakeMarker(const char* space, int id, int type, Rgb color) {
   Marker marker;
   marker.header.frame_id = names::kMapFrame;
-  marker.ns = "moves";
+  marker.ns = space;
   marker.id = id;
   marker.type = type;
   marker.action = Marker::ADD;
@@ -68,14 +68,16 @@ geometry_msgs::Point At(double x, double y) {
 }
 
 // A flat arrow of two triangles and a shaft, in cells, pointing to `bearing`.
-void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m) {
+void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m,
+              double size = 1.0) {
   static constexpr double kOutline[9][2]{{-0.04, -0.34}, {0.04, -0.34}, {0.04, 0.05},
                                          {-0.04, -0.34}, {0.04, 0.05},  {-0.04, 0.05},
                                          {-0.17, 0.05},  {0.17, 0.05},  {0.0, 0.36}};
   const double turn = bearing_deg * CV_PI / 180.0;
   for (const auto& [right, ahead] : kOutline) {
-    marker.points.push_back(At((x + right * std::cos(turn) + ahead * std::sin(turn)) * cell_m,
-                               (y - right * std::sin(turn) + ahead * std::cos(turn)) * cell_m));
+    const double east = right * std::cos(turn) + ahead * std::sin(turn);
+    const double north = ahead * std::cos(turn) - right * std::sin(turn);
+    marker.points.push_back(At((x + size * east) * cell_m, (y + size * north) * cell_m));
   }
 }
 
@@ -122,10 +124,10 @@ Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec)
 
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec) {
-  Marker arrows = MakeMarker(0, Marker::TRIANGLE_LIST, kPaper);
+  Marker arrows = MakeMarker("moves", 0, Marker::TRIANGLE_LIST, kPaper);
   arrows.scale.x = arrows.scale.y = arrows.scale.z = 1.0;
-  Marker pickups = MakeMarker(1, Marker::POINTS, Rgb{0x5f, 0xe0, 0x8a});
-  Marker drop_offs = MakeMarker(2, Marker::POINTS, Rgb{0xff, 0x8c, 0x42});
+  Marker pickups = MakeMarker("moves", 1, Marker::POINTS, Rgb{0x5f, 0xe0, 0x8a});
+  Marker drop_offs = MakeMarker("moves", 2, Marker::POINTS, Rgb{0xff, 0x8c, 0x42});
   for (Marker* dots : {&pickups, &drop_offs}) {
     dots->scale.x = dots->scale.y = 0.3 * spec.cell_size_m;
   }
@@ -143,6 +145,44 @@ visualization_msgs::MarkerArray MoveMarkers(const Values& values,
   visualization_msgs::MarkerArray array;
   for (Marker& marker : std::vector<Marker>{arrows, pickups, drop_offs}) {
     if (marker.points.empty()) marker.action = Marker::DELETE;  // rviz warns about empty lists
+    array.markers.push_back(marker);
+  }
+  return array;
+}
+
+bool IsOf(const aquafarm_msgs::PolicyChoice& choice, const aquafarm_msgs::FarmState& state) {
+  return choice.seed == state.seed && choice.episode == state.episode && choice.step == state.step;
+}
+
+visualization_msgs::MarkerArray ChoiceMarkers(const aquafarm_msgs::PolicyChoice& choice,
+                                              const aquafarm_msgs::FarmSpec& spec,
+                                              const aquafarm_msgs::FarmState& state) {
+  constexpr double kOverAll_m = 100.0;
+  visualization_msgs::MarkerArray array;
+  for (const auto& ship : state.ships) {
+    Marker marker = MakeMarker("choice", ship.id, Marker::TRIANGLE_LIST, kChoiceColor);
+    marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+    marker.pose.position.z = kOverAll_m;
+    const auto id = static_cast<std::size_t>(ship.id);
+    const bool is_shown = IsOf(choice, state) && ship.id >= 0 && id < choice.actions.size() &&
+                          ship.visible && ship.active && InGrid(spec, ship.x, ship.y);
+    if (is_shown) {
+      const int bearing = MoveBearingDeg(choice.actions[id]);
+      const double turn = bearing * CV_PI / 180.0;
+      if (bearing >= 0) {
+        AddArrow(marker, ship.x + 1.6 * std::sin(turn), ship.y + 1.6 * std::cos(turn), bearing,
+                 spec.cell_size_m, 3.0);
+      } else {
+        // Four arrows towards the ship: it would work with its cargo.
+        for (const int side : {0, 90, 180, 270}) {
+          const double to = side * CV_PI / 180.0;
+          AddArrow(marker, ship.x + 0.9 * std::sin(to), ship.y + 0.9 * std::cos(to), side + 180,
+                   spec.cell_size_m, 1.2);
+        }
+      }
+    } else {
+      marker.action = Marker::DELETE;
+    }
     array.markers.push_back(marker);
   }
   return array;

@@ -58,7 +58,7 @@ VizNode::VizNode(ros::NodeHandle node, const VizParams& params)
   choice_topic_ = node.subscribe<aquafarm_msgs::PolicyChoice>(
       names::kChoice, 2, [this](const aquafarm_msgs::PolicyChoiceConstPtr& choice) {
         choice_ = choice;
-        pictured_ = false;
+        marked_ = pictured_ = false;
       });
   timer_ = node.createWallTimer(ros::WallDuration(1.0 / params.rate_hz),
                                 [this](const ros::WallTimerEvent&) { Draw(); });
@@ -147,6 +147,9 @@ void VizNode::PublishMarkers(const Shown& shown) {
   if (markers_.getNumSubscribers() == 0) return;
   auto array = StateMarkers(*shown.spec, *shown.state, &wake_);
   if (marked_episode_.spec != shown.spec) array = Joined(SpecMarkers(*shown.spec, true), array);
+  if (choice_ != nullptr) {
+    array = Joined(array, ChoiceMarkers(*choice_, *shown.spec, *shown.state));
+  }
   markers_.publish(array);
   marked_episode_ = shown;
   marked_ = true;

@@ -34,6 +34,7 @@ inline constexpr Rgb kPort{0xff, 0xff, 0xff};
 inline constexpr Rgb kInk{0x12, 0x20, 0x2e};
 inline constexpr Rgb kPaper{0xf4, 0xf7, 0xf9};
 inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
+inline constexpr Rgb kChoiceColor{0xff, 0x4f, 0xd8};  ///< of what another policy would do
 
 /// The colour of a device kind (DeviceState.kind); grey for a kind that does not exist.
 Rgb DeviceColor(std::uint8_t kind);

@@ -4,6 +4,8 @@
 /// What a policy thinks of each cell: V_π and its best move there, from the topic `values/points`.
 
 #include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/PolicyChoice.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <visualization_msgs/MarkerArray.h>
 
@@ -39,5 +41,14 @@ Values ReadValues(const sensor_msgs::PointCloud2& cloud, const aquafarm_msgs::Fa
 /// The best moves as markers: `moves` 0 are arrows, 1 pickups, 2 drop-offs.
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec);
+
+/// What another policy would do with each ship in a state, as markers: `choice` by ship. They are
+/// deleted where the choice is of another state.
+visualization_msgs::MarkerArray ChoiceMarkers(const aquafarm_msgs::PolicyChoice& choice,
+                                              const aquafarm_msgs::FarmSpec& spec,
+                                              const aquafarm_msgs::FarmState& state);
+
+/// Whether a choice was made in this state.
+bool IsOf(const aquafarm_msgs::PolicyChoice& choice, const aquafarm_msgs::FarmState& state);
 
 }  // namespace aquafarm_viz

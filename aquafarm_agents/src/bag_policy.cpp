@@ -151,8 +151,10 @@ class Companion {
 class Output {
  public:
   explicit Output(std::string path) : path_(std::move(path)), beside_(path_ + ".active") {
-    bag_.open(beside_, rosbag::bagmode::Write);
-    bag_.setCompression(rosbag::compression::LZ4);
+    Guard([this] {
+      bag_.open(beside_, rosbag::bagmode::Write);
+      bag_.setCompression(rosbag::compression::LZ4);
+    });
   }
   ~Output() {
     if (done_) return;
@@ -161,21 +163,35 @@ class Output {
     fs::remove(beside_, ignored);
   }
   void Copy(const rosbag::MessageInstance& message) {
-    bag_.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+    Guard([&] {
+      bag_.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+    });
   }
   /// Just before a time, so that it is there when the state of that time is shown.
   template <typename Message>
   void Add(const std::string& topic, ros::Time time, const Message& message) {
     if (time.toNSec() > ros::TIME_MIN.toNSec()) time -= ros::Duration(0, 1);
-    bag_.write(topic, time, message);
+    Guard([&] { bag_.write(topic, time, message); });
   }
   void Close() {
-    bag_.close();
-    fs::rename(beside_, path_);
+    Guard([this] {
+      bag_.close();
+      fs::rename(beside_, path_);
+    });
     done_ = true;
   }
 
  private:
+  // What goes wrong in writing is no fault of the bag that is read.
+  template <typename Work>
+  void Guard(const Work& work) const {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      throw agents::StorageError(beside_ + ": could not be written: " + error.what());
+    }
+  }
+
   const std::string path_;
   const std::string beside_;
   rosbag::Bag bag_;
@@ -339,14 +355,10 @@ BagChoices AskAlong(const std::string& path, const agents::SavedPolicy& policy,
     return walk.End();
   } catch (const rosbag::BagUnindexedException&) {
     throw InputError(path + ": its recording was killed; 'rosbag reindex' it first");
-  } catch (const rosbag::BagIOException& error) {
-    throw agents::StorageError(std::string("bag: ") + error.what());
   } catch (const rosbag::BagException& error) {
     throw InputError(path + ": damaged or no bag: " + error.what());
   } catch (const ros::Exception& error) {
     throw InputError(path + ": damaged: " + error.what());
-  } catch (const fs::filesystem_error& error) {
-    throw agents::StorageError(error.what());
   }
 }
 

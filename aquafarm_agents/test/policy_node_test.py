@@ -13,6 +13,8 @@ import unittest
 import rospy
 import rostest
 from aquafarm_msgs.srv import Pause
+from nav_msgs.msg import OccupancyGrid
+from sensor_msgs.msg import PointCloud2
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, program, start_agent, start_sim  # noqa: E402
@@ -91,6 +93,20 @@ class PolicyNodeTest(unittest.TestCase):
         other = self.drive("_policy:=random", "_ship:=0", "_episodes:=1")
         self.assertEqual(0, one.code(), one.words())
         self.assertEqual(0, other.code(), other.words())
+
+    def test_values_and_best_moves_are_published_while_somebody_looks(self):
+        start_sim(self, self.namespace, TINY, "_pace:=paced", "_rate_hz:=50")
+        grids, clouds = [], []
+        rospy.Subscriber(f"{self.namespace}/values", OccupancyGrid, grids.append)
+        rospy.Subscriber(f"{self.namespace}/values/points", PointCloud2, clouds.append)
+        run = self.drive(f"_policy:={self.trained()}", "_values_period_s:=0.1")
+        run.wait_for(lambda: len(grids) > 2 and len(clouds) > 2, "values")
+        self.assertEqual((6, 6), (grids[-1].info.width, grids[-1].info.height))
+        self.assertEqual(100, max(grids[-1].data))
+        self.assertEqual(0, min(value for value in grids[-1].data if value >= 0))
+        self.assertEqual(sum(value >= 0 for value in grids[-1].data), clouds[-1].width)
+        run.send(signal.SIGINT)
+        self.assertEqual(0, run.code(), run.words())
 
     def test_paused_and_resumed_it_drives_on(self):
         start_sim(self, self.namespace, PAIR)

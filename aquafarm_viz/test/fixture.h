@@ -5,6 +5,8 @@
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/PolicyChoice.h>
+#include <sensor_msgs/point_cloud2_iterator.h>
 
 #include <cstdint>
 
@@ -129,6 +131,41 @@ inline aquafarm_msgs::FarmState MakeState(int side = 25) {
   state.joint_reward = -5.0F;
   state.joint_return = -42.5F;
   return state;
+}
+
+/// What a policy thinks of MakeSpec's ranch: values x + y, moves to the north-east.
+inline sensor_msgs::PointCloud2 MakeCloud(int side = 25) {
+  sensor_msgs::PointCloud2 cloud;
+  cloud.header.frame_id = "map";
+  sensor_msgs::PointCloud2Modifier modifier(cloud);
+  using sensor_msgs::PointField;
+  modifier.setPointCloud2Fields(5, "x", 1, PointField::FLOAT32, "y", 1, PointField::FLOAT32, "z", 1,
+                                PointField::FLOAT32, "value", 1, PointField::FLOAT32, "action", 1,
+                                PointField::UINT8);
+  modifier.resize(static_cast<std::size_t>(side * side));
+  sensor_msgs::PointCloud2Iterator<float> at(cloud, "x");
+  sensor_msgs::PointCloud2Iterator<float> value(cloud, "value");
+  sensor_msgs::PointCloud2Iterator<std::uint8_t> action(cloud, "action");
+  for (int cell = 0; cell < side * side; ++cell, ++at, ++value, ++action) {
+    at[0] = 1000.0F * static_cast<float>(cell % side);
+    at[1] = 1000.0F * static_cast<float>(cell / side);
+    at[2] = 0.0F;
+    *value = static_cast<float>(cell % side + cell / side);
+    *action = 5;
+  }
+  return cloud;
+}
+
+/// Another policy's choice in MakeState's state: north-west.
+inline aquafarm_msgs::PolicyChoice MakeChoice() {
+  aquafarm_msgs::PolicyChoice choice;
+  choice.seed = 7;
+  choice.episode = 12;
+  choice.step = 17;
+  choice.policy = "dqn";
+  choice.actions = {4};
+  choice.values = {87.5F};
+  return choice;
 }
 
 }  // namespace aquafarm_viz::test

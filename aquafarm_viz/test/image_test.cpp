@@ -282,19 +282,53 @@ int Changed(const char* layers, const char* others) {
     wake.Update(state);
     route.Update(state);
   }
-  const cv::Mat one = DrawFarm(spec, state, kSize, {&wake, nullptr, &route, ParseLayers(layers)});
-  const cv::Mat other = DrawFarm(spec, state, kSize, {&wake, nullptr, &route, ParseLayers(others)});
+  const Values values = ReadValues(test::MakeCloud(), spec);
+  const auto draw = [&](const char* names) {
+    return DrawFarm(spec, state, kSize, {&wake, nullptr, &route, ParseLayers(names), &values});
+  };
+  const cv::Mat one = draw(layers);
+  const cv::Mat other = draw(others);
   cv::Mat difference;
   cv::absdiff(one, other, difference);
   return cv::countNonZero(difference.reshape(1));
 }
 
 TEST(Image, EachLayerShowsSomethingAndCanBeLeftOut) {
-  for (const char* layer : {"wake", "risk", "route", "sight"}) {
+  for (const char* layer : {"wake", "risk", "route", "sight", "values", "moves"}) {
     EXPECT_GT(Changed(layer, "none"), 300) << layer;
   }
   EXPECT_GT(Changed("wake", "route"), 300);
-  EXPECT_EQ(Changed("wake,risk,route,sight", "sight,route,risk,wake"), 0);
+  EXPECT_EQ(Changed("wake,risk,values,moves", "moves,values,risk,wake"), 0);
+}
+
+TEST(Image, ShowsTheChoiceOfAnotherPolicyInItsStateAlone) {
+  const auto spec = test::MakeSpec();
+  const auto state = test::MakeState();
+  auto choice = test::MakeChoice();
+  Extras extras;
+  extras.choice = &choice;
+  const auto pink = [&] {
+    const cv::Mat picture = DrawFarm(spec, state, kSize, extras);
+    cv::Mat found;
+    cv::inRange(picture, Bgr(kChoiceColor), Bgr(kChoiceColor), found);
+    return cv::countNonZero(found);
+  };
+  EXPECT_GT(pink(), 100);
+  choice.actions = {8};
+  EXPECT_GT(pink(), 100);
+  choice.step = 16;
+  EXPECT_EQ(pink(), 0);
+}
+
+TEST(Image, ValuesOfAnotherFarmAreLeftOut) {
+  const auto spec = test::MakeSpec(10);
+  const Values values = ReadValues(test::MakeCloud(), test::MakeSpec());
+  Extras extras;
+  extras.layers = ParseLayers("values,moves");
+  const cv::Mat without = DrawFarm(spec, test::MakeState(10), kSize, extras);
+  extras.values = &values;
+  EXPECT_EQ(cv::norm(without, DrawFarm(spec, test::MakeState(10), kSize, extras), cv::NORM_INF),
+            0.0);
 }
 
 TEST(Image, LayersThatThereAreNotHaveTheirLine) {
@@ -304,7 +338,9 @@ TEST(Image, LayersThatThereAreNotHaveTheirLine) {
       FAIL() << wrong;
     } catch (const std::invalid_argument& fault) {
       const std::string name = std::string(wrong).find("rain") == std::string::npos ? "" : "rain";
-      EXPECT_EQ("layers: got '" + name + "', expected some of: wake, risk, route, sight; or none",
+      EXPECT_EQ("layers: got '" + name +
+                    "', expected some of: wake, risk, route, sight, "
+                    "values, moves; or none",
                 fault.what());
     }
   }

@@ -173,11 +173,32 @@ TEST_F(RenderTest, WithoutACodecItSaysWhatElseThereIs) {
   const Result layers = Render(bag + " --layers rain -o " + Path("y.png"));
   EXPECT_NE(layers.code, 0);
   EXPECT_NE(layers.output.find("render: layers: got 'rain', expected some of: wake, risk, route, "
-                               "sight; or none"),
+                               "sight, values, moves; or none"),
             std::string::npos);
   const Result gif = Render(bag + " -o " + Path("no/such/folder/x.gif"));
   EXPECT_NE(gif.code, 0);
   EXPECT_NE(gif.output.find("x.gif: could not be written"), std::string::npos) << gif.output;
+}
+
+TEST_F(RenderTest, DrawsTheValuesThatABagHoldsAndSaysWhereThereAreNone) {
+  const std::string plain = MakeBag({"/aquafarm/"});
+  const std::string valued = Path("valued.bag");
+  fs::copy_file(plain, valued);
+  {
+    rosbag::Bag bag(valued, rosbag::bagmode::Append);
+    bag.write("/aquafarm/values/points", ros::Time(1.0), test::MakeCloud());
+  }
+  const std::string layers = " --step 5 --layers values,moves -o ";
+  const Result without = Render(plain + layers + Path("plain.png"));
+  EXPECT_EQ(without.code, 0);
+  EXPECT_NE(without.output.find("no topic values/points, so layers values and moves are left out"),
+            std::string::npos)
+      << without.output;
+  const Result with = Render(valued + layers + Path("valued.png"));
+  EXPECT_EQ(with.code, 0);
+  EXPECT_EQ(with.output, "");
+  EXPECT_GT(cv::norm(cv::imread(Path("plain.png")), cv::imread(Path("valued.png")), cv::NORM_L1),
+            1e6);
 }
 
 }  // namespace

@@ -189,6 +189,28 @@ TEST_F(VizNodeTest, WaitsForTheSpecThatFits) {
   EXPECT_TRUE(Until([&] { return count.status.substr(0, 10) == "episode 50"; }));
 }
 
+TEST_F(VizNodeTest, DrawsThePolicysMovesAndAsksForValuesOnlyWhileSomebodyLooks) {
+  ros::Publisher values = node_.advertise<sensor_msgs::PointCloud2>("values/points", 1, true);
+  auto cloud = test::MakeCloud();
+  cloud.point_step = 1;  // hostile
+  values.publish(cloud);
+  Announce(80);
+  Play(80, 1);
+  Idle(0.5);
+  EXPECT_EQ(values.getNumSubscribers(), 0U);
+  std::size_t arrows = 0;
+  auto subscriber = node_.subscribe<MarkerArray>(
+      "moves", 10, [&](const visualization_msgs::MarkerArrayConstPtr& message) {
+        arrows = message->markers.at(0).points.size();
+      });
+  ASSERT_TRUE(Until([&] { return values.getNumSubscribers() > 0; }));
+  values.publish(test::MakeCloud());
+  ASSERT_TRUE(Until([&] { return arrows > 0; }));
+  EXPECT_EQ(arrows, 25U * 25U * 9U);
+  subscriber.shutdown();
+  EXPECT_TRUE(Until([&] { return values.getNumSubscribers() == 0; }));
+}
+
 TEST_F(VizNodeTest, OutlivesHostileMessages) {
   auto spec = test::MakeSpec();
   spec.episode = 60;

@@ -1,0 +1,168 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A bag's states asked of any saved policy: agreement, values, and clear lines for what is none."""
+import pathlib
+import re
+import shutil
+import struct
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from processes import DATA, Program, program  # noqa: E402
+
+TINY = DATA / "tiny.yaml"
+PAIR = DATA / "pair.yaml"
+
+
+class BagPolicyTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_bag_policy_"))
+        cls.addClassCleanup(lambda: shutil.rmtree(cls.folder))
+
+    def run_well(self, *command):
+        run = Program(self, *command)
+        self.assertEqual(0, run.code(), run.words())
+        return run.words()
+
+    def trained(self):
+        """Run folder of a policy that solves the tiny farm; trained once."""
+        folder = self.folder / "trained"
+        if not folder.exists():
+            self.run_well(program("aquafarm_agents", "aquafarm_train"), TINY, "--steps", "200000",
+                          "--run-dir", folder)
+        return folder
+
+    def bag_of(self, policy, scenario):
+        """A bag of an episode that a policy has played; made once."""
+        bag = self.folder / f"{pathlib.Path(str(policy)).name}_{scenario.stem}.bag"
+        if not bag.exists():
+            route = bag.with_suffix(".json")
+            self.run_well(program("aquafarm_agents", "aquafarm_evaluate"), policy, scenario,
+                          "--episodes", "1", "--route", route)
+            self.run_well(program("aquafarm_sim", "episode_bag"), scenario, route, "-o", bag)
+        return bag
+
+    def changed(self, bag, change):
+        """A copy of a bag; change(topic, message) gives the message to write, or None for none."""
+        path = self.folder / "changed.bag"
+        with rosbag.Bag(str(bag)) as source, rosbag.Bag(str(path), "w") as copy:
+            for topic, message, time in source.read_messages():
+                message = change(topic, message)
+                if message is not None:
+                    copy.write(topic, message, time)
+        return path
+
+    def ask(self, *arguments):
+        return Program(self, program("aquafarm_agents", "bag_policy"), *arguments)
+
+    def refused(self, words, code, *arguments):
+        run = self.ask(*arguments)
+        self.assertEqual(code, run.code(), run.words())
+        self.assertIn(words, run.words())
+
+    def test_the_policy_that_played_agrees_with_itself_and_others_do_not(self):
+        bag = self.bag_of(self.trained(), TINY)
+        words = self.run_well(program("aquafarm_agents", "bag_policy"), bag, self.trained())
+        agreed, choices = map(int, re.search(r"(\d+) of (\d+) choices agree", words).groups())
+        self.assertEqual(choices, agreed, words)
+        self.assertGreater(choices, 2)
+        row = words.splitlines()[1].split()
+        self.assertEqual("100.0", row[3], words)
+        self.assertGreater(float(row[5]), 20.0, words)  # what it expects at the start
+        words = self.run_well(program("aquafarm_agents", "bag_policy"), bag, "random")
+        agreed, choices = map(int, re.search(r"(\d+) of (\d+) choices agree", words).groups())
+        self.assertLess(agreed, choices, words)
+        self.assertEqual("-", words.splitlines()[1].split()[5])  # chance holds no values
+
+    def test_a_policy_with_whole_farms_is_asked_too(self):
+        words = self.run_well(program("aquafarm_agents", "bag_policy"),
+                              self.bag_of("clairvoyant", TINY), "clairvoyant")
+        self.assertIn(" 100.0 % ", words)
+
+    def test_several_ships_are_asked_each(self):
+        bag = self.bag_of("random", PAIR)
+        words = self.run_well(program("aquafarm_agents", "bag_policy"), bag, "random")
+        steps = int(words.splitlines()[1].split()[2])
+        self.assertIn(f"of {2 * steps} choices", words)
+
+    def test_the_bag_that_is_written_holds_all_of_the_old_one_and_what_it_would_do(self):
+        bag, out = self.bag_of("clairvoyant", TINY), self.folder / "asked.bag"
+        self.run_well(program("aquafarm_agents", "bag_policy"), bag, self.trained(), "-o", out,
+                      "--values-every", "2")
+        self.assertFalse(list(self.folder.glob("*.active")))
+        with rosbag.Bag(str(bag)) as old, rosbag.Bag(str(out)) as new:
+            before = old.get_type_and_topic_info().topics
+            after = new.get_type_and_topic_info().topics
+            for topic, info in before.items():
+                self.assertEqual(info.message_count, after[topic].message_count, topic)
+            states = [m for _, m, _ in new.read_messages("/aquafarm/state")]
+            choices = [m for _, m, _ in new.read_messages("/aquafarm/choice")]
+            grids = [m for _, m, _ in new.read_messages("/aquafarm/values")]
+            clouds = [m for _, m, _ in new.read_messages("/aquafarm/values/points")]
+            order = [topic for topic, _, _ in new.read_messages(
+                ["/aquafarm/state", "/aquafarm/choice"])]
+        self.assertEqual(list(range(len(states) - 1)), [choice.step for choice in choices])
+        self.assertEqual({"q_learning"}, {choice.policy for choice in choices})
+        self.assertEqual("/aquafarm/choice", order[0])  # it is there when its state is shown
+        self.assertEqual((len(states)) // 2, len(clouds))
+        self.assertEqual((0, 100), (min(v for v in grids[0].data if v >= 0), max(grids[0].data)))
+        self.assertIn(-1, grids[0].data)  # rocks and islands hold none
+        cloud = clouds[0]
+        self.assertEqual(["x", "y", "z", "value", "action"], [f.name for f in cloud.fields])
+        points = [struct.unpack_from("<4fB", cloud.data, i * cloud.point_step)
+                  for i in range(cloud.width * cloud.height)]
+        ship = states[0].ships[0]
+        here = [p for p in points if (p[0], p[1]) == (ship.x * 1000.0, ship.y * 1000.0)]
+        self.assertEqual(1, len(here))
+        self.assertAlmostEqual(choices[0].values[0], here[0][3], places=4)
+        self.assertEqual(choices[0].actions[0], here[0][4])
+        self.run_well(program("aquafarm_sim", "verify_bag"), out)
+
+    def test_states_that_are_not_what_the_actions_give_are_no_ground_to_judge_on(self):
+        bag = self.bag_of("clairvoyant", TINY)
+
+        def other_action(topic, message):
+            if topic.endswith("/state") and message.step == 2:
+                message.ships[0].action = (message.ships[0].action + 1) % 8
+            return message
+
+        run = self.ask(self.changed(bag, other_action), self.trained(), "-o",
+                       self.folder / "never.bag")
+        self.assertEqual(1, run.code(), run.words())
+        self.assertRegex(run.words(), r"differs: episode 0 step 2: state.hash: got \d+, simulated")
+        self.assertFalse(list(self.folder.glob("never*")))
+        without = self.changed(bag, lambda topic, message: None if topic.endswith(
+            "/state") and message.step == 2 else message)
+        self.refused("differs: episode 0 step 3: step 2 is missing", 1, without, self.trained())
+
+    def test_what_cannot_be_asked_has_its_line(self):
+        bag, policy = self.bag_of("clairvoyant", TINY), self.trained()
+        self.refused("q_learning of scenario tiny does not fit scenario pair: width: it knows 6", 2,
+                     self.bag_of("random", PAIR), policy)
+        self.refused("/no/such/folder", 2, bag, "/no/such/folder")
+        self.refused("damaged or no bag", 2, TINY, policy)
+        self.refused("no topic spec, so nothing says what was played", 2, self.changed(
+            bag, lambda topic, message: None if topic.endswith("/spec") else message), policy)
+
+        def older(topic, message):
+            if topic.endswith("/spec"):
+                message.version = "0.0.9"
+            return message
+
+        self.refused("recorded by version 0.0.9, this is ", 2, self.changed(bag, older), policy)
+        self.refused("no state follows its spec", 2, self.changed(
+            bag, lambda topic, message: None if topic.endswith("/state") else message), policy)
+        self.refused("no ranch /other/, there is: /aquafarm/", 2, bag, policy, "--ns", "/other")
+        self.refused("is the bag that is read; expected another file", 2, bag, policy, "-o", bag)
+        self.refused("/nowhere/x.bag.active", 3, bag, policy, "-o", "/nowhere/x.bag")
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_agents", "bag_policy", BagPolicyTest, sys.argv)

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The panel "Ranch" on Qt's offscreen platform: no display, no rviz, no ROS.
+#include <gtest/gtest.h>
+
+#include <QApplication>
+#include <QImage>
+#include <boost/make_shared.hpp>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fixture.h"
+#include "ranch_widget.h"
+
+namespace aquafarm_viz {
+namespace {
+
+aquafarm_msgs::TrainingStatusConstPtr Training(std::uint64_t episode, float mean_return) {
+  auto training = boost::make_shared<aquafarm_msgs::TrainingStatus>();
+  training->phase = aquafarm_msgs::TrainingStatus::TRAINING;
+  training->algorithm = "q_learning";
+  training->episode = episode;
+  training->episodes = 2000;
+  training->mean_return = mean_return;
+  training->success_rate = 0.62F;
+  training->steps_per_second = 250000.0F;
+  training->time_left_s = 42.0;
+  return training;
+}
+
+RanchModel Filled() {
+  RanchModel model;
+  model.Take(boost::make_shared<aquafarm_msgs::FarmSpec>(test::MakeSpec()));
+  auto state = test::MakeState();
+  state.ships[0].aboard = {0};
+  state.ships[0].capacity = 1;
+  EXPECT_EQ(model.Take(boost::make_shared<aquafarm_msgs::FarmState>(state)), "");
+  return model;
+}
+
+TEST(RanchModel, SaysWhatTheStateIs) {
+  const RanchModel model = Filled();
+  EXPECT_EQ(model.Headline(), "paper   episode 12   step 17 / 5,000   return -42.5   seed 7");
+  EXPECT_EQ(model.RewardLine(), "reward -5.0:   disaster -5.0");
+  ASSERT_EQ(model.Ships().size(), 1U);
+  EXPECT_EQ(model.Ships()[0], (RanchModel::Row{"0", "(12, 8)", "NE", "0", "-5.0", "0.0"}));
+  ASSERT_EQ(model.Devices().size(), 4U);
+  EXPECT_EQ(model.Devices()[1],
+            (RanchModel::Row{"1", "monitoring", "(6, 0)", "delivered", "70 %", "75"}));
+  EXPECT_EQ(model.Ships()[0].size(), RanchModel::ShipColumns().size());
+  EXPECT_EQ(model.Devices()[0].size(), RanchModel::DeviceColumns().size());
+  EXPECT_EQ(RanchModel().Headline(), "no ranch yet");
+}
+
+TEST(RanchModel, RefusesAStateThatCannotBeShown) {
+  RanchModel model;
+  auto state = boost::make_shared<aquafarm_msgs::FarmState>(test::MakeState());
+  state->disasters[0].risks.clear();
+  EXPECT_NE(model.Take(state), "");
+}
+
+TEST(RanchModel, KeepsTheWholeCurveInBoundedRoom) {
+  RanchModel model;
+  for (std::uint64_t episode = 1; episode <= 20000; ++episode) {
+    model.Take(Training(episode, static_cast<float>(episode)));
+  }
+  const auto& curve = model.curve();
+  EXPECT_GE(curve.size(), RanchModel::kMostPoints / 2);
+  EXPECT_LT(curve.size(), RanchModel::kMostPoints);
+  EXPECT_EQ(curve.front().episode, 1.0);
+  EXPECT_GT(curve.back().episode, 19900.0);
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    EXPECT_LT(curve[i - 1].episode, curve[i].episode);
+  }
+  EXPECT_EQ(model.TrainingLine(),
+            "q_learning, training   episode 20,000 / 2,000   mean return 20000.0   success 62 %   "
+            "250.0 k steps/s   left 0:42");
+}
+
+TEST(RanchModel, ANewTrainingBeginsANewCurve) {
+  RanchModel model;
+  model.Take(Training(100, 1.0F));
+  model.Take(Training(101, 2.0F));
+  model.Take(Training(101, 3.0F));  // no new episode
+  EXPECT_EQ(model.curve().size(), 2U);
+  model.Take(Training(1, std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_TRUE(model.curve().empty());
+}
+
+TEST(RanchModel, ADisasterBeginsAtTheShipWithRisksByItsGrade) {
+  const RanchModel model = Filled();
+  const auto info = model.MakeDisaster(aquafarm_msgs::DisasterState::RED_TIDE, 4, 6.0);
+  EXPECT_EQ(info.kind, aquafarm_msgs::DisasterState::RED_TIDE);
+  EXPECT_EQ(info.x, 12.0F);
+  EXPECT_EQ(info.y, 8.0F);
+  ASSERT_EQ(info.radii.size(), 3U);
+  EXPECT_FLOAT_EQ(info.radii[2], 6.0F);
+  EXPECT_FLOAT_EQ(info.risks[0], -20.0F);
+  EXPECT_FLOAT_EQ(info.risks[1], -12.5F);
+  EXPECT_FLOAT_EQ(info.risks[2], -5.0F);
+  EXPECT_FLOAT_EQ(model.MakeDisaster(0, 1, 6.0).risks[0], -5.0F);
+  EXPECT_EQ(model.NextDisaster(), 1);
+}
+
+// What the buttons asked for, as words.
+struct Asked {
+  std::vector<std::string> words;
+  RanchButtons Buttons() {
+    RanchButtons buttons;
+    buttons.pause = [this](bool paused, std::uint32_t steps) {
+      words.push_back("pause " + std::to_string(paused) + " " + std::to_string(steps));
+    };
+    buttons.reset = [this](std::uint64_t seed) {
+      words.push_back("reset " + std::to_string(seed));
+    };
+    buttons.set_pace = [this](const std::string& pace, double rate_hz) {
+      words.push_back("pace '" + pace + "' " + std::to_string(static_cast<int>(rate_hz)));
+    };
+    buttons.drive = [this](int ship, std::uint8_t action) {
+      words.push_back("drive " + std::to_string(ship) + " " + std::to_string(action));
+    };
+    buttons.send_disaster = [this](int id, const aquafarm_msgs::DisasterInfo& info) {
+      words.push_back("disaster " + std::to_string(id) + " " + std::to_string(info.radii.size()));
+    };
+    buttons.jump = [this](std::uint64_t step) { words.push_back("jump " + std::to_string(step)); };
+    return buttons;
+  }
+};
+
+TEST(RanchWidget, EachButtonAsksForWhatItSays) {
+  const RanchModel model = Filled();
+  Asked asked;
+  RanchWidget widget(model, asked.Buttons());
+  widget.findChild<QSpinBox*>("seed")->setValue(31);
+  widget.findChild<QSpinBox*>("step")->setValue(17);
+  for (const char* name : {"pause", "go on", "step", "pace", "reset", "jump", "N", "SE", "hold",
+                           "pickup", "drop-off", "send disaster"}) {
+    auto* button = widget.findChild<QPushButton*>(name);
+    ASSERT_NE(button, nullptr) << name;
+    button->click();
+  }
+  EXPECT_EQ(asked.words,
+            (std::vector<std::string>{"pause 1 0", "pause 0 0", "pause 1 1", "pace '' 4",
+                                      "reset 31", "jump 17", "drive 0 0", "drive 0 7", "drive 0 10",
+                                      "drive 0 8", "drive 0 9", "disaster 1 3"}));
+}
+
+int Count(const QImage& image, QRgb color) {
+  int count = 0;
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) count += image.pixel(x, y) == color ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(RanchWidget, ShowsTablesAndTheCurve) {
+  RanchModel model = Filled();
+  Asked asked;
+  RanchWidget widget(model, asked.Buttons());
+  widget.resize(500, 800);
+  const QImage before = widget.grab().toImage();
+  for (int episode = 1; episode < 60; ++episode) {
+    model.Take(Training(static_cast<std::uint64_t>(episode),
+                        static_cast<float>(100.0 * std::sin(episode / 10.0))));
+  }
+  widget.Refresh();
+  widget.Tell("<b>paused</b>");  // no markup
+  const QImage after = widget.grab().toImage();
+  const QRgb curve = qRgb(0xff, 0xd4, 0x3b);
+  EXPECT_EQ(Count(before, curve), 0);
+  EXPECT_GT(Count(after, curve), 100);
+  std::map<std::string, int> cells;
+  for (const auto* table : widget.findChildren<QTableWidget*>()) {
+    for (int y = 0; y < table->rowCount(); ++y) {
+      for (int x = 0; x < table->columnCount(); ++x) {
+        ++cells[table->item(y, x)->text().toStdString()];
+      }
+    }
+  }
+  EXPECT_EQ(cells["(12, 8)"], 1);
+  EXPECT_EQ(cells["deployed"], 3);
+  EXPECT_EQ(cells["delivered"], 1);
+  bool told = false;
+  for (const auto* line : widget.findChildren<QLabel*>()) {
+    told = told || (line->text() == "<b>paused</b>" && line->textFormat() == Qt::PlainText);
+  }
+  EXPECT_TRUE(told);
+}
+
+}  // namespace
+}  // namespace aquafarm_viz
+
+int main(int argc, char** argv) {
+  qputenv("QT_QPA_PLATFORM", "offscreen");
+  testing::InitGoogleTest(&argc, argv);
+  QApplication application(argc, argv);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/replay.h"
+
+#include <gtest/gtest.h>
+#include <std_msgs/Header.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Replay : public testing::Test {
+ protected:
+  Replay() : path_(fs::temp_directory_path() / ("replay_test_" + std::to_string(getpid()))) {}
+  ~Replay() override { fs::remove(path_); }
+
+  // Episodes 12 and 14 with steps 0, 2, 4 … 98, a step each 0.1 s, and an observation beside each.
+  std::string MakeBag() {
+    rosbag::Bag bag(path_, rosbag::bagmode::Write);
+    double seconds = 1.0;
+    for (const std::uint64_t episode : {12U, 14U}) {
+      auto spec = test::MakeSpec();
+      spec.episode = episode;
+      bag.write("/aquafarm/spec", ros::Time(seconds), spec);
+      for (std::uint64_t step = 0; step < 100; step += 2) {
+        auto state = test::MakeState();
+        state.episode = episode;
+        state.step = step;
+        bag.write("/aquafarm/state", ros::Time(seconds += 0.2), state);
+        bag.write("/aquafarm/ship_0/observation", ros::Time(seconds), state);
+      }
+    }
+    return path_;
+  }
+
+  static std::string FaultOf(const std::string& path) {
+    try {
+      ReplayTape tape(path);
+    } catch (const std::runtime_error& fault) {
+      return fault.what();
+    }
+    return "";
+  }
+
+  const std::string path_;
+};
+
+TEST_F(Replay, FindsAStepOrTheNextLaterOneOrTheLast) {
+  const ReplayTape tape(MakeBag());
+  EXPECT_EQ(tape.steps().size(), 100U);  // observations are none
+  EXPECT_EQ(tape.Find(12, 4)->step, 4U);
+  EXPECT_EQ(tape.Find(14, 5)->step, 6U);
+  EXPECT_EQ(tape.Find(14, 5)->episode, 14U);
+  EXPECT_EQ(tape.Find(12, 5000)->step, 98U);
+  EXPECT_FALSE(tape.Find(13, 0));
+  EXPECT_NEAR(tape.StepPeriod_s(12), 0.1, 1e-6);
+}
+
+TEST_F(Replay, AJumpBringsTheSpecTheWakeAndTheStepLast) {
+  const ReplayTape tape(MakeBag());
+  const auto step = *tape.Find(14, 60);
+  const auto positions = tape.UpTo(step);
+  EXPECT_EQ(positions.back(), step.position);
+  std::size_t states = 0;
+  bool has_spec = false;
+  for (const std::size_t position : positions) {
+    const auto& message = tape.messages()[position];
+    if (const auto spec = message.instantiate<aquafarm_msgs::FarmSpec>()) {
+      has_spec = has_spec || spec->episode == 14;
+    } else if (message.getTopic() == "/aquafarm/state") {
+      ++states;
+      EXPECT_EQ(message.instantiate<aquafarm_msgs::FarmState>()->episode, 14U);
+    }
+  }
+  EXPECT_TRUE(has_spec);
+  EXPECT_EQ(states, 25U);  // the wake's 24 and its own
+}
+
+TEST_F(Replay, AtIsTheStepThatIsShownAtAPosition) {
+  const ReplayTape tape(MakeBag());
+  EXPECT_EQ(tape.At(0).step, 0U);
+  const auto step = *tape.Find(12, 10);
+  EXPECT_EQ(tape.At(step.position).step, 10U);
+  EXPECT_EQ(tape.At(step.position - 1).step, 8U);
+}
+
+TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
+  EXPECT_NE(FaultOf("/nowhere/x.bag").find("/nowhere/x.bag: damaged or no bag: "),
+            std::string::npos);
+  {
+    rosbag::Bag bag(path_, rosbag::bagmode::Write);
+    bag.write("/aquafarm/state", ros::Time(1.0), test::MakeState());
+  }
+  EXPECT_EQ(FaultOf(path_), path_ + ": no topic spec, so nothing says what was played");
+  {
+    rosbag::Bag bag(path_, rosbag::bagmode::Write);
+    bag.write("/aquafarm/spec", ros::Time(1.0), test::MakeSpec());
+  }
+  EXPECT_EQ(FaultOf(path_), path_ + ": no state follows its spec");
+  {
+    rosbag::Bag bag(path_, rosbag::bagmode::Write);
+    // A connection that calls itself a state, of a definition that is none.
+    const auto header = boost::make_shared<ros::M_string>();
+    (*header)["type"] = "aquafarm_msgs/FarmState";
+    (*header)["md5sum"] = "00000000000000000000000000000000";
+    (*header)["message_definition"] = "uint8 old";
+    bag.write("/aquafarm/state", ros::Time(1.0), std_msgs::Header(), header);
+  }
+  EXPECT_EQ(FaultOf(path_),
+            path_ +
+                ": topic /aquafarm/state has another aquafarm_msgs/FarmState than this "
+                "version; replay it with the version that it was recorded by");
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/values.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <opencv2/core/types.hpp>
+#include <stdexcept>
+
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using visualization_msgs::Marker;
+
+TEST(Values, AreReadByCellWithTheirRange) {
+  const Values values = ReadValues(test::MakeCloud(), test::MakeSpec());
+  EXPECT_EQ(values.values[values.Index(3, 4)], 7.0F);
+  EXPECT_EQ(values.actions[values.Index(3, 4)], 5);
+  EXPECT_EQ(values.lowest, 0.0F);
+  EXPECT_EQ(values.highest, 48.0F);
+  EXPECT_DOUBLE_EQ(values.Share(12.0F), 0.25);
+}
+
+TEST(Values, LeavesOutWhatIsNoCellNoActionAndNoNumber) {
+  auto cloud = test::MakeCloud();
+  sensor_msgs::PointCloud2Iterator<float> at(cloud, "x");
+  sensor_msgs::PointCloud2Iterator<float> value(cloud, "value");
+  sensor_msgs::PointCloud2Iterator<std::uint8_t> action(cloud, "action");
+  at[0] = -5000.0F;  // cell (0, 0)
+  ++at;
+  at[0] = std::numeric_limits<float>::quiet_NaN();  // (1, 0)
+  value += 2;
+  *value = std::numeric_limits<float>::infinity();  // (2, 0)
+  action += 3;
+  *action = 200;  // (3, 0)
+  const Values values = ReadValues(cloud, test::MakeSpec());
+  EXPECT_TRUE(std::isnan(values.values[0]));
+  EXPECT_EQ(values.actions[0], Values::kNoAction);
+  EXPECT_TRUE(std::isnan(values.values[1]));
+  EXPECT_TRUE(std::isnan(values.values[2]));
+  EXPECT_EQ(values.actions[2], 5);
+  EXPECT_EQ(values.actions[3], Values::kNoAction);
+  EXPECT_EQ(values.highest, 48.0F);
+}
+
+std::string FaultOf(const std::function<void(sensor_msgs::PointCloud2&)>& spoil) {
+  auto cloud = test::MakeCloud();
+  spoil(cloud);
+  try {
+    ReadValues(cloud, test::MakeSpec());
+  } catch (const std::invalid_argument& fault) {
+    return fault.what();
+  }
+  return "";
+}
+
+TEST(Values, RefusesACloudOfAnotherKind) {
+  EXPECT_EQ(FaultOf([](auto& cloud) { cloud.fields.pop_back(); }),
+            "values/points: got no field action, expected x, y, value and action");
+  EXPECT_EQ(FaultOf([](auto& cloud) { cloud.fields[0].datatype = 8; }),
+            "values/points: field x: got type 8 at byte 0, expected type 7 within point_step");
+  EXPECT_EQ(FaultOf([](auto& cloud) { cloud.fields[3].offset = 4000000000U; }),
+            "values/points: field value: got type 7 at byte 4000000000, expected type 7 within "
+            "point_step");
+  EXPECT_EQ(FaultOf([](auto& cloud) { cloud.data.resize(100); }),
+            "values/points: got 100 bytes, expected 10625");
+}
+
+TEST(Values, BestMovesAreOneMarkerAKindWithStableIds) {
+  auto values = ReadValues(test::MakeCloud(), test::MakeSpec());
+  values.actions[0] = 8;
+  const auto array = MoveMarkers(values, test::MakeSpec());
+  ASSERT_EQ(array.markers.size(), 3U);
+  EXPECT_EQ(array.markers[0].points.size(), (25U * 25U - 1U) * 9U);
+  EXPECT_EQ(array.markers[1].points.size(), 1U);
+  EXPECT_EQ(array.markers[2].action, Marker::DELETE);
+  for (int id = 0; id < 3; ++id) {
+    EXPECT_EQ(array.markers[std::size_t(id)].ns, "moves");
+    EXPECT_EQ(array.markers[std::size_t(id)].id, id);
+    EXPECT_TRUE(array.markers[std::size_t(id)].lifetime.isZero());
+  }
+}
+
+TEST(Values, AnArrowPointsWhereTheMoveGoes) {
+  auto values = ReadValues(test::MakeCloud(), test::MakeSpec());
+  const auto tip = [&](std::uint8_t action) {
+    values.actions[0] = action;
+    const auto point = MoveMarkers(values, test::MakeSpec()).markers[0].points[8];
+    return cv::Point2d(point.x, point.y);
+  };
+  EXPECT_NEAR(tip(0).y, 360.0, 1e-6);   // N
+  EXPECT_NEAR(tip(1).y, -360.0, 1e-6);  // S
+  EXPECT_NEAR(tip(2).x, -360.0, 1e-6);  // W
+  EXPECT_NEAR(tip(3).x, 360.0, 1e-6);   // E
+  EXPECT_GT(tip(5).x, 200.0);           // NE
+  EXPECT_GT(tip(5).y, 200.0);
+}
+
+TEST(Values, AChoiceIsMarkedInItsStateAndDeletedInOthers) {
+  const auto spec = test::MakeSpec();
+  auto choice = test::MakeChoice();
+  auto array = ChoiceMarkers(choice, spec, test::MakeState());
+  ASSERT_EQ(array.markers.size(), 1U);
+  EXPECT_EQ(array.markers[0].action, Marker::ADD);
+  EXPECT_EQ(array.markers[0].points.size(), 9U);
+  choice.actions = {9};
+  EXPECT_EQ(ChoiceMarkers(choice, spec, test::MakeState()).markers[0].points.size(), 36U);
+  choice.step = 3;
+  EXPECT_EQ(ChoiceMarkers(choice, spec, test::MakeState()).markers[0].action, Marker::DELETE);
+  choice = test::MakeChoice();
+  choice.actions.clear();
+  EXPECT_EQ(ChoiceMarkers(choice, spec, test::MakeState()).markers[0].action, Marker::DELETE);
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "service_caller.h"
+
+#include <aquafarm_msgs/Pause.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::Pause;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kLimit_s = 0.5;
+
+bool AnswerLate(Pause::Request&, Pause::Response&) {
+  ros::WallDuration(2.0).sleep();
+  return true;
+}
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+class ServiceCallerTest : public testing::Test {
+ protected:
+  ServiceCallerTest() : spinner_(1) { spinner_.start(); }
+
+  // Calls a service and waits for its line; the call itself must return at once.
+  std::string LineOf(const std::string& name) {
+    std::mutex mutex;
+    std::condition_variable came;
+    std::string line;
+    ServiceCaller caller(node_, kLimit_s, [&](const std::string& text) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      line = text;
+      came.notify_all();
+    });
+    const auto start = Clock::now();
+    caller.Call<Pause>(name, Pause(), [](const Pause&) { return std::string("done"); });
+    EXPECT_LT(SecondsSince(start), 0.1);
+    std::unique_lock<std::mutex> lock(mutex);
+    came.wait_for(lock, std::chrono::seconds(10), [&] { return !line.empty(); });
+    return line;
+  }
+
+  ros::NodeHandle node_;
+  ros::AsyncSpinner spinner_;
+};
+
+TEST_F(ServiceCallerTest, TellsTheAnswerOrWhatWasWrong) {
+  bool ok = true;
+  const auto server = node_.advertiseService<Pause::Request, Pause::Response>(
+      "pause", [&ok](Pause::Request&, Pause::Response& response) {
+        response.ok = ok;
+        response.message = "not now";
+        return true;
+      });
+  EXPECT_EQ(LineOf("pause"), "done");
+  ok = false;
+  EXPECT_EQ(LineOf("pause"), "pause: not now");
+}
+
+TEST_F(ServiceCallerTest, SaysThatThereIsNoSuchService) {
+  EXPECT_EQ(LineOf("nothing"), "/nothing: there is no such service; does a ranch run?");
+}
+
+TEST_F(ServiceCallerTest, CutsOffACallWithoutAnAnswer) {
+  const auto server = node_.advertiseService("slow", AnswerLate);
+  const auto start = Clock::now();
+  EXPECT_EQ(LineOf("slow"), "/slow: no answer within 0.5 s");
+  EXPECT_LT(SecondsSince(start), 1.5);
+}
+
+TEST_F(ServiceCallerTest, AWindowThatIsClosedDoesNotWaitForAnAnswer) {
+  const auto server = node_.advertiseService("slow", AnswerLate);
+  const auto start = Clock::now();
+  {
+    ServiceCaller caller(node_, 60.0, [](const std::string&) {});
+    caller.Call<Pause>("slow", Pause(), [](const Pause&) { return std::string("done"); });
+    ros::WallDuration(0.2).sleep();
+  }
+  EXPECT_LT(SecondsSince(start), 1.5);
+}
+
+}  // namespace
+}  // namespace aquafarm_viz
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "service_caller_test");
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,107 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""What keeping every step of every episode (record:=all) costs a single-ship training through ROS.
+
+Plays pairs of trainings, one without and one with, alternately, so that both meet the same load of
+the machine, and prints `metric value unit` lines: medians of each kind, and of the ratio within
+pairs. Needs a built workspace in the environment; starts a master of its own."""
+import argparse
+import os
+import pathlib
+import re
+import socket
+import statistics
+import subprocess
+import tempfile
+import time
+
+import roslib.packages
+
+LIMIT_S = 300.0
+
+
+def program(package, name):
+    """Path of an executable of a package."""
+    found = roslib.packages.find_node(package, name)
+    if not found:
+        raise SystemExit(f"bench_recording: {package} has no {name}; run ./aquafarm build")
+    return found[0]
+
+
+def free_port():
+    """A port that nobody listens on."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+def cpu_s(process):
+    """Waits for the end of a process and returns the processor seconds that it took."""
+    _, _, usage = os.wait4(process.pid, 0)
+    process.returncode = 0
+    return usage.ru_utime + usage.ru_stime
+
+
+def train(folder, keep, steps, environment):
+    """One training; returns wall seconds of its steps and processor seconds of the farm and learner.
+
+    What the recorder has left to write when the training ends is in its processor time."""
+    namespace = f"/bench_{folder.name}"
+    common = {"env": environment, "stderr": subprocess.DEVNULL}
+    sim = subprocess.Popen(
+        [program("aquafarm_sim", "sim_node"), f"__ns:={namespace}", "_scenario:=paper",
+         "_publish_clock:=false", f"_keep:={keep}", f"_keep_dir:={folder / 'bags'}"],
+        stdout=subprocess.DEVNULL, **common)
+    learner = subprocess.Popen(
+        [program("aquafarm_agents", "train_node"), f"__ns:={namespace}", f"_steps:={steps}",
+         "_evaluation_episodes:=0", f"_run_dir:={folder / 'run'}"],
+        stdout=subprocess.PIPE, text=True, **common)
+    words = learner.stdout.read()
+    found = re.search(r"steps, [\d,]+ episodes in (?:(\d+) min )?([\d.]+) s", words)
+    if found is None:
+        raise SystemExit(f"bench_recording: the training failed:\n{words}")
+    wall = 60.0 * float(found[1] or 0) + float(found[2])
+    sim.terminate()
+    cpu = cpu_s(learner) + cpu_s(sim)
+    return wall, cpu, len(list((folder / "bags").glob("*.bag")))
+
+
+def main():
+    """Starts a master, plays the pairs, tells."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--pairs", type=int, default=9)
+    parser.add_argument("--steps", type=int, default=60000)
+    arguments = parser.parse_args()
+    port = free_port()
+    environment = dict(os.environ, ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1")
+    master = subprocess.Popen(["roscore", "-p", str(port)], env=environment,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    results = {"none": [], "all": []}
+    bags = 0
+    try:
+        time.sleep(3.0)
+        with tempfile.TemporaryDirectory(prefix="aquafarm_bench_") as top:
+            for pair in range(arguments.pairs):
+                order = ("none", "all") if pair % 2 == 0 else ("all", "none")
+                for keep in order:
+                    folder = pathlib.Path(top) / f"{keep}_{pair}"
+                    folder.mkdir()
+                    *result, kept = train(folder, keep, arguments.steps, environment)
+                    results[keep].append(result)
+                    bags += kept
+    finally:
+        master.terminate()
+        master.wait(LIMIT_S)
+    for index, what in enumerate(("wall", "cpu")):
+        without = [result[index] for result in results["none"]]
+        with_all = [result[index] for result in results["all"]]
+        print(f"record_none_{what} {statistics.median(without):.2f} s")
+        print(f"record_all_{what} {statistics.median(with_all):.2f} s")
+        ratios = [b / a for a, b in zip(without, with_all)]
+        print(f"record_all_{what}_slowdown {100 * (statistics.median(ratios) - 1):.1f} %")
+    print(f"record_all_bags {bags / arguments.pairs:.0f} per training")
+    print(f"load_average {os.getloadavg()[0]:.1f} processes")
+
+
+if __name__ == "__main__":
+    main()

@@ -89,6 +89,14 @@ class LaunchFilesTest(unittest.TestCase):
                         self.assertTrue(roslib.packages.find_node(node.package, node.type),
                                         f"{node.package}/{node.type}")
 
+    def test_kept_episodes_lie_in_the_folder_of_the_run(self):
+        for arguments in (["record:=best"], ["record:=best", "run_dir:=/tmp/a run"]):
+            parameters = load(LAUNCH / "train.launch", arguments).params
+            value = {name: parameter.value for name, parameter in parameters.items()}
+            self.assertEqual(value["/aquafarm/train/run_dir"] + "/episodes",
+                             value["/aquafarm/sim/keep_dir"])
+        self.assertNotIn("/aquafarm/train/run_dir", load(LAUNCH / "train.launch", []).params)
+
     def test_replay_runs_no_farm(self):
         nodes = load(LAUNCH / "replay.launch", ["bag:=/tmp/none.bag"]).nodes
         self.assertEqual({("aquafarm_viz", "viz_node"), ("rviz", "rviz"),

@@ -11,6 +11,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import cv2
@@ -102,6 +103,32 @@ class ReportTest(unittest.TestCase):
     def test_the_last_line_is_its_address(self):
         self.assertEqual(f"report     {(self.trained / 'report.html').as_uri()}",
                          self.words.splitlines()[-1])
+
+    def test_it_is_opened_where_there_is_a_display_and_a_missing_browser_is_no_failure(self):
+        browser = self.folder / "bin" / "xdg-open"
+        opened = self.folder / "opened"
+        browser.parent.mkdir()
+        browser.write_text(f"#!/bin/sh\necho \"$1\" >{opened}.part && mv {opened}.part {opened}\n")
+        browser.chmod(0o755)
+        page = self.folder / "opened.html"
+        arguments = ("aquafarm_bringup", "make_report", "--open", "-o", page, "--episodes", 2,
+                     self.trained)
+        environment = dict(os.environ, PATH=f"{browser.parent}:{os.environ['PATH']}")
+        environment.pop("DISPLAY", None)
+        self.assertEqual(0, run(*arguments, env=environment)[0])
+        self.assertFalse(opened.exists())  # there is no display
+        environment["DISPLAY"] = ":7"
+        self.assertEqual(0, run(*arguments, env=environment)[0])
+        end = time.monotonic() + 10
+        while not opened.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        self.assertEqual(f"{page}\n", opened.read_text())
+        environment["PATH"] = ":".join(
+            folder for folder in os.environ["PATH"].split(":")
+            if not pathlib.Path(folder, "xdg-open").exists())
+        code, words = run(*arguments, env=environment)
+        self.assertEqual(0, code, words)
+        self.assertIn("make_report: not opened: ", words)
 
     def test_it_loads_nothing_from_anywhere(self):
         for address in self.page.addresses:

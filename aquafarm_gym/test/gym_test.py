@@ -163,7 +163,11 @@ class GymTest(unittest.TestCase):
             self.assertFalse(rewards[before].any() or (terminated | truncated)[before].any())
             before = terminated | truncated
             self.assertFalse((terminated if limited else truncated).any())
-            reasons = {one["farm"]: one["reason"] for one in infos.get("summaries", ())}
+            over = infos.get("_summary", np.zeros(env.num_envs, bool))
+            for key in ("legal", "started", "summary"):
+                self.assertEqual(key in infos, f"_{key}" in infos)
+            reasons = {i: infos["summary"][i]["reason"] for i in np.flatnonzero(over)}
+            self.assertEqual(list(reasons), [infos["summary"][i]["farm"] for i in reasons])
             self.assertEqual(sorted(reasons), list(np.flatnonzero(before)))
             self.assertTrue(all((reason == limit) == limited for reason in reasons.values()))
             ended += len(reasons)
@@ -175,7 +179,7 @@ class GymTest(unittest.TestCase):
         played = []
         for i in range(6000):
             played += [(one["seed"], one["episode"])
-                       for one in env.step(chance.integers(0, 10, 4))[4].get("summaries", ())]
+                       for one in env.step(chance.integers(0, 10, 4))[4].get("summary", ()) if one]
             if i % 1999 == 1998:
                 env.reset()
         self.assertGreater(len(played), 8)

@@ -61,13 +61,16 @@ EpisodeRecorder::~EpisodeRecorder() {
   thread_.join();
 }
 
-void EpisodeRecorder::OnStart(const aquafarm::Farm& farm, std::int32_t number) {
+void EpisodeRecorder::OnStart(const aquafarm::Farm& farm, std::int32_t number,
+                              const MessageContext& context) {
   const auto i = static_cast<std::size_t>(number);
   if (tapes_.size() <= i) tapes_.resize(i + 1);
   EpisodeTape tape;
   tape.farm = number;
   tape.seed = farm.seed();
   tape.episode = farm.episode();
+  tape.paced = context.paced && number == 0;  // the others know joint steps alone
+  tape.rate_hz = context.rate_hz;
   tape.first_step = farm.step();
   if (farm.step() != 0) tape.changes.push_back({farm.step(), farm.Save()});
   tapes_[i] = std::move(tape);

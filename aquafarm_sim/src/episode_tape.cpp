@@ -25,9 +25,11 @@ constexpr std::uint32_t kChunkBytes = 256 * 1024;  // what a kill may cost at mo
 /// Writes one episode as it is played.
 class Writer {
  public:
-  Writer(rosbag::Bag& bag, const BagFormat& format) : bag_(bag), format_(format) {
+  Writer(rosbag::Bag& bag, const EpisodeTape& tape, const BagFormat& format)
+      : bag_(bag), format_(format) {
     context_.map_frame = format.map_frame;
-    context_.rate_hz = format.rate_hz;
+    context_.paced = tape.paced;
+    context_.rate_hz = tape.rate_hz > 0.0 ? tape.rate_hz : format.rate_hz;
   }
 
   void Start(const Farm& farm) {
@@ -67,7 +69,7 @@ class Writer {
  private:
   // A bag knows no time 0, so an episode begins one period after it.
   void SetTime(std::int32_t step) {
-    const ros::Time stamp(static_cast<double>(step + 1) / format_.rate_hz);
+    const ros::Time stamp(static_cast<double>(step + 1) / context_.rate_hz);
     if (stamp != context_.stamp) order_ = 0;
     context_.stamp = stamp;
   }
@@ -149,7 +151,7 @@ void WriteEpisodeBag(const std::shared_ptr<const aquafarm::Scenario>& scenario,
       bag->setCompression(rosbag::compression::LZ4);
       bag->setChunkThreshold(kChunkBytes);
       Farm farm(scenario);
-      Writer writer(*bag, format);
+      Writer writer(*bag, tape, format);
       Play(farm, tape, writer);
       writer.End(tape);
       bag->close();

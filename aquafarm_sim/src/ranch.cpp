@@ -50,7 +50,8 @@ void Ranch::SetRecorder(RanchRecorder* recorder) {
 
 void Ranch::RecordStarts() {
   if (recorder_ == nullptr) return;
-  for (std::int32_t i = 0; i < batch_->farms(); ++i) recorder_->OnStart(batch_->farm(i), i);
+  for (std::int32_t i = 0; i < batch_->farms(); ++i)
+    recorder_->OnStart(batch_->farm(i), i, context_);
 }
 
 // --- commands of single ships -------------------------------------------------------------------
@@ -315,7 +316,7 @@ void Ranch::Tick() {
     if (ending_ || context_.paused) return;
     if (batch_->farm(0).over()) {
       batch_->StartNext(0);
-      if (recorder_ != nullptr) recorder_->OnStart(batch_->farm(0), 0);
+      if (recorder_ != nullptr) recorder_->OnStart(batch_->farm(0), 0, context_);
       DropCommands();
       EpisodeBegan();
       return;

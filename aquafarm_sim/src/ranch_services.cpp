@@ -160,7 +160,7 @@ void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
   constexpr bool kByJointStep = true;
   for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
     if (result.started[static_cast<std::size_t>(i)] != 0) {
-      recorder_->OnStart(batch_->farm(i), i);
+      recorder_->OnStart(batch_->farm(i), i, context_);
     } else {
       recorder_->OnStep(batch_->farm(i), i, actions + std::ptrdiff_t{i} * agents_);
     }

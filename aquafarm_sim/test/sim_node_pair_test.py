@@ -10,6 +10,7 @@ import unittest
 import rospy
 import rostest
 from aquafarm_msgs.msg import FarmState, Outcome
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from sim_client import call, message, state, states  # noqa: E402
@@ -54,6 +55,23 @@ class SimNodePairTest(unittest.TestCase):
         self.assertEqual(Outcome.TIMEOUT, result.code, result.message)
         self.assertLess(time.monotonic() - start, 5.0)
         self.assertEqual(before, state().hash)
+
+    def test_a_ship_that_waited_in_vain_is_a_warning_in_the_diagnostics(self):
+        warnings = []
+
+        def take(array):
+            status = array.status[0]
+            if status.level == DiagnosticStatus.WARN:
+                warnings.append(status.message)
+
+        subscriber = rospy.Subscriber("/diagnostics", DiagnosticArray, take)
+        while subscriber.get_num_connections() == 0:
+            rospy.rostime.wallsleep(0.02)
+        self.assertEqual(Outcome.TIMEOUT, call("ship_0/move", direction=0).result.code)
+        end = time.monotonic() + 10
+        while not warnings and time.monotonic() < end:
+            rospy.rostime.wallsleep(0.05)
+        self.assertEqual(["a ship waited in vain for the others"], warnings[:1])
 
     def test_waiting_commands_keep_nobody_else_waiting(self):
         waiting = [Caller(0, HOLD, token=i + 1) for i in range(20)]

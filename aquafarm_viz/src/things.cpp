@@ -151,6 +151,7 @@ void DrawRoutes(cv::Mat& map, const FarmState& state, const Wake& route, const L
     const ShipWake* way = ship.visible ? route.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
+      if (Wake::IsGap(way->places[i - 1], way->places[i])) continue;
       const double share = double(i) / double(way->places.size());
       const Rgb color =
           share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share) : Mix(kMiddle, kLast, 2.0 * share - 1.0);

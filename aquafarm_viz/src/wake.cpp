@@ -23,14 +23,15 @@ void Wake::Update(const aquafarm_msgs::FarmState& state) {
     if (!wake.places.empty()) {
       const cv::Point last = wake.places.back();
       if (last == place) continue;
-      if (std::abs(double(last.x) - place.x) > kMaxJump ||
-          std::abs(double(last.y) - place.y) > kMaxJump) {
-        wake.places.clear();
-      }
+      if (IsGap(last, place) && length_ < kWhole) wake.places.clear();
     }
     wake.places.push_back(place);
     if (wake.places.size() > length_) wake.places.pop_front();
   }
+}
+
+bool Wake::IsGap(cv::Point from, cv::Point to) {
+  return std::abs(double(from.x) - to.x) > kMaxJump || std::abs(double(from.y) - to.y) > kMaxJump;
 }
 
 const ShipWake* Wake::Find(std::int32_t ship) const {

@@ -78,5 +78,21 @@ TEST(Wake, ForgetsAShipOutOfSight) {
   EXPECT_EQ(wake.Find(0), nullptr);
 }
 
+TEST(Wake, ARouteGoesOnWhereStatesWereMissedAndAWakeBeginsAnew) {
+  Wake wake;
+  Wake route(Wake::kWhole);
+  auto state = test::MakeState();
+  for (const int x : {1, 2, 3, 12, 13}) {
+    state.ships.front().x = x;
+    ++state.step;
+    wake.Update(state);
+    route.Update(state);
+  }
+  EXPECT_EQ(wake.Find(0)->places.size(), 2U);
+  ASSERT_EQ(route.Find(0)->places.size(), 5U);
+  EXPECT_TRUE(Wake::IsGap(route.Find(0)->places[2], route.Find(0)->places[3]));
+  EXPECT_FALSE(Wake::IsGap(route.Find(0)->places[3], route.Find(0)->places[4]));
+}
+
 }  // namespace
 }  // namespace aquafarm_viz

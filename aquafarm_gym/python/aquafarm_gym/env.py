@@ -111,7 +111,8 @@ class FarmVectorEnv(gymnasium.vector.VectorEnv):
     A farm whose episode is over starts its next one in the next step, whose action it ignores.
     With copy=False observations and rewards are the arrays that the farms write, overwritten by
     the next step. infos holds `legal` (bits, uint16 [N]; spaces.action_mask unfolds them) and
-    `started`; `summaries` besides where episodes are over.
+    `started`, and `summary` where episodes are over; each with its mask `_legal`, `_started`,
+    `_summary` [N], as Gymnasium's vector environments have it.
     """
 
     metadata = {"render_modes": []}
@@ -133,6 +134,8 @@ class FarmVectorEnv(gymnasium.vector.VectorEnv):
         self._rewards = buffers["rewards"][:, 0]
         self._reasons, self._started = buffers["reasons"], buffers["started"].view(bool)
         self._legal = buffers["legal"][:, 0]
+        self._everywhere = np.ones(self.num_envs, bool)
+        self._everywhere.flags.writeable = False
         self._copy = copy
         self._actions = np.zeros((self.num_envs, 1), np.uint8)
         self._episodes = Episodes()
@@ -168,7 +171,11 @@ class FarmVectorEnv(gymnasium.vector.VectorEnv):
         return array.copy() if self._copy else array
 
     def _infos(self):
-        infos = {"legal": self._out(self._legal), "started": self._out(self._started)}
+        infos = {"legal": self._out(self._legal), "_legal": self._everywhere,
+                 "started": self._out(self._started), "_started": self._everywhere}
         if self._reasons.any():
-            infos["summaries"] = self.farms.finished()
+            over = self._reasons != 0
+            infos["summary"] = np.full(self.num_envs, None)
+            infos["summary"][over] = self.farms.finished()  # by farm
+            infos["_summary"] = over
         return infos

@@ -46,7 +46,8 @@ class EpisodeRecorder final : public RanchRecorder {
   /// Writes what is left first.
   ~EpisodeRecorder() override;
 
-  void OnStart(const aquafarm::Farm& farm, std::int32_t number) override;
+  void OnStart(const aquafarm::Farm& farm, std::int32_t number,
+               const MessageContext& context) override;
   /// Waits while more is left to write than the limits say, but no longer than they say.
   void OnStep(const aquafarm::Farm& farm, std::int32_t number,
               const std::uint8_t* actions) override;

@@ -29,6 +29,8 @@ struct EpisodeTape {
   std::int32_t farm{};
   std::uint64_t seed{};
   std::uint64_t episode{};
+  bool paced{};                       ///< when it began
+  double rate_hz{};                   ///< then; 0: the format's
   std::int32_t first_step{};          ///< steps taken before the tape began: a loaded episode's
   std::vector<std::uint8_t> actions;  ///< [steps, agents]
   std::vector<Change> changes;        ///< by step
@@ -39,7 +41,7 @@ struct EpisodeTape {
 struct BagFormat {
   std::string ns;  ///< of the ranch's topics, with the slash after it
   std::string map_frame{"map"};
-  double rate_hz{10.0};  ///< steps a second of the bag's clock
+  double rate_hz{10.0};  ///< steps a second of the bag's clock, where the tape has none of its own
   std::int32_t farms{1};
 };
 

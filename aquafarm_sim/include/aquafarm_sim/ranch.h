@@ -109,7 +109,9 @@ class RanchRecorder {
  public:
   virtual ~RanchRecorder() = default;
   /// Farm `number` has begun an episode, or goes on with a loaded one.
-  virtual void OnStart(const aquafarm::Farm& farm, std::int32_t number) = 0;
+  /// @param context of the ranch then: its pace and rate
+  virtual void OnStart(const aquafarm::Farm& farm, std::int32_t number,
+                       const MessageContext& context) = 0;
   /// It has taken a step. @param actions [agents]
   virtual void OnStep(const aquafarm::Farm& farm, std::int32_t number,
                       const std::uint8_t* actions) = 0;

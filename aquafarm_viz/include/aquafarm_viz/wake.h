@@ -30,6 +30,10 @@ class Wake {
   /// Takes the next state in; another episode or an earlier step starts anew.
   void Update(const aquafarm_msgs::FarmState& state);
 
+  /// Whether states were missed between two places. A wake begins anew there; a route goes on, and
+  /// is drawn without that piece.
+  static bool IsGap(cv::Point from, cv::Point to);
+
   /// The way of a ship; nullptr for one never seen.
   const ShipWake* Find(std::int32_t ship) const;
 

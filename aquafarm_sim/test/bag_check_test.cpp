@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What verify_bag finds in bags that were changed.
+#include "aquafarm_sim/bag_check.h"
+
+#include <aquafarm_msgs/EpisodeSummary.h>
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/SavedState.h>
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "aquafarm/check.h"
+#include "aquafarm/rng.h"
+#include "aquafarm/scenario_yaml.h"
+#include "aquafarm_sim/episode_recorder.h"
+#include "episode_bag_fixture.h"
+
+namespace aquafarm_sim::test {
+namespace {
+
+TEST_F(EpisodeBag, ChangesFromOutsideAreCountedAndHideNoMissingStep) {
+  const std::string whole = StormBag();
+  const BagCheck check = CheckBag(whole, "");
+  EXPECT_EQ("", check.difference);
+  EXPECT_EQ(", changed from outside at step 10", ChangesInWords(check));
+  int tenth = 0;
+  const std::string gap = Changed(whole, true, [&tenth](FarmSpec*, FarmState* state, auto*) {
+    if (state == nullptr || state->step < 5 || state->step > 10) return true;
+    return state->step == 10 && ++tenth == 2;  // that after the change
+  });
+  EXPECT_EQ("episode 0 step 10: steps 5 to 10 are missing", CheckBag(gap, "").difference);
+  tenth = 0;
+  const std::string back = Changed(whole, true, [&tenth](FarmSpec*, FarmState* state, auto*) {
+    if (state != nullptr && state->step == 10 && ++tenth == 1) state->step = 11;
+    return true;
+  });
+  EXPECT_EQ("episode 0 step 11: step 10 is missing", CheckBag(back, "").difference);
+}
+
+TEST_F(EpisodeBag, EverySummaryBelongsToItsEpisodeAndEveryEndHasOne) {
+  const std::string bag = OneBag();
+  const auto difference = [&](auto change) {
+    return CheckBag(Changed(bag, true, change), "").difference;
+  };
+  const std::string missing = "episode 0 step 40: the episode is over, but its summary is missing";
+  EXPECT_EQ(missing, difference([](FarmSpec*, FarmState*, EpisodeSummary* summary) {
+              if (summary != nullptr) summary->seed += 1;
+              return true;
+            }));
+  EXPECT_EQ(missing, difference([](FarmSpec*, FarmState*, EpisodeSummary* summary) {
+              if (summary != nullptr) summary->episode += 1;
+              return true;
+            }));
+  EXPECT_EQ(missing, difference([](FarmSpec*, FarmState*, EpisodeSummary* summary) {
+              return summary == nullptr;
+            }));
+  EXPECT_EQ("episode 7 of seed 5: a summary that no states belong to",
+            difference([](FarmSpec*, FarmState* state, EpisodeSummary* summary) {
+              if (summary != nullptr) summary->episode = 7;
+              return state == nullptr || state->step < 20;  // not over
+            }));
+  EXPECT_EQ("episode 0 step 5: state.observer: got 0, simulated -1",
+            difference([](FarmSpec*, FarmState* state, auto*) {
+              if (state != nullptr && state->step == 5) state->observer = 0;
+              return true;
+            }));
+}
+
+TEST_F(EpisodeBag, ASecondSpecThatDiffersIsFound) {
+  const std::string path = Changed(OneBag(), true, [](auto*, auto*, auto*) { return true; });
+  FarmSpec spec;
+  std::string topic;
+  {
+    rosbag::Bag bag(path);
+    for (const auto& message : rosbag::View(bag)) {
+      if (const auto one = message.instantiate<FarmSpec>()) spec = *one, topic = message.getTopic();
+    }
+  }
+  const auto append = [&] {
+    rosbag::Bag bag(path, rosbag::bagmode::Append);
+    bag.write(topic, ros::Time(100), spec);
+  };
+  append();
+  EXPECT_EQ("", CheckBag(path, "").difference);
+  spec.rewards.step = -2.0F;
+  append();
+  EXPECT_EQ("episode 0 of seed 5: two specs that differ", CheckBag(path, "").difference);
+}
+
+// The tape of an episode in which all hold.
+TEST_F(EpisodeBag, AMissingStepIsNamed) {
+  const std::string whole = OneBag();
+  const std::string bag = Changed(whole, true, [](FarmSpec*, FarmState* state, auto*) {
+    return state == nullptr || state->step != 7;
+  });
+  EXPECT_EQ("episode 0 step 8: step 7 is missing", CheckBag(bag, "").difference);
+  const std::string late = Changed(whole, true, [](FarmSpec*, FarmState* state, auto*) {
+    return state == nullptr || state->step < 30;
+  });
+  EXPECT_EQ("episode 0 step 40: missing: the bag's states end with step 29",
+            CheckBag(late, "").difference);
+}
+
+TEST_F(EpisodeBag, AnEditedRewardIsNamedWithBothNumbers) {
+  const std::string bag = Changed(OneBag(), true, [](FarmSpec*, FarmState* state, auto*) {
+    if (state != nullptr && state->step == 12) state->ships[0].reward = 1000.0F;
+    return true;
+  });
+  const std::string difference = CheckBag(bag, "").difference;
+  EXPECT_EQ(0U, difference.find("episode 0 step 12: state.ships[0].reward: got 1000, simulated -"))
+      << difference;
+}
+
+TEST_F(EpisodeBag, AnEditedSummarySpecActionOrLastBitIsFound) {
+  const std::string bag = OneBag();
+  const auto difference = [&](auto change) {
+    return CheckBag(Changed(bag, true, change), "").difference;
+  };
+  EXPECT_EQ("episode 0 step 40: episode.success: got 1, simulated 0",
+            difference([](FarmSpec*, FarmState*, EpisodeSummary* summary) {
+              if (summary != nullptr) summary->success = 1;
+              return true;
+            }));
+  EXPECT_EQ(0U, difference([](FarmSpec* spec, FarmState*, auto*) {
+                  if (spec != nullptr) spec->rewards.step = -2.0F;
+                  return true;
+                }).find("episode 0 step 0: spec.rewards.step: got -2, simulated -1"));
+  EXPECT_NE("", difference([](FarmSpec*, FarmState* state, auto*) {
+              if (state != nullptr && state->step == 3) {
+                state->ships[0].action =
+                    static_cast<std::uint8_t>((state->ships[0].action + 1) % 8);
+              }
+              return true;
+            }));
+  EXPECT_EQ(0U, difference([](FarmSpec*, FarmState* state, auto*) {
+                  if (state != nullptr && state->step == 5) state->hash ^= 1U;
+                  return true;
+                }).find("episode 0 step 5: state.hash: got "));
+  EXPECT_EQ("episode 0 step 5: state.ships[0].action: got 99, expected [0, 10]",
+            difference([](FarmSpec*, FarmState* state, auto*) {
+              if (state != nullptr && state->step == 5) state->ships[0].action = 99;
+              return true;
+            }));
+}
+
+TEST_F(EpisodeBag, AFlippedBitAnywhereInTheRecordingIsFound) {
+  const std::string bag = OneBag();
+  std::ifstream file(bag, std::ios::binary);
+  std::stringstream content;
+  content << file.rdbuf();
+  const std::string bytes = content.str();
+  // The compressed chunk lies behind the file's header of 4 kB; it is most of the rest.
+  const std::size_t begin = 4200;
+  ASSERT_GT(bytes.size(), begin + 2000);
+  for (int i = 0; i < 60; ++i) {
+    std::string flipped = bytes;
+    const std::size_t place = begin + static_cast<std::size_t>(i) * (bytes.size() - begin) / 60;
+    flipped[place] = static_cast<char>(flipped[place] ^ (1 << (i % 8)));
+    const std::string path = folder_ + "/flipped.bag";
+    std::ofstream(path, std::ios::binary) << flipped;
+    bool found = false;
+    try {
+      found = !CheckBag(path, "").difference.empty();
+    } catch (const std::exception&) {
+      found = true;
+    }
+    EXPECT_TRUE(found) << "byte " << place << " bit " << i % 8 << " of " << bytes.size();
+  }
+}
+
+TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
+  const std::string bag = OneBag();
+  EXPECT_NE(std::string::npos, Refusal(folder_ + "/none.bag").find("damaged or no bag"));
+  std::ofstream(folder_ + "/text.bag") << "no bag";
+  EXPECT_NE(std::string::npos, Refusal(folder_ + "/text.bag").find("damaged or no bag"));
+  EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
+                                 return spec == nullptr;
+                               })).find("no topic spec, so nothing says what was played"));
+  EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
+                                 if (spec != nullptr) spec->version = "9.9.9";
+                                 return true;
+                               })).find("recorded by version 9.9.9, this is "));
+  EXPECT_NE(std::string::npos, Refusal(bag, "/lake").find("no ranch /lake/, there is: /ranch/"));
+  EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
+                                 return spec != nullptr;
+                               })).find("no state follows its spec"));
+}
+
+TEST_F(EpisodeBag, AnEpisodeWithoutItsEndSaysSo) {
+  const std::string bag =
+      Changed(OneBag(), true, [](FarmSpec*, FarmState* state, EpisodeSummary* summary) {
+        return summary == nullptr && (state == nullptr || state->step < 20);
+      });
+  const BagCheck check = CheckBag(bag, "");
+  EXPECT_EQ("", check.difference);
+  EXPECT_EQ(1U, check.unfinished);
+}
+
+}  // namespace
+}  // namespace aquafarm_sim::test

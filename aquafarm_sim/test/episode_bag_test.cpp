@@ -60,8 +60,8 @@ TEST_F(EpisodeBag, SaysThePaceAndRateThatItsEpisodeBeganWith) {
   for (const std::string& path : Bags()) {
     EXPECT_EQ("", CheckBag(path, "").difference);
     rosbag::Bag bag(path);
-    const auto first = rosbag::View(bag, rosbag::TopicQuery("/ranch/state")).begin();
-    rates.push_back(first->instantiate<FarmState>()->rate_hz);
+    rosbag::View view(bag, rosbag::TopicQuery("/ranch/state"));
+    rates.push_back(view.begin()->instantiate<FarmState>()->rate_hz);
   }
   ASSERT_GE(rates.size(), 2U);
   EXPECT_EQ(rates.front(), 10.0);

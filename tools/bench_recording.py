@@ -43,7 +43,7 @@ def cpu_s(process):
 
 
 def train(folder, keep, steps, environment):
-    """One training; returns wall seconds of its steps and processor seconds of the farm and learner.
+    """One training; returns wall seconds of its steps, processor seconds of farm and learner, bags.
 
     What the recorder has left to write when the training ends is in its processor time."""
     namespace = f"/bench_{folder.name}"

@@ -15,7 +15,6 @@
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "aquafarm/agents/best_moves.h"
@@ -25,6 +24,7 @@
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm/version.h"
 #include "aquafarm_agents/values_messages.h"
+#include "aquafarm_sim/bag_ranch.h"
 #include "aquafarm_sim/names.h"
 
 namespace aquafarm_agents {
@@ -198,33 +198,16 @@ class Output {
   bool done_{};
 };
 
-/// Namespace of the ranch in a bag, with the slash after it.
-std::string FindRanch(const rosbag::Bag& bag, const std::string& path, const std::string& ns) {
+/// @throws InputError when the bag's messages are not those of this version
+template <typename Message>
+void CheckMessage(const rosbag::ConnectionInfo& connection, const std::string& path) {
   namespace traits = ros::message_traits;
-  const std::string name = names::kSpec;
-  std::set<std::string> found;
-  rosbag::View view(bag);
-  for (const auto* connection : view.getConnections()) {
-    const bool is_spec = connection->datatype == traits::datatype<FarmSpec>();
-    const bool is_state = connection->datatype == traits::datatype<FarmState>();
-    if ((is_spec && connection->md5sum != traits::md5sum<FarmSpec>()) ||
-        (is_state && connection->md5sum != traits::md5sum<FarmState>())) {
-      throw InputError(path + ": topic " + connection->topic + " has another " +
-                       connection->datatype +
-                       " than this version; use the version that it was recorded by");
-    }
-    const std::string& topic = connection->topic;
-    if (!is_spec || topic.size() < name.size()) continue;
-    found.insert(topic.substr(0, topic.size() - name.size()));
+  if (connection.datatype != traits::datatype<Message>() ||
+      connection.md5sum == traits::md5sum<Message>()) {
+    return;
   }
-  const std::string wanted = ns.empty() || ns.back() == '/' ? ns : ns + "/";
-  if (!wanted.empty() && found.count(wanted) != 0) return wanted;
-  if (wanted.empty() && found.size() == 1) return *found.begin();
-  std::string all;
-  for (const std::string& one : found) all += (all.empty() ? "" : ", ") + one;
-  throw InputError(path + (found.empty()    ? ": no topic spec, so nothing says what was played"
-                           : wanted.empty() ? ": several ranches, choose one with --ns: " + all
-                                            : ": no ranch " + wanted + ", there is: " + all));
+  throw InputError(path + ": topic " + connection.topic + " has another " + connection.datatype +
+                   " than this version; use the version that it was recorded by");
 }
 
 std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& topic,
@@ -343,13 +326,19 @@ BagChoices AskAlong(const std::string& path, const agents::SavedPolicy& policy,
                     const BagPolicyOptions& options) {
   try {
     rosbag::Bag bag(path, rosbag::bagmode::Read);
-    const std::string ranch = FindRanch(bag, path, options.ns);
+    rosbag::View all(bag);
+    for (const auto* connection : all.getConnections()) {
+      CheckMessage<FarmSpec>(*connection, path);
+      CheckMessage<FarmState>(*connection, path);
+      CheckMessage<SavedState>(*connection, path);
+    }
+    const std::string ranch = aquafarm_sim::FindRanch(bag, path, options.ns);
     std::error_code ignored;
     if (!options.output.empty() && fs::equivalent(path, options.output, ignored)) {
       throw InputError(options.output + ": is the bag that is read; expected another file");
     }
     Walk walk(ReadSpecs(bag, ranch + names::kSpec, path), policy, options, ranch, path);
-    for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    for (const rosbag::MessageInstance& message : all) {
       if (!walk.Take(message)) break;
     }
     return walk.End();

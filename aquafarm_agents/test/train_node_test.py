@@ -11,6 +11,7 @@ import unittest
 import rospy
 import rostest
 from aquafarm_msgs.msg import TrainingStatus
+from sensor_msgs.msg import PointCloud2
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import (DATA, Program, newest_checkpoint, program, start_agent,  # noqa: E402
@@ -55,6 +56,22 @@ class TrainNodeTest(unittest.TestCase):
                 ["policy.ckpt", "metrics.csv", "scenario.yaml", "evaluation.csv",
                  "evaluation_random.csv"])
             self.assertIn("success 100.0 %", ros.words())
+
+    def test_whoever_looks_at_its_values_changes_no_bit(self):
+        start_sim(self, self.namespace, TINY)
+        for algorithm, steps in (("q_learning", 1500000), ("dqn", 8000)):
+            clouds = []
+            subscriber = rospy.Subscriber(f"{self.namespace}/values/points", PointCloud2,
+                                          clouds.append)
+            watched = self.train(f"{algorithm}_watched", f"_algorithm:={algorithm}",
+                                 f"_steps:={steps}", "_farms:=8", "_values_period_s:=0.1")
+            self.assertEqual(0, watched.code(), watched.words())
+            subscriber.unregister()
+            self.assertGreater(len(clouds), 1, algorithm)
+            local = self.in_process(f"{algorithm}_alone", "--algorithm", algorithm, "--steps",
+                                    str(steps), "--farms", "8")
+            self.assertEqual(0, local.code(), local.words())
+            self.assert_same_files(f"{algorithm}_watched", f"{algorithm}_alone", ["policy.ckpt"])
 
     def test_killed_and_resumed_it_ends_in_the_same_bits(self):
         start_sim(self, self.namespace, TINY)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A replay can be paused, stepped, paced and sent to a step, beside what another policy would do."""
+"""A replay is paused, stepped, paced and sent to a step, beside what another policy would do."""
 import os
 import pathlib
 import shutil

@@ -54,6 +54,22 @@ class ScriptTest(unittest.TestCase):
             done = run(SCRIPT, "replay", "bag:=day.bag", cwd=folder)
             self.assertEqual(2, done.returncode, done.stdout)
             self.assertIn(f"there is no file {folder}/day.bag", done.stdout)
+            pathlib.Path(folder, "day.bag").touch()
+            done = run(SCRIPT, "replay", "bag:=day.bag", "policy:=runs/x", "paused:=perhaps",
+                       cwd=folder)
+            self.assertEqual(2, done.returncode, done.stdout)
+            self.assertIn("paused: got 'perhaps', expected true or false", done.stdout)
+            done = run(SCRIPT, "replay", "bag:=day.bag", "start_step:=first", cwd=folder)
+            self.assertIn("start_step: got 'first', expected a number", done.stdout)
+
+    def test_a_picture_with_a_policy_wants_the_bag_first(self):
+        done = run(SCRIPT, "render", "-o", "x.png", "--policy", "runs/x")
+        self.assertEqual(2, done.returncode, done.stdout)
+        self.assertIn("render: got '-o', expected the bag first: render BAG -o FILE --policy P",
+                      done.stdout)
+        done = run(SCRIPT, "render", "day.bag", "--policy")
+        self.assertEqual(2, done.returncode, done.stdout)
+        self.assertIn("--policy: got nothing, expected a run folder or checkpoint", done.stdout)
 
     def test_every_verb_has_help(self):
         for verb in ("setup", "build", "train", "evaluate", "sim", "play", "record", "replay",

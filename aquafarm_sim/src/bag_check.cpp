@@ -12,12 +12,12 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm/version.h"
+#include "aquafarm_sim/bag_ranch.h"
 #include "aquafarm_sim/conversions.h"
 #include "aquafarm_sim/message_difference.h"
 #include "aquafarm_sim/names.h"
@@ -299,26 +299,6 @@ void CheckVersions(const std::map<Key, FarmSpec>& specs, const std::string& path
     throw InputError(path + ": recorded by version " + spec.version + ", this is " +
                      aquafarm::kVersion + "; verify it with the version that it was recorded by");
   }
-}
-
-/// Namespace of the ranch in a bag, with the slash after it.
-std::string FindRanch(const rosbag::Bag& bag, const std::string& path, const std::string& ns) {
-  std::set<std::string> found;
-  rosbag::View specs(bag, rosbag::TypeQuery(ros::message_traits::datatype<FarmSpec>()));
-  const std::string name = names::kSpec;
-  for (const auto* connection : specs.getConnections()) {
-    const std::string& topic = connection->topic;
-    const std::size_t end = topic.size() < name.size() ? 0 : topic.size() - name.size();
-    if (topic.substr(end) == name) found.insert(topic.substr(0, end));
-  }
-  const std::string wanted = ns.empty() || ns.back() == '/' ? ns : ns + "/";
-  if (!wanted.empty() && found.count(wanted) != 0) return wanted;
-  if (wanted.empty() && found.size() == 1) return *found.begin();
-  std::string all;
-  for (const std::string& one : found) all += (all.empty() ? "" : ", ") + one;
-  throw InputError(path + (found.empty()    ? ": no topic spec, so nothing says what was played"
-                           : wanted.empty() ? ": several ranches, choose one with --ns: " + all
-                                            : ": no ranch " + wanted + ", there is: " + all));
 }
 
 /// @throws InputError when a connection of this type is described otherwise than the suite does

@@ -164,9 +164,8 @@ agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {
       },
       [&herald, &values](const agents::RunStatus& status) {
         if (status.phase != RunPhase::kEnded) herald.Tell(status);
-        if (status.learner != nullptr && values.Wants()) {
-          values.Offer(status.learner->GreedyPolicy());
-        }
+        if (status.learner == nullptr) return;
+        values.Refresh([&status] { return status.learner->GreedyPolicy(); });
       },
       &stop_requested);
   herald.End(report);

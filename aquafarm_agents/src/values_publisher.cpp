@@ -24,6 +24,7 @@ using aquafarm::agents::Policy;
 constexpr double kCallLimit_s = 2.0;
 constexpr auto kPollPeriod = std::chrono::milliseconds(100);
 constexpr int kRest = 9;  // times as long as it worked
+constexpr int kCopyRest = 49;
 constexpr int kNice = 10;
 
 }  // namespace
@@ -49,10 +50,16 @@ bool ValuesPublisher::IsWatched() const {
   return grid_.getNumSubscribers() > 0 || points_.getNumSubscribers() > 0;
 }
 
-bool ValuesPublisher::Wants() {
-  if (!thread_.joinable() || !IsWatched()) return false;
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return Clock::now() >= due_;
+void ValuesPublisher::Refresh(const std::function<std::unique_ptr<Policy>()>& make) {
+  const auto start = Clock::now();
+  if (!thread_.joinable() || !IsWatched() || start < copy_due_) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (start < due_) return;
+  }
+  Offer(make());
+  const auto end = Clock::now();
+  copy_due_ = end + kCopyRest * (end - start);
 }
 
 void ValuesPublisher::Offer(std::unique_ptr<Policy> policy) {

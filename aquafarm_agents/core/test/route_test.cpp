@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/route.h"
 
+#include <atomic>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "agents_fixture.h"
 #include "aquafarm/agents/planner_policy.h"
 #include "aquafarm/agents/storage.h"
+#include "aquafarm/agents/tabular.h"
 
 namespace aquafarm::agents::test {
 namespace {
@@ -38,6 +42,36 @@ TEST(Route, IsTheEpisodeAndTheBestMoveOfEveryFreeCell) {
   EXPECT_EQ(of(route.at_start, {1, 3}), Action::kSouthEast);
   EXPECT_EQ(of(route.after_pickup, {2, 0}), Action::kDropOff);
   EXPECT_EQ(of(route.after_pickup, {3, 1}), Action::kSouthWest);
+}
+
+TEST(BestMoves, OfATableCarryItsValues) {
+  LocalEnvironment environment(TinyFarm(), {1, kIndexBit, false, 1});
+  QTable table(environment.spec(), -1.0F);
+  for (std::uint32_t state = 0; state < table.states; ++state) {
+    table.values[table.Row(0, state) + 3] = static_cast<float>(state);  // east
+  }
+  GreedyTabularPolicy policy(table, false);
+  const std::uint32_t here = environment.Reset(3, 0).index[0];
+  const Farm& farm = environment.batch().farm(0);
+  const std::vector<BestMove> moves = BestMoves(farm, kIndexBit, policy);
+  ASSERT_EQ(moves.size(), 20U);
+  std::set<float> values;
+  for (const BestMove& move : moves) {
+    EXPECT_EQ(static_cast<Action>(move.action), Action::kEast);
+    if (move.cell == farm.ships()[0].cell) EXPECT_EQ(move.value, static_cast<float>(here));
+    values.insert(move.value);
+  }
+  EXPECT_EQ(values.size(), 20U);  // each cell is a state of its own
+}
+
+TEST(BestMoves, OfAPlannerHaveNoValuesAndMayBeStopped) {
+  LocalEnvironment environment(TinyFarm(), {1, kStatesBit, false, 1});
+  const auto policy = Plan(environment.spec());
+  environment.Reset(3, 0);
+  const Farm& farm = environment.batch().farm(0);
+  EXPECT_TRUE(std::isnan(BestMoves(farm, kStatesBit, *policy).front().value));
+  const std::atomic<bool> stop{true};
+  EXPECT_TRUE(BestMoves(farm, kStatesBit, *policy, &stop).empty());
 }
 
 using RouteFile = FolderTest;

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -27,8 +28,9 @@ class ValuesPublisher {
   ValuesPublisher(const ValuesPublisher&) = delete;
   ValuesPublisher& operator=(const ValuesPublisher&) = delete;
 
-  /// Whether a newer policy would be looked at soon; makes learners copy theirs only then.
-  bool Wants();
+  /// Takes a newer policy when it would be looked at soon. Learners copy theirs for it, so that is
+  /// asked for no more often than to take a fiftieth of the caller's time.
+  void Refresh(const std::function<std::unique_ptr<aquafarm::agents::Policy>()>& make);
 
   /// Takes a policy of its own from now on. One that knows the whole farm (a planner) or looks at
   /// nothing (random) holds no values and is left aside.
@@ -46,6 +48,7 @@ class ValuesPublisher {
   ros::Publisher points_;
   std::unique_ptr<aquafarm::FarmBatch> farms_;  // as the sim node's; only the thread touches them
   std::string frame_;
+  Clock::time_point copy_due_;  // only the caller of Refresh touches it
 
   std::mutex mutex_;  // guards the rest
   std::condition_variable changed_;

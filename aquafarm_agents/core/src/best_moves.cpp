@@ -39,20 +39,25 @@ std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy
   const std::string state = farm.Save();
   std::vector<BestMove> moves;
   std::vector<std::uint8_t> actions;
+  std::unique_ptr<FarmBatch> farms;  // both made again only for the last, smaller part
+  std::unique_ptr<LocalEnvironment> environment;
   while (moves.size() < cells.size() && (stop == nullptr || !*stop)) {
     const std::size_t first = moves.size();
-    const std::size_t count = std::min(kCellsAtOnce, cells.size() - first);
-    FarmBatch farms(scenario, static_cast<std::int32_t>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      Farm& one = farms.farm(static_cast<std::int32_t>(i));
-      one.Load(state);
-      one.PlaceShip(0, cells[first + i]);
+    const auto count = static_cast<std::int32_t>(std::min(kCellsAtOnce, cells.size() - first));
+    if (farms == nullptr || farms->farms() != count) {
+      farms = std::make_unique<FarmBatch>(scenario, count);
+      environment = std::make_unique<LocalEnvironment>(
+          scenario, EnvironmentOptions{count, encodings, false, 1});
     }
-    LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
-    policy.Begin(farm.seed(), farms.farms());
-    policy.Act(environment.Load(farms.Save()), actions);
-    const auto agents = static_cast<std::size_t>(environment.spec().agents);
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::int32_t i = 0; i < count; ++i) {
+      Farm& one = farms->farm(i);
+      one.Load(state);
+      one.PlaceShip(0, cells[first + static_cast<std::size_t>(i)]);
+    }
+    policy.Begin(farm.seed(), count);
+    policy.Act(environment->Load(farms->Save()), actions);
+    const auto agents = static_cast<std::size_t>(environment->spec().agents);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
       BestMove move{cells[first + i], actions[i * agents]};
       if (!policy.values().empty()) move.value = policy.values()[i * agents];
       moves.push_back(move);

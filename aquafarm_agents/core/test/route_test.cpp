@@ -58,7 +58,9 @@ TEST(BestMoves, OfATableCarryItsValues) {
   std::set<float> values;
   for (const BestMove& move : moves) {
     EXPECT_EQ(static_cast<Action>(move.action), Action::kEast);
-    if (move.cell == farm.ships()[0].cell) EXPECT_EQ(move.value, static_cast<float>(here));
+    if (move.cell == farm.ships()[0].cell) {
+      EXPECT_EQ(move.value, static_cast<float>(here));
+    }
     values.insert(move.value);
   }
   EXPECT_EQ(values.size(), 20U);  // each cell is a state of its own

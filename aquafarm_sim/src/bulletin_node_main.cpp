@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Watches a folder for bulletins and tells the ranch of each: a storm's track, forecast and rings
-// become a disaster of the running episode through set_disaster.
-#include <aquafarm_msgs/FarmSpec.h>
-#include <aquafarm_msgs/FarmState.h>
+// go through set_disaster as they are, and the ranch makes a disaster of them.
 #include <aquafarm_msgs/SetDisaster.h>
 #include <ros/ros.h>
 
 #include <chrono>
 #include <future>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <thread>
 
-#include "aquafarm/hazard_disaster.h"
+#include "aquafarm/check.h"
 #include "aquafarm/hazard_file.h"
-#include "aquafarm/scenario_yaml.h"
 #include "aquafarm_sim/bulletin_folder.h"
 #include "aquafarm_sim/conversions.h"
 #include "aquafarm_sim/names.h"
@@ -65,24 +61,10 @@ BulletinParams ReadParams() {
 
 class BulletinNode {
  public:
-  explicit BulletinNode(const BulletinParams& params) : params_(params), folder_(params.folder) {
-    spec_ = node_.subscribe<aquafarm_msgs::FarmSpec>(
-        names::kSpec, 1, [this](const aquafarm_msgs::FarmSpec::ConstPtr& message) {
-          try {
-            scenario_ = aquafarm::ParseScenario(message->scenario_yaml, "spec");
-          } catch (const aquafarm::InputError& error) {
-            ROS_ERROR("%s", error.what());
-          }
-        });
-    state_ = node_.subscribe<aquafarm_msgs::FarmState>(
-        names::kState, 1, [this](const aquafarm_msgs::FarmState::ConstPtr& message) {
-          step_ = static_cast<std::int32_t>(message->step);
-        });
-  }
+  explicit BulletinNode(const BulletinParams& params) : params_(params), folder_(params.folder) {}
 
-  /// Sends what is new in the folder, once the ranch and its step are known.
+  /// Sends what is new in the folder.
   void Look() {
-    if (!scenario_ || !step_) return;
     try {
       for (const std::string& path : folder_.New()) {
         TrySend(path);
@@ -113,7 +95,7 @@ class BulletinNode {
     const auto call = std::make_shared<Call>();
     call->message.request.farm = -1;
     call->message.request.id = params_.id;
-    call->message.request.info = ToMsg(aquafarm::ToDisaster(storm, *scenario_, *step_));
+    call->message.request.storm = ToMsg(storm);
     // Only a persistent client has a connection that shutdown() can drop.
     call->client = node_.serviceClient<aquafarm_msgs::SetDisaster>(names::kSetDisaster, true);
     std::future<bool> answer = call->answered.get_future();
@@ -134,10 +116,6 @@ class BulletinNode {
   const BulletinParams params_;
   BulletinFolder folder_;
   ros::NodeHandle node_;
-  ros::Subscriber spec_;
-  ros::Subscriber state_;
-  std::optional<aquafarm::Scenario> scenario_;
-  std::optional<std::int32_t> step_;
 };
 
 int Run() {

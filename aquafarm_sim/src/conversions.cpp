@@ -157,6 +157,20 @@ void CheckSize(const std::string& name, std::size_t size, std::size_t most) {
                              " entries, expected at most " + std::to_string(most));
 }
 
+std::vector<aquafarm::QuadrantRadii> QuadrantsOf(const std::string& name,
+                                                 const std::vector<float>& flat) {
+  CheckSize(name, flat.size(), 4 * aquafarm::kMaxRings);
+  std::vector<aquafarm::QuadrantRadii> rings;
+  if (flat.size() % 4 != 0) {
+    throw aquafarm::InputError(name + ": got " + std::to_string(flat.size()) +
+                               " entries, expected four a ring");
+  }
+  for (std::size_t i = 0; i < flat.size(); i += 4) {
+    rings.push_back({flat[i], flat[i + 1], flat[i + 2], flat[i + 3]});
+  }
+  return rings;
+}
+
 }  // namespace
 
 aquafarm_msgs::Cell ToMsg(aquafarm::Cell cell) {
@@ -209,6 +223,10 @@ void ToMsg(const aquafarm::Disaster& disaster, std::int32_t id,
   message.motion_y = disaster.dy;
   message.radii.assign(disaster.radius.begin(), disaster.radius.begin() + rings);
   message.risks.assign(disaster.risk.begin(), disaster.risk.begin() + rings);
+  message.quadrants.clear();
+  for (std::size_t k = 0; disaster.by_quadrant && k < message.radii.size(); ++k) {
+    for (const auto& quadrant : disaster.quadrant) message.quadrants.push_back(quadrant[k]);
+  }
   message.steps_left = disaster.steps_left;
   message.known = true;
   message.visible = true;
@@ -241,6 +259,10 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const Message
   const aquafarm::Ship& self = farm.ships()[static_cast<std::size_t>(view.ship)];
   if (farm.scenario().view.mode == aquafarm::ViewMode::kFull) {
     ToMsg(farm, context, message);
+    for (std::size_t i = 0; i < view.disasters.size(); ++i) {  // as it is forecast to move
+      message.disasters[i].motion_x = view.disasters[i].belief.dx;
+      message.disasters[i].motion_y = view.disasters[i].belief.dy;
+    }
   } else {
     FillEpisode(farm, context, message);
     message.ships.resize(farm.ships().size());
@@ -338,6 +360,7 @@ aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message) {
   spec.grade = message.grade;
   spec.radii = message.radii;
   spec.risks = message.risks;
+  spec.quadrants = QuadrantsOf("info.quadrants", message.quadrants);
   spec.speed = message.speed;
   if (message.has_heading) spec.heading_deg = message.heading_deg;
   spec.turn_probability = message.turn_probability;
@@ -357,40 +380,11 @@ aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message) {
     waypoint.grade = from.grade;
     waypoint.radii = from.radii;
     waypoint.risks = from.risks;
+    waypoint.quadrants = QuadrantsOf(name + ".quadrants", from.quadrants);
     spec.track.push_back(std::move(waypoint));
   }
+  if (!spec.track.empty()) spec.quadrants = spec.track.front().quadrants;
   return spec;
-}
-
-aquafarm_msgs::DisasterInfo ToMsg(const aquafarm::DisasterSpec& spec) {
-  aquafarm_msgs::DisasterInfo message;
-  message.kind = static_cast<std::uint8_t>(spec.kind);
-  message.grade = static_cast<std::uint8_t>(spec.grade);
-  message.radii = spec.radii;
-  message.risks = spec.risks;
-  message.speed = spec.speed;
-  message.has_heading = spec.heading_deg.has_value();
-  message.heading_deg = spec.heading_deg.value_or(0);
-  message.turn_probability = spec.turn_probability;
-  message.radius_growth = spec.radius_growth;
-  message.border = static_cast<std::uint8_t>(spec.border);
-  message.duration = spec.duration;
-  message.has_start = spec.start.has_value();
-  if (spec.start) {
-    message.x = (*spec.start)[0];
-    message.y = (*spec.start)[1];
-  }
-  for (const aquafarm::Waypoint& from : spec.track) {
-    aquafarm_msgs::DisasterWaypoint waypoint;
-    waypoint.step = from.step;
-    waypoint.x = from.x;
-    waypoint.y = from.y;
-    waypoint.grade = static_cast<std::uint8_t>(from.grade);
-    waypoint.radii = from.radii;
-    waypoint.risks = from.risks;
-    message.track.push_back(std::move(waypoint));
-  }
-  return message;
 }
 
 ros::Time WorldTime(const aquafarm::Scenario& scenario, std::int64_t step) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <GeographicLib/Geocentric.hpp>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "aquafarm_sim/conversions.h"
@@ -44,11 +45,46 @@ void RiskToMsg(const std::vector<aquafarm::Disaster>& disasters, const aquafarm:
                const MessageContext& context, nav_msgs::OccupancyGrid& message) {
   FillGridInfo(scenario, context, message);
   aquafarm::Grid<float> risk(scenario.height, scenario.width);
-  aquafarm::FillRisk(disasters, risk);
+  aquafarm::FillRisk(scenario, disasters, risk);
   for (std::size_t i = 0; i < message.data.size(); ++i) {
     const float share = risk.data()[i] / kWorstRisk;
     message.data[i] = static_cast<std::int8_t>(std::lround(100.0F * std::fmin(share, 1.0F)));
   }
+}
+
+void SeaToMsg(const aquafarm::SeaLayer& layer, const aquafarm::Scenario& scenario,
+              const MessageContext& context, nav_msgs::OccupancyGrid& message) {
+  FillGridInfo(scenario, context, message);
+  float least = std::numeric_limits<float>::infinity();
+  float greatest = -least;
+  for (const float value : layer.values) {  // fmin and fmax pass over NaN
+    least = std::fmin(least, value);
+    greatest = std::fmax(greatest, value);
+  }
+  const float scale = greatest > least ? 100.0F / (greatest - least) : 0.0F;
+  for (std::size_t i = 0; i < message.data.size(); ++i) {
+    const float value = layer.values[i];
+    message.data[i] =
+        static_cast<std::int8_t>(std::isnan(value) ? -1L : std::lround((value - least) * scale));
+  }
+}
+
+std_msgs::Float32MultiArray SeaToMsg(const aquafarm::SeaLayer& layer,
+                                     const aquafarm::Scenario& scenario) {
+  std_msgs::Float32MultiArray message;
+  const auto width = static_cast<std::uint32_t>(scenario.width);
+  const auto height = static_cast<std::uint32_t>(scenario.height);
+  const auto add = [&message](const std::string& label, std::uint32_t size, std::uint32_t stride) {
+    message.layout.dim.emplace_back();
+    message.layout.dim.back().label = label;
+    message.layout.dim.back().size = size;
+    message.layout.dim.back().stride = stride;
+  };
+  add(layer.name + " [" + layer.units + "]", 1, height * width);
+  add("y", height, height * width);
+  add("x", width, width);
+  message.data = layer.values;
+  return message;
 }
 
 geometry_msgs::TransformStamped PoseToMsg(const std::string& frame, double x, double y,

@@ -50,6 +50,13 @@ RanchPublisher::RanchPublisher(const ros::NodeHandle& node_handle, const SimPara
   }
   spec_ = node.advertise<aquafarm_msgs::FarmSpec>(names::kSpec, queue, true);
   chart_ = node.advertise<nav_msgs::OccupancyGrid>(names::kChart, queue, true);
+  if (const auto& seas = ranch_.scenario().seas) {
+    for (const aquafarm::SeaLayer& layer : seas->layers) {
+      seas_.push_back(
+          {node.advertise<nav_msgs::OccupancyGrid>(names::Sea(layer.name), queue, true),
+           node.advertise<std_msgs::Float32MultiArray>(names::SeaValues(layer.name), queue, true)});
+    }
+  }
   episode_ = node.advertise<aquafarm_msgs::EpisodeSummary>(names::kEpisode, kMaxSummaries);
   Advertise(node, names::kState, state_);
   Advertise(node, names::kRisk, risk_);
@@ -232,6 +239,7 @@ void RanchPublisher::Send() {
   if (episode_is_new_) {
     spec_.publish(spec_message_);
     chart_.publish(chart_message_);
+    SendSeas();
     if (scenario.origin) {
       static_frames_.sendTransform(EarthToMsg(*scenario.origin, params_.earth_frame, context_));
     }
@@ -246,6 +254,18 @@ void RanchPublisher::Send() {
     risk_.valid = false;
   }
   frames_.sendTransform(frame_messages_);
+}
+
+// They stay, but a slice of a bag from an episode's start on shall have them.
+void RanchPublisher::SendSeas() {
+  const aquafarm::Scenario& scenario = ranch_.scenario();
+  for (std::size_t i = 0; i < seas_.size(); ++i) {
+    const aquafarm::SeaLayer& layer = scenario.seas->layers[i];
+    nav_msgs::OccupancyGrid grid;
+    SeaToMsg(layer, scenario, context_, grid);
+    seas_[i].grid.publish(grid);
+    seas_[i].values.publish(SeaToMsg(layer, scenario));
+  }
 }
 
 }  // namespace aquafarm_sim

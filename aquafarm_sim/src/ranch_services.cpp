@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "aquafarm/check.h"
+#include "aquafarm/hazard_disaster.h"
 #include "aquafarm_sim/ranch.h"
 
 namespace aquafarm_sim {
@@ -360,7 +361,6 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
       return Answer(Outcome::UNKNOWN_FARM,
                     OutOfRange("farm", request.farm, -1, batch_->farms() - 1), response);
     }
-    const aquafarm::DisasterSpec spec = FromMsg(request.info);
     const std::int32_t first = std::max(request.farm, 0);
     const std::int32_t end = request.farm < 0 ? batch_->farms() : first + 1;
     for (std::int32_t i = first; i < end; ++i) {
@@ -370,7 +370,17 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
         return Answer(Outcome::BAD_VALUE, OutOfRange("id", request.id, 0, most), response);
       }
     }
+    // Farms at other steps may each make another disaster of a storm; one that is over stops all.
+    std::vector<aquafarm::DisasterSpec> specs;
     for (std::int32_t i = first; i < end; ++i) {
+      specs.push_back(request.storm.fixes.empty()
+                          ? FromMsg(request.info)
+                          : aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id,
+                                                 batch_->farm(i).step()));
+      aquafarm::ValidateDisaster(specs.back());
+    }
+    for (std::int32_t i = first; i < end; ++i) {
+      const aquafarm::DisasterSpec& spec = specs[static_cast<std::size_t>(i - first)];
       const auto count = static_cast<std::int32_t>(batch_->farm(i).disasters().size());
       if (request.id == count && !spec.start && spec.track.empty()) {
         return Answer(Outcome::BAD_VALUE,
@@ -381,7 +391,7 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     }
     // All that could differ between farms is checked, so what the first accepts, all accept.
     for (std::int32_t i = first; i < end; ++i) {
-      batch_->farm(i).SetDisaster(request.id, spec);
+      batch_->farm(i).SetDisaster(request.id, specs[static_cast<std::size_t>(i - first)]);
       if (recorder_ != nullptr) recorder_->OnIntervention(batch_->farm(i), i);
     }
     if (first == 0) Changed();

@@ -35,6 +35,15 @@ std::string CheckDisaster(const std::string& where, const aquafarm_msgs::Disaste
       return Fault(where + ".radii", radius, 0.0, kMaxDistance);
     }
   }
+  if (!disaster.quadrants.empty() && disaster.quadrants.size() != 4 * disaster.radii.size()) {
+    return where + ".quadrants.size: got " + std::to_string(disaster.quadrants.size()) +
+           ", expected 0 or four a ring, " + std::to_string(4 * disaster.radii.size());
+  }
+  for (const float radius : disaster.quadrants) {
+    if (!Within(radius, 0.0, kMaxDistance)) {
+      return Fault(where + ".quadrants", radius, 0.0, kMaxDistance);
+    }
+  }
   for (const float risk : disaster.risks) {
     if (!std::isfinite(risk)) return where + ".risks: got a number that is not finite";
   }

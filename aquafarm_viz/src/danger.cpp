@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "aquafarm_viz/rings.h"
 #include "image_parts.h"
 
 namespace aquafarm_viz {
@@ -49,14 +50,23 @@ const std::array<ShadeEntry, 256>& ShadeTable() {
 // A disaster's rings in pixels of the map.
 struct Rings {
   cv::Point2d centre;
-  std::vector<float> radii_px;
+  std::vector<std::array<float, 4>> radii_px;  // NE, SE, SW, NW
   std::vector<float> shade_steps;  // shade of a ring above that of the next one outwards
 };
+
+float Largest(const std::array<float, 4>& radii) {
+  return *std::max_element(radii.begin(), radii.end());
+}
 
 Rings InPixels(const DisasterState& disaster, const Layout& layout) {
   Rings rings{layout.view.ToPixel(disaster.x, disaster.y), {}, {}};
   for (std::size_t i = 0; i < disaster.radii.size(); ++i) {
-    rings.radii_px.push_back(static_cast<float>(disaster.radii[i] * layout.view.cell_px()));
+    std::array<float, 4> radii_px{};
+    const auto cells = RingQuadrants(disaster, i);
+    for (std::size_t q = 0; q < cells.size(); ++q) {
+      radii_px[q] = static_cast<float>(cells[q] * layout.view.cell_px());
+    }
+    rings.radii_px.push_back(radii_px);
     const double outer = i + 1 < disaster.risks.size() ? Shade(disaster.risks[i + 1]) : 0.0;
     rings.shade_steps.push_back(static_cast<float>(Shade(disaster.risks[i]) - outer));
   }
@@ -68,7 +78,7 @@ void ShadeRow(const Rings& rings, int row, std::vector<float>& shades, std::vect
               std::vector<float>& scratch) {
   const auto north = static_cast<float>(row - rings.centre.y);
   const auto east = static_cast<float>(rings.centre.x);
-  const float reach = rings.radii_px.empty() ? 0.0F : rings.radii_px.back() + 1.0F;
+  const float reach = rings.radii_px.empty() ? 0.0F : Largest(rings.radii_px.back()) + 1.0F;
   if (std::abs(north) > reach) return;
   const float half = std::sqrt(reach * reach - north * north);
   const auto columns = static_cast<int>(shades.size());
@@ -79,12 +89,15 @@ void ShadeRow(const Rings& rings, int row, std::vector<float>& shades, std::vect
   float* shade = scratch.data();
   std::fill(shade + from, shade + to, 0.0F);
   for (std::size_t ring = 0; ring < rings.radii_px.size(); ++ring) {
-    const float radius = rings.radii_px[ring];
+    const std::array<float, 4>& radii = rings.radii_px[ring];
+    const bool is_north = north < 0.0F;  // rows count downwards
+    const float to_east = radii[is_north ? 0 : 1];
+    const float to_west = radii[is_north ? 3 : 2];
     const float step = rings.shade_steps[ring];
     float* edge = edges.data();
     for (int column = from; column < to; ++column) {
       const float dx = static_cast<float>(column) - east;
-      const float inside = radius - std::sqrt(dx * dx + north * north);
+      const float inside = (dx >= 0.0F ? to_east : to_west) - std::sqrt(dx * dx + north * north);
       shade[column] += step * std::min(std::max(inside + 0.5F, 0.0F), 1.0F);
       edge[column] = std::max(edge[column], 1.25F - std::abs(inside - 0.75F));
     }

@@ -38,7 +38,8 @@ struct FarmPainter::Parts {
   ImageSize size;
   Fonts fonts;
   Layout layout;
-  FarmSpec drawn;  // what the background shows
+  FarmSpec drawn;   // what the background shows
+  std::string sea;  // which layer of the sea with it
   cv::Mat background;
   cv::Mat image;
 };
@@ -51,10 +52,16 @@ FarmPainter& FarmPainter::operator=(FarmPainter&&) noexcept = default;
 const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
                                  const Extras& extras) {
   Parts& p = *parts_;
-  if (p.background.empty() || !SameBackground(spec, p.drawn)) {
+  const std::string& sea = extras.layers.sea;
+  const bool same_sea =
+      sea == p.sea && (sea.empty() || spec.scenario_yaml == p.drawn.scenario_yaml);
+  if (p.background.empty() || !SameBackground(spec, p.drawn) || !same_sea) {
     p.layout = MakeLayout(spec.width, spec.height, p.size);
     p.background = DrawBackground(spec, p.layout, p.fonts, p.size);
     p.drawn = spec;
+    p.sea = sea;
+    cv::Mat map = p.background(p.layout.map);
+    if (!sea.empty()) DrawSea(map, spec, sea, p.layout, p.fonts);
   }
   p.background.copyTo(p.image);
   cv::Mat map = p.image(p.layout.map);

@@ -53,6 +53,11 @@ cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout
 void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                 const Fonts& fonts);
 
+/// Paints a layer of the sea, named in the spec's scenario, onto a background's map.
+/// @throws std::invalid_argument "layers: got 'sea:salt', expected one of the scenario's: warmth"
+void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::string& name,
+             const Layout& layout, const Fonts& fonts);
+
 /// Shades the rings of all disasters on the map, the worst risk where they meet.
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Layout& layout);
 

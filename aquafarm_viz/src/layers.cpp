@@ -19,18 +19,21 @@ constexpr std::pair<const char*, bool Layers::*> kNames[]{
 
 std::string LayerNames() {
   std::string names;
-  for (const auto& [name, member] : kNames)
-    names += (names.empty() ? "" : ", ") + std::string(name);
-  return names;
+  for (const auto& [name, member] : kNames) names += std::string(name) + ", ";
+  return names + "sea:NAME";
 }
 
 Layers ParseLayers(const std::string& names) {
-  Layers layers{false, false, false, false, false, false};
+  Layers layers{false, false, false, false, false, false, {}};
   if (names == "none") return layers;
   std::istringstream text(names);
   std::string name;
   do {
     std::getline(text, name, ',');
+    if (name.rfind("sea:", 0) == 0 && name.size() > 4) {
+      layers.sea = name.substr(4);
+      continue;
+    }
     const auto found = std::find_if(std::begin(kNames), std::end(kNames),
                                     [&name](const auto& known) { return name == known.first; });
     if (found == std::end(kNames)) {

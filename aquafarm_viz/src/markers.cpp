@@ -2,6 +2,7 @@
 #include "aquafarm_viz/markers.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "aquafarm_viz/checks.h"
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/palette.h"
+#include "aquafarm_viz/rings.h"
 #include "aquafarm_viz/text.h"
 
 namespace aquafarm_viz {
@@ -302,10 +304,25 @@ geometry_msgs::Point OnCircle(double radius_m, int corner) {
   return Point(radius_m * std::cos(angle), radius_m * std::sin(angle));
 }
 
-// Adds the flat band between two circles about the marker's pose.
-void AddBand(Marker& marker, double inner_m, double outer_m) {
+using QuadrantRadii = std::array<double, 4>;  // NE, SE, SW, NW [m]
+
+QuadrantRadii RingMetres(const Maker& maker, const DisasterState& disaster, std::size_t ring) {
+  QuadrantRadii radii = RingQuadrants(disaster, ring);
+  for (double& radius : radii) radius *= maker.cell_m();
+  return radii;
+}
+
+// Adds the flat band between two rings about the marker's pose.
+void AddBand(Marker& marker, const QuadrantRadii& inner, const QuadrantRadii& outer) {
+  static_assert(kCircleCorners % 4 == 0, "quadrants begin at a corner");
+  constexpr std::array<std::size_t, 4> kAnticlockwiseFromEast{0, 3, 2, 1};
   marker.points.reserve(6 * kCircleCorners);
   for (int corner = 0; corner < kCircleCorners; ++corner) {
+    const std::size_t quadrant =
+        kAnticlockwiseFromEast[static_cast<std::size_t>(4 * corner / kCircleCorners)];
+    const double inner_m = inner[quadrant];
+    const double outer_m = outer[quadrant];
+    if (outer_m <= inner_m) continue;
     const auto a = OnCircle(inner_m, corner);
     const auto b = OnCircle(outer_m, corner);
     const auto c = OnCircle(outer_m, corner + 1);
@@ -322,8 +339,8 @@ Marker RingBand(const Maker& maker, const DisasterState& disaster, int ring) {
                            kRingLayer, disaster.x, disaster.y);
   const double severity = Severity(disaster.risks[i]);
   band.color = Color(SeverityColor(severity), 0.30 + 0.25 * severity);
-  AddBand(band, ring == 0 ? 0.0 : disaster.radii[i - 1] * maker.cell_m(),
-          disaster.radii[i] * maker.cell_m());
+  AddBand(band, ring == 0 ? QuadrantRadii{} : RingMetres(maker, disaster, i - 1),
+          RingMetres(maker, disaster, i));
   return band;
 }
 
@@ -333,8 +350,10 @@ Marker RingEdge(const Maker& maker, const DisasterState& disaster, int ring) {
   Marker edge = maker.Make("ring_edge", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
                            kRockLayer, disaster.x, disaster.y);
   edge.color = Color(SeverityColor(Severity(disaster.risks[i])));
-  const double outer_m = disaster.radii[i] * maker.cell_m();
-  AddBand(edge, std::max(0.0, outer_m - 0.12 * maker.thing_m()), outer_m);
+  const QuadrantRadii outer = RingMetres(maker, disaster, i);
+  QuadrantRadii inner = outer;
+  for (double& radius : inner) radius = std::max(0.0, radius - 0.12 * maker.thing_m());
+  AddBand(edge, inner, outer);
   return edge;
 }
 

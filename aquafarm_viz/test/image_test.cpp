@@ -340,7 +340,7 @@ TEST(Image, LayersThatThereAreNotHaveTheirLine) {
       const std::string name = std::string(wrong).find("rain") == std::string::npos ? "" : "rain";
       EXPECT_EQ("layers: got '" + name +
                     "', expected some of: wake, risk, route, sight, "
-                    "values, moves; or none",
+                    "values, moves, sea:NAME; or none",
                 fault.what());
     }
   }

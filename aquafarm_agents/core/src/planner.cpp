@@ -10,6 +10,7 @@
 
 #include "aquafarm/check.h"
 #include "aquafarm/disaster.h"
+#include "aquafarm/forecast.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -99,7 +100,7 @@ class Planner::Solver {
   std::vector<float> health_;  // of what still waits, now
   std::vector<double> bound_;  // by state: most that can follow, were there no disaster
   std::vector<Disaster> disasters_;
-  Foresight foresight_{};
+  std::vector<Track> tracks_;  // that they are thought to follow
   Grid<float> risk_;
   bool crash_hurts_{};
 
@@ -279,18 +280,16 @@ void Planner::Solver::SolveBound() {
 
 void Planner::Solver::FollowDisasters(const Farm& farm, Foresight foresight) {
   disasters_ = farm.disasters();
-  foresight_ = foresight;
-  if (foresight == Foresight::kClairvoyant) return;
-  HoldHeadings(disasters_);
+  tracks_ = Foresee(farm, foresight, disasters_);
 }
 
 void Planner::Solver::AdvanceDisasters(const Farm& farm, std::int32_t step) {
   for (std::size_t id = 0; id < disasters_.size(); ++id) {
     const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
                         static_cast<std::uint32_t>(id)};
-    MoveDisaster(disasters_[id], farm.tracks()[id], key, step, scenario_.width, scenario_.height);
+    MoveDisaster(disasters_[id], tracks_[id], key, step, scenario_.width, scenario_.height);
   }
-  FillRisk(disasters_, risk_);
+  FillRisk(scenario_, disasters_, risk_);
   const float probability = scenario_.damage.crash_probability;
   const auto draws =
       Draw({farm.seed(), farm.episode(), Purpose::kDamage, static_cast<std::uint32_t>(task_->ship)},
@@ -545,11 +544,20 @@ Plan Planner::Solver::Trace() const {
   return plan;
 }
 
-void HoldHeadings(std::vector<Disaster>& disasters) {
-  for (Disaster& disaster : disasters) {
-    disaster.turn_threshold = 0;
-    disaster.waypoint = kNone;
+std::vector<Track> Foresee(const Farm& farm, Foresight foresight,
+                           std::vector<Disaster>& disasters) {
+  std::vector<Track> tracks = farm.tracks();
+  if (foresight == Foresight::kClairvoyant) return tracks;
+  for (std::size_t id = 0; id < disasters.size(); ++id) {
+    const auto disaster = static_cast<std::int32_t>(id);
+    disasters[id].turn_threshold = 0;
+    disasters[id].waypoint = kNone;
+    if (!HasForecast(farm, disaster)) continue;
+    disasters[id].waypoint = 0;
+    tracks[id] =
+        std::make_shared<const std::vector<Waypoint>>(ForecastTrack(farm, disaster, farm.step()));
   }
+  return tracks;
 }
 
 void Reservations::Add(std::int32_t id, std::int32_t first, const std::vector<std::int32_t>& path) {

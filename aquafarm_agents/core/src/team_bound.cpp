@@ -168,7 +168,7 @@ double TeamBound(const Farm& farm) {
                           static_cast<std::uint32_t>(id)};
       MoveDisaster(disasters[id], farm.tracks()[id], key, step, scenario.width, scenario.height);
     }
-    FillRisk(disasters, risk);
+    FillRisk(farm.scenario(), disasters, risk);
     over = !disasters.empty() &&
            std::none_of(disasters.begin(), disasters.end(),
                         [](const Disaster& disaster) { return disaster.active(); });

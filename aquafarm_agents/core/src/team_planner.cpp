@@ -217,7 +217,7 @@ class TeamPlanner::Impl {
       for (std::size_t id = 0; id < course.disasters.size(); ++id) {
         const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
                             static_cast<std::uint32_t>(id)};
-        MoveDisaster(course.disasters[id], farm.tracks()[id], key, course.foreseen + 1,
+        MoveDisaster(course.disasters[id], course.tracks[id], key, course.foreseen + 1,
                      scenario_.width, scenario_.height);
       }
     }
@@ -226,7 +226,8 @@ class TeamPlanner::Impl {
       const Disaster& foreseen = course.disasters[id];
       const bool alike = real.x == foreseen.x && real.y == foreseen.y && real.dx == foreseen.dx &&
                          real.dy == foreseen.dy && real.radius == foreseen.radius &&
-                         real.risk == foreseen.risk && real.steps_left == foreseen.steps_left;
+                         real.quadrant == foreseen.quadrant && real.risk == foreseen.risk &&
+                         real.steps_left == foreseen.steps_left;
       if (!alike) return false;
     }
     return true;
@@ -242,7 +243,7 @@ class TeamPlanner::Impl {
     course.path.assign(agents, {});
     course.disasters = farm.disasters();
     course.foreseen = farm.step();
-    if (foresight_ == Foresight::kHeadingHolds) HoldHeadings(course.disasters);
+    course.tracks = Foresee(farm, foresight_, course.disasters);
     reserved_.Clear();
     for (std::size_t id = 0; id < agents; ++id) {
       const Ship& ship = farm.ships()[id];

@@ -165,7 +165,8 @@ int Main(int argc, char** argv) {
   app.add_option("--storm", ranch.storm, "name or number of the storm in that file")->needs(track);
   app.add_option("--radii", ranch.radii, "file with radii of winds, for a track that has none")
       ->needs(track);
-  app.add_option("--rings", arguments.rings, "quadrants become a circle: equal_area or largest")
+  app.add_option("--rings", arguments.rings,
+                 "quadrants of winds: circles of equal_area or largest, or as quadrants")
       ->needs(track);
   app.add_option(
       "--disaster", ranch.disasters,
@@ -191,7 +192,12 @@ int Main(int argc, char** argv) {
   app.add_option("--sea-depth", ranch.sea_depth_m, "metres below the surface of those fields");
   app.add_option("--value", ranch.value,
                  "expression of the fields for each device's value, such as '100 - 2 * warmth'");
-  sea->needs("--value");
+  app.add_option(
+         "--sea-risk", ranch.sea_risk,
+         "expression of the fields for each cell's own risk, such as 'warmth > 28 ? -8 : 0'")
+      ->needs(sea);
+  app.add_option("--notices", ranch.notices,
+                 "warnings or anchorage forecasts (JSON), said where they are in force");
   app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
   app.add_option("-o,--output", arguments.output, "scenario file; empty: only shown");
   try {

@@ -7,12 +7,17 @@
 #include "aquafarm/check.h"
 #include "aquafarm/hazard_disaster.h"
 #include "aquafarm/hazard_file.h"
+#include "aquafarm/notice_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace aquafarm;
+  const std::string bytes(reinterpret_cast<const char*>(data), size);
   try {
-    const HazardFile file =
-        ParseHazardFile(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
+    for (const Notice& notice : ParseNotices(bytes, "fuzz").notices) Describe(notice);
+  } catch (const InputError&) {  // a refusal; all else is a find
+  }
+  try {
+    const HazardFile file = ParseHazardFile(bytes, "fuzz");
     for (const HazardTrack& track : file.tracks) ToRings(track, RingReduction::kEqualArea);
   } catch (const InputError&) {  // a refusal; all else is a find
   }

@@ -63,10 +63,20 @@ void SetMotion(Disaster& disaster) {
   disaster.dy = direction[1] * disaster.speed;
 }
 
-// A ring of radius 0 is absent, so that a track may gain and lose rings.
-void SetRadius(Disaster& disaster, std::size_t ring, float radius) {
-  disaster.radius[ring] = radius;
-  disaster.radius_squared[ring] = radius > 0.0F ? radius * radius : -1.0F;
+// A ring of radius 0 is absent: no distance squared is at most -1.
+float Squared(float radius) { return radius > 0.0F ? radius * radius : -1.0F; }
+
+// Every ring of a waypoint or spec.
+void SetRings(Disaster& disaster, const std::vector<float>& radii,
+              const std::vector<QuadrantRadii>& quadrants) {
+  disaster.by_quadrant = !quadrants.empty();
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    if (disaster.by_quadrant) {
+      SetRing(disaster, k, quadrants[k]);
+    } else {
+      SetRing(disaster, k, radii[k]);
+    }
+  }
 }
 
 // Grade, and the heading and speed that people and bulletins read, on the leg after a waypoint.
@@ -118,13 +128,6 @@ void MeetBorder(Disaster& disaster, std::int32_t width, std::int32_t height) {
   Bounce(disaster.y, low, high_y, 180, disaster);
 }
 
-void Grow(Disaster& disaster) {
-  if (disaster.radius_growth == 0.0F) return;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
-    SetRadius(disaster, k, std::max(0.0F, disaster.radius[k] + disaster.radius_growth));
-  }
-}
-
 void Turn(Disaster& disaster, const StreamKey& turn_key, std::int32_t step) {
   if (disaster.turn_threshold == 0) return;
   const auto count = static_cast<std::uint32_t>(step);
@@ -136,6 +139,33 @@ void Turn(Disaster& disaster, const StreamKey& turn_key, std::int32_t step) {
 }
 
 }  // namespace
+
+void SetRing(Disaster& disaster, std::size_t ring, float radius) {
+  disaster.radius[ring] = radius;
+  disaster.radius_squared[ring] = Squared(radius);
+}
+
+void SetRing(Disaster& disaster, std::size_t ring, const QuadrantRadii& radii) {
+  SetRing(disaster, ring, *std::max_element(radii.begin(), radii.end()));
+  for (std::size_t q = 0; q < radii.size(); ++q) {
+    disaster.quadrant[q][ring] = radii[q];
+    disaster.quadrant_squared[q][ring] = Squared(radii[q]);
+  }
+}
+
+void GrowRings(Disaster& disaster, float by) {
+  if (by == 0.0F) return;
+  const auto grown = [by](float radius) { return std::max(0.0F, radius + by); };
+  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
+    if (disaster.by_quadrant) {
+      QuadrantRadii radii{};
+      for (std::size_t q = 0; q < radii.size(); ++q) radii[q] = grown(disaster.quadrant[q][k]);
+      SetRing(disaster, k, radii);
+    } else {
+      SetRing(disaster, k, grown(disaster.radius[k]));
+    }
+  }
+}
 
 std::array<float, 2> HeadingVector(std::int32_t heading_deg) {
   static const std::array<std::array<float, 2>, 360> kHeadings = MakeHeadings();
@@ -151,10 +181,8 @@ Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t 
   disaster.border = spec.border;
   disaster.grade = spec.grade;
   disaster.rings = static_cast<std::int32_t>(spec.radii.size());
-  for (std::size_t k = 0; k < spec.radii.size(); ++k) {
-    SetRadius(disaster, k, spec.radii[k]);
-    disaster.risk[k] = spec.risks[k];
-  }
+  SetRings(disaster, spec.radii, spec.quadrants);
+  std::copy(spec.risks.begin(), spec.risks.end(), disaster.risk.begin());
   disaster.speed = spec.speed;
   disaster.turn_threshold =
       static_cast<std::uint32_t>(static_cast<double>(spec.turn_probability) * 2147483648.0);
@@ -190,7 +218,7 @@ void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_
   disaster.x += disaster.dx;
   disaster.y += disaster.dy;
   MeetBorder(disaster, width, height);
-  Grow(disaster);
+  GrowRings(disaster, disaster.radius_growth);
 }
 
 void FollowTrack(Disaster& disaster, const std::vector<Waypoint>& track, std::int32_t step) {
@@ -207,15 +235,26 @@ void FollowTrack(Disaster& disaster, const std::vector<Waypoint>& track, std::in
   const auto between = [part](float a, float b) { return a + (b - a) * part; };
   disaster.x = between(from.x, to.x);
   disaster.y = between(from.y, to.y);
+  disaster.by_quadrant = !from.quadrants.empty();
   for (std::size_t k = 0; k < from.radii.size(); ++k) {
-    SetRadius(disaster, k, between(from.radii[k], to.radii[k]));
     disaster.risk[k] = between(from.risks[k], to.risks[k]);
+    if (!disaster.by_quadrant) {
+      SetRing(disaster, k, between(from.radii[k], to.radii[k]));
+      continue;
+    }
+    QuadrantRadii radii{};
+    for (std::size_t q = 0; q < radii.size(); ++q) {
+      radii[q] = between(from.quadrants[k][q], to.quadrants[k][q]);
+    }
+    SetRing(disaster, k, radii);
   }
 }
 
-void FillRisk(const std::vector<Disaster>& disasters, Grid<float>& risk) {
+void FillRisk(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk) {
   for (std::int32_t y = 0; y < risk.rows(); ++y) {
-    for (std::int32_t x = 0; x < risk.cols(); ++x) risk(y, x) = RiskAt(disasters, {x, y});
+    for (std::int32_t x = 0; x < risk.cols(); ++x) {
+      risk(y, x) = std::min(RiskAt(disasters, {x, y}), scenario.SeaRiskAt({x, y}));
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "aquafarm/check.h"
+#include "aquafarm/forecast.h"
 
 namespace aquafarm {
 namespace {
@@ -20,8 +21,6 @@ constexpr std::int32_t kWayFeatures = 3;
 // Scales: devices' highest paper value, the worst risk of §2.1.
 constexpr float kValueScale = 1.0F / 100.0F;
 constexpr float kRiskScale = 1.0F / 20.0F;
-// Steps that the forecast plane looks ahead.
-constexpr float kForecastSteps = 10.0F;
 
 // The painted planes come first, so that a run past a plane's end stays inside the buffer.
 enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, kCargo, kOthers };
@@ -103,6 +102,21 @@ void PaintRings(float cx, float cy, const float* ring_squared, const std::int32_
   }
 }
 
+// The same for rings by quadrants, cell by cell.
+void PaintQuadrants(const Disaster& disaster, float cx, float cy, Box box, std::int32_t width,
+                    std::uint8_t* plane) {
+  Disaster there = disaster;
+  there.x = cx;
+  there.y = cy;
+  for (std::int32_t y = box.y0; y < box.y1; ++y) {
+    for (std::int32_t x = box.x0; x < box.x1; ++x) {
+      std::uint8_t& cell = plane[y * width + x];
+      const float risk = RiskOf(there, static_cast<float>(x), static_cast<float>(y));
+      cell = std::max(cell, ToByte(-risk * kRiskScale));
+    }
+  }
+}
+
 // Paints a disaster `ahead` steps along its present heading.
 void PaintDisaster(const Disaster& disaster, float ahead, std::int32_t width, std::int32_t height,
                    std::uint8_t* plane) {
@@ -111,6 +125,7 @@ void PaintDisaster(const Disaster& disaster, float ahead, std::int32_t width, st
   const float cy = disaster.y + ahead * disaster.dy;
   const Box box = ReachedBox(cx, cy, disaster.reach(), width, height);
   if (box.x0 >= box.x1 || box.y0 >= box.y1) return;
+  if (disaster.by_quadrant) return PaintQuadrants(disaster, cx, cy, box, width, plane);
   std::array<float, kMaxRings> ring_squared;
   std::array<std::int32_t, kMaxRings> levels{};
   ring_squared.fill(-1.0F);
@@ -136,6 +151,13 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
                    static_cast<std::int32_t>(scenario.disasters.size()) * kDisasterFeatures +
                    (scenario.AgentCount() - 1) * kShipFeatures + IdentityFeatures(scenario) +
                    (scenario.view.waterways ? (ports + fetchable_) * kWayFeatures : 0);
+
+  if (scenario.seas && !scenario.seas->risk.empty()) {
+    for (std::int32_t i = 0; i < scenario.CellCount(); ++i) {
+      const Cell cell{i % scenario.width, i / scenario.width};
+      sea_plane_.push_back(ToByte(-scenario.SeaRiskAt(cell) * kRiskScale));
+    }
+  }
 
   // Base-3 codes grow as 3^D: beyond this many devices no table would fit anyway.
   constexpr std::int32_t kMostDevices = 14;
@@ -295,10 +317,14 @@ void Encoder::Planes(const View& view, std::uint8_t* out) const {
   for (const KnownShip& other : view.others) {
     if (other.visible) at(kOthers, other.cell) = 255;
   }
+  if (!sea_plane_.empty()) {
+    std::memcpy(plane(kRisk), sea_plane_.data(), cells);
+    std::memcpy(plane(kForecast), sea_plane_.data(), cells);
+  }
   for (const KnownDisaster& known : view.disasters) {
     if (!known.known) continue;
     PaintDisaster(known.belief, 0.0F, scenario_.width, scenario_.height, plane(kRisk));
-    PaintDisaster(known.belief, static_cast<float>(known.age) + kForecastSteps, scenario_.width,
+    PaintDisaster(known.belief, static_cast<float>(known.age + kForecastSteps), scenario_.width,
                   scenario_.height, plane(kForecast));
   }
 }

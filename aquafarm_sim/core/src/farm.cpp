@@ -313,7 +313,7 @@ void Farm::Damage() {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     Device& device = devices_[i];
     if (device.status == DeviceStatus::kDelivered) continue;
-    const float risk = RiskAt(disasters_, CellOf(static_cast<std::int32_t>(i)));
+    const float risk = RiskAt(CellOf(static_cast<std::int32_t>(i)));
     device.health = Clamped(device.health + exposure * risk);
   }
 }
@@ -327,7 +327,7 @@ void Farm::Reward() {
       continue;
     }
     RewardTerms& terms = ship.terms;
-    terms.disaster = RiskAt(disasters_, ship.cell);
+    terms.disaster = RiskAt(ship.cell);
     if (terms.disaster == 0.0F && !TriggersReward(ship)) terms.step = scenario_->rewards.step;
     ship.reward = terms.Total();
     record_.steps_in_disaster += terms.disaster < 0.0F ? 1 : 0;
@@ -350,6 +350,10 @@ void Farm::Finish() {
   } else if (record_.steps >= scenario_->step_limit) {
     record_.reason = EndReason::kStepLimit;
   }
+}
+
+float Farm::RiskAt(Cell cell) const {
+  return std::min(aquafarm::RiskAt(disasters_, cell), scenario_->SeaRiskAt(cell));
 }
 
 Cell Farm::CellOf(std::int32_t id) const {

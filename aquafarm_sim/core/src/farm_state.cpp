@@ -33,6 +33,9 @@ void HashDisaster(const Disaster& disaster, Hasher& hasher) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
     hasher.Add(disaster.radius[k], disaster.risk[k]);
   }
+  for (std::size_t q = 0; disaster.by_quadrant && q < disaster.quadrant.size(); ++q) {
+    for (const float radius : disaster.quadrant[q]) hasher.Add(radius, 0.0F);
+  }
   const Bulletin& bulletin = disaster.bulletin;
   hasher.Add(bulletin.x, bulletin.y);
   hasher.Add(bulletin.heading_deg, bulletin.step);
@@ -46,6 +49,10 @@ void HashTracks(const std::vector<Track>& tracks, Hasher& hasher) {
       hasher.Add(point.y, static_cast<float>(point.grade));
       for (std::size_t k = 0; k < point.radii.size(); ++k) {
         hasher.Add(point.radii[k], point.risks[k]);
+      }
+      for (const QuadrantRadii& ring : point.quadrants) {
+        hasher.Add(ring[0], ring[1]);
+        hasher.Add(ring[2], ring[3]);
       }
     }
   }
@@ -115,25 +122,27 @@ Device DeviceFromJson(const json& j) {
 
 json DisasterToJson(const Disaster& d) {
   const Bulletin& b = d.bulletin;
-  return {{"kind", Int(d.kind)},
-          {"border", Int(d.border)},
-          {"grade", d.grade},
-          {"rings", d.rings},
-          {"radius", d.radius},
-          {"radius_squared", d.radius_squared},
-          {"risk", d.risk},
-          {"centre", {d.x, d.y}},
-          {"motion", {d.dx, d.dy}},
-          {"speed", d.speed},
-          {"heading_deg", d.heading_deg},
-          {"turn_threshold", d.turn_threshold},
-          {"radius_growth", d.radius_growth},
-          {"margin", d.margin},
-          {"steps_left", d.steps_left},
-          {"waypoint", d.waypoint},
-          {"draws", d.draws},
-          {"bulletin", {b.x, b.y, b.speed}},
-          {"bulletin_when", {b.heading_deg, b.step}}};
+  json j{{"kind", Int(d.kind)},
+         {"border", Int(d.border)},
+         {"grade", d.grade},
+         {"rings", d.rings},
+         {"radius", d.radius},
+         {"radius_squared", d.radius_squared},
+         {"risk", d.risk},
+         {"centre", {d.x, d.y}},
+         {"motion", {d.dx, d.dy}},
+         {"speed", d.speed},
+         {"heading_deg", d.heading_deg},
+         {"turn_threshold", d.turn_threshold},
+         {"radius_growth", d.radius_growth},
+         {"margin", d.margin},
+         {"steps_left", d.steps_left},
+         {"waypoint", d.waypoint},
+         {"draws", d.draws},
+         {"bulletin", {b.x, b.y, b.speed}},
+         {"bulletin_when", {b.heading_deg, b.step}}};
+  if (d.by_quadrant) j["quadrants"] = d.quadrant;
+  return j;
 }
 
 Disaster DisasterFromJson(const json& j) {
@@ -167,7 +176,16 @@ Disaster DisasterFromJson(const json& j) {
   if (d.bulletin.heading_deg < 0 || d.bulletin.heading_deg > 359) {
     throw InputError("state: bulletin heading out of range");
   }
+  d.by_quadrant = j.contains("quadrants");
   bool finite = true;
+  for (std::size_t k = 0; d.by_quadrant && k < static_cast<std::size_t>(kMaxRings); ++k) {
+    QuadrantRadii ring{};
+    for (std::size_t q = 0; q < ring.size(); ++q) {
+      j.at("quadrants").at(q).at(k).get_to(ring[q]);
+      finite = finite && std::isfinite(ring[q]);
+    }
+    if (k < static_cast<std::size_t>(d.rings)) SetRing(d, k, ring);
+  }
   for (const float value : {d.x, d.y, d.dx, d.dy, d.speed, d.radius_growth, d.margin, d.bulletin.x,
                             d.bulletin.y, d.bulletin.speed}) {
     finite = finite && std::isfinite(value);
@@ -184,6 +202,7 @@ json TrackToJson(const std::vector<Waypoint>& track) {
   json points = json::array();
   for (const Waypoint& point : track) {
     points.push_back({point.step, point.x, point.y, point.grade, point.radii, point.risks});
+    if (!point.quadrants.empty()) points.back().push_back(point.quadrants);
   }
   return points;
 }
@@ -193,7 +212,9 @@ Track TrackFromJson(const json& points) {
   for (const json& point : points) {
     track.push_back({point.at(0).get<float>(), point.at(1).get<float>(), point.at(2).get<float>(),
                      point.at(3).get<std::int32_t>(), point.at(4).get<std::vector<float>>(),
-                     point.at(5).get<std::vector<float>>()});
+                     point.at(5).get<std::vector<float>>(),
+                     point.size() > 6 ? point.at(6).get<std::vector<QuadrantRadii>>()
+                                      : std::vector<QuadrantRadii>()});
   }
   return std::make_shared<const std::vector<Waypoint>>(std::move(track));
 }
@@ -373,7 +394,9 @@ void Farm::CheckConsistent() const {
     fits = fits && in_list(disasters_[i].waypoint, track.size());
     for (const Waypoint& point : track) {
       fits = fits && point.radii.size() == static_cast<std::size_t>(disasters_[i].rings) &&
-             point.risks.size() == point.radii.size();
+             point.risks.size() == point.radii.size() &&
+             (disasters_[i].by_quadrant ? point.quadrants.size() == point.radii.size()
+                                        : point.quadrants.empty());
     }
   }
   if (!fits) throw InputError("state: its parts do not fit together");

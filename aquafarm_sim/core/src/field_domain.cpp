@@ -203,6 +203,10 @@ void Check(const std::string& path, std::int64_t seconds, UtcTime) {
                              Format(kFirstYear) + ", " + Format(kLastYear) + "]");
 }
 
+void Check(const std::string& path, float value, NumberOrNone) {
+  if (std::isinf(value)) throw FieldError(path, "got infinity, expected a number or .nan");
+}
+
 void Check(const std::string& path, const std::string& value, const TextOf& domain) {
   if (value.size() < domain.min_bytes || value.size() > domain.max_bytes) {
     throw FieldError(path, "got a text of " + std::to_string(value.size()) + " bytes, expected [" +

@@ -33,6 +33,8 @@ struct TextOf {
 /// A cell of the largest farm; whether it is on this one is ValidateScenario's question.
 struct AnyCell {};
 struct AnyFlag {};
+/// A finite number, or NaN, which files write as .nan.
+struct NumberOrNone {};
 /// One of an enum's names.
 struct OneOfNames {};
 /// UTC seconds since 1970, as YYYY-MM-DDTHH:MM:SSZ.
@@ -129,6 +131,13 @@ inline void Check(const std::string& path, const std::array<float, 2>& value,
   Check(At(path, 0), value[0], domain);
   Check(At(path, 1), value[1], domain);
 }
+
+inline void Check(const std::string& path, const QuadrantRadii& value,
+                  const Interval<float>& domain) {
+  for (std::size_t i = 0; i < value.size(); ++i) Check(At(path, i), value[i], domain);
+}
+
+void Check(const std::string& path, float value, NumberOrNone domain);
 
 inline void Check(const std::string& path, Cell cell, AnyCell) {
   constexpr Interval<std::int32_t> kSide{0, kMaxSide - 1};

@@ -14,13 +14,21 @@
 namespace aquafarm {
 namespace {
 
-double Circle(const WindRing& ring, RingReduction reduction) {
-  if (reduction == RingReduction::kLargest) {
-    return *std::max_element(ring.radius_km.begin(), ring.radius_km.end());
-  }
+using Quadrants = std::array<double, 4>;
+
+double Largest(const Quadrants& quadrants) {
+  return *std::max_element(quadrants.begin(), quadrants.end());
+}
+
+// The quadrants, all of a circle's radius where they do not stay.
+Quadrants Reduced(const WindRing& ring, RingReduction reduction) {
+  Quadrants quadrants = ring.radius_km;
+  if (reduction == RingReduction::kQuadrants) return quadrants;
   double squares = 0.0;
-  for (const double radius : ring.radius_km) squares += radius * radius;
-  return std::sqrt(squares / kQuadrantCount);
+  for (const double radius : quadrants) squares += radius * radius;
+  quadrants.fill(reduction == RingReduction::kLargest ? Largest(quadrants)
+                                                      : std::sqrt(squares / kQuadrantCount));
+  return quadrants;
 }
 
 bool Speaks(const HazardTrack& track, std::int32_t wind_kt) {
@@ -33,11 +41,20 @@ std::vector<std::int32_t> WindsOf(const HazardTrack& track) {
   return {64, 50, 34};
 }
 
-double DistanceKm(GeoPoint a, GeoPoint b) {
+// How far and in which quadrant of a storm a place is.
+struct Offset {
+  double distance_km{};
+  std::size_t quadrant{};
+};
+
+Offset From(GeoPoint storm, GeoPoint place) {
   double distance_m = 0.0;
-  GeographicLib::Geodesic::WGS84().Inverse(a.latitude, a.longitude, b.latitude, b.longitude,
-                                           distance_m);
-  return distance_m / 1000.0;
+  double bearing_deg = 0.0;  // in [-180, 180]
+  double unused = 0.0;
+  GeographicLib::Geodesic::WGS84().Inverse(storm.latitude, storm.longitude, place.latitude,
+                                           place.longitude, distance_m, bearing_deg, unused);
+  const double turned = bearing_deg < 0.0 ? bearing_deg + 360.0 : bearing_deg;
+  return {distance_m / 1000.0, static_cast<std::size_t>(turned / 90.0) % 4};
 }
 
 double Between(double a, double b, double part) { return a + (b - a) * part; }
@@ -79,27 +96,33 @@ std::int32_t StepsToCover(double span_s, double step_duration_s) {
 }
 
 std::string_view ToString(RingReduction value) {
-  return internal::NameOf(
-      value, std::array<std::string_view, kRingReductionCount>{"equal_area", "largest"});
+  return internal::NameOf(value, std::array<std::string_view, kRingReductionCount>{
+                                     "equal_area", "largest", "quadrants"});
 }
 
 StormRings ToRings(const HazardTrack& track, RingReduction reduction) {
   StormRings storm;
   storm.wind_kt = WindsOf(track);
   for (HazardFix fix : track.fixes) {
-    StormWaypoint waypoint{fix.time, fix.position,     fix.grade,   {},
-                           false,    fix.pressure_hpa, fix.wind_mps};
-    double outer = 0.0;
+    StormWaypoint waypoint{fix.time, fix.position, fix.grade,        {},
+                           false,    {},           fix.pressure_hpa, fix.wind_mps};
+    Quadrants outer{};
     bool silent = true;
     for (auto wind = storm.wind_kt.rbegin(); wind != storm.wind_kt.rend(); ++wind) {
       waypoint.estimated = EstimateRing(fix, *wind) || waypoint.estimated;
       const WindRing* ring = fix.Ring(*wind);
       silent = silent && ring == nullptr;
-      const double radius = ring == nullptr ? 0.0 : Circle(*ring, reduction);
-      outer = waypoint.radii_km.empty() ? radius : std::min(radius, outer);
-      waypoint.radii_km.push_back(outer);
+      Quadrants radii = ring == nullptr ? Quadrants{} : Reduced(*ring, reduction);
+      for (std::size_t q = 0; q < radii.size() && !waypoint.radii_km.empty(); ++q) {
+        radii[q] = std::min(radii[q], outer[q]);
+      }
+      outer = radii;
+      waypoint.radii_km.push_back(Largest(radii));
+      waypoint.quadrants_km.push_back(radii);
     }
     std::reverse(waypoint.radii_km.begin(), waypoint.radii_km.end());
+    std::reverse(waypoint.quadrants_km.begin(), waypoint.quadrants_km.end());
+    if (reduction != RingReduction::kQuadrants) waypoint.quadrants_km.clear();
     storm.estimated += waypoint.estimated ? 1 : 0;
     storm.silent += silent ? 1 : 0;
     storm.waypoints.push_back(std::move(waypoint));
@@ -122,6 +145,11 @@ std::optional<StormWaypoint> StormRings::At(std::int64_t time) const {
   now.position = Between(from.position, next->position, part);
   for (std::size_t k = 0; k < now.radii_km.size(); ++k) {
     now.radii_km[k] = Between(from.radii_km[k], next->radii_km[k], part);
+    if (now.quadrants_km.empty()) continue;
+    for (std::size_t q = 0; q < 4; ++q) {
+      now.quadrants_km[k][q] = Between(from.quadrants_km[k][q], next->quadrants_km[k][q], part);
+    }
+    now.radii_km[k] = Largest(now.quadrants_km[k]);
   }
   return now;
 }
@@ -152,15 +180,15 @@ std::int32_t BorrowRings(const HazardTrack& from, HazardTrack& track) {
   return given;
 }
 
-const RiskTable& DefaultRiskTable() {
-  static const RiskTable kTable{{{-14.0F, -8.0F, -5.0F},
+const GradeRisks& DefaultGradeRisks() {
+  static const GradeRisks kTable{{-14.0F, -8.0F, -5.0F},
                                  {-16.0F, -9.0F, -5.0F},
                                  {-20.0F, -10.0F, -5.0F},
-                                 {-20.0F, -12.0F, -6.0F}}};
+                                 {-20.0F, -12.0F, -6.0F}};
   return kTable;
 }
 
-DisasterSpec ToDisaster(const StormRings& storm, const RiskTable& risks, const GeoFrame& frame,
+DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const GeoFrame& frame,
                         double cell_size_m, double step_duration_s, std::int64_t start_time) {
   AQUAFARM_CHECK_GE(storm.waypoints.size(), 1U);
   DisasterSpec disaster;
@@ -173,24 +201,31 @@ DisasterSpec ToDisaster(const StormRings& storm, const RiskTable& risks, const G
     waypoint.x = static_cast<float>(place[0]);
     waypoint.y = static_cast<float>(place[1]);
     waypoint.grade = DisasterGrade(from.grade);
-    for (const double radius_km : from.radii_km) {
-      waypoint.radii.push_back(static_cast<float>(radius_km * 1000.0 / cell_size_m));
+    const auto cells = [cell_size_m](double km) {
+      return static_cast<float>(km * 1000.0 / cell_size_m);
+    };
+    for (const double radius_km : from.radii_km) waypoint.radii.push_back(cells(radius_km));
+    for (const Quadrants& ring : from.quadrants_km) {
+      waypoint.quadrants.push_back(
+          {cells(ring[0]), cells(ring[1]), cells(ring[2]), cells(ring[3])});
     }
-    const std::vector<float>& row = risks[static_cast<std::size_t>(waypoint.grade - 1)];
-    AQUAFARM_CHECK_GE(row.size(), from.radii_km.size());
-    waypoint.risks.assign(row.end() - static_cast<std::ptrdiff_t>(from.radii_km.size()), row.end());
+    std::vector<float> row = risks[static_cast<std::size_t>(waypoint.grade - 1)];
+    const std::size_t rings = from.radii_km.size();
+    if (row.size() < rings) row.insert(row.begin(), rings - row.size(), row.front());
+    waypoint.risks.assign(row.end() - static_cast<std::ptrdiff_t>(rings), row.end());
     disaster.track.push_back(std::move(waypoint));
   }
   const Waypoint& first = disaster.track.front();
   disaster.grade = first.grade;
   disaster.radii = first.radii;
   disaster.risks = first.risks;
+  disaster.quadrants = first.quadrants;
+  disaster.grade_risks = risks;
   disaster.duration = StepsToCover(static_cast<double>(disaster.track.back().step), 1.0);
   return disaster;
 }
 
-HazardTrack WithForecast(const HazardTrack& track) {
-  HazardTrack whole = track;
+const HazardForecast* NewestForecast(const HazardTrack& track) {
   AQUAFARM_CHECK_GE(track.fixes.size(), 1U);
   const HazardFix& now = track.fixes.back();
   const HazardForecast* newest = nullptr;
@@ -198,6 +233,13 @@ HazardTrack WithForecast(const HazardTrack& track) {
     if (forecast.fixes.back().time <= now.time) continue;
     if (newest == nullptr || forecast.issued > newest->issued) newest = &forecast;
   }
+  return newest;
+}
+
+HazardTrack WithForecast(const HazardTrack& track) {
+  HazardTrack whole = track;
+  const HazardForecast* const newest = NewestForecast(track);
+  const HazardFix& now = track.fixes.back();
   if (newest != nullptr) {
     std::copy_if(newest->fixes.begin(), newest->fixes.end(), std::back_inserter(whole.fixes),
                  [&now](const HazardFix& fix) { return fix.time > now.time; });
@@ -215,15 +257,22 @@ HazardTrack WithForecast(const HazardTrack& track) {
   return whole;
 }
 
-DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario,
+DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, std::int32_t id,
                         std::int32_t step_now) {
   if (!scenario.origin || !scenario.start_time) {
     throw InputError("bulletin: needs a ranch with grid.origin and time.start");
   }
-  const StormRings storm = ToRings(WithForecast(bulletin), RingReduction::kEqualArea);
+  const auto graded = [](const DisasterSpec& one) { return !one.grade_risks.empty(); };
+  const auto& all = scenario.disasters;
+  auto model = all.begin() + std::min(id, static_cast<std::int32_t>(all.size()));
+  const bool by_quadrant = model != all.end() && !model->quadrants.empty();
+  if (model == all.end() || !graded(*model)) model = std::find_if(all.begin(), all.end(), graded);
+  const StormRings storm = ToRings(
+      WithForecast(bulletin), by_quadrant ? RingReduction::kQuadrants : RingReduction::kEqualArea);
   DisasterSpec disaster =
-      ToDisaster(storm, DefaultRiskTable(), GeoFrame(*scenario.origin, scenario.cell_size_m),
-                 scenario.cell_size_m, scenario.step_duration_s, *scenario.start_time);
+      ToDisaster(storm, model == all.end() ? DefaultGradeRisks() : model->grade_risks,
+                 GeoFrame(*scenario.origin, scenario.cell_size_m), scenario.cell_size_m,
+                 scenario.step_duration_s, *scenario.start_time);
   const double left = std::ceil(static_cast<double>(disaster.track.back().step)) - step_now;
   if (left <= 0.0) {
     throw InputError("bulletin: is over: got a last position before step " +
@@ -241,13 +290,15 @@ Passage PassOver(const StormRings& storm, GeoPoint place, double margin_km) {
   for (std::int64_t time = storm.waypoints.front().time; time <= storm.waypoints.back().time;
        time += kStep_s) {
     const StormWaypoint now = *storm.At(time);
-    const double distance = DistanceKm(now.position, place);
+    const auto [distance, quadrant] = From(now.position, place);
     if (distance < passage.nearest_km) {
       passage.nearest_km = distance;
       passage.nearest_time = time;
     }
     for (std::size_t k = 0; k < now.radii_km.size(); ++k) {
-      if (now.radii_km[k] <= 0.0 || distance > now.radii_km[k] + margin_km) continue;
+      const double radius_km =
+          now.quadrants_km.empty() ? now.radii_km[k] : now.quadrants_km[k][quadrant];
+      if (radius_km <= 0.0 || distance > radius_km + margin_km) continue;
       passage.worst_wind_kt = std::max(passage.worst_wind_kt, storm.wind_kt[k]);
       if (passage.first == 0) passage.first = time;
       passage.last = time;

@@ -178,6 +178,11 @@ bool LayoutGenerator::DrawDevices(RandomStream& chance, Layout& layout) {
   for (std::size_t i = 0; i < count; ++i) {
     PlacedDevice& device = layout.devices[i];
     device.value = chance.Uniform(spec.value.min, spec.value.max);
+    if (scenario_.seas && !scenario_.seas->device_value.empty()) {
+      const std::int32_t cell = LinearIndex(device.cell, scenario_.width);
+      const float worth = scenario_.seas->device_value[static_cast<std::size_t>(cell)];
+      if (!std::isnan(worth)) device.value = worth;
+    }
     if (spec.placement == DevicePlacement::kExplicit) {
       const DeviceSite& site = spec.sites[i];
       device.kind = site.kind;

@@ -11,12 +11,11 @@
 #include "aquafarm/layout.h"
 #include "hazard_text.h"
 #include "map_image.h"
+#include "map_yaml.h"
 #include "yaml_reader.h"
 
 namespace aquafarm {
 
-/// How a picture's grey becomes occupancy.
-enum class MapMode : std::uint8_t { kTrinary, kScale, kRaw };
 std::string_view ToString(MapMode value) {
   constexpr std::array<std::string_view, 3> kNames{"trinary", "scale", "raw"};
   return kNames[static_cast<std::size_t>(value)];
@@ -26,24 +25,12 @@ template <>
 inline constexpr std::size_t kNameCount<MapMode> = 3;
 }
 
-namespace {
+using internal::MapYaml;
 
-namespace fs = std::filesystem;
-
-struct MapYaml {
-  std::string image;
-  double resolution{};
-  std::vector<double> origin{0.0, 0.0, 0.0};
-  std::int32_t negate{};
-  double occupied{0.65};
-  double free{0.196};
-  MapMode mode{};
-};
-
-MapYaml ReadMapYaml(const std::string& path) {
+MapYaml internal::ParseMapYaml(const std::string& text, const std::string& origin_name) {
   MapYaml map;
   internal::ReadYaml(
-      internal::ReadTextFile(path), path, "a map of map_server",
+      text, origin_name, "a map of map_server",
       [&map](internal::YamlReader& a) {
         using internal::Interval;
         using internal::Need;
@@ -65,6 +52,10 @@ MapYaml ReadMapYaml(const std::string& path) {
       });
   return map;
 }
+
+namespace {
+
+namespace fs = std::filesystem;
 
 // What map_server makes of a pixel.
 std::int8_t Occupancy(const MapYaml& map, std::uint8_t grey, bool opaque) {
@@ -97,7 +88,7 @@ void WriteFile(const std::string& path, const std::string& bytes) {
 }  // namespace
 
 MapFile LoadMap(const std::string& yaml_path) {
-  const MapYaml yaml = ReadMapYaml(yaml_path);
+  const MapYaml yaml = internal::ParseMapYaml(internal::ReadTextFile(yaml_path), yaml_path);
   const fs::path beside = fs::path(yaml_path).parent_path() / yaml.image;
   const internal::MapImage image =
       internal::ParseMapImage(internal::ReadTextFile(beside.string()), beside.string());

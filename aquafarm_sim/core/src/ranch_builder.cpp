@@ -13,6 +13,7 @@
 #include "aquafarm/hazard_file.h"
 #include "aquafarm/layout.h"
 #include "aquafarm/map_file.h"
+#include "aquafarm/notice_file.h"
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm/sea_field.h"
 #include "field_domain.h"
@@ -73,6 +74,7 @@ class Builder {
     PlaceTerrain();
     const std::vector<Cell> ports = PlacePorts();
     SetTime();
+    SayNotices();
     ReadSea();
     AddPresets();
     Write(ports);
@@ -167,6 +169,28 @@ class Builder {
     return ports;
   }
 
+  // The storm of a track in another file: by id, else by name.
+  static const HazardTrack& SameStorm(const HazardFile& file, const HazardTrack& track) {
+    const auto letters = [](const std::string& name) {
+      std::string bare = internal::Upper(name);
+      bare.erase(std::remove(bare.begin(), bare.end(), '-'), bare.end());
+      return bare;
+    };
+    const HazardTrack& first = file.tracks.front();
+    const bool unnamed = first.name.empty() || track.name.empty();
+    if (file.tracks.size() == 1 && (unnamed || letters(first.name) == letters(track.name))) {
+      return first;
+    }
+    for (const HazardTrack& other : file.tracks) {
+      if (other.id == track.id) return other;
+    }
+    try {
+      return FindTrack(file, track.name.empty() ? track.id : track.name);
+    } catch (const InputError& error) {
+      throw InputError(std::string("radii: ") + error.what());
+    }
+  }
+
   HazardTrack ReadTrack() {
     const auto only = [](const HazardFile& file, const std::string& storm) {
       return storm.empty() && file.tracks.size() == 1 ? file.tracks[0] : FindTrack(file, storm);
@@ -178,8 +202,7 @@ class Builder {
     if (!request_.radii.empty()) {
       const HazardFile other = LoadHazardFile(request_.radii);
       Keep(other.warnings);
-      const std::string name = other.tracks.size() == 1 ? "" : track.name;
-      radii = Text("; radii of %d from %s", BorrowRings(only(other, name), track),
+      radii = Text("; radii of %d from %s", BorrowRings(SameStorm(other, track), track),
                    FileName(request_.radii).c_str());
     }
     storm_ = ToRings(track, request_.reduction);
@@ -241,12 +264,29 @@ class Builder {
            all.begin() + static_cast<std::ptrdiff_t>(to)};
   }
 
+  // Those that are in force during the episode, or all where it has no time.
+  void SayNotices() {
+    if (request_.notices.empty()) return;
+    const NoticeFile file = LoadNotices(request_.notices);
+    Keep(file.warnings);
+    const bool timed = request_.start || !storm_.waypoints.empty();
+    const std::int64_t end =
+        start_ + static_cast<std::int64_t>(std::max(duration_, 5000) * step_s_);
+    int others = 0;
+    for (const Notice& notice : file.notices) {
+      const bool in_force = !timed || (notice.start < end && notice.end > start_);
+      others += in_force ? 0 : 1;
+      if (in_force) Say("notice: " + Describe(notice));
+    }
+    if (others > 0) Say(Text("notices: %d more at other times", others));
+  }
+
   NamedLayer ReadLayer(const SeaLayerRequest& sea) {
     const GeoFrame frame = Frame();
     const std::optional<std::int64_t> time =
         request_.track.empty() ? request_.start : std::optional<std::int64_t>(start_);
-    const SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
-                                        width(), height());
+    SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
+                                  width(), height());
     NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
     const Layer known = layer.layer.isNaN().select(Layer::Zero(height(), width()), layer.layer);
     const auto cells = static_cast<float>((!layer.layer.isNaN()).count());
@@ -257,6 +297,7 @@ class Builder {
         (field.time ? " at " + FormatTime(*field.time) : "") +
         Text(", mean %.4g %s, on %.0f of %d cells", static_cast<double>(known.sum() / cells),
              field.units.c_str(), static_cast<double>(cells), width() * height()));
+    sea_units_.push_back(std::move(field.units));
     return layer;
   }
 
@@ -273,10 +314,14 @@ class Builder {
   }
 
   void ReadSea() {
-    std::vector<NamedLayer> layers;
-    for (const SeaLayerRequest& sea : request_.sea) layers.push_back(ReadLayer(sea));
+    for (const SeaLayerRequest& sea : request_.sea) layers_.push_back(ReadLayer(sea));
+    if (!request_.sea_risk.empty()) Say("risk of the sea: " + request_.sea_risk);
     if (request_.value.empty()) return;
-    value_ = Evaluate(request_.value, layers);
+    try {
+      value_ = Evaluate(request_.value, layers_);
+    } catch (const InputError& error) {
+      throw InputError(std::string("value: ") + error.what());
+    }
     Say("values: " + request_.value);
   }
 
@@ -333,6 +378,28 @@ class Builder {
     if (!storm_.waypoints.empty()) WriteStorm();
     for (const DisasterSpec& disaster : presets_) WritePreset(disaster);
     Line("view: {mode: full}");
+    if (!layers_.empty()) WriteSeas();
+  }
+
+  // As numbers, so that the file needs no other.
+  void WriteSeas() {
+    Line("seas:\n  layers:");
+    for (std::size_t i = 0; i < layers_.size(); ++i) {
+      Line("    - name: " + layers_[i].name);
+      Line("      units: " + InQuotes(sea_units_[i]));
+      Line("      values: [");
+      const Layer& layer = layers_[i].layer;
+      for (Eigen::Index y = 0; y < layer.rows(); ++y) {
+        std::string row;
+        for (Eigen::Index x = 0; x < layer.cols(); ++x) {
+          const float value = layer(y, x);
+          row += std::isnan(value) ? ".nan, " : Short(static_cast<double>(value), 4) + ", ";
+        }
+        Line("        " + row);
+      }
+      Line("      ]");
+    }
+    if (!request_.sea_risk.empty()) Line("  risk: " + InQuotes(request_.sea_risk));
   }
 
   static std::string CellText(Cell cell) { return Text("[%d, %d]", cell.x, cell.y); }
@@ -375,7 +442,7 @@ class Builder {
   }
 
   void WriteStorm() {
-    const RiskTable& table = DefaultRiskTable();
+    const GradeRisks& table = DefaultGradeRisks();
     Line("  - kind: typhoon");
     std::string rows;
     for (const std::vector<float>& row : table) {
@@ -397,9 +464,16 @@ class Builder {
       for (const double radius : waypoint.radii_km) {
         radii += (radii.empty() ? "" : ", ") + Short(radius, 1);
       }
+      std::string quadrants;
+      for (const std::array<double, 4>& ring : waypoint.quadrants_km) {
+        quadrants += (quadrants.empty() ? "[" : ", [") + Short(ring[0], 1);
+        for (std::size_t q = 1; q < ring.size(); ++q) quadrants += ", " + Short(ring[q], 1);
+        quadrants += "]";
+      }
       Line("      - {time: " + FormatTime(waypoint.time) +
-           ", latitude: " + Short(waypoint.position.latitude, 3) + ", longitude: " +
-           Short(waypoint.position.longitude, 3) + ", radii_km: [" + radii + "],");
+           ", latitude: " + Short(waypoint.position.latitude, 3) +
+           ", longitude: " + Short(waypoint.position.longitude, 3) +
+           (quadrants.empty() ? ", radii_km: [" + radii : ", quadrants_km: [" + quadrants) + "],");
       Line(Text("         grade: %d", DisasterGrade(waypoint.grade)) +
            (waypoint.pressure_hpa ? ", pressure_hpa: " + Short(*waypoint.pressure_hpa, 1) : "") +
            (waypoint.wind_mps ? ", wind_mps: " + Short(*waypoint.wind_mps, 1) : "") + "}" +
@@ -413,7 +487,9 @@ class Builder {
   StormRings storm_;
   std::vector<DisasterSpec> presets_;
   std::string storm_text_;
-  Layer value_;  // of a device, by cell
+  std::vector<NamedLayer> layers_;
+  std::vector<std::string> sea_units_;  // by layer
+  Layer value_;                         // of a device, by cell
   std::optional<GeoPoint> origin_;
   double cell_size_m_{};
   double step_s_{};

@@ -2,6 +2,7 @@
 #include "aquafarm/scenario.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scenario_keys.h"
 
@@ -55,6 +56,27 @@ void CheckRings(const std::string& path, const std::vector<float>& radii,
   }
 }
 
+// Every ring by quadrants where one is, with radii as the largest; a quadrant never wider inside.
+void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& quadrants,
+                    const std::vector<float>& radii, bool expected) {
+  const std::string here = internal::Join(path, "quadrants");
+  if (quadrants.empty() == expected || (expected && quadrants.size() != radii.size())) {
+    throw FieldError(here, "got " + std::to_string(quadrants.size()) +
+                               " rings, expected as many as the disaster has, or none anywhere");
+  }
+  for (std::size_t i = 0; i < quadrants.size(); ++i) {
+    for (std::size_t q = 0; q < quadrants[i].size(); ++q) {
+      if (i == 0 || quadrants[i][q] >= quadrants[i - 1][q]) continue;
+      throw FieldError(At(At(here, i), q), "got " + Format(quadrants[i][q]) +
+                                               ", expected at least that of the ring inside, " +
+                                               Format(quadrants[i - 1][q]));
+    }
+  }
+  if (expected && internal::Largest(quadrants) != radii) {
+    throw FieldError(here, "got radii that are not the largest of each ring's quadrants");
+  }
+}
+
 // What the ranges of single keys do not say.
 void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
   const std::size_t rings = disaster.risks.size();
@@ -62,12 +84,70 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
     const Waypoint& waypoint = disaster.track[i];
     const std::string here = At(internal::Join(path, "track"), i);
     CheckRings(here, waypoint.radii, waypoint.risks, rings, true);
+    CheckQuadrants(here, waypoint.quadrants, waypoint.radii, !disaster.quadrants.empty());
     if (i == 0 || waypoint.step > disaster.track[i - 1].step) continue;
     throw FieldError(internal::Join(here, "step"),
                      "got " + Format(waypoint.step) + ", expected more than that of " +
                          At("track", i - 1) + ", " + Format(disaster.track[i - 1].step));
   }
   CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
+  CheckQuadrants(path, disaster.quadrants, disaster.radii, !disaster.quadrants.empty());
+}
+
+// A layer's name is part of expressions and topics.
+bool IsLayerName(const std::string& name) {
+  const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return letter(c) || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+void CheckCellCount(const std::string& path, std::size_t values, const Scenario& scenario) {
+  const auto cells = static_cast<std::size_t>(scenario.CellCount());
+  if (values == cells) return;
+  throw FieldError(path, "got " + std::to_string(values) +
+                             " values, expected one a cell: " + std::to_string(cells));
+}
+
+// Numbers that are 0, unknown or in a range.
+void CheckPerCell(const char* path, const std::vector<float>& values, const Scenario& scenario,
+                  internal::Interval<float> range) {
+  if (values.empty()) return;
+  CheckCellCount(path, values.size(), scenario);
+  for (std::int32_t i = 0; i < scenario.CellCount(); ++i) {
+    const float value = values[static_cast<std::size_t>(i)];
+    if (std::isnan(value) || value == 0.0F || (value >= range.min && value <= range.max)) continue;
+    throw FieldError(path, "got " + Format(value) + " at (" + Format(i % scenario.width) + ", " +
+                               Format(i / scenario.width) + "), expected 0 or a number in " +
+                               internal::Describe(range));
+  }
+}
+
+void CheckSeas(const Scenario& scenario) {
+  if (!scenario.seas) return;
+  constexpr std::size_t kMostValues = 200000;  // so that a scenario stays a file of a few MB
+  const SeaSpec& seas = *scenario.seas;
+  std::size_t values = seas.risk.size() + seas.device_value.size();
+  for (std::size_t i = 0; i < seas.layers.size(); ++i) {
+    const SeaLayer& layer = seas.layers[i];
+    const std::string path = At("seas.layers", i);
+    if (!IsLayerName(layer.name)) {
+      throw FieldError(path + ".name",
+                       "got '" + layer.name + "', expected a-z, 0-9 and _, a letter first");
+    }
+    const auto same = [&layer](const SeaLayer& other) { return other.name == layer.name; };
+    if (std::count_if(seas.layers.begin(), seas.layers.end(), same) > 1) {
+      throw FieldError(path + ".name", "got '" + layer.name + "' twice, expected it once");
+    }
+    CheckCellCount(path + ".values", layer.values.size(), scenario);
+    values += layer.values.size();
+  }
+  if (values > kMostValues) {
+    throw FieldError("seas", "got " + std::to_string(values) + " values, expected at most " +
+                                 std::to_string(kMostValues));
+  }
+  CheckPerCell("seas.risk", seas.risk, scenario, internal::kRisk);
+  CheckPerCell("seas.device_value", seas.device_value, scenario, internal::kDeviceValue);
 }
 
 // Marks what stands where and refuses a second thing on a cell.
@@ -156,6 +236,23 @@ void CheckPlaces(const Scenario& scenario) {
             free, " beside the ports and devices");
 }
 
+void CheckForecast(const Scenario& scenario) {
+  const std::vector<float>& error_km = scenario.view.forecast_error_km;
+  if (error_km.empty()) return;
+  const std::string path = "view.forecast_error_km";
+  if (error_km.size() != 3) {
+    throw FieldError(path, "got " + std::to_string(error_km.size()) +
+                               " numbers, expected those after 24, 48 and 72 hours");
+  }
+  if (!std::is_sorted(error_km.begin(), error_km.end())) {
+    throw FieldError(path, "got an error that shrinks with time, expected ascending numbers");
+  }
+  if (std::none_of(scenario.disasters.begin(), scenario.disasters.end(),
+                   [](const DisasterSpec& one) { return !one.track.empty(); })) {
+    throw FieldError(path, "is used only where a disaster has a track");
+  }
+}
+
 void CheckAgents(const Scenario& scenario) {
   const DeviceSpec& devices = scenario.devices;
   if (devices.Total() == 0) {
@@ -223,6 +320,8 @@ void ValidateScenario(const Scenario& scenario) {
   }
   CheckAgents(scenario);
   CheckPlaces(scenario);
+  CheckSeas(scenario);
+  CheckForecast(scenario);
 }
 
 }  // namespace aquafarm

@@ -11,6 +11,8 @@
 /// absent), Objects (a list of blocks), Has (is a key given?) and When (are the keys from here to
 /// Always in use, and if so why?).
 
+#include <algorithm>
+
 #include "aquafarm/geo_frame.h"
 #include "field_domain.h"
 
@@ -20,6 +22,7 @@ enum class Need : std::uint8_t { kOptional, kRequired };
 
 inline constexpr std::size_t kMaxListed = 100000;  ///< islands, rocks: far above any farm
 inline constexpr std::size_t kMaxDisasters = 64;
+inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::size_t kMaxWaypoints = 10000;
 inline constexpr std::int32_t kMaxDevices = 1000;
 inline constexpr std::int32_t kMaxShips = 64;
@@ -43,8 +46,9 @@ struct GeoFix {
   std::int64_t time{};  ///< UTC [s since 1970]
   GeoPoint point;
   std::vector<float> radii_km;
-  std::optional<float> pressure_hpa;  ///< for readers of the file; changes nothing
-  std::optional<float> wind_mps;      ///< likewise
+  std::vector<QuadrantRadii> quadrants_km;  ///< instead of radii_km
+  std::optional<float> pressure_hpa;        ///< for readers of the file; changes nothing
+  std::optional<float> wind_mps;            ///< likewise
 };
 
 /// What turns a GeoFix into a Waypoint; null where there is no file and so no GeoFix.
@@ -53,6 +57,7 @@ struct WorldFrame {
   std::optional<std::int64_t> start_time;
   double step_duration_s{};
   double cell_size_m{};
+  std::string folder;  ///< of the scenario file, from which it names others
 };
 
 /// @throws FieldError when the scenario has no origin or start
@@ -65,25 +70,58 @@ void VisitGeoPoint(Archive& a, Point& point) {
   a.Leaf("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
 }
 
-/// Risks of the rings by grade, 1 to 4; empty where a scenario gives none.
-using GradeRisks = std::vector<std::vector<float>>;
+/// A field of a netCDF file as a scenario names it; becomes the values of a SeaLayer.
+struct SeaSource {
+  std::string file;
+  std::string variable;
+  double depth_m{};
+  std::optional<std::int64_t> time;  ///< UTC; none: the episode's start, or the file's first
+};
+
+/// Reads a field onto the cells of a farm.
+/// @throws FieldError when the scenario has no origin, or the file no such field there
+void Resolve(const SeaSource& source, const WorldFrame& frame, const std::string& path,
+             std::int32_t width, std::int32_t height, SeaLayer& layer);
+/// Evaluates a rule of the sea's layers at every cell.
+/// @throws FieldError for what is no expression
+std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& layers,
+                          const std::string& path);
+
+/// The largest radius of each ring.
+inline std::vector<float> Largest(const std::vector<QuadrantRadii>& quadrants) {
+  std::vector<float> radii;
+  for (const QuadrantRadii& ring : quadrants) {
+    radii.push_back(*std::max_element(ring.begin(), ring.end()));
+  }
+  return radii;
+}
 
 template <typename Archive, typename W>
 void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const GradeRisks& by_grade) {
   const ListOf<Interval<float>> radii{kRadius, 1, kMaxRings};
   const bool real = a.Has("time", false);
+  const ListOf<Interval<float>> quadrants{kRadius, 0, kMaxRings};
+  const bool by_quadrant = a.Has("quadrants", !waypoint.quadrants.empty());
   a.When(!real, "there is no time");
   a.Leaf("step", waypoint.step, Interval<float>{-static_cast<float>(kMaxSteps), kMaxSteps},
          Need::kRequired);
   a.Leaf("x", waypoint.x, kPlace, Need::kRequired);
   a.Leaf("y", waypoint.y, kPlace, Need::kRequired);
+  a.When(!real && !by_quadrant, real ? "there is no time" : "there are no quadrants");
   a.Leaf("radii", waypoint.radii, radii, Need::kRequired);
+  a.When(!real && by_quadrant, real ? "there is no time" : "there are quadrants");
+  a.Leaf("quadrants", waypoint.quadrants, quadrants);
   if constexpr (Archive::kReads) {
+    if (by_quadrant) waypoint.radii = Largest(waypoint.quadrants);
     GeoFix fix;
+    const bool by_quadrant_km = a.Has("quadrants_km", false);
     a.When(real, "there is a time");
     a.Leaf("time", fix.time, UtcTime{}, Need::kRequired);
     VisitGeoPoint(a, fix.point);
+    a.When(real && !by_quadrant_km, real ? "there are no quadrants_km" : "there is a time");
     a.Leaf("radii_km", fix.radii_km, radii, Need::kRequired);
+    a.When(real, "there is a time");
+    a.Leaf("quadrants_km", fix.quadrants_km, quadrants);
     a.Leaf("pressure_hpa", fix.pressure_hpa, Interval<float>{800.0F, 1100.0F});
     a.Leaf("wind_mps", fix.wind_mps, Interval<float>{0.0F, 150.0F});
     if (real) Resolve(fix, frame, a.path(), waypoint);
@@ -100,21 +138,26 @@ template <typename Archive, typename D>
 void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   const bool tracked = a.Has("track", !disaster.track.empty());
   const ListOf<Interval<float>> risks{kRisk, 1, kMaxRings};
-  const bool graded = a.Has("grade_risks", false);
-  GradeRisks by_grade;
+  const bool graded = a.Has("grade_risks", !disaster.grade_risks.empty());
+  const bool by_quadrant = a.Has("quadrants", !disaster.quadrants.empty());
   a.Leaf("kind", disaster.kind, OneOfNames{}, Need::kRequired);
   a.When(!graded, "there are no grade_risks");
   a.Leaf("risks", disaster.risks, risks);
+  a.When(tracked && graded, "there is a track");
+  a.Leaf("grade_risks", disaster.grade_risks,
+         ListOf<ListOf<Interval<float>>>{risks, graded ? 4U : 0U, 4});
   a.Always();
-  if constexpr (Archive::kReads) {
-    a.When(tracked, "there is a track");
-    a.Leaf("grade_risks", by_grade, ListOf<ListOf<Interval<float>>>{risks, 4, 4});
-    a.Always();
-  }
   a.Leaf("duration", disaster.duration, Interval<std::int32_t>{1, kMaxSteps});
   a.When(!tracked, "there is no track");
   a.Leaf("grade", disaster.grade, kGrade);
+  a.When(!tracked && !by_quadrant, tracked ? "there is no track" : "there are no quadrants");
   a.Leaf("radii", disaster.radii, ListOf<Interval<float>>{kRadius, 1, kMaxRings});
+  a.When(!tracked && by_quadrant, tracked ? "there is no track" : "there are quadrants");
+  a.Leaf("quadrants", disaster.quadrants, ListOf<Interval<float>>{kRadius, 0, kMaxRings});
+  if constexpr (Archive::kReads) {
+    if (by_quadrant) disaster.radii = Largest(disaster.quadrants);
+  }
+  a.When(!tracked, "there is no track");
   a.Leaf("speed", disaster.speed, Interval<float>{0.0F, 1000.0F});
   a.Leaf("heading_deg", disaster.heading_deg, Interval<std::int32_t>{0, 359});
   a.Leaf("turn_probability", disaster.turn_probability, kShare);
@@ -125,12 +168,13 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   if (!tracked) return;
   a.Objects("track", disaster.track, {1, kMaxWaypoints}, [&](auto& b, auto& waypoint) {
     if constexpr (Archive::kReads) waypoint.risks = disaster.risks;
-    VisitWaypoint(b, waypoint, frame, by_grade);
+    VisitWaypoint(b, waypoint, frame, disaster.grade_risks);
   });
   if constexpr (Archive::kReads) {  // a tracked disaster is first what its first waypoint is
     if (graded) disaster.risks = disaster.track.front().risks;
     disaster.grade = disaster.track.front().grade;
     disaster.radii = disaster.track.front().radii;
+    disaster.quadrants = disaster.track.front().quadrants;
   }
 }
 
@@ -216,8 +260,53 @@ void VisitView(Archive& a, S& s) {
     b.Leaf("bulletin_period", s.view.bulletin_period, Interval<std::int32_t>{0, kMaxSteps});
     b.Leaf("bulletin_noise", s.view.bulletin_noise, Interval<float>{0.0F, 1000.0F});
     b.Leaf("shared_sight", s.view.shared_sight, AnyFlag{});
+    b.When(Archive::kReads || !s.view.forecast_error_km.empty(), "");
+    b.Leaf("forecast_error_km", s.view.forecast_error_km,
+           ListOf<Interval<float>>{{0.0F, 10000.0F}, Archive::kReads ? 3U : 0U, 3});
     b.Always();
     b.Leaf("waterways", s.view.waterways, AnyFlag{});
+  });
+}
+
+/// A number for each cell: written as such, read as such or as a rule of the layers.
+template <typename Archive, typename Values>
+void VisitPerCell(Archive& a, const char* rule_key, const char* key, const char* condition,
+                  const std::vector<SeaLayer>& layers, Values& values) {
+  bool ruled = false;
+  if constexpr (Archive::kReads) {
+    std::string rule;
+    ruled = a.Has(rule_key, false);
+    a.Leaf(rule_key, rule, TextOf{1, 1000});
+    if (ruled) values = ByRule(rule, layers, Join(a.path(), rule_key));
+  }
+  a.When(Archive::kReads ? !ruled : !values.empty(), condition);
+  a.Leaf(key, values, ListOf<NumberOrNone>{{}, 0, kMaxListed});
+  a.Always();
+}
+
+template <typename Archive, typename S>
+void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
+  a.Optional("seas", s.seas, [&](auto& b, auto& sea) {
+    b.Objects("layers", sea.layers, {0, kMaxLayers}, [&](auto& c, auto& layer) {
+      c.Leaf("name", layer.name, TextOf{1, 60}, Need::kRequired);
+      const bool from_file = c.Has("file", false);
+      c.When(!from_file, "there is no file");
+      c.Leaf("units", layer.units, TextOf{0, 60});
+      c.Leaf("values", layer.values, ListOf<NumberOrNone>{{}, 1, kMaxListed}, Need::kRequired);
+      if constexpr (Archive::kReads) {
+        SeaSource source;
+        c.When(from_file, "there is a file");
+        c.Leaf("file", source.file, TextOf{1, 1000}, Need::kRequired);
+        c.Leaf("variable", source.variable, TextOf{1, 200}, Need::kRequired);
+        c.Leaf("depth_m", source.depth_m, Interval<double>{0.0, 12000.0});
+        c.Leaf("time", source.time, UtcTime{});
+        if (from_file) Resolve(source, frame, c.path(), s.width, s.height, layer);
+      }
+      c.Always();
+    });
+    VisitPerCell(b, "risk", "risk_values", "there is no risk", sea.layers, sea.risk);
+    VisitPerCell(b, "device_value", "device_values", "there is no device_value", sea.layers,
+                 sea.device_value);
   });
 }
 
@@ -238,7 +327,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
     b.Leaf("step_limit", s.step_limit, Interval<std::int32_t>{1, kMaxSteps});
   });
   frame = {s.origin ? std::optional<GeoFrame>(GeoFrame(*s.origin, s.cell_size_m)) : std::nullopt,
-           s.start_time, s.step_duration_s, s.cell_size_m};
+           s.start_time, s.step_duration_s, s.cell_size_m, frame.folder};
   a.Object("layout", [&](auto& b) {
     b.Leaf("mode", s.layout, OneOfNames{});
     b.When(s.layout == LayoutMode::kFixed, "mode is fixed");
@@ -256,6 +345,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
             [&](auto& b, auto& disaster) { VisitDisaster(b, disaster, &frame); });
   VisitRewardsAndDamage(a, s);
   VisitView(a, s);
+  VisitSeas(a, s, frame);
 }
 
 /// The archive that checks values in memory, used or not.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -54,17 +55,22 @@ void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path
   waypoint.step = static_cast<float>(seconds / frame->step_duration_s);
   waypoint.x = static_cast<float>(place[0]);
   waypoint.y = static_cast<float>(place[1]);
+  const auto cells = [frame](float km) {
+    return static_cast<float>(km * 1000.0 / frame->cell_size_m);
+  };
   waypoint.radii.clear();
-  for (const float radius : fix.radii_km) {
-    waypoint.radii.push_back(static_cast<float>(radius * 1000.0 / frame->cell_size_m));
+  for (const float radius : fix.radii_km) waypoint.radii.push_back(cells(radius));
+  for (const QuadrantRadii& ring : fix.quadrants_km) {
+    waypoint.quadrants.push_back({cells(ring[0]), cells(ring[1]), cells(ring[2]), cells(ring[3])});
   }
+  if (!waypoint.quadrants.empty()) waypoint.radii = Largest(waypoint.quadrants);
 }
 
 }  // namespace internal
 
 namespace {
 
-constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints are under 2 MiB
+constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints are under 2 MiB, as are seas
 
 std::string Write(const Scenario& scenario) {
   internal::YamlWriter writer;
@@ -96,8 +102,9 @@ Scenario ParseScenario(const std::string& text, const std::string& origin_name) 
   Scenario scenario;
   internal::ReadYaml(
       text, origin_name, "a scenario",
-      [&scenario](internal::YamlReader& reader) {
+      [&](internal::YamlReader& reader) {
         internal::WorldFrame frame;
+        frame.folder = std::filesystem::path(origin_name).parent_path().string();
         internal::VisitScenario(reader, scenario, frame);
       },
       [&scenario] { ValidateScenario(scenario); });

@@ -76,6 +76,38 @@ class NcFile {
     const int status = nc_get_att_double(id_, variable, key, &value);
     return status == NC_NOERR ? std::optional<double>(value) : std::nullopt;
   }
+  // An attribute of two numbers.
+  std::optional<std::array<double, 2>> Pair(int variable, const char* key) const {
+    nc_type type = NC_NAT;
+    std::size_t length = 0;
+    std::array<double, 2> values{};
+    if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR || type == NC_CHAR ||
+        type == NC_STRING || length != 2 ||
+        nc_get_att_double(id_, variable, key, values.data()) != NC_NOERR) {
+      return std::nullopt;
+    }
+    return values;
+  }
+  // What netCDF itself writes where nothing was put; bytes have no such value.
+  std::optional<double> DefaultFill(int variable) const {
+    nc_type type = NC_NAT;
+    Need(nc_inq_vartype(id_, variable, &type), "type");
+    switch (type) {
+      case NC_SHORT:
+        return NC_FILL_SHORT;
+      case NC_USHORT:
+        return NC_FILL_USHORT;
+      case NC_INT:
+        return NC_FILL_INT;
+      case NC_UINT:
+        return NC_FILL_UINT;
+      case NC_FLOAT:
+      case NC_DOUBLE:
+        return NC_FILL_DOUBLE;
+      default:
+        return std::nullopt;
+    }
+  }
   std::vector<int> Variables() const {
     int count = 0;
     Need(nc_inq_nvars(id_, &count), "variables");
@@ -201,6 +233,11 @@ std::pair<double, double> TimeUnits(const NcFile& file, const Dimension& time) {
   const std::string units = file.Text(time.coordinate, "units");
   const std::size_t since = units.find(" since ");
   const std::string unit = units.substr(0, since);
+  const std::string calendar = file.Text(time.coordinate, "calendar");
+  if (!IsOneOf(calendar, {"", "standard", "gregorian", "proleptic_gregorian"})) {
+    file.Refuse(time.name + ": calendar: got " + internal::Quoted(calendar) +
+                ", expected standard, gregorian or proleptic_gregorian");
+  }
   std::string day = since == std::string::npos ? "" : units.substr(since + 7);
   if (day.size() <= 10) day += " 00:00";
   const std::optional<std::int64_t> zero = internal::ParseDateTime(day, 0);
@@ -271,16 +308,19 @@ void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
   const double scale = file.Number(variable, "scale_factor").value_or(1.0);
   const double offset = file.Number(variable, "add_offset").value_or(0.0);
   // Compared with the numbers as they are stored. A fill value that the type cannot hold fits none.
-  const std::optional<double> fill = file.Number(variable, "_FillValue");
+  const std::optional<double> own = file.Number(variable, "_FillValue");
+  const std::optional<double> fill = own ? own : file.DefaultFill(variable);
   const std::optional<double> missing = file.Number(variable, "missing_value");
-  const double low = file.Number(variable, "valid_min").value_or(-1.0e30);
-  const double high = file.Number(variable, "valid_max").value_or(1.0e30);
+  const auto range = file.Pair(variable, "valid_range");
+  const double low = range ? (*range)[0] : file.Number(variable, "valid_min").value_or(-1.0e30);
+  const double high = range ? (*range)[1] : file.Number(variable, "valid_max").value_or(1.0e30);
   const auto same = [](const std::optional<double>& mark, float value) {
     return mark && static_cast<float>(*mark) == value;
   };
   for (float& value : values) {
     const bool absent = same(fill, value) || same(missing, value) || !(value >= low) ||
-                        !(value <= high) || std::abs(value) > 9.9e35F;  // netCDF's own default fill
+                        !(value <= high) ||
+                        std::abs(value) > 9.9e35F;  // beyond any field of the sea
     value = absent ? kNoValue : static_cast<float>(value * scale + offset);
   }
 }
@@ -411,7 +451,7 @@ Layer ToLayer(const SeaField& field, const GeoFrame& frame, std::int32_t width,
 }
 
 Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& layers) {
-  if (layers.empty()) throw InputError("value: got no layer to evaluate '" + expression + "' on");
+  if (layers.empty()) throw InputError("got no layer to evaluate '" + expression + "' on");
   Layer result(layers[0].layer.rows(), layers[0].layer.cols());
   std::vector<double> values(layers.size());
   try {
@@ -432,7 +472,7 @@ Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& lay
       result.data()[cell] = known ? static_cast<float>(value) : kNoValue;
     }
   } catch (const mu::Parser::exception_type& error) {
-    throw InputError("value: got '" + expression + "', expected an expression: " + error.GetMsg());
+    throw InputError("got '" + expression + "', expected an expression: " + error.GetMsg());
   }
   return result;
 }

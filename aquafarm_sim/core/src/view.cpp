@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "aquafarm/forecast.h"
+
 namespace aquafarm {
 namespace {
 
@@ -41,12 +43,18 @@ void TakeBackToBulletin(const std::vector<Waypoint>& track, std::int32_t age, Di
     FollowTrack(belief, track, belief.bulletin.step);
     return;
   }
-  for (std::size_t k = 0; k < static_cast<std::size_t>(belief.rings); ++k) {
-    belief.radius[k] =
-        std::max(0.0F, belief.radius[k] - belief.radius_growth * static_cast<float>(age));
-    const float radius = belief.radius[k];
-    belief.radius_squared[k] = radius > 0.0F ? radius * radius : -1.0F;
-  }
+  GrowRings(belief, -belief.radius_growth * static_cast<float>(age));
+}
+
+// Tells the way that the forecast has it going, instead of how it moves now.
+void TellForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
+  const auto disaster = static_cast<std::int32_t>(id);
+  if (!HasForecast(farm, disaster)) return;
+  const auto there =
+      ForecastAt(farm, disaster, farm.step() - known.age, farm.step() + kForecastSteps);
+  const auto lead = static_cast<float>(known.age + kForecastSteps);
+  known.belief.dx = (there[0] - known.belief.x) / lead;
+  known.belief.dy = (there[1] - known.belief.y) / lead;
 }
 
 void ObserveDisaster(const Farm& farm, std::size_t id, bool full, const std::vector<Cell>& eyes,
@@ -119,11 +127,12 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   view.disasters.resize(farm.disasters().size());
   for (std::size_t id = 0; id < view.disasters.size(); ++id) {
     ObserveDisaster(farm, id, full, view.eyes, view.disasters[id]);
+    if (view.disasters[id].known) TellForecast(farm, id, view.disasters[id]);
   }
 }
 
 float KnownRiskAt(const View& view, Cell cell) {
-  float worst = 0.0F;
+  float worst = view.scenario->SeaRiskAt(cell);
   for (const KnownDisaster& known : view.disasters) {
     if (!known.known) continue;
     const float risk = RiskOf(known.belief, static_cast<float>(cell.x), static_cast<float>(cell.y));

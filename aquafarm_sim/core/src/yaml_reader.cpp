@@ -4,6 +4,7 @@
 #include <yaml-cpp/eventhandler.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 namespace aquafarm::internal {
@@ -163,6 +164,16 @@ void YamlReader::Read(const std::string& path, const YAML::Node& node, bool& val
   const std::string text = node.IsScalar() ? node.Scalar() : "";
   value = text == "true";
   if (!value && text != "false") throw Refusal(path, node, Expected(value, AnyFlag{}));
+}
+
+void YamlReader::Read(const std::string& path, const YAML::Node& node, float& value,
+                      NumberOrNone domain) {
+  if (!node.IsScalar()) throw Refusal(path, node, Expected(value, domain));
+  if (node.Scalar() == ".nan") {
+    value = std::numeric_limits<float>::quiet_NaN();
+  } else if (!Parse(node.Scalar(), value)) {
+    throw Refusal(path, node, Expected(value, domain));
+  }
 }
 
 void YamlReader::Read(const std::string& path, const YAML::Node& node, std::string& value, TextOf) {

@@ -105,6 +105,7 @@ class YamlReader {
   }
   static std::string Expected(bool, AnyFlag) { return "true or false"; }
   static std::string Expected(const std::string&, TextOf) { return "a text"; }
+  static std::string Expected(float, NumberOrNone) { return "a number or .nan"; }
   static std::string Expected(std::int64_t, UtcTime) {
     return "a UTC time as 2021-07-24T12:00:00Z";
   }
@@ -145,6 +146,12 @@ class YamlReader {
                    const Interval<float>& domain) {
     ReadPair(path, node, value[0], value[1], domain);
   }
+  static void Read(const std::string& path, const YAML::Node& node, QuadrantRadii& value,
+                   const Interval<float>& domain) {
+    CheckList(path, node, {value.size(), value.size()});
+    for (std::size_t i = 0; i < value.size(); ++i) Read(At(path, i), node[i], value[i], domain);
+  }
+  static void Read(const std::string& path, const YAML::Node& node, float& value, NumberOrNone);
   static void Read(const std::string& path, const YAML::Node& node, Cell& value, AnyCell) {
     ReadPair(path, node, value.x, value.y, Interval<std::int32_t>{0, kMaxSide - 1});
   }

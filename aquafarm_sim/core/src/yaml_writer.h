@@ -54,7 +54,7 @@ class YamlWriter {
  private:
   void Line(const char* key, const std::string& value);
 
-  static std::string Value(float value) { return Format(value); }
+  static std::string Value(float value) { return std::isnan(value) ? ".nan" : Format(value); }
   static std::string Value(double value) { return Format(value); }
   static std::string Value(std::int32_t value) { return Format(value); }
   static std::string Value(std::uint64_t value) { return Format(value); }
@@ -62,6 +62,9 @@ class YamlWriter {
   static std::string Value(const std::string& value);
   static std::string Value(Cell cell) { return Pair(cell.x, cell.y); }
   static std::string Value(const std::array<float, 2>& pair) { return Pair(pair[0], pair[1]); }
+  static std::string Value(const QuadrantRadii& radii) {
+    return Value(std::vector<float>(radii.begin(), radii.end()));
+  }
   template <typename T>
   static std::string Value(const Range<T>& range) {
     return Pair(range.min, range.max);

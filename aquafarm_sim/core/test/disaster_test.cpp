@@ -54,7 +54,7 @@ TEST(Risk, OfNoDisasterIsZero) { EXPECT_EQ(RiskAt({}, {3, 3}), 0.0F); }
 TEST(Risk, GridAgreesWithLookUps) {
   const std::vector<Disaster> disasters{Spawned(DisasterSpec{}, 3), Spawned(DisasterSpec{}, 4)};
   Grid<float> risk(25, 25);
-  FillRisk(disasters, risk);
+  FillRisk(Scenario{}, disasters, risk);
   for (int y = 0; y < 25; ++y) {
     for (int x = 0; x < 25; ++x) EXPECT_EQ(risk(y, x), RiskAt(disasters, {x, y}));
   }

@@ -103,7 +103,7 @@ TEST(ToDisaster, PutsCellsAndStepsInThePlaceOfKilometresAndHours) {
   const StormRings storm = ToRings(WestGoing(), RingReduction::kLargest);
   const GeoFrame frame(kRanch, 1000.0);
   const DisasterSpec disaster =
-      ToDisaster(storm, DefaultRiskTable(), frame, 1000.0, 600.0, kStart + 5 * kHour_s);
+      ToDisaster(storm, DefaultGradeRisks(), frame, 1000.0, 600.0, kStart + 5 * kHour_s);
   EXPECT_NO_THROW(ValidateDisaster(disaster));
   ASSERT_EQ(disaster.track.size(), 3U);
   EXPECT_FLOAT_EQ(disaster.track[0].step, -30.0F);
@@ -113,7 +113,7 @@ TEST(ToDisaster, PutsCellsAndStepsInThePlaceOfKilometresAndHours) {
   EXPECT_NEAR(disaster.track[0].x, 193.0, 0.1) << "two degrees of longitude at 30 N";
   EXPECT_EQ(disaster.track[0].grade, 3);
   EXPECT_EQ(disaster.track[0].radii, (std::vector<float>{40.0F, 100.0F, 200.0F}));
-  EXPECT_EQ(disaster.track[0].risks, DefaultRiskTable()[2]);
+  EXPECT_EQ(disaster.track[0].risks, DefaultGradeRisks()[2]);
 }
 
 TEST(Bulletins, GoOnWithTheNewestForecast) {
@@ -146,15 +146,15 @@ TEST(Bulletins, LastFromNowToTheirEnd) {
   track.fixes.back().heading_deg = 0.0;
   track.fixes.back().speed_kmh = 10.0;
   Scenario scenario;
-  EXPECT_THROW(ToDisaster(track, scenario, 0), InputError);
+  EXPECT_THROW(ToDisaster(track, scenario, 0, 0), InputError);
   scenario.origin = kRanch;
   scenario.start_time = kStart;
   scenario.step_duration_s = 3600.0;
-  const DisasterSpec disaster = ToDisaster(track, scenario, 5);
+  const DisasterSpec disaster = ToDisaster(track, scenario, 0, 5);
   EXPECT_EQ(disaster.duration, 39) << "44 hours, 5 are over";
   EXPECT_NO_THROW(ValidateDisaster(disaster));
   try {
-    ToDisaster(track, scenario, 1000);
+    ToDisaster(track, scenario, 0, 1000);
     FAIL() << "long over";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
@@ -172,7 +172,7 @@ TEST(Tracks, BeginOnTheRanchsSideOfTheGlobe) {
   EXPECT_FALSE(frame.Faces(antipode.position));
   EXPECT_TRUE(frame.Faces(kRanch));
   const auto made = [&frame](const HazardTrack& of) {
-    return ToDisaster(ToRings(of, RingReduction::kEqualArea), DefaultRiskTable(), frame, 1000.0,
+    return ToDisaster(ToRings(of, RingReduction::kEqualArea), DefaultGradeRisks(), frame, 1000.0,
                       3600.0, kStart);
   };
   const DisasterSpec without = made(track);

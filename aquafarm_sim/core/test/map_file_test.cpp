@@ -74,6 +74,56 @@ TEST_F(MapFiles, KnowEveryMode) {
   EXPECT_EQ(Values(Load("# light is occupied\n").occupancy), (std::vector<int>{100, -1, 0, -1}));
 }
 
+// What map_server makes of a grey in each mode, by hand: occupied is (255 - grey) / 255, or grey /
+// 255 with negate; above 0.65 it is 100, below 0.2 it is 0, between 1 + 98 (occupied - 0.2) / 0.45.
+struct Expected {
+  int grey;
+  int trinary, scale, raw;
+  int trinary_negated, scale_negated, raw_negated;
+};
+constexpr std::array<Expected, 9> kExpected{{
+    {0, 100, 100, 0, 0, 0, -1},
+    {51, 100, 100, 51, -1, 1, -1},   // 0.8; negated 0.2: 1 + 0
+    {89, 100, 100, 89, -1, 33, -1},  // 0.65098; 0.34902: 1 + 32.456
+    {90, -1, 98, 90, -1, 34, -1},    // 0.64706: 1 + 97.359; 0.35294: 1 + 33.31
+    {128, -1, 65, -1, -1, 66, -1},   // 0.49804: 1 + 64.906; 0.50196: 1 + 65.76
+    {155, -1, 42, -1, -1, 89, 100},  // 0.39216: 1 + 41.848; 0.60784: 1 + 88.819
+    {165, -1, 34, -1, -1, 98, 90},   // 0.35294: 1 + 33.31; 0.64706: 1 + 97.359
+    {205, 0, 0, -1, 100, 100, 50},   // 0.19608; 0.80392
+    {255, 0, 0, -1, 100, 100, 0},
+}};
+
+TEST_F(MapFiles, AreWhatMapServerMakesOfEveryGrey) {
+  std::string picture = "P5 9 1 255\n";
+  for (const Expected& one : kExpected) picture += static_cast<char>(one.grey);
+  Write("m.pgm", picture);
+  const auto all = [](auto member) {
+    std::vector<int> values;
+    for (const Expected& one : kExpected) values.push_back(one.*member);
+    return values;
+  };
+  EXPECT_EQ(Values(Load("mode: trinary\n").occupancy), all(&Expected::trinary));
+  EXPECT_EQ(Values(Load("mode: scale\n").occupancy), all(&Expected::scale));
+  EXPECT_EQ(Values(Load("mode: raw\n").occupancy), all(&Expected::raw));
+  EXPECT_EQ(Values(Load("mode: trinary # light\n").occupancy), all(&Expected::trinary_negated));
+  EXPECT_EQ(Values(Load("mode: scale # light\n").occupancy), all(&Expected::scale_negated));
+  EXPECT_EQ(Values(Load("mode: raw # light\n").occupancy), all(&Expected::raw_negated));
+}
+
+TEST_F(MapFiles, AreUnknownWhereAScaledPictureIsSeenThrough) {
+  // A PNG of 4 x 1 pixels of grey and alpha: 0, 128 and 255 opaque, then 128 of alpha 100.
+  static const char kBytes[] =
+      "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00"
+      "\x00\x04\x00\x00\x00\x01\x08\x04\x00\x00\x00\x53\x35\xc7\x46\x00\x00\x00"
+      "\x11\x49\x44\x41\x54\x78\x9c\x63\x60\xf8\xdf\xf0\xff\xff\xff\x86\x14\x00"
+      "\x17\x5a\x05\x61\xc0\xe5\x9b\x17\x00\x00\x00\x00\x49\x45\x4e\x44\xae\x42"
+      "\x60\x82";
+  Write("m.pgm", std::string(kBytes, sizeof(kBytes) - 1));
+  EXPECT_EQ(Values(Load("mode: scale\n").occupancy), (std::vector<int>{100, 65, 0, -1}));
+  EXPECT_EQ(Values(Load("mode: trinary\n").occupancy), (std::vector<int>{100, -1, 0, -1}));
+  EXPECT_EQ(Values(Load("mode: raw\n").occupancy), (std::vector<int>{0, -1, -1, -1}));
+}
+
 TEST_F(MapFiles, ReadPlainAndDeepPgm) {
   Write("m.pgm", "P2 2 2 # words\n15\n0 8 15\n6\n");
   EXPECT_EQ(Values(Load().occupancy), (std::vector<int>{0, -1, 100, -1}));
@@ -152,6 +202,11 @@ TEST_F(MapFiles, AreWrittenAndReadBack) {
   EXPECT_THROW(SaveMap(map, Path("nowhere/out.yaml")), InputError);
 }
 
+std::string Bytes(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
 TEST(RealMaps, AreReadAsMapServerReadsThem) {
   const fs::path maps = SharedData() / "maps";
   if (!fs::exists(maps)) GTEST_SKIP() << "no maps at " << maps;
@@ -159,8 +214,14 @@ TEST(RealMaps, AreReadAsMapServerReadsThem) {
   EXPECT_EQ(ten.occupancy.rows(), 10);
   EXPECT_EQ(ten.cell_size_m, 1.0);
   // Greys of 0, 26 and 51 are occupied, 179 (0.298) unknown, 255 free.
-  EXPECT_TRUE((ten.occupancy == 100 || ten.occupancy == -1 || ten.occupancy == 0).all());
-  EXPECT_TRUE((ten.occupancy == -1).any());
+  const std::string pgm = Bytes(maps / "TenByTen.pgm");
+  ASSERT_EQ(pgm.compare(0, 2, "P5"), 0);
+  for (int i = 0; i < 100; ++i) {
+    const int grey =
+        static_cast<unsigned char>(pgm[pgm.size() - 100 + static_cast<std::size_t>(i)]);
+    const int expected = grey <= 51 ? 100 : grey == 179 ? -1 : grey == 255 ? 0 : 77;
+    EXPECT_EQ(ten.occupancy(9 - i / 10, i % 10), expected) << i << " from the top";
+  }
   const MapFile png = LoadMap((maps / "testmap.yaml").string());
   EXPECT_EQ(png.origin, (std::array<double, 3>{2.0, 3.0, 1.0}));
   EXPECT_TRUE((png.occupancy == 100 || png.occupancy == 0).all());
@@ -170,7 +231,21 @@ TEST(RealMaps, AreReadAsMapServerReadsThem) {
   std::ofstream(yaml) << "image: " << (maps / "testmap.bmp").string()
                       << "\nresolution: 0.1\norigin: [2, 3, 1]\nnegate: 0\n"
                          "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
-  EXPECT_EQ(Values(LoadMap(yaml.string()).occupancy), Values(png.occupancy));
+  const MapFile bmp = LoadMap(yaml.string());
+  EXPECT_EQ(Values(bmp.occupancy), Values(png.occupancy));
+  // Its bytes: blue, green, red from the south on, rows filled up to four bytes.
+  const std::string bytes = Bytes(maps / "testmap.bmp");
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  const std::size_t start = at(10) + 256U * at(11);
+  ASSERT_EQ(at(28), 24) << "bits a pixel";
+  for (std::size_t y = 0; y < 10; ++y) {
+    for (std::size_t x = 0; x < 10; ++x) {
+      const std::size_t pixel = start + y * 32 + 3 * x;
+      const int grey = (at(pixel) + at(pixel + 1) + at(pixel + 2)) / 3;
+      EXPECT_EQ(bmp.occupancy(static_cast<int>(y), static_cast<int>(x)), grey < 128 ? 100 : 0)
+          << x << ", " << y;
+    }
+  }
   fs::remove(yaml);
 }
 

@@ -13,6 +13,8 @@
 
 #include "aquafarm/check.h"
 #include "aquafarm/farm.h"
+#include "aquafarm/geo_frame.h"
+#include "aquafarm/hazard_file.h"
 #include "aquafarm/scenario_yaml.h"
 #include "shared_data.h"
 
@@ -79,7 +81,7 @@ TEST(Ranch, HasTheStormAsItsFileSays) {
   EXPECT_EQ(ranch.scenario.start_time, kMidnight) << "the track's first fix";
   EXPECT_EQ(storm.track[2].step, 6.0F * 3600.0F / 243.0F) << "500 m at 4 knots take 243 s";
   EXPECT_EQ(storm.track[0].grade, 3);
-  EXPECT_EQ(storm.track[0].risks, DefaultRiskTable()[2]);
+  EXPECT_EQ(storm.track[0].risks, DefaultGradeRisks()[2]);
   EXPECT_EQ(storm.duration, 89) << "to the last fix";
   EXPECT_TRUE(Says(ranch.decided, "In-fa (2106), CMA best track cma.txt, 3 fixes, winds of 2 min"));
   EXPECT_TRUE(Says(ranch.decided, "radii estimated at 3, unknown at 0"));
@@ -178,6 +180,46 @@ TEST(Ranch, IsRefusedWithTheReason) {
   EXPECT_NE(Refused(request).find("devices"), std::string::npos);
 }
 
+TEST(Ranch, BorrowsRadiiOfNoOtherStorm) {
+  RanchRequest request = Request();
+  const fs::path path = fs::temp_directory_path() / ("radii." + std::to_string(getpid()) + ".json");
+  const auto with = [&](const std::string& name, const std::string& id) {
+    std::ifstream file(kData / "bulletin.json");
+    std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    text.replace(text.find("In-Fa"), 5, name);
+    text.replace(text.find("202106"), 6, id);
+    std::ofstream(path) << text;
+    request.radii = path.string();
+    return request;
+  };
+  EXPECT_EQ(Refused(with("Lekima", "201909")).substr(0, 29), "radii: storm: got 'In-fa', ex");
+  const std::string id = FindTrack(LoadHazardFile(request.track), request.storm).id;
+  EXPECT_TRUE(Says(BuildRanch(with("Lekima", id)).decided, "radii of 3")) << "by its id";
+  EXPECT_TRUE(Says(BuildRanch(with("IN-FA", "202106")).decided, "radii of 3"));
+  fs::remove(path);
+}
+
+TEST(Ranch, SaysTheNoticesInForce) {
+  RanchRequest request = Request();
+  request.notices = (kData / "anchorage.json").string();
+  EXPECT_TRUE(Says(BuildRanch(request).decided, "notices: 2 more at other times"));
+  request.track.clear();
+  request.storm.clear();
+  EXPECT_TRUE(Says(BuildRanch(request).decided, "rating 1 of 4, from 2026-04-30T15:00:00Z"));
+}
+
+TEST(Ranch, KeepsQuadrantsWhereAskedTo) {
+  RanchRequest request = Request();
+  request.radii = (kData / "bulletin.json").string();
+  request.reduction = RingReduction::kQuadrants;
+  const Ranch ranch = BuildRanch(request);
+  const DisasterSpec& storm = ranch.scenario.disasters[0];
+  ASSERT_EQ(storm.quadrants.size(), 3U);
+  const QuadrantRadii& gale = storm.track[0].quadrants[2];
+  EXPECT_GT(gale[0], gale[1]) << "farther to the north-east than to the south-east";
+  EXPECT_NE(ranch.yaml.find("quadrants_km: [["), std::string::npos);
+}
+
 TEST(Ranch, IsNotLedAstrayByAName) {
   const fs::path path = fs::temp_directory_path() / ("evil." + std::to_string(getpid()) + ".json");
   std::ofstream(path) << R"([{"tfbh": "1", "ename": "X\nships: {count: 9} # \"", "points": [
@@ -226,12 +268,13 @@ TEST(Program, RefusesWrongArguments) {
       {"--layout explicit", "layout: got 'explicit', expected one of uniform, linear, random"},
       {"--sea salt:so --value 3", "sea: got 'salt:so', expected NAME=FILE:VARIABLE"},
       {"--value 3", "value: got no layer to evaluate '3' on"},
-      {"--rings oval --track x", "rings: got 'oval', expected one of equal_area, largest"},
+      {"--rings oval --track x",
+       "rings: got 'oval', expected one of equal_area, largest, quadrants"},
       {"--storm Rai", "--storm requires --track"},
       {"--radii x", "--radii requires --track"},
       {"--rings largest", "--rings requires --track"},
       {"--lead 4", "--lead requires --track"},
-      {"--sea salt=x:so", "--sea requires --value"},
+      {"--sea-risk 1", "--sea-risk requires --sea"},
       {"--sea-level nan", "sea_level: got nan, expected [-100000, 100000]"},
       {"--start noon", "start: got 'noon', expected a UTC time as 2021-07-24T12:00:00Z"},
       {"--chart /nowhere.json --center 30,122", "/nowhere.json: cannot read: No such file"},
@@ -324,6 +367,39 @@ TEST(RealFiles, MakeTheShippedRanches) {
   request.placement = DevicePlacement::kLinear;
   EXPECT_EQ(BuildRanch(request).scenario.hash,
             LoadScenario((shipped / "zhoushan_mitag_2019.yaml").string()).hash);
+}
+
+// It was written by hand, for its islands are blocks that a person chose; its storm is the
+// command's.
+TEST(RealRanch, ShippedInFaHasTheStormThatTheCommandMakes) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  const Scenario shipped = LoadScenario(AQUAFARM_CORE_DIR "/../scenarios/zhoushan_infa_2021.yaml");
+  RanchRequest request;
+  request.center = GeoFrame(*shipped.origin, 1000.0).ToGeo(9.5, 6.5);
+  request.width = 20;
+  request.height = 14;
+  request.cell_size_m = 1000.0;
+  request.step_s = 480.0;
+  request.start = shipped.start_time;
+  request.track = (data / "tracks" / "CH2021BST.txt").string();
+  request.storm = "IN-FA";
+  request.radii = (data / "bulletins" / "202106.json").string();
+  const DisasterSpec made = BuildRanch(request).scenario.disasters[0];
+  int same = 0;
+  for (const Waypoint& by_hand : shipped.disasters[0].track) {
+    for (const Waypoint& by_command : made.track) {
+      if (by_command.step != by_hand.step) continue;
+      EXPECT_NEAR(by_command.x, by_hand.x, 0.02F) << "the origin is rounded";
+      EXPECT_NEAR(by_command.y, by_hand.y, 0.02F);
+      EXPECT_EQ(by_command.grade, by_hand.grade);
+      // After the last bulletin the command estimates a gale ring, the hand wrote none.
+      if (by_hand.radii.back() == 0.0F) continue;
+      EXPECT_EQ(by_command.radii, by_hand.radii) << by_hand.step;
+      ++same;
+    }
+  }
+  EXPECT_EQ(same, 13);
 }
 
 }  // namespace

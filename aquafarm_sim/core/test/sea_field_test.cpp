@@ -26,6 +26,10 @@ struct Shape {
   bool packed{true};
   const char* time_units{"hours since 2021-07-25 00:00:00"};
   bool curvilinear{};
+  const char* calendar{};
+  std::vector<short> valid_range{};     ///< as the file stores values
+  std::array<short, 2> valid_bounds{};  ///< valid_min and valid_max; alike: none
+  bool own_fill{true};                  ///< else netCDF's default for the type
 };
 
 constexpr int kLatitudes = 5;
@@ -61,11 +65,19 @@ class SeaFields : public testing::Test {
     Put(file, variable, "units", "psu");
     const double scale = 0.01;
     const double offset = 20.0;
-    const short fill = -30000;
+    const short fill = shape.own_fill ? short{-30000} : NC_FILL_SHORT;
     if (shape.packed) {
       nc_put_att_double(file, variable, "scale_factor", NC_DOUBLE, 1, &scale);
       nc_put_att_double(file, variable, "add_offset", NC_DOUBLE, 1, &offset);
-      nc_put_att_short(file, variable, "_FillValue", NC_SHORT, 1, &fill);
+      if (shape.own_fill) nc_put_att_short(file, variable, "_FillValue", NC_SHORT, 1, &fill);
+    }
+    if (shape.calendar != nullptr) Put(file, axes[0], "calendar", shape.calendar);
+    if (!shape.valid_range.empty()) {
+      nc_put_att_short(file, variable, "valid_range", NC_SHORT, 2, shape.valid_range.data());
+    }
+    if (shape.valid_bounds[0] != shape.valid_bounds[1]) {
+      nc_put_att_short(file, variable, "valid_min", NC_SHORT, 1, &shape.valid_bounds[0]);
+      nc_put_att_short(file, variable, "valid_max", NC_SHORT, 1, &shape.valid_bounds[1]);
     }
     ASSERT_EQ(nc_enddef(file), NC_NOERR);
     if (!shape.curvilinear) PutAxes(file, axes, shape);
@@ -169,6 +181,40 @@ TEST_F(SeaFields, HaveNothingOnLandAndFarAway) {
   EXPECT_TRUE(ToLayer(LoadSeaField(path_, {"so", {}, 0.0}, far, 3, 3), far, 3, 3).isNaN().all());
 }
 
+TEST_F(SeaFields, HaveNothingOutsideOfTheirValidRange) {
+  const auto known = [&](const Shape& shape) {
+    Write(shape);
+    const SeaField field = LoadSeaField(path_, {"so", {}, 0.0}, {{30.0, 122.0}, 1000.0}, 40, 40);
+    return std::array<int, 2>{static_cast<int>((!field.value.isNaN()).count()),
+                              static_cast<int>(field.value.size())};
+  };
+  const auto all = known({});
+  EXPECT_EQ(all[0], all[1] - 1) << "a cell of land";
+  Shape shape;
+  shape.own_fill = false;
+  EXPECT_EQ(known(shape), all) << "netCDF's default fill of a short";
+  // Stored as (value - 20) / 0.01: a row is 10 more, so 1000, and the first is at -1000.
+  shape = {};
+  shape.valid_range = {-500, 500};
+  const auto ranged = known(shape);
+  EXPECT_LT(ranged[0], all[0]);
+  EXPECT_GT(ranged[0], 0);
+  shape = {};
+  shape.valid_bounds = {-500, 500};
+  EXPECT_EQ(known(shape), ranged);
+}
+
+TEST_F(SeaFields, OfAnotherCalendarAreRefused) {
+  Shape shape;
+  shape.calendar = "360_day";
+  Write(shape);
+  EXPECT_EQ(Refused(),
+            "time: calendar: got '360_day', expected standard, gregorian or proleptic_gregorian");
+  shape.calendar = "gregorian";
+  Write(shape);
+  EXPECT_EQ(Refused(), "was read");
+}
+
 TEST_F(SeaFields, AreRefusedWithTheReason) {
   Write({});
   EXPECT_EQ(Refused({"temperature", {}, 0.0}),
@@ -245,7 +291,7 @@ TEST(Expressions, AreRefusedInOneLine) {
     }
     return std::string("was taken");
   };
-  EXPECT_EQ(refused("2 * ").substr(0, 44), "value: got '2 * ', expected an expression: U");
+  EXPECT_EQ(refused("2 * ").substr(0, 37), "got '2 * ', expected an expression: U");
   EXPECT_NE(refused("2 * x").find("Unexpected token \"x\""), std::string::npos);
   EXPECT_NE(refused("1", "2bad").find("expected an expression"), std::string::npos);
 }

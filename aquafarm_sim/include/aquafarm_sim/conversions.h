@@ -12,9 +12,11 @@
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/RewardTerms.h>
+#include <aquafarm_msgs/Storm.h>
 #include <geometry_msgs/TransformStamped.h>
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/time.h>
+#include <std_msgs/Float32MultiArray.h>
 
 #include <cstdint>
 #include <string>
@@ -22,6 +24,7 @@
 
 #include "aquafarm/encoding.h"
 #include "aquafarm/farm.h"
+#include "aquafarm/hazard_track.h"
 #include "aquafarm/view.h"
 
 namespace aquafarm_sim {
@@ -80,8 +83,19 @@ inline constexpr std::size_t kMaxWaypoints = 10000;
 /// @throws InputError "info.radii: got 1000000 entries, expected at most 4"
 aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message);
 
-/// The same the other way.
-aquafarm_msgs::DisasterInfo ToMsg(const aquafarm::DisasterSpec& spec);
+/// A bulletin of the globe, for ToDisaster of hazard_disaster.h.
+/// @throws InputError "storm.fixes[0].latitude_deg: got 95, expected a number in [-90, 90]"
+aquafarm::HazardTrack FromMsg(const aquafarm_msgs::Storm& message);
+
+/// A track with the forecast that it goes on with, if it has one.
+aquafarm_msgs::Storm ToMsg(const aquafarm::HazardTrack& track);
+
+/// A layer of the sea: 0 its least value … 100 its greatest, -1 unknown.
+void SeaToMsg(const aquafarm::SeaLayer& layer, const aquafarm::Scenario& scenario,
+              const MessageContext& context, nav_msgs::OccupancyGrid& message);
+/// The same in its own units, [1, H, W]; the first dimension's label is "warmth [degC]".
+std_msgs::Float32MultiArray SeaToMsg(const aquafarm::SeaLayer& layer,
+                                     const aquafarm::Scenario& scenario);
 
 /// Time in the scenario's world after `step` steps; 0 when it cannot be a ros::Time.
 ros::Time WorldTime(const aquafarm::Scenario& scenario, std::int64_t step);

@@ -14,6 +14,7 @@ inline constexpr const char* kState = "state";
 inline constexpr const char* kSavedState = "saved_state";
 inline constexpr const char* kChart = "chart";
 inline constexpr const char* kRisk = "risk";
+inline constexpr const char* kSea = "sea";
 inline constexpr const char* kEpisode = "episode";
 inline constexpr const char* kTraining = "training";
 inline constexpr const char* kValues = "values";
@@ -38,6 +39,9 @@ inline constexpr const char* kEarthFrame = "earth";
 inline std::string Ship(std::int32_t id) { return "ship_" + std::to_string(id); }
 /// Name of a disaster's tf frame.
 inline std::string Disaster(std::int32_t id) { return "disaster_" + std::to_string(id); }
+/// Topic of a layer of the sea as a grid to look at; its numbers are at "values" below it.
+inline std::string Sea(const std::string& layer) { return std::string(kSea) + "/" + layer; }
+inline std::string SeaValues(const std::string& layer) { return Sea(layer) + "/values"; }
 inline std::string Observation(std::int32_t ship) { return Ship(ship) + "/observation"; }
 inline std::string Claim(std::int32_t ship) { return Ship(ship) + "/claim"; }
 inline std::string Move(std::int32_t ship) { return Ship(ship) + "/move"; }

@@ -27,11 +27,15 @@ inline aquafarm::KnownDisaster FromMsg(const aquafarm_msgs::DisasterState& messa
   belief.kind = static_cast<aquafarm::DisasterKind>(message.kind);
   belief.grade = message.grade;
   belief.rings = static_cast<std::int32_t>(rings);
+  belief.by_quadrant = message.quadrants.size() == 4 * rings && rings > 0;
   for (std::size_t k = 0; k < rings; ++k) {
-    const float radius = message.radii[k];
-    belief.radius[k] = radius;
-    belief.radius_squared[k] = radius > 0.0F ? radius * radius : -1.0F;
     belief.risk[k] = message.risks[k];
+    const float* const of_ring = message.quadrants.data() + 4 * k;
+    if (belief.by_quadrant) {
+      SetRing(belief, k, {of_ring[0], of_ring[1], of_ring[2], of_ring[3]});
+    } else {
+      SetRing(belief, k, message.radii[k]);
+    }
   }
   belief.x = message.x;
   belief.y = message.y;

@@ -66,6 +66,7 @@ class RanchPublisher : public RanchListener {
   void FillEpisode(const RanchView& view);
   void FillFrames(const RanchView& view);
   void Send();
+  void SendSeas();
   void Wake();
   void Run();
 
@@ -76,6 +77,11 @@ class RanchPublisher : public RanchListener {
   ros::Publisher clock_;
   ros::Publisher spec_;
   ros::Publisher chart_;
+  struct Sea {
+    ros::Publisher grid;
+    ros::Publisher values;
+  };
+  std::vector<Sea> seas_;  // by layer
   ros::Publisher episode_;
   Topic<aquafarm_msgs::FarmState> state_;
   Topic<nav_msgs::OccupancyGrid> risk_;

@@ -8,6 +8,10 @@
 ///   .  .   c--->.  .     Several disasters: the worst. O(disasters) per look-up, no grid.
 ///    .   . . .   .
 ///
+/// A ring need not be a circle: by option it has a radius of its own in each quadrant, as bulletins
+/// give them. A cell due north of the centre counts as north-east, one due east as south-east, and
+/// so on clockwise.
+///
 /// Where we differ: the centre moves by a real number of cells along a heading in whole degrees,
 /// and is reflected at the border of the farm enlarged by the largest radius.
 
@@ -56,6 +60,9 @@ struct Disaster {
   std::int32_t steps_left{};     ///< 0: over, no risk any more
   std::int32_t waypoint{kNone};  ///< index of the last waypoint passed; kNone: no track
   std::array<std::uint32_t, 4> draws{};  ///< of the present four steps
+  bool by_quadrant{};  ///< rings are no circles: the arrays below hold, and radius is the largest
+  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< NE, SE, SW, NW, ring by ring
+  std::array<std::array<float, kMaxRings>, 4> quadrant_squared{};
   Bulletin bulletin;
 
   bool active() const { return steps_left > 0; }
@@ -78,15 +85,33 @@ void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_
 /// Puts a tracked disaster where its track says it is at `step`.
 void FollowTrack(Disaster& disaster, const std::vector<Waypoint>& track, std::int32_t step);
 
+/// Sets a ring to a circle; radius 0: the ring is absent, so that a track may gain and lose rings.
+void SetRing(Disaster& disaster, std::size_t ring, float radius);
+/// Sets a ring by quadrants.
+void SetRing(Disaster& disaster, std::size_t ring, const QuadrantRadii& radii);
+/// Widens every ring by `by` cells, to no less than nothing.
+void GrowRings(Disaster& disaster, float by);
+
+/// Index of the quadrant, NE, SE, SW, NW, in which a point lies seen from a centre.
+/// @param west how far the point is west of the centre @param south likewise
+constexpr std::size_t QuadrantOf(float west, float south) {
+  if (west <= 0.0F && south < 0.0F) return 0;
+  if (west < 0.0F) return 1;
+  if (south > 0.0F) return 2;
+  return west > 0.0F ? 3 : 0;
+}
+
 /// Risk of one disaster at a point [cells]; 0 outside or when it is over, else negative.
 inline float RiskOf(const Disaster& disaster, float x, float y) {
   const float dx = disaster.x - x;
   const float dy = disaster.y - y;
   const float distance_squared = dx * dx + dy * dy;
   if (!disaster.active()) return 0.0F;
+  const float* const squared = disaster.by_quadrant
+                                   ? disaster.quadrant_squared[QuadrantOf(dx, dy)].data()
+                                   : disaster.radius_squared.data();
   for (std::int32_t ring = 0; ring < disaster.rings; ++ring) {
-    const auto k = static_cast<std::size_t>(ring);
-    if (distance_squared <= disaster.radius_squared[k]) return disaster.risk[k];
+    if (distance_squared <= squared[ring]) return disaster.risk[static_cast<std::size_t>(ring)];
   }
   return 0.0F;
 }
@@ -101,7 +126,7 @@ inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   return worst;
 }
 
-/// Fills the whole risk grid [H, W]; for those who draw or publish it.
-void FillRisk(const std::vector<Disaster>& disasters, Grid<float>& risk);
+/// Fills the whole risk grid [H, W] of disasters and sea; for those who draw, publish or plan.
+void FillRisk(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk);
 
 }  // namespace aquafarm

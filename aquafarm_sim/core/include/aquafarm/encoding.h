@@ -62,7 +62,8 @@ class Encoder {
   std::int32_t feature_count_{};
   std::int32_t fetchable_{};  // devices that are not self-propelled
   std::size_t planes_size_{};
-  float scale_{};  // 1 / longer side
+  float scale_{};                        // 1 / longer side
+  std::vector<std::uint8_t> sea_plane_;  // risk of the sea itself; empty: none
 };
 
 }  // namespace aquafarm

@@ -87,6 +87,9 @@ class Farm {
   EndReason reason() const { return record_.reason; }
   bool over() const { return record_.reason != EndReason::kNone; }
 
+  /// Worst risk of disasters and sea at a cell now; 0 or negative.
+  float RiskAt(Cell cell) const;
+
   /// Where a device is now: its own cell, or its carrier's.
   Cell CellOf(std::int32_t device) const;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// From a published track to a disaster of a farm (§2.1): each ring of wind becomes a circle with
-/// a risk, the worst inside.
+/// From a published track to a disaster of a farm (§2.1): each ring of wind becomes a circle, or by
+/// option a ring by quadrants, with a risk, the worst inside.
 ///
 ///   64 kt (force 12) ── risks[0]      a track has the rings that its source speaks of: 64, 50, 34
 ///   50 kt (force 10) ── risks[1]      kt, or 50 and 30 of the JMA; what a fix does not say is
@@ -16,27 +16,30 @@
 
 namespace aquafarm {
 
-/// How the four quadrants of a ring become a circle.
+/// What becomes of the four quadrants of a ring.
 enum class RingReduction : std::uint8_t {
   kEqualArea,  ///< the circle of the same area, the root of the mean square
-  kLargest,    ///< the farthest quadrant: on the safe side
+  kLargest,    ///< the circle of the farthest quadrant: on the safe side
+  kQuadrants,  ///< they stay
 };
-inline constexpr int kRingReductionCount = 2;
-/// "equal_area", "largest".
+inline constexpr int kRingReductionCount = 3;
+/// "equal_area", "largest", "quadrants".
 std::string_view ToString(RingReduction value);
 
-/// A fix with its rings as circles.
+/// A fix with its rings.
 struct StormWaypoint {
   std::int64_t time{};  ///< UTC [s since 1970]
   GeoPoint position;
   StormGrade grade{};
   std::vector<double> radii_km;  ///< ascending, the strongest wind first; 0: no such wind
   bool estimated{};              ///< any of them
+  /// Each ring's quadrants, NE, SE, SW, NW, where they stay; radii_km are then the largest
+  std::vector<std::array<double, 4>> quadrants_km;
   std::optional<double> pressure_hpa;
   std::optional<double> wind_mps;
 };
 
-/// A storm as circles of wind.
+/// A storm as rings of wind.
 struct StormRings {
   std::vector<std::int32_t> wind_kt;  ///< the strongest first; as many as each waypoint has radii
   std::vector<StormWaypoint> waypoints;
@@ -47,7 +50,7 @@ struct StormRings {
   std::optional<StormWaypoint> At(std::int64_t time) const;
 };
 
-/// Reduces a track to circles. A stronger wind never reaches beyond a weaker one.
+/// Reduces a track to rings. A stronger wind never reaches beyond a weaker one.
 StormRings ToRings(const HazardTrack& track, RingReduction reduction);
 
 /// Gives the fixes of a track that say nothing of radii those of another track of the same storm at
@@ -56,30 +59,35 @@ StormRings ToRings(const HazardTrack& track, RingReduction reduction);
 /// @returns how many fixes were given some
 std::int32_t BorrowRings(const HazardTrack& from, HazardTrack& track);
 
-/// Risks by grade, 1 blue … 4 red, each the worst first, one a ring. A storm of fewer rings takes
-/// the last ones of a row.
-using RiskTable = std::array<std::vector<float>, 4>;
-/// What `aquafarm scenario` writes: [decided]
-const RiskTable& DefaultRiskTable();
+/// What `aquafarm scenario` writes, a risk for each of three rings: [decided]
+const GradeRisks& DefaultGradeRisks();
 
 /// Whole steps that a span of time takes, one at least.
 /// @throws InputError beyond ten million, "duration: got …"
 std::int32_t StepsToCover(double span_s, double step_duration_s);
 
-/// The disaster that follows a storm on a grid.
+/// The disaster that follows a storm on a grid. A storm of fewer rings than the table has takes the
+/// last risks of a row, one of more the first again for those inside.
 /// @param start_time UTC of step 0
-DisasterSpec ToDisaster(const StormRings& storm, const RiskTable& risks, const GeoFrame& frame,
+DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const GeoFrame& frame,
                         double cell_size_m, double step_duration_s, std::int64_t start_time);
+
+/// The forecast of a track that was issued last and goes beyond its fixes, of the agency named
+/// first; null: none.
+const HazardForecast* NewestForecast(const HazardTrack& track);
 
 /// A storm as a bulletin leaves it: the fixes so far, then the newest forecast that was issued with
 /// one, of the agency named first. Without a forecast it goes on for 24 hours as it moves now, with
 /// the wind and rings it has now (persistence).
 HazardTrack WithForecast(const HazardTrack& track);
 
-/// The disaster that a bulletin announces to a running episode.
+/// The disaster that a bulletin announces to a running episode: with the grade_risks of the
+/// disaster that it replaces, or else of the scenario's first that has some, or the default ones;
+/// by quadrants where that disaster is.
+/// @param id of the disaster that it replaces or adds
 /// @param step_now of the episode: the disaster lasts from it to the last waypoint, at least a step
 /// @throws InputError for a scenario without grid.origin or time.start
-DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario,
+DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, std::int32_t id,
                         std::int32_t step_now);
 
 /// When a ring of a storm lies over a place.

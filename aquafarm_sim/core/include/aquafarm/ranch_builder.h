@@ -12,7 +12,7 @@
 
 namespace aquafarm {
 
-/// A field of the sea over the ranch, for expressions.
+/// A field of the sea over the ranch, for its `seas` and expressions.
 struct SeaLayerRequest {
   std::string name;      ///< in expressions
   std::string file;      ///< netCDF
@@ -50,7 +50,10 @@ struct RanchRequest {
 
   std::vector<SeaLayerRequest> sea;  ///< at the start's time, or the first of the file
   double sea_depth_m{0.0};
-  std::string value;  ///< expression of the layers for each device's value; empty: drawn
+  std::string value;     ///< expression of the layers for each device's value; empty: drawn
+  std::string sea_risk;  ///< expression of the layers for each cell's own risk; empty: none
+
+  std::string notices;  ///< file of warnings or anchorage forecasts, said where they are in force
 };
 
 /// A ranch made.

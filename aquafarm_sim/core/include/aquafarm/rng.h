@@ -20,6 +20,7 @@ enum class Purpose : std::uint8_t {
   kSensors,
   kExploration,  ///< an agent's own choices
   kLearner,      ///< initial weights, replay samples
+  kForecast,     ///< which way forecasts err
 };
 
 /// Identifies an independent sequence of draws.

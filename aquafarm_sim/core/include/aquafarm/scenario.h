@@ -4,6 +4,7 @@
 /// Every number of a farm, as plain structs with the defaults of the paper or, where it is silent,
 /// of docs/model.md. scenario_yaml.h is the only reader and writer of these as files.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -92,6 +93,9 @@ struct DeviceSpec {
   }
 };
 
+/// Radii of a ring to the north-east, south-east, south-west and north-west [cells]; 0: not there.
+using QuadrantRadii = std::array<float, 4>;
+
 /// A timed waypoint of a disaster; between two of them everything but grade is interpolated.
 struct Waypoint {
   float step{};  ///< steps since the episode's start; may lie before it
@@ -100,7 +104,13 @@ struct Waypoint {
   std::int32_t grade{1};
   std::vector<float> radii;  ///< [cells], ascending; as many as the disaster has risks
   std::vector<float> risks;  ///< as radii
+  /// Rings that are no circles, as many as radii, which are then the largest of each; empty:
+  /// circles
+  std::vector<QuadrantRadii> quadrants{};
 };
+
+/// Risks of the rings by grade, 1 to 4, each the worst first; empty where a scenario gives none.
+using GradeRisks = std::vector<std::vector<float>>;
 
 /// DisasterInfo of §2.1, with how it moves.
 struct DisasterSpec {
@@ -116,6 +126,8 @@ struct DisasterSpec {
   std::int32_t duration{1000};                ///< [steps] [decided]
   std::optional<std::array<float, 2>> start;  ///< centre (x, y) [cells]; none: drawn
   std::vector<Waypoint> track;                ///< if not empty, it moves along this instead
+  std::vector<QuadrantRadii> quadrants{};     ///< as in Waypoint
+  GradeRisks grade_risks{};                   ///< what bulletins that come later bring, too
 };
 
 /// The rewards of §2.5.
@@ -143,6 +155,27 @@ struct ViewSpec {
   float bulletin_noise{0.0F};        ///< centre off by up to this on each axis [cells]
   bool shared_sight{};               ///< agents are networked: what one of them sees, all know
   bool waterways{};  ///< features tell the way by water to ports and devices, as a chart plotter
+  /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]: agents are told
+  /// a forecast track that errs so much, and the truth follows the track; empty: they are told
+  /// how it moves now. See forecast.h.
+  std::vector<float> forecast_error_km{};
+};
+
+/// A field of the sea on the cells of a farm, from netCDF or as given.
+struct SeaLayer {
+  std::string name;           ///< in expressions and topics: a-z, 0-9 and _, a letter first
+  std::string units;          ///< as its source says; may be empty
+  std::vector<float> values;  ///< [H, W] from the south-west; NaN: land or unknown
+};
+
+/// The sea as it stays during an episode.
+struct SeaSpec {
+  std::vector<SeaLayer> layers;
+  /// Risk at each cell whatever the disasters do, [H, W]: 0, NaN (none known) or in [-20, -5];
+  /// empty: none
+  std::vector<float> risk;
+  /// Value of a device drawn at each cell, [H, W]; NaN: drawn as elsewhere; empty: none
+  std::vector<float> device_value;
 };
 
 /// A whole farm.
@@ -168,11 +201,18 @@ struct Scenario {
   RewardSpec rewards;
   DamageSpec damage;
   ViewSpec view;
+  std::optional<SeaSpec> seas;
 
   /// Hash of the canonical file text; set by the reader, the same for files that mean the same.
   std::uint64_t hash{};
 
   std::int32_t CellCount() const { return width * height; }
+  /// Risk of the sea itself at a cell; 0 where it has none.
+  float SeaRiskAt(Cell cell) const {
+    if (!seas || seas->risk.empty()) return 0.0F;
+    const float risk = seas->risk[static_cast<std::size_t>(cell.y * width + cell.x)];
+    return risk < 0.0F ? risk : 0.0F;  // NaN: nothing known
+  }
   /// Devices that are agents of their own.
   std::int32_t SelfPropelledCount() const;
   /// Devices that a ship must fetch.

@@ -5,8 +5,9 @@
 ///
 ///   value(time, depth, lat, lon) ── nearest time and depth ── window around the ranch ── Layer
 ///
-/// Packed numbers are unpacked (scale_factor, add_offset), _FillValue, missing_value and values
-/// outside of valid_min … valid_max are land or unknown: NaN. Latitude may run either way,
+/// Packed numbers are unpacked (scale_factor, add_offset); _FillValue or netCDF's default for the
+/// type, missing_value and values outside of valid_range or valid_min … valid_max, compared as they
+/// are stored, are land or unknown: NaN. Latitude may run either way,
 /// longitude be -180 … 180 or 0 … 360, depth count down or up. Curvilinear grids are refused.
 
 #include <optional>
@@ -57,7 +58,7 @@ struct NamedLayer {
 
 /// Evaluates an expression (muParser's: + - * / ^, comparisons, ?:, min, max, exp …) at every
 /// cell, with each layer's value under its name. NaN in gives NaN out.
-/// @throws InputError "value: 'sal * ': …" for what is no expression
+/// @throws InputError "got 'sal * ', expected an expression: …"
 Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& layers);
 
 }  // namespace aquafarm

@@ -26,7 +26,7 @@ namespace aquafarm::agents {
 /// Which future of the disasters a plan is made for.
 enum class Foresight : std::uint8_t {
   kClairvoyant,   ///< as they will really move
-  kHeadingHolds,  ///< straight on at the present heading, speed and growth
+  kHeadingHolds,  ///< as the scenario's forecast has it, else straight on as it moves now
 };
 
 /// Where ships that have planned before will be, so that a plan keeps out of their way: a ship's
@@ -63,8 +63,9 @@ struct Task {
   const Reservations* others{};  ///< null: nobody is in the way
 };
 
-/// Makes disasters go straight on, whatever chance or their tracks would have them do.
-void HoldHeadings(std::vector<Disaster>& disasters);
+/// Makes a farm's disasters move as they are foreseen from now on.
+/// @returns the tracks that they then follow
+std::vector<Track> Foresee(const Farm& farm, Foresight foresight, std::vector<Disaster>& disasters);
 
 /// What to do from a farm's present step on.
 struct Plan {

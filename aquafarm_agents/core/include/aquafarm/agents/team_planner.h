@@ -39,6 +39,7 @@ class TeamPlanner {
     std::uint64_t episode{};
     std::int32_t start{};
     std::vector<Disaster> disasters;  ///< as they should be at `foreseen`
+    std::vector<Track> tracks;        ///< that they are thought to follow
     std::int32_t foreseen{};
   };
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bytes as the YAML file of a map_server map.
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "aquafarm/check.h"
+#include "map_yaml.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace aquafarm;
+  try {
+    internal::ParseMapYaml(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
+  } catch (const InputError&) {  // a refusal; all else is a find
+  }
+  return 0;
+}

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/forecast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "aquafarm/check.h"
+#include "aquafarm/encoding.h"
+#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/view.h"
+#include "tiny_farms.h"
+
+namespace aquafarm {
+namespace {
+
+using test::MakeFarm;
+
+/// Ten-minute steps, cells of a kilometre, a storm that goes north for four days.
+Scenario Forecast() {
+  Scenario scenario = test::CrowdedScenario(1, 0);
+  scenario.cell_size_m = 1000.0;
+  scenario.step_duration_s = 600.0;
+  scenario.step_limit = 600;
+  DisasterSpec storm;
+  storm.radii = {20.0F, 50.0F};
+  storm.risks = {-20.0F, -5.0F};
+  storm.duration = 576;
+  for (int day = 0; day <= 4; ++day) {
+    storm.track.push_back({static_cast<float>(144 * day),
+                           5.0F,
+                           -100.0F + 60.0F * static_cast<float>(day),
+                           3,
+                           storm.radii,
+                           storm.risks,
+                           {}});
+  }
+  scenario.disasters = {storm};
+  scenario.view.forecast_error_km = {69.0F, 121.0F, 175.0F};
+  return scenario;
+}
+
+double Length(std::array<float, 2> vector) {
+  return std::hypot(static_cast<double>(vector[0]), static_cast<double>(vector[1]));
+}
+
+TEST(ForecastError, GrowsAsGivenWithLeadTime) {
+  const Scenario scenario = Forecast();
+  EXPECT_EQ(MeanForecastError(scenario, 0.0F), 0.0F);
+  EXPECT_FLOAT_EQ(MeanForecastError(scenario, 72.0F), 34.5F) << "12 hours";
+  EXPECT_FLOAT_EQ(MeanForecastError(scenario, 144.0F), 69.0F);
+  EXPECT_FLOAT_EQ(MeanForecastError(scenario, 288.0F), 121.0F);
+  EXPECT_FLOAT_EQ(MeanForecastError(scenario, 432.0F), 175.0F);
+  EXPECT_FLOAT_EQ(MeanForecastError(scenario, 576.0F), 229.0F) << "on as from 48 to 72 hours";
+}
+
+TEST(ForecastError, IsOneOnAverageToAnySide) {
+  double length = 0.0;
+  std::array<double, 2> mean{};
+  std::array<int, 4> sides{};
+  constexpr int kEpisodes = 40000;
+  for (std::uint64_t episode = 0; episode < kEpisodes; ++episode) {
+    const auto error = ForecastErrorVector(7, episode, 0);
+    length += Length(error) / kEpisodes;
+    for (std::size_t i = 0; i < 2; ++i) mean[i] += static_cast<double>(error[i]) / kEpisodes;
+    ++sides[QuadrantOf(-error[0], -error[1])];
+  }
+  EXPECT_NEAR(length, 1.0, 0.01);
+  EXPECT_NEAR(mean[0], 0.0, 0.015);
+  EXPECT_NEAR(mean[1], 0.0, 0.015);
+  for (const int side : sides) EXPECT_NEAR(side, kEpisodes / 4, 400);
+  EXPECT_NE(ForecastErrorVector(7, 0, 0), ForecastErrorVector(7, 0, 1)) << "another disaster";
+}
+
+TEST(Forecasts, AreOffByTheErrorOfTheirLeadTime) {
+  Farm farm = MakeFarm(Forecast());
+  farm.Reset(3, 5);
+  const double unit = Length(ForecastErrorVector(3, 5, 0));
+  const auto at = [&](std::int32_t issued, std::int32_t step) {
+    const auto there = ForecastAt(farm, 0, issued, step);
+    const double true_y = -100.0 + 60.0 * std::min(step, 576) / 144.0;
+    return std::hypot(static_cast<double>(there[0]) - 5.0, static_cast<double>(there[1]) - true_y);
+  };
+  EXPECT_NEAR(at(0, 0), 0.0, 1e-4);
+  EXPECT_NEAR(at(0, 144), 69.0 * unit, 1e-2);
+  EXPECT_NEAR(at(0, 432), 175.0 * unit, 1e-2);
+  EXPECT_NEAR(at(0, 72), 34.5 * unit, 1e-2) << "straight between waypoints";
+  EXPECT_LT(at(300, 432), at(100, 432)) << "a later forecast is better";
+  EXPECT_NEAR(at(432, 432), 0.0, 1e-4);
+  EXPECT_NEAR(at(0, 900), at(0, 576), 1e-4) << "it stays at the track's end";
+}
+
+TEST(Forecasts, AreTheSameAsATrack) {
+  Farm farm = MakeFarm(Forecast());
+  farm.Reset(3, 6);
+  test::RandomSteps(farm, 100, 1);
+  const std::vector<Waypoint> track = ForecastTrack(farm, 0, 100);
+  EXPECT_EQ(track.front().step, 100.0F);
+  Disaster ghost = farm.disasters()[0];
+  ghost.waypoint = 0;
+  for (std::int32_t step = 100; step < 560; step += 23) {
+    FollowTrack(ghost, track, step);
+    const auto there = ForecastAt(farm, 0, 100, step);
+    EXPECT_NEAR(ghost.x, there[0], 1e-3) << step;
+    EXPECT_NEAR(ghost.y, there[1], 1e-3) << step;
+  }
+  EXPECT_EQ(track.back().radii, farm.scenario().disasters[0].radii);
+}
+
+TEST(Forecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
+  Scenario plain = Forecast();
+  plain.view.forecast_error_km.clear();
+  Farm told = MakeFarm(Forecast());
+  Farm knows = MakeFarm(plain);
+  told.Reset(3, 7);
+  knows.Reset(3, 7);
+  test::RandomSteps(told, 60, 2);
+  test::RandomSteps(knows, 60, 2);
+  EXPECT_EQ(told.disasters()[0].y, knows.disasters()[0].y) << "the truth is the same";
+  EXPECT_EQ(told.record().episode_return, knows.record().episode_return);
+  View view;
+  Observe(told, 0, view);
+  const KnownDisaster& known = view.disasters[0];
+  const auto there = ForecastAt(told, 0, 60, 60 + kForecastSteps);
+  EXPECT_NEAR(known.belief.x + kForecastSteps * known.belief.dx, there[0], 1e-3);
+  EXPECT_NEAR(known.belief.y + kForecastSteps * known.belief.dy, there[1], 1e-3);
+  EXPECT_NE(known.belief.dx, told.disasters()[0].dx);
+  EXPECT_EQ(known.belief.x, told.disasters()[0].x) << "where it is now is known";
+}
+
+TEST(Forecasts, AgeWithTheBulletinTheyCameWith) {
+  Scenario scenario = Forecast();
+  scenario.view.mode = ViewMode::kPartial;
+  scenario.view.sensor_radius = 1.0F;
+  scenario.view.bulletin_period = 50;
+  Farm farm = MakeFarm(scenario);
+  farm.Reset(3, 8);
+  test::RandomSteps(farm, 70, 2);
+  View view;
+  Observe(farm, 0, view);
+  const KnownDisaster& known = view.disasters[0];
+  ASSERT_FALSE(known.visible);
+  ASSERT_EQ(known.age, 20);
+  const auto there = ForecastAt(farm, 0, 50, 70 + kForecastSteps);
+  const float lead = 20.0F + kForecastSteps;
+  EXPECT_NEAR(known.belief.x + lead * known.belief.dx, there[0], 1e-3);
+  EXPECT_NEAR(known.belief.y + lead * known.belief.dy, there[1], 1e-3);
+}
+
+std::string Refused(const std::string& errors, bool tracked = true) {
+  Scenario scenario = Forecast();
+  scenario.view.forecast_error_km.clear();
+  if (!tracked) scenario.disasters[0].track.clear();
+  std::string text = ToYaml(scenario);
+  text.replace(text.find("view:\n"), 6, "view:\n  forecast_error_km: " + errors + "\n");
+  try {
+    ParseScenario(text, "x.yaml");
+  } catch (const InputError& error) {
+    return std::string(error.what()).substr(std::string(error.what()).find("view"));
+  }
+  return "was taken";
+}
+
+TEST(Forecasts, AreAskedForInWords) {
+  EXPECT_EQ(Refused("[69, 121, 175]"), "was taken");
+  EXPECT_EQ(Refused("[69, 121]"), "view.forecast_error_km: got 2 entries, expected [3, 3]");
+  EXPECT_EQ(Refused("[69, 21, 175]"),
+            "view.forecast_error_km: got an error that shrinks with time, expected ascending "
+            "numbers");
+  EXPECT_EQ(Refused("[69, 121, 175]", false),
+            "view.forecast_error_km: is used only where a disaster has a track");
+}
+
+TEST(Forecasts, AreWrittenBackAndPartOfTheHash) {
+  const Scenario scenario = Forecast();
+  EXPECT_EQ(ParseScenario(ToYaml(scenario), "x.yaml").view.forecast_error_km,
+            scenario.view.forecast_error_km);
+  Scenario other = scenario;
+  other.view.forecast_error_km[0] = 70.0F;
+  EXPECT_NE(HashScenario(other), HashScenario(scenario));
+  other.view.forecast_error_km.clear();
+  EXPECT_EQ(ToYaml(other).find("forecast"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace aquafarm

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What lives on the globe or on all cells: storms of bulletins, rings by quadrants, forecasts,
+// seas.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "aquafarm/check.h"
+#include "aquafarm/forecast.h"
+#include "aquafarm/hazard_disaster.h"
+#include "aquafarm_sim/conversions.h"
+#include "aquafarm_sim/observation.h"
+#include "ranch_fixture.h"
+
+namespace aquafarm_sim {
+namespace {
+
+using aquafarm::Farm;
+using aquafarm::Scenario;
+using aquafarm_msgs::StormFix;
+
+constexpr std::uint32_t kStart = 1627084800;  // 2021-07-24 00:00 UTC
+
+/// Off Zhoushan, cells of 1 km, steps of ten minutes, one disaster with risks of its own.
+Scenario Placed() {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.origin = aquafarm::GeoPoint{30.2, 122.7};
+  scenario.start_time = kStart;
+  scenario.step_duration_s = 600.0;
+  aquafarm::DisasterSpec storm = aquafarm::test::StillDisaster(50, 50, {1, 2, 3}, {-20, -10, -5});
+  storm.track = {{0, 50, 50, 3, storm.radii, {-19, -9, -6}, {}}};
+  storm.risks = {-19, -9, -6};
+  storm.grade_risks = {{-14, -8, -5}, {-16, -9, -5}, {-19, -9, -6}, {-20, -12, -7}};
+  scenario.disasters = {storm};
+  return scenario;
+}
+
+/// A typhoon a degree south of it that goes north, twelve hours of it told.
+aquafarm_msgs::Storm North() {
+  aquafarm_msgs::Storm storm;
+  storm.name = "IN-FA";
+  StormFix fix;
+  fix.stamp = ros::Time(kStart, 0);
+  fix.latitude_deg = 29.2;
+  fix.longitude_deg = 122.7;
+  fix.wind_mps = 38.0F;
+  fix.pressure_hpa = 965.0F;
+  for (const int wind_kt : {64, 34, 50}) {
+    aquafarm_msgs::StormRing ring;
+    ring.wind_kt = wind_kt;
+    for (int q = 0; q < 4; ++q) {
+      ring.radius_km[static_cast<std::size_t>(q)] = static_cast<float>(400 - 5 * wind_kt - 20 * q);
+    }
+    fix.rings.push_back(ring);
+  }
+  storm.fixes = {fix};
+  fix.stamp = ros::Time(kStart + 12 * 3600, 0);
+  fix.latitude_deg = 30.2;
+  storm.forecast = {fix};
+  return storm;
+}
+
+aquafarm_msgs::SetDisaster::Response Tell(Ranch& ranch, const aquafarm_msgs::Storm& storm,
+                                          std::int32_t id = 0) {
+  aquafarm_msgs::SetDisaster call;
+  call.request.farm = -1;
+  call.request.id = id;
+  call.request.storm = storm;
+  ranch.SetDisaster(call.request, call.response);
+  return call.response;
+}
+
+TEST(Storms, BecomeDisastersOfTheRunningEpisode) {
+  const auto ranch = test::MakeRanch(Placed(), 2);
+  const auto answer = Tell(*ranch, North());
+  ASSERT_TRUE(answer.ok) << answer.message;
+  const auto disaster = test::StateOf(*ranch, 1).disasters[0];
+  EXPECT_EQ(disaster.grade, 3) << "of 38 m/s";
+  EXPECT_NEAR(disaster.y, -110.85, 0.1) << "a degree in cells";
+  EXPECT_EQ(disaster.steps_left, 72) << "twelve hours";
+  EXPECT_NEAR(disaster.motion_y, 110.85 / 72.0, 0.01);
+  EXPECT_EQ(disaster.risks, (std::vector<float>{-19, -9, -6})) << "by the scenario's own table";
+  // Circles of the same area as 230, 210, 190, 170 km.
+  EXPECT_NEAR(disaster.radii[2], std::sqrt((230. * 230 + 210. * 210 + 190. * 190 + 170. * 170) / 4),
+              0.01);
+  EXPECT_TRUE(disaster.quadrants.empty());
+}
+
+TEST(Storms, StayByQuadrantsWhereTheScenarioIs) {
+  Scenario scenario = Placed();
+  auto& storm = scenario.disasters[0];
+  for (const float radius : storm.radii) storm.quadrants.push_back({radius, radius, 0, 0});
+  storm.quadrants[1][2] = storm.quadrants[2][2] = 1.0F;
+  storm.track[0].quadrants = storm.quadrants;
+  const auto ranch = test::MakeRanch(scenario);
+  const auto answer = Tell(*ranch, North());
+  ASSERT_TRUE(answer.ok) << answer.message;
+  const auto disaster = test::StateOf(*ranch).disasters[0];
+  ASSERT_EQ(disaster.quadrants.size(), 12U);
+  EXPECT_FLOAT_EQ(disaster.quadrants[8], 230.0F);
+  EXPECT_FLOAT_EQ(disaster.quadrants[11], 170.0F);
+  EXPECT_FLOAT_EQ(disaster.radii[2], 230.0F);
+}
+
+TEST(Storms, MayComeOnTop) {
+  const auto ranch = test::MakeRanch(Placed());
+  ASSERT_TRUE(Tell(*ranch, North(), 1).ok);
+  EXPECT_EQ(test::StateOf(*ranch).disasters[1].risks, (std::vector<float>{-19, -9, -6}))
+      << "with the table of the disaster that has one";
+}
+
+TEST(Storms, ThatAreWrongChangeNothing) {
+  const auto ranch = test::MakeRanch(Placed());
+  const std::uint64_t before = test::StateOf(*ranch).hash;
+  const auto refused = [&](const auto& change) {
+    aquafarm_msgs::Storm storm = North();
+    change(storm);
+    const auto answer = Tell(*ranch, storm);
+    EXPECT_FALSE(answer.ok);
+    EXPECT_EQ(answer.code, aquafarm_msgs::Outcome::BAD_VALUE);
+    EXPECT_EQ(test::StateOf(*ranch).hash, before);
+    return answer.message;
+  };
+  EXPECT_EQ(refused([](auto& s) { s.fixes[0].latitude_deg = 95.0; }),
+            "storm.fixes[0].latitude_deg: got 95, expected a number in [-90, 90]");
+  EXPECT_EQ(refused([](auto& s) { s.fixes[0].longitude_deg = std::nan(""); }),
+            "storm.fixes[0].longitude_deg: got nan, expected a number in [-180, 180]");
+  EXPECT_EQ(refused([](auto& s) { s.fixes[0].grade = 7; }),
+            "storm.fixes[0].grade: got 7, expected a number in [0, 6]");
+  EXPECT_EQ(refused([](auto& s) { s.fixes[0].rings[0].radius_km[3] = -1.0F; }),
+            "storm.fixes[0].rings[0].radius_km[3]: got -1, expected a number in [0, 5000]");
+  EXPECT_EQ(refused([](auto& s) { s.forecast[0].stamp = s.fixes[0].stamp; }),
+            "storm.forecast[0].stamp: got 1627084800, expected a time after 1627084800");
+  EXPECT_EQ(refused([](auto& s) { s.fixes.resize(100000, s.fixes[0]); }),
+            "storm.fixes: got 100000 entries, expected at most 10000");
+  EXPECT_EQ(refused([](auto& s) {
+              s.fixes[0].stamp.sec -= 100 * 3600;
+              s.forecast.clear();
+            }),
+            "bulletin: is over: got a last position before step 0, expected one of a storm that "
+            "goes on");
+  const auto nowhere = test::MakeRanch(aquafarm::test::TinyScenario());
+  EXPECT_EQ(Tell(*nowhere, North()).message,
+            "bulletin: needs a ranch with grid.origin and time.start");
+}
+
+TEST(Storms, AreTheSameThereAndBack) {
+  const aquafarm::HazardTrack track = FromMsg(North());
+  EXPECT_EQ(track.fixes[0].rings[0].wind_kt, 34) << "the weakest first";
+  const aquafarm_msgs::Storm again = ToMsg(track);
+  EXPECT_EQ(again.name, "IN-FA");
+  ASSERT_EQ(again.forecast.size(), 1U);
+  EXPECT_EQ(again.forecast[0].stamp.sec, kStart + 12 * 3600);
+  EXPECT_FLOAT_EQ(again.fixes[0].wind_mps, 38.0F);
+  EXPECT_EQ(ToMsg(FromMsg(again)), again);
+}
+
+TEST(Observations, TellQuadrantsAndForecastsAsTheyAreInProcess) {
+  for (const auto mode : {aquafarm::ViewMode::kFull, aquafarm::ViewMode::kPartial}) {
+    Scenario scenario = Placed();
+    auto& storm = scenario.disasters[0];
+    storm.quadrants = {{1, 1, 1, 0}, {4, 3, 2, 1}, {9, 5, 5, 5}};
+    storm.radii = {1, 4, 9};
+    storm.track = {{-10, -3, 2, 3, storm.radii, storm.risks, storm.quadrants},
+                   {500, 40, 30, 3, storm.radii, storm.risks, storm.quadrants}};
+    scenario.view.mode = mode;
+    scenario.view.bulletin_period = 4;
+    scenario.view.sensor_radius = 0.0F;
+    scenario.view.forecast_error_km = {69, 121, 175};
+    Farm farm = aquafarm::test::MakeFarm(scenario);
+    aquafarm::test::RandomSteps(farm, 7, 1);
+    aquafarm::View view;
+    Observe(farm, 0, view);
+    aquafarm_msgs::FarmState message;
+    ToMsg(farm, view, {}, message);
+    aquafarm::View through_ros;
+    FromMsg(message, farm.scenario(), farm.layout(), through_ros);
+    const aquafarm::Encoder encoder(farm.scenario());
+    const auto count = static_cast<std::size_t>(encoder.feature_count());
+    std::vector<float> a(count), b(count);
+    encoder.Features(view, a.data());
+    encoder.Features(through_ros, b.data());
+    EXPECT_EQ(a, b);
+    std::vector<std::uint8_t> p(encoder.planes_size()), q(encoder.planes_size());
+    encoder.Planes(view, p.data());
+    encoder.Planes(through_ros, q.data());
+    EXPECT_EQ(p, q);
+    EXPECT_NE(message.disasters[0].motion_x, farm.disasters()[0].dx) << "it is a forecast";
+    EXPECT_EQ(message.disasters[0].quadrants.size(), 12U);
+  }
+}
+
+TEST(Seas, AreGridsToLookAtAndNumbersWithUnits) {
+  const Scenario scenario = aquafarm::test::TinyScenario();
+  aquafarm::SeaLayer layer{"warmth", "degC", {}};
+  for (int i = 0; i < 25; ++i) layer.values.push_back(20.0F + 0.5F * static_cast<float>(i));
+  layer.values[7] = std::numeric_limits<float>::quiet_NaN();
+  nav_msgs::OccupancyGrid grid;
+  SeaToMsg(layer, scenario, {}, grid);
+  EXPECT_EQ(grid.data[0], 0);
+  EXPECT_EQ(grid.data[7], -1);
+  EXPECT_EQ(grid.data[12], 50);
+  EXPECT_EQ(grid.data[24], 100);
+  EXPECT_EQ(grid.info.width, 5U);
+  const std_msgs::Float32MultiArray values = SeaToMsg(layer, scenario);
+  ASSERT_EQ(values.layout.dim.size(), 3U);
+  EXPECT_EQ(values.layout.dim[0].label, "warmth [degC]");
+  EXPECT_EQ(values.layout.dim[1].size, 5U);
+  EXPECT_EQ(values.layout.dim[2].label, "x");
+  EXPECT_EQ(values.data[24], 32.0F);
+  layer.values.assign(25, 3.0F);
+  SeaToMsg(layer, scenario, {}, grid);
+  EXPECT_EQ(grid.data[24], 0) << "a flat sea";
+}
+
+}  // namespace
+}  // namespace aquafarm_sim

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Layers of the sea below the farm, and rings that are no circles.
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "aquafarm_viz/checks.h"
+#include "aquafarm_viz/image.h"
+#include "aquafarm_viz/markers.h"
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr ImageSize kSize{800, 640};
+
+/// A ranch of 8 x 8 cells whose sea is warmer to the north, unknown in the north-east corner.
+aquafarm_msgs::FarmSpec Warm() {
+  aquafarm_msgs::FarmSpec spec = test::MakeSpec(8);
+  spec.islands.clear();
+  spec.rocks.clear();
+  spec.ports.clear();
+  std::string values;
+  for (int i = 0; i < 64; ++i) {
+    values += (i == 0 ? "[" : ", ") + (i == 63 ? std::string(".nan") : std::to_string(20 + i / 8));
+  }
+  spec.scenario_yaml =
+      "seas:\n  layers:\n    - name: \"warmth\"\n      units: \"degC\"\n      values: " + values +
+      "]\n";
+  return spec;
+}
+
+aquafarm_msgs::FarmState Empty() {
+  aquafarm_msgs::FarmState state = test::MakeState(8);
+  state.ships.clear();
+  state.devices.clear();
+  state.disasters.clear();
+  return state;
+}
+
+cv::Vec3b At(const cv::Mat& picture, double x, double y) {
+  const MapPlace place = PlaceMap(8, 8, kSize);
+  const cv::Point2d pixel = place.view.ToPixel(x, y);
+  return picture.at<cv::Vec3b>(place.map.y + cvRound(pixel.y), place.map.x + cvRound(pixel.x));
+}
+
+Extras With(const std::string& layers) {
+  Extras extras;
+  extras.layers = ParseLayers(layers);
+  return extras;
+}
+
+TEST(SeaLayer, IsPaintedFromDarkToBrightBelowTheFarm) {
+  const cv::Mat plain = DrawFarm(Warm(), Empty(), kSize, With("none"));
+  const cv::Mat warm = DrawFarm(Warm(), Empty(), kSize, With("sea:warmth"));
+  const auto brightness = [](const cv::Vec3b& pixel) { return pixel[0] + pixel[1] + pixel[2]; };
+  EXPECT_NE(At(plain, 4, 1), At(warm, 4, 1));
+  EXPECT_LT(brightness(At(warm, 4, 2)), brightness(At(warm, 4, 6)));
+  EXPECT_EQ(At(plain, 7, 7), At(warm, 7, 7)) << "nothing is known there";
+  FarmPainter painter(kSize);
+  painter.Draw(Warm(), Empty(), With("none"));
+  EXPECT_EQ(At(painter.Draw(Warm(), Empty(), With("sea:warmth")), 4, 6), At(warm, 4, 6))
+      << "the background follows the layer";
+}
+
+std::string Refused(const aquafarm_msgs::FarmSpec& spec, const std::string& layers) {
+  try {
+    DrawFarm(spec, Empty(), kSize, With(layers));
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "was drawn";
+}
+
+TEST(SeaLayer, ThatIsNotThereIsRefused) {
+  EXPECT_EQ(Refused(Warm(), "sea:salt"),
+            "layers: got 'sea:salt', expected one of the scenario's: warmth");
+  EXPECT_EQ(Refused(test::MakeSpec(8), "sea:salt"),
+            "layers: got 'sea:salt', expected one of the scenario's: it has none");
+  EXPECT_EQ(Refused(Warm(), "sea:"),
+            "layers: got 'sea:', expected some of: wake, risk, route, sight, values, moves, "
+            "sea:NAME; or none");
+  aquafarm_msgs::FarmSpec small = Warm();
+  small.width = 7;
+  EXPECT_EQ(Refused(small, "sea:warmth"), "layers: sea:warmth has another size than the farm");
+}
+
+/// A storm in the middle that reaches to the north-east alone.
+aquafarm_msgs::FarmState Lopsided() {
+  aquafarm_msgs::FarmState state = Empty();
+  state.disasters.push_back(test::MakeDisaster(0, 3.5F, 3.5F));
+  auto& storm = state.disasters[0];
+  storm.radii = {3.0F};
+  storm.risks = {-20.0F};
+  storm.quadrants = {3.0F, 0.0F, 0.0F, 0.0F};
+  return state;
+}
+
+TEST(Quadrants, AreShadedWhereTheyReach) {
+  const cv::Mat calm = DrawFarm(Warm(), Empty(), kSize, With("risk"));
+  const cv::Mat storm = DrawFarm(Warm(), Lopsided(), kSize, With("risk"));
+  EXPECT_NE(At(storm, 5.2, 4.7), At(calm, 5.2, 4.7)) << "north-east";
+  EXPECT_EQ(At(storm, 5.5, 2.0), At(calm, 5.5, 2.0)) << "south-east";
+  EXPECT_EQ(At(storm, 1.5, 5.0), At(calm, 1.5, 5.0)) << "north-west";
+}
+
+TEST(Quadrants, AreBandsOfMarkersWhereTheyReach) {
+  for (const auto& marker : StateMarkers(Warm(), Lopsided(), nullptr).markers) {
+    if (marker.ns != "ring" || marker.action != 0) continue;
+    ASSERT_FALSE(marker.points.empty());
+    double farthest = 0.0;
+    for (const auto& point : marker.points) {
+      EXPECT_GE(point.x, -1e-6);
+      EXPECT_GE(point.y, -1e-6);
+      farthest = std::max(farthest, std::hypot(point.x, point.y));
+    }
+    EXPECT_NEAR(farthest, 3000.0, 1.0);
+  }
+}
+
+TEST(Quadrants, ThatAreNotFourARingAreRefused) {
+  aquafarm_msgs::FarmState state = Lopsided();
+  state.disasters[0].quadrants.pop_back();
+  EXPECT_NE(CheckState(state).find("quadrants.size: got 3, expected 0 or four a ring, 4"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

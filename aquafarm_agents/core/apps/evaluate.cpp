@@ -8,6 +8,7 @@
 #include "aquafarm/agents/evaluation.h"
 #include "aquafarm/agents/exit_code.h"
 #include "aquafarm/agents/local_environment.h"
+#include "aquafarm/agents/played_values.h"
 #include "aquafarm/agents/route.h"
 #include "aquafarm/agents/saved_policy.h"
 #include "aquafarm/agents/team_bound.h"
@@ -21,6 +22,8 @@ struct Arguments {
   std::string output;
   std::string route;
   std::uint64_t route_episode{};
+  std::string values;
+  std::int32_t values_episodes{1};
   bool bound{};
   std::uint64_t seed{1000};
   std::int32_t episodes{1000};
@@ -80,6 +83,16 @@ ExitCode Run(Arguments arguments) {
     }
     std::printf("\n");
   }
+  if (!arguments.values.empty() && evaluation.complete) {
+    const auto make_policy = [&saved](const EnvironmentSpec& spec) {
+      return MakePolicy(saved, spec);
+    };
+    const PlayedValues values =
+        PlayValues(scenario, saved.encodings, make_policy, arguments.seed, arguments.route_episode,
+                   arguments.values_episodes, &stop_requested);
+    if (stop_requested) return ExitCode::kInterrupted;
+    WriteValues(arguments.values, values, saved.path, *scenario);
+  }
   // The evaluation comes last: where it is, all is there.
   if (!arguments.route.empty() && evaluation.complete) {
     const auto make_policy = [&saved](const EnvironmentSpec& spec) {
@@ -120,7 +133,14 @@ int Main(int argc, char** argv) {
       "--route", arguments.route,
       "write an episode's route and actions, and the best move in each cell, to this JSON file; "
       "empty: nothing");
-  app.add_option("--route-episode", arguments.route_episode, "episode that --route is of");
+  app.add_option("--route-episode", arguments.route_episode,
+                 "episode that --route and --values are of");
+  app.add_option(
+      "--values", arguments.values,
+      "write what an episode pays from every cell on, played out, and the scenario's sea "
+      "to this JSON file; empty: nothing");
+  app.add_option("--values-episodes", arguments.values_episodes, "episodes that --values averages")
+      ->check(CLI::Range(1, 10000));
   app.add_flag("--bound", arguments.bound,
                "say what share this is of an upper bound: each device by its best ship, no "
                "conflicts, the disasters known");

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""V_π beside the sea (Fig. 10): heat maps on the same cells, with how alike they are."""
+import json
+import os
+import pathlib
+
+import matplotlib
+
+matplotlib.use("Agg")
+import numpy as np  # noqa: E402
+from matplotlib import pyplot  # noqa: E402
+from scipy import ndimage, stats  # noqa: E402
+from skimage.metrics import structural_similarity  # noqa: E402
+
+MOST_WINDOW = 7  # cells on a side, as in scikit-image
+FEWEST_CELLS = 10
+
+NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells are "
+        "alike, so no significance is given. SSIM is the mean structural similarity (Wang et al. "
+        "2004) of both maps scaled to [0, 1], over those cells, the others filled with the nearest "
+        "known value; the second one is of the map turned over, for a sea that falls where V_π "
+        "rises. Both say how alike two maps are, not that one causes the other.")
+
+
+class ValuesError(Exception):
+    """What is wrong with a file, in one line."""
+
+
+def read(path):
+    """V_π [H, W] from the south, NaN where there is none, and the sea's layers by name."""
+    try:
+        text = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+        values = np.array(text["values"], dtype=float)
+        layers = [(layer["name"], layer["units"], np.array(layer["values"], dtype=float))
+                  for layer in text["seas"]]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise ValuesError(f"{path}: got no values of aquafarm_evaluate: {error}") from error
+    if values.ndim != 2 or any(layer[2].shape != values.shape for layer in layers):
+        raise ValuesError(f"{path}: got maps of different sizes, expected them all alike")
+    return text, values, layers
+
+
+def filled(field, known):
+    """The field with the nearest known value where it is not known."""
+    nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return field[tuple(nearest)]
+
+
+def scaled(field, known):
+    low, high = field[known].min(), field[known].max()
+    return (filled(field, known) - low) / (high - low)
+
+
+def compare(values, field):
+    """How alike two maps are over the cells where both are known.
+
+    None stands for what cannot be said: too few cells, or a map without any difference.
+    """
+    known = np.isfinite(values) & np.isfinite(field)
+    result = {"cells": int(known.sum()), "spearman_rho": None, "ssim": None, "ssim_turned": None}
+    if result["cells"] < FEWEST_CELLS or np.ptp(values[known]) == 0 or np.ptp(field[known]) == 0:
+        return result
+    result["spearman_rho"] = float(stats.spearmanr(values[known], field[known]).correlation)
+    window = min(MOST_WINDOW, *values.shape)
+    window -= 1 - window % 2  # odd
+    if window < 3:
+        return result
+    first, second = scaled(values, known), scaled(field, known)
+    for key, other in (("ssim", second), ("ssim_turned", 1.0 - second)):
+        _, similar = structural_similarity(first, other, win_size=window, data_range=1.0, full=True)
+        result[key] = float(similar[known].mean())
+    return result
+
+
+def said(number):
+    return "-" if number is None else f"{number:+.2f}"
+
+
+def draw(text, values, layers, results, path):
+    """The maps side by side, north up, land in grey."""
+    maps = [("$V_\\pi$", "points", values, "magma", "")]
+    maps += [(name, units, field, "viridis",
+              f"rho {said(result['spearman_rho'])}, SSIM {said(result['ssim'])} "
+              f"(turned {said(result['ssim_turned'])})")
+             for (name, units, field), result in zip(layers, results)]
+    km = text["cell_size_m"] / 1000.0
+    height, width = values.shape
+    figure, axes = pyplot.subplots(1, len(maps), figsize=(4.6 * len(maps), 4.4), squeeze=False,
+                                   constrained_layout=True)
+    for axis, (name, units, field, colours, words) in zip(axes[0], maps):
+        axis.set_facecolor("0.6")
+        image = axis.imshow(field, origin="lower", cmap=colours,
+                            extent=(0, width * km, 0, height * km))
+        figure.colorbar(image, ax=axis, shrink=0.8, label=units)
+        axis.set_title(name)
+        axis.set_xlabel(f"east [km]\n{words}")
+    axes[0][0].set_ylabel("north [km]")
+    episodes = (f"episode {text['episode']}" if text["episodes"] == 1
+                else f"mean of {text['episodes']} episodes")
+    figure.suptitle(f"{text['scenario']}: what starting in a cell pays, and the sea ({episodes})")
+    beside = f"{path}.part"
+    figure.savefig(beside, dpi=110, format="png")
+    pyplot.close(figure)
+    os.replace(beside, path)
+
+
+def make(values_file, output):
+    """Writes <output>.png and <output>.json. @returns the lines that people read"""
+    text, values, layers = read(values_file)
+    results = [compare(values, field) for _, _, field in layers]
+    draw(text, values, layers, results, f"{output}.png")
+    report = {key: text[key] for key in ("scenario", "scenario_hash", "policy", "farm_seed",
+                                         "episode", "episodes", "what")}
+    report["note"] = NOTE
+    report["seas"] = [{"name": name, "units": units, **result}
+                      for (name, units, _), result in zip(layers, results)]
+    beside = f"{output}.json.part"
+    pathlib.Path(beside).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
+    os.replace(beside, f"{output}.json")
+    return [f"{name}: Spearman {said(result['spearman_rho'])}, SSIM {said(result['ssim'])}, "
+            f"turned over {said(result['ssim_turned'])}, over {result['cells']} cells"
+            for (name, _, _), result in zip(layers, results)]

@@ -1,0 +1,126 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""V_π beside the sea: known likeness is found, unknown cells stay out, files are refused in words."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+import roslib.packages
+import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"))
+
+from aquafarm_report.values import ValuesError, compare, make, read  # noqa: E402
+
+
+def slope(height=12, width=14):
+    """A map that rises to the north-east, with a hill."""
+    y, x = np.mgrid[0:height, 0:width].astype(float)
+    return x + y + 5.0 * np.exp(-((x - 4) ** 2 + (y - 8) ** 2) / 6.0)
+
+
+def written(folder, values, layers):
+    def rows(field):
+        return [[None if np.isnan(v) else float(v) for v in row] for row in field]
+    path = os.path.join(folder, "values.json")
+    text = {"scenario": "tiny", "scenario_hash": 1, "policy": "clairvoyant", "cell_size_m": 200.0,
+            "farm_seed": 5, "episode": 0, "episodes": 1, "what": "return", "values": rows(values),
+            "seas": [{"name": name, "units": "degC", "values": rows(field)}
+                     for name, field in layers.items()]}
+    pathlib.Path(path).write_text(json.dumps(text), encoding="utf-8")
+    return path
+
+
+class ValuesTest(unittest.TestCase):
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def test_a_map_is_like_itself_however_scaled(self):
+        result = compare(slope(), 3.0 * slope() + 7.0)
+        self.assertAlmostEqual(1.0, result["spearman_rho"], places=9)
+        self.assertAlmostEqual(1.0, result["ssim"], places=9)
+        self.assertEqual(12 * 14, result["cells"])
+
+    def test_a_map_turned_over_is_opposite(self):
+        result = compare(slope(), -slope())
+        self.assertAlmostEqual(-1.0, result["spearman_rho"], places=9)
+        self.assertAlmostEqual(1.0, result["ssim_turned"], places=9)
+        self.assertLess(result["ssim"], 0.3)
+
+    def test_ranks_are_compared_and_not_sizes(self):
+        result = compare(slope(), np.exp(slope() / 4.0))
+        self.assertAlmostEqual(1.0, result["spearman_rho"], places=9)
+        self.assertLess(result["ssim"], 0.99)
+
+    def test_noise_is_like_nothing(self):
+        noise = np.random.default_rng(1).normal(size=(40, 40))
+        result = compare(slope(40, 40), noise)
+        self.assertLess(abs(result["spearman_rho"]), 0.1)
+        self.assertLess(abs(result["ssim"]), 0.1)
+
+    def test_unknown_cells_do_not_count(self):
+        values, field = slope(), slope()
+        values[2:5, 3:6] = np.nan
+        field[8, 8] = np.nan
+        result = compare(values, field)
+        self.assertEqual(12 * 14 - 10, result["cells"])
+        self.assertAlmostEqual(1.0, result["spearman_rho"], places=9)
+
+    def test_a_map_without_difference_says_nothing(self):
+        self.assertIsNone(compare(slope(), np.ones((12, 14)))["spearman_rho"])
+        self.assertIsNone(compare(slope(), np.full((12, 14), np.nan))["ssim"])
+
+    def test_a_picture_and_a_report_are_written(self):
+        values = slope()
+        values[0, 0] = np.nan
+        path = written(self.folder.name, values, {"warmth": slope(), "salt": -slope()})
+        output = os.path.join(self.folder.name, "out")
+        lines = make(path, output)
+        self.assertIn("warmth: Spearman +1.00", lines[0])
+        self.assertIn("salt: Spearman -1.00", lines[1])
+        report = json.loads(pathlib.Path(output + ".json").read_text(encoding="utf-8"))
+        self.assertEqual(167, report["seas"][0]["cells"])
+        self.assertIn("not that one causes the other", report["note"])
+        self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
+        self.assertEqual(3, len(os.listdir(self.folder.name)), "nothing is left beside")
+
+    def test_another_file_is_refused(self):
+        path = pathlib.Path(self.folder.name) / "x.json"
+        path.write_text("{}", encoding="utf-8")
+        with self.assertRaisesRegex(ValuesError, "x.json: got no values of aquafarm_evaluate"):
+            read(path)
+        path = written(self.folder.name, slope(), {"warmth": slope(5, 5)})
+        with self.assertRaisesRegex(ValuesError, "maps of different sizes"):
+            read(path)
+
+    def test_the_command_plays_a_planner_on_a_ranch_with_a_sea(self):
+        sea = ", ".join(str(20 + i // 6) for i in range(36))
+        ranch = os.path.join(self.folder.name, "ranch.yaml")
+        pathlib.Path(ranch).write_text(
+            "name: pond\ngrid: {width: 6, height: 6}\n"
+            "layout:\n  rocks: {count: [0, 0]}\n  ports: {cells: [[0, 0]]}\n"
+            "  devices: {placement: explicit, sites: [{cell: [5, 5], kind: monitoring}]}\n"
+            f"seas: {{layers: [{{name: warmth, values: [{sea}]}}]}}\n", encoding="utf-8")
+        output = os.path.join(self.folder.name, "pond")
+        program = roslib.packages.find_node("aquafarm_bringup", "compare_values")[0]
+        done = subprocess.run([program, "clairvoyant", ranch, "-o", output], check=False,
+                              capture_output=True, text=True, timeout=100)
+        self.assertEqual(0, done.returncode, done.stderr)
+        # The device waits in the north-east: the farther north, the sooner it is reached.
+        report = json.loads(pathlib.Path(output + ".json").read_text(encoding="utf-8"))
+        self.assertEqual(36, report["seas"][0]["cells"])
+        self.assertGreater(report["seas"][0]["spearman_rho"], 0.5)
+        refused = subprocess.run([program, "clairvoyant", ranch + ".none", "-o", output],
+                                 check=False, capture_output=True, text=True, timeout=100)
+        self.assertEqual(2, refused.returncode)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_bringup", "values", ValuesTest, sys.argv)

@@ -21,7 +21,6 @@ namespace aquafarm_sim {
 namespace {
 
 constexpr double kLookPeriod_s = 0.05;
-constexpr std::chrono::seconds kCallLimit{10};
 constexpr std::chrono::seconds kEndLimit{2};  // from the shutdown of a connection to its call's end
 
 /// The ranch is away or hangs: the file is sent again.
@@ -39,9 +38,10 @@ struct Call {
 
 struct BulletinParams {
   std::string folder;
-  std::string storm;     // empty: the file's only one
-  double period_s{1.0};  // between looks at the folder
-  int id{0};             // of the disaster that the bulletins replace
+  std::string storm;          // empty: the file's only one
+  double period_s{1.0};       // between looks at the folder
+  double call_limit_s{10.0};  // until a ranch that does not answer counts as away
+  int id{0};                  // of the disaster that the bulletins replace
 };
 
 BulletinParams ReadParams() {
@@ -50,6 +50,7 @@ BulletinParams ReadParams() {
   reader.Text("folder", params.folder);
   reader.Text("storm", params.storm);
   reader.Number("period_s", 0.05, 3600.0, params.period_s);
+  reader.Number("call_limit_s", 0.1, 600.0, params.call_limit_s);
   reader.Int("id", 0, 63, params.id);
   reader.RefuseOthers();
   if (params.folder.empty()) {
@@ -100,7 +101,8 @@ class BulletinNode {
     call->client = node_.serviceClient<aquafarm_msgs::SetDisaster>(names::kSetDisaster, true);
     std::future<bool> answer = call->answered.get_future();
     std::thread([call] { call->answered.set_value(call->client.call(call->message)); }).detach();
-    if (answer.wait_for(kCallLimit) != std::future_status::ready) {
+    const std::chrono::duration<double> limit(params_.call_limit_s);
+    if (answer.wait_for(limit) != std::future_status::ready) {
       call->client.shutdown();
       answer.wait_for(kEndLimit);
     }

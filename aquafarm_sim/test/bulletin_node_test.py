@@ -13,6 +13,7 @@ import unittest
 import rospy
 import rostest
 from aquafarm_msgs.msg import FarmState
+from aquafarm_msgs.srv import SetDisaster, SetDisasterResponse
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from sim_client import LIMIT_S, call, message, state  # noqa: E402
@@ -30,13 +31,14 @@ def storm(latitude, radius_km, forecast=None):
 
 class BulletinNodeTest(unittest.TestCase):
 
-    def start(self, folder):
+    def start(self, folder, namespace=None, *arguments):
         """The node as rosrun starts it, in the ranch's namespace, each with a name of its own."""
         self.started = getattr(self, "started", 0) + 1
         name = f"{self._testMethodName[:12]}_{self.started}"
         return subprocess.Popen(
             ["rosrun", "aquafarm_sim", "bulletin_node", f"_folder:={folder}", "_period_s:=0.1",
-             "__name:=" + name, "__ns:=" + rospy.get_namespace().rstrip("/")],
+             "__name:=" + name, "__ns:=" + (namespace or rospy.get_namespace().rstrip("/")),
+             *arguments],
             stderr=subprocess.PIPE, text=True)
 
     def setUp(self):
@@ -92,6 +94,37 @@ class BulletinNodeTest(unittest.TestCase):
         _, error = node.communicate(timeout=LIMIT_S)
         self.assertEqual(2, node.returncode)
         self.assertIn(f"bulletin_node: {missing}: cannot read this folder: No such file", error)
+
+    def test_a_ranch_that_is_away_or_hangs_gets_the_bulletin_later(self):
+        calls = []
+
+        def hang_once(request):
+            calls.append(request)
+            if len(calls) == 1:
+                time.sleep(3.0)
+            return SetDisasterResponse(ok=True)
+
+        folder = tempfile.mkdtemp(prefix="bulletins.")
+        self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
+        with open(os.path.join(folder, "first.json"), "w", encoding="utf-8") as file:
+            file.write(storm(30.0, 50.0))
+        node = self.start(folder, "/elsewhere", "_call_limit_s:=0.5")
+        time.sleep(1.0)  # nobody is there yet
+        service = rospy.Service("/elsewhere/set_disaster", SetDisaster, hang_once)
+        end = time.monotonic() + LIMIT_S
+        while len(calls) < 2 and time.monotonic() < end:
+            time.sleep(0.05)
+        time.sleep(1.0)
+        self.assertEqual(2, len(calls), "once answered, it is not sent again")
+        self.assertIsNone(node.poll(), "the node lives on")
+        service.shutdown()
+        node.terminate()
+        _, error = node.communicate(timeout=LIMIT_S)
+        self.assertIn("first.json: the ranch did not answer; it is sent again", error)
+        told = calls[1].storm
+        self.assertEqual("In-Fa", told.name)
+        self.assertEqual(30.0, told.fixes[0].latitude_deg)
+        self.assertEqual([34, 50, 64], [ring.wind_kt for ring in told.fixes[0].rings])
 
     def tearDown(self):
         self.node.terminate()

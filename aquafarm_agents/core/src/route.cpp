@@ -34,6 +34,11 @@ json ToJson(const std::vector<Disaster>& disasters) {
       radii.push_back(disaster.radius[static_cast<std::size_t>(k)]);
     }
     list.push_back({{"x", disaster.x}, {"y", disaster.y}, {"radii", radii}});
+    for (std::size_t k = 0; disaster.by_quadrant && k < radii.size(); ++k) {
+      json ring = json::array();
+      for (const auto& quadrant : disaster.quadrant) ring.push_back(quadrant[k]);
+      list.back()["quadrants"].push_back(ring);
+    }
   }
   return list;
 }

@@ -14,6 +14,7 @@
 #include "aquafarm/agents/evaluation.h"
 #include "aquafarm/agents/saved_policy.h"
 #include "aquafarm/check.h"
+#include "aquafarm/forecast.h"
 #include "aquafarm/scenario_yaml.h"
 
 namespace aquafarm::agents {
@@ -100,6 +101,60 @@ TEST(Clairvoyant, EqualsBruteForceOnTinyFarms) {
       }
     }
   }
+}
+
+TEST(Clairvoyant, EqualsBruteForceWithQuadrantsAndARiskySea) {
+  Scenario lopsided = TinyScenario(9, 0.02F, 1);
+  DisasterSpec& storm = lopsided.disasters[0];
+  storm.quadrants = {{0.8F, 0.0F, 0.5F, 0.8F}, {3.0F, 0.5F, 1.7F, 1.0F}};
+  storm.radii = {0.8F, 3.0F};
+  lopsided.seas = SeaSpec{{}, std::vector<float>(12, 0.0F), {}};
+  lopsided.seas->risk[9] = -6.0F;  // where a device waits, at (1, 2)
+  lopsided.seas->risk[5] = -15.0F;
+  ValidateScenario(lopsided);
+  const auto scenario = std::make_shared<const Scenario>(lopsided);
+  Farm farm(scenario);
+  Planner planner(*scenario);
+  for (std::uint64_t episode = 0; episode < 6; ++episode) {
+    farm.Reset(5, episode);
+    std::map<std::string, double> seen;
+    const double expected = BruteForce(farm, seen);
+    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    EXPECT_NEAR(plan.expected_return, expected, 1e-3) << "episode " << episode;
+    EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << "episode " << episode;
+  }
+}
+
+TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {
+  Scenario tracked = TinyScenario(40, 0.0F, 1);
+  DisasterSpec& storm = tracked.disasters[0];
+  storm.track = {{0, -8, 1, 3, storm.radii, storm.risks, {}},
+                 {20, 2, 1, 3, storm.radii, storm.risks, {}},
+                 {40, 2, 9, 3, storm.radii, storm.risks, {}}};
+  tracked.step_duration_s = 3600.0;
+  tracked.view.forecast_error_km = {5.0F, 9.0F, 14.0F};
+  const auto place = [](const Scenario& scenario, Foresight foresight) {
+    Farm farm(std::make_shared<const Scenario>(scenario));
+    farm.Reset(5, 1);
+    std::vector<Disaster> disasters = farm.disasters();
+    const std::vector<Track> tracks = Foresee(farm, foresight, disasters);
+    for (std::int32_t step = 1; step <= 30; ++step) {
+      MoveDisaster(disasters[0], tracks[0], {}, step, 4, 3);
+    }
+    return std::array<float, 2>{disasters[0].x, disasters[0].y};
+  };
+  EXPECT_EQ(place(tracked, Foresight::kClairvoyant), (std::array<float, 2>{2.0F, 5.0F}));
+  Farm farm(std::make_shared<const Scenario>(tracked));
+  farm.Reset(5, 1);
+  const auto forecast = ForecastAt(farm, 0, 0, 30);
+  const auto told = place(tracked, Foresight::kHeadingHolds);
+  EXPECT_NEAR(told[0], forecast[0], 1e-3F);
+  EXPECT_NEAR(told[1], forecast[1], 1e-3F);
+  EXPECT_NE(told, (std::array<float, 2>{2.0F, 5.0F}));
+  tracked.view.forecast_error_km.clear();
+  const auto straight = place(tracked, Foresight::kHeadingHolds);
+  EXPECT_NEAR(straight[0], 7.0F, 1e-3F) << "on as it moves now";
+  EXPECT_NEAR(straight[1], 1.0F, 1e-3F);
 }
 
 TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {

@@ -7,7 +7,7 @@ import matplotlib
 matplotlib.use("Agg")  # no display is asked for
 import numpy as np  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
-from matplotlib.patches import Circle  # noqa: E402
+from matplotlib.patches import Polygon  # noqa: E402
 
 from aquafarm_benchmark import measures  # noqa: E402
 
@@ -16,6 +16,16 @@ _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0
                "south_east": (1, -1)}
 _DPI = 110
 _MOST_PROBED = 40  # disasters drawn along a route, at most
+
+
+def _rings(disaster):
+    """Outlines of a disaster's rings, which may have a radius for each quadrant."""
+    bearings = np.radians(np.arange(360.0))
+    quadrants = disaster.get("quadrants") or [[radius] * 4 for radius in disaster["radii"]]
+    for ring in quadrants:
+        radii = np.repeat(ring, 90)  # north-east first, clockwise as bearings are
+        yield np.column_stack([disaster["x"] + radii * np.sin(bearings),
+                               disaster["y"] + radii * np.cos(bearings)])
 
 
 def _save(figure, path):
@@ -199,8 +209,7 @@ def _disasters(axes, steps):
     every = max(1, len(steps) // _MOST_PROBED)
     for step in steps[::every]:
         for disaster in step["disasters"]:
-            for radius in disaster["radii"]:
-                axes.add_patch(Circle((disaster["x"], disaster["y"]), radius, fill=False,
-                                      color="#b22222", alpha=0.06, zorder=2))
+            for ring in _rings(disaster):
+                axes.add_patch(Polygon(ring, fill=False, color="#b22222", alpha=0.06, zorder=2))
     for disaster in steps[0]["disasters"]:
         axes.plot(disaster["x"], disaster["y"], marker="x", color="#b22222", zorder=4)

@@ -4,7 +4,11 @@
 
 #include <algorithm>
 
+#include "aquafarm/coast.h"
 #include "aquafarm/hazard_file.h"
+#include "aquafarm/map_file.h"
+#include "aquafarm/notice_file.h"
+#include "aquafarm/sea_field.h"
 #include "shared_data.h"
 
 namespace aquafarm {
@@ -115,6 +119,39 @@ TEST_F(RealFiles, OfOtherSourcesAreReadToTheEnd) {
   ASSERT_EQ(ewiniar.fixes.size(), 4U);
   EXPECT_EQ(ewiniar.fixes[3].grade, StormGrade::kSevereTropicalStorm);
   EXPECT_EQ(ewiniar.fixes[3].heading_deg, 45.0);
+}
+
+TEST_F(RealFiles, AreAllRead) {
+  int read = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(SharedData())) {
+    if (!entry.is_regular_file()) continue;
+    const std::string path = entry.path().string();
+    const std::string folder = entry.path().parent_path().filename().string();
+    const std::string extension = entry.path().extension().string();
+    if (folder == "tracks") {
+      EXPECT_FALSE(LoadHazardFile(path).tracks.empty()) << path;
+    } else if (folder == "bulletins") {
+      const std::string name = entry.path().filename().string();
+      const bool notices = name.find("Warning") != std::string::npos || name.substr(0, 2) == "zs";
+      EXPECT_FALSE(notices ? LoadNotices(path).notices.empty()
+                           : LoadHazardFile(path).tracks.empty())
+          << path;
+    } else if (folder == "coast") {
+      EXPECT_FALSE(LoadCoast(path).polygons.empty()) << path;
+    } else if (folder == "ocean") {
+      const GeoFrame frame({24.6, 57.6}, 2000.0);
+      EXPECT_FALSE(LoadSeaField(path, {"so", {}, 0.0}, frame, 5, 5).latitude.empty()) << path;
+    } else if (folder == "maps" && extension == ".yaml") {
+      EXPECT_GT(LoadMap(path).occupancy.size(), 0) << path;
+    } else if (folder == "maps") {
+      EXPECT_TRUE(extension == ".pgm" || extension == ".png" || extension == ".bmp")
+          << path << " is read with its YAML file";
+    } else {
+      continue;  // what the folder says of itself
+    }
+    ++read;
+  }
+  EXPECT_GE(read, 19);
 }
 
 }  // namespace

@@ -552,6 +552,8 @@ std::vector<Track> Foresee(const Farm& farm, Foresight foresight,
     const auto disaster = static_cast<std::int32_t>(id);
     disasters[id].turn_threshold = 0;
     disasters[id].waypoint = kNone;
+    // One with a track comes from afar and knows no border.
+    if (!tracks[id]->empty()) disasters[id].border = Border::kLeave;
     if (!HasForecast(farm, disaster)) continue;
     disasters[id].waypoint = 0;
     tracks[id] =

@@ -70,9 +70,12 @@ class BulletinNode {
       for (const std::string& path : folder_.New()) {
         TrySend(path);
         folder_.Mark(path);
+        fault_.clear();
       }
     } catch (const std::exception& error) {  // the folder or the ranch may come back
-      ROS_ERROR_THROTTLE(10.0, "%s", error.what());
+      // Once, however often it is tried; a throttle would go by /clock, which may stand still.
+      if (fault_ != error.what()) ROS_ERROR("%s", error.what());
+      fault_ = error.what();
     }
   }
 
@@ -117,6 +120,7 @@ class BulletinNode {
 
   const BulletinParams params_;
   BulletinFolder folder_;
+  std::string fault_;  // said last
   ros::NodeHandle node_;
 };
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""V_π beside the sea: known likeness is found, unknown cells stay out, files are refused in words."""
+"""V_π beside the sea: likeness is found, unknown cells stay out, files are refused in words."""
 import json
 import os
 import pathlib

@@ -16,10 +16,10 @@ MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
 
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
-        "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et al. "
-        "2004) of both maps scaled to [0, 1], over those cells, the others filled with the nearest "
-        "known value; the second one is of the map turned over, for a sea that falls where V_π "
-        "rises. Both say how alike two maps are, not that one causes the other.")
+        "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
+        "al. 2004) of both maps scaled to [0, 1], over those cells, the others filled with the "
+        "nearest known value; the second one is of the map turned over, for a sea that falls "
+        "where V_π rises. Both say how alike two maps are, not that one causes the other.")
 
 
 class ValuesError(Exception):

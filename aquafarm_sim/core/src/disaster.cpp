@@ -147,10 +147,15 @@ void SetRing(Disaster& disaster, std::size_t ring, float radius) {
 
 void SetRing(Disaster& disaster, std::size_t ring, const QuadrantRadii& radii) {
   SetRing(disaster, ring, *std::max_element(radii.begin(), radii.end()));
-  for (std::size_t q = 0; q < radii.size(); ++q) {
-    disaster.quadrant[q][ring] = radii[q];
-    disaster.quadrant_squared[q][ring] = Squared(radii[q]);
+  for (std::size_t q = 0; q < radii.size(); ++q) disaster.quadrant[q][ring] = radii[q];
+}
+
+float RiskByQuadrant(const Disaster& disaster, float west, float south, float distance_squared) {
+  const auto& radii = disaster.quadrant[QuadrantOf(west, south)];
+  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
+    if (distance_squared <= Squared(radii[k])) return disaster.risk[k];
   }
+  return 0.0F;
 }
 
 void GrowRings(Disaster& disaster, float by) {

@@ -60,9 +60,8 @@ struct Disaster {
   std::int32_t steps_left{};     ///< 0: over, no risk any more
   std::int32_t waypoint{kNone};  ///< index of the last waypoint passed; kNone: no track
   std::array<std::uint32_t, 4> draws{};  ///< of the present four steps
-  bool by_quadrant{};  ///< rings are no circles: the arrays below hold, and radius is the largest
+  bool by_quadrant{};  ///< rings are no circles: the radii below hold, and radius is the largest
   std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< NE, SE, SW, NW, ring by ring
-  std::array<std::array<float, kMaxRings>, 4> quadrant_squared{};
   Bulletin bulletin;
 
   bool active() const { return steps_left > 0; }
@@ -101,17 +100,19 @@ constexpr std::size_t QuadrantOf(float west, float south) {
   return west > 0.0F ? 3 : 0;
 }
 
+/// Risk of rings that are no circles, at a point so far to the west and south of it.
+float RiskByQuadrant(const Disaster& disaster, float west, float south, float distance_squared);
+
 /// Risk of one disaster at a point [cells]; 0 outside or when it is over, else negative.
 inline float RiskOf(const Disaster& disaster, float x, float y) {
   const float dx = disaster.x - x;
   const float dy = disaster.y - y;
   const float distance_squared = dx * dx + dy * dy;
   if (!disaster.active()) return 0.0F;
-  const float* const squared = disaster.by_quadrant
-                                   ? disaster.quadrant_squared[QuadrantOf(dx, dy)].data()
-                                   : disaster.radius_squared.data();
+  if (disaster.by_quadrant) return RiskByQuadrant(disaster, dx, dy, distance_squared);
   for (std::int32_t ring = 0; ring < disaster.rings; ++ring) {
-    if (distance_squared <= squared[ring]) return disaster.risk[static_cast<std::size_t>(ring)];
+    const auto k = static_cast<std::size_t>(ring);
+    if (distance_squared <= disaster.radius_squared[k]) return disaster.risk[k];
   }
   return 0.0F;
 }

@@ -87,6 +87,14 @@ TEST(RosEnvironment, ShipsAndFarmsThatEndOftenAreThoseOfThisProcess) {
   EXPECT_GT(ExpectSameTransitions(ros, local, 2000), 100U);
 }
 
+TEST(RosEnvironment, TellsWhoseTheTeamsRewardIsAsInThisProcess) {
+  RosEnvironment ros = Connect("team", 3, kFeaturesBit | kOwnRewardsBit);
+  LocalEnvironment local = InProcess(ros.spec(), kFeaturesBit | kOwnRewardsBit);
+  EXPECT_FALSE(ros.spec().team_reward);
+  EXPECT_GT(ExpectSameTransitions(ros, local, 500), 10U);
+  ExpectSame(ros.Load(ros.Save()), local.Load(local.Save()));
+}
+
 TEST(RosEnvironment, KeepsTheContractOfEveryEnvironment) {
   RosEnvironment environment = Connect("paper", 2, kIndexBit);
   RunEnvironmentContract(environment, 2500);

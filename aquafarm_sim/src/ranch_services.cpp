@@ -206,11 +206,13 @@ void Ranch::Reset(const aquafarm_msgs::Reset::Request& request,
     if (const auto refusal = CheckAnswerSize(farms, request.encodings)) {
       return Answer(refusal->code, refusal->message, response);
     }
-    const std::int64_t cells = std::int64_t{farms} * scenario_->CellCount();
+    const aquafarm::Layout& layout = batch_->farm(0).layout();
+    const std::int64_t cells =
+        farms * static_cast<std::int64_t>(layout.cells.size() + layout.ways.size());
     if (scenario_->layout == aquafarm::LayoutMode::kPerEpisode && cells > kMaxDrawnCells) {
       return Answer(Outcome::BAD_VALUE,
                     "farms: " + std::to_string(farms) + " layouts would have " +
-                        std::to_string(cells) + " cells, expected at most " +
+                        std::to_string(cells) + " cells and ways, expected at most " +
                         std::to_string(kMaxDrawnCells),
                     response);
     }

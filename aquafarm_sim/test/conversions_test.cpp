@@ -179,13 +179,21 @@ TEST(Conversions, AnObservationOfAnotherFarmIsRefused) {
   aquafarm_msgs::FarmState message;
   aquafarm::View view;
   ToMsg(farm, {}, message);
-  try {
-    FromMsg(message, farm.scenario(), farm.layout(), view);
-    FAIL() << "a whole state is no observation";
-  } catch (const aquafarm::InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "observation: got observer -1 of 1 ships and 1 devices, expected 1 and 1");
-  }
+  const auto words = [&] {
+    try {
+      FromMsg(message, farm.scenario(), farm.layout(), view);
+    } catch (const aquafarm::InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("taken");
+  };
+  EXPECT_EQ(words(), "observation: got observer -1 of 1 ships and 1 devices, expected 1 and 1");
+  message.observer = 0;
+  EXPECT_EQ(words(), "taken");
+  message.devices[0].self_propelled = 1;
+  EXPECT_EQ(words(), "observation: device 0 drives itself, expected one that is fetched");
+  message.ships[0].x = 40;
+  EXPECT_EQ(words(), "observation: got ship 0 at (40, 0), expected a cell of 5 x 5");
 }
 
 TEST(Conversions, FullObservationEqualsTheStateButForItsObserver) {

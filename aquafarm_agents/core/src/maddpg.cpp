@@ -280,15 +280,19 @@ void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& ac
   }
 }
 
-// A moment with a whole window before it, or its episode's start.
+// A moment with a whole window before it, or its episode's start. The oldest moments of the replay
+// may have neither: the first one of the same agent that has stands for them.
 Moment MaddpgLearner::DrawMoment(std::size_t i) {
-  for (;;) {
-    const Moment moment = sampler_.Draw(chance_, i);
-    if (moment.age + 1 >= window()) return moment;
-    for (std::size_t back = 0; back <= moment.age; ++back) {
-      if (replay_.started(replay_.Row(moment.age - back, moment.entry))) return moment;
-    }
+  const Moment drawn = sampler_.Draw(chance_, i);
+  for (std::size_t back = 0; back <= drawn.age; ++back) {
+    if (back + 1 == window()) return drawn;
+    if (replay_.started(replay_.Row(drawn.age - back, drawn.entry))) return drawn;
   }
+  const auto steps = static_cast<std::size_t>(options_.n_step);
+  for (std::size_t age = window() - 1; age + steps < replay_.size(); ++age) {
+    if (replay_.Begins(age, drawn.entry, steps)) return {age, drawn.entry};
+  }
+  return drawn;
 }
 
 void MaddpgLearner::Draw() {

@@ -8,7 +8,7 @@
 
 namespace aquafarm::agents {
 
-/// Numbers and switches of MADDPG; docs/algorithms.md gives their sources.
+/// Numbers and switches of MADDPG; docs/several_agents.md gives their sources.
 struct MaddpgOptions {
   std::int32_t hidden{256};  ///< units of a hidden layer; of the LSTM when recurrent
   Schedule actor_rate{ScheduleKind::kLinear, 1e-3, 1e-5, 1.0};   ///< learning rate of Adam

@@ -3,6 +3,8 @@
 // more, and what is saved goes on bit for bit.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "agents_fixture.h"
 #include "aquafarm/agents/algorithms.h"
 #include "aquafarm/agents/evaluation.h"
@@ -41,7 +43,9 @@ Scenario SmartDevices() {
 double SuccessAfter(const std::string& algorithm, const std::string& options, std::uint64_t steps,
                     const Scenario& scenario) {
   const Algorithm& entry = FindAlgorithm(algorithm);
-  LocalEnvironment environment(Share(scenario), {8, entry.encodings(options), false, 1});
+  LocalEnvironment environment(
+      Share(scenario),
+      {8, static_cast<std::uint8_t>(entry.encodings(options) | kOwnRewardsBit), false, 1});
   const auto learner = entry.make(environment.spec(), 1, options);
   const double before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
   EXPECT_LT(before, 0.5) << algorithm;
@@ -64,6 +68,22 @@ TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
       "hidden=32 start=500 replay=20000 actor_rate=0.001 logit_penalty=0.01 "
       "exploration=epsilon_greedy:linear:1:0.05:0.5";
   EXPECT_GE(SuccessAfter("maddpg", kSmallActors, 40000, TwoShips()), 0.98);
+}
+
+// A replay that is full of one episode has moments without a window before them.
+TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
+  Scenario scenario = TwoShips();
+  scenario.step_limit = 5000;
+  const std::string options =
+      "recurrent=true window=8 hidden=8 batch=32 start=50 replay=60 steps_per_update=2 "
+      "shared=false";
+  LocalEnvironment environment(Share(scenario), {2, kFeaturesBit, false, 1});
+  const auto learner = FindAlgorithm("maddpg").make(environment.spec(), 1, options);
+  TrainerOptions trainer;
+  trainer.algorithm = "maddpg";
+  trainer.steps = 600;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  EXPECT_TRUE(std::isfinite(learner->status().loss));
 }
 
 TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {

@@ -63,6 +63,31 @@ class LostEnvironment final : public Environment {
   LocalEnvironment farms_;
 };
 
+TEST_F(RunTest, AgentsLearnFromTheirOwnPartUnlessToldOtherwise) {
+  Scenario team = aquafarm::test::TinyScenario();
+  team.ships.count = 2;
+  team.ports.cells = {{2, 0}, {2, 1}};
+  team.rewards.sharing = RewardSharing::kTeam;
+  options_.steps = 500;
+  options_.evaluation_episodes = options_.random_episodes = 0;
+  std::vector<int> asked;
+  const MakeEnvironment make = [&](std::uint8_t encodings) {
+    asked.push_back(encodings & kOwnRewardsBit);
+    return std::make_unique<LocalEnvironment>(Share(team),
+                                              EnvironmentOptions{4, encodings, false, 1});
+  };
+  ASSERT_EQ(Train(make).code, ExitCode::kOk);
+  EXPECT_CONTAINS(ReadFile(options_.run_dir + "/run.json"), "\"credit\": \"own\"");
+  options_.resume = true;
+  options_.credit = "shared";
+  const RunReport other = Train(make);
+  EXPECT_EQ(other.code, ExitCode::kBadInput);
+  EXPECT_CONTAINS(other.status.message, "credit: it has own, asked for shared");
+  EXPECT_EQ(asked, (std::vector<int>{kOwnRewardsBit, 0}));
+  options_.credit = "mine";
+  EXPECT_CONTAINS(Train(make).status.message, "credit: got 'mine', expected one of: own, shared");
+}
+
 TEST_F(RunTest, LeavesAFolderThatExplainsItself) {
   const RunReport report = Train();
   ASSERT_EQ(report.code, ExitCode::kOk) << report.status.message;

@@ -277,10 +277,12 @@ void Encoder::Ways(const View& view, float* out) const {
   const Layout& layout = *view.layout;
   const auto cell = static_cast<std::size_t>(LinearIndex(view.self, scenario_.width));
   const Way* way = layout.ways.data() + cell * layout.way_count();
+  // Stands for a place that no water leads to as well.
+  const std::int32_t farthest = 2 * (scenario_.width + scenario_.height);
   const auto write = [&] {
     *out++ = static_cast<float>(way->east);
     *out++ = static_cast<float>(way->north);
-    *out++ = static_cast<float>(way->steps) * scale_;
+    *out++ = static_cast<float>(std::min(way->steps, farthest)) * scale_;
     ++way;
   };
   for (std::size_t port = 0; port < layout.ports.size(); ++port) write();

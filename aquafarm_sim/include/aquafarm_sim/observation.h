@@ -63,6 +63,29 @@ inline void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Sce
                                std::to_string(scenario.AgentCount()) + " and " +
                                std::to_string(layout.devices.size()));
   }
+  const auto refuse_off_map = [&scenario](const std::string& what, std::int32_t x, std::int32_t y) {
+    if (x >= 0 && y >= 0 && x < scenario.width && y < scenario.height) return;
+    throw aquafarm::InputError("observation: got " + what + " at (" + std::to_string(x) + ", " +
+                               std::to_string(y) + "), expected a cell of " +
+                               std::to_string(scenario.width) + " x " +
+                               std::to_string(scenario.height));
+  };
+  for (const aquafarm_msgs::ShipState& one : message.ships) {
+    refuse_off_map("ship " + std::to_string(one.id), one.x, one.y);
+  }
+  for (std::size_t id = 0; id < message.devices.size(); ++id) {
+    const aquafarm_msgs::DeviceState& device = message.devices[id];
+    refuse_off_map("device " + std::to_string(id), device.x, device.y);
+    if ((device.self_propelled != 0) == layout.devices[id].self_propelled) continue;
+    throw aquafarm::InputError("observation: device " + std::to_string(id) +
+                               (device.self_propelled != 0
+                                    ? " drives itself, expected one that is fetched"
+                                    : " is fetched, expected one that drives itself"));
+  }
+  if (message.disasters.size() < scenario.disasters.size()) {
+    throw aquafarm::InputError("observation: got " + std::to_string(message.disasters.size()) +
+                               " disasters, expected " + std::to_string(scenario.disasters.size()));
+  }
   const aquafarm_msgs::ShipState& self = message.ships[ship];
   view.ship = message.observer;
   view.self = {self.x, self.y};

@@ -6,7 +6,8 @@
 ///
 ///   o_i ─ actor i ─ logits ─ Gumbel-softmax ─ a_i       critic i (o_1 … o_S, a_others) → Q_i(a_i)
 ///
-///   critic   y_i = r_i + γ Q_i'(o', a'), a' the target actors' likeliest; Huber loss
+///   critic   y_i = r_i + γ Q_i'(o', a'), a' the others' target actors' likeliest and the best own
+///            answer to them (best_response=false: the own target actor's); Huber loss
 ///   actor i  ascends Q_i(o, a) with its own a_i relaxed and the others' as they were taken, less
 ///            logit_penalty · mean logits²
 ///

@@ -84,7 +84,7 @@ class SecondHost:
         self.there = str(ipaddress.ip_address(network + 2))
         name = f"aquafarm{os.getpid()}"
         cable = f"aqf{os.getpid()}"
-        self._inside = ("ip", "netns", "exec", name)
+        self.inside = ("ip", "netns", "exec", name)
         if shutil.which("ip") is None:
             raise unittest.SkipTest("no second host here: there is no ip (package iproute2)")
         test.addCleanup(subprocess.run, ["ip", "netns", "del", name], check=False,
@@ -104,7 +104,7 @@ class SecondHost:
         """Words before a command that runs on this host, or inside the other, with a master here."""
         words = ("env", "-u", "ROS_HOSTNAME", f"ROS_MASTER_URI=http://{self.here}:{port}",
                  f"ROS_IP={self.there if inside else self.here}")
-        return (*self._inside, *words) if inside else words
+        return (*self.inside, *words) if inside else words
 
 
 def start_sim(test, namespace, scenario, *parameters):

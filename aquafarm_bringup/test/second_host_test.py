@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""roslaunch starts a ship's agent on another host by <machine>, as docs/several_agents.md tells.
+
+The other host is a network namespace with an ssh server of its own; skipped where there is neither."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+import xmlrpc.client
+
+import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "aquafarm_agents" / "test"))
+from processes import DATA, Program, SecondHost, free_port  # noqa: E402
+
+SSHD = "/usr/sbin/sshd"
+LAUNCH = """<launch>
+  <machine name="boat" address="{there}" user="{user}" ssh-port="2222" env-loader="{loader}"/>
+  <include file="$(find aquafarm_bringup)/launch/agents.launch">
+    <arg name="scenario" value="{scenario}"/>
+    <arg name="ships" value="1"/>
+    <arg name="viz" value="false"/>
+    <arg name="late_s" value="30"/>
+  </include>
+  <include file="$(find aquafarm_bringup)/launch/agent.launch">
+    <arg name="ship" value="1"/>
+    <arg name="machine" value="boat"/>
+  </include>
+</launch>
+"""
+LOADER = """#!/bin/bash
+export PATH='{path}' PYTHONPATH='{python}' LD_LIBRARY_PATH='{libraries}'
+export ROS_PACKAGE_PATH='{packages}' ROS_ROOT='{root}' ROS_ETC_DIR='{etc}' ROS_DISTRO='{distro}'
+export CMAKE_PREFIX_PATH='{prefix}' ROS_HOME='{home}' ROS_LOG_DIR='{home}/log' ROS_IP={there}
+unset ROS_HOSTNAME
+exec "$@"
+"""
+SSHD_CONFIG = """Port 2222
+ListenAddress {there}
+HostKey {folder}/host
+AuthorizedKeysFile {folder}/home/.ssh/id_ed25519.pub
+PidFile none
+StrictModes no
+UsePAM no
+PermitRootLogin yes
+"""
+
+
+class SecondHostTest(unittest.TestCase):
+
+    def setUp(self):
+        if not os.path.exists(SSHD):
+            self.skipTest(f"there is no {SSHD} (package openssh-server)")
+        self.host = SecondHost(self)
+        folder = tempfile.TemporaryDirectory(prefix="aquafarm_host_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        (self.folder / "home" / ".ssh").mkdir(parents=True)
+        for key in ("host", "home/.ssh/id_ed25519"):
+            subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f",
+                            str(self.folder / key)], check=True)
+        config = self.folder / "sshd_config"
+        config.write_text(SSHD_CONFIG.format(there=self.host.there, folder=self.folder))
+        os.makedirs("/run/sshd", exist_ok=True)
+        self.server = Program(self, *self.host.inside, SSHD, "-D", "-e", "-f", config)
+
+    def loader(self):
+        """An env-loader as a boat would have it."""
+        value = os.environ.get
+        path = self.folder / "env.sh"
+        path.write_text(LOADER.format(
+            path=value("PATH"), python=value("PYTHONPATH", ""), there=self.host.there,
+            libraries=value("LD_LIBRARY_PATH", ""), packages=value("ROS_PACKAGE_PATH", ""),
+            root=value("ROS_ROOT", ""), etc=value("ROS_ETC_DIR", ""),
+            distro=value("ROS_DISTRO", ""), prefix=value("CMAKE_PREFIX_PATH", ""),
+            home=self.folder / "boat"))
+        path.chmod(0o755)
+        return path
+
+    def test_roslaunch_starts_an_agent_there(self):
+        port = free_port()
+        launch = self.folder / "fleet.launch"
+        launch.write_text(LAUNCH.format(there=self.host.there, user=os.environ.get("USER", "root"),
+                                        loader=self.loader(), scenario=DATA / "wide.yaml"))
+        run = Program(self, *self.host.environment(port, inside=False),
+                      f"HOME={self.folder / 'home'}", "ROSLAUNCH_SSH_UNKNOWN=1",
+                      f"ROS_HOME={self.folder / 'ros'}", f"ROS_LOG_DIR={self.folder / 'log'}",
+                      "roslaunch", "-p", str(port), launch)
+        master = xmlrpc.client.ServerProxy(f"http://{self.host.here}:{port}")
+
+        def address():
+            try:
+                code, _, uri = master.lookupNode("/second_host", "/aquafarm/agent_1")
+            except OSError:
+                return ""
+            return uri if code == 1 else ""
+
+        run.wait_for(lambda: address() != "", "the agent of ship 1 to be there", limit_s=60)
+        self.assertEqual(self.host.there, re.match(r"http://([^:/]+)", address()).group(1))
+        # Both ships must command before the farm steps: the clock moves only if both do.
+        self.assertGreater(self.clock_after(port, 60), 1.0)
+        run.send(2)
+        run.code(30)
+
+    def clock_after(self, port, limit_s):
+        """Seconds on the farm's clock once it has moved, or 0.0."""
+        command = [*self.host.environment(port, inside=False), "rostopic", "echo", "-n", "30", "-p",
+                   "/clock"]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=limit_s, check=False)
+        stamps = [int(line.split(",")[0]) for line in done.stdout.splitlines()[1:]]
+        return (stamps[-1] - stamps[0]) / 1e9 if stamps else 0.0
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_bringup", "second_host", SecondHostTest)

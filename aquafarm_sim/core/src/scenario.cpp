@@ -206,7 +206,7 @@ void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const 
   free -= wanted;
 }
 
-constexpr std::int64_t kMostWays = 16'777'216;  // 128 MiB a layout
+constexpr std::uint64_t kMostWays = 16'777'216;  // 128 MiB a layout
 
 void CheckPlaces(const Scenario& scenario) {
   constexpr std::int32_t kFewestCells = 4;  // planes are written in runs as long as these
@@ -214,11 +214,11 @@ void CheckPlaces(const Scenario& scenario) {
     throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
                                  Format(kFewestCells));
   }
-  const auto ports = scenario.ports.cells.empty()
-                         ? scenario.ports.count
-                         : static_cast<std::int32_t>(scenario.ports.cells.size());
-  const std::int64_t ways =
-      std::int64_t{scenario.CellCount()} * (ports + scenario.FetchableCount());
+  const std::uint64_t ports = scenario.ports.cells.empty()
+                                  ? static_cast<std::uint64_t>(scenario.ports.count)
+                                  : scenario.ports.cells.size();
+  const std::uint64_t ways = static_cast<std::uint64_t>(scenario.CellCount()) *
+                             (ports + static_cast<std::uint64_t>(scenario.FetchableCount()));
   if (scenario.view.waterways && ways > kMostWays) {
     throw FieldError("view.waterways",
                      "needs " + Format(ways) +

@@ -49,6 +49,12 @@ class Program:
         """Sends a signal."""
         self.process.send_signal(number)
 
+    def interrupt(self, limit_s=30.0):
+        """Ends it as Ctrl-C does, with everything that it has started."""
+        if self.process.poll() is None:
+            self.send(signal.SIGINT)
+            self.code(limit_s)
+
     def kill(self):
         """Ends it at once, also when it was stopped."""
         if self.process.poll() is None:

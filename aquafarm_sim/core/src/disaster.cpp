@@ -164,7 +164,10 @@ void GrowRings(Disaster& disaster, float by) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
     if (disaster.by_quadrant) {
       QuadrantRadii radii{};
-      for (std::size_t q = 0; q < radii.size(); ++q) radii[q] = grown(disaster.quadrant[q][k]);
+      for (std::size_t q = 0; q < radii.size(); ++q) {
+        const float radius = disaster.quadrant[q][k];
+        radii[q] = radius > 0.0F ? grown(radius) : 0.0F;  // what is not there stays away
+      }
       SetRing(disaster, k, radii);
     } else {
       SetRing(disaster, k, grown(disaster.radius[k]));

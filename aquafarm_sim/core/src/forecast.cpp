@@ -42,7 +42,7 @@ class Forecast {
     const auto next = After(step);
     const bool known_start = next == track_.begin() || (next - 1)->step <= issued_;
     const std::array<float, 2> from = known_start ? Truth() : Displaced(*(next - 1));
-    if (next == track_.end() || next == track_.begin()) return from;
+    if (next == track_.end()) return from;
     const std::array<float, 2> to = Displaced(*next);
     const float start = known_start ? issued_ : (next - 1)->step;
     const float part = (step - start) / (next->step - start);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 
 #include "field_domain.h"
 #include "field_error.h"
@@ -77,7 +78,8 @@ std::optional<int> TakeNumber(std::string& text, const std::string& word) {
   return value;
 }
 
-// The hour of a day of the month, in the month of the forecast's publication or the next one.
+// The hour of a day of a month: of the publication's, the one before or the one after, that in
+// which the day is nearest to the publication.
 class Calendar {
  public:
   /// @param published "2026050411", Beijing time
@@ -90,25 +92,32 @@ class Calendar {
     if (digits) {
       year_ = part(0, 4);
       month_ = part(4, 2);
-      day_ = part(6, 2);
+      if (const auto time = internal::UtcSeconds(year_, month_, part(6, 2), part(8, 2), 0, 0)) {
+        published_ = *time;
+        return;
+      }
     }
-    if (digits && internal::UtcSeconds(year_, month_, day_, part(8, 2), 0, 0)) return;
     answer.Here().RefuseValue("publishCode", "got " + Quoted(published) + ", expected YYYYMMDDHH");
   }
   /// UTC; none: there is no such day. Hour 24 is the next day's first.
   std::optional<std::int64_t> At(int day, int hour) const {
-    const bool later = day < day_ - 1;  // a period that runs when it is published may be a day old
-    const int month = later ? month_ % 12 + 1 : month_;
-    const int year = later && month_ == 12 ? year_ + 1 : year_;
-    const auto midnight = internal::UtcSeconds(year, month, day, 0, 0, 0);
-    if (!midnight || hour < 0 || hour > 24) return std::nullopt;
-    return *midnight + hour * 3600 - kBeijing_s;
+    if (hour < 0 || hour > 24) return std::nullopt;
+    std::optional<std::int64_t> nearest;
+    for (int away = -1; away <= 1; ++away) {
+      const int months = year_ * 12 + month_ - 1 + away;
+      const auto midnight = internal::UtcSeconds(months / 12, months % 12 + 1, day, 0, 0, 0);
+      if (!midnight) continue;
+      const auto far = [this](std::int64_t time) { return std::abs(time - published_); };
+      if (!nearest || far(*midnight) < far(*nearest)) nearest = midnight;
+    }
+    if (!nearest) return std::nullopt;
+    return *nearest + hour * 3600 - kBeijing_s;
   }
 
  private:
   int year_{};
   int month_{};
-  int day_{};
+  std::int64_t published_{};  // as if Beijing's hours were UTC
 };
 
 // "04日23时-05日02时", the second day left out where it is the first one.

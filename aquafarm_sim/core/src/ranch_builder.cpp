@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 #include "aquafarm/ascii_grid.h"
@@ -74,9 +75,9 @@ class Builder {
     PlaceTerrain();
     const std::vector<Cell> ports = PlacePorts();
     SetTime();
-    SayNotices();
     ReadSea();
     AddPresets();
+    SayNotices();
     Write(ports);
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
     if (!request_.value.empty()) ValueDevices();
@@ -264,14 +265,16 @@ class Builder {
            all.begin() + static_cast<std::ptrdiff_t>(to)};
   }
 
+  // Once all disasters are known.
+  std::int32_t StepLimit() const { return duration_ > 0 ? duration_ + 100 : 5000; }
+
   // Those that are in force during the episode, or all where it has no time.
   void SayNotices() {
     if (request_.notices.empty()) return;
     const NoticeFile file = LoadNotices(request_.notices);
     Keep(file.warnings);
     const bool timed = request_.start || !storm_.waypoints.empty();
-    const std::int64_t end =
-        start_ + static_cast<std::int64_t>(std::max(duration_, 5000) * step_s_);
+    const std::int64_t end = start_ + static_cast<std::int64_t>(StepLimit() * step_s_);
     int others = 0;
     for (const Notice& notice : file.notices) {
       const bool in_force = !timed || (notice.start < end && notice.end > start_);
@@ -288,6 +291,12 @@ class Builder {
     SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
                                   width(), height());
     NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
+    // Rounded as they are written, so that the rules of the file and of this command agree.
+    layer.layer = layer.layer.unaryExpr([](float value) {
+      return std::isnan(value)
+                 ? value
+                 : std::strtof(Text("%.6g", static_cast<double>(value)).c_str(), nullptr);
+    });
     const Layer known = layer.layer.isNaN().select(Layer::Zero(height(), width()), layer.layer);
     const auto cells = static_cast<float>((!layer.layer.isNaN()).count());
     if (cells == 0.0F) {
@@ -371,7 +380,7 @@ class Builder {
     Line("time: {step_duration_s: " + Format(step_s_) +
          (storm_.waypoints.empty() && !request_.start ? std::string()
                                                       : ", start: " + FormatTime(start_)) +
-         Text(", step_limit: %d}", duration_ > 0 ? duration_ + 100 : 5000));
+         Text(", step_limit: %d}", StepLimit()));
     WriteLayout(ports);
     Line(Text("ships: {count: %d, capacity: 1}", request_.ships));
     if (!storm_.waypoints.empty() || !presets_.empty()) Line("disasters:");
@@ -393,7 +402,7 @@ class Builder {
         std::string row;
         for (Eigen::Index x = 0; x < layer.cols(); ++x) {
           const float value = layer(y, x);
-          row += std::isnan(value) ? ".nan, " : Short(static_cast<double>(value), 4) + ", ";
+          row += std::isnan(value) ? ".nan, " : Format(value) + ", ";
         }
         Line("        " + row);
       }

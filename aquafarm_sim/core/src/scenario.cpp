@@ -109,23 +109,16 @@ void CheckCellCount(const std::string& path, std::size_t values, const Scenario&
                              " values, expected one a cell: " + std::to_string(cells));
 }
 
-// Numbers that are 0, unknown or in a range.
-void CheckPerCell(const char* path, const std::vector<float>& values, const Scenario& scenario,
-                  internal::Interval<float> range) {
+// As they are written: those of a rule are checked where it is read.
+void CheckValues(const char* path, const std::vector<float>& values, const Scenario& scenario,
+                 internal::Interval<float> range) {
   if (values.empty()) return;
   CheckCellCount(path, values.size(), scenario);
-  for (std::int32_t i = 0; i < scenario.CellCount(); ++i) {
-    const float value = values[static_cast<std::size_t>(i)];
-    if (std::isnan(value) || value == 0.0F || (value >= range.min && value <= range.max)) continue;
-    throw FieldError(path, "got " + Format(value) + " at (" + Format(i % scenario.width) + ", " +
-                               Format(i / scenario.width) + "), expected 0 or a number in " +
-                               internal::Describe(range));
-  }
+  internal::CheckPerCell(path, values, scenario.width, range);
 }
 
 void CheckSeas(const Scenario& scenario) {
   if (!scenario.seas) return;
-  constexpr std::size_t kMostValues = 200000;  // so that a scenario stays a file of a few MB
   const SeaSpec& seas = *scenario.seas;
   std::size_t values = seas.risk.size() + seas.device_value.size();
   for (std::size_t i = 0; i < seas.layers.size(); ++i) {
@@ -142,12 +135,12 @@ void CheckSeas(const Scenario& scenario) {
     CheckCellCount(path + ".values", layer.values.size(), scenario);
     values += layer.values.size();
   }
-  if (values > kMostValues) {
+  if (values > internal::kMaxSeaValues) {
     throw FieldError("seas", "got " + std::to_string(values) + " values, expected at most " +
-                                 std::to_string(kMostValues));
+                                 std::to_string(internal::kMaxSeaValues));
   }
-  CheckPerCell("seas.risk", seas.risk, scenario, internal::kRisk);
-  CheckPerCell("seas.device_value", seas.device_value, scenario, internal::kDeviceValue);
+  CheckValues("seas.risk_values", seas.risk, scenario, internal::kRisk);
+  CheckValues("seas.device_values", seas.device_value, scenario, internal::kDeviceValue);
 }
 
 // Marks what stands where and refuses a second thing on a cell.

@@ -20,7 +20,8 @@ namespace aquafarm::internal {
 
 enum class Need : std::uint8_t { kOptional, kRequired };
 
-inline constexpr std::size_t kMaxListed = 100000;  ///< islands, rocks: far above any farm
+inline constexpr std::size_t kMaxListed = 100000;     ///< islands, rocks: far above any farm
+inline constexpr std::size_t kMaxSeaValues = 200000;  ///< so that a file has a few MB
 inline constexpr std::size_t kMaxDisasters = 64;
 inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::size_t kMaxWaypoints = 10000;
@@ -86,6 +87,9 @@ void Resolve(const SeaSource& source, const WorldFrame& frame, const std::string
 /// @throws FieldError for what is no expression
 std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& layers,
                           const std::string& path);
+/// @throws FieldError for a number that is neither 0, unknown nor in the range
+void CheckPerCell(const std::string& path, const std::vector<float>& values, std::int32_t width,
+                  Interval<float> range);
 
 /// The largest radius of each ring.
 inline std::vector<float> Largest(const std::vector<QuadrantRadii>& quadrants) {
@@ -271,16 +275,19 @@ void VisitView(Archive& a, S& s) {
 /// A number for each cell: written as such, read as such or as a rule of the layers.
 template <typename Archive, typename Values>
 void VisitPerCell(Archive& a, const char* rule_key, const char* key, const char* condition,
-                  const std::vector<SeaLayer>& layers, Values& values) {
+                  const Scenario& scenario, Interval<float> range, Values& values) {
   bool ruled = false;
   if constexpr (Archive::kReads) {
     std::string rule;
     ruled = a.Has(rule_key, false);
     a.Leaf(rule_key, rule, TextOf{1, 1000});
-    if (ruled) values = ByRule(rule, layers, Join(a.path(), rule_key));
+    const std::string path = Join(a.path(), rule_key);
+    if (ruled) values = ByRule(rule, scenario.seas->layers, path);
+    const bool one_a_cell = values.size() == static_cast<std::size_t>(scenario.CellCount());
+    if (ruled && one_a_cell) CheckPerCell(path, values, scenario.width, range);
   }
   a.When(Archive::kReads ? !ruled : !values.empty(), condition);
-  a.Leaf(key, values, ListOf<NumberOrNone>{{}, 0, kMaxListed});
+  a.Leaf(key, values, ListOf<NumberOrNone>{{}, 0, kMaxSeaValues});
   a.Always();
 }
 
@@ -292,7 +299,7 @@ void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
       const bool from_file = c.Has("file", false);
       c.When(!from_file, "there is no file");
       c.Leaf("units", layer.units, TextOf{0, 60});
-      c.Leaf("values", layer.values, ListOf<NumberOrNone>{{}, 1, kMaxListed}, Need::kRequired);
+      c.Leaf("values", layer.values, ListOf<NumberOrNone>{{}, 1, kMaxSeaValues}, Need::kRequired);
       if constexpr (Archive::kReads) {
         SeaSource source;
         c.When(from_file, "there is a file");
@@ -304,8 +311,8 @@ void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
       }
       c.Always();
     });
-    VisitPerCell(b, "risk", "risk_values", "there is no risk", sea.layers, sea.risk);
-    VisitPerCell(b, "device_value", "device_values", "there is no device_value", sea.layers,
+    VisitPerCell(b, "risk", "risk_values", "there is no risk", s, kRisk, sea.risk);
+    VisitPerCell(b, "device_value", "device_values", "there is no device_value", s, kDeviceValue,
                  sea.device_value);
   });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sea of a scenario: fields of netCDF files become a number a cell.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "aquafarm/check.h"
@@ -43,6 +44,18 @@ std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& 
     return {values.data(), values.data() + values.size()};
   } catch (const InputError& error) {
     throw FieldError(path, error.what());
+  }
+}
+
+void CheckPerCell(const std::string& path, const std::vector<float>& values, std::int32_t width,
+                  Interval<float> range) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float value = values[i];
+    if (std::isnan(value) || value == 0.0F || (value >= range.min && value <= range.max)) continue;
+    const auto cell = static_cast<std::int32_t>(i);
+    throw FieldError(path, "got " + Format(value) + " at (" + Format(cell % width) + ", " +
+                               Format(cell / width) + "), expected 0 or a number in " +
+                               Describe(range));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "aquafarm/check.h"
@@ -33,6 +34,12 @@ struct Dimension {
 class NcFile {
  public:
   explicit NcFile(const std::string& path) : path_(path) {
+    std::error_code ignored;
+    const auto kind = std::filesystem::status(path, ignored).type();
+    if (kind != std::filesystem::file_type::not_found &&
+        kind != std::filesystem::file_type::regular) {  // a pipe would be waited for
+      throw InputError(path + ": cannot read as netCDF: is no regular file");
+    }
     const int status = nc_open(path.c_str(), NC_NOWRITE, &id_);
     if (status != NC_NOERR) {
       throw InputError(path + ": cannot read as netCDF: " + nc_strerror(status));

@@ -107,6 +107,24 @@ TEST(Forecasts, AreTheSameAsATrack) {
   EXPECT_EQ(track.back().radii, farm.scenario().disasters[0].radii);
 }
 
+TEST(Forecasts, AreTheSameAsATrackThatIsYetToBegin) {
+  Scenario scenario = Forecast();
+  for (Waypoint& waypoint : scenario.disasters[0].track) waypoint.step += 150.0F;
+  Farm farm = MakeFarm(scenario);
+  farm.Reset(3, 6);
+  test::RandomSteps(farm, 100, 1);
+  const std::vector<Waypoint> track = ForecastTrack(farm, 0, 100);
+  Disaster ghost = farm.disasters()[0];
+  ghost.waypoint = 0;
+  for (const std::int32_t step : {100, 101, 125, 149, 150, 151, 294, 400}) {
+    FollowTrack(ghost, track, step);
+    const auto there = ForecastAt(farm, 0, 100, step);
+    EXPECT_NEAR(ghost.x, there[0], 1e-3) << step;
+    EXPECT_NEAR(ghost.y, there[1], 1e-3) << step;
+  }
+  EXPECT_NE(ForecastAt(farm, 0, 100, 149)[0], 5.0F) << "it errs from the first step on";
+}
+
 TEST(Forecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
   Scenario plain = Forecast();
   plain.view.forecast_error_km.clear();

@@ -54,6 +54,26 @@ TEST(Anchorages, HaveWindsWavesAndTheWorstRating) {
   EXPECT_EQ(night.suitability, 1);
 }
 
+// The periods of the sample, published at a time and named by its days and hours.
+std::int64_t StartOf(const std::string& published, const std::string& period) {
+  std::string text = Sample("anchorage.json");
+  text.replace(text.find("2026043011"), 10, published);
+  for (const std::string sample : {"30日08时-11时", "30日23时-01日02时"}) {
+    text.replace(text.find(sample), sample.size(), period);
+  }
+  return ParseNotices(text, "x.json").notices[0].start;
+}
+
+TEST(Anchorages, TakeTheMonthInWhichTheDayIsNearestToThePublication) {
+  EXPECT_EQ(StartOf("2026050102", "30日23时-01日02时"), Utc("2026-04-30T15:00:00Z"));
+  EXPECT_EQ(StartOf("2026050102", "01日02时-05时"), Utc("2026-04-30T18:00:00Z"));
+  EXPECT_EQ(StartOf("2026050102", "03日08时-11时"), Utc("2026-05-03T00:00:00Z"));
+  EXPECT_EQ(StartOf("2027010100", "31日23时-01日02时"), Utc("2026-12-31T15:00:00Z"));
+  EXPECT_EQ(StartOf("2026123120", "01日08时-11时"), Utc("2027-01-01T00:00:00Z"));
+  EXPECT_EQ(StartOf("2026123120", "31日20时-23时"), Utc("2026-12-31T12:00:00Z"));
+  EXPECT_EQ(StartOf("2026022820", "01日08时-11时"), Utc("2026-03-01T00:00:00Z"));
+}
+
 std::string Refused(const char* sample, const std::string& from, const std::string& to) {
   std::string text = Sample(sample);
   if (!from.empty()) text.replace(text.find(from), from.size(), to);

@@ -78,6 +78,8 @@ TEST(Quadrants, GrowAndShrinkToNothing) {
   Disaster storm = SpawnDisaster(Lopsided(10, 10), 0, 1, 0, 25, 25);
   GrowRings(storm, 1.0F);
   EXPECT_EQ(storm.quadrant[3][0], 2.0F);
+  EXPECT_EQ(storm.quadrant[2][0], 0.0F) << "it is not there, so it does not spread";
+  EXPECT_EQ(RiskOf(storm, 9.5F, 9.5F), -5.0F);
   EXPECT_EQ(storm.reach(), 7.0F);
   GrowRings(storm, -3.0F);
   EXPECT_EQ(storm.quadrant[2][1], 0.0F);

@@ -2,6 +2,7 @@
 #include "aquafarm/ranch_builder.h"
 
 #include <gtest/gtest.h>
+#include <netcdf.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -206,6 +207,56 @@ TEST(Ranch, SaysTheNoticesInForce) {
   request.track.clear();
   request.storm.clear();
   EXPECT_TRUE(Says(BuildRanch(request).decided, "rating 1 of 4, from 2026-04-30T15:00:00Z"));
+}
+
+TEST(Ranch, CountsNoticesAfterItsLastStepAsOfOtherTimes) {
+  const fs::path path =
+      fs::temp_directory_path() / ("notices." + std::to_string(getpid()) + ".json");
+  RanchRequest request = Request();
+  request.notices = path.string();
+  const auto warn = [&](const char* from, const char* to) {
+    std::ofstream(path) << R"({"code": "200", "warning": [{"sender": "x", "typeName": "gale",
+      "severityColor": "Red", "startTime": ")"
+                        << from << R"(", "endTime": ")" << to << "\"}]}";
+    return BuildRanch(request).decided;
+  };
+  // 189 steps of 243 s from midnight, so to 12:45.
+  EXPECT_TRUE(Says(warn("2021-07-25T12:00+00:00", "2021-07-26T12:00+00:00"), "notice: gale of x"));
+  EXPECT_TRUE(Says(warn("2021-07-26T12:45+00:00", "2021-07-27T12:00+00:00"),
+                   "notices: 1 more at other times"));
+  request.disasters = {"wave:height_m=4,radius_km=5,duration_h=48"};
+  EXPECT_TRUE(Says(warn("2021-07-26T12:45+00:00", "2021-07-27T12:00+00:00"), "notice: gale of x"));
+  fs::remove(path);
+}
+
+TEST(Ranch, KeepsASeaOfSmallNumbersAndRulesByWhatItWrites) {
+  const fs::path path = fs::temp_directory_path() / ("small." + std::to_string(getpid()) + ".nc");
+  int file = 0;
+  std::array<int, 2> dims{};
+  std::array<int, 3> variables{};
+  nc_create(path.c_str(), NC_CLOBBER, &file);
+  nc_def_dim(file, "lat", 2, &dims[0]);
+  nc_def_dim(file, "lon", 2, &dims[1]);
+  nc_def_var(file, "lat", NC_DOUBLE, 1, &dims[0], &variables[0]);
+  nc_def_var(file, "lon", NC_DOUBLE, 1, &dims[1], &variables[1]);
+  nc_def_var(file, "chl", NC_FLOAT, 2, dims.data(), &variables[2]);
+  nc_enddef(file);
+  const std::array<double, 2> latitude{29.0, 31.0};
+  const std::array<double, 2> longitude{121.0, 123.0};
+  const std::array<float, 4> values{1e-5F, 1e-5F, 1e-5F, 1e-5F};
+  nc_put_var_double(file, variables[0], latitude.data());
+  nc_put_var_double(file, variables[1], longitude.data());
+  nc_put_var_float(file, variables[2], values.data());
+  nc_close(file);
+  RanchRequest request = Request();
+  request.sea = {{"chl", path.string(), "chl"}};
+  request.value = "chl > 0.000009 ? 70 : 1";
+  request.sea_risk = "chl > 0.000009 ? -8 : 0";
+  const Scenario scenario = BuildRanch(request).scenario;
+  EXPECT_EQ(scenario.seas->layers[0].values[7], 1e-5F);
+  EXPECT_EQ(scenario.seas->risk[7], -8.0F);
+  for (const DeviceSite& site : scenario.devices.sites) EXPECT_EQ(*site.value, 70.0F);
+  fs::remove(path);
 }
 
 TEST(Ranch, KeepsQuadrantsWhereAskedTo) {

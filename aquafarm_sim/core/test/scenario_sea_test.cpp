@@ -2,6 +2,7 @@
 // The sea of a scenario: as numbers, from a netCDF file, by rules; and what it does in play.
 #include <gtest/gtest.h>
 #include <netcdf.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -149,7 +150,14 @@ TEST(Seas, ThatAreWrongAreRefused) {
   EXPECT_EQ(Refused(WithRules("  risk: '-8'\n  risk_values: [0]\n")),
             "seas.risk_values: is used only where there is no risk");
   EXPECT_EQ(Refused(WithRules("  risk_values: [0, -8]\n")),
-            "seas.risk: got 2 values, expected one a cell: 25");
+            "seas.risk_values: got 2 values, expected one a cell: 25");
+  EXPECT_EQ(Refused(WithRules("  device_values: [0, 8]\n")),
+            "seas.device_values: got 2 values, expected one a cell: 25");
+  Scenario wrong = Warm();
+  wrong.seas->risk.assign(25, 0.0F);
+  wrong.seas->risk[7] = -3.0F;
+  EXPECT_EQ(Refused(ToYaml(wrong)),
+            "seas.risk_values: got -3 at (2, 1), expected 0 or a number in [-20, -5]");
   EXPECT_EQ(Refused(WithRules("  depth: 3\n")),
             "seas.depth: unknown key 'depth'; allowed: layers, risk, risk_values, device_value, "
             "device_values");
@@ -168,6 +176,18 @@ TEST(Seas, ThatAreWrongAreRefused) {
   Scenario twice = Warm();
   twice.seas->layers.push_back(twice.seas->layers[0]);
   EXPECT_EQ(Refused(ToYaml(twice)), "seas.layers[0].name: got 'warmth' twice, expected it once");
+}
+
+// More cells than a list of islands may have, still below the 200,000 of all seas.
+TEST(Seas, OfALargeFarmAreWrittenAndReadBack) {
+  Scenario scenario = Warm();
+  scenario.width = 400;
+  scenario.height = 300;
+  scenario.seas->layers[0].values.assign(120000, 20.5F);
+  const Scenario read = ParseScenario(ToYaml(scenario), "x.yaml");
+  EXPECT_EQ(read.seas->layers[0].values.size(), 120000U);
+  scenario.seas->risk.assign(120000, -8.0F);
+  EXPECT_EQ(Refused(ToYaml(scenario)), "seas: got 240000 values, expected at most 200000");
 }
 
 /// A file of a field that grows by 100 a degree to the north from 0 at 30 N.
@@ -235,6 +255,11 @@ TEST_F(SeaFiles, ThatAreNotThereAreRefused) {
   EXPECT_EQ(RefusedFile(Write("none.nc")),
             "seas.layers[0].file: " + (folder_ / "none.nc").string() +
                 ": cannot read as netCDF: No such file or directory");
+  ASSERT_EQ(mkfifo((folder_ / "pipe.nc").c_str(), 0600), 0);
+  for (const std::string& name : {std::string("pipe.nc"), std::string(".")}) {
+    EXPECT_EQ(RefusedFile(Write(name)), "seas.layers[0].file: " + (folder_ / name).string() +
+                                            ": cannot read as netCDF: is no regular file");
+  }
   EXPECT_EQ(RefusedFile(Write("sea.nc", "so")),
             "seas.layers[0].file: " + (folder_ / "sea.nc").string() +
                 ": so: there is no such variable; there are: lat, lon, thetao");

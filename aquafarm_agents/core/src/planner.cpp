@@ -24,6 +24,8 @@ constexpr double kNever = -std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-6;
 // By how much the exact search undercuts the narrow one's result, to meet it again on its own.
 constexpr double kSlack = 1e-3;
+// Of any disaster or sea: a scenario's risks are in [-20, -5].
+constexpr double kMildestRisk = -5.0;
 // States kept a step by the narrow search.
 constexpr std::size_t kBeam = 64;
 
@@ -237,10 +239,11 @@ bool Planner::Solver::IsOfTask(std::size_t set) const {
 }
 
 // Device sets only ever advance, so each layer of cells is solved once, the last ones first: the
-// most that any cell can still earn, a step costing what it costs in quiet water.
+// most that any cell can still earn, a step costing what it costs in quiet water, or in the mildest
+// risk where that costs less.
 void Planner::Solver::SolveBound() {
   bound_.assign(state_count(), 0.0);
-  const auto move = static_cast<double>(scenario_.rewards.step);
+  const double move = std::max(static_cast<double>(scenario_.rewards.step), kMildestRisk);
   std::vector<std::size_t> order(sets_.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   std::sort(order.begin(), order.end(),
@@ -427,9 +430,11 @@ Plan Planner::Solver::Solve(const Farm& farm, Foresight foresight, const Task& t
   Prepare(farm);
   // A narrow search first: what it finds prunes the exact one.
   Search(farm, foresight, kBeam);
+  Plan narrow = Trace();
   if (best_ != kNever) best_ -= kSlack;
+  best_layer_ = 0;
   Search(farm, foresight, state_count());
-  return Trace();
+  return best_layer_ == 0 ? narrow : Trace();
 }
 
 void Planner::Solver::Search(const Farm& farm, Foresight foresight, std::size_t widest) {
@@ -531,7 +536,7 @@ void Planner::Solver::EndOfTime() {
 
 Plan Planner::Solver::Trace() const {
   Plan plan;
-  if (best_ == kNever) return plan;
+  if (best_layer_ == 0) return plan;  // nothing was completed
   plan.expected_return = best_;
   std::uint32_t parent = best_parent_;
   plan.actions.push_back(best_action_);

@@ -125,6 +125,27 @@ TEST(Clairvoyant, EqualsBruteForceWithQuadrantsAndARiskySea) {
   }
 }
 
+// A risk is paid instead of a step, so where it is the milder of the two, ships go through it.
+TEST(Clairvoyant, EqualsBruteForceWhereAStepCostsMoreThanARisk) {
+  for (const float step : {-10.0F, -19.0F}) {
+    Scenario dear = TinyScenario(9, 0.0F, 1);
+    dear.rewards.step = step;
+    dear.seas = SeaSpec{{}, std::vector<float>(12, -5.0F), {}};
+    ValidateScenario(dear);
+    const auto scenario = std::make_shared<const Scenario>(dear);
+    Farm farm(scenario);
+    Planner planner(*scenario);
+    for (std::uint64_t episode = 0; episode < 4; ++episode) {
+      farm.Reset(5, episode);
+      std::map<std::string, double> seen;
+      const double expected = BruteForce(farm, seen);
+      const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+      EXPECT_NEAR(plan.expected_return, expected, 1e-3) << step << ", episode " << episode;
+      EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << step << ", episode " << episode;
+    }
+  }
+}
+
 TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {
   Scenario tracked = TinyScenario(40, 0.0F, 1);
   DisasterSpec& storm = tracked.disasters[0];

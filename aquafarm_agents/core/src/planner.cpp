@@ -11,6 +11,7 @@
 #include "aquafarm/check.h"
 #include "aquafarm/disaster.h"
 #include "aquafarm/forecast.h"
+#include "water_distance.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -24,8 +25,6 @@ constexpr double kNever = -std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-6;
 // By how much the exact search undercuts the narrow one's result, to meet it again on its own.
 constexpr double kSlack = 1e-3;
-// Of any disaster or sea: a scenario's risks are in [-20, -5].
-constexpr double kMildestRisk = -5.0;
 // States kept a step by the narrow search.
 constexpr std::size_t kBeam = 64;
 

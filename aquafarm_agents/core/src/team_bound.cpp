@@ -56,14 +56,16 @@ class Trip {
 
   /// Whether no trip can beat the best any more, were there no disaster from now on.
   bool IsOver() const {
+    // In a risk that is milder than a step, ships pay it instead.
+    const double move = shares_way_ ? 0.0 : std::max(move_, kMildestRisk);
     double most = kNever;
     for (std::size_t cell = 0; cell < laden_.size(); ++cell) {
       const double held = std::max(laden_[cell], bare_[cell]);
-      most = std::max(most, held + drop_off() + move_ * to_port_[cell]);
+      most = std::max(most, held + drop_off() + move * to_port_[cell]);
     }
     if (!device_.self_propelled) {
       const double pickup = static_cast<double>(scenario_.rewards.pickup);
-      most = std::max(most, pickup + worth() + drop_off() + 2.0 * move_ * to_port_[site_]);
+      most = std::max(most, pickup + worth() + drop_off() + 2.0 * move * to_port_[site_]);
     }
     return most <= best_;
   }

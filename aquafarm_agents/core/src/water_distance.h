@@ -10,6 +10,9 @@
 
 namespace aquafarm::agents {
 
+/// Of any disaster or sea: a scenario's risks are in [-20, -5].
+inline constexpr double kMildestRisk = -5.0;
+
 /// Moves from the nearest of `sources` to every cell, [H, W] row-major; kUnreachable on land.
 std::vector<std::int32_t> WaterDistance(const Layout& layout, const std::vector<Cell>& sources);
 

@@ -13,6 +13,7 @@
 #include "agents_fixture.h"
 #include "aquafarm/agents/evaluation.h"
 #include "aquafarm/agents/saved_policy.h"
+#include "aquafarm/agents/team_bound.h"
 #include "aquafarm/check.h"
 #include "aquafarm/forecast.h"
 #include "aquafarm/scenario_yaml.h"
@@ -141,6 +142,7 @@ TEST(Clairvoyant, EqualsBruteForceWhereAStepCostsMoreThanARisk) {
       const double expected = BruteForce(farm, seen);
       const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
       EXPECT_NEAR(plan.expected_return, expected, 1e-3) << step << ", episode " << episode;
+      EXPECT_GE(TeamBound(farm), expected - 1e-3) << step << ", episode " << episode;
       EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << step << ", episode " << episode;
     }
   }

@@ -37,12 +37,15 @@ aquafarm::HazardFix FixFrom(const aquafarm_msgs::StormFix& message, const std::s
   CheckNumber(name + ".grade", message.grade, 0.0, aquafarm_msgs::StormFix::SUPER_TY);
   CheckNumber(name + ".wind_mps", static_cast<double>(message.wind_mps), 0.0, 150.0);
   CheckNumber(name + ".pressure_hpa", static_cast<double>(message.pressure_hpa), 0.0, 1100.0);
+  CheckNumber(name + ".max_wind_radius_km", static_cast<double>(message.max_wind_radius_km), 0.0,
+              5000.0);
   CheckCount(name + ".rings", message.rings.size(), kMostRings);
   aquafarm::HazardFix fix;
   fix.time = message.stamp.sec;
   fix.position = {message.latitude_deg, message.longitude_deg};
   fix.wind_mps = IfSaid(message.wind_mps);
   fix.pressure_hpa = IfSaid(message.pressure_hpa);
+  fix.max_wind_radius_km = IfSaid(message.max_wind_radius_km);
   fix.grade = static_cast<aquafarm::StormGrade>(message.grade);
   if (message.grade == aquafarm_msgs::StormFix::UNKNOWN && fix.wind_mps) {
     fix.grade = aquafarm::GradeOfWind(*fix.wind_mps);
@@ -56,6 +59,11 @@ aquafarm::HazardFix FixFrom(const aquafarm_msgs::StormFix& message, const std::s
   for (std::size_t i = 0; i < message.rings.size(); ++i) {
     const std::string here = name + ".rings[" + std::to_string(i) + "]";
     CheckNumber(here + ".wind_kt", message.rings[i].wind_kt, 1.0, 200.0);
+    if (fix.Ring(message.rings[i].wind_kt) != nullptr) {
+      throw aquafarm::InputError(here + ".wind_kt: got " +
+                                 std::to_string(message.rings[i].wind_kt) +
+                                 " twice, expected one ring of a wind");
+    }
     aquafarm::WindRing ring;
     ring.wind_kt = message.rings[i].wind_kt;
     for (std::size_t q = 0; q < ring.radius_km.size(); ++q) {
@@ -94,6 +102,7 @@ aquafarm_msgs::StormFix FixTo(const aquafarm::HazardFix& fix) {
   message.grade = static_cast<std::uint8_t>(fix.grade);
   message.wind_mps = static_cast<float>(fix.wind_mps.value_or(0.0));
   message.pressure_hpa = static_cast<float>(fix.pressure_hpa.value_or(0.0));
+  message.max_wind_radius_km = static_cast<float>(fix.max_wind_radius_km.value_or(0.0));
   message.has_motion = fix.heading_deg && fix.speed_kmh;
   message.heading_deg = static_cast<float>(fix.heading_deg.value_or(0.0));
   message.speed_kmh = static_cast<float>(fix.speed_kmh.value_or(0.0));

@@ -44,6 +44,11 @@ std::string OutOfRange(const std::string& name, std::int64_t got, std::int64_t l
          std::to_string(most) + "]";
 }
 
+/// Whether a storm is told; one of which only a part is said is refused, not passed over.
+bool IsSaid(const aquafarm_msgs::Storm& storm) {
+  return !storm.fixes.empty() || !storm.forecast.empty() || !storm.name.empty();
+}
+
 /// Sizes an array, or empties it when it is not wanted, and says where its entries go.
 template <typename T>
 T* Sized(bool wanted, std::size_t size, std::vector<T>& entries) {
@@ -372,17 +377,20 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
         return Answer(Outcome::BAD_VALUE, OutOfRange("id", request.id, 0, most), response);
       }
     }
-    // Farms at other steps may each make another disaster of a storm; one that is over stops all.
-    std::vector<aquafarm::DisasterSpec> specs;
+    const bool on_globe = IsSaid(request.storm);
+    const auto step_of = [&](std::int32_t i) { return batch_->farm(i).step(); };
+    std::int32_t earliest = step_of(first);
+    for (std::int32_t i = first; i < end; ++i) earliest = std::min(earliest, step_of(i));
+    // Refused when it is over at the earliest step, so for all.
+    aquafarm::DisasterSpec spec =
+        on_globe ? aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id, earliest)
+                 : FromMsg(request.info);
+    aquafarm::ValidateDisaster(spec);
+    const std::int32_t longest = spec.duration;
+    const auto left = [&](std::int32_t i) {
+      return on_globe ? longest - (step_of(i) - earliest) : longest;
+    };
     for (std::int32_t i = first; i < end; ++i) {
-      specs.push_back(request.storm.fixes.empty()
-                          ? FromMsg(request.info)
-                          : aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id,
-                                                 batch_->farm(i).step()));
-      aquafarm::ValidateDisaster(specs.back());
-    }
-    for (std::int32_t i = first; i < end; ++i) {
-      const aquafarm::DisasterSpec& spec = specs[static_cast<std::size_t>(i - first)];
       const auto count = static_cast<std::int32_t>(batch_->farm(i).disasters().size());
       if (request.id == count && !spec.start && spec.track.empty()) {
         return Answer(Outcome::BAD_VALUE,
@@ -393,7 +401,9 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     }
     // All that could differ between farms is checked, so what the first accepts, all accept.
     for (std::int32_t i = first; i < end; ++i) {
-      batch_->farm(i).SetDisaster(request.id, specs[static_cast<std::size_t>(i - first)]);
+      if (left(i) <= 0) continue;  // a storm that is over there
+      spec.duration = left(i);
+      batch_->farm(i).SetDisaster(request.id, spec);
       if (recorder_ != nullptr) recorder_->OnIntervention(batch_->farm(i), i);
     }
     if (first == 0) Changed();

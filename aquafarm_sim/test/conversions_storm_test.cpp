@@ -3,12 +3,14 @@
 // seas.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "aquafarm/check.h"
 #include "aquafarm/forecast.h"
 #include "aquafarm/hazard_disaster.h"
+#include "aquafarm/hazard_file.h"
 #include "aquafarm_sim/conversions.h"
 #include "aquafarm_sim/observation.h"
 #include "ranch_fixture.h"
@@ -110,6 +112,40 @@ TEST(Storms, MayComeOnTop) {
       << "with the table of the disaster that has one";
 }
 
+// Farms of one ranch drift apart, for each begins its next episode when its own has ended.
+TEST(Storms, ReachTheFarmsForWhichTheyAreNotOver) {
+  Scenario scenario = Placed();
+  scenario.step_limit = 1000;
+  const auto ranch = test::MakeRanch(scenario, 3);
+  const auto play_to = [&](const std::array<int, 3>& steps) {
+    aquafarm::FarmBatch batch(std::make_shared<const Scenario>(scenario), 3);
+    batch.Reset(5, 0, {});
+    for (std::int32_t i = 0; i < 3; ++i) {
+      for (int step = 0; step < steps[static_cast<std::size_t>(i)]; ++step) {
+        aquafarm::test::StepOne(batch.farm(i), aquafarm::Action::kHold);
+      }
+    }
+    const std::string bytes = batch.Save();
+    aquafarm_msgs::LoadState load;
+    load.request.data.assign(bytes.begin(), bytes.end());
+    ranch->LoadState(load.request, load.response);
+    ASSERT_TRUE(load.response.ok) << load.response.message;
+  };
+  play_to({30, 80, 10});
+  const std::uint64_t over = test::StateOf(*ranch, 1).hash;
+  const auto answer = Tell(*ranch, North());
+  ASSERT_TRUE(answer.ok) << answer.message;
+  EXPECT_EQ(test::StateOf(*ranch, 0).disasters[0].steps_left, 42);
+  EXPECT_EQ(test::StateOf(*ranch, 1).hash, over) << "72 steps are over there";
+  EXPECT_EQ(test::StateOf(*ranch, 2).disasters[0].steps_left, 62);
+  play_to({72, 80, 73});
+  const auto late = Tell(*ranch, North());
+  EXPECT_FALSE(late.ok);
+  EXPECT_EQ(late.message,
+            "bulletin: is over: got a last position before step 72, expected one of a storm that "
+            "goes on");
+}
+
 TEST(Storms, ThatAreWrongChangeNothing) {
   const auto ranch = test::MakeRanch(Placed());
   const std::uint64_t before = test::StateOf(*ranch).hash;
@@ -132,6 +168,18 @@ TEST(Storms, ThatAreWrongChangeNothing) {
             "storm.fixes[0].rings[0].radius_km[3]: got -1, expected a number in [0, 5000]");
   EXPECT_EQ(refused([](auto& s) { s.forecast[0].stamp = s.fixes[0].stamp; }),
             "storm.forecast[0].stamp: got 1627084800, expected a time after 1627084800");
+  EXPECT_EQ(refused([](auto& s) { s.fixes[0].rings[1].wind_kt = 64; }),
+            "storm.fixes[0].rings[1].wind_kt: got 64 twice, expected one ring of a wind");
+  EXPECT_EQ(refused([](auto& s) { s.fixes[0].max_wind_radius_km = -1.0F; }),
+            "storm.fixes[0].max_wind_radius_km: got -1, expected a number in [0, 5000]");
+  EXPECT_EQ(refused([](auto& s) { s.fixes.clear(); }),
+            "storm.fixes: got none, expected where the storm is");
+  EXPECT_EQ(refused([](auto& s) {
+              s.fixes.clear();
+              s.forecast.clear();
+            }),
+            "storm.fixes: got none, expected where the storm is")
+      << "it has a name";
   EXPECT_EQ(refused([](auto& s) { s.fixes.resize(100000, s.fixes[0]); }),
             "storm.fixes: got 100000 entries, expected at most 10000");
   EXPECT_EQ(refused([](auto& s) {
@@ -154,6 +202,43 @@ TEST(Storms, AreTheSameThereAndBack) {
   EXPECT_EQ(again.forecast[0].stamp.sec, kStart + 12 * 3600);
   EXPECT_FLOAT_EQ(again.fixes[0].wind_mps, 38.0F);
   EXPECT_EQ(ToMsg(FromMsg(again)), again);
+}
+
+// Of numbers that a message holds in single precision.
+void ExpectNear(const std::vector<float>& a, const std::vector<float>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    EXPECT_NEAR(a[i], b[i], 1e-5F * (1.0F + std::abs(b[i])));
+}
+
+void ExpectTheSameThroughAMessage(const aquafarm::HazardTrack& track) {
+  Scenario scenario = Placed();
+  scenario.origin = track.fixes[0].position;
+  scenario.start_time = track.fixes[0].time;
+  const auto direct = aquafarm::ToDisaster(track, scenario, 0, 0);
+  const auto through = aquafarm::ToDisaster(FromMsg(ToMsg(track)), scenario, 0, 0);
+  EXPECT_EQ(through.duration, direct.duration);
+  ASSERT_EQ(through.track.size(), direct.track.size());
+  for (std::size_t i = 0; i < direct.track.size(); ++i) {
+    const aquafarm::Waypoint& a = through.track[i];
+    const aquafarm::Waypoint& b = direct.track[i];
+    EXPECT_EQ(a.step, b.step);
+    EXPECT_EQ(a.grade, b.grade);
+    EXPECT_EQ(a.risks, b.risks);
+    ExpectNear({a.x, a.y}, {b.x, b.y});
+    ExpectNear(a.radii, b.radii);
+  }
+}
+
+TEST(Storms, MakeTheSameDisasterThroughAMessage) {
+  const aquafarm::HazardFile file =
+      aquafarm::LoadHazardFile(AQUAFARM_CORE_DIR "/test/data/atcf.dat");
+  ASSERT_TRUE(file.tracks[0].fixes[0].max_wind_radius_km);
+  for (aquafarm::HazardTrack track : file.tracks) {
+    ExpectTheSameThroughAMessage(track);
+    for (aquafarm::HazardFix& fix : track.fixes) fix.rings.clear();  // so all are estimated
+    ExpectTheSameThroughAMessage(track);
+  }
 }
 
 TEST(Observations, TellQuadrantsAndForecastsAsTheyAreInProcess) {

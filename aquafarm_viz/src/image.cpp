@@ -56,12 +56,14 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   const bool same_sea =
       sea == p.sea && (sea.empty() || spec.scenario_yaml == p.drawn.scenario_yaml);
   if (p.background.empty() || !SameBackground(spec, p.drawn) || !same_sea) {
+    p.background.release();  // until all of it is drawn: a sea may be refused
     p.layout = MakeLayout(spec.width, spec.height, p.size);
-    p.background = DrawBackground(spec, p.layout, p.fonts, p.size);
+    cv::Mat background = DrawBackground(spec, p.layout, p.fonts, p.size);
+    cv::Mat below = background(p.layout.map);
+    if (!sea.empty()) DrawSea(below, spec, sea, p.layout, p.fonts);
+    p.background = background;
     p.drawn = spec;
     p.sea = sea;
-    cv::Mat map = p.background(p.layout.map);
-    if (!sea.empty()) DrawSea(map, spec, sea, p.layout, p.fonts);
   }
   p.background.copyTo(p.image);
   cv::Mat map = p.image(p.layout.map);

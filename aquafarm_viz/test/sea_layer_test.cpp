@@ -85,6 +85,16 @@ TEST(SeaLayer, ThatIsNotThereIsRefused) {
   EXPECT_EQ(Refused(small, "sea:warmth"), "layers: sea:warmth has another size than the farm");
 }
 
+TEST(SeaLayer, ThatWasRefusedIsRefusedAgain) {
+  FarmPainter painter(kSize);
+  const cv::Mat warm = painter.Draw(Warm(), Empty(), With("sea:warmth")).clone();
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_THROW(painter.Draw(Warm(), Empty(), With("sea:salt")), std::invalid_argument) << i;
+  }
+  const cv::Mat again = painter.Draw(Warm(), Empty(), With("sea:warmth"));
+  EXPECT_EQ(cv::norm(warm, again, cv::NORM_INF), 0.0) << "and what was drawn before is drawn whole";
+}
+
 /// A storm in the middle that reaches to the north-east alone.
 aquafarm_msgs::FarmState Lopsided() {
   aquafarm_msgs::FarmState state = Empty();

@@ -4,6 +4,7 @@
 #include <aquafarm_msgs/Pause.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <string>
 #include <vector>
@@ -19,6 +20,16 @@ constexpr double kLimit_s = 0.5;
 bool AnswerLate(Pause::Request&, Pause::Response&) {
   ros::WallDuration(2.0).sleep();
   return true;
+}
+
+bool AnswerQuickly(Pause::Request&, Pause::Response& response) {
+  ros::WallDuration(0.1).sleep();
+  return response.ok = true;
+}
+
+bool AnswerSoon(Pause::Request&, Pause::Response& response) {
+  ros::WallDuration(0.6).sleep();
+  return response.ok = true;
 }
 
 double SecondsSince(Clock::time_point start) {
@@ -47,6 +58,24 @@ class ServiceCallerTest : public testing::Test {
     return line;
   }
 
+  // Clicks on one caller so many times, and waits for as many lines.
+  std::vector<std::string> LinesOf(const std::string& name, std::size_t clicks) {
+    std::mutex mutex;
+    std::condition_variable came;
+    std::vector<std::string> lines;
+    ServiceCaller caller(node_, 1.0, [&](const std::string& text) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      lines.push_back(text);
+      came.notify_all();
+    });
+    for (std::size_t i = 0; i < clicks; ++i) {
+      caller.Call<Pause>(name, Pause(), [](const Pause&) { return std::string("done"); });
+    }
+    std::unique_lock<std::mutex> lock(mutex);
+    came.wait_for(lock, std::chrono::seconds(10), [&] { return lines.size() >= clicks; });
+    return lines;
+  }
+
   ros::NodeHandle node_;
   ros::AsyncSpinner spinner_;
 };
@@ -73,6 +102,21 @@ TEST_F(ServiceCallerTest, CutsOffACallWithoutAnAnswer) {
   const auto start = Clock::now();
   EXPECT_EQ(LineOf("slow"), "/slow: no answer within 0.5 s");
   EXPECT_LT(SecondsSince(start), 1.5);
+}
+
+TEST_F(ServiceCallerTest, EachCallOfOneCallerHasTheWholeLimit) {
+  const auto server = node_.advertiseService("soon", AnswerSoon);
+  EXPECT_EQ(LinesOf("soon", 2), std::vector<std::string>(2, "done"));
+}
+
+TEST_F(ServiceCallerTest, ACallTooManyIsRefusedWithALine) {
+  const auto server = node_.advertiseService("quick", AnswerQuickly);
+  const auto lines = LinesOf("quick", 11);  // one under way at most, and eight that wait
+  EXPECT_EQ(lines.size(), 11U);
+  const std::string refused = "/quick: not called, 8 calls wait for their answers already";
+  const auto refusals = std::count(lines.begin(), lines.end(), refused);
+  EXPECT_GE(refusals, 2);
+  EXPECT_EQ(refusals + std::count(lines.begin(), lines.end(), "done"), 11);
 }
 
 TEST_F(ServiceCallerTest, AWindowThatIsClosedDoesNotWaitForAnAnswer) {

@@ -21,6 +21,8 @@ namespace aquafarm_viz {
 namespace {
 
 constexpr double kCallLimit_s = 5.0;
+// A command in lockstep waits for the other ships, as long as the ranch's ~barrier_timeout_s.
+constexpr double kCommandLimit_s = 60.0;
 constexpr int kRefresh_ms = 200;
 
 std::string InWords(const aquafarm_msgs::Command& answer) {
@@ -39,10 +41,7 @@ RanchPanel::RanchPanel(QWidget* parent)
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(widget_);
-  caller_ = std::make_unique<ServiceCaller>(node_, kCallLimit_s, [this](const std::string& line) {
-    QMetaObject::invokeMethod(
-        widget_, [this, line] { widget_->Tell(line); }, Qt::QueuedConnection);
-  });
+  caller_ = MakeCaller(kCallLimit_s);
   // rviz spins in the thread of its windows, so these may touch the model.
   spec_ = node_.subscribe<aquafarm_msgs::FarmSpec>(
       names::kSpec, Pairing::kSpecs, [this](const aquafarm_msgs::FarmSpecConstPtr& spec) {
@@ -65,6 +64,13 @@ RanchPanel::RanchPanel(QWidget* parent)
     widget_->Refresh();
   });
   timer_.start(kRefresh_ms);
+}
+
+std::unique_ptr<ServiceCaller> RanchPanel::MakeCaller(double limit_s) {
+  return std::make_unique<ServiceCaller>(node_, limit_s, [this](const std::string& line) {
+    QMetaObject::invokeMethod(
+        widget_, [this, line] { widget_->Tell(line); }, Qt::QueuedConnection);
+  });
 }
 
 RanchButtons RanchPanel::MakeButtons() {
@@ -103,7 +109,9 @@ RanchButtons RanchPanel::MakeButtons() {
     call.request.ship = ship;
     call.request.action = action;
     call.request.token = ++token_;
-    caller_->Call<aquafarm_msgs::Command>("command", call, InWords);
+    auto& caller = helms_[ship];
+    if (caller == nullptr) caller = MakeCaller(kCommandLimit_s);
+    caller->Call<aquafarm_msgs::Command>("command", call, InWords);
   };
   buttons.send_disaster = [this](int id, const aquafarm_msgs::DisasterInfo& info) {
     aquafarm_msgs::SetDisaster call;

@@ -4,6 +4,7 @@
 #include <rviz/panel.h>
 
 #include <QTimer>
+#include <map>
 #include <memory>
 
 #include "ranch_widget.h"
@@ -19,11 +20,13 @@ class RanchPanel : public rviz::Panel {
 
  private:
   RanchButtons MakeButtons();
+  std::unique_ptr<ServiceCaller> MakeCaller(double limit_s);
 
   ros::NodeHandle node_;
   RanchModel model_;
   RanchWidget* widget_;
   std::unique_ptr<ServiceCaller> caller_;
+  std::map<int, std::unique_ptr<ServiceCaller>> helms_;  // by ship: one that waits blocks no other
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_;

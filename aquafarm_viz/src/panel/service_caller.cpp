@@ -6,7 +6,7 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr std::size_t kMostWaiting = 8;  // more clicks than that are dropped
+constexpr std::size_t kMostWaiting = 8;  // more clicks than that are refused
 
 }  // namespace
 
@@ -28,13 +28,18 @@ ServiceCaller::~ServiceCaller() {
   watcher_.join();
 }
 
-void ServiceCaller::Enqueue(std::function<std::string()> job) {
+void ServiceCaller::Enqueue(const std::string& name, std::function<std::string()> job) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (jobs_.size() >= kMostWaiting) return;
-    jobs_.push_back(std::move(job));
+    if (jobs_.size() < kMostWaiting) {
+      jobs_.push_back(std::move(job));
+      job = nullptr;
+    }
   }
   changed_.notify_all();
+  if (job == nullptr) return;
+  on_answer_(node_.resolveName(name) + ": not called, " + std::to_string(kMostWaiting) +
+             " calls wait for their answers already");
 }
 
 std::string ServiceCaller::LimitInWords() const {
@@ -43,17 +48,21 @@ std::string ServiceCaller::LimitInWords() const {
   return text;
 }
 
-void ServiceCaller::Arm(ros::ServiceClient* client) {
+bool ServiceCaller::Arm(ros::ServiceClient* client) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  if (ending_) return false;
   armed_ = client;
-  since_ = Clock::now();
+  end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit_);
+  ++calls_;
   cut_off_ = false;
   changed_.notify_all();
+  return true;
 }
 
 bool ServiceCaller::Disarm() {
   const std::lock_guard<std::mutex> lock(mutex_);
   armed_ = nullptr;
+  changed_.notify_all();
   return cut_off_;
 }
 
@@ -66,7 +75,7 @@ void ServiceCaller::Work() {
     jobs_.pop_front();
     lock.unlock();
     const std::string line = job();
-    on_answer_(line);
+    if (!line.empty()) on_answer_(line);
     lock.lock();
   }
 }
@@ -78,10 +87,10 @@ void ServiceCaller::Watch() {
       changed_.wait(lock, [this] { return ending_ || (armed_ != nullptr && !cut_off_); });
       continue;
     }
-    const auto end = since_ + std::chrono::duration_cast<Clock::duration>(limit_);
-    changed_.wait_until(
-        lock, end, [this, end] { return ending_ || armed_ == nullptr || Clock::now() >= end; });
-    if (armed_ == nullptr || Clock::now() < end) continue;
+    const std::uint64_t call = calls_;
+    const bool is_over = changed_.wait_until(
+        lock, end_, [this, call] { return ending_ || armed_ == nullptr || calls_ != call; });
+    if (is_over) continue;
     cut_off_ = true;
     armed_->shutdown();
   }

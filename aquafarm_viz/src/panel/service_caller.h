@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <mutex>
@@ -16,12 +17,13 @@
 namespace aquafarm_viz {
 
 /// Calls services from a thread of its own, one after another, so that a window never waits; a call
-/// without an answer within the limit is cut off.
+/// without an answer within the limit is cut off, and one too many is refused with a line.
 class ServiceCaller {
  public:
   using OnAnswer = std::function<void(const std::string& line)>;
 
-  /// @param on_answer gets a line for people after each call, in this object's thread
+  /// @param on_answer gets a line for people after each call, in this object's thread; of a call
+  /// that is refused, in the caller's
   ServiceCaller(ros::NodeHandle node, double limit_s, OnAnswer on_answer);
   ~ServiceCaller();
   ServiceCaller(const ServiceCaller&) = delete;
@@ -32,11 +34,11 @@ class ServiceCaller {
   template <typename Service>
   void Call(const std::string& name, Service service,
             std::function<std::string(const Service&)> describe) {
-    Enqueue([this, name, service, describe = std::move(describe)]() mutable {
+    Enqueue(name, [this, name, service, describe = std::move(describe)]() mutable {
       const std::string full = node_.resolveName(name);
       ros::ServiceClient client = node_.serviceClient<Service>(name, true);
       if (!client.isValid()) return full + ": there is no such service; does a ranch run?";
-      Arm(&client);
+      if (!Arm(&client)) return std::string();
       const bool answered = client.call(service);
       if (Disarm()) return full + ": no answer within " + LimitInWords();
       if (!answered) return full + ": the call failed";
@@ -57,10 +59,10 @@ class ServiceCaller {
     }
   }
 
-  void Enqueue(std::function<std::string()> job);
+  void Enqueue(const std::string& name, std::function<std::string()> job);
   std::string LimitInWords() const;
-  void Arm(ros::ServiceClient* client);
-  bool Disarm();  // whether it was cut off
+  bool Arm(ros::ServiceClient* client);  // false when this object ends
+  bool Disarm();                         // whether it was cut off
   void Work();
   void Watch();
 
@@ -71,7 +73,8 @@ class ServiceCaller {
   std::condition_variable changed_;
   std::deque<std::function<std::string()>> jobs_;
   ros::ServiceClient* armed_{};
-  Clock::time_point since_;
+  Clock::time_point end_;  // of the armed call
+  std::uint64_t calls_{};  // armed so far
   bool cut_off_{};
   bool ending_{};
   std::thread worker_;

@@ -24,6 +24,7 @@
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm/version.h"
 #include "aquafarm_agents/values_messages.h"
+#include "aquafarm_sim/abandon_bag.h"
 #include "aquafarm_sim/bag_ranch.h"
 #include "aquafarm_sim/names.h"
 
@@ -46,8 +47,10 @@ std::string Number(std::uint64_t value) { return std::to_string(value); }
 class Companion {
  public:
   /// @throws InputError when the policy does not fit
-  Companion(const FarmSpec& spec, const agents::SavedPolicy& saved)
-      : name_(saved.checkpoint.algorithm),
+  /// @param rewinds whether states may be changed from outside, so that it must know those before
+  Companion(const FarmSpec& spec, const agents::SavedPolicy& saved, bool rewinds)
+      : rewinds_(rewinds),
+        name_(saved.checkpoint.algorithm),
         scenario_(std::make_shared<const aquafarm::Scenario>(
             aquafarm::ParseScenario(spec.scenario_yaml, "spec.scenario_yaml"))),
         farms_(scenario_, 1),
@@ -61,38 +64,65 @@ class Companion {
     episode_.value_at_start = std::nanf("");
   }
 
-  void Load(const SavedState& saved) {
-    farms_.farm(0).Load(std::string(saved.data.begin(), saved.data.end()));
+  /// Takes in what came from outside. @returns why it cannot, or nothing
+  std::string Load(const SavedState& saved) {
+    const std::uint64_t step = Step();
+    if (begun_ && saved.step > step) return Missing(seen_ ? step + 1 : step, saved.step);
+    if (begun_ && saved.step < step) return "steps are out of order";
+    try {
+      farms_.farm(0).Load(std::string(saved.data.begin(), saved.data.end()));
+    } catch (const InputError& error) {
+      return std::string("saved_state.data: ") + error.what();
+    }
+    if (Step() != saved.step) {
+      return "saved_state.step: got " + Number(saved.step) + ", its data says " + Number(Step());
+    }
+    begun_ = true;
+    seen_ = false;  // the state after the change follows
+    return "";
   }
 
   /// Follows the recording to a state. @returns why it cannot, or nothing
   std::string Follow(const FarmState& state) {
-    const aquafarm::Farm& farm = farms_.farm(0);
-    const auto step = static_cast<std::uint64_t>(farm.step());
-    if (state.step == step + 1 && !farm.over()) {
-      if (std::string fault = Step(state); !fault.empty()) return fault;
-    } else if (state.step != step) {
-      return "step " + Number(step + 1) + " is missing";
+    const std::uint64_t step = Step();
+    const std::uint64_t expected = seen_ ? step + 1 : step;
+    if (state.step > expected) return Missing(expected, state.step - 1);
+    if (state.step < step) return "steps are out of order";
+    if (state.step > step) {
+      if (std::string fault = Take(state); !fault.empty()) return fault;
     }
-    if (farm.Hash() == state.hash) return "";
-    return "state.hash: got " + Number(state.hash) + ", simulated " + Number(farm.Hash());
+    begun_ = seen_ = true;
+    const std::uint64_t hash = farms_.farm(0).Hash();
+    if (hash == state.hash) return "";
+    return "state.hash: got " + Number(state.hash) + ", simulated " + Number(hash);
   }
 
-  /// Asks for the state where the farm stands.
+  /// Whether it was asked for this very state last, which a ranch may send again.
+  bool HasAsked(const FarmState& state) const {
+    return asked_ > 0 && choice_.step == state.step && asked_hash_ == state.hash;
+  }
+
+  /// Asks for the state where the farm stands; once, though the state comes again. Where the state
+  /// was changed from outside, with the memory of before it.
   const PolicyChoice& Ask(const FarmState& state) {
     choice_.header = state.header;
+    if (HasAsked(state)) return choice_;
+    if (asked_ > 0 && choice_.step == state.step) Rewind();
     choice_.seed = state.seed;
     choice_.episode = state.episode;
     choice_.step = state.step;
     choice_.policy = name_;
-    policy_->Act(environment_.Load(farms_.Save()), choice_.actions);
+    asked_hash_ = state.hash;
+    std::string farms = farms_.Save();
+    policy_->Act(environment_.Load(farms), choice_.actions);
+    if (rewinds_) asked_states_.push_back(std::move(farms));
     choice_.values = policy_->values();
-    float value = std::nanf("");
+    value_ = std::nanf("");
     if (!choice_.values.empty()) {
-      value = std::accumulate(choice_.values.begin(), choice_.values.end(), 0.0F);
+      value_ = std::accumulate(choice_.values.begin(), choice_.values.end(), 0.0F);
     }
-    if (asked_++ == 0) episode_.value_at_start = value;
-    value_sum_ += static_cast<double>(value);
+    if (asked_++ == 0) episode_.value_at_start = value_;
+    value_sum_ += static_cast<double>(value_);
     return choice_;
   }
 
@@ -103,7 +133,7 @@ class Companion {
   EpisodeChoices Summary() const {
     EpisodeChoices summary = episode_;
     const aquafarm::Farm& farm = farms_.farm(0);
-    summary.steps = static_cast<std::uint64_t>(farm.step());
+    summary.steps = Step();
     summary.episode_return = farm.record().episode_return;
     summary.mean_value = asked_ > 0 ? value_sum_ / static_cast<double>(asked_) : std::nan("");
     return summary;
@@ -113,7 +143,26 @@ class Companion {
   bool over() const { return farms_.farm(0).over(); }
 
  private:
-  std::string Step(const FarmState& state) {
+  std::uint64_t Step() const { return static_cast<std::uint64_t>(farms_.farm(0).step()); }
+
+  static std::string Missing(std::uint64_t first, std::uint64_t last) {
+    if (first == last) return "step " + Number(first) + " is missing";
+    return "steps " + Number(first) + " to " + Number(last) + " are missing";
+  }
+
+  /// Takes the last question back.
+  void Rewind() {
+    asked_states_.pop_back();
+    policy_->Begin(episode_.seed, 1);
+    std::vector<std::uint8_t> ignored;
+    for (const std::string& farms : asked_states_) policy_->Act(environment_.Load(farms), ignored);
+    value_sum_ -= static_cast<double>(value_);
+    --asked_;
+  }
+
+  /// The step to a state, with the actions that were taken.
+  std::string Take(const FarmState& state) {
+    if (over()) return "the episode is over since step " + Number(Step());
     const auto& ships = farms_.farm(0).ships();
     if (state.ships.size() != ships.size()) {
       return "state.ships: got " + Number(state.ships.size()) + " entries, simulated " +
@@ -127,7 +176,7 @@ class Companion {
                ", expected [0, 10]";
       }
       actions.push_back(action);
-      if (!ships[i].in_play || choice_.step + 1 != state.step) continue;
+      if (!ships[i].in_play) continue;
       ++episode_.choices;
       episode_.agreed += choice_.actions[i] == action ? 1 : 0;
     }
@@ -135,6 +184,7 @@ class Companion {
     return "";
   }
 
+  const bool rewinds_;
   const std::string name_;
   const std::shared_ptr<const aquafarm::Scenario> scenario_;
   aquafarm::FarmBatch farms_;
@@ -143,7 +193,12 @@ class Companion {
   std::unique_ptr<agents::Policy> elsewhere_;  // for the maps: its memory is not the episode's
   PolicyChoice choice_;
   EpisodeChoices episode_;
+  bool begun_{};  // something of this episode came, so the next thing is where it stands
+  bool seen_{};   // the state where the farm stands came, and was asked for unless it is over
   std::uint64_t asked_{};
+  std::uint64_t asked_hash_{};  // of the state that choice_ is of
+  std::vector<std::string> asked_states_;
+  float value_{};  // of choice_
   double value_sum_{};
 };
 
@@ -151,37 +206,45 @@ class Companion {
 class Output {
  public:
   explicit Output(std::string path) : path_(std::move(path)), beside_(path_ + ".active") {
-    Guard([this] {
-      bag_.open(beside_, rosbag::bagmode::Write);
-      bag_.setCompression(rosbag::compression::LZ4);
-    });
+    try {
+      Guard([this] {
+        bag_->open(beside_, rosbag::bagmode::Write);
+        bag_->setCompression(rosbag::compression::LZ4);
+      });
+    } catch (...) {
+      Abandon();
+      throw;
+    }
   }
   ~Output() {
-    if (done_) return;
-    bag_.close();
-    std::error_code ignored;
-    fs::remove(beside_, ignored);
+    if (!done_) Abandon();
   }
   void Copy(const rosbag::MessageInstance& message) {
     Guard([&] {
-      bag_.write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
+      bag_->write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
     });
   }
   /// Just before a time, so that it is there when the state of that time is shown.
   template <typename Message>
   void Add(const std::string& topic, ros::Time time, const Message& message) {
     if (time.toNSec() > ros::TIME_MIN.toNSec()) time -= ros::Duration(0, 1);
-    Guard([&] { bag_.write(topic, time, message); });
+    Guard([&] { bag_->write(topic, time, message); });
   }
   void Close() {
     Guard([this] {
-      bag_.close();
+      bag_->close();
       fs::rename(beside_, path_);
     });
     done_ = true;
   }
 
  private:
+  void Abandon() {
+    aquafarm_sim::AbandonBag(std::move(bag_));
+    std::error_code ignored;
+    fs::remove(beside_, ignored);
+  }
+
   // What goes wrong in writing is no fault of the bag that is read.
   template <typename Work>
   void Guard(const Work& work) const {
@@ -194,7 +257,7 @@ class Output {
 
   const std::string path_;
   const std::string beside_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_{std::make_unique<rosbag::Bag>()};
   bool done_{};
 };
 
@@ -225,16 +288,27 @@ std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& top
   return specs;
 }
 
+/// Why a policy gives no maps of values and moves on farms of a scenario; empty: it does.
+std::string WhyNoMaps(const agents::SavedPolicy& saved, const aquafarm::Scenario& scenario) {
+  const std::string& name = saved.checkpoint.algorithm;
+  if (saved.encodings == 0) return name + " looks at nothing, so it has no values and best moves";
+  if ((saved.encodings & agents::kStatesBit) != 0) {
+    return name + " plans on the whole farm and has no values and best moves of cells";
+  }
+  return agents::WhyNoBestMoves(scenario);
+}
+
 /// Goes through the messages of a bag, in order.
 class Walk {
  public:
   Walk(std::map<Key, FarmSpec> specs, const agents::SavedPolicy& saved,
-       const BagPolicyOptions& options, std::string ranch, std::string path)
+       const BagPolicyOptions& options, std::string ranch, std::string path, bool rewinds)
       : specs_(std::move(specs)),
         saved_(saved),
         options_(options),
         ranch_(std::move(ranch)),
-        path_(std::move(path)) {
+        path_(std::move(path)),
+        rewinds_(rewinds) {
     if (!options.output.empty()) output_.emplace(options.output);
   }
 
@@ -245,7 +319,7 @@ class Walk {
     if (topic == ranch_ + names::kSavedState) {
       if (const auto saved = message.instantiate<SavedState>()) {
         Enter({saved->seed, saved->episode}, saved->step);
-        companion_->Load(*saved);
+        goes_on = Holds(saved->step, companion_->Load(*saved));
       }
     } else if (topic == ranch_ + names::kState) {
       if (const auto state = message.instantiate<FarmState>()) {
@@ -271,18 +345,13 @@ class Walk {
  private:
   bool TakeState(const FarmState& state, const ros::Time& time) {
     Enter({state.seed, state.episode}, state.step);
-    const std::string fault = companion_->Follow(state);
-    if (!fault.empty()) {
-      result_.difference =
-          "episode " + Number(state.episode) + " step " + Number(state.step) + ": " + fault;
-      return false;
-    }
+    if (!Holds(state.step, companion_->Follow(state))) return false;
     if (companion_->over()) return true;
+    const bool is_new = !companion_->HasAsked(state);
     const PolicyChoice& choice = companion_->Ask(state);
     if (!output_) return true;
     output_->Add(ranch_ + names::kChoice, time, choice);
-    const bool has_values = !choice.values.empty();
-    if (has_values && options_.values_every > 0 && state.step % options_.values_every == 0) {
+    if (is_new && IsMapWanted(state.step)) {
       const auto moves = companion_->Moves();
       const aquafarm::Scenario& scenario = companion_->scenario();
       output_->Add(ranch_ + names::kValues, time, ValuesToGrid(moves, scenario, state.header));
@@ -290,6 +359,22 @@ class Walk {
                    ValuesToPoints(moves, scenario, state.header));
     }
     return true;
+  }
+
+  /// @param fault empty: none. @returns whether there is none
+  bool Holds(std::uint64_t step, const std::string& fault) {
+    if (fault.empty()) return true;
+    result_.difference = "episode " + Number(key_.second) + " step " + Number(step) + ": " + fault;
+    return false;
+  }
+
+  bool IsMapWanted(std::uint64_t step) {
+    const bool is_asked_for = options_.values_at.empty()
+                                  ? options_.values_every > 0 && step % options_.values_every == 0
+                                  : options_.values_at.count(step) != 0;
+    if (!is_asked_for) return false;
+    result_.no_maps = WhyNoMaps(saved_, companion_->scenario());
+    return result_.no_maps.empty();
   }
 
   void Enter(const Key& key, std::uint64_t step) {
@@ -301,7 +386,7 @@ class Walk {
                        ": the bag holds no spec of it");
     }
     key_ = key;
-    companion_.emplace(spec->second, saved_);
+    companion_.emplace(spec->second, saved_, rewinds_);
   }
 
   void EndEpisode() {
@@ -314,6 +399,7 @@ class Walk {
   const BagPolicyOptions& options_;
   const std::string ranch_;
   const std::string path_;
+  const bool rewinds_;
   std::optional<Output> output_;
   std::optional<Companion> companion_;
   Key key_;
@@ -327,17 +413,19 @@ BagChoices AskAlong(const std::string& path, const agents::SavedPolicy& policy,
   try {
     rosbag::Bag bag(path, rosbag::bagmode::Read);
     rosbag::View all(bag);
+    bool rewinds = false;
     for (const auto* connection : all.getConnections()) {
       CheckMessage<FarmSpec>(*connection, path);
       CheckMessage<FarmState>(*connection, path);
       CheckMessage<SavedState>(*connection, path);
+      rewinds = rewinds || connection->datatype == ros::message_traits::datatype<SavedState>();
     }
     const std::string ranch = aquafarm_sim::FindRanch(bag, path, options.ns);
     std::error_code ignored;
     if (!options.output.empty() && fs::equivalent(path, options.output, ignored)) {
       throw InputError(options.output + ": is the bag that is read; expected another file");
     }
-    Walk walk(ReadSpecs(bag, ranch + names::kSpec, path), policy, options, ranch, path);
+    Walk walk(ReadSpecs(bag, ranch + names::kSpec, path), policy, options, ranch, path, rewinds);
     for (const rosbag::MessageInstance& message : all) {
       if (!walk.Take(message)) break;
     }

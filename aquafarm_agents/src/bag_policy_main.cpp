@@ -58,9 +58,11 @@ int main(int argc, char** argv) {
       ->required();
   app.add_option("-o,--output", options.output,
                  "write the bag again with what the policy would do (choice) and its values");
-  app.add_option("--values-every", options.values_every,
-                 "steps between two maps of values; 0: none")
-      ->capture_default_str();
+  auto* every = app.add_option("--values-every", options.values_every,
+                               "steps between two maps of values; 0: none")
+                    ->capture_default_str();
+  app.add_option("--values-at", options.values_at, "a map of values at these steps alone")
+      ->excludes(every);
   app.add_option("--ns", options.ns, "namespace of the ranch (default: the only one in the bag)");
   try {
     app.parse(argc, argv);
@@ -71,6 +73,10 @@ int main(int argc, char** argv) {
     const auto saved = aquafarm::agents::FindPolicy(policy);
     const aquafarm_agents::BagChoices choices = aquafarm_agents::AskAlong(bag, saved, options);
     Print(choices);
+    if (!choices.no_maps.empty()) {
+      std::fprintf(stderr, "bag_policy: %s: no maps of values are written: %s\n", bag.c_str(),
+                   choices.no_maps.c_str());
+    }
     if (choices.difference.empty()) return 0;
     std::fprintf(stderr, "bag_policy: %s: differs: %s\n", bag.c_str(), choices.difference.c_str());
     return kDiffers;

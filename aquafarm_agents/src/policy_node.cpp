@@ -104,12 +104,17 @@ void TellEnded(std::size_t successes, std::size_t episodes) {
   std::printf("%zu of %zu episodes ended with every device delivered\n", successes, episodes);
 }
 
+// Values are of ship 0, so where each ship has a node of its own, that ship's alone tells them.
+double ValuesPeriod_s(const PolicyParams& params) {
+  return params.ship > 0 ? 0.0 : params.values_period_s;
+}
+
 // One ship's own agent, which knows what its ship does.
 ExitCode ActAlone(const ros::NodeHandle& node, const PolicyParams& params,
                   const agents::SavedPolicy& saved) {
   AgentDriver driver(node, saved.encodings, {params.ship, params.sim_timeout_s, &stop_requested});
   const auto policy = MakeAndWarn(saved, driver.spec());
-  ValuesPublisher values(node, params.values_period_s);
+  ValuesPublisher values(node, ValuesPeriod_s(params));
   values.Offer(agents::MakePolicy(saved, driver.spec()));
   ROS_INFO("driving ship %d with %s", params.ship, saved.path.c_str());
   const auto ended =
@@ -128,7 +133,7 @@ ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
   options.stop = &stop_requested;
   ShipDriver driver(node, saved.encodings, options);
   const auto policy = MakeAndWarn(saved, driver.spec());
-  ValuesPublisher values(node, params.values_period_s);
+  ValuesPublisher values(node, ValuesPeriod_s(params));
   values.Offer(agents::MakePolicy(saved, driver.spec()));
   ROS_INFO("driving with %s", saved.path.c_str());
   const auto ended =

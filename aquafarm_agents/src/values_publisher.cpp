@@ -110,6 +110,10 @@ void ValuesPublisher::Look(Policy& policy) {
             aquafarm::ParseScenario(spec.scenario_yaml, spec.scenario_name)),
         spec.farms);
   }
+  if (const std::string why = aquafarm::agents::WhyNoBestMoves(farms_->scenario()); !why.empty()) {
+    ROS_WARN_ONCE("no values: %s", why.c_str());
+    return;
+  }
   aquafarm_msgs::SaveState save;
   call(names::kSaveState, save);
   farms_->Load({save.response.data.begin(), save.response.data.end()});

@@ -82,6 +82,18 @@ class AgentNodesTest(unittest.TestCase):
         policy = self.trained()
         self.expect_solved([self.agent(ship, policy, "_episodes:=5") for ship in (0, 1)], 5)
 
+    def test_the_node_of_ship_0_alone_tells_values(self):
+        self.sim(TEAM)
+        policy = self.trained()
+        agents = [self.agent(ship, policy) for ship in (0, 1)]
+        for ship, run in enumerate(agents):
+            run.wait_for(lambda ship=ship: self.is_seen_by(f"agent_{ship}"), "its ship")
+        self.wait_until(lambda state: state.step > 5, "both ships at work")
+        publishers = dict(rosgraph.Master("/test").getSystemState()[0])
+        for topic in ("values", "values/points"):
+            self.assertEqual([f"{self.namespace}/agent_0"],
+                             publishers.get(f"{self.namespace}/{topic}"))
+
     def test_they_solve_a_farm_that_does_not_wait(self):
         self.sim(TEAM, "_pace:=paced", "_rate_hz:=20")
         policy = self.trained()

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "aquafarm/scenario_yaml.h"
+#include "aquafarm_sim/abandon_bag.h"
 #include "aquafarm_sim/conversions.h"
 #include "aquafarm_sim/names.h"
 
@@ -120,16 +121,6 @@ void Play(Farm& farm, const EpisodeTape& tape, Writer& writer) {
   }
 }
 
-/// Closes a bag that failed. What its end writes may fail as well, in its destructor too, which
-/// would end the process; then it is left, with its file open.
-void Abandon(std::unique_ptr<rosbag::Bag> bag) {
-  try {
-    bag->close();
-  } catch (...) {
-    static_cast<void>(bag.release());
-  }
-}
-
 }  // namespace
 
 std::string BagName(const EpisodeTape& tape) {
@@ -156,7 +147,7 @@ void WriteEpisodeBag(const std::shared_ptr<const aquafarm::Scenario>& scenario,
       writer.End(tape);
       bag->close();
     } catch (...) {
-      Abandon(std::move(bag));
+      AbandonBag(std::move(bag));
       throw;
     }
   } catch (const rosbag::BagException& fault) {

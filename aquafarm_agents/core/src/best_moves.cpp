@@ -30,11 +30,19 @@ constexpr std::size_t kCellsAtOnce = 64;
 
 }  // namespace
 
+std::string WhyNoBestMoves(const Scenario& scenario) {
+  const std::int64_t cells = std::int64_t{scenario.width} * scenario.height;
+  if (cells <= kMaxCells) return "";
+  return "the farm has " + std::to_string(cells) +
+         " cells, and values and best moves are of farms " + "with up to " +
+         std::to_string(kMaxCells);
+}
+
 // A farm for each of many cells, so that the policy is asked once for all of them.
 std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy& policy,
                                 const std::atomic<bool>* stop) {
   const auto scenario = std::make_shared<const Scenario>(farm.scenario());
-  if (scenario->width * scenario->height > kMaxCells) return {};
+  if (!WhyNoBestMoves(*scenario).empty()) return {};
   const std::vector<Cell> cells = FreeCells(farm);
   const std::string state = farm.Save();
   std::vector<BestMove> moves;

@@ -7,6 +7,7 @@
 ///   state k -> actions that were taken --> agreed? --> farm steps
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,12 +30,14 @@ struct EpisodeChoices {
 struct BagChoices {
   std::vector<EpisodeChoices> episodes;
   std::string difference;  ///< where a state is not what its actions give; empty: nowhere
+  std::string no_maps;     ///< why maps that were asked for were not written; empty: they were
 };
 
 struct BagPolicyOptions {
   std::string ns;                  ///< of the ranch; empty: the only one in the bag
   std::string output;              ///< bag to write: the same with `choice` and values; empty: none
   std::uint64_t values_every{10};  ///< steps between two maps of values in it; 0: none
+  std::set<std::uint64_t> values_at;  ///< steps that get a map, instead; empty: values_every says
 };
 
 /// Goes through a bag.

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "aquafarm/agents/policy.h"
@@ -23,6 +24,9 @@ struct BestMove {
 
 /// Farms with more cells get no best moves.
 inline constexpr std::int32_t kMaxCells = 10000;
+
+/// Why farms of a scenario get no best moves, in words; empty: they do.
+std::string WhyNoBestMoves(const Scenario& scenario);
 
 /// The greedy action of ship 0 in every free cell of a farm as it stands, south-west first, row by
 /// row; other ships stay where they are.

@@ -17,7 +17,8 @@ import time
 
 import roslib.packages
 
-LIMIT_S = 300.0
+LIMIT_S = 300.0  # of a training
+END_S = 60.0  # of a node that is asked to end, with what it has left to write
 
 
 def program(package, name):
@@ -35,11 +36,26 @@ def free_port():
         return listener.getsockname()[1]
 
 
-def cpu_s(process):
+def cpu_s(process, limit_s):
     """Waits for the end of a process and returns the processor seconds that it took."""
-    _, _, usage = os.wait4(process.pid, 0)
-    process.returncode = 0
+    end = time.monotonic() + limit_s
+    while True:
+        pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+        if pid != 0:
+            break
+        if time.monotonic() > end:
+            raise SystemExit(f"bench_recording: {process.args[0]} did not end within {limit_s} s")
+        time.sleep(0.01)
+    process.returncode = os.waitstatus_to_exitcode(status)
     return usage.ru_utime + usage.ru_stime
+
+
+def end_all(processes):
+    """Kills what still runs."""
+    for process in processes:
+        if process.returncode is None:
+            process.kill()
+            process.wait(END_S)
 
 
 def train(folder, keep, steps, environment):
@@ -48,21 +64,30 @@ def train(folder, keep, steps, environment):
     What the recorder has left to write when the training ends is in its processor time."""
     namespace = f"/bench_{folder.name}"
     common = {"env": environment, "stderr": subprocess.DEVNULL}
-    sim = subprocess.Popen(
-        [program("aquafarm_sim", "sim_node"), f"__ns:={namespace}", "_scenario:=paper",
-         "_publish_clock:=false", f"_keep:={keep}", f"_keep_dir:={folder / 'bags'}"],
-        stdout=subprocess.DEVNULL, **common)
-    learner = subprocess.Popen(
-        [program("aquafarm_agents", "train_node"), f"__ns:={namespace}", f"_steps:={steps}",
-         "_evaluation_episodes:=0", f"_run_dir:={folder / 'run'}"],
-        stdout=subprocess.PIPE, text=True, **common)
-    words = learner.stdout.read()
-    found = re.search(r"steps, [\d,]+ episodes in (?:(\d+) min )?([\d.]+) s", words)
-    if found is None:
-        raise SystemExit(f"bench_recording: the training failed:\n{words}")
-    wall = 60.0 * float(found[1] or 0) + float(found[2])
-    sim.terminate()
-    cpu = cpu_s(learner) + cpu_s(sim)
+    log = folder / "train.log"
+    processes = []
+    try:
+        sim = subprocess.Popen(
+            [program("aquafarm_sim", "sim_node"), f"__ns:={namespace}", "_scenario:=paper",
+             "_publish_clock:=false", f"_keep:={keep}", f"_keep_dir:={folder / 'bags'}"],
+            stdout=subprocess.DEVNULL, **common)
+        processes.append(sim)
+        with open(log, "wb") as words:
+            learner = subprocess.Popen(
+                [program("aquafarm_agents", "train_node"), f"__ns:={namespace}",
+                 f"_steps:={steps}", "_evaluation_episodes:=0", f"_run_dir:={folder / 'run'}"],
+                stdout=words, **common)
+        processes.append(learner)
+        cpu = cpu_s(learner, LIMIT_S)
+        words = log.read_text()
+        found = re.search(r"steps, [\d,]+ episodes in (?:(\d+) min )?([\d.]+) s", words)
+        if found is None:
+            raise SystemExit(f"bench_recording: the training failed:\n{words}")
+        wall = 60.0 * float(found[1] or 0) + float(found[2])
+        sim.terminate()
+        cpu += cpu_s(sim, END_S)
+    finally:
+        end_all(processes)
     return wall, cpu, len(list((folder / "bags").glob("*.bag")))
 
 
@@ -91,7 +116,10 @@ def main():
                     bags += kept
     finally:
         master.terminate()
-        master.wait(LIMIT_S)
+        try:
+            master.wait(END_S)
+        finally:
+            end_all([master])
     for index, what in enumerate(("wall", "cpu")):
         without = [result[index] for result in results["none"]]
         with_all = [result[index] for result in results["all"]]

@@ -21,6 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from ranch import Ranch, free_port  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent.parent / "scripts"
+SCRIPT = SCRIPTS.parent.parent / "aquafarm"
 LIMIT_S = 20
 
 
@@ -50,7 +51,7 @@ class ReplayTest(unittest.TestCase):
         os.environ.update(cls.ranch.environment)
         cls.ranch.wait_for(rosgraph.is_master_online, LIMIT_S)
         rospy.init_node("replay_test", disable_signals=True)
-        cls.states, cls.choices = [], []
+        cls.states, cls.choices, cls.players = [], [], []
         rospy.Subscriber("/aquafarm/state", FarmState, cls.states.append, queue_size=1000)
         rospy.Subscriber("/aquafarm/choice", PolicyChoice, cls.choices.append)
         for name in ("pause", "set_pace", "jump"):
@@ -63,12 +64,62 @@ class ReplayTest(unittest.TestCase):
         """Waits until a step is what was shown last."""
         self.ranch.wait_for(lambda: self.states and self.states[-1].step == step, LIMIT_S)
 
-    def test_it_begins_at_the_step_asked_for_with_the_choice_of_the_policy(self):
+    def test_a_jump_comes_with_the_choice_of_the_policy(self):
         self.jump(step=7)
         self.shown(7)
         self.ranch.wait_for(lambda: self.choices and self.choices[-1].step == 7, LIMIT_S)
         self.assertEqual("random", self.choices[-1].policy)
         self.assertIn("choices agree with what was done", self.ranch.words())
+
+    def play(self, *parameters):
+        """A player of its own beside the launch; returns its process and the list of states."""
+        space = f"/alone_{len(self.players)}"
+        states = []
+        rospy.Subscriber(space + "/state", FarmState, states.append, queue_size=1000)
+        process = subprocess.Popen(
+            [roslib.packages.find_node("aquafarm_viz", "replay_node")[0], f"__ns:={space}",
+             "__name:=player", *parameters], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+            text=True)
+        self.players.append(process)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait, LIMIT_S)
+        self.addCleanup(process.kill)
+        return process, states
+
+    def moved_bag(self):
+        """Episodes 4 and 5, each with the states of the bag, on /state and /spec."""
+        path = self.folder / "two.bag"
+        with rosbag.Bag(str(self.bag)) as source, rosbag.Bag(str(path), "w") as copy:
+            for i, episode in enumerate((4, 5)):
+                for topic, message, time in source.read_messages(
+                        ["/aquafarm/spec", "/aquafarm/state"]):
+                    message.episode = episode
+                    copy.write(topic.rsplit("/", 1)[1], message, time + rospy.Duration(100 * i))
+        return path
+
+    def test_it_begins_at_the_episode_and_step_asked_for(self):
+        _, states = self.play(f"_bag:={self.moved_bag()}", "_start_episode:=5", "_start_step:=9",
+                              "_paused:=true", "_delay_s:=2")
+        self.ranch.wait_for(lambda: states and states[-1].step == 9, LIMIT_S)
+        self.assertEqual({5}, {state.episode for state in states})
+        self.assertGreaterEqual(9, max(state.step for state in states))
+
+    def test_in_a_loop_it_begins_anew_at_the_end(self):
+        _, states = self.play(f"_bag:={self.moved_bag()}", "_loop:=true", "_speed:=1000",
+                              "_delay_s:=2")
+
+        def begins_anew():
+            episodes = [state.episode for state in list(states)]
+            return 5 in episodes and 4 in episodes[episodes.index(5):]
+
+        self.ranch.wait_for(begins_anew, LIMIT_S)
+
+    def test_a_parameter_that_is_no_bool_ends_the_player_with_its_line(self):
+        for name in ("paused", "loop", "keep_alive"):
+            process, _ = self.play(f"_bag:={self.bag}", f"_{name}:=maybe")
+            self.assertEqual(2, process.wait(LIMIT_S))
+            self.assertRegex(process.stderr.read(),
+                             f"/player/{name}: got maybe, expected true or false\n")
 
     def test_paused_it_goes_step_by_step(self):
         self.assertEqual(20, self.jump(step=20).step)
@@ -108,6 +159,45 @@ class ReplayTest(unittest.TestCase):
         self.assertFalse(answer.ok)
         self.assertEqual("pace: got lockstep, a replay is paced", answer.message)
         self.assertIn("rate_hz: got -1.000000, expected [0, ", self.pace(rate_hz=-1).message)
+
+    def test_render_draws_the_values_of_the_step_that_is_drawn(self):
+        find = roslib.packages.find_node
+        render, ask = find("aquafarm_viz", "render")[0], find("aquafarm_agents", "bag_policy")[0]
+        devel = pathlib.Path(render).parents[2]
+        if not SCRIPT.exists() or devel.name != "devel":
+            self.skipTest("the package stands alone")
+        workspace = self.folder / "ws"  # one that nothing needs to be built in
+        workspace.mkdir()
+        (workspace / "devel").symlink_to(devel)
+        (workspace / "built").touch()
+        os.utime(workspace / "built", (4e9, 4e9))
+        scenario = roslib.packages.get_pkg_dir("aquafarm_sim") + "/scenarios/paper.yaml"
+        policy = self.folder / "run"
+
+        def run(*command):
+            done = subprocess.run([str(word) for word in command], text=True, timeout=120,
+                                  env=dict(os.environ, AQUAFARM_WS=str(workspace)), check=False,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            self.assertEqual(0, done.returncode, done.stdout)
+            return done.stdout
+
+        run(find("aquafarm_agents", "aquafarm_train")[0], scenario, "--steps", 20000,
+            "--run-dir", policy)
+        layers = ("--layers", "values,moves")
+        one, other, asked = (self.folder / name for name in ("one.png", "other.png", "asked.bag"))
+        words = run(SCRIPT, "render", self.bag, "--policy", policy, "--step", 17, *layers, "-o",
+                    one)
+        self.assertNotIn("left out", words)
+        run(ask, self.bag, policy, "-o", asked, "--values-at", 17)
+        run(render, asked, "--step", 17, *layers, "-o", other)
+        self.assertEqual(other.read_bytes(), one.read_bytes())
+        run(ask, self.bag, policy, "-o", asked)  # a map each ten steps: that of step 10
+        run(render, asked, "--step", 17, *layers, "-o", other)
+        self.assertNotEqual(other.read_bytes(), one.read_bytes())
+        words = run(SCRIPT, "render", self.bag, "--policy", "clairvoyant", *layers, "-o", one)
+        self.assertIn(f"bag_policy: {self.bag}: no maps of values are written: clairvoyant plans "
+                      "on the whole farm", words)
+        self.assertIn(f"render: {self.bag}: a policy was asked, but no values/points", words)
 
     def test_without_a_display_there_is_a_line_with_the_way_out(self):
         environment = {name: value for name, value in os.environ.items()

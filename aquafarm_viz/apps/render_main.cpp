@@ -36,6 +36,7 @@ using aquafarm_viz::names::kValuePoints;
 
 struct Request {
   std::string bag;
+  std::string asked;  // bag that this one was made of by asking a policy along; empty: none
   std::string output{"farm.png"};
   std::string ns;                    // empty: the only one there is
   std::vector<std::uint64_t> steps;  // empty: 0, or all for a film
@@ -50,15 +51,21 @@ struct Request {
 // What the bag holds, to say what may be asked for.
 struct Found {
   std::uint64_t values{};
+  std::uint64_t choices{};
   std::uint64_t states{};
   std::uint64_t first_episode{};
   std::uint64_t last_episode{};
   std::uint64_t last_step{};
 };
 
+// The bag as who asked for the picture knows it.
+const std::string& Name(const Request& request) {
+  return request.asked.empty() ? request.bag : request.asked;
+}
+
 std::string Missing(const Request& request, const Found& found) {
-  if (found.states == 0) return request.bag + ": no state follows the spec of its episode";
-  return request.bag + ": no such step; the bag has episodes " +
+  if (found.states == 0) return Name(request) + ": no state follows the spec of its episode";
+  return Name(request) + ": no such step; the bag has episodes " +
          std::to_string(found.first_episode) + " to " + std::to_string(found.last_episode) +
          " and steps up to " + std::to_string(found.last_step) +
          " (not each of them need be recorded)";
@@ -120,6 +127,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
       ++found.values;
     } else if (const auto chosen = message.instantiate<aquafarm_msgs::PolicyChoice>()) {
       choice = chosen;
+      ++found.choices;
     }
     const auto state = message.instantiate<FarmState>();
     if (state == nullptr) continue;
@@ -133,6 +141,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
     if (request.episode && *request.episode != state->episode) continue;
     const aquafarm_msgs::FarmSpec& spec = *pairing.shown().spec;
     if (cloud != nullptr) values = aquafarm_viz::ReadValues(*std::exchange(cloud, nullptr), spec);
+    if (values) values->Pair(*state);
     if (!look({spec,
                *state,
                {&wake, training.get(), &route, request.layers, values ? &*values : nullptr,
@@ -146,6 +155,13 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
 /// What is asked for and not there is said, but a picture can do without.
 void WarnOfMissingValues(const Request& request, const Found& found) {
   if (found.values > 0 || !(request.layers.values || request.layers.moves)) return;
+  if (found.choices > 0) {
+    std::fprintf(stderr,
+                 "render: %s: a policy was asked, but no values/points of what is drawn are there, "
+                 "so layers values and moves are left out\n",
+                 Name(request).c_str());
+    return;
+  }
   std::fprintf(stderr,
                "render: %s: no topic values/points, so layers values and moves are left out; "
                "'./aquafarm render %s --policy RUN' asks a policy for them\n",
@@ -249,6 +265,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--episode", request.episode, "episode (default: the first that has the step)");
+  app.add_option("--asked", request.asked)->group("");  // of ./aquafarm render --policy
   app.add_option("--ns", request.ns, "namespace of the ranch (default: the only one in the bag)");
   app.add_option("--width", request.size.width, "pixels")
       ->check(CLI::Range(aquafarm_viz::kMinImageSide, aquafarm_viz::kMaxImageSide))

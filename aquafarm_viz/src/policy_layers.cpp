@@ -52,7 +52,8 @@ void DrawValues(cv::Mat& map, const Values& values) {
 void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, const Fonts& fonts) {
   if (!(values.highest > values.lowest)) return;
   const std::string low = "V " + Number(values.lowest, 1);
-  const std::string high = Number(values.highest, 1);
+  const std::string high =
+      Number(values.highest, 1) + (values.step ? ", step " + Count(*values.step) : "");
   const int gap = layout.Px(5);
   const int bar = layout.Px(80);
   const int width = fonts.small.Width(low) + fonts.small.Width(high) + bar + 4 * gap;

@@ -34,6 +34,9 @@ bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
+// What stands before a topic's last name.
+std::string Namespace(const std::string& topic) { return topic.substr(0, topic.rfind('/') + 1); }
+
 // Observations have the type of states, but tell of one ship.
 bool IsState(const rosbag::MessageInstance& message) {
   return Is<FarmState>(message) && !EndsWith(message.getTopic(), "/observation");
@@ -55,8 +58,10 @@ ReplayTape::ReplayTape(const std::string& path) try {
   for (const rosbag::MessageInstance& message : view_) {
     if (message.getTopic() == "/clock") continue;
     if (IsState(message)) {
-      if (const auto state = message.instantiate<FarmState>()) {
-        steps_.push_back({messages_.size(), state->episode, state->step});
+      if (const auto state = message.instantiate<FarmState>()) AddStep(message, *state);
+    } else if (Is<FarmSpec>(message)) {
+      if (const auto spec = message.instantiate<FarmSpec>()) {
+        specs_.push_back({messages_.size(), spec->seed, spec->episode});
       }
     }
     messages_.push_back(message);
@@ -77,14 +82,50 @@ const ReplayTape::Step& ReplayTape::At(std::size_t position) const {
   return after == steps_.begin() ? steps_.front() : *(after - 1);
 }
 
-std::optional<ReplayTape::Step> ReplayTape::Find(std::uint64_t episode, std::uint64_t step) const {
+void ReplayTape::AddStep(const rosbag::MessageInstance& message, const FarmState& state) {
+  Step step{messages_.size(), state.seed, state.episode, state.step, runs_};
+  const auto last = last_.find(message.getTopic());
+  const bool goes_on = last != last_.end() && last->second.seed == step.seed &&
+                       last->second.episode == step.episode && last->second.step <= step.step;
+  if (goes_on) {
+    step.run = last->second.run;
+  } else {
+    ++runs_;
+  }
+  last_[message.getTopic()] = step;
+  steps_.push_back(step);
+}
+
+std::optional<ReplayTape::Step> ReplayTape::Find(const Step& shown, std::uint64_t episode,
+                                                 std::uint64_t step) const {
+  std::optional<std::size_t> run;
+  if (episode == shown.episode) run = shown.run;
+  for (const bool same_seed : {true, false}) {
+    for (const Step& one : steps_) {
+      if (run) break;
+      if (one.episode == episode && (!same_seed || one.seed == shown.seed)) run = one.run;
+    }
+  }
   std::optional<Step> last;
   for (const Step& one : steps_) {
-    if (one.episode != episode) continue;
+    if (!run || one.run != *run) continue;
     last = one;
     if (one.step >= step) break;
   }
   return last;
+}
+
+// The last before the step; topics come over connections of their own, so it may also lie behind.
+std::optional<std::size_t> ReplayTape::SpecOf(const Step& step) const {
+  const std::string space = Namespace(messages_[step.position].getTopic());
+  std::optional<std::size_t> found;
+  for (const Spec& spec : specs_) {
+    if (spec.seed != step.seed || spec.episode != step.episode) continue;
+    if (Namespace(messages_[spec.position].getTopic()) != space) continue;
+    if (found && spec.position > step.position) break;
+    found = spec.position;
+  }
+  return found;
 }
 
 std::vector<std::size_t> ReplayTape::UpTo(const Step& step) const {
@@ -92,22 +133,25 @@ std::vector<std::size_t> ReplayTape::UpTo(const Step& step) const {
   std::vector<std::size_t> positions;
   std::size_t states = 0;
   for (std::size_t i = 0; i <= step.position; ++i) newest[messages_[i].getTopic()] = i;
+  const std::optional<std::size_t> spec = SpecOf(step);
+  if (spec) newest.erase(messages_[*spec].getTopic());
   for (const auto& [topic, position] : newest) positions.push_back(position);
   for (auto one = steps_.rbegin(); one != steps_.rend() && states < Wake::kLength; ++one) {
-    if (one->position >= step.position || one->episode != step.episode) continue;
+    if (one->position >= step.position || one->run != step.run) continue;
     positions.push_back(one->position);
     ++states;
   }
   std::sort(positions.begin(), positions.end());
   positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+  if (spec) positions.insert(positions.begin(), *spec);
   return positions;
 }
 
-double ReplayTape::StepPeriod_s(std::uint64_t episode) const {
+double ReplayTape::StepPeriod_s(std::size_t run) const {
   const Step* first = nullptr;
   const Step* last = nullptr;
   for (const Step& one : steps_) {
-    if (one.episode != episode) continue;
+    if (one.run != run) continue;
     if (first == nullptr) first = &one;
     last = &one;
   }

@@ -40,9 +40,9 @@ ReplayParams ReadReplayParams(const ros::NodeHandle& node) {
   ReadParam(node, "start_episode", params.start_episode, -1, INT_MAX);
   ReadParam(node, "start_step", params.start_step, 0, INT_MAX);
   ReadParam(node, "delay_s", params.delay_s, 0.0, 3600.0);
-  node.getParam("paused", params.paused);
-  node.getParam("loop", params.loop);
-  node.getParam("keep_alive", params.keep_alive);
+  ReadParam(node, "paused", params.paused);
+  ReadParam(node, "loop", params.loop);
+  ReadParam(node, "keep_alive", params.keep_alive);
   return params;
 }
 
@@ -76,7 +76,7 @@ void ReplayNode::Begin() {
   const auto& first = tape_.steps().front();
   const std::uint64_t episode =
       params_.start_episode < 0 ? first.episode : static_cast<std::uint64_t>(params_.start_episode);
-  auto step = tape_.Find(episode, static_cast<std::uint64_t>(params_.start_step));
+  auto step = tape_.Find(first, episode, static_cast<std::uint64_t>(params_.start_step));
   if (!step) {
     ROS_WARN("start_episode: got %d, the bag has no such; showing episode %llu",
              params_.start_episode, static_cast<unsigned long long>(first.episode));
@@ -150,7 +150,7 @@ bool ReplayNode::OnPause(aquafarm_msgs::Pause::Request& request,
 
 bool ReplayNode::OnSetPace(aquafarm_msgs::SetPace::Request& request,
                            aquafarm_msgs::SetPace::Response& response) {
-  const double period_s = tape_.StepPeriod_s(tape_.At(next_ == 0 ? 0 : next_ - 1).episode);
+  const double period_s = tape_.StepPeriod_s(tape_.At(next_ == 0 ? 0 : next_ - 1).run);
   const double speed = request.rate_hz > 0.0 ? request.rate_hz * period_s : speed_;
   response.pace = "paced";
   response.rate_hz = speed_ / period_s;
@@ -171,13 +171,18 @@ bool ReplayNode::OnSetPace(aquafarm_msgs::SetPace::Request& request,
 bool ReplayNode::OnJump(aquafarm_msgs::Jump::Request& request,
                         aquafarm_msgs::Jump::Response& response) {
   const ReplayTape::Step shown = tape_.At(next_ == 0 ? 0 : next_ - 1);
-  const auto step = tape_.Find(request.has_episode ? request.episode : shown.episode, request.step);
+  const auto step =
+      tape_.Find(shown, request.has_episode ? request.episode : shown.episode, request.step);
   response.episode = shown.episode;
   response.step = shown.step;
   if (!step) {
+    const auto [lowest, highest] =
+        std::minmax_element(tape_.steps().begin(), tape_.steps().end(),
+                            [](const ReplayTape::Step& one, const ReplayTape::Step& other) {
+                              return one.episode < other.episode;
+                            });
     Refuse("episode: got " + std::to_string(request.episode) + ", the bag has episodes " +
-               std::to_string(tape_.steps().front().episode) + " to " +
-               std::to_string(tape_.steps().back().episode) +
+               std::to_string(lowest->episode) + " to " + std::to_string(highest->episode) +
                " (not each of them need be recorded)",
            response);
     return true;

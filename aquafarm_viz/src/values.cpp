@@ -91,6 +91,7 @@ double Values::Share(float value) const {
 Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec) {
   Check(cloud);
   Values read;
+  read.stamp = cloud.header.stamp;
   read.width = spec.width;
   read.height = spec.height;
   const std::size_t cells = read.Index(0, spec.height);

@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kWarnEvery_s = 5.0;
 constexpr int kJpegQuality = 90;
+constexpr std::size_t kStamps = 200;  // states among which that of a map of values is looked for
 constexpr std::int32_t kMostRoutes = 64;  // ships with a topic of their own
 
 visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
@@ -85,6 +86,9 @@ void VizNode::OnState(const aquafarm_msgs::FarmStateConstPtr& state) {
   }
   wake_.Update(*state);
   route_.Update(*state);
+  if (values_) values_->Pair(*state);
+  stamps_.emplace_back(state->header.stamp, state->step);
+  if (stamps_.size() > kStamps) stamps_.pop_front();
   marked_ = pictured_ = routed_ = false;
 }
 
@@ -117,6 +121,9 @@ void VizNode::FollowValues() {
 void VizNode::ReadCloud(const Shown& shown) {
   try {
     values_ = ReadValues(*cloud_, *shown.spec);
+    for (const auto& [stamp, step] : stamps_) {
+      if (stamp == values_->stamp) values_->step = step;
+    }
     moved_ = pictured_ = false;
   } catch (const std::invalid_argument& fault) {
     ROS_WARN_THROTTLE(kWarnEvery_s, "%s", fault.what());
@@ -167,11 +174,13 @@ void VizNode::PublishRoutes(const Shown& shown) {
     nav_msgs::Path path;
     path.header = shown.state->header;
     path.header.frame_id = names::kMapFrame;
-    path.poses.resize(way->places.size());
-    for (std::size_t i = 0; i < way->places.size(); ++i) {
+    const std::size_t first = way->UnbrokenFrom();  // a path has no way to leave a piece out
+    path.poses.resize(way->places.size() - first);
+    for (std::size_t i = 0; i < path.poses.size(); ++i) {
+      const cv::Point& place = way->places[first + i];
       path.poses[i].header = path.header;
-      path.poses[i].pose.position.x = way->places[i].x * shown.spec->cell_size_m;
-      path.poses[i].pose.position.y = way->places[i].y * shown.spec->cell_size_m;
+      path.poses[i].pose.position.x = place.x * shown.spec->cell_size_m;
+      path.poses[i].pose.position.y = place.y * shown.spec->cell_size_m;
       path.poses[i].pose.orientation.w = 1.0;
     }
     routes_[ship].publish(path);

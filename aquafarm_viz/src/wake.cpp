@@ -34,6 +34,12 @@ bool Wake::IsGap(cv::Point from, cv::Point to) {
   return std::abs(double(from.x) - to.x) > kMaxJump || std::abs(double(from.y) - to.y) > kMaxJump;
 }
 
+std::size_t ShipWake::UnbrokenFrom() const {
+  std::size_t first = places.empty() ? 0 : places.size() - 1;
+  while (first > 0 && !Wake::IsGap(places[first - 1], places[first])) --first;
+  return first;
+}
+
 const ShipWake* Wake::Find(std::int32_t ship) const {
   const auto found = ships_.find(ship);
   return found == ships_.end() ? nullptr : &found->second;

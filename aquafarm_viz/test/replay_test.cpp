@@ -55,17 +55,18 @@ class Replay : public testing::Test {
 TEST_F(Replay, FindsAStepOrTheNextLaterOneOrTheLast) {
   const ReplayTape tape(MakeBag());
   EXPECT_EQ(tape.steps().size(), 100U);  // observations are none
-  EXPECT_EQ(tape.Find(12, 4)->step, 4U);
-  EXPECT_EQ(tape.Find(14, 5)->step, 6U);
-  EXPECT_EQ(tape.Find(14, 5)->episode, 14U);
-  EXPECT_EQ(tape.Find(12, 5000)->step, 98U);
-  EXPECT_FALSE(tape.Find(13, 0));
-  EXPECT_NEAR(tape.StepPeriod_s(12), 0.1, 1e-6);
+  const auto& at = tape.steps().front();
+  EXPECT_EQ(tape.Find(at, 12, 4)->step, 4U);
+  EXPECT_EQ(tape.Find(at, 14, 5)->step, 6U);
+  EXPECT_EQ(tape.Find(at, 14, 5)->episode, 14U);
+  EXPECT_EQ(tape.Find(at, 12, 5000)->step, 98U);
+  EXPECT_FALSE(tape.Find(at, 13, 0));
+  EXPECT_NEAR(tape.StepPeriod_s(at.run), 0.1, 1e-6);
 }
 
 TEST_F(Replay, AJumpBringsTheSpecTheWakeAndTheStepLast) {
   const ReplayTape tape(MakeBag());
-  const auto step = *tape.Find(14, 60);
+  const auto step = *tape.Find(tape.steps().front(), 14, 60);
   const auto positions = tape.UpTo(step);
   EXPECT_EQ(positions.back(), step.position);
   std::size_t states = 0;
@@ -83,10 +84,51 @@ TEST_F(Replay, AJumpBringsTheSpecTheWakeAndTheStepLast) {
   EXPECT_EQ(states, 25U);  // the wake's 24 and its own
 }
 
+// Of seed 1 episode 5, of seed 1000 episode 5, then that of seed 1 anew; each spec after its first
+// state.
+std::string WithTwoSeeds(const std::string& path) {
+  rosbag::Bag bag(path, rosbag::bagmode::Write);
+  double seconds = 1.0;
+  for (const std::uint64_t seed : {1U, 1000U, 1U}) {
+    for (std::uint64_t step = 0; step < 10; ++step) {
+      auto state = test::MakeState();
+      state.seed = seed;
+      state.episode = 5;
+      state.step = step;
+      bag.write("/aquafarm/state", ros::Time(seconds += 0.1), state);
+      if (step != 0) continue;
+      auto spec = test::MakeSpec();
+      spec.seed = seed;
+      spec.episode = 5;
+      bag.write("/aquafarm/spec", ros::Time(seconds += 0.1), spec);
+    }
+  }
+  return path;
+}
+
+TEST_F(Replay, AJumpStaysInTheRunOfItsSeed) {
+  const ReplayTape tape(WithTwoSeeds(path_));
+  for (std::size_t run = 0; run < 3; ++run) {
+    const auto& shown = tape.steps()[10 * run + 3];
+    EXPECT_EQ(shown.run, run);
+    EXPECT_EQ(tape.Find(shown, 5, 7)->position, tape.steps()[10 * run + 7].position);
+    EXPECT_EQ(tape.Find(shown, 5, 99)->position, tape.steps()[10 * run + 9].position);
+  }
+}
+
+TEST_F(Replay, AJumpSendsTheSpecOfItsEpisodeFirstThoughItLiesBehind) {
+  const ReplayTape tape(WithTwoSeeds(path_));
+  const auto positions = tape.UpTo(tape.steps()[10]);  // the first of seed 1000
+  const auto spec = tape.messages()[positions.front()].instantiate<aquafarm_msgs::FarmSpec>();
+  ASSERT_NE(spec, nullptr);
+  EXPECT_EQ(spec->seed, 1000U);
+  EXPECT_EQ(positions, (std::vector<std::size_t>{positions.front(), tape.steps()[10].position}));
+}
+
 TEST_F(Replay, AtIsTheStepThatIsShownAtAPosition) {
   const ReplayTape tape(MakeBag());
   EXPECT_EQ(tape.At(0).step, 0U);
-  const auto step = *tape.Find(12, 10);
+  const auto step = *tape.Find(tape.steps().front(), 12, 10);
   EXPECT_EQ(tape.At(step.position).step, 10U);
   EXPECT_EQ(tape.At(step.position - 1).step, 8U);
 }

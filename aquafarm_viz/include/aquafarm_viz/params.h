@@ -21,4 +21,14 @@ void ReadParam(const ros::NodeHandle& node, const char* name, Value& value, Valu
   throw std::invalid_argument(line.str());
 }
 
+/// Reads true or false; leaves `value` as it is where the parameter is absent.
+/// @throws std::invalid_argument "/replay/loop: got x, expected true or false"
+inline void ReadParam(const ros::NodeHandle& node, const char* name, bool& value) {
+  XmlRpc::XmlRpcValue raw;
+  if (!node.getParam(name, raw) || node.getParam(name, value)) return;
+  std::ostringstream line;
+  line << node.resolveName(name) << ": got " << raw << ", expected true or false";
+  throw std::invalid_argument(line.str());
+}
+
 }  // namespace aquafarm_viz

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,8 +22,10 @@ class ReplayTape {
   /// Where a state lies.
   struct Step {
     std::size_t position{};  ///< among the messages
+    std::uint64_t seed{};
     std::uint64_t episode{};
     std::uint64_t step{};
+    std::size_t run{};  ///< one from an episode's first state on to its last; no two are the same
   };
 
   /// @throws std::runtime_error in one line when there is nothing to show: no bag, another version
@@ -35,21 +38,36 @@ class ReplayTape {
   const Step& At(std::size_t position) const;
 
   /// The step asked for, or the next later one of that episode, or its last.
+  /// @param shown where one is: an episode of that number is its own run, else the first run of the
+  /// same seed, else the first of all
   /// @returns nothing when the bag has no such episode
-  std::optional<Step> Find(std::uint64_t episode, std::uint64_t step) const;
+  std::optional<Step> Find(const Step& shown, std::uint64_t episode, std::uint64_t step) const;
 
-  /// What must be sent for a step to be seen as if the replay had run up to it: the newest message
-  /// of each topic, and the states of its wake. Ascending positions, the step's own last.
+  /// What must be sent for a step to be seen: the spec of its episode, then the newest message of
+  /// each other topic and the states of its wake, ascending positions, the step's own last.
   std::vector<std::size_t> UpTo(const Step& step) const;
 
-  /// Seconds of the bag between two steps of an episode, above 0.
-  double StepPeriod_s(std::uint64_t episode) const;
+  /// Seconds of the bag between two steps of a run, above 0.
+  double StepPeriod_s(std::size_t run) const;
 
  private:
+  struct Spec {
+    std::size_t position{};
+    std::uint64_t seed{};
+    std::uint64_t episode{};
+  };
+
+  /// @param message a state, as the next one
+  void AddStep(const rosbag::MessageInstance& message, const aquafarm_msgs::FarmState& state);
+  std::optional<std::size_t> SpecOf(const Step& step) const;
+
   rosbag::Bag bag_;
   rosbag::View view_;
   std::vector<rosbag::MessageInstance> messages_;
   std::vector<Step> steps_;
+  std::vector<Spec> specs_;
+  std::map<std::string, Step> last_;  // by topic, while reading
+  std::size_t runs_{};                // begun so far
 };
 
 }  // namespace aquafarm_viz

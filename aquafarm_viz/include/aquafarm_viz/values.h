@@ -10,6 +10,7 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,13 @@ struct Values {
   std::vector<std::uint8_t> actions;  ///< 0-7 moves, 8 pickup, 9 drop-off; kNoAction: none
   float lowest{};                     ///< of the values; both 0 without any
   float highest{};
+  ros::Time stamp;
+  std::optional<std::uint64_t> step;  ///< of the state that they are of, once known
 
+  /// Notes the step where the state is the one that they are of.
+  void Pair(const aquafarm_msgs::FarmState& state) {
+    if (stamp == state.header.stamp) step = state.step;
+  }
   std::size_t Index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);

@@ -7,8 +7,10 @@
 #include <ros/ros.h>
 #include <sensor_msgs/PointCloud2.h>
 
+#include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "aquafarm_viz/image.h"
@@ -61,6 +63,7 @@ class VizNode {
   bool moved_{true};                        // and of the moves
   sensor_msgs::PointCloud2ConstPtr cloud_;  // of `values/points`, not yet read
   std::optional<Values> values_;
+  std::deque<std::pair<ros::Time, std::uint64_t>> stamps_;  // of the last states, with their steps
   aquafarm_msgs::PolicyChoiceConstPtr choice_;
   Shown marked_episode_;  // the episode whose standing markers were sent
 

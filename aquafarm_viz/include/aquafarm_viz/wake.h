@@ -16,6 +16,9 @@ namespace aquafarm_viz {
 struct ShipWake {
   int bearing_deg{};             ///< of its last move, [0, 359], clockwise from north
   std::deque<cv::Point> places;  ///< cells it stood at, oldest first, the present one last
+
+  /// The first place from which on no state was missed.
+  std::size_t UnbrokenFrom() const;
 };
 
 /// Remembers the recent way of each ship of one farm; with room for it, its whole route.

@@ -104,6 +104,23 @@ TEST(Clairvoyant, EqualsBruteForceOnTinyFarms) {
   }
 }
 
+// The plan of each episode, and the bound of a team, against brute force.
+void ExpectBruteForce(const Scenario& valid, std::uint64_t episodes) {
+  ValidateScenario(valid);
+  const auto scenario = std::make_shared<const Scenario>(valid);
+  Farm farm(scenario);
+  Planner planner(*scenario);
+  for (std::uint64_t episode = 0; episode < episodes; ++episode) {
+    farm.Reset(5, episode);
+    std::map<std::string, double> seen;
+    const double expected = BruteForce(farm, seen);
+    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    EXPECT_NEAR(plan.expected_return, expected, 1e-3) << "episode " << episode;
+    EXPECT_GE(TeamBound(farm), expected - 1e-3) << "episode " << episode;
+    EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << "episode " << episode;
+  }
+}
+
 TEST(Clairvoyant, EqualsBruteForceWithQuadrantsAndARiskySea) {
   Scenario lopsided = TinyScenario(9, 0.02F, 1);
   DisasterSpec& storm = lopsided.disasters[0];
@@ -112,39 +129,17 @@ TEST(Clairvoyant, EqualsBruteForceWithQuadrantsAndARiskySea) {
   lopsided.seas = SeaSpec{{}, std::vector<float>(12, 0.0F), {}};
   lopsided.seas->risk[9] = -6.0F;  // where a device waits, at (1, 2)
   lopsided.seas->risk[5] = -15.0F;
-  ValidateScenario(lopsided);
-  const auto scenario = std::make_shared<const Scenario>(lopsided);
-  Farm farm(scenario);
-  Planner planner(*scenario);
-  for (std::uint64_t episode = 0; episode < 6; ++episode) {
-    farm.Reset(5, episode);
-    std::map<std::string, double> seen;
-    const double expected = BruteForce(farm, seen);
-    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
-    EXPECT_NEAR(plan.expected_return, expected, 1e-3) << "episode " << episode;
-    EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << "episode " << episode;
-  }
+  ExpectBruteForce(lopsided, 6);
 }
 
 // A risk is paid instead of a step, so where it is the milder of the two, ships go through it.
 TEST(Clairvoyant, EqualsBruteForceWhereAStepCostsMoreThanARisk) {
   for (const float step : {-10.0F, -19.0F}) {
+    SCOPED_TRACE(step);
     Scenario dear = TinyScenario(9, 0.0F, 1);
     dear.rewards.step = step;
     dear.seas = SeaSpec{{}, std::vector<float>(12, -5.0F), {}};
-    ValidateScenario(dear);
-    const auto scenario = std::make_shared<const Scenario>(dear);
-    Farm farm(scenario);
-    Planner planner(*scenario);
-    for (std::uint64_t episode = 0; episode < 4; ++episode) {
-      farm.Reset(5, episode);
-      std::map<std::string, double> seen;
-      const double expected = BruteForce(farm, seen);
-      const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
-      EXPECT_NEAR(plan.expected_return, expected, 1e-3) << step << ", episode " << episode;
-      EXPECT_GE(TeamBound(farm), expected - 1e-3) << step << ", episode " << episode;
-      EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << step << ", episode " << episode;
-    }
+    ExpectBruteForce(dear, 4);
   }
 }
 

@@ -75,7 +75,7 @@ TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
   Scenario scenario = TwoShips();
   scenario.step_limit = 5000;
   const std::string options =
-      "recurrent=true window=8 hidden=8 batch=32 start=50 replay=60 steps_per_update=2 "
+      "recurrent=true window=8 hidden=8 batch=32 start=50 replay=100 steps_per_update=2 "
       "shared=false";
   LocalEnvironment environment(Share(scenario), {2, kFeaturesBit, false, 1});
   const auto learner = FindAlgorithm("maddpg").make(environment.spec(), 1, options);

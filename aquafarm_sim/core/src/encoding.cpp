@@ -144,9 +144,7 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
   scale_ = 1.0F / static_cast<float>(std::max(scenario.width, scenario.height));
   planes_size_ =
       static_cast<std::size_t>(kPlaneCount) * static_cast<std::size_t>(scenario.CellCount());
-  const auto ports = scenario.ports.cells.empty()
-                         ? scenario.ports.count
-                         : static_cast<std::int32_t>(scenario.ports.cells.size());
+  const std::int32_t ports = scenario.PortCount();
   feature_count_ = kSelfFeatures + kMoveCount + devices * kDeviceFeatures + ports * kPortFeatures +
                    static_cast<std::int32_t>(scenario.disasters.size()) * kDisasterFeatures +
                    (scenario.AgentCount() - 1) * kShipFeatures + IdentityFeatures(scenario) +
@@ -343,9 +341,7 @@ std::vector<std::string> Encoder::feature_names() const {
   for (std::int32_t i = 0; i < scenario_.devices.Total(); ++i) {
     add("device", i, {"east", "north", "deployed", "aboard", "worth"});
   }
-  const auto ports = scenario_.ports.cells.empty()
-                         ? scenario_.ports.count
-                         : static_cast<std::int32_t>(scenario_.ports.cells.size());
+  const std::int32_t ports = scenario_.PortCount();
   for (std::int32_t i = 0; i < ports; ++i) add("port", i, {"east", "north"});
   for (std::size_t i = 0; i < scenario_.disasters.size(); ++i) {
     add("disaster", static_cast<std::int32_t>(i),

@@ -207,11 +207,9 @@ void CheckPlaces(const Scenario& scenario) {
     throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
                                  Format(kFewestCells));
   }
-  const std::uint64_t ports = scenario.ports.cells.empty()
-                                  ? static_cast<std::uint64_t>(scenario.ports.count)
-                                  : scenario.ports.cells.size();
-  const std::uint64_t ways = static_cast<std::uint64_t>(scenario.CellCount()) *
-                             (ports + static_cast<std::uint64_t>(scenario.FetchableCount()));
+  const std::uint64_t ways =
+      static_cast<std::uint64_t>(scenario.CellCount()) *
+      static_cast<std::uint64_t>(scenario.PortCount() + scenario.FetchableCount());
   if (scenario.view.waterways && ways > kMostWays) {
     throw FieldError("view.waterways",
                      "needs " + Format(ways) +

@@ -207,6 +207,10 @@ struct Scenario {
   std::uint64_t hash{};
 
   std::int32_t CellCount() const { return width * height; }
+  /// Ports, chosen or drawn.
+  std::int32_t PortCount() const {
+    return ports.cells.empty() ? ports.count : static_cast<std::int32_t>(ports.cells.size());
+  }
   /// Risk of the sea itself at a cell; 0 where it has none.
   float SeaRiskAt(Cell cell) const {
     if (!seas || seas->risk.empty()) return 0.0F;

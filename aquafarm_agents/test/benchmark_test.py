@@ -27,15 +27,29 @@ FIGURES = {"rewards", "average_rewards", "mean_square_error", "mean_score", "rep
 BLUE = (31, 119, 180)  # Q-learning's curve
 
 
-def is_running(words):
-    """Whether a process has these words in its command line."""
+def running(words):
+    """Numbers of the processes that have these words in their command line."""
+    found = []
     for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
         try:
             if words in path.read_bytes().decode(errors="replace"):
-                return True
+                found.append(int(path.parent.name))
         except OSError:
             continue  # it has just ended
-    return False
+    return found
+
+
+def stop_once_under_way(trainings):
+    """Whether each of these run folders' trainings was stopped (SIGSTOP) amid its episodes; stops
+    those that have come so far."""
+    stopped = 0
+    for folder in trainings:
+        metrics = folder / "metrics.csv"
+        if metrics.exists() and metrics.stat().st_size > 4096:
+            for number in running(str(folder)):
+                os.kill(number, signal.SIGSTOP)
+                stopped += 1
+    return stopped == len(trainings)
 
 
 class BenchmarkTest(unittest.TestCase):
@@ -85,11 +99,12 @@ class BenchmarkTest(unittest.TestCase):
         self.assertEqual(0, whole.code(), whole.words())
         part = self.start("parts", *arguments, episodes=60000)
         trainings = self.folder / "parts/runs/q_learning"
-        part.wait_for(lambda: sum(path.stat().st_size > 4096
-                                  for path in trainings.glob("*/metrics.csv")) == 2,
-                      "two trainings")
+        both = [trainings / "seed_1", trainings / "seed_2"]
+        part.wait_for(lambda: stop_once_under_way(both), "two trainings")
         part.send(signal.SIGKILL)
         part.code()
+        for number in running(str(trainings)):
+            os.kill(number, signal.SIGCONT)  # they find that they were interrupted
         self.assertFalse(list(trainings.glob("*/evaluation.json")), "it was over already")
         rest = self.start("parts", *arguments, episodes=60000)
         self.assertEqual(0, rest.code(), rest.words())
@@ -111,10 +126,10 @@ class BenchmarkTest(unittest.TestCase):
         one = self.start("out", "--algorithms", "q_learning", episodes=10000000)
         trainings = self.folder / "out/runs/q_learning"
         one.wait_for(lambda: list(trainings.glob("*/metrics.csv")), "a training")
-        self.assertTrue(is_running(str(trainings)))
+        self.assertTrue(running(str(trainings)))
         one.send(signal.SIGKILL)
         end = time.monotonic() + 30.0
-        while is_running(str(trainings)):  # the trainings save and end by themselves
+        while running(str(trainings)):  # the trainings save and end by themselves
             self.assertLess(time.monotonic(), end, "the trainings outlive the benchmark")
             time.sleep(0.05)
 

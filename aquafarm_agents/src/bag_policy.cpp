@@ -8,6 +8,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -27,6 +28,7 @@
 #include "aquafarm_sim/abandon_bag.h"
 #include "aquafarm_sim/bag_ranch.h"
 #include "aquafarm_sim/names.h"
+#include "aquafarm_sim/read_bag.h"
 
 namespace aquafarm_agents {
 namespace {
@@ -261,18 +263,6 @@ class Output {
   bool done_{};
 };
 
-/// @throws InputError when the bag's messages are not those of this version
-template <typename Message>
-void CheckMessage(const rosbag::ConnectionInfo& connection, const std::string& path) {
-  namespace traits = ros::message_traits;
-  if (connection.datatype != traits::datatype<Message>() ||
-      connection.md5sum == traits::md5sum<Message>()) {
-    return;
-  }
-  throw InputError(path + ": topic " + connection.topic + " has another " + connection.datatype +
-                   " than this version; use the version that it was recorded by");
-}
-
 std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& topic,
                                   const std::string& path) {
   std::map<Key, FarmSpec> specs;
@@ -410,16 +400,14 @@ class Walk {
 
 BagChoices AskAlong(const std::string& path, const agents::SavedPolicy& policy,
                     const BagPolicyOptions& options) {
-  try {
-    rosbag::Bag bag(path, rosbag::bagmode::Read);
+  return aquafarm_sim::ReadingBag(path, [&] {
+    rosbag::Bag bag;
+    aquafarm_sim::OpenBag<FarmSpec, FarmState, SavedState>(bag, path);
     rosbag::View all(bag);
-    bool rewinds = false;
-    for (const auto* connection : all.getConnections()) {
-      CheckMessage<FarmSpec>(*connection, path);
-      CheckMessage<FarmState>(*connection, path);
-      CheckMessage<SavedState>(*connection, path);
-      rewinds = rewinds || connection->datatype == ros::message_traits::datatype<SavedState>();
-    }
+    const auto connections = all.getConnections();
+    const bool rewinds = std::any_of(connections.begin(), connections.end(), [](const auto* one) {
+      return one->datatype == ros::message_traits::datatype<SavedState>();
+    });
     const std::string ranch = aquafarm_sim::FindRanch(bag, path, options.ns);
     std::error_code ignored;
     if (!options.output.empty() && fs::equivalent(path, options.output, ignored)) {
@@ -430,13 +418,7 @@ BagChoices AskAlong(const std::string& path, const agents::SavedPolicy& policy,
       if (!walk.Take(message)) break;
     }
     return walk.End();
-  } catch (const rosbag::BagUnindexedException&) {
-    throw InputError(path + ": its recording was killed; 'rosbag reindex' it first");
-  } catch (const rosbag::BagException& error) {
-    throw InputError(path + ": damaged or no bag: " + error.what());
-  } catch (const ros::Exception& error) {
-    throw InputError(path + ": damaged: " + error.what());
-  }
+  });
 }
 
 }  // namespace aquafarm_agents

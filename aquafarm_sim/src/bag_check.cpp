@@ -21,6 +21,7 @@
 #include "aquafarm_sim/conversions.h"
 #include "aquafarm_sim/message_difference.h"
 #include "aquafarm_sim/names.h"
+#include "aquafarm_sim/read_bag.h"
 
 namespace aquafarm_sim {
 namespace {
@@ -297,21 +298,8 @@ void CheckVersions(const std::map<Key, FarmSpec>& specs, const std::string& path
   for (const auto& [key, spec] : specs) {
     if (spec.version == aquafarm::kVersion) continue;
     throw InputError(path + ": recorded by version " + spec.version + ", this is " +
-                     aquafarm::kVersion + "; verify it with the version that it was recorded by");
+                     aquafarm::kVersion + "; use the version that it was recorded by");
   }
-}
-
-/// @throws InputError when a connection of this type is described otherwise than the suite does
-template <typename Message>
-void CheckDefinition(const rosbag::ConnectionInfo& connection, const std::string& path) {
-  namespace traits = ros::message_traits;
-  if (connection.datatype != traits::datatype<Message>()) return;
-  if (connection.md5sum == traits::md5sum<Message>() &&
-      connection.msg_def == traits::definition<Message>()) {
-    return;
-  }
-  throw InputError(path + ": topic " + connection.topic + " has another " + connection.datatype +
-                   " than this version; verify it with the version that it was recorded by");
 }
 
 }  // namespace
@@ -325,17 +313,11 @@ std::string ChangesInWords(const BagCheck& check) {
 }
 
 BagCheck CheckBag(const std::string& path, const std::string& ns) {
-  try {
-    rosbag::Bag bag(path, rosbag::bagmode::Read);
+  return ReadingBag(path, [&] {
+    rosbag::Bag bag;
+    OpenBag<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path);
+    CheckMessages<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path, true);
     const std::string ranch = FindRanch(bag, path, ns);
-    rosbag::View all(bag);
-    for (const auto* connection : all.getConnections()) {
-      CheckDefinition<FarmSpec>(*connection, path);
-      CheckDefinition<FarmState>(*connection, path);
-      CheckDefinition<SavedState>(*connection, path);
-      CheckDefinition<EpisodeSummary>(*connection, path);
-      CheckDefinition<OccupancyGrid>(*connection, path);
-    }
     BagCheck refused;
     auto specs = ReadSpecs(bag, ranch + names::kSpec, refused.difference);
     CheckVersions(specs, path);
@@ -351,13 +333,7 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
     if (checker.check().episodes == 0) throw InputError(path + ": no state follows its spec");
     checker.End();
     return checker.check();
-  } catch (const rosbag::BagUnindexedException&) {
-    throw InputError(path + ": its recording was killed; 'rosbag reindex' it first");
-  } catch (const rosbag::BagException& error) {
-    throw InputError(path + ": damaged or no bag: " + error.what());
-  } catch (const ros::Exception& error) {
-    throw InputError(path + ": damaged: " + error.what());
-  }
+  });
 }
 
 }  // namespace aquafarm_sim

@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "aquafarm_sim/read_bag.h"
 #include "aquafarm_viz/film.h"
 #include "aquafarm_viz/image.h"
 #include "aquafarm_viz/names.h"
@@ -33,6 +34,8 @@ using aquafarm_viz::names::kSpec;
 using aquafarm_viz::names::kState;
 using aquafarm_viz::names::kTraining;
 using aquafarm_viz::names::kValuePoints;
+
+constexpr int kBadInput = 2;
 
 struct Request {
   std::string bag;
@@ -105,7 +108,9 @@ struct Scene {
 /// Shows each state of the bag (of the episode asked for) until `look` has seen enough.
 /// @param look returns false to end
 Found ForEachScene(const Request& request, const std::function<bool(const Scene&)>& look) {
-  rosbag::Bag bag(request.bag, rosbag::bagmode::Read);
+  rosbag::Bag bag;
+  aquafarm_sim::OpenBag<aquafarm_msgs::FarmSpec, FarmState, aquafarm_msgs::TrainingStatus,
+                        sensor_msgs::PointCloud2, aquafarm_msgs::PolicyChoice>(bag, request.bag);
   const std::string prefix = FindPrefix(bag, request);
   rosbag::View view(bag, rosbag::TopicQuery({prefix + kSpec, prefix + kState, prefix + kTraining,
                                              prefix + kValuePoints, prefix + kChoice}));
@@ -276,10 +281,12 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     request.layers = aquafarm_viz::ParseLayers(layers);
-    aquafarm_viz::Film::Is(request.output) ? RenderFilm(request) : RenderPicture(request);
+    aquafarm_sim::ReadingBag(request.bag, [&] {
+      aquafarm_viz::Film::Is(request.output) ? RenderFilm(request) : RenderPicture(request);
+    });
   } catch (const std::exception& fault) {
     std::fprintf(stderr, "render: %s\n", fault.what());
-    return 1;
+    return kBadInput;
   }
   return 0;
 }

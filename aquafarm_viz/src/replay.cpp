@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "aquafarm_viz/wake.h"
+#include "aquafarm_sim/read_bag.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -19,15 +19,6 @@ namespace traits = ros::message_traits;
 template <typename Message>
 bool Is(const rosbag::MessageInstance& message) {
   return message.getDataType() == traits::datatype<Message>();
-}
-
-template <typename Message>
-void CheckVersion(const rosbag::ConnectionInfo& connection, const std::string& path) {
-  if (connection.datatype != traits::datatype<Message>()) return;
-  if (connection.md5sum == traits::md5sum<Message>()) return;
-  throw std::runtime_error(
-      path + ": topic " + connection.topic + " has another " + connection.datatype +
-      " than this version; replay it with the version that it was recorded by");
 }
 
 bool EndsWith(const std::string& text, const std::string& end) {
@@ -44,17 +35,19 @@ bool IsState(const rosbag::MessageInstance& message) {
 
 }  // namespace
 
-ReplayTape::ReplayTape(const std::string& path) try {
-  bag_.open(path, rosbag::bagmode::Read);
+ReplayTape::ReplayTape(const std::string& path) {
+  aquafarm_sim::ReadingBag(path, [&] { Read(path); });
+}
+
+void ReplayTape::Read(const std::string& path) {
+  aquafarm_sim::OpenBag<FarmSpec, FarmState>(bag_, path);
   view_.addQuery(bag_);
-  bool has_spec = false;
-  for (const auto* connection : view_.getConnections()) {
-    CheckVersion<FarmSpec>(*connection, path);
-    CheckVersion<FarmState>(*connection, path);
-    has_spec = has_spec || connection->datatype == traits::datatype<FarmSpec>();
-  }
-  if (!has_spec)
+  const auto connections = view_.getConnections();
+  if (std::none_of(connections.begin(), connections.end(), [](const auto* connection) {
+        return connection->datatype == traits::datatype<FarmSpec>();
+      })) {
     throw std::runtime_error(path + ": no topic spec, so nothing says what was played");
+  }
   for (const rosbag::MessageInstance& message : view_) {
     if (message.getTopic() == "/clock") continue;
     if (IsState(message)) {
@@ -67,12 +60,6 @@ ReplayTape::ReplayTape(const std::string& path) try {
     messages_.push_back(message);
   }
   if (steps_.empty()) throw std::runtime_error(path + ": no state follows its spec");
-} catch (const rosbag::BagUnindexedException&) {
-  throw std::runtime_error(path + ": its recording was killed; 'rosbag reindex' it first");
-} catch (const rosbag::BagException& error) {
-  throw std::runtime_error(path + ": damaged or no bag: " + error.what());
-} catch (const ros::Exception& error) {
-  throw std::runtime_error(path + ": damaged: " + error.what());
 }
 
 const ReplayTape::Step& ReplayTape::At(std::size_t position) const {
@@ -136,7 +123,7 @@ std::vector<std::size_t> ReplayTape::UpTo(const Step& step) const {
   const std::optional<std::size_t> spec = SpecOf(step);
   if (spec) newest.erase(messages_[*spec].getTopic());
   for (const auto& [topic, position] : newest) positions.push_back(position);
-  for (auto one = steps_.rbegin(); one != steps_.rend() && states < Wake::kLength; ++one) {
+  for (auto one = steps_.rbegin(); one != steps_.rend() && states < kMostStates; ++one) {
     if (one->position >= step.position || one->run != step.run) continue;
     positions.push_back(one->position);
     ++states;

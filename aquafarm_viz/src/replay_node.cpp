@@ -18,7 +18,7 @@ using aquafarm_msgs::Outcome;
 
 constexpr double kTick_s = 0.01;
 constexpr double kMostSpeed = 1000.0;
-constexpr std::uint32_t kQueue = 100;
+constexpr std::uint32_t kQueue = ReplayTape::kMostStates + 100;  // a jump sends them at once
 
 template <typename Response>
 void Refuse(const std::string& message, Response& response) {

@@ -9,6 +9,9 @@
 #include <sensor_msgs/point_cloud2_iterator.h>
 
 #include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <string>
 
 namespace aquafarm_viz::test {
 
@@ -166,6 +169,17 @@ inline aquafarm_msgs::PolicyChoice MakeChoice() {
   choice.actions = {4};
   choice.values = {87.5F};
   return choice;
+}
+
+/// Lets the first entry of a bag's index point to nowhere, which rosbag's reader trusts.
+inline void DamageIndex(const std::string& path) {
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  std::stringstream content;
+  content << file.rdbuf();
+  // Behind the last field of the entry's record stand the length of its data, then a time.
+  const std::string version("ver=\x01\0\0\0", 8);
+  file.seekp(static_cast<std::streamoff>(content.str().find(version) + version.size() + 4 + 8));
+  file.write("\xf0\xff\xff\x7f", 4);
 }
 
 }  // namespace aquafarm_viz::test

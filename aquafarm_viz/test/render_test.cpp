@@ -101,8 +101,16 @@ TEST_F(RenderTest, AsksWhichRanchWhenThereAreSeveral) {
 }
 
 TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
-  EXPECT_NE(Render("--bag " + Path("none.bag")).code, 0);
+  EXPECT_EQ(WEXITSTATUS(Render("--bag " + Path("none.bag")).code), 2);
   const std::string bag = MakeBag({"/aquafarm/"});
+  test::DamageIndex(bag);
+  const Result damaged = Render("--bag " + bag + " -o " + Path("x.png"));
+  EXPECT_EQ(WEXITSTATUS(damaged.code), 2);
+  EXPECT_EQ(damaged.output.find("render: " + bag +
+                                ": damaged: an index that is not of its chunk at byte"),
+            0U)
+      << damaged.output;
+  MakeBag({"/aquafarm/"});
   const Result unwritable = Render("--bag " + bag + " -o " + Path("no/such/folder/x.png"));
   EXPECT_NE(unwritable.code, 0);
   EXPECT_NE(unwritable.output.find("could not be written"), std::string::npos);

@@ -5,10 +5,13 @@
 #include <std_msgs/Header.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "aquafarm_viz/wake.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {
@@ -33,6 +36,7 @@ class Replay : public testing::Test {
         auto state = test::MakeState();
         state.episode = episode;
         state.step = step;
+        state.ships[0].x = std::abs(static_cast<int>(step / 2) % 16 - 8);  // to and fro
         bag.write("/aquafarm/state", ros::Time(seconds += 0.2), state);
         bag.write("/aquafarm/ship_0/observation", ros::Time(seconds), state);
       }
@@ -64,24 +68,47 @@ TEST_F(Replay, FindsAStepOrTheNextLaterOneOrTheLast) {
   EXPECT_NEAR(tape.StepPeriod_s(at.run), 0.1, 1e-6);
 }
 
-TEST_F(Replay, AJumpBringsTheSpecTheWakeAndTheStepLast) {
+TEST_F(Replay, AJumpBringsTheSpecTheWholeWayAndTheStepLast) {
   const ReplayTape tape(MakeBag());
   const auto step = *tape.Find(tape.steps().front(), 14, 60);
   const auto positions = tape.UpTo(step);
   EXPECT_EQ(positions.back(), step.position);
-  std::size_t states = 0;
+  std::vector<std::uint64_t> steps;
   bool has_spec = false;
   for (const std::size_t position : positions) {
     const auto& message = tape.messages()[position];
     if (const auto spec = message.instantiate<aquafarm_msgs::FarmSpec>()) {
       has_spec = has_spec || spec->episode == 14;
     } else if (message.getTopic() == "/aquafarm/state") {
-      ++states;
-      EXPECT_EQ(message.instantiate<aquafarm_msgs::FarmState>()->episode, 14U);
+      const auto state = message.instantiate<aquafarm_msgs::FarmState>();
+      EXPECT_EQ(state->episode, 14U);
+      steps.push_back(state->step);
     }
   }
   EXPECT_TRUE(has_spec);
-  EXPECT_EQ(states, 25U);  // the wake's 24 and its own
+  ASSERT_EQ(steps.size(), 31U);
+  for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(steps[i], 2 * i);
+}
+
+TEST_F(Replay, WakesAndRoutesAfterAJumpAreThoseOfPlayingThrough) {
+  const ReplayTape tape(MakeBag());
+  const auto step = *tape.Find(tape.steps().front(), 14, 60);
+  Wake played[2]{Wake(), Wake(Wake::kWhole)};
+  Wake jumped[2]{Wake(), Wake(Wake::kWhole)};
+  const auto take = [&](Wake* ways, std::size_t position) {
+    const auto& message = tape.messages()[position];
+    if (message.getTopic() != "/aquafarm/state") return;
+    const auto state = message.instantiate<aquafarm_msgs::FarmState>();
+    for (int i = 0; i < 2; ++i) ways[i].Update(*state);
+  };
+  for (std::size_t i = 0; i <= step.position; ++i) take(played, i);
+  for (const std::size_t position : tape.UpTo(step)) take(jumped, position);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(jumped[i].Find(0)->places, played[i].Find(0)->places);
+    EXPECT_EQ(jumped[i].Find(0)->bearing_deg, played[i].Find(0)->bearing_deg);
+  }
+  EXPECT_EQ(played[0].Find(0)->places.size(), Wake::kLength);
+  EXPECT_EQ(played[1].Find(0)->places.size(), 31U);
 }
 
 // Of seed 1 episode 5, of seed 1000 episode 5, then that of seed 1 anew; each spec after its first
@@ -136,6 +163,9 @@ TEST_F(Replay, AtIsTheStepThatIsShownAtAPosition) {
 TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
   EXPECT_NE(FaultOf("/nowhere/x.bag").find("/nowhere/x.bag: damaged or no bag: "),
             std::string::npos);
+  test::DamageIndex(MakeBag());
+  EXPECT_EQ(FaultOf(path_).find(path_ + ": damaged: an index that is not of its chunk at byte "),
+            0U);
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     bag.write("/aquafarm/state", ros::Time(1.0), test::MakeState());
@@ -158,7 +188,7 @@ TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
   EXPECT_EQ(FaultOf(path_),
             path_ +
                 ": topic /aquafarm/state has another aquafarm_msgs/FarmState than this "
-                "version; replay it with the version that it was recorded by");
+                "version; use the version that it was recorded by");
 }
 
 }  // namespace

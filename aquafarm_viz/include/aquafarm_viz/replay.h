@@ -28,6 +28,8 @@ class ReplayTape {
     std::size_t run{};  ///< one from an episode's first state on to its last; no two are the same
   };
 
+  static constexpr std::size_t kMostStates = 10'000;  ///< sent before a step that is jumped to
+
   /// @throws std::runtime_error in one line when there is nothing to show: no bag, another version
   explicit ReplayTape(const std::string& path);
 
@@ -44,7 +46,8 @@ class ReplayTape {
   std::optional<Step> Find(const Step& shown, std::uint64_t episode, std::uint64_t step) const;
 
   /// What must be sent for a step to be seen: the spec of its episode, then the newest message of
-  /// each other topic and the states of its wake, ascending positions, the step's own last.
+  /// each other topic and the states of its run before it, for wakes and routes; ascending
+  /// positions, the step's own last.
   std::vector<std::size_t> UpTo(const Step& step) const;
 
   /// Seconds of the bag between two steps of a run, above 0.
@@ -57,6 +60,7 @@ class ReplayTape {
     std::uint64_t episode{};
   };
 
+  void Read(const std::string& path);
   /// @param message a state, as the next one
   void AddStep(const rosbag::MessageInstance& message, const aquafarm_msgs::FarmState& state);
   std::optional<std::size_t> SpecOf(const Step& step) const;

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// How bags are opened, and what is said of those that cannot be read; in a header alone, for
+/// agents and viewers link no library of this package but the core.
+
+#include <ros/exception.h>
+#include <ros/message_traits.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <system_error>
+
+#include "aquafarm/check.h"
+#include "aquafarm_sim/bag_structure.h"
+
+namespace aquafarm_sim {
+namespace internal {
+
+/// Bounds this process's memory while it lives: a damaged length of a list asks for any.
+class MemoryLimit {
+ public:
+  /// @param more bytes than there are in use now
+  explicit MemoryLimit(std::uintmax_t more) {
+    std::ifstream file("/proc/self/statm");
+    rlim_t pages = 0;
+    for (int field = 0; field < 6; ++field) file >> pages;  // the sixth: data and stack
+    if (!file || getrlimit(RLIMIT_DATA, &before_) != 0) return;
+    rlimit limit = before_;
+    limit.rlim_cur = std::min<rlim_t>(before_.rlim_cur,
+                                      pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + more);
+    is_set_ = setrlimit(RLIMIT_DATA, &limit) == 0;
+  }
+  ~MemoryLimit() {
+    if (is_set_) setrlimit(RLIMIT_DATA, &before_);
+  }
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+ private:
+  rlimit before_{};
+  bool is_set_{};
+};
+
+}  // namespace internal
+
+/// @param to_the_letter whether comments and layout of the definitions count as well
+/// @throws aquafarm::InputError when a topic of one of these types has another than this version
+template <typename... Messages>
+void CheckMessages(const rosbag::Bag& bag, const std::string& path, bool to_the_letter = false) {
+  namespace traits = ros::message_traits;
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
+    const auto is_other = [&](const char* type, const char* md5sum, const char* definition) {
+      return connection->datatype == type &&
+             (connection->md5sum != md5sum || (to_the_letter && connection->msg_def != definition));
+    };
+    if (!(is_other(traits::datatype<Messages>(), traits::md5sum<Messages>(),
+                   traits::definition<Messages>()) ||
+          ...)) {
+      continue;
+    }
+    throw aquafarm::InputError(path + ": topic " + connection->topic + " has another " +
+                               connection->datatype +
+                               " than this version; use the version that it was recorded by");
+  }
+}
+
+/// Opens a bag that rosbag's reader does not crash of: it trusts lengths and places.
+/// @tparam Messages that will be read, of this version
+/// @throws aquafarm::InputError or what ReadingBag makes one of
+template <typename... Messages>
+void OpenBag(rosbag::Bag& bag, const std::string& path) {
+  internal::CheckStructure(path);
+  bag.open(path, rosbag::bagmode::Read);
+  CheckMessages<Messages...>(bag, path);
+}
+
+/// Does what reads a bag.
+/// @throws aquafarm::InputError of one line with the bag's path when the bag is at fault
+template <typename Work>
+auto ReadingBag(const std::string& path, const Work& work) -> decltype(work()) {
+  constexpr std::uintmax_t kSpareBytes = std::uintmax_t{2} << 30U;
+  std::error_code ignored;
+  const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+  const internal::MemoryLimit limit(kSpareBytes + (ignored ? 0 : 4 * size));
+  try {
+    return work();
+  } catch (const rosbag::BagUnindexedException&) {
+    throw aquafarm::InputError(path + ": its recording was killed; 'rosbag reindex' it first");
+  } catch (const internal::Damage& damage) {
+    throw aquafarm::InputError(path + ": damaged: " + damage.what() +
+                               "; 'rosbag reindex' may mend its index");
+  } catch (const rosbag::BagException& error) {
+    throw aquafarm::InputError(path + ": damaged or no bag: " + error.what());
+  } catch (const ros::Exception& error) {
+    throw aquafarm::InputError(path + ": damaged: " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw aquafarm::InputError(path +
+                               ": damaged: it asks for more memory than a bag of its size needs");
+  } catch (const std::length_error&) {
+    throw aquafarm::InputError(path + ": damaged: a message of no possible length");
+  }
+}
+
+}  // namespace aquafarm_sim

@@ -12,15 +12,18 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "aquafarm/agents/local_environment.h"
 #include "aquafarm/agents/storage.h"
 #include "aquafarm/check.h"
 #include "aquafarm/farm.h"
+#include "aquafarm/farm_batch.h"
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm/version.h"
 
@@ -157,6 +160,46 @@ TEST_F(BagPolicy, AStateThatComesAgainIsAskedOnce) {
 
 TEST_F(BagPolicy, AStateThatWasChangedIsAskedWithTheMemoryOfBefore) {
   EXPECT_EQ(ChoicesOf(MakeBag(false)), ChoicesOf(MakeBag(true)));
+}
+
+// What it has learnt is of no matter: a network of any weights remembers.
+TEST_F(BagPolicy, AMemoryIsCarriedFromTheEpisodesStartOn) {
+  const std::string scenario_file = AQUAFARM_TEST_DATA "/tiny.yaml";
+  const std::string train = std::string(AQUAFARM_TRAIN) + " " + scenario_file +
+                            " --algorithm lstm_dqn --steps 400 --evaluate 0 --random 0 --run-dir " +
+                            Path("lstm") + " >" + Path("log") + " 2>&1";
+  ASSERT_EQ(0, std::system(train.c_str())) << train;
+  const auto saved = aquafarm::agents::FindPolicy(Path("lstm"));
+  BagPolicyOptions options;
+  options.output = Path("asked.bag");
+  EXPECT_EQ("", AskAlong(MakeBag(false), saved, options).difference);
+
+  const auto scenario =
+      std::make_shared<const aquafarm::Scenario>(aquafarm::LoadScenario(scenario_file));
+  aquafarm::FarmBatch farms(scenario, 1);
+  farms.Reset(5, 0, {});
+  aquafarm::agents::LocalEnvironment environment(scenario, {1, saved.encodings, false, 1});
+  const auto remembers = aquafarm::agents::MakePolicy(saved, environment.spec());
+  const auto forgets = aquafarm::agents::MakePolicy(saved, environment.spec());
+  remembers->Begin(5, 1);
+  const auto hold = static_cast<std::uint8_t>(aquafarm::Action::kHold);
+  std::vector<std::uint8_t> actions;
+  std::uint64_t steps = 0;
+  int differ = 0;
+  rosbag::Bag asked(options.output, rosbag::bagmode::Read);
+  for (const auto& message : rosbag::View(asked, rosbag::TopicQuery("/ranch/choice"))) {
+    const auto choice = message.instantiate<PolicyChoice>();
+    ASSERT_EQ(steps++, choice->step);
+    remembers->Act(environment.Load(farms.Save()), actions);
+    EXPECT_EQ(actions, choice->actions);
+    EXPECT_EQ(remembers->values(), choice->values);
+    forgets->Begin(5, 1);
+    forgets->Act(environment.Load(farms.Save()), actions);
+    differ += forgets->values() != choice->values ? 1 : 0;
+    farms.Step(&hold, {});
+  }
+  EXPECT_EQ(60U, steps);
+  EXPECT_EQ(59, differ);  // all but the first
 }
 
 TEST_F(BagPolicy, MissingStepsAreNamed) {

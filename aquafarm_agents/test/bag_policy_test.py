@@ -31,12 +31,12 @@ class BagPolicyTest(unittest.TestCase):
         self.assertEqual(0, run.code(), run.words())
         return run.words()
 
-    def trained(self):
-        """Run folder of a policy that solves the tiny farm; trained once."""
-        folder = self.folder / "trained"
+    def trained(self, scenario=TINY):
+        """Run folder of a policy that has learnt, on the tiny farm to solve it; trained once."""
+        folder = self.folder / f"trained_{scenario.stem}"
         if not folder.exists():
-            self.run_well(program("aquafarm_agents", "aquafarm_train"), TINY, "--steps", "200000",
-                          "--run-dir", folder)
+            self.run_well(program("aquafarm_agents", "aquafarm_train"), scenario, "--steps",
+                          "200000", "--run-dir", folder)
         return folder
 
     def bag_of(self, policy, scenario):
@@ -91,6 +91,20 @@ class BagPolicyTest(unittest.TestCase):
         words = self.run_well(program("aquafarm_agents", "bag_policy"), bag, "random")
         steps = int(words.splitlines()[1].split()[2])
         self.assertIn(f"of {2 * steps} choices", words)
+
+    def test_each_of_several_agents_is_asked_what_it_would_do_itself(self):
+        policy, out = self.trained(PAIR), self.folder / "pair_asked.bag"
+        bag = self.bag_of(policy, PAIR)
+        words = self.run_well(program("aquafarm_agents", "bag_policy"), bag, policy, "-o", out)
+        agreed, choices = map(int, re.search(r"(\d+) of (\d+) choices agree", words).groups())
+        self.assertEqual((choices, 0), (agreed, choices % 2), words)
+        with rosbag.Bag(str(out)) as asked:
+            told = [m for _, m, _ in asked.read_messages("/aquafarm/choice")]
+            done = [[ship.action for ship in m.ships]
+                    for _, m, _ in asked.read_messages("/aquafarm/state")]
+        self.assertEqual(done[1:], [list(choice.actions) for choice in told])
+        self.assertTrue(any(first != second for first, second in done[1:]))  # not one for both
+        self.assertEqual({2}, {len(choice.values) for choice in told})
 
     def test_the_bag_that_is_written_holds_all_of_the_old_one_and_what_it_would_do(self):
         bag, out = self.bag_of("clairvoyant", TINY), self.folder / "asked.bag"
@@ -148,6 +162,13 @@ class BagPolicyTest(unittest.TestCase):
                      self.bag_of("random", PAIR), policy)
         self.refused("/no/such/folder", 2, bag, "/no/such/folder")
         self.refused("damaged or no bag", 2, TINY, policy)
+        data = bytearray(bag.read_bytes())
+        place = data.index(b"ver=\x01\0\0\0") + 8 + 4 + 8  # of an index's first entry
+        data[place:place + 4] = struct.pack("<I", 0x7ffffff0)
+        damaged = self.folder / "damaged.bag"
+        damaged.write_bytes(data)
+        self.refused(f"bag_policy: {damaged}: damaged: an index that is not of its chunk", 2,
+                     damaged, policy)
         self.refused("no topic spec, so nothing says what was played", 2, self.changed(
             bag, lambda topic, message: None if topic.endswith("/spec") else message), policy)
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import rosbag
 import rosgraph
@@ -16,6 +17,7 @@ import rospy
 import rostest
 from aquafarm_msgs.msg import FarmState, PolicyChoice
 from aquafarm_msgs.srv import Jump, Pause, SetPace
+from nav_msgs.msg import Path
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from ranch import Ranch, free_port  # noqa: E402
@@ -23,6 +25,10 @@ from ranch import Ranch, free_port  # noqa: E402
 SCRIPTS = pathlib.Path(__file__).resolve().parent.parent / "scripts"
 SCRIPT = SCRIPTS.parent.parent / "aquafarm"
 LIMIT_S = 20
+DEAD_DISPLAY = ":65432"
+DEAD = f"nobody answers at the display {DEAD_DISPLAY}, or not to us"
+WAY_OUT = (": give headless:=true or rviz:=false and look at the topic image, or draw a bag with "
+           "'./aquafarm render'")
 
 
 def make_bag(folder):
@@ -44,8 +50,8 @@ class ReplayTest(unittest.TestCase):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_replay_"))
         cls.addClassCleanup(shutil.rmtree, cls.folder, ignore_errors=True)
         cls.bag = make_bag(cls.folder)
-        cls.ranch = Ranch("replay", f"bag:={cls.bag}", "headless:=true", "viz:=false",
-                          "policy:=random", "paused:=true", "start_step:=7", port=free_port())
+        cls.ranch = Ranch("replay", f"bag:={cls.bag}", "headless:=true", "policy:=random",
+                          "paused:=true", "start_step:=7", port=free_port())
         cls.ranch.__enter__()
         cls.addClassCleanup(lambda: cls.ranch.__exit__())
         os.environ.update(cls.ranch.environment)
@@ -132,6 +138,24 @@ class ReplayTest(unittest.TestCase):
         self.assertEqual(list(range(20, 25)),
                          [state.step for state in self.states if state.step >= 20][-5:])
 
+    def test_after_a_jump_the_route_is_that_of_playing_through(self):
+        routes = []
+        rospy.Subscriber("/aquafarm/ship_0/route", Path, routes.append)
+        self.ranch.wait_for(lambda: routes, LIMIT_S)
+        with rosbag.Bag(str(self.bag)) as bag:
+            states = [message for _, message, _ in bag.read_messages("/aquafarm/state")]
+        for step in (45, 38):
+            way = []
+            for state in states[:step + 1]:
+                place = state.ships[0].x, state.ships[0].y
+                if not way or way[-1] != place:
+                    way.append(place)
+            self.assertGreater(len(way), 25)  # more than a wake
+            self.assertEqual(step, self.jump(step=step).step)
+            self.ranch.wait_for(lambda: way == [
+                (round(pose.pose.position.x / 1000), round(pose.pose.position.y / 1000))
+                for pose in routes[-1].poses], LIMIT_S)
+
     def test_it_jumps_back_and_forth_and_says_what_there_is_not(self):
         answer = self.jump(step=1000000)
         self.assertTrue(answer.ok)
@@ -205,22 +229,42 @@ class ReplayTest(unittest.TestCase):
         done = subprocess.run([SCRIPTS / "with_display", "rviz"], env=environment, text=True,
                               stderr=subprocess.PIPE, timeout=LIMIT_S, check=False)
         self.assertEqual(3, done.returncode)
-        self.assertEqual("rviz: there is no display (DISPLAY is empty): give headless:=true or "
-                         "rviz:=false and look at the topic image, or draw a bag with './aquafarm "
-                         "render'\n", done.stderr)
-        done = subprocess.run([SCRIPTS / "with_display", "true"],
-                              env=dict(environment, DISPLAY=":1"), timeout=LIMIT_S, check=False)
-        self.assertEqual(0, done.returncode)
+        self.assertEqual(f"rviz: there is no display (DISPLAY is empty){WAY_OUT}\n", done.stderr)
+        done = subprocess.run([SCRIPTS / "with_display", "rviz"], text=True,
+                              env=dict(environment, DISPLAY=DEAD_DISPLAY), stderr=subprocess.PIPE,
+                              timeout=LIMIT_S, check=False)
+        self.assertEqual((3, f"rviz: {DEAD}{WAY_OUT}\n"), (done.returncode, done.stderr))
+
+    def test_with_a_display_the_program_runs(self):
+        read, write = os.pipe()
+        with open(read) as number:
+            screen = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-nolisten", "tcp"],
+                                      pass_fds=[write], stderr=subprocess.DEVNULL)
+            os.close(write)
+            self.addCleanup(screen.wait, LIMIT_S)
+            self.addCleanup(screen.terminate)
+            display = ":" + number.readline().strip()
+        done = subprocess.run([SCRIPTS / "with_display", "echo", "shown"], timeout=LIMIT_S,
+                              env=dict(os.environ, DISPLAY=display), text=True, check=False,
+                              stdout=subprocess.PIPE)
+        self.assertEqual((0, "shown\n"), (done.returncode, done.stdout))
+
+    def test_a_ranch_at_a_dead_display_says_so(self):
+        with mock.patch.dict(os.environ, DISPLAY=DEAD_DISPLAY):
+            with Ranch("sim", "viz:=false", "headless:=false") as ranch:
+                ranch.wait_for(lambda: f"rviz: {DEAD}{WAY_OUT}" in ranch.words(), LIMIT_S)
 
     def test_a_bag_or_policy_that_cannot_be_used_ends_the_launch_with_its_line(self):
         with tempfile.TemporaryDirectory() as folder:
             broken = pathlib.Path(folder) / "x.bag"
-            broken.write_text("no bag\n")
-            for arguments, words in (
-                    ((), "x.bag: damaged or no bag: "),
-                    (("policy:=random",), "x.bag: damaged or no bag: "),
-                    (("policy:=/no/run",), "/no/run")):
-                with self.subTest(arguments=arguments):
+            cut = self.bag.read_bytes()[:-10]
+            for content, arguments, words in (
+                    (b"no bag\n", (), "x.bag: damaged or no bag: "),
+                    (cut, (), "x.bag: damaged: a length beyond its end at byte "),
+                    (cut, ("policy:=random",), "x.bag: damaged: a length beyond its end at byte "),
+                    (cut, ("policy:=/no/run",), "/no/run")):
+                broken.write_bytes(content)
+                with self.subTest(words=words, arguments=arguments):
                     with Ranch("replay", f"bag:={broken}", "headless:=true", "viz:=false",
                                *arguments) as ranch:
                         self.assertEqual(2, ranch.exit_code(60), ranch.words())

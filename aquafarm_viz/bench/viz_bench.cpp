@@ -6,6 +6,7 @@
 
 #include "aquafarm_viz/image.h"
 #include "aquafarm_viz/markers.h"
+#include "aquafarm_viz/values.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {
@@ -43,6 +44,33 @@ void BM_FrameUnderATyphoonThatCoversAll(benchmark::State& bench) {
   bench.SetItemsProcessed(bench.iterations());
 }
 BENCHMARK(BM_FrameUnderATyphoonThatCoversAll)->Unit(benchmark::kMicrosecond);
+
+// What a policy adds: V_π, best moves, its choice; and a route of up to 500 steps.
+void BM_FrameWith(benchmark::State& bench, const char* names) {
+  cv::setNumThreads(1);
+  const int side = static_cast<int>(bench.range(0));
+  const auto spec = test::MakeSpec(side);
+  auto state = test::MakeState(side);
+  const Values values = ReadValues(test::MakeCloud(side), spec);
+  const auto choice = test::MakeChoice();
+  Wake wake;
+  Wake route(Wake::kWhole);
+  FarmPainter painter({640, 640});
+  const Layers layers = ParseLayers(names);
+  for (auto _ : bench) {
+    state.step = (state.step + 1) % 500;  // a new way each time
+    state.ships.front().x = static_cast<int>(state.step) % side;
+    wake.Update(state);
+    route.Update(state);
+    benchmark::DoNotOptimize(
+        painter.Draw(spec, state, {&wake, nullptr, &route, layers, &values, &choice}).data);
+  }
+  bench.SetItemsProcessed(bench.iterations());
+}
+#define SIDES Arg(10)->Arg(25)->Arg(100)->Unit(benchmark::kMicrosecond)
+BENCHMARK_CAPTURE(BM_FrameWith, values_and_moves, "wake,risk,values,moves")->SIDES;
+BENCHMARK_CAPTURE(BM_FrameWith, route, "wake,risk,route")->SIDES;
+BENCHMARK_CAPTURE(BM_FrameWith, all, "wake,risk,route,values,moves")->SIDES;
 
 void BM_Jpeg(benchmark::State& bench) {
   cv::setNumThreads(1);

@@ -2,6 +2,8 @@
 #include "aquafarm_viz/image.h"
 
 #include <algorithm>
+#include <cstring>
+#include <optional>
 #include <stdexcept>
 
 #include "aquafarm_viz/checks.h"
@@ -27,6 +29,13 @@ bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
                     });
 }
 
+// Whether two maps look the same; bytes are compared, for none is NaN.
+bool SameMap(const Values& a, const Values& b) {
+  return a.width == b.width && a.height == b.height && a.lowest == b.lowest &&
+         a.highest == b.highest && a.actions == b.actions &&
+         std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)) == 0;
+}
+
 }  // namespace
 
 struct FarmPainter::Parts {
@@ -41,7 +50,19 @@ struct FarmPainter::Parts {
   FarmSpec drawn;   // what the background shows
   std::string sea;  // which layer of the sea with it
   cv::Mat background;
+  Values values;                 // what the next two show
+  cv::Mat valued;                // the map of the background with V_π; empty: not drawn yet
+  std::optional<Overlay> moves;  // none: not drawn yet
   cv::Mat image;
+
+  /// Forgets what is of other values, or of another background.
+  void Follow(const Values* now, bool is_new_background) {
+    const bool is_new = now != nullptr && !SameMap(*now, values);
+    if (is_new) values = *now;
+    if (!is_new && !is_new_background) return;
+    valued.release();
+    moves.reset();
+  }
 };
 
 FarmPainter::FarmPainter(ImageSize size) : parts_(std::make_unique<Parts>(size)) {}
@@ -55,7 +76,8 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   const std::string& sea = extras.layers.sea;
   const bool same_sea =
       sea == p.sea && (sea.empty() || spec.scenario_yaml == p.drawn.scenario_yaml);
-  if (p.background.empty() || !SameBackground(spec, p.drawn) || !same_sea) {
+  const bool is_new = p.background.empty() || !SameBackground(spec, p.drawn) || !same_sea;
+  if (is_new) {
     p.background.release();  // until all of it is drawn: a sea may be refused
     p.layout = MakeLayout(spec.width, spec.height, p.size);
     cv::Mat background = DrawBackground(spec, p.layout, p.fonts, p.size);
@@ -72,12 +94,24 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   if (values != nullptr && (values->width != spec.width || values->height != spec.height)) {
     values = nullptr;
   }
-  if (layers.values && values != nullptr) DrawValues(map, *values);
+  p.Follow(values, is_new);
+  if (layers.values && values != nullptr) {
+    if (p.valued.empty()) {
+      p.valued = p.background(p.layout.map).clone();
+      DrawValues(p.valued, *values);
+    }
+    p.valued.copyTo(map);
+  }
   if (layers.wake && extras.wake != nullptr) DrawWakes(map, state, *extras.wake, p.layout);
   if (layers.risk) ShadeDisasters(map, state, p.layout);
   if (layers.route && extras.route != nullptr) DrawRoutes(map, state, *extras.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
-  if (layers.moves && values != nullptr) DrawMoves(map, *values, p.layout);
+  if (layers.moves && values != nullptr) {
+    if (!p.moves) {
+      p.moves.emplace(map.size(), [&](cv::Mat& over) { DrawMoves(over, *values, p.layout); });
+    }
+    p.moves->LayOver(map);
+  }
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
   DrawDisasterSigns(map, spec, state, p.layout, p.fonts);

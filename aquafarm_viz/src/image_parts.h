@@ -6,7 +6,9 @@
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
 
+#include <functional>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "aquafarm_viz/canvas.h"
 #include "aquafarm_viz/image.h"
@@ -82,6 +84,24 @@ void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, co
 
 /// Draws the best move of each cell as an arrow, pickups as discs, drop-offs as rings.
 void DrawMoves(cv::Mat& map, const Values& values, const Layout& layout);
+
+/// What is drawn over a map, kept to be laid over others: premultiplied colours with what they keep
+/// of what is below.
+class Overlay {
+ public:
+  /// @param draw draws the same onto whatever map it is given
+  Overlay(cv::Size size, const std::function<void(cv::Mat& map)>& draw);
+  /// @param map of that size
+  void LayOver(cv::Mat& map) const;
+
+ private:
+  struct Pixel {
+    cv::Point at;
+    cv::Vec3b color;  // as over black
+    int keep;         // of 255
+  };
+  std::vector<Pixel> pixels_;
+};
 
 /// Draws what another policy would do with each ship.
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,

@@ -92,6 +92,30 @@ void DrawMoves(cv::Mat& map, const Values& values, const Layout& layout) {
   }
 }
 
+Overlay::Overlay(cv::Size size, const std::function<void(cv::Mat& map)>& draw) {
+  cv::Mat3b on_black(size, cv::Vec3b::all(0));
+  cv::Mat3b on_white(size, cv::Vec3b::all(255));
+  draw(on_black);
+  draw(on_white);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const cv::Vec3b color = on_black(y, x);
+      const int keep = int(on_white(y, x)[1]) - int(color[1]);
+      if (keep < 255) pixels_.push_back({{x, y}, color, std::max(0, keep)});
+    }
+  }
+}
+
+void Overlay::LayOver(cv::Mat& map) const {
+  for (const Pixel& pixel : pixels_) {
+    auto& below = map.at<cv::Vec3b>(pixel.at);
+    for (int i = 0; i < 3; ++i) {
+      const int sum = int(pixel.color[i]) + (int(below[i]) * pixel.keep + 127) / 255;
+      below[i] = static_cast<std::uint8_t>(std::min(255, sum));
+    }
+  }
+}
+
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                 const aquafarm_msgs::PolicyChoice& choice, const Layout& layout,
                 const Fonts& fonts) {

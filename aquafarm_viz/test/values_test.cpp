@@ -8,7 +8,9 @@
 #include <limits>
 #include <opencv2/core/types.hpp>
 #include <stdexcept>
+#include <vector>
 
+#include "aquafarm_viz/image.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {
@@ -68,6 +70,39 @@ TEST(Values, RefusesACloudOfAnotherKind) {
             "point_step");
   EXPECT_EQ(FaultOf([](auto& cloud) { cloud.data.resize(100); }),
             "values/points: got 100 bytes, expected 10625");
+}
+
+// A painter keeps what it has drawn of values; that must never show in place of others.
+TEST(Values, APainterDrawsThemAsOneThatHasDrawnNothingElse) {
+  using Farms = std::vector<const aquafarm_msgs::FarmSpec*>;
+  using Maps = std::vector<const Values*>;
+  const auto spec = test::MakeSpec();
+  auto other = spec;
+  other.rocks.clear();
+  const auto state = test::MakeState();
+  const Values values = ReadValues(test::MakeCloud(), spec);
+  Values changed = values;
+  changed.values[changed.Index(20, 3)] = std::nanf("");
+  Values turned = changed;
+  turned.actions[turned.Index(4, 20)] = 2;
+  FarmPainter painter({640, 640});
+  const auto draw = [&state](FarmPainter& with, const auto& farm, const Values* of,
+                             const char* layers) {
+    return with.Draw(farm, state, {nullptr, nullptr, nullptr, ParseLayers(layers), of}).clone();
+  };
+  for (const char* layers : {"risk,values,moves", "moves", "risk,values"}) {
+    for (const auto* farm : Farms{&spec, &other, &spec}) {
+      for (const Values* of : Maps{&values, &values, &changed, &turned, nullptr, &turned}) {
+        FarmPainter fresh({640, 640});
+        const cv::Mat picture = draw(painter, *farm, of, layers);
+        EXPECT_EQ(cv::norm(picture, draw(fresh, *farm, of, layers)), 0.0);
+      }
+      FarmPainter away({640, 640});
+      EXPECT_GT(cv::norm(draw(painter, *farm, &turned, layers), draw(away, *farm, &values, layers)),
+                0.0);
+      draw(painter, farm == &spec ? other : spec, nullptr, layers);  // a new background between
+    }
+  }
 }
 
 TEST(Values, BestMovesAreOneMarkerAKindWithStableIds) {

@@ -249,10 +249,13 @@ class ReplayTest(unittest.TestCase):
                               stdout=subprocess.PIPE)
         self.assertEqual((0, "shown\n"), (done.returncode, done.stdout))
 
-    def test_a_ranch_at_a_dead_display_says_so(self):
+    def test_a_ranch_or_replay_at_a_dead_display_says_so(self):
         with mock.patch.dict(os.environ, DISPLAY=DEAD_DISPLAY):
             with Ranch("sim", "viz:=false", "headless:=false") as ranch:
                 ranch.wait_for(lambda: f"rviz: {DEAD}{WAY_OUT}" in ranch.words(), LIMIT_S)
+            with Ranch("replay", f"bag:={self.bag}", "viz:=false") as ranch:
+                self.assertEqual(3, ranch.exit_code(60), ranch.words())
+                self.assertIn(f"rviz: {DEAD}{WAY_OUT}", ranch.words())
 
     def test_a_bag_or_policy_that_cannot_be_used_ends_the_launch_with_its_line(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -558,7 +558,7 @@ std::vector<Track> Foresee(const Farm& farm, Foresight foresight,
     disasters[id].waypoint = kNone;
     // One with a track comes from afar and knows no border.
     if (!tracks[id]->empty()) disasters[id].border = Border::kLeave;
-    if (!HasForecast(farm, disaster)) continue;
+    if (!HasForecast(farm, disaster, farm.step())) continue;
     disasters[id].waypoint = 0;
     tracks[id] =
         std::make_shared<const std::vector<Waypoint>>(ForecastTrack(farm, disaster, farm.step()));

@@ -165,6 +165,11 @@ int Main(int argc, char** argv) {
   app.add_option("--storm", ranch.storm, "name or number of the storm in that file")->needs(track);
   app.add_option("--radii", ranch.radii, "file with radii of winds, for a track that has none")
       ->needs(track);
+  app.add_option(
+         "--forecasts", ranch.forecasts,
+         "bulletins of the storm with forecast points: agents are told these, and the truth "
+         "follows the track")
+      ->needs(track);
   app.add_option("--rings", arguments.rings,
                  "quadrants of winds: circles of equal_area or largest, or as quadrants")
       ->needs(track);

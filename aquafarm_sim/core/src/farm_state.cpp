@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // An episode in progress as a hash and as bytes, and disasters that arrive while it runs.
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <tuple>
 #include <utility>
 
 #include "aquafarm/check.h"
@@ -207,7 +209,7 @@ json TrackToJson(const std::vector<Waypoint>& track) {
   return points;
 }
 
-Track TrackFromJson(const json& points) {
+std::vector<Waypoint> TrackFromJson(const json& points) {
   std::vector<Waypoint> track;
   for (const json& point : points) {
     track.push_back({point.at(0).get<float>(), point.at(1).get<float>(), point.at(2).get<float>(),
@@ -216,7 +218,15 @@ Track TrackFromJson(const json& points) {
                      point.size() > 6 ? point.at(6).get<std::vector<QuadrantRadii>>()
                                       : std::vector<QuadrantRadii>()});
   }
-  return std::make_shared<const std::vector<Waypoint>>(std::move(track));
+  return track;
+}
+
+bool IsSame(const std::vector<Waypoint>& a, const std::vector<Waypoint>& b) {
+  const auto all = [](const Waypoint& w) {
+    return std::tie(w.step, w.x, w.y, w.grade, w.radii, w.risks, w.quadrants);
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&all](const Waypoint& p, const Waypoint& q) { return all(p) == all(q); });
 }
 
 json RecordToJson(const EpisodeRecord& r) {
@@ -353,7 +363,9 @@ void Farm::Load(const std::string& bytes) {
     if (state.contains("tracks")) {
       loaded.tracks_changed_ = true;
       loaded.tracks_.clear();
-      for (const json& track : state["tracks"]) loaded.tracks_.push_back(TrackFromJson(track));
+      for (const json& track : state["tracks"]) {
+        loaded.tracks_.push_back(loaded.Owned(loaded.tracks_.size(), TrackFromJson(track)));
+      }
     }
     RequireSame("tracks", loaded.tracks_.size(), disasters);
     loaded.CheckConsistent();
@@ -402,6 +414,13 @@ void Farm::CheckConsistent() const {
   if (!fits) throw InputError("state: its parts do not fit together");
 }
 
+// One that is the scenario's own stays so, and with it the forecasts of it.
+Track Farm::Owned(std::size_t id, std::vector<Waypoint> track) const {
+  const auto& specs = scenario_->disasters;
+  if (id < specs.size() && IsSame(specs[id].track, track)) return {scenario_, &specs[id].track};
+  return std::make_shared<const std::vector<Waypoint>>(std::move(track));
+}
+
 void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
   const auto count = static_cast<std::int32_t>(disasters_.size());
   if (id < 0 || id > count || id >= kMaxDisasters) {
@@ -415,8 +434,8 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
   }
   Disaster disaster =
       SpawnDisaster(spec, id, record_.seed, record_.episode, scenario_->width, scenario_->height);
-  Track track = std::make_shared<const std::vector<Waypoint>>(spec.track);
   const auto k = static_cast<std::size_t>(id);
+  Track track = Owned(k, spec.track);
   if (added) {
     disasters_.push_back(disaster);
     tracks_.push_back(std::move(track));

@@ -12,48 +12,110 @@ const std::vector<Waypoint>& TrackOf(const Farm& farm, std::int32_t disaster) {
   return *farm.tracks()[static_cast<std::size_t>(disaster)];
 }
 
-// One issued forecast: the truth where it is past, displaced where it is to come.
+// What an authority forecast last of a disaster that still is the scenario's, if it is not run out.
+const IssuedForecast* NewestSaid(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
+  const std::vector<DisasterSpec>& specs = farm.scenario().disasters;
+  const auto id = static_cast<std::size_t>(disaster);
+  if (id >= specs.size() || farm.tracks()[id].get() != &specs[id].track) return nullptr;
+  const auto step = static_cast<float>(issued);
+  const std::vector<IssuedForecast>& said = specs[id].forecasts;
+  const auto next =
+      std::upper_bound(said.begin(), said.end(), step,
+                       [](float at, const IssuedForecast& forecast) { return at < forecast.step; });
+  if (next == said.begin() || (next - 1)->points.back().step <= step) return nullptr;
+  return &*(next - 1);
+}
+
+// The index of the first point after a step, or the number of points.
+template <typename Points>
+std::size_t After(float step, const Points& points) {
+  const auto next = std::upper_bound(points.begin(), points.end(), step,
+                                     [](float at, const auto& point) { return at < point.step; });
+  return static_cast<std::size_t>(next - points.begin());
+}
+
+// The truth at a step: before its first waypoint it waits there, after the last it stays there.
+Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
+  const std::size_t next = After(step, track);
+  Waypoint now = track[next == 0 ? 0 : next - 1];
+  if (next > 0 && next < track.size()) {
+    const Waypoint& to = track[next];
+    const float part = (step - now.step) / (to.step - now.step);
+    const auto move = [part](float& from, float end) { from += (end - from) * part; };
+    move(now.x, to.x);
+    move(now.y, to.y);
+    for (std::size_t k = 0; k < now.radii.size(); ++k) {
+      move(now.risks[k], to.risks[k]);
+      move(now.radii[k], to.radii[k]);
+      if (now.quadrants.empty()) continue;
+      for (std::size_t q = 0; q < 4; ++q) move(now.quadrants[k][q], to.quadrants[k][q]);
+      now.radii[k] = *std::max_element(now.quadrants[k].begin(), now.quadrants[k].end());
+    }
+  }
+  now.step = step;
+  return now;
+}
+
+// One forecast: the truth where it is past; where it is to come, what was said or else the truth
+// displaced.
 class Forecast {
  public:
   Forecast(const Farm& farm, std::int32_t disaster, std::int32_t issued)
       : scenario_(farm.scenario()),
         track_(TrackOf(farm, disaster)),
+        said_(NewestSaid(farm, disaster, issued)),
         issued_(static_cast<float>(issued)),
-        error_(ForecastErrorVector(farm.seed(), farm.episode(), disaster)) {}
+        first_(IndexAfter(issued_)) {
+    if (said_ == nullptr) error_ = ForecastErrorVector(farm.seed(), farm.episode(), disaster);
+  }
 
-  /// The first waypoint after a step, or the end.
-  std::vector<Waypoint>::const_iterator After(float step) const {
-    return std::upper_bound(track_.begin(), track_.end(), step,
-                            [](float at, const Waypoint& point) { return at < point.step; });
-  }
-  std::array<float, 2> Displaced(const Waypoint& point) const {
-    const float error = MeanForecastError(scenario_, std::max(point.step - issued_, 0.0F));
-    return {point.x + error * error_[0], point.y + error * error_[1]};
-  }
-  std::array<float, 2> Truth() const {
-    const auto next = After(issued_);
-    if (next == track_.begin()) return {next->x, next->y};
-    const Waypoint& from = *(next - 1);
-    if (next == track_.end()) return {from.x, from.y};
-    const float part = (issued_ - from.step) / (next->step - from.step);
-    return {from.x + (next->x - from.x) * part, from.y + (next->y - from.y) * part};
+  /// Steps at which it bends or the truth does, from its issue on.
+  std::vector<float> Steps() const {
+    std::vector<float> steps{issued_};
+    for (std::size_t i = After(issued_, track_); i < track_.size(); ++i) {
+      steps.push_back(track_[i].step);
+    }
+    for (std::size_t i = first_; said_ != nullptr && i < said_->points.size(); ++i) {
+      steps.push_back(said_->points[i].step);
+    }
+    std::sort(steps.begin(), steps.end());
+    steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
+    return steps;
   }
   std::array<float, 2> At(float step) const {
-    const auto next = After(step);
-    const bool known_start = next == track_.begin() || (next - 1)->step <= issued_;
-    const std::array<float, 2> from = known_start ? Truth() : Displaced(*(next - 1));
-    if (next == track_.end()) return from;
-    const std::array<float, 2> to = Displaced(*next);
-    const float start = known_start ? issued_ : (next - 1)->step;
-    const float part = (step - start) / (next->step - start);
-    return {from[0] + (to[0] - from[0]) * part, from[1] + (to[1] - from[1]) * part};
+    const std::size_t next = std::max(IndexAfter(step), first_);
+    const ForecastPoint from = next == first_ ? Now() : Point(next - 1);
+    if (next == (said_ != nullptr ? said_->points.size() : track_.size())) return {from.x, from.y};
+    const ForecastPoint to = Point(next);
+    const float part = (step - from.step) / (to.step - from.step);
+    return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
   }
 
  private:
+  std::size_t IndexAfter(float step) const {
+    return said_ != nullptr ? After(step, said_->points) : After(step, track_);
+  }
+  ForecastPoint Now() const {
+    const std::size_t next = After(issued_, track_);
+    const Waypoint& from = track_[next == 0 ? 0 : next - 1];
+    if (next == 0 || next == track_.size()) return {issued_, from.x, from.y};
+    const Waypoint& to = track_[next];
+    const float part = (issued_ - from.step) / (to.step - from.step);
+    return {issued_, from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
+  }
+  ForecastPoint Point(std::size_t i) const {
+    if (said_ != nullptr) return said_->points[i];
+    const Waypoint& point = track_[i];
+    const float error = MeanForecastError(scenario_, point.step - issued_);
+    return {point.step, point.x + error * error_[0], point.y + error * error_[1]};
+  }
+
   const Scenario& scenario_;
   const std::vector<Waypoint>& track_;
+  const IssuedForecast* said_;  // null: the truth displaced
   float issued_;
-  std::array<float, 2> error_;
+  std::size_t first_;  // of the points to come
+  std::array<float, 2> error_{};
 };
 
 // The sum of four draws of [0, 1), less its mean: near to normal, and the same bits everywhere.
@@ -82,8 +144,10 @@ std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episo
   return {kScale * NearlyNormal(Draw(key, 0)), kScale * NearlyNormal(Draw(key, 1))};
 }
 
-bool HasForecast(const Farm& farm, std::int32_t disaster) {
-  return !farm.scenario().view.forecast_error_km.empty() && !TrackOf(farm, disaster).empty();
+bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
+  if (TrackOf(farm, disaster).empty()) return false;
+  return !farm.scenario().view.forecast_error_km.empty() ||
+         NewestSaid(farm, disaster, issued) != nullptr;
 }
 
 std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::int32_t issued,
@@ -93,26 +157,10 @@ std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::in
 
 std::vector<Waypoint> ForecastTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const Forecast forecast(farm, disaster, issued);
-  const std::vector<Waypoint>& truth = TrackOf(farm, disaster);
-  const Disaster now = [&] {
-    Disaster there = farm.disasters()[static_cast<std::size_t>(disaster)];
-    there.waypoint = 0;
-    FollowTrack(there, truth, issued);
-    return there;
-  }();
-  const auto rings = static_cast<std::size_t>(now.rings);
-  Waypoint first{static_cast<float>(issued), now.x, now.y, now.grade, {}, {}, {}};
-  for (std::size_t k = 0; k < rings; ++k) {
-    first.radii.push_back(now.radius[k]);
-    first.risks.push_back(now.risk[k]);
-    if (!now.by_quadrant) continue;
-    first.quadrants.push_back(
-        {now.quadrant[0][k], now.quadrant[1][k], now.quadrant[2][k], now.quadrant[3][k]});
-  }
-  std::vector<Waypoint> track{std::move(first)};
-  for (auto point = forecast.After(static_cast<float>(issued)); point != truth.end(); ++point) {
-    track.push_back(*point);
-    const std::array<float, 2> place = forecast.Displaced(*point);
+  std::vector<Waypoint> track;
+  for (const float step : forecast.Steps()) {
+    track.push_back(TruthAt(TrackOf(farm, disaster), step));
+    const std::array<float, 2> place = forecast.At(step);
     track.back().x = place[0];
     track.back().y = place[1];
   }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Typhoon bulletins as JSON: a list of storms, each with its points, and forecasts with some of
 // them. No document exists; the shape is that of some two thousand files. A second spelling of
-// the keys (moveDir for move_dir, r7 for radius7) is as good as the first.
+// the keys (moveDir for move_dir, r7 for radius7) is as good as the first; so is that of Zhejiang's
+// water office (tfid, movedirection, radii as 250|220|200|180).
 #include <algorithm>
 #include <array>
 
@@ -43,10 +44,35 @@ StormGrade GradeOfText(const std::string& text) {
       ->second;
 }
 
+// "250|220|200|180", or one number for all.
+std::array<double, kQuadrantCount> ParseRadii(const JsonObject& point, JsonObject::Keys keys,
+                                              HazardPlace& place) {
+  std::array<double, kQuadrantCount> radius{};
+  const std::string text = point.Text(keys);
+  if (text.find('|') == std::string::npos) {
+    radius.fill(point.Number(keys, 0.0, kMostRadius_km).value_or(0.0));
+    return radius;
+  }
+  std::string_view rest = text;
+  bool fits = true;
+  for (std::size_t q = 0; q < radius.size(); ++q) {
+    const std::size_t bar = rest.find('|');
+    const std::optional<double> number = ParseNumber(rest.substr(0, bar));
+    fits = fits && number && *number >= 0.0 && *number <= kMostRadius_km &&
+           (bar == std::string_view::npos) == (q + 1 == radius.size());
+    if (!fits) break;
+    radius[q] = *number;
+    rest.remove_prefix(bar == std::string_view::npos ? rest.size() : bar + 1);
+  }
+  if (fits) return radius;
+  place.RefuseValue(
+      Join(point.path(), *keys.begin()),
+      "got " + Quoted(text) + ", expected four numbers in [0, 3000] as " + "250|220|200|180");
+}
+
 void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys whole,
               JsonObject::Keys quadrants, HazardFix& fix, HazardPlace& place) {
-  std::array<double, kQuadrantCount> radius{};
-  radius.fill(point.Number(whole, 0.0, kMostRadius_km).value_or(0.0));
+  std::array<double, kQuadrantCount> radius = ParseRadii(point, whole, place);
   if (const Json* value = point.Find(quadrants)) {
     const JsonObject quad(*value, Join(point.path(), *quadrants.begin()), place);
     constexpr std::array<const char*, kQuadrantCount> kKeys{"ne", "se", "sw", "nw"};
@@ -79,9 +105,9 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
            place);
   ReadRing(point, 64, {"radius12", "r12"}, {"radius12_quad", "r12Quad", "radius12Quad"}, fix,
            place);
-  fix.speed_kmh = point.Number({"move_speed", "moveSpeed"}, 0.0, 300.0);
+  fix.speed_kmh = point.Number({"move_speed", "moveSpeed", "movespeed"}, 0.0, 300.0);
   if (fix.speed_kmh == 0.0) fix.speed_kmh.reset();  // not said; a storm at rest is computed
-  const std::string direction = point.Text({"move_dir", "moveDir"});
+  const std::string direction = point.Text({"move_dir", "moveDir", "movedirection"});
   fix.heading_deg = ParseDirection(direction);
   if (!fix.heading_deg && !direction.empty()) {
     point.Here().Warn("move_dir: " + Quoted(direction) + " is no direction known here");
@@ -111,6 +137,7 @@ void ReadLandfalls(const JsonObject& storm, HazardTrack& track, HazardPlace& pla
   const Json* land = storm.List({"land"});
   for (std::size_t i = 0; land != nullptr && i < land->size(); ++i) {
     const JsonObject entry((*land)[i], At(Join(storm.path(), "land"), i), place);
+    if (entry.Find({"landtime"}) != nullptr) continue;  // Zhejiang's names more than landfalls
     track.landfalls.push_back({entry.NeedTime({"land_time", "landTime"}, kBeijing_s),
                                entry.NeedPosition({"lat"}, {"lng", "lon"}),
                                entry.Text({"position"})});
@@ -121,10 +148,10 @@ void ReadLandfalls(const JsonObject& storm, HazardTrack& track, HazardPlace& pla
 
 HazardTrack ReadStorm(const JsonObject& storm, HazardPlace& place) {
   HazardTrack track;
-  track.id = storm.Text({"tfbh", "ident"});
+  track.id = storm.Text({"tfbh", "ident", "tfid"});
   if (track.id.empty()) storm.Here().Refuse("tfbh: got nothing, expected a storm's number");
   const auto named = [](const std::string& text) { return text == "-" ? std::string() : text; };
-  track.name = named(storm.Text({"ename"}));
+  track.name = named(storm.Text({"ename", "enname"}));
   track.local_name = named(storm.Text({"name"}));
   track.agency = "bulletin";
   const Json* points = storm.List({"points"});

@@ -55,9 +55,10 @@ std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
   if (fields.size() > 7 && fields[0].size() == 2 && IsDigits(fields[2])) {
     return HazardFormat::kAtcf;
   }
-  const bool json = !first.empty() && (first[0] == '[' || first[0] == '{' || first[0] == '`');
-  if (!json) return std::nullopt;
-  if (HasKey(whole, "\"tfbh\"") || (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
+  const bool json = !first.empty() && std::string_view("[{`/").find(first[0]) != first.npos;
+  if (!json && !internal::IsAssignment(first)) return std::nullopt;
+  if (HasKey(whole, "\"tfbh\"") || HasKey(whole, "\"tfid\"") ||
+      (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
     return HazardFormat::kBulletin;
   }
   if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"")) {

@@ -135,7 +135,26 @@ std::string InRange(double min, double max) {
   return "a number in [" + Format(min) + ", " + Format(max) + "]";
 }
 
+// Where the blanks and comments of JavaScript at the beginning end.
+std::size_t EndOfComments(const std::string& text) {
+  std::size_t at = text.find_first_not_of(" \t\r\n");
+  while (at != std::string::npos && text[at] == '/') {
+    const bool block = text.compare(at, 2, "/*") == 0;
+    if (!block && text.compare(at, 2, "//") != 0) return at;
+    const std::size_t end = block ? text.find("*/", at + 2) : text.find('\n', at);
+    at = end == std::string::npos ? end : text.find_first_not_of(" \t\r\n", end + (block ? 2 : 0));
+  }
+  return std::min(at, text.size());
+}
+
 }  // namespace
+
+bool IsAssignment(std::string_view text) {
+  for (const std::string_view word : {"let ", "var ", "const "}) {
+    if (text.substr(0, word.size()) == word) return text.find('=') != std::string_view::npos;
+  }
+  return false;
+}
 
 std::string CleanJson(const std::string& text) {
   std::string clean = text;
@@ -144,6 +163,15 @@ std::string CleanJson(const std::string& text) {
               clean.begin() + static_cast<std::ptrdiff_t>(end), ' ');
   };
   if (clean.compare(0, 3, "\xEF\xBB\xBF") == 0) blank(0, 3);
+  const std::size_t script = EndOfComments(clean);
+  const std::string_view rest = std::string_view(clean).substr(script);
+  const bool assigned = IsAssignment(rest.substr(0, rest.find('\n')));
+  const std::size_t value = assigned ? clean.find('=', script) + 1 : script;
+  std::replace_if(
+      clean.begin(), clean.begin() + static_cast<std::ptrdiff_t>(value),
+      [](char c) { return c != '\n'; }, ' ');
+  const std::size_t last = clean.find_last_not_of(" \t\r\n");
+  if (assigned && last != std::string::npos && clean[last] == ';') blank(last, last + 1);
   const std::size_t fence = clean.find_first_not_of(" \t\r\n");
   if (fence == std::string::npos || clean.compare(fence, 3, "```") != 0) return clean;
   blank(fence, std::min(clean.find('\n', fence), clean.size()));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// JSON as bulletins write it: with a byte-order mark or a Markdown fence around it, numbers as
-/// numbers or as text, and nothing said as null, "", "null" or no key at all.
+/// JSON as bulletins write it: with a byte-order mark or a Markdown fence around it, or as the
+/// value of a variable of JavaScript (`let x = …;`, behind comments), numbers as numbers or as
+/// text, and nothing said as null, "", "null" or no key at all.
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -11,7 +12,10 @@
 
 namespace aquafarm::internal {
 
-/// A JSON text without byte-order mark and Markdown fence; lines stay where they are.
+/// Whether a text starts as `let x = …`, `var x = …` or `const x = …`.
+bool IsAssignment(std::string_view text);
+
+/// A JSON text without byte-order mark, Markdown fence and JavaScript; lines stay where they are.
 std::string CleanJson(const std::string& text);
 
 /// @throws InputError "file:line: got no valid JSON: …"

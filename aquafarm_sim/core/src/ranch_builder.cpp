@@ -19,49 +19,27 @@
 #include "aquafarm/sea_field.h"
 #include "field_domain.h"
 #include "hazard_text.h"
+#include "ranch_text.h"
 
 namespace aquafarm {
 namespace {
 
 namespace fs = std::filesystem;
+using internal::CellText;
+using internal::FileName;
 using internal::Format;
 using internal::FormatTime;
-
-template <typename... Args>
-std::string Text(const char* format, Args... args) {
-  char text[400];
-  std::snprintf(text, sizeof(text), format, args...);
-  return text;
-}
-
-std::string FileName(const std::string& path) { return fs::path(path).filename().string(); }
-
-// What a file says of itself, on one line.
-std::string OneLine(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20U; }, '?');
-  return text;
-}
-
-std::string InQuotes(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : OneLine(text))
-    quoted += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
-  return quoted + "\"";
-}
-
-/// A number as a file should show it: of so many digits, no more.
-std::string Short(double value, int digits) {
-  return Format(std::stod(Text("%.*f", digits, value)));
-}
+using internal::OneLine;
+using internal::Short;
+using internal::Text;
 
 // Everything that goes into the text of the file, collected part by part.
 class Builder {
  public:
   explicit Builder(const RanchRequest& request) : request_(request) {
-    ranch_.scenario.width = request.width;
-    ranch_.scenario.height = request.height;
-    cell_size_m_ = request.cell_size_m;
+    plan_.width = request.width;
+    plan_.height = request.height;
+    plan_.cell_size_m = request.cell_size_m;
     CheckSize("size", request.width);
     CheckSize("size", request.height);
     internal::Check("cell", request.cell_size_m, internal::Interval<double>{0.01, 1.0e6});
@@ -73,12 +51,13 @@ class Builder {
 
   Ranch Build() {
     PlaceTerrain();
-    const std::vector<Cell> ports = PlacePorts();
+    PlacePorts();
     SetTime();
     ReadSea();
     AddPresets();
     SayNotices();
-    Write(ports);
+    plan_.step_limit = StepLimit();
+    ranch_.yaml = internal::WriteRanch(request_, plan_, ranch_.decided);
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
     if (!request_.value.empty()) ValueDevices();
     return std::move(ranch_);
@@ -88,19 +67,19 @@ class Builder {
   static void CheckSize(const char* what, std::int32_t side) {
     internal::Check(what, side, internal::Interval<std::int32_t>{2, kMaxSide});
   }
-  std::int32_t width() const { return ranch_.scenario.width; }
-  std::int32_t height() const { return ranch_.scenario.height; }
+  std::int32_t width() const { return plan_.width; }
+  std::int32_t height() const { return plan_.height; }
   void Say(const std::string& line) { ranch_.decided.push_back(OneLine(line)); }
   void Keep(const std::vector<std::string>& warnings) {
     ranch_.warnings.insert(ranch_.warnings.end(), warnings.begin(), warnings.end());
   }
 
   void Resize(Eigen::Index rows, Eigen::Index columns, double cell_size_m) {
-    ranch_.scenario.width = static_cast<std::int32_t>(columns);
-    ranch_.scenario.height = static_cast<std::int32_t>(rows);
+    plan_.width = static_cast<std::int32_t>(columns);
+    plan_.height = static_cast<std::int32_t>(rows);
     CheckSize("chart", width());
     CheckSize("chart", height());
-    cell_size_m_ = cell_size_m;
+    plan_.cell_size_m = cell_size_m;
   }
 
   // The origin is the centre of cell (0, 0); the place asked for is the middle of the ranch.
@@ -108,11 +87,12 @@ class Builder {
     if (!request_.center) {
       throw InputError("center: got nothing, expected the place of the ranch on the chart");
     }
-    const GeoPoint corner =
-        GeoFrame(*request_.center, cell_size_m_).ToGeo(-(width() - 1) / 2.0, -(height() - 1) / 2.0);
+    const GeoPoint corner = GeoFrame(*request_.center, plan_.cell_size_m)
+                                .ToGeo(-(width() - 1) / 2.0, -(height() - 1) / 2.0);
     // Rounded as it is written, so that the file and this agree.
-    origin_ = GeoPoint{std::stod(Short(corner.latitude, 6)), std::stod(Short(corner.longitude, 6))};
-    return GeoFrame(*origin_, cell_size_m_);
+    plan_.origin =
+        GeoPoint{std::stod(Short(corner.latitude, 6)), std::stod(Short(corner.longitude, 6))};
+    return GeoFrame(*plan_.origin, plan_.cell_size_m);
   }
 
   LandShare ReadChart() {
@@ -137,41 +117,42 @@ class Builder {
   }
 
   void PlaceTerrain() {
-    terrain_ = ToTerrain(ReadChart());
+    plan_.terrain = ToTerrain(ReadChart());
     if (request_.center) Frame();
-    Say(Text("ranch: %d x %d cells of %s m", width(), height(), Format(cell_size_m_).c_str()) +
+    Say(Text("ranch: %d x %d cells of %s m", width(), height(), Format(plan_.cell_size_m).c_str()) +
         (request_.center
              ? Text(", middle %.3f N %.3f E", request_.center->latitude, request_.center->longitude)
              : std::string()));
     if (request_.chart.empty()) return;
     Say(Text("chart: %s: %d island cells, %d rocks, %d of water", FileName(request_.chart).c_str(),
-             static_cast<int>(terrain_.land.cast<int>().sum()),
-             static_cast<int>(terrain_.rocks.size()), terrain_.WaterCells()) +
-        (terrain_.filled > 0 ? Text("; %d cells of enclosed water filled", terrain_.filled)
-                             : std::string()));
+             static_cast<int>(plan_.terrain.land.cast<int>().sum()),
+             static_cast<int>(plan_.terrain.rocks.size()), plan_.terrain.WaterCells()) +
+        (plan_.terrain.filled > 0
+             ? Text("; %d cells of enclosed water filled", plan_.terrain.filled)
+             : std::string()));
   }
 
-  std::vector<Cell> PlacePorts() {
-    std::vector<Cell> ports;
+  void PlacePorts() {
+    std::vector<Cell>& ports = plan_.ports;
     if (request_.port_places.empty()) {
-      ports = SpreadPorts(terrain_, request_.ports);
+      ports = SpreadPorts(plan_.terrain, request_.ports);
     } else {
       const GeoFrame frame = Frame();
       for (const GeoPoint& place : request_.port_places) {
         const std::array<double, 2> wanted = frame.ToGrid(place);
         const Cell cell{static_cast<std::int32_t>(std::lround(wanted[0])),
                         static_cast<std::int32_t>(std::lround(wanted[1]))};
-        ports.push_back(NearestShore(terrain_, cell, ports));
+        ports.push_back(NearestShore(plan_.terrain, cell, ports));
         Say(Text("port: asked for at (%d, %d), put at the shore at (%d, %d)", cell.x, cell.y,
                  ports.back().x, ports.back().y));
       }
     }
     if (ports.empty()) Say(Text("ports: no shore, so %d drawn at the edge", request_.ports));
-    return ports;
   }
 
   // The storm of a track in another file: by id, else by name.
-  static const HazardTrack& SameStorm(const HazardFile& file, const HazardTrack& track) {
+  static const HazardTrack& SameStorm(const char* option, const HazardFile& file,
+                                      const HazardTrack& track) {
     const auto letters = [](const std::string& name) {
       std::string bare = internal::Upper(name);
       bare.erase(std::remove(bare.begin(), bare.end(), '-'), bare.end());
@@ -188,7 +169,7 @@ class Builder {
     try {
       return FindTrack(file, track.name.empty() ? track.id : track.name);
     } catch (const InputError& error) {
-      throw InputError(std::string("radii: ") + error.what());
+      throw InputError(std::string(option) + ": " + error.what());
     }
   }
 
@@ -203,30 +184,32 @@ class Builder {
     if (!request_.radii.empty()) {
       const HazardFile other = LoadHazardFile(request_.radii);
       Keep(other.warnings);
-      radii = Text("; radii of %d from %s", BorrowRings(SameStorm(other, track), track),
+      radii = Text("; radii of %d from %s", BorrowRings(SameStorm("radii", other, track), track),
                    FileName(request_.radii).c_str());
     }
-    storm_ = ToRings(track, request_.reduction);
+    plan_.storm = ToRings(track, request_.reduction);
     const std::int32_t averaging = track.fixes.front().averaging_min;
-    storm_text_ = (track.name.empty() ? track.id : track.name + " (" + track.id + ")") + ", " +
-                  std::string(ToString(file.format)) + " " + FileName(request_.track);
-    Say("storm: " + storm_text_ +
+    plan_.storm_text = (track.name.empty() ? track.id : track.name + " (" + track.id + ")") + ", " +
+                       std::string(ToString(file.format)) + " " + FileName(request_.track);
+    Say("storm: " + plan_.storm_text +
         Text(", %d fixes, winds of %d minutes", static_cast<int>(track.fixes.size()), averaging) +
-        radii + Text("; radii estimated at %d, unknown at %d", storm_.estimated, storm_.silent));
+        radii +
+        Text("; radii estimated at %d, unknown at %d", plan_.storm.estimated, plan_.storm.silent));
     return track;
   }
 
   // When the episode starts and ends, from when the storm is over the ranch.
   void SetTime() {
-    step_s_ = request_.step_s.value_or(
-        std::max(1.0, std::round(cell_size_m_ / (request_.speed_kn * kMpsPerKnot))));
-    internal::Check("step", step_s_, internal::Interval<double>{0.001, 1.0e6});
-    start_ = request_.start.value_or(0);
-    if (request_.track.empty()) return Say(Text("time: %g s a step; no storm", step_s_));
-    ReadTrack();
-    const double half_diagonal_km = std::hypot(width(), height()) / 2.0 * cell_size_m_ / 1000.0;
-    const Passage passage = PassOver(storm_, *request_.center, half_diagonal_km);
-    const std::int32_t widest_kt = storm_.wind_kt.back();
+    plan_.step_s = request_.step_s.value_or(
+        std::max(1.0, std::round(plan_.cell_size_m / (request_.speed_kn * kMpsPerKnot))));
+    internal::Check("step", plan_.step_s, internal::Interval<double>{0.001, 1.0e6});
+    plan_.start = request_.start.value_or(0);
+    if (request_.track.empty()) return Say(Text("time: %g s a step; no storm", plan_.step_s));
+    const HazardTrack track = ReadTrack();
+    const double half_diagonal_km =
+        std::hypot(width(), height()) / 2.0 * plan_.cell_size_m / 1000.0;
+    const Passage passage = PassOver(plan_.storm, *request_.center, half_diagonal_km);
+    const std::int32_t widest_kt = plan_.storm.wind_kt.back();
     const bool reaches = passage.worst_wind_kt > 0;
     Say(Text("nearest: %.0f km at %s", passage.nearest_km,
              FormatTime(passage.nearest_time).c_str()));
@@ -240,25 +223,53 @@ class Builder {
     const std::int64_t first = reaches ? passage.first - lead_s : passage.nearest_time - half_day_s;
     const std::int64_t last = reaches ? passage.last : passage.nearest_time + half_day_s;
     const auto hour_before = [](std::int64_t time) { return time - ((time % 3600) + 3600) % 3600; };
-    start_ = request_.start.value_or(std::max(hour_before(first), storm_.waypoints.front().time));
+    plan_.start =
+        request_.start.value_or(std::max(hour_before(first), plan_.storm.waypoints.front().time));
     const std::int64_t end =
-        std::min(hour_before(last) + 2 * kHour_s, storm_.waypoints.back().time);
-    if (end <= start_) {
-      throw InputError("start: got " + FormatTime(start_) + ", expected a time before " +
+        std::min(hour_before(last) + 2 * kHour_s, plan_.storm.waypoints.back().time);
+    if (end <= plan_.start) {
+      throw InputError("start: got " + FormatTime(plan_.start) + ", expected a time before " +
                        FormatTime(end) + ", when the storm is over");
     }
-    duration_ = StepsToCover(static_cast<double>(end - start_), step_s_);
-    storm_steps_ = duration_;
-    Say(Text("time: %g s a step, from %s, over after %d steps", step_s_, FormatTime(start_).c_str(),
-             duration_));
+    duration_ = StepsToCover(static_cast<double>(end - plan_.start), plan_.step_s);
+    plan_.storm_steps = duration_;
+    Say(Text("time: %g s a step, from %s, over after %d steps", plan_.step_s,
+             FormatTime(plan_.start).c_str(), duration_));
     Trim(end);
+    ReadForecasts(track, end);
+  }
+
+  // From the newest issued by the start on, of the agency that each bulletin names first.
+  void ReadForecasts(const HazardTrack& track, std::int64_t end) {
+    if (request_.forecasts.empty()) return;
+    const HazardFile file = LoadHazardFile(request_.forecasts);
+    Keep(file.warnings);
+    std::vector<HazardForecast>& kept = plan_.forecasts;
+    for (HazardForecast forecast : SameStorm("forecasts", file, track).forecasts) {
+      auto& fixes = forecast.fixes;
+      fixes.erase(std::remove_if(fixes.begin(), fixes.end(),
+                                 [&](const HazardFix& fix) { return fix.time <= forecast.issued; }),
+                  fixes.end());
+      const bool second = !kept.empty() && kept.back().issued == forecast.issued;
+      if (second || fixes.empty() || forecast.issued >= end) continue;
+      if (forecast.issued <= plan_.start) kept.clear();
+      kept.push_back(std::move(forecast));
+    }
+    if (kept.empty()) {
+      throw InputError("forecasts: got no forecast points of the storm before " + FormatTime(end) +
+                       " in " + FileName(request_.forecasts) +
+                       ", expected bulletins with forecast points");
+    }
+    Say(Text("forecasts: %d from %s, the first of ", static_cast<int>(kept.size()),
+             FileName(request_.forecasts).c_str()) +
+        FormatTime(kept.front().issued));
   }
 
   // Keeps the waypoints from the last before the start to the first after the end.
   void Trim(std::int64_t end) {
-    std::vector<StormWaypoint>& all = storm_.waypoints;
+    std::vector<StormWaypoint>& all = plan_.storm.waypoints;
     std::size_t from = 0;
-    while (from + 1 < all.size() && all[from + 1].time <= start_) ++from;
+    while (from + 1 < all.size() && all[from + 1].time <= plan_.start) ++from;
     std::size_t to = all.size();
     while (to > from + 1 && all[to - 2].time >= end) --to;
     all = {all.begin() + static_cast<std::ptrdiff_t>(from),
@@ -273,11 +284,11 @@ class Builder {
     if (request_.notices.empty()) return;
     const NoticeFile file = LoadNotices(request_.notices);
     Keep(file.warnings);
-    const bool timed = request_.start || !storm_.waypoints.empty();
-    const std::int64_t end = start_ + static_cast<std::int64_t>(StepLimit() * step_s_);
+    const bool timed = request_.start || !plan_.storm.waypoints.empty();
+    const std::int64_t end = plan_.start + static_cast<std::int64_t>(StepLimit() * plan_.step_s);
     int others = 0;
     for (const Notice& notice : file.notices) {
-      const bool in_force = !timed || (notice.start < end && notice.end > start_);
+      const bool in_force = !timed || (notice.start < end && notice.end > plan_.start);
       others += in_force ? 0 : 1;
       if (in_force) Say("notice: " + Describe(notice));
     }
@@ -287,7 +298,7 @@ class Builder {
   NamedLayer ReadLayer(const SeaLayerRequest& sea) {
     const GeoFrame frame = Frame();
     const std::optional<std::int64_t> time =
-        request_.track.empty() ? request_.start : std::optional<std::int64_t>(start_);
+        request_.track.empty() ? request_.start : std::optional<std::int64_t>(plan_.start);
     SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
                                   width(), height());
     NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
@@ -306,15 +317,16 @@ class Builder {
         (field.time ? " at " + FormatTime(*field.time) : "") +
         Text(", mean %.4g %s, on %.0f of %d cells", static_cast<double>(known.sum() / cells),
              field.units.c_str(), static_cast<double>(cells), width() * height()));
-    sea_units_.push_back(std::move(field.units));
+    plan_.sea_units.push_back(std::move(field.units));
     return layer;
   }
 
   void AddPresets() {
     const bool south = request_.center && request_.center->latitude < 0.0;
     for (const std::string& text : request_.disasters) {
-      const DisasterSpec disaster = ParseDisasterPreset(text, {cell_size_m_, step_s_, south});
-      presets_.push_back(disaster);
+      const DisasterSpec disaster =
+          ParseDisasterPreset(text, {plan_.cell_size_m, plan_.step_s, south});
+      plan_.presets.push_back(disaster);
       Say(Text("disaster: %s: grade %d, radius %.1f cells, %.3g cells a step, %d steps",
                text.c_str(), disaster.grade, static_cast<double>(disaster.radii.back()),
                static_cast<double>(disaster.speed), disaster.duration));
@@ -323,11 +335,11 @@ class Builder {
   }
 
   void ReadSea() {
-    for (const SeaLayerRequest& sea : request_.sea) layers_.push_back(ReadLayer(sea));
+    for (const SeaLayerRequest& sea : request_.sea) plan_.layers.push_back(ReadLayer(sea));
     if (!request_.sea_risk.empty()) Say("risk of the sea: " + request_.sea_risk);
     if (request_.value.empty()) return;
     try {
-      value_ = Evaluate(request_.value, layers_);
+      value_ = Evaluate(request_.value, plan_.layers);
     } catch (const InputError& error) {
       throw InputError(std::string("value: ") + error.what());
     }
@@ -349,162 +361,16 @@ class Builder {
                ", kind: " + std::string(ToString(device.kind)) +
                ", value: " + Short(static_cast<double>(worth), 2) + "}\n";
     }
-    ranch_.yaml.replace(ranch_.yaml.find(DevicesLine()), DevicesLine().size(), sites);
+    const std::string line = internal::DevicesLine(request_);
+    ranch_.yaml.replace(ranch_.yaml.find(line), line.size(), sites);
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
-  }
-
-  std::string DevicesLine() const {
-    return "  devices: {placement: " + std::string(ToString(request_.placement)) +
-           Text(", count: %d}\n", request_.devices);
-  }
-
-  void Line(const std::string& line) { ranch_.yaml += line + "\n"; }
-
-  void Write(const std::vector<Cell>& ports) {
-    Line("# SPDX-License-Identifier: BSD-3-Clause");
-    Line("# Made by `aquafarm scenario`:");
-    for (const std::string& line : ranch_.decided) Line("#   " + line);
-    Line("name: " + InQuotes(request_.name));
-    Line("description: " +
-         InQuotes("A ranch" +
-                  (request_.chart.empty() ? "" : " on the chart " + FileName(request_.chart)) +
-                  (request_.track.empty() ? " in calm weather."
-                                          : " while " + storm_text_ + " passes.")));
-    Line("grid:");
-    Line(Text("  width: %d\n  height: %d", width(), height()));
-    Line("  cell_size_m: " + Format(cell_size_m_));
-    if (origin_) {
-      Line("  origin: {latitude: " + Format(origin_->latitude) +
-           ", longitude: " + Format(origin_->longitude) + "}");
-    }
-    Line("time: {step_duration_s: " + Format(step_s_) +
-         (storm_.waypoints.empty() && !request_.start ? std::string()
-                                                      : ", start: " + FormatTime(start_)) +
-         Text(", step_limit: %d}", StepLimit()));
-    WriteLayout(ports);
-    Line(Text("ships: {count: %d, capacity: 1}", request_.ships));
-    if (!storm_.waypoints.empty() || !presets_.empty()) Line("disasters:");
-    if (!storm_.waypoints.empty()) WriteStorm();
-    for (const DisasterSpec& disaster : presets_) WritePreset(disaster);
-    Line("view: {mode: full}");
-    if (!layers_.empty()) WriteSeas();
-  }
-
-  // As numbers, so that the file needs no other.
-  void WriteSeas() {
-    Line("seas:\n  layers:");
-    for (std::size_t i = 0; i < layers_.size(); ++i) {
-      Line("    - name: " + layers_[i].name);
-      Line("      units: " + InQuotes(sea_units_[i]));
-      Line("      values: [");
-      const Layer& layer = layers_[i].layer;
-      for (Eigen::Index y = 0; y < layer.rows(); ++y) {
-        std::string row;
-        for (Eigen::Index x = 0; x < layer.cols(); ++x) {
-          const float value = layer(y, x);
-          row += std::isnan(value) ? ".nan, " : Format(value) + ", ";
-        }
-        Line("        " + row);
-      }
-      Line("      ]");
-    }
-    if (!request_.sea_risk.empty()) Line("  risk: " + InQuotes(request_.sea_risk));
-  }
-
-  static std::string CellText(Cell cell) { return Text("[%d, %d]", cell.x, cell.y); }
-  static std::string CellList(const std::vector<Cell>& cells) {
-    std::string text;
-    for (const Cell cell : cells) text += (text.empty() ? "[" : ", ") + CellText(cell);
-    return text + "]";
-  }
-
-  void WriteLayout(const std::vector<Cell>& ports) {
-    Line("layout:\n  mode: fixed\n  seed: " + Format(request_.seed));
-    const std::vector<IslandBlock> islands = ToIslands(terrain_.land);
-    if (!islands.empty()) Line("  islands:");
-    for (const IslandBlock& block : islands) {
-      Line(Text("    - {x: %d, y: %d, width: %d, height: %d}", block.south_west.x,
-                block.south_west.y, block.width, block.height));
-    }
-    Line(terrain_.rocks.empty() ? "  rocks: {count: [0, 0]}"
-                                : "  rocks: {cells: " + CellList(terrain_.rocks) + "}");
-    Line(ports.empty() ? Text("  ports: {count: %d}", request_.ports)
-                       : "  ports: {cells: " + CellList(ports) + "}");
-    ranch_.yaml += DevicesLine();
-  }
-
-  static std::string Numbers(const std::vector<float>& values) {
-    std::string text;
-    for (const float value : values) text += (text.empty() ? "[" : ", ") + Format(value);
-    return text + "]";
-  }
-
-  void WritePreset(const DisasterSpec& disaster) {
-    Line("  - kind: " + std::string(ToString(disaster.kind)));
-    Line(Text("    grade: %d\n    radii: ", disaster.grade) + Numbers(disaster.radii) +
-         "\n    risks: " + Numbers(disaster.risks));
-    Line("    speed: " + Format(disaster.speed) +
-         Text("\n    heading_deg: %d", disaster.heading_deg.value_or(0)) +
-         "\n    turn_probability: 0\n    radius_growth: " + Format(disaster.radius_growth));
-    Line("    border: " + std::string(ToString(disaster.border)) +
-         Text("\n    duration: %d", disaster.duration));
-  }
-
-  void WriteStorm() {
-    const GradeRisks& table = DefaultGradeRisks();
-    Line("  - kind: typhoon");
-    std::string rows;
-    for (const std::vector<float>& row : table) {
-      rows += rows.empty() ? "[" : ", ";
-      const std::size_t rings = storm_.wind_kt.size();
-      for (std::size_t k = row.size() - rings; k < row.size(); ++k) {
-        rows += (k == row.size() - rings ? "[" : ", ") + Format(row[k]);
-      }
-      rows += "]";
-    }
-    std::string winds;
-    for (const std::int32_t wind_kt : storm_.wind_kt) {
-      winds += (winds.empty() ? "" : ", ") + std::to_string(wind_kt);
-    }
-    Line("    grade_risks: [" + rows.substr(1) + "]  # grades 1 to 4, rings of " + winds + " kt");
-    Line(Text("    duration: %d\n    track:", storm_steps_));
-    for (const StormWaypoint& waypoint : storm_.waypoints) {
-      std::string radii;
-      for (const double radius : waypoint.radii_km) {
-        radii += (radii.empty() ? "" : ", ") + Short(radius, 1);
-      }
-      std::string quadrants;
-      for (const std::array<double, 4>& ring : waypoint.quadrants_km) {
-        quadrants += (quadrants.empty() ? "[" : ", [") + Short(ring[0], 1);
-        for (std::size_t q = 1; q < ring.size(); ++q) quadrants += ", " + Short(ring[q], 1);
-        quadrants += "]";
-      }
-      Line("      - {time: " + FormatTime(waypoint.time) +
-           ", latitude: " + Short(waypoint.position.latitude, 3) +
-           ", longitude: " + Short(waypoint.position.longitude, 3) +
-           (quadrants.empty() ? ", radii_km: [" + radii : ", quadrants_km: [" + quadrants) + "],");
-      Line(Text("         grade: %d", DisasterGrade(waypoint.grade)) +
-           (waypoint.pressure_hpa ? ", pressure_hpa: " + Short(*waypoint.pressure_hpa, 1) : "") +
-           (waypoint.wind_mps ? ", wind_mps: " + Short(*waypoint.wind_mps, 1) : "") + "}" +
-           (waypoint.estimated ? "  # radii estimated" : ""));
-    }
   }
 
   const RanchRequest& request_;
   Ranch ranch_;
-  Terrain terrain_;
-  StormRings storm_;
-  std::vector<DisasterSpec> presets_;
-  std::string storm_text_;
-  std::vector<NamedLayer> layers_;
-  std::vector<std::string> sea_units_;  // by layer
-  Layer value_;                         // of a device, by cell
-  std::optional<GeoPoint> origin_;
-  double cell_size_m_{};
-  double step_s_{};
-  std::int64_t start_{};
-  std::int32_t duration_{};     // of all
-  std::int32_t storm_steps_{};  // of the storm
+  internal::RanchPlan plan_;
+  Layer value_;              // of a device, by cell
+  std::int32_t duration_{};  // of all disasters
 };
 
 }  // namespace

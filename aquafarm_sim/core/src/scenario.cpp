@@ -77,6 +77,25 @@ void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& q
   }
 }
 
+// Forecasts in order of issue, each of them with points to come, in order of time.
+void CheckForecasts(const std::string& path, const std::vector<IssuedForecast>& forecasts) {
+  const auto check = [](const std::string& here, float step, float last, const std::string& what) {
+    if (step > last) return;
+    throw FieldError(internal::Join(here, "step"),
+                     "got " + Format(step) + ", expected more than that of " + what + Format(last));
+  };
+  for (std::size_t i = 0; i < forecasts.size(); ++i) {
+    const std::string here = At(path, i);
+    if (i > 0) check(here, forecasts[i].step, forecasts[i - 1].step, At("forecasts", i - 1) + ", ");
+    const std::vector<ForecastPoint>& points = forecasts[i].points;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      check(At(internal::Join(here, "points"), k), points[k].step,
+            k == 0 ? forecasts[i].step : points[k - 1].step,
+            k == 0 ? "its issue, " : At("points", k - 1) + ", ");
+    }
+  }
+}
+
 // What the ranges of single keys do not say.
 void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
   const std::size_t rings = disaster.risks.size();
@@ -90,6 +109,7 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
                      "got " + Format(waypoint.step) + ", expected more than that of " +
                          At("track", i - 1) + ", " + Format(disaster.track[i - 1].step));
   }
+  CheckForecasts(internal::Join(path, "forecasts"), disaster.forecasts);
   CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
   CheckQuadrants(path, disaster.quadrants, disaster.radii, !disaster.quadrants.empty());
 }
@@ -254,6 +274,11 @@ void CheckForecast(const Scenario& scenario) {
   if (std::none_of(scenario.disasters.begin(), scenario.disasters.end(),
                    [](const DisasterSpec& one) { return !one.track.empty(); })) {
     throw FieldError(path, "is used only where a disaster has a track");
+  }
+  for (std::size_t i = 0; i < scenario.disasters.size(); ++i) {
+    if (scenario.disasters[i].forecasts.empty()) continue;
+    throw FieldError(
+        path, "is used only where no disaster has forecasts, but " + At("disasters", i) + " has");
   }
 }
 

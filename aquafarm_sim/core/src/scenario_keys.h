@@ -34,6 +34,7 @@ inline constexpr float kFar = 1.0e6F;                // [cells]
 inline constexpr Interval<float> kShare{0.0F, 1.0F};
 inline constexpr Interval<float> kRadius{0.0F, kFar};
 inline constexpr Interval<float> kPlace{-kFar, kFar};
+inline constexpr Interval<float> kStep{-static_cast<float>(kMaxSteps), kMaxSteps};
 inline constexpr Interval<float> kRisk{-20.0F, -5.0F};  // §2.1
 inline constexpr Interval<float> kPenalty{-1000.0F, 0.0F};
 inline constexpr Interval<float> kReward{-10000.0F, 10000.0F};
@@ -61,6 +62,8 @@ struct WorldFrame {
   std::string folder;  ///< of the scenario file, from which it names others
 };
 
+/// @throws FieldError when the scenario has no start
+float ToStep(std::int64_t time, const WorldFrame* frame, const std::string& path);
 /// @throws FieldError when the scenario has no origin or start
 void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path,
              Waypoint& waypoint);
@@ -107,8 +110,7 @@ void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const Grade
   const ListOf<Interval<float>> quadrants{kRadius, 0, kMaxRings};
   const bool by_quadrant = a.Has("quadrants", !waypoint.quadrants.empty());
   a.When(!real, "there is no time");
-  a.Leaf("step", waypoint.step, Interval<float>{-static_cast<float>(kMaxSteps), kMaxSteps},
-         Need::kRequired);
+  a.Leaf("step", waypoint.step, kStep, Need::kRequired);
   a.Leaf("x", waypoint.x, kPlace, Need::kRequired);
   a.Leaf("y", waypoint.y, kPlace, Need::kRequired);
   a.When(!real && !by_quadrant, real ? "there is no time" : "there are no quadrants");
@@ -136,6 +138,41 @@ void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const Grade
     if (!by_grade.empty()) waypoint.risks = by_grade[static_cast<std::size_t>(waypoint.grade - 1)];
   }
   a.Leaf("risks", waypoint.risks, ListOf<Interval<float>>{kRisk, 1, kMaxRings});
+}
+
+template <typename Archive, typename P>
+void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame) {
+  const bool real = a.Has("time", false);
+  a.When(!real, "there is no time");
+  a.Leaf("step", point.step, kStep, Need::kRequired);
+  a.Leaf("x", point.x, kPlace, Need::kRequired);
+  a.Leaf("y", point.y, kPlace, Need::kRequired);
+  if constexpr (Archive::kReads) {
+    GeoFix fix;
+    a.When(real, "there is a time");
+    a.Leaf("time", fix.time, UtcTime{}, Need::kRequired);
+    VisitGeoPoint(a, fix.point);
+    Waypoint there;
+    if (real) Resolve(fix, frame, a.path(), there);
+    if (real) point = {there.step, there.x, there.y};
+  }
+  a.Always();
+}
+
+template <typename Archive, typename F>
+void VisitForecast(Archive& a, F& forecast, const WorldFrame* frame) {
+  const bool real = a.Has("time", false);
+  a.When(!real, "there is no time");
+  a.Leaf("step", forecast.step, kStep, Need::kRequired);
+  if constexpr (Archive::kReads) {
+    std::int64_t time{};
+    a.When(real, "there is a time");
+    a.Leaf("time", time, UtcTime{}, Need::kRequired);
+    if (real) forecast.step = ToStep(time, frame, a.path());
+  }
+  a.Always();
+  a.Objects("points", forecast.points, {1, kMaxWaypoints},
+            [&](auto& b, auto& point) { VisitForecastPoint(b, point, frame); });
 }
 
 template <typename Archive, typename D>
@@ -168,6 +205,9 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   a.Leaf("radius_growth", disaster.radius_growth, Interval<float>{-100.0F, 100.0F});
   a.Leaf("border", disaster.border, OneOfNames{});
   a.Leaf("start", disaster.start, kPlace);
+  a.When(Archive::kReads ? tracked : !disaster.forecasts.empty(), "there is a track");
+  a.Objects("forecasts", disaster.forecasts, {0, kMaxWaypoints},
+            [&](auto& b, auto& forecast) { VisitForecast(b, forecast, frame); });
   a.Always();
   if (!tracked) return;
   a.Objects("track", disaster.track, {1, kMaxWaypoints}, [&](auto& b, auto& waypoint) {

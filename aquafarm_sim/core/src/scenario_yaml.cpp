@@ -37,22 +37,26 @@ std::string YamlWriter::Value(const std::string& value) {
   return text + '"';
 }
 
+float ToStep(std::int64_t time, const WorldFrame* frame, const std::string& path) {
+  if (frame == nullptr || !frame->start_time) {
+    throw FieldError(Join(path, "time"), "needs time.start, which is missing");
+  }
+  return static_cast<float>(static_cast<double>(time - *frame->start_time) /
+                            frame->step_duration_s);
+}
+
 void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path,
              Waypoint& waypoint) {
   if (frame == nullptr || !frame->grid) {
     throw FieldError(Join(path, "latitude"), "needs grid.origin, which is missing");
   }
-  if (!frame->start_time) {
-    throw FieldError(Join(path, "time"), "needs time.start, which is missing");
-  }
+  waypoint.step = ToStep(fix.time, frame, path);
   if (!frame->grid->Faces(fix.point)) {
     throw FieldError(path,
                      "got a place on the far side of the globe, expected one within 60 "
                      "degrees of grid.origin");
   }
   const std::array<double, 2> place = frame->grid->ToGrid(fix.point);
-  const double seconds = static_cast<double>(fix.time - *frame->start_time);
-  waypoint.step = static_cast<float>(seconds / frame->step_duration_s);
   waypoint.x = static_cast<float>(place[0]);
   waypoint.y = static_cast<float>(place[1]);
   const auto cells = [frame](float km) {

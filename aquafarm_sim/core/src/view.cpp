@@ -49,9 +49,9 @@ void TakeBackToBulletin(const std::vector<Waypoint>& track, std::int32_t age, Di
 // Tells the way that the forecast has it going, instead of how it moves now.
 void TellForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
   const auto disaster = static_cast<std::int32_t>(id);
-  if (!HasForecast(farm, disaster)) return;
-  const auto there =
-      ForecastAt(farm, disaster, farm.step() - known.age, farm.step() + kForecastSteps);
+  const std::int32_t issued = farm.step() - known.age;
+  if (!HasForecast(farm, disaster, issued)) return;
+  const auto there = ForecastAt(farm, disaster, issued, farm.step() + kForecastSteps);
   const auto lead = static_cast<float>(known.age + kForecastSteps);
   known.belief.dx = (there[0] - known.belief.x) / lead;
   known.belief.dy = (there[1] - known.belief.y) / lead;

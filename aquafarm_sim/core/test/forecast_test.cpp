@@ -200,5 +200,156 @@ TEST(Forecasts, AreWrittenBackAndPartOfTheHash) {
   EXPECT_EQ(ToYaml(other).find("forecast"), std::string::npos);
 }
 
+/// The storm of Forecast() with two forecasts of an authority, of steps 0 and 200, and no error.
+Scenario Said() {
+  Scenario scenario = Forecast();
+  scenario.view.forecast_error_km.clear();
+  scenario.disasters[0].forecasts = {{0.0F, {{144.0F, 45.0F, -40.0F}, {288.0F, 95.0F, 0.0F}}},
+                                     {200.0F, {{288.0F, 25.0F, 20.0F}, {432.0F, 35.0F, 60.0F}}}};
+  return scenario;
+}
+
+TEST(IssuedForecasts, LeadFromWhereTheStormIsToThePointsSaid) {
+  Farm farm = MakeFarm(Said());
+  farm.Reset(3, 5);
+  const auto at = [&](std::int32_t issued, std::int32_t step) {
+    return ForecastAt(farm, 0, issued, step);
+  };
+  using Place = std::array<float, 2>;
+  EXPECT_EQ(at(0, 0), (Place{5.0F, -100.0F})) << "where it is is known";
+  EXPECT_EQ(at(0, 144), (Place{45.0F, -40.0F}));
+  EXPECT_EQ(at(0, 72), (Place{25.0F, -70.0F})) << "straight between";
+  EXPECT_EQ(at(0, 400), (Place{95.0F, 0.0F})) << "it stays at the last point";
+  EXPECT_EQ(at(72, 72), (Place{5.0F, -70.0F})) << "the truth again";
+  EXPECT_EQ(at(72, 108), (Place{25.0F, -55.0F}));
+  EXPECT_EQ(at(199, 288), (Place{95.0F, 0.0F})) << "the newer one is not out yet";
+  EXPECT_EQ(at(200, 288), (Place{25.0F, 20.0F})) << "the newest counts";
+}
+
+TEST(IssuedForecasts, AreToldFromTheFirstIssueUntilTheyRunOut) {
+  Scenario scenario = Said();
+  scenario.disasters[0].forecasts[0].step = 10.0F;
+  Farm farm = MakeFarm(scenario);
+  farm.Reset(3, 5);
+  EXPECT_FALSE(HasForecast(farm, 0, 9));
+  EXPECT_TRUE(HasForecast(farm, 0, 10));
+  EXPECT_TRUE(HasForecast(farm, 0, 431));
+  EXPECT_FALSE(HasForecast(farm, 0, 432));
+}
+
+TEST(IssuedForecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
+  Scenario plain = Said();
+  plain.disasters[0].forecasts.clear();
+  Farm told = MakeFarm(Said());
+  Farm knows = MakeFarm(plain);
+  told.Reset(3, 7);
+  knows.Reset(3, 7);
+  test::RandomSteps(told, 60, 2);
+  test::RandomSteps(knows, 60, 2);
+  EXPECT_EQ(told.disasters()[0].y, knows.disasters()[0].y) << "the truth is the same";
+  View view;
+  Observe(told, 0, view);
+  const auto there = ForecastAt(told, 0, 60, 60 + kForecastSteps);
+  EXPECT_NEAR(view.disasters[0].belief.x + kForecastSteps * view.disasters[0].belief.dx, there[0],
+              1e-3);
+  EXPECT_GT(view.disasters[0].belief.dx, 0.0F) << "said to go east, and it goes north";
+  EXPECT_EQ(told.disasters()[0].x, 5.0F);
+}
+
+TEST(IssuedForecasts, AreTheSameAsATrackWithTheTruthsRings) {
+  Scenario scenario = Said();
+  scenario.disasters[0].track[2].radii = {30.0F, 60.0F};
+  Farm farm = MakeFarm(scenario);
+  farm.Reset(3, 6);
+  test::RandomSteps(farm, 100, 1);
+  const std::vector<Waypoint> track = ForecastTrack(farm, 0, 100);
+  Disaster ghost = farm.disasters()[0];
+  Disaster truth = ghost;
+  ghost.waypoint = 0;
+  for (std::int32_t step = 100; step < 560; step += 23) {
+    FollowTrack(ghost, track, step);
+    FollowTrack(truth, scenario.disasters[0].track, step);
+    const auto there = ForecastAt(farm, 0, 100, step);
+    EXPECT_NEAR(ghost.x, there[0], 1e-3) << step;
+    EXPECT_NEAR(ghost.y, there[1], 1e-3) << step;
+    EXPECT_NEAR(ghost.radius[0], truth.radius[0], 1e-3) << step;
+  }
+}
+
+TEST(IssuedForecasts, AreOfTheScenariosTrackNotOfOneSetInPlay) {
+  Farm farm = MakeFarm(Said());
+  farm.Reset(3, 6);
+  Farm loaded = MakeFarm(Said());
+  farm.SetDisaster(0, farm.scenario().disasters[0]);
+  loaded.Load(farm.Save());
+  EXPECT_TRUE(HasForecast(farm, 0, 0)) << "the same track stays the scenario's";
+  EXPECT_TRUE(HasForecast(loaded, 0, 0));
+  DisasterSpec other = farm.scenario().disasters[0];
+  other.track[1].x += 1.0F;
+  farm.SetDisaster(0, other);
+  EXPECT_FALSE(HasForecast(farm, 0, 0));
+  loaded.Load(farm.Save());
+  EXPECT_FALSE(HasForecast(loaded, 0, 0));
+}
+
+// What a file with these forecasts is told, or "was taken".
+std::string SaidRefused(const std::string& forecasts, const std::string& errors = "") {
+  const std::string text =
+      "name: x\ngrid: {origin: {latitude: 30, longitude: 122}}\n"
+      "time: {step_duration_s: 600, start: 2021-07-24T00:00:00Z}\n"
+      "disasters:\n  - kind: typhoon\n    risks: [-10]\n    track:\n"
+      "      - {step: 0, x: 1, y: 1, radii: [3], grade: 3}\n    forecasts: " +
+      forecasts + "\n" + errors;
+  try {
+    ParseScenario(text, "x.yaml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was taken";
+}
+
+TEST(IssuedForecasts, AreRefusedWithALine) {
+  EXPECT_EQ(SaidRefused("[{step: 0, points: [{step: 6, x: 1, y: 2}]}]"), "was taken");
+  EXPECT_EQ(SaidRefused("[{step: 6, points: [{step: 6, x: 1, y: 2}]}]"),
+            "x.yaml:9: disasters[0].forecasts[0].points[0].step: got 6, expected more than that of "
+            "its issue, 6");
+  EXPECT_EQ(SaidRefused("[{step: 6, points: [{step: 9, x: 1, y: 2}]}, "
+                        "{step: 6, points: [{step: 9, x: 1, y: 2}]}]"),
+            "x.yaml:9: disasters[0].forecasts[1].step: got 6, expected more than that of "
+            "forecasts[0], 6");
+  EXPECT_EQ(SaidRefused("[{step: 6}]"),
+            "x.yaml:9: disasters[0].forecasts[0].points: got 0 entries, expected [1, 10000]");
+  EXPECT_EQ(SaidRefused("[{step: 0, points: [{step: 6, x: 1, latitude: 2}]}]"),
+            "x.yaml:9: disasters[0].forecasts[0].points[0].y: missing, expected a number in "
+            "[-1e+06, 1e+06]");
+  EXPECT_EQ(SaidRefused("[{step: 0, points: [{step: 6, x: 1, y: 2}]}]",
+                        "view: {forecast_error_km: [1, 2, 3]}\n"),
+            "x.yaml:10: view.forecast_error_km: is used only where no disaster has forecasts, but "
+            "disasters[0] has");
+}
+
+TEST(IssuedForecasts, AreReadInUnitsOfTheGlobeAndWrittenInThoseOfTheGrid) {
+  const Scenario scenario = ParseScenario(
+      "name: x\ngrid: {cell_size_m: 1000, origin: {latitude: 30, longitude: 122}}\n"
+      "time: {step_duration_s: 600, start: 2021-07-24T00:00:00Z}\n"
+      "disasters:\n  - kind: typhoon\n    risks: [-10]\n    track:\n"
+      "      - {step: 0, x: 1, y: 1, radii: [3], grade: 3}\n    forecasts:\n"
+      "      - {time: 2021-07-23T23:00:00Z, points: [{time: 2021-07-24T06:00:00Z, latitude: 30.1,"
+      " longitude: 122}]}\n",
+      "x.yaml");
+  const std::vector<IssuedForecast>& said = scenario.disasters[0].forecasts;
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_EQ(said[0].step, -6.0F);
+  ASSERT_EQ(said[0].points.size(), 1U);
+  EXPECT_EQ(said[0].points[0].step, 36.0F);
+  EXPECT_NEAR(said[0].points[0].x, 0.0F, 1e-3);
+  EXPECT_NEAR(said[0].points[0].y, 11.085F, 0.01F) << "a tenth of a degree";
+  EXPECT_EQ(ToYaml(ParseScenario(ToYaml(scenario), "again")), ToYaml(scenario));
+  Scenario without = scenario;
+  without.disasters[0].forecasts.clear();
+  EXPECT_NE(HashScenario(without), HashScenario(scenario));
+  EXPECT_EQ(ToYaml(without).find("forecasts"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace aquafarm

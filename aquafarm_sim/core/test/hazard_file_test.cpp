@@ -50,6 +50,7 @@ TEST(HazardFormat, IsKnownByItsContent) {
       {"atcf.dat", HazardFormat::kAtcf},
       {"ibtracs.csv", HazardFormat::kIbtracs},
       {"bulletin.json", HazardFormat::kBulletin},
+      {"zhejiang.js", HazardFormat::kBulletin},
       {"weather_service.json", HazardFormat::kWeatherService}};
   for (const auto& [name, format] : files) {
     EXPECT_EQ(DetectHazardFormat(ReadFile(kData / name)), format) << name;
@@ -206,6 +207,54 @@ TEST(Ibtracs, TakesTheWindsOfTheAgencyInCharge) {
   EXPECT_EQ(ialy.fixes[1].heading_deg, 0.0) << "360";
   EXPECT_TRUE(ialy.fixes[0].rings.empty());
   ExpectRadii(ialy.fixes[1], 34, NauticalMiles({60, 0, 50, 0}));
+}
+
+TEST(Bulletin, IsReadFromTheScriptOfZhejiangsWaterOffice) {
+  const HazardFile file = Load("zhejiang.js");
+  EXPECT_EQ(file.format, HazardFormat::kBulletin);
+  EXPECT_TRUE(file.warnings.empty()) << file.warnings[0];
+  const HazardTrack& storm = file.tracks.at(0);
+  EXPECT_EQ(storm.id, "202106");
+  EXPECT_EQ(storm.name, "In-Fa");
+  EXPECT_TRUE(storm.landfalls.empty()) << "its list names more than landfalls";
+  ASSERT_EQ(storm.fixes.size(), 2U);
+  const HazardFix& fix = storm.fixes[0];
+  EXPECT_EQ(fix.time, 1627171200) << "08:00 in Beijing";
+  EXPECT_EQ(fix.grade, StormGrade::kSevereTyphoon);
+  EXPECT_EQ(fix.wind_mps, 42.0);
+  EXPECT_EQ(fix.speed_kmh, 12.0);
+  EXPECT_EQ(fix.heading_deg, 315.0);
+  ExpectRadii(fix, 34, {300, 200, 190, 250});
+  ExpectRadii(fix, 50, {100, 100, 80, 90});
+  ExpectRadii(storm.fixes[1], 34, {280, 280, 280, 280});
+  ASSERT_EQ(storm.forecasts.size(), 2U);
+  EXPECT_EQ(storm.forecasts[0].agency, "中国");
+  EXPECT_EQ(storm.forecasts[0].fixes.size(), 2U);
+  EXPECT_EQ(storm.forecasts[1].agency, "日本");
+  EXPECT_EQ(storm.forecasts[1].fixes[0].position.latitude, 30.4);
+}
+
+TEST(Bulletin, OfZhejiangIsRefusedWithItsLine) {
+  const auto refused = [](const std::string& from, const std::string& to) -> std::string {
+    std::string text = ReadFile(kData / "zhejiang.js");
+    text.replace(text.find(from), from.size(), to);
+    try {
+      ParseHazardFile(text, "x");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "was read";
+  };
+  EXPECT_EQ(refused("300|200|190|250", "300|200|190"),
+            "x:9: [0].points[0].radius7: got '300|200|190', expected four numbers in [0, 3000] as "
+            "250|220|200|180");
+  EXPECT_EQ(refused("300|200|190|250", "300|-2|190|250|"),
+            "x:9: [0].points[0].radius7: got '300|-2|190|250|', expected four numbers in [0, 3000] "
+            "as 250|220|200|180");
+  EXPECT_EQ(refused("\"29.7\"", "\"95\""),
+            "x:7: [0].points[0].lat: got '95', expected a number in [-90, 90]");
+  EXPECT_NE(refused("];", "").find(": got no valid JSON: "), std::string::npos);
+  EXPECT_EQ(refused("let typhoons =", "typhoons").substr(0, 26), "x:3: got no valid JSON: la");
 }
 
 TEST(Bulletin, ReadsBeijingTimeAndQuadrants) {
@@ -516,8 +565,8 @@ TEST(LoadHazardFile, NamesAFileThatIsNot) {
 
 // Every cut of every sample is read, or refused with a line; nothing else happens.
 TEST(HazardFile, EveryCutOfASampleIsReadOrRefused) {
-  for (const char* name :
-       {"cma.txt", "jma.txt", "atcf.dat", "ibtracs.csv", "bulletin.json", "weather_service.json"}) {
+  for (const char* name : {"cma.txt", "jma.txt", "atcf.dat", "ibtracs.csv", "bulletin.json",
+                           "zhejiang.js", "weather_service.json"}) {
     const std::string text = ReadFile(kData / name);
     for (std::size_t size = 0; size < text.size(); ++size) {
       try {

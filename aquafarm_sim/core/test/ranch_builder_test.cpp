@@ -55,6 +55,28 @@ std::string Refused(const RanchRequest& request) {
   return "was made";
 }
 
+TEST(Ranch, TellsItsAgentsWhatTheBulletinsForecast) {
+  RanchRequest request = Request();
+  request.forecasts = (kData / "bulletin.json").string();
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_TRUE(Says(ranch.decided, "forecasts: 1 from bulletin.json, the first of 2021-07-25T00"));
+  const DisasterSpec& storm = ranch.scenario.disasters[0];
+  ASSERT_EQ(storm.forecasts.size(), 1U);
+  ASSERT_EQ(storm.forecasts[0].points.size(), 2U);
+  const auto step = [&](std::int64_t time) {
+    return static_cast<double>(time - *ranch.scenario.start_time) / ranch.scenario.step_duration_s;
+  };
+  EXPECT_NEAR(storm.forecasts[0].step, step(kMidnight), 1e-2) << "08:00 in Beijing";
+  EXPECT_NEAR(storm.forecasts[0].points[0].step, step(kMidnight + 12 * kHour_s), 1e-2);
+  const GeoFrame frame(*ranch.scenario.origin, ranch.scenario.cell_size_m);
+  EXPECT_NEAR(storm.forecasts[0].points[1].x, frame.ToGrid({30.6, 121.2})[0], 1e-2);
+  EXPECT_NEAR(storm.forecasts[0].points[1].y, frame.ToGrid({30.6, 121.2})[1], 1e-2);
+  request.forecasts = request.track;
+  EXPECT_NE(Refused(request).find("forecasts: got no forecast points of the storm before 2021-07-"),
+            std::string::npos)
+      << Refused(request);
+}
+
 TEST(Ranch, StandsOnTheChartWithPortsAtTheShore) {
   const Ranch ranch = BuildRanch(Request());
   const Scenario& scenario = ranch.scenario;
@@ -392,6 +414,20 @@ TEST(RealFiles, GiveDevicesTheirValueFromTheSea) {
   EXPECT_NE(Refused(request).find("expected an expression"), std::string::npos);
   request.center = GeoPoint{30.0, 122.0};
   EXPECT_NE(Refused(request).find("has no value on this ranch"), std::string::npos);
+}
+
+// The archive's bulletins were kept without their forecasts; the storm goes on as it did.
+TEST(RealFiles, OfBulletinsHaveNoForecastsToTell) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  RanchRequest request;
+  request.center = GeoPoint{30.2, 122.7};
+  request.track = (data / "tracks" / "CH2021BST.txt").string();
+  request.storm = "IN-FA";
+  request.forecasts = (data / "bulletins" / "202106.json").string();
+  EXPECT_EQ(Refused(request),
+            "forecasts: got no forecast points of the storm before 2021-07-26T01:00:00Z in "
+            "202106.json, expected bulletins with forecast points");
 }
 
 // Scenario files that a person may edit; what decides the play is still what the command makes.

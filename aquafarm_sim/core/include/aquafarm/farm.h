@@ -108,7 +108,8 @@ class Farm {
   void Load(const std::string& bytes);
 
   /// Replaces disaster `id`, or adds one when id is their number: a bulletin arrives. A spec
-  /// without start keeps the present centre (a new one needs a start or a track).
+  /// without start keeps the present centre (a new one needs a start or a track). Forecasts are
+  /// told only of the scenario's own track.
   /// @throws InputError on an id or spec out of range; the farm is then as it was
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
   inline static constexpr std::int32_t kMaxDisasters = 64;
@@ -129,6 +130,7 @@ class Farm {
   void Finish();
   void CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits);
   void ResetTracks();
+  Track Owned(std::size_t id, std::vector<Waypoint> track) const;
   void CheckConsistent() const;
   bool Occupied(std::int32_t index) const;
   void IndexShips();

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What agents are told of a disaster's way while the truth follows its track: a forecast whose
-/// positions are off by an error that grows with lead time (view.forecast_error_km).
+/// What agents are told of a disaster's way while the truth follows its track: what an authority
+/// forecast (a disaster's `forecasts`), or a forecast whose positions are off by an error that
+/// grows with lead time (view.forecast_error_km).
 ///
 ///      truth     o----o----o----o      forecast(t) = truth(t) + mean error(t - issued) · u
 ///      forecast  o-----o-----o-----o   between waypoints straight, at once exact
 ///               issued +24 h +48 h
+///
+/// Of an authority's forecasts the newest counts, from where the storm is on to those of its points
+/// that are to come; it stays at the last. Before the first was issued, and after the newest has
+/// run out, agents are told how the storm moves now. So they are of a storm that a bulletin has
+/// replaced in play.
 ///
 /// u is drawn once an episode and disaster, with a mean length of 1 and any direction: successive
 /// forecasts of one storm err to the same side, and each is better than the one before. [decided]
@@ -30,15 +36,15 @@ float MeanForecastError(const Scenario& scenario, float lead);
 std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episode,
                                          std::int32_t disaster);
 
-/// Whether agents of a farm are told a forecast of a disaster.
-bool HasForecast(const Farm& farm, std::int32_t disaster);
+/// Whether at a step agents of a farm are told a forecast of a disaster.
+bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
-/// Where the forecast issued at one step has a disaster at a later one [cells]. Only positions are
+/// Where the forecast told at one step has a disaster at a later one [cells]. Only positions are
 /// off: radii and risks are the truth's.
 std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::int32_t issued,
                                 std::int32_t step);
 
-/// The forecast issued at a step as a track, from then on.
+/// The forecast told at a step as a track, from then on.
 std::vector<Waypoint> ForecastTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
 }  // namespace aquafarm

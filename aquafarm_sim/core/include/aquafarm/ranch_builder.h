@@ -33,6 +33,9 @@ struct RanchRequest {
   std::string storm;  ///< its name or id; may be empty where the file has one only
   std::string radii;  ///< file with radii for a track without; empty: none
   RingReduction reduction{RingReduction::kEqualArea};
+  /// File of bulletins with forecast points, which agents are told while the truth follows the
+  /// track; empty: they are told how the storm moves now
+  std::string forecasts;
 
   std::vector<std::string> disasters;  ///< others, as disaster_preset.h has them
 

@@ -109,6 +109,19 @@ struct Waypoint {
   std::vector<QuadrantRadii> quadrants{};
 };
 
+/// Where a forecast has a disaster at a step.
+struct ForecastPoint {
+  float step{};  ///< steps since the episode's start
+  float x{};     ///< [cells]
+  float y{};
+};
+
+/// A forecast as an authority issued it.
+struct IssuedForecast {
+  float step{};                       ///< of its issue; may lie before the episode's start
+  std::vector<ForecastPoint> points;  ///< in order of time, all after its issue
+};
+
 /// Risks of the rings by grade, 1 to 4, each the worst first; empty where a scenario gives none.
 using GradeRisks = std::vector<std::vector<float>>;
 
@@ -128,6 +141,9 @@ struct DisasterSpec {
   std::vector<Waypoint> track;                ///< if not empty, it moves along this instead
   std::vector<QuadrantRadii> quadrants{};     ///< as in Waypoint
   GradeRisks grade_risks{};                   ///< what bulletins that come later bring, too
+  /// What an authority forecast of it, in order of issue: agents are told the newest one issued,
+  /// and the truth follows the track. Only with a track; see forecast.h.
+  std::vector<IssuedForecast> forecasts{};
 };
 
 /// The rewards of §2.5.

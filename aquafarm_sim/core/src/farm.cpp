@@ -150,6 +150,7 @@ void Farm::IssueBulletins() {
     disaster.bulletin.speed = disaster.speed;
     disaster.bulletin.heading_deg = disaster.heading_deg;
     disaster.bulletin.step = record_.steps;
+    disaster.TellRings();
   }
 }
 

@@ -122,6 +122,11 @@ Device DeviceFromJson(const json& j) {
   return device;
 }
 
+// Whether its rings may have been others when the last bulletin was issued.
+bool TellsRings(const Disaster& disaster) {
+  return disaster.radius_growth != 0.0F && disaster.bulletin.step != kNone;
+}
+
 json DisasterToJson(const Disaster& d) {
   const Bulletin& b = d.bulletin;
   json j{{"kind", Int(d.kind)},
@@ -144,6 +149,7 @@ json DisasterToJson(const Disaster& d) {
          {"bulletin", {b.x, b.y, b.speed}},
          {"bulletin_when", {b.heading_deg, b.step}}};
   if (d.by_quadrant) j["quadrants"] = d.quadrant;
+  if (TellsRings(d)) j["bulletin_rings"] = {b.radius, b.quadrant};
   return j;
 }
 
@@ -187,6 +193,15 @@ Disaster DisasterFromJson(const json& j) {
       finite = finite && std::isfinite(ring[q]);
     }
     if (k < static_cast<std::size_t>(d.rings)) SetRing(d, k, ring);
+  }
+  d.TellRings();
+  if (j.contains("bulletin_rings")) {
+    j["bulletin_rings"].at(0).get_to(d.bulletin.radius);
+    j["bulletin_rings"].at(1).get_to(d.bulletin.quadrant);
+    for (std::size_t k = 0; k < d.radius.size(); ++k) {
+      finite = finite && std::isfinite(d.bulletin.radius[k]);
+      for (const auto& side : d.bulletin.quadrant) finite = finite && std::isfinite(side[k]);
+    }
   }
   for (const float value : {d.x, d.y, d.dx, d.dy, d.speed, d.radius_growth, d.margin, d.bulletin.x,
                             d.bulletin.y, d.bulletin.speed}) {
@@ -446,6 +461,7 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
       disaster.y = present.y;
     }
     disaster.bulletin = present.bulletin;
+    disaster.TellRings();  // how it changed in size is not known of another
     disasters_[k] = disaster;
     tracks_[k] = std::move(track);
   }

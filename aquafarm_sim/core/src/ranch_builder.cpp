@@ -358,8 +358,8 @@ class Builder {
                          CellText(device.cell) + ", expected a number in [0, 10000]");
       }
       sites += "      - {cell: " + CellText(device.cell) +
-               ", kind: " + std::string(ToString(device.kind)) +
-               ", value: " + Short(static_cast<double>(worth), 2) + "}\n";
+               ", kind: " + std::string(ToString(device.kind)) + ", value: " + Format(worth) +
+               "}\n";
     }
     const std::string line = internal::DevicesLine(request_);
     ranch_.yaml.replace(ranch_.yaml.find(line), line.size(), sites);

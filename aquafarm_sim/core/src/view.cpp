@@ -36,14 +36,23 @@ void OpenEyes(const Farm& farm, Cell self, std::vector<Cell>& eyes) {
 
 // Rings, risks and grade as they were when the last bulletin was issued: what came after it is not
 // known out of sight.
-void TakeBackToBulletin(const std::vector<Waypoint>& track, std::int32_t age, Disaster& belief) {
+void TakeBackToBulletin(const std::vector<Waypoint>& track, Disaster& belief) {
   if (!track.empty()) {
     belief.waypoint = 0;
     FollowTrack(belief, track, 0);
     FollowTrack(belief, track, belief.bulletin.step);
     return;
   }
-  GrowRings(belief, -belief.radius_growth * static_cast<float>(age));
+  if (belief.radius_growth == 0.0F) return;
+  const Bulletin& told = belief.bulletin;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(belief.rings); ++k) {
+    if (belief.by_quadrant) {
+      SetRing(belief, k,
+              {told.quadrant[0][k], told.quadrant[1][k], told.quadrant[2][k], told.quadrant[3][k]});
+    } else {
+      SetRing(belief, k, told.radius[k]);
+    }
+  }
 }
 
 // Tells the way that the forecast has it going, instead of how it moves now.
@@ -70,7 +79,7 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full, const std::vec
   if (known.visible || !known.known) return;
   const Bulletin& bulletin = disaster.bulletin;
   known.age = farm.step() - bulletin.step;
-  TakeBackToBulletin(*farm.tracks()[id], known.age, known.belief);
+  TakeBackToBulletin(*farm.tracks()[id], known.belief);
   known.belief.x = bulletin.x;
   known.belief.y = bulletin.y;
   known.belief.speed = bulletin.speed;

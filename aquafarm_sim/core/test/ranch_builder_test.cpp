@@ -272,12 +272,12 @@ TEST(Ranch, KeepsASeaOfSmallNumbersAndRulesByWhatItWrites) {
   nc_close(file);
   RanchRequest request = Request();
   request.sea = {{"chl", path.string(), "chl"}};
-  request.value = "chl > 0.000009 ? 70 : 1";
+  request.value = "chl > 0.000009 ? 70.125 : 1";
   request.sea_risk = "chl > 0.000009 ? -8 : 0";
   const Scenario scenario = BuildRanch(request).scenario;
   EXPECT_EQ(scenario.seas->layers[0].values[7], 1e-5F);
   EXPECT_EQ(scenario.seas->risk[7], -8.0F);
-  for (const DeviceSite& site : scenario.devices.sites) EXPECT_EQ(*site.value, 70.0F);
+  for (const DeviceSite& site : scenario.devices.sites) EXPECT_EQ(*site.value, 70.125F);
   fs::remove(path);
 }
 

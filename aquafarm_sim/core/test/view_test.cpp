@@ -94,6 +94,35 @@ TEST(PartialView, OutOfSightRingsAreThoseOfTheBulletin) {
   }
 }
 
+TEST(PartialView, OutOfSightRingsThatShrankToNothingAreStillThoseOfTheBulletin) {
+  Scenario scenario = PartialScenario();
+  scenario.view.bulletin_period = 10;
+  DisasterSpec circle = StillDisaster(20, 20, {3}, {-5});
+  circle.radius_growth = -0.25F;
+  DisasterSpec quarters = circle;
+  quarters.quadrants = {{3.0F, 1.0F, 0.0F, 2.0F}};
+  scenario.disasters = {circle, quarters};
+  Farm farm = MakeFarm(scenario);
+  View view;
+  View again;
+  for (std::int32_t step = 0; step < 35; ++step) {
+    Observe(farm, 0, view);
+    ASSERT_FALSE(view.disasters[0].visible || view.disasters[1].visible);
+    const float shrunk = 0.25F * static_cast<float>(step - step % 10);
+    const auto left = [shrunk](float radius) { return std::max(0.0F, radius - shrunk); };
+    EXPECT_FLOAT_EQ(view.disasters[0].belief.radius[0], left(3.0F)) << "step " << step;
+    for (std::size_t q = 0; q < 4; ++q) {
+      EXPECT_FLOAT_EQ(view.disasters[1].belief.quadrant[q][0], left(quarters.quadrants[0][q]))
+          << "step " << step << ", quadrant " << q;
+    }
+    Farm loaded = MakeFarm(scenario);
+    loaded.Load(farm.Save());
+    Observe(loaded, 0, again);
+    EXPECT_EQ(again.disasters[1].belief.quadrant, view.disasters[1].belief.quadrant);
+    StepOne(farm, Action::kHold);
+  }
+}
+
 TEST(PartialView, BulletinsAreOffByNoMoreThanTheirNoise) {
   Scenario scenario = PartialScenario();
   scenario.view.bulletin_period = 1;

@@ -36,7 +36,9 @@ struct Bulletin {
   float y{};
   float speed{};
   std::int32_t heading_deg{};
-  std::int32_t step{kNone};  ///< when it was issued; kNone: none yet
+  std::int32_t step{kNone};                                ///< when it was issued; kNone: none yet
+  std::array<float, kMaxRings> radius{};                   ///< as they were then, as in Disaster
+  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< likewise
 };
 
 /// One disaster in play: everything that may change in an episode, as plain data.
@@ -65,6 +67,11 @@ struct Disaster {
   Bulletin bulletin;
 
   bool active() const { return steps_left > 0; }
+  /// Its rings are those that the bulletin tells of.
+  void TellRings() {
+    bulletin.radius = radius;
+    bulletin.quadrant = quadrant;
+  }
   /// Largest radius, or 0 when it has no ring.
   float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
 };

@@ -132,6 +132,13 @@ void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   }
 }
 
+// What to train with: a table where it is soon learnt, else a network.
+std::string Learner(const Scenario& made) {
+  if (made.AgentCount() > 1) return " algorithm:=auto";
+  if (!made.view.waterways) return "";
+  return " algorithm:=dqn options:=steps_per_update=4 steps:=1200000";
+}
+
 void Run(const Arguments& arguments) {
   const Ranch ranch = BuildRanch(Finished(arguments));
   for (const std::string& warning : ranch.warnings) {
@@ -143,8 +150,8 @@ void Run(const Arguments& arguments) {
   if (!arguments.map.empty()) SaveMap(ToMap(ranch.scenario), arguments.map);
   if (arguments.output.empty()) return;
   WriteFile(arguments.output, ranch.yaml);
-  std::printf("written: %s\nnow: ./aquafarm train scenario:=%s\n", arguments.output.c_str(),
-              arguments.output.c_str());
+  std::printf("written: %s\nnow: ./aquafarm train scenario:=%s%s\n", arguments.output.c_str(),
+              arguments.output.c_str(), Learner(ranch.scenario).c_str());
 }
 
 int Main(int argc, char** argv) {

@@ -11,6 +11,7 @@
 #include "aquafarm/check.h"
 #include "aquafarm/coast.h"
 #include "aquafarm/disaster_preset.h"
+#include "aquafarm/encoding.h"
 #include "aquafarm/hazard_file.h"
 #include "aquafarm/layout.h"
 #include "aquafarm/map_file.h"
@@ -57,13 +58,35 @@ class Builder {
     AddPresets();
     SayNotices();
     plan_.step_limit = StepLimit();
-    ranch_.yaml = internal::WriteRanch(request_, plan_, ranch_.decided);
-    ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
+    Write();
+    if (IsForNetworks()) Write();
     if (!request_.value.empty()) ValueDevices();
     return std::move(ranch_);
   }
 
  private:
+  void Write() {
+    ranch_.yaml = internal::WriteRanch(request_, plan_, ranch_.decided);
+    ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
+  }
+
+  // A table of many states takes long to fill, and a network learns soon where it is told the way.
+  bool IsForNetworks() {
+    constexpr std::uint32_t kSoonLearnt = 1'000'000;
+    const std::uint32_t states = Encoder(ranch_.scenario).state_count();
+    if (states > 0 && states <= kSoonLearnt) return false;
+    ranch_.scenario.view.waterways = true;
+    try {
+      ValidateScenario(ranch_.scenario);
+    } catch (const InputError&) {
+      return false;  // a farm too large for the ways by water
+    }
+    plan_.waterways = true;
+    const std::string many = states == 0 ? "more than 268435456" : std::to_string(states);
+    Say("states: " + many + ", too many for a table soon learnt; features tell the way by water");
+    return true;
+  }
+
   static void CheckSize(const char* what, std::int32_t side) {
     internal::Check(what, side, internal::Interval<std::int32_t>{2, kMaxSide});
   }

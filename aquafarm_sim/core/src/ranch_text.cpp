@@ -52,7 +52,7 @@ class Writer {
     if (!plan_.storm.waypoints.empty() || !plan_.presets.empty()) Line("disasters:");
     if (!plan_.storm.waypoints.empty()) WriteStorm();
     for (const DisasterSpec& disaster : plan_.presets) WritePreset(disaster);
-    Line("view: {mode: full}");
+    Line(plan_.waterways ? "view: {mode: full, waterways: true}" : "view: {mode: full}");
     if (!plan_.layers.empty()) WriteSeas();
     return std::move(yaml_);
   }

@@ -32,6 +32,7 @@ struct RanchPlan {
   std::vector<DisasterSpec> presets;
   std::vector<NamedLayer> layers;
   std::vector<std::string> sea_units;  ///< by layer
+  bool waterways{};
 };
 
 /// @param decided lines for people, which go into comments

@@ -55,6 +55,18 @@ std::string Refused(const RanchRequest& request) {
   return "was made";
 }
 
+TEST(Ranch, OfManyDevicesTellsNetworksTheWay) {
+  RanchRequest request = Request();
+  request.devices = 3;
+  EXPECT_FALSE(BuildRanch(request).scenario.view.waterways);
+  request.devices = 12;
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_TRUE(ranch.scenario.view.waterways);
+  // 24 x 20 cells, each device waiting or delivered, or one of them aboard.
+  EXPECT_TRUE(Says(ranch.decided, "states: 13762560, too many for a table soon learnt"));
+  EXPECT_NE(ranch.yaml.find("#   states: 13762560"), std::string::npos);
+}
+
 TEST(Ranch, TellsItsAgentsWhatTheBulletinsForecast) {
   RanchRequest request = Request();
   request.forecasts = (kData / "bulletin.json").string();

@@ -5,6 +5,7 @@
 #include <netcdf.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -239,7 +240,7 @@ TEST_F(SeaFields, AreRefusedWithTheReason) {
   EXPECT_EQ(Refused(), "cannot read as netCDF: No such file or directory");
 }
 
-TEST_F(SeaFields, OfTenMegabytesAreCutInTwoSeconds) {
+TEST_F(SeaFields, OfTenMegabytesAreCutInHalfASecond) {
   int file = 0;
   ASSERT_EQ(nc_create(path_.c_str(), NC_CLOBBER, &file), NC_NOERR);
   constexpr std::size_t kSide = 1600;  // 2.56 million values of float: 10.2 MB
@@ -260,14 +261,18 @@ TEST_F(SeaFields, OfTenMegabytesAreCutInTwoSeconds) {
   nc_put_var_float(file, variables[2], values.data());
   nc_close(file);
   const GeoFrame frame({30.1, 122.1}, 200.0);
-  const auto start = std::chrono::steady_clock::now();
-  const Layer layer =
-      ToLayer(LoadSeaField(path_, {"t", {}, 0.0}, frame, 500, 500), frame, 500, 500);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-  EXPECT_EQ(layer(499, 499), 17.0F);
-  // 500 x 500 cells are four hundred times the paper's farm; the bound is wide for a busy machine.
-  EXPECT_LT(took.count(), 2.0);
-  RecordProperty("milliseconds", static_cast<int>(took.count() * 1000.0));
+  double fastest_s = 1.0e9;  // of a few, for a busy machine
+  for (int run = 0; run < 5; ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    const Layer layer =
+        ToLayer(LoadSeaField(path_, {"t", {}, 0.0}, frame, 500, 500), frame, 500, 500);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    EXPECT_EQ(layer(499, 499), 17.0F);
+    fastest_s = std::min(fastest_s, took.count());
+  }
+  // 500 x 500 cells are four hundred times the paper's farm.
+  EXPECT_LT(fastest_s, 0.5);
+  RecordProperty("milliseconds", static_cast<int>(fastest_s * 1000.0));
 }
 
 TEST(Expressions, AreEvaluatedAtEveryCell) {

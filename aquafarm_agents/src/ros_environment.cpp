@@ -95,8 +95,9 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
     encodings_ |= StepResult::TERMS;
   }
   if ((options_.encodings & aquafarm::agents::kIndexBit) != 0 && spec_.state_count == 0) {
-    throw InputError("scenario " + spec_.scenario_name +
-                     ": too many states for a table; a tabular learner cannot play it");
+    throw InputError(
+        "scenario " + spec_.scenario_name +
+        ": too many states for a table, expected a learner with a network, as auto chooses");
   }
   if (now.spec.farms != spec_.farms) Reset(now.state.seed);
 }

@@ -62,8 +62,9 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
     : batch_(std::move(scenario), options.farms, options.threads),
       spec_(MakeSpec(batch_.scenario(), batch_.encoder(), options.farms)) {
   if ((options.encodings & kIndexBit) != 0 && spec_.state_count == 0) {
-    throw InputError("scenario " + spec_.scenario_name +
-                     ": too many states for a table; a tabular learner cannot play it");
+    throw InputError(
+        "scenario " + spec_.scenario_name +
+        ": too many states for a table, expected a learner with a network, as auto chooses");
   }
   const auto farms = static_cast<std::size_t>(spec_.farms);
   const std::size_t entries = farms * static_cast<std::size_t>(spec_.agents);

@@ -27,8 +27,8 @@ QTable::QTable(const EnvironmentSpec& spec, float initial_value)
       static_cast<std::uint64_t>(agents) * states * kActionCount * sizeof(float);
   if (states == 0 || bytes > kMaxBytes) {
     throw InputError("scenario " + spec.scenario_name +
-                     ": too many states for a table (devices, cells or agents); a tabular learner "
-                     "cannot play it");
+                     ": too many states for a table (devices, cells or agents), expected a learner "
+                     "with a network, as auto chooses");
   }
   values.assign(bytes / sizeof(float), initial_value);
 }

@@ -173,6 +173,10 @@ TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {
   const auto straight = place(tracked, Foresight::kHeadingHolds);
   EXPECT_NEAR(straight[0], 7.0F, 1e-3F) << "on as it moves now";
   EXPECT_NEAR(straight[1], 1.0F, 1e-3F);
+  tracked.disasters[0].forecasts = {{0.0F, {{20.0F, 9.0F, 8.0F}}}};
+  const auto said = place(tracked, Foresight::kHeadingHolds);
+  EXPECT_EQ(said, (std::array<float, 2>{9.0F, 8.0F})) << "as the authority said";
+  EXPECT_EQ(place(tracked, Foresight::kClairvoyant), (std::array<float, 2>{2.0F, 5.0F}));
 }
 
 TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {

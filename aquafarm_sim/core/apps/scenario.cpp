@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "aquafarm/check.h"
+#include "aquafarm/encoding.h"
 #include "aquafarm/map_file.h"
 #include "aquafarm/ranch_builder.h"
 #include "aquafarm/scenario_yaml.h"
@@ -132,11 +133,16 @@ void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   }
 }
 
-// What to train with: a table where it is soon learnt, else a network.
+// What to train with: a table, with more steps where it is large, or a network where there is none.
 std::string Learner(const Scenario& made) {
   if (made.AgentCount() > 1) return " algorithm:=auto";
-  if (!made.view.waterways) return "";
-  return " algorithm:=dqn options:=steps_per_update=4 steps:=1200000";
+  const std::uint64_t states = Encoder(made).state_count();
+  constexpr std::uint64_t kMillion = 1'000'000;
+  if (states == 0 || states > 100 * kMillion) {  // ten values each: beyond a table of 4 GB
+    return " algorithm:=dqn options:=steps_per_update=4 steps:=1200000";
+  }
+  if (states <= kMillion) return "";  // the learner's own number of steps does
+  return " steps:=" + std::to_string((8 * states / kMillion + 1) * kMillion);
 }
 
 void Run(const Arguments& arguments) {

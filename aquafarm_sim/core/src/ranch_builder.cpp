@@ -70,7 +70,7 @@ class Builder {
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
   }
 
-  // A table of many states takes long to fill, and a network learns soon where it is told the way.
+  // A table of many states takes many steps; a network needs few where it is told the way.
   bool IsForNetworks() {
     constexpr std::uint32_t kSoonLearnt = 1'000'000;
     const std::uint32_t states = Encoder(ranch_.scenario).state_count();
@@ -83,7 +83,7 @@ class Builder {
     }
     plan_.waterways = true;
     const std::string many = states == 0 ? "more than 268435456" : std::to_string(states);
-    Say("states: " + many + ", too many for a table soon learnt; features tell the way by water");
+    Say("states: " + many + ", many for a table; features tell networks the way by water");
     return true;
   }
 

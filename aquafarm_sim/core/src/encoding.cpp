@@ -18,6 +18,8 @@ constexpr std::int32_t kPortFeatures = 2;
 constexpr std::int32_t kDisasterFeatures = 7;
 constexpr std::int32_t kShipFeatures = 4;
 constexpr std::int32_t kWayFeatures = 3;
+constexpr std::int32_t kCourseFeatures = 2 * kMoveCount + 1;
+constexpr std::int32_t kCourseSteps = 6;  // as far as a course is looked along
 // Scales: devices' highest paper value, the worst risk of §2.1.
 constexpr float kValueScale = 1.0F / 100.0F;
 constexpr float kRiskScale = 1.0F / 20.0F;
@@ -148,7 +150,8 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
   feature_count_ = kSelfFeatures + kMoveCount + devices * kDeviceFeatures + ports * kPortFeatures +
                    static_cast<std::int32_t>(scenario.disasters.size()) * kDisasterFeatures +
                    (scenario.AgentCount() - 1) * kShipFeatures + IdentityFeatures(scenario) +
-                   (scenario.view.waterways ? (ports + fetchable_) * kWayFeatures : 0);
+                   (scenario.view.waterways ? (ports + fetchable_) * kWayFeatures : 0) +
+                   (scenario.view.courses ? kCourseFeatures : 0);
 
   if (scenario.seas && !scenario.seas->risk.empty()) {
     for (std::int32_t i = 0; i < scenario.CellCount(); ++i) {
@@ -267,11 +270,30 @@ void Encoder::Features(const View& view, float* out) const {
   std::fill_n(out, identities, 0.0F);
   if (identities > 0) out[view.ship] = 1.0F;
   out += identities;
-  if (scenario_.view.waterways) Ways(view, out);
+  if (scenario_.view.waterways) out = Ways(view, out);
+  if (scenario_.view.courses) Courses(view, out);
+}
+
+// The risk forecast after one step of each move, and on average over the steps of a course that
+// holds on, or of a ship that stays; the map's edge stops a ship.
+void Encoder::Courses(const View& view, float* out) const {
+  const auto risk = [&](Cell move, std::int32_t steps) {
+    const Cell to{std::clamp(view.self.x + steps * move.x, 0, scenario_.width - 1),
+                  std::clamp(view.self.y + steps * move.y, 0, scenario_.height - 1)};
+    return ForecastRiskAt(view, to, steps) * kRiskScale;
+  };
+  const auto course = [&](Cell move) {
+    float sum = 0.0F;
+    for (std::int32_t step = 1; step <= kCourseSteps; ++step) sum += risk(move, step);
+    return sum / static_cast<float>(kCourseSteps);
+  };
+  for (const Cell move : kMoves) *out++ = risk(move, 1);
+  for (const Cell move : kMoves) *out++ = course(move);
+  *out = course({0, 0});
 }
 
 // The next move and how many are left to every port, and to every device that still waits.
-void Encoder::Ways(const View& view, float* out) const {
+float* Encoder::Ways(const View& view, float* out) const {
   const Layout& layout = *view.layout;
   const auto cell = static_cast<std::size_t>(LinearIndex(view.self, scenario_.width));
   const Way* way = layout.ways.data() + cell * layout.way_count();
@@ -293,6 +315,7 @@ void Encoder::Ways(const View& view, float* out) const {
       ++way;
     }
   }
+  return out;
 }
 
 void Encoder::Planes(const View& view, std::uint8_t* out) const {
@@ -351,15 +374,30 @@ std::vector<std::string> Encoder::feature_names() const {
     add("other", i, {"visible", "east", "north", "aboard"});
   }
   for (std::int32_t i = 0; i < IdentityFeatures(scenario_); ++i) add("agent", i, {"self"});
-  if (!scenario_.view.waterways) return names;
-  for (std::int32_t i = 0; i < ports; ++i) add("port", i, {"way_east", "way_north", "way_steps"});
+  if (scenario_.view.waterways) AddWayNames(names);
+  if (!scenario_.view.courses) return names;
+  for (const char* part : {"risk.", "course."}) {
+    for (int move = 0; move < kMoveCount; ++move) {
+      names.push_back(part + std::string(ToString(static_cast<Action>(move))));
+    }
+  }
+  names.emplace_back("course.stay");
+  return names;
+}
+
+void Encoder::AddWayNames(std::vector<std::string>& names) const {
+  const auto add = [&names](const char* thing, std::int32_t id) {
+    for (const char* part : {".way_east", ".way_north", ".way_steps"}) {
+      names.push_back(thing + std::to_string(id) + part);
+    }
+  };
+  for (std::int32_t i = 0; i < scenario_.PortCount(); ++i) add("port", i);
   for (std::int32_t i = 0; i < scenario_.devices.Total(); ++i) {
     const bool fetched = scenario_.devices.placement == DevicePlacement::kExplicit
                              ? !scenario_.devices.sites[static_cast<std::size_t>(i)].self_propelled
                              : i < fetchable_;
-    if (fetched) add("device", i, {"way_east", "way_north", "way_steps"});
+    if (fetched) add("device", i);
   }
-  return names;
 }
 
 std::vector<std::string> Encoder::plane_names() {

@@ -309,6 +309,7 @@ void VisitView(Archive& a, S& s) {
            ListOf<Interval<float>>{{0.0F, 10000.0F}, Archive::kReads ? 3U : 0U, 3});
     b.Always();
     b.Leaf("waterways", s.view.waterways, AnyFlag{});
+    b.Leaf("courses", s.view.courses, AnyFlag{});
   });
 }
 

@@ -150,4 +150,16 @@ float KnownRiskAt(const View& view, Cell cell) {
   return worst;
 }
 
+float ForecastRiskAt(const View& view, Cell cell, std::int32_t steps) {
+  float worst = view.scenario->SeaRiskAt(cell);
+  for (const KnownDisaster& known : view.disasters) {
+    if (!known.known) continue;
+    const auto ahead = static_cast<float>(known.age + steps);
+    const float risk = RiskOf(known.belief, static_cast<float>(cell.x) - ahead * known.belief.dx,
+                              static_cast<float>(cell.y) - ahead * known.belief.dy);
+    worst = std::min(worst, risk);
+  }
+  return worst;
+}
+
 }  // namespace aquafarm

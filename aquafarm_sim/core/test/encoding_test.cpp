@@ -189,6 +189,40 @@ TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
             5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 4 + 5 + (2 + 3) * 3);
 }
 
+// Against the disaster itself, moved on step by step.
+TEST(Features, TellTheRiskForecastAlongEachCourse) {
+  Scenario scenario = CrowdedScenario(1, 0);
+  scenario.view.courses = true;
+  Farm farm = MakeFarm(scenario);
+  for (int round = 0; round < 40; ++round) {
+    StepOne(farm, static_cast<Action>(round % kMoveCount));
+    const Cell self = farm.ships()[0].cell;
+    std::vector<Disaster> ahead = farm.disasters();
+    std::vector<float> sums(kMoveCount + 1);
+    for (int step = 1; step <= 6; ++step) {
+      for (Disaster& disaster : ahead) {
+        disaster.x += disaster.dx;
+        disaster.y += disaster.dy;
+      }
+      for (std::size_t move = 0; move <= kMoveCount; ++move) {
+        const Cell by = move < kMoveCount ? kMoves[move] : Cell{0, 0};
+        const Cell to{std::clamp(self.x + step * by.x, 0, scenario.width - 1),
+                      std::clamp(self.y + step * by.y, 0, scenario.height - 1)};
+        const float risk = RiskAt(ahead, to) / 20.0F;
+        sums[move] += risk;
+        if (step > 1 || move == kMoveCount) continue;
+        EXPECT_FLOAT_EQ(Feature(farm, "risk." + std::string(ToString(static_cast<Action>(move)))),
+                        risk);
+      }
+    }
+    for (std::size_t move = 0; move < kMoveCount; ++move) {
+      EXPECT_NEAR(Feature(farm, "course." + std::string(ToString(static_cast<Action>(move)))),
+                  sums[move] / 6.0F, 1e-6);
+    }
+    EXPECT_NEAR(Feature(farm, "course.stay"), sums[kMoveCount] / 6.0F, 1e-6);
+  }
+}
+
 // What the planes must say, cell by cell, from look-ups.
 std::vector<std::uint8_t> SlowPlanes(const View& view) {
   const Layout& layout = *view.layout;

@@ -181,6 +181,7 @@ TEST(Writer, GivesTextThatReadsBackToTheSameBits) {
   EXPECT_EQ(back.view.bulletin_noise, s.view.bulletin_noise);
   EXPECT_EQ(back.view.shared_sight, s.view.shared_sight);
   EXPECT_EQ(back.view.waterways, s.view.waterways);
+  EXPECT_EQ(back.view.courses, s.view.courses);
   EXPECT_EQ(back.disasters[0].heading_deg, s.disasters[0].heading_deg);
   EXPECT_EQ(back.disasters[0].start, s.disasters[0].start);
   EXPECT_EQ(back.disasters[1].heading_deg, std::nullopt);

@@ -52,7 +52,9 @@ class Encoder {
   void Planes(const View& view, std::uint8_t* out) const;
 
  private:
-  void Ways(const View& view, float* out) const;
+  float* Ways(const View& view, float* out) const;  // returns where it ended
+  void AddWayNames(std::vector<std::string>& names) const;
+  void Courses(const View& view, float* out) const;
   std::uint32_t IndexOf(std::int32_t code, Cell cell) const;
 
   const Scenario& scenario_;

@@ -171,6 +171,7 @@ struct ViewSpec {
   float bulletin_noise{0.0F};        ///< centre off by up to this on each axis [cells]
   bool shared_sight{};               ///< agents are networked: what one of them sees, all know
   bool waterways{};  ///< features tell the way by water to ports and devices, as a chart plotter
+  bool courses{};    ///< features tell the risk forecast along each course
   /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]: agents are told
   /// a forecast track that errs so much, and the truth follows the track; empty: they are told
   /// how it moves now. See forecast.h.

@@ -24,6 +24,11 @@ std::int32_t Int(Enum value) {
   return static_cast<std::int32_t>(value);
 }
 
+// Whether its rings may have been others when the last bulletin was issued.
+bool TellsRings(const Disaster& disaster) {
+  return disaster.radius_growth != 0.0F && disaster.bulletin.step != kNone;
+}
+
 void HashDisaster(const Disaster& disaster, Hasher& hasher) {
   hasher.Add(Int(disaster.kind), disaster.grade);
   hasher.Add(disaster.x, disaster.y);
@@ -41,6 +46,13 @@ void HashDisaster(const Disaster& disaster, Hasher& hasher) {
   const Bulletin& bulletin = disaster.bulletin;
   hasher.Add(bulletin.x, bulletin.y);
   hasher.Add(bulletin.heading_deg, bulletin.step);
+  if (!TellsRings(disaster)) return;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
+    hasher.Add(bulletin.radius[k], bulletin.speed);
+    for (std::size_t q = 0; disaster.by_quadrant && q < bulletin.quadrant.size(); ++q) {
+      hasher.Add(bulletin.quadrant[q][k], 0.0F);
+    }
+  }
 }
 
 void HashTracks(const std::vector<Track>& tracks, Hasher& hasher) {
@@ -122,11 +134,6 @@ Device DeviceFromJson(const json& j) {
   return device;
 }
 
-// Whether its rings may have been others when the last bulletin was issued.
-bool TellsRings(const Disaster& disaster) {
-  return disaster.radius_growth != 0.0F && disaster.bulletin.step != kNone;
-}
-
 json DisasterToJson(const Disaster& d) {
   const Bulletin& b = d.bulletin;
   json j{{"kind", Int(d.kind)},
@@ -202,6 +209,10 @@ Disaster DisasterFromJson(const json& j) {
       finite = finite && std::isfinite(d.bulletin.radius[k]);
       for (const auto& side : d.bulletin.quadrant) finite = finite && std::isfinite(side[k]);
     }
+  } else if (TellsRings(d)) {
+    throw InputError(
+        "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin told "
+        "them, which states saved by older versions lack");
   }
   for (const float value : {d.x, d.y, d.dx, d.dy, d.speed, d.radius_growth, d.margin, d.bulletin.x,
                             d.bulletin.y, d.bulletin.speed}) {
@@ -443,6 +454,10 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
                      std::to_string(std::min(count, kMaxDisasters - 1)) + "]");
   }
   ValidateDisaster(spec);
+  if (!spec.forecasts.empty()) {
+    throw InputError("forecasts: got " + std::to_string(spec.forecasts.size()) +
+                     ", expected none: agents are told those of the scenario alone");
+  }
   const bool added = id == count;
   if (added && !spec.start && spec.track.empty()) {
     throw InputError("start: a new disaster needs a start or a track");

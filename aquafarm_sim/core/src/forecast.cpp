@@ -85,13 +85,18 @@ class Forecast {
   std::array<float, 2> At(float step) const {
     const std::size_t next = std::max(IndexAfter(step), first_);
     const ForecastPoint from = next == first_ ? Now() : Point(next - 1);
-    if (next == (said_ != nullptr ? said_->points.size() : track_.size())) return {from.x, from.y};
-    const ForecastPoint to = Point(next);
-    const float part = (step - from.step) / (to.step - from.step);
-    return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
+    if (next < (said_ != nullptr ? said_->points.size() : track_.size())) {
+      return On(from, Point(next), step);
+    }
+    if (said_ == nullptr || next < 2) return {from.x, from.y};
+    return On(Point(next - 2), from, std::min(step, std::max(track_.back().step, from.step)));
   }
 
  private:
+  static std::array<float, 2> On(ForecastPoint from, ForecastPoint to, float step) {
+    const float part = (step - from.step) / (to.step - from.step);
+    return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
+  }
   std::size_t IndexAfter(float step) const {
     return said_ != nullptr ? After(step, said_->points) : After(step, track_);
   }

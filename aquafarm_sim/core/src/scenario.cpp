@@ -109,7 +109,11 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
                      "got " + Format(waypoint.step) + ", expected more than that of " +
                          At("track", i - 1) + ", " + Format(disaster.track[i - 1].step));
   }
-  CheckForecasts(internal::Join(path, "forecasts"), disaster.forecasts);
+  const std::string forecasts = internal::Join(path, "forecasts");
+  if (disaster.track.empty() && !disaster.forecasts.empty()) {
+    throw FieldError(forecasts, "is used only where there is a track");
+  }
+  CheckForecasts(forecasts, disaster.forecasts);
   CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
   CheckQuadrants(path, disaster.quadrants, disaster.radii, !disaster.quadrants.empty());
 }

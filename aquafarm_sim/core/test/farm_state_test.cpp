@@ -167,6 +167,51 @@ TEST(SaveLoad, BytesThatNestAMillionDeepAreRefused) {
                InputError);
 }
 
+/// A farm in partial view, some steps after a bulletin of its tide, which grows.
+Farm FarmAfterABulletin() {
+  Scenario scenario = CrowdedScenario(1);
+  scenario.view = {ViewMode::kPartial, 2.0F, 7, 1.5F};
+  Farm farm = MakeFarm(scenario);
+  RandomSteps(farm, 20, 1);
+  return farm;
+}
+
+// What a farm says of its own state once it is changed, or "was loaded".
+std::string Refused(Farm& farm, const std::function<void(json&)>& change) {
+  try {
+    farm.Load(Forge(farm, change));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was loaded";
+}
+
+TEST(SaveLoad, AStateOfBeforeBulletinsKeptRingsIsRefused) {
+  Farm farm = FarmAfterABulletin();
+  ASSERT_EQ(Refused(farm, [](json&) {}), "was loaded");
+  EXPECT_EQ(
+      Refused(farm, [](json& s) { s["disasters"][1].erase("bulletin_rings"); }),
+      "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin told "
+      "them, which states saved by older versions lack");
+}
+
+TEST(Hash, TellsApartWhatBulletinsToldOfADisasterThatGrows) {
+  Farm farm = FarmAfterABulletin();
+  const auto hash = [](const std::string& told) { return told.substr(0, 12); };
+  const std::string other = "state: hash:";
+  EXPECT_EQ(hash(Refused(farm, [](json& s) { s["disasters"][1]["bulletin_rings"][0][0] = 0.5F; })),
+            other);
+  EXPECT_EQ(hash(Refused(farm, [](json& s) { s["disasters"][1]["bulletin"][2] = 3.0F; })), other);
+
+  DisasterSpec spec = farm.scenario().disasters[1];
+  spec.start = {{3.0F, 3.0F}};
+  spec.quadrants = {{1.0F, 1.0F, 1.0F, 1.0F}, {2.5F, 2.5F, 2.5F, 2.5F}};
+  farm.SetDisaster(1, spec);
+  EXPECT_EQ(
+      hash(Refused(farm, [](json& s) { s["disasters"][1]["bulletin_rings"][1][2][0] = 0.5F; })),
+      other);
+}
+
 TEST(Hash, TellsTheFutureOfABulletinApart) {
   Farm a = MakeFarm(CrowdedScenario(1));
   Farm b = MakeFarm(CrowdedScenario(1));

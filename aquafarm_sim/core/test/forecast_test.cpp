@@ -219,7 +219,12 @@ TEST(IssuedForecasts, LeadFromWhereTheStormIsToThePointsSaid) {
   EXPECT_EQ(at(0, 0), (Place{5.0F, -100.0F})) << "where it is is known";
   EXPECT_EQ(at(0, 144), (Place{45.0F, -40.0F}));
   EXPECT_EQ(at(0, 72), (Place{25.0F, -70.0F})) << "straight between";
-  EXPECT_EQ(at(0, 400), (Place{95.0F, 0.0F})) << "it stays at the last point";
+  EXPECT_NEAR(at(0, 400)[0], 95.0 + 112.0 * 50.0 / 144.0, 1e-3) << "on as on its last leg";
+  EXPECT_NEAR(at(0, 400)[1], 112.0 * 40.0 / 144.0, 1e-3);
+  EXPECT_EQ(at(0, 576), (Place{195.0F, 80.0F}));
+  EXPECT_EQ(at(0, 900), at(0, 576)) << "as far as the truth has a track";
+  EXPECT_EQ(at(431, 432), (Place{35.0F, 60.0F}));
+  EXPECT_NEAR(at(431, 441)[0], 35.0 + 9.0 * 10.0 / 144.0, 1e-3) << "not as on from the truth";
   EXPECT_EQ(at(72, 72), (Place{5.0F, -70.0F})) << "the truth again";
   EXPECT_EQ(at(72, 108), (Place{25.0F, -55.0F}));
   EXPECT_EQ(at(199, 288), (Place{95.0F, 0.0F})) << "the newer one is not out yet";
@@ -280,16 +285,38 @@ TEST(IssuedForecasts, AreOfTheScenariosTrackNotOfOneSetInPlay) {
   Farm farm = MakeFarm(Said());
   farm.Reset(3, 6);
   Farm loaded = MakeFarm(Said());
-  farm.SetDisaster(0, farm.scenario().disasters[0]);
+  DisasterSpec other = farm.scenario().disasters[0];
+  other.forecasts.clear();
+  farm.SetDisaster(0, other);
   loaded.Load(farm.Save());
   EXPECT_TRUE(HasForecast(farm, 0, 0)) << "the same track stays the scenario's";
   EXPECT_TRUE(HasForecast(loaded, 0, 0));
-  DisasterSpec other = farm.scenario().disasters[0];
   other.track[1].x += 1.0F;
   farm.SetDisaster(0, other);
   EXPECT_FALSE(HasForecast(farm, 0, 0));
   loaded.Load(farm.Save());
   EXPECT_FALSE(HasForecast(loaded, 0, 0));
+}
+
+TEST(IssuedForecasts, AreOnlyOfATrackOfTheScenario) {
+  const auto refused = [](const auto& act) -> std::string {
+    try {
+      act();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "was taken";
+  };
+  Scenario scenario = Said();
+  Farm farm = MakeFarm(scenario);
+  farm.Reset(3, 6);
+  const std::uint64_t hash = farm.Hash();
+  EXPECT_EQ(refused([&] { farm.SetDisaster(0, scenario.disasters[0]); }),
+            "forecasts: got 2, expected none: agents are told those of the scenario alone");
+  EXPECT_EQ(farm.Hash(), hash);
+  scenario.disasters[0].track.clear();
+  EXPECT_EQ(refused([&] { ValidateScenario(scenario); }),
+            "disasters[0].forecasts: is used only where there is a track");
 }
 
 // What a file with these forecasts is told, or "was taken".

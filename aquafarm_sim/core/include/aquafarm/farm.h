@@ -109,8 +109,8 @@ class Farm {
 
   /// Replaces disaster `id`, or adds one when id is their number: a bulletin arrives. A spec
   /// without start keeps the present centre (a new one needs a start or a track). Forecasts are
-  /// told only of the scenario's own track.
-  /// @throws InputError on an id or spec out of range; the farm is then as it was
+  /// told only of the scenario's own track: a spec has none.
+  /// @throws InputError on an id or spec out of range, or forecasts; the farm is then as it was
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
   inline static constexpr std::int32_t kMaxDisasters = 64;
 

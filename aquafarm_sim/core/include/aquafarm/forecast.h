@@ -10,9 +10,9 @@
 ///               issued +24 h +48 h
 ///
 /// Of an authority's forecasts the newest counts, from where the storm is on to those of its points
-/// that are to come; it stays at the last. Before the first was issued, and after the newest has
-/// run out, agents are told how the storm moves now. So they are of a storm that a bulletin has
-/// replaced in play.
+/// that are to come, then on as between the last two, while the truth has a track. Before the first
+/// was issued, and after the newest has run out, agents are told how the storm moves now. So they
+/// are of a storm that a bulletin has replaced in play.
 ///
 /// u is drawn once an episode and disaster, with a mean length of 1 and any direction: successive
 /// forecasts of one storm err to the same side, and each is better than the one before. [decided]

@@ -66,7 +66,7 @@ std::array<double, kQuadrantCount> ParseRadii(const JsonObject& point, JsonObjec
   }
   if (fits) return radius;
   place.RefuseValue(
-      Join(point.path(), *keys.begin()),
+      Join(point.path(), point.KeyOf(keys)),
       "got " + Quoted(text) + ", expected four numbers in [0, 3000] as " + "250|220|200|180");
 }
 
@@ -74,7 +74,7 @@ void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys wh
               JsonObject::Keys quadrants, HazardFix& fix, HazardPlace& place) {
   std::array<double, kQuadrantCount> radius = ParseRadii(point, whole, place);
   if (const Json* value = point.Find(quadrants)) {
-    const JsonObject quad(*value, Join(point.path(), *quadrants.begin()), place);
+    const JsonObject quad(*value, Join(point.path(), point.KeyOf(quadrants)), place);
     constexpr std::array<const char*, kQuadrantCount> kKeys{"ne", "se", "sw", "nw"};
     std::array<double, kQuadrantCount> each{};
     for (std::size_t q = 0; q < each.size(); ++q) {
@@ -107,10 +107,11 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
            place);
   fix.speed_kmh = point.Number({"move_speed", "moveSpeed", "movespeed"}, 0.0, 300.0);
   if (fix.speed_kmh == 0.0) fix.speed_kmh.reset();  // not said; a storm at rest is computed
-  const std::string direction = point.Text({"move_dir", "moveDir", "movedirection"});
+  const JsonObject::Keys way{"move_dir", "moveDir", "movedirection"};
+  const std::string direction = point.Text(way);
   fix.heading_deg = ParseDirection(direction);
   if (!fix.heading_deg && !direction.empty()) {
-    point.Here().Warn("move_dir: " + Quoted(direction) + " is no direction known here");
+    point.Here().Warn(point.KeyOf(way) + ": " + Quoted(direction) + " is no direction known here");
   }
   return fix;
 }
@@ -123,9 +124,10 @@ void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& tr
     HazardForecast forecast;
     forecast.agency = one.Text({"sets", "tm"});
     forecast.issued = issued;
-    const Json* points = one.List({"points", "forecastpoints"});
+    const JsonObject::Keys keys{"points", "forecastpoints"};
+    const Json* points = one.List(keys);
     for (std::size_t k = 0; points != nullptr && k < points->size(); ++k) {
-      const JsonObject entry((*points)[k], At(Join(one.path(), "points"), k), place);
+      const JsonObject entry((*points)[k], At(Join(one.path(), one.KeyOf(keys)), k), place);
       HazardFix fix = ReadPoint(entry, place);
       AppendFix(std::move(fix), forecast.fixes, entry.Here());
     }
@@ -136,8 +138,10 @@ void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& tr
 void ReadLandfalls(const JsonObject& storm, HazardTrack& track, HazardPlace& place) {
   const Json* land = storm.List({"land"});
   for (std::size_t i = 0; land != nullptr && i < land->size(); ++i) {
-    const JsonObject entry((*land)[i], At(Join(storm.path(), "land"), i), place);
-    if (entry.Find({"landtime"}) != nullptr) continue;  // Zhejiang's names more than landfalls
+    const Json& each = (*land)[i];
+    const bool zhejiangs = each.contains("landtime");  // which names more than landfalls
+    if (zhejiangs || IsBlank(each)) continue;
+    const JsonObject entry(each, At(Join(storm.path(), "land"), i), place);
     track.landfalls.push_back({entry.NeedTime({"land_time", "landTime"}, kBeijing_s),
                                entry.NeedPosition({"lat"}, {"lng", "lon"}),
                                entry.Text({"position"})});

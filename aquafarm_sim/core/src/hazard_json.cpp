@@ -16,6 +16,13 @@ std::int32_t LineAt(const std::string& text, std::size_t offset) {
   return static_cast<std::int32_t>(1 + std::count(text.begin(), end, '\n'));
 }
 
+// As null, blank or "null".
+bool SaysNothing(const Json& value) {
+  if (!value.is_string()) return value.is_null();
+  const std::string& text = value.get_ref<const std::string&>();
+  return Trim(text).empty() || text == "null";
+}
+
 // Gives a text to the parser and remembers how far it has read.
 class ReadingIterator {
  public:
@@ -201,6 +208,11 @@ Json ParseJson(const std::string& text, HazardPlace& place) {
   }
 }
 
+bool IsBlank(const Json& value) {
+  if (!value.is_object()) return SaysNothing(value);
+  return std::all_of(value.begin(), value.end(), SaysNothing);
+}
+
 std::int32_t LineOfJson(const std::string& text, const std::string& path) {
   const char* read = text.data();
   PathFinder finder(path);
@@ -222,22 +234,23 @@ JsonObject::JsonObject(const Json& value, std::string path, HazardPlace& place)
 const Json* JsonObject::Find(Keys keys) const {
   for (const char* key : keys) {
     const auto found = value_.find(key);
-    if (found == value_.end() || found->is_null()) continue;
-    if (found->is_string()) {
-      const std::string& text = found->get_ref<const std::string&>();
-      if (Trim(text).empty() || text == "null") continue;
-    }
-    return &*found;
+    if (found != value_.end() && !SaysNothing(*found)) return &*found;
   }
   return nullptr;
 }
 
-void JsonObject::Refuse(Keys keys, const Json* got, const std::string& expected) const {
-  std::string key = *keys.begin();
-  for (const char* spelling : keys) {
-    if (value_.contains(spelling)) key = spelling;
+std::string JsonObject::KeyOf(Keys keys) const {
+  for (const char* key : keys) {
+    if (Find({key}) != nullptr) return key;
   }
-  place_.RefuseValue(Join(path_, key), "got " + Shown(got) + ", expected " + expected);
+  for (const char* key : keys) {
+    if (value_.contains(key)) return key;
+  }
+  return *keys.begin();
+}
+
+void JsonObject::Refuse(Keys keys, const Json* got, const std::string& expected) const {
+  place_.RefuseValue(Join(path_, KeyOf(keys)), "got " + Shown(got) + ", expected " + expected);
 }
 
 std::optional<double> JsonObject::Number(Keys keys, double min, double max) const {

@@ -21,6 +21,9 @@ std::string CleanJson(const std::string& text);
 /// @throws InputError "file:line: got no valid JSON: …"
 nlohmann::json ParseJson(const std::string& text, HazardPlace& place);
 
+/// Whether JSON says nothing: null, blank or "null" as text, or an object of nothing else.
+bool IsBlank(const nlohmann::json& value);
+
 /// The line on which the value of a path such as "[0].points[3].lat" ends; 1 when there is none.
 std::int32_t LineOfJson(const std::string& text, const std::string& path);
 
@@ -33,6 +36,8 @@ class JsonObject {
   using Keys = std::initializer_list<const char*>;
   /// The value; null where nothing is said.
   const nlohmann::json* Find(Keys keys) const;
+  /// The spelling that is used here: of the value, else of a key without one, else the first.
+  std::string KeyOf(Keys keys) const;
   /// @throws InputError when it is no number in [min, max]
   std::optional<double> Number(Keys keys, double min, double max) const;
   double NeedNumber(Keys keys, double min, double max) const;

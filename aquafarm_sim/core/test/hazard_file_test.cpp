@@ -251,6 +251,14 @@ TEST(Bulletin, OfZhejiangIsRefusedWithItsLine) {
   EXPECT_EQ(refused("300|200|190|250", "300|-2|190|250|"),
             "x:9: [0].points[0].radius7: got '300|-2|190|250|', expected four numbers in [0, 3000] "
             "as 250|220|200|180");
+  EXPECT_EQ(refused("\"30.4\"", "\"95\""),
+            "x:16: [0].points[0].forecast[1].forecastpoints[0].lat: got '95', expected a number in "
+            "[-90, 90]");
+  EXPECT_EQ(refused("radius7\": \"300|200|190|250\"", "r7\": \"300|200|190\""),
+            "x:9: [0].points[0].r7: got '300|200|190', expected four numbers in [0, 3000] as "
+            "250|220|200|180");
+  EXPECT_EQ(refused("radius12\": \"\"", "r12Quad\": {\"ne\": -1}"),
+            "x:9: [0].points[0].r12Quad.ne: got -1, expected a number in [0, 3000]");
   EXPECT_EQ(refused("\"29.7\"", "\"95\""),
             "x:7: [0].points[0].lat: got '95', expected a number in [-90, 90]");
   EXPECT_NE(refused("];", "").find(": got no valid JSON: "), std::string::npos);
@@ -282,7 +290,7 @@ TEST(Bulletin, KnowsBothSpellingsAndWhatIsUnknown) {
   EXPECT_EQ(bare.pressure_hpa, std::nullopt);
   EXPECT_EQ(bare.grade, StormGrade::kUnknown);
   ExpectRadii(bare, 34, {200, 200, 200, 200});
-  EXPECT_EQ(file.warnings, std::vector<std::string>{"b.json:17: [0].points[1].move_dir: '中' is no "
+  EXPECT_EQ(file.warnings, std::vector<std::string>{"b.json:17: [0].points[1].moveDir: '中' is no "
                                                     "direction known here"});
   const HazardFix& weak = storm.fixes[2];
   EXPECT_EQ(weak.grade, StormGrade::kTropicalStorm) << "by its wind";

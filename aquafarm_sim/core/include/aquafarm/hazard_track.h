@@ -27,7 +27,7 @@ enum class HazardFormat : std::uint8_t {
   kJma,             ///< JMA / RSMC Tokyo best track, bst_*.txt
   kAtcf,            ///< ATCF b-deck, bWPnnyyyy.dat
   kIbtracs,         ///< IBTrACS v04 CSV
-  kBulletin,        ///< typhoon bulletin JSON (tfbh, points with radius7_quad …)
+  kBulletin,        ///< typhoon bulletin, also Zhejiang's (tfbh or tfid, points with radius7…)
   kWeatherService,  ///< storm-track answer of a weather service (track with windRadius30 …)
 };
 inline constexpr int kHazardFormatCount = 6;

@@ -2,7 +2,7 @@
 /* its one storm */
 let typhoons = [
   {"tfid": "202106", "name": "烟花", "enname": "In-Fa", "isactive": "1", "warnlevel": "white",
-   "land": [{"landaddress": "舟山", "landtime": "2021\/7\/25 12:30:00", "lng": "122.4", "lat": "30.0"}],
+   "land": [{"landaddress": "舟山", "landtime": "2021\/7\/25 12:30:00", "lng": "122.4", "lat": "30.0"}, {"landaddress": "", "landtime": "", "lng": "", "lat": ""}, null, {}],
    "points": [
      {"time": "2021\/7\/25 8:00:00", "lng": "123.0", "lat": "29.7", "strong": "强台风", "power": "14",
       "speed": "42", "pressure": "960", "movespeed": "12", "movedirection": "西北",

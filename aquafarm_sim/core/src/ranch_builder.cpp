@@ -75,9 +75,10 @@ class Builder {
     constexpr std::uint32_t kSoonLearnt = 1'000'000;
     const std::uint32_t states = Encoder(ranch_.scenario).state_count();
     if (states > 0 && states <= kSoonLearnt) return false;
-    ranch_.scenario.view.waterways = true;
+    Scenario told = ranch_.scenario;
+    told.view.waterways = true;
     try {
-      ValidateScenario(ranch_.scenario);
+      ValidateScenario(told);
     } catch (const InputError&) {
       return false;  // a farm too large for the ways by water
     }
@@ -173,9 +174,22 @@ class Builder {
     if (ports.empty()) Say(Text("ports: no shore, so %d drawn at the edge", request_.ports));
   }
 
-  // The storm of a track in another file: by id, else by name.
+  // The storm of a track in another file, at the same time.
   static const HazardTrack& SameStorm(const char* option, const HazardFile& file,
                                       const HazardTrack& track) {
+    const HazardTrack& same = OfThatName(option, file, track);
+    const std::int64_t first = same.fixes.front().time;
+    const std::int64_t last = same.fixes.back().time;
+    if (first <= track.fixes.back().time && last >= track.fixes.front().time) return same;
+    throw InputError(std::string(option) + ": got " + (same.name.empty() ? same.id : same.name) +
+                     " from " + FormatTime(first) + " to " + FormatTime(last) +
+                     ", expected the storm from " + FormatTime(track.fixes.front().time) + " to " +
+                     FormatTime(track.fixes.back().time));
+  }
+
+  // By id, else by name.
+  static const HazardTrack& OfThatName(const char* option, const HazardFile& file,
+                                       const HazardTrack& track) {
     const auto letters = [](const std::string& name) {
       std::string bare = internal::Upper(name);
       bare.erase(std::remove(bare.begin(), bare.end(), '-'), bare.end());
@@ -278,10 +292,17 @@ class Builder {
       if (forecast.issued <= plan_.start) kept.clear();
       kept.push_back(std::move(forecast));
     }
+    const auto ends = [](const HazardForecast& one) { return one.fixes.back().time; };
+    if (!kept.empty() && ends(kept.front()) <= plan_.start) {
+      ranch_.warnings.push_back("forecasts: that of " + FormatTime(kept.front().issued) +
+                                " ends at " + FormatTime(ends(kept.front())) +
+                                ", by the start, and is left out");
+      kept.erase(kept.begin());
+    }
     if (kept.empty()) {
-      throw InputError("forecasts: got no forecast points of the storm before " + FormatTime(end) +
-                       " in " + FileName(request_.forecasts) +
-                       ", expected bulletins with forecast points");
+      throw InputError("forecasts: got no forecast points of the storm between " +
+                       FormatTime(plan_.start) + " and " + FormatTime(end) + " in " +
+                       FileName(request_.forecasts) + ", expected bulletins with forecast points");
     }
     Say(Text("forecasts: %d from %s, the first of ", static_cast<int>(kept.size()),
              FileName(request_.forecasts).c_str()) +

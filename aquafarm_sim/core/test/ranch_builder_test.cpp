@@ -67,6 +67,15 @@ TEST(Ranch, OfManyDevicesTellsNetworksTheWay) {
   EXPECT_NE(ranch.yaml.find("#   states: 13762560"), std::string::npos);
 }
 
+TEST(Ranch, TooLargeForWaysByWaterIsWhatItsFileSays) {
+  RanchRequest request;
+  request.width = request.height = 1100;
+  request.devices = 12;
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_FALSE(ranch.scenario.view.waterways);
+  EXPECT_EQ(HashScenario(ranch.scenario), HashScenario(ParseScenario(ranch.yaml, request.name)));
+}
+
 TEST(Ranch, TellsItsAgentsWhatTheBulletinsForecast) {
   RanchRequest request = Request();
   request.forecasts = (kData / "bulletin.json").string();
@@ -84,9 +93,84 @@ TEST(Ranch, TellsItsAgentsWhatTheBulletinsForecast) {
   EXPECT_NEAR(storm.forecasts[0].points[1].x, frame.ToGrid({30.6, 121.2})[0], 1e-2);
   EXPECT_NEAR(storm.forecasts[0].points[1].y, frame.ToGrid({30.6, 121.2})[1], 1e-2);
   request.forecasts = request.track;
-  EXPECT_NE(Refused(request).find("forecasts: got no forecast points of the storm before 2021-07-"),
+  EXPECT_NE(Refused(request).find(
+                "forecasts: got no forecast points of the storm between 2021-07-25T00:"),
             std::string::npos)
       << Refused(request);
+}
+
+TEST(Ranch, TakesTheForecastOfTheAgencyNamedFirst) {
+  RanchRequest request = Request();
+  request.forecasts = (kData / "zhejiang.js").string();
+  const Scenario scenario = BuildRanch(request).scenario;
+  const std::vector<IssuedForecast>& told = scenario.disasters[0].forecasts;
+  ASSERT_EQ(told.size(), 1U);
+  ASSERT_EQ(told[0].points.size(), 1U) << "the first point is that of the issue";
+  const GeoFrame frame(*scenario.origin, scenario.cell_size_m);
+  EXPECT_NEAR(told[0].points[0].x, frame.ToGrid({30.1, 122.0})[0], 1e-2);
+  EXPECT_NEAR(told[0].points[0].y, frame.ToGrid({30.1, 122.0})[1], 1e-2);
+}
+
+// The ranch with bulletins of In-fa of a year, each a pair of hours of its 25 July, UTC: when it
+// was issued and when the one point forecast is.
+Ranch WithBulletins(RanchRequest request, int year,
+                    const std::vector<std::array<int, 2>>& bulletins) {
+  const auto time = [year](int hour) {
+    char text[40];
+    std::snprintf(text, sizeof(text), "%d-07-%02dT%02d:00:00Z", year, 25 + (hour < 0 ? -1 : 0),
+                  (hour + 24) % 24);
+    return std::string(text);
+  };
+  const fs::path path = fs::temp_directory_path() / ("said." + std::to_string(getpid()) + ".json");
+  std::string text;
+  for (const auto& [issued, point] : bulletins) {
+    text += (text.empty() ? "" : ",") + std::string(R"({"time": ")") + time(issued) +
+            R"(", "lat": 29.7, "lng": 123.0, "speed": 35, "forecast": [{"sets": "x", "points": [)" +
+            R"({"time": ")" + time(point) + R"(", "lat": 30, "lng": 122, "speed": 30}]}]})";
+  }
+  std::ofstream(path) << R"([{"tfbh": "1", "ename": "In-Fa", "points": [)" << text << "]}]";
+  request.forecasts = path.string();
+  return BuildRanch(request);
+}
+
+TEST(Ranch, TakesTheNewestForecastByItsStartAndThoseIssuedInTime) {
+  RanchRequest request = Request();
+  request.start = kMidnight + 2 * kHour_s;
+  const Ranch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 20}, {4, 22}, {7, 23}});
+  EXPECT_TRUE(ranch.warnings.size() == 1) << "of a fix that is there twice";
+  const std::vector<IssuedForecast>& told = ranch.scenario.disasters[0].forecasts;
+  ASSERT_EQ(told.size(), 2U) << "the storm is over at 06:00";
+  EXPECT_NEAR(told[0].step, -2.0 * kHour_s / ranch.scenario.step_duration_s, 1e-2);
+  EXPECT_NEAR(told[1].step, 2.0 * kHour_s / ranch.scenario.step_duration_s, 1e-2);
+}
+
+TEST(Ranch, LeavesOutAForecastThatEndsBeforeItsStart) {
+  RanchRequest request = Request();
+  request.start = kMidnight + 2 * kHour_s;
+  const Ranch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 2}, {4, 22}});
+  EXPECT_TRUE(Says(ranch.warnings,
+                   "forecasts: that of 2021-07-25T00:00:00Z ends at 2021-07-25T02:00:00Z, by the "
+                   "start, and is left out"));
+  EXPECT_EQ(ranch.scenario.disasters[0].forecasts.size(), 1U);
+  try {
+    WithBulletins(request, 2021, {{-6, 20}, {0, 1}});
+    FAIL() << "was made with forecasts that nobody is told";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).substr(0, 100),
+              "forecasts: got no forecast points of the storm between 2021-07-25T02:00:00Z and "
+              "2021-07-25T06:00:00Z");
+  }
+}
+
+TEST(Ranch, TakesNothingFromAStormOfAnotherYearByTheSameName) {
+  try {
+    WithBulletins(Request(), 2015, {{0, 20}, {4, 22}});
+    FAIL() << "was made with the forecasts of another storm";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "forecasts: got In-Fa from 2015-07-25T00:00:00Z to 2015-07-25T04:00:00Z, expected "
+                 "the storm from 2021-07-25T00:00:00Z to 2021-07-25T06:00:00Z");
+  }
 }
 
 TEST(Ranch, StandsOnTheChartWithPortsAtTheShore) {
@@ -453,7 +537,8 @@ TEST(RealFiles, OfBulletinsHaveNoForecastsToTell) {
   request.storm = "IN-FA";
   request.forecasts = (data / "bulletins" / "202106.json").string();
   EXPECT_EQ(Refused(request),
-            "forecasts: got no forecast points of the storm before 2021-07-26T01:00:00Z in "
+            "forecasts: got no forecast points of the storm between 2021-07-24T11:00:00Z and "
+            "2021-07-26T01:00:00Z in "
             "202106.json, expected bulletins with forecast points");
 }
 

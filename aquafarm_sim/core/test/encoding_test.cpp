@@ -189,38 +189,108 @@ TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
             5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 4 + 5 + (2 + 3) * 3);
 }
 
+/// Compares what features tell of the risks ahead with an oracle, which has them by cell and steps.
+/// @returns at how many places there was some
+template <typename Oracle>
+int ExpectCourses(const Farm& farm, const Oracle& risk_ahead) {
+  const Cell self = farm.ships()[0].cell;
+  std::vector<float> sums(kMoveCount + 1);
+  int risky = 0;
+  for (int step = 1; step <= 6; ++step) {
+    for (std::size_t move = 0; move <= kMoveCount; ++move) {
+      const Cell by = move < kMoveCount ? kMoves[move] : Cell{0, 0};
+      const Cell to{std::clamp(self.x + step * by.x, 0, farm.scenario().width - 1),
+                    std::clamp(self.y + step * by.y, 0, farm.scenario().height - 1)};
+      const float risk = risk_ahead(to, step) / 20.0F;
+      risky += risk != 0.0F ? 1 : 0;
+      sums[move] += risk;
+      if (step > 1 || move == kMoveCount) continue;
+      EXPECT_FLOAT_EQ(Feature(farm, "risk." + std::string(ToString(static_cast<Action>(move)))),
+                      risk);
+    }
+  }
+  for (std::size_t move = 0; move < kMoveCount; ++move) {
+    EXPECT_NEAR(Feature(farm, "course." + std::string(ToString(static_cast<Action>(move)))),
+                sums[move] / 6.0F, 1e-6);
+  }
+  EXPECT_NEAR(Feature(farm, "course.stay"), sums[kMoveCount] / 6.0F, 1e-6);
+  return risky;
+}
+
 // Against the disaster itself, moved on step by step.
 TEST(Features, TellTheRiskForecastAlongEachCourse) {
   Scenario scenario = CrowdedScenario(1, 0);
   scenario.view.courses = true;
   Farm farm = MakeFarm(scenario);
+  int risky = 0;
   for (int round = 0; round < 40; ++round) {
     StepOne(farm, static_cast<Action>(round % kMoveCount));
-    const Cell self = farm.ships()[0].cell;
-    std::vector<Disaster> ahead = farm.disasters();
-    std::vector<float> sums(kMoveCount + 1);
-    for (int step = 1; step <= 6; ++step) {
+    risky += ExpectCourses(farm, [&](Cell cell, int steps) {
+      std::vector<Disaster> ahead = farm.disasters();
       for (Disaster& disaster : ahead) {
-        disaster.x += disaster.dx;
-        disaster.y += disaster.dy;
+        for (int i = 0; i < steps; ++i) {
+          disaster.x += disaster.dx;
+          disaster.y += disaster.dy;
+        }
       }
-      for (std::size_t move = 0; move <= kMoveCount; ++move) {
-        const Cell by = move < kMoveCount ? kMoves[move] : Cell{0, 0};
-        const Cell to{std::clamp(self.x + step * by.x, 0, scenario.width - 1),
-                      std::clamp(self.y + step * by.y, 0, scenario.height - 1)};
-        const float risk = RiskAt(ahead, to) / 20.0F;
-        sums[move] += risk;
-        if (step > 1 || move == kMoveCount) continue;
-        EXPECT_FLOAT_EQ(Feature(farm, "risk." + std::string(ToString(static_cast<Action>(move)))),
-                        risk);
-      }
-    }
-    for (std::size_t move = 0; move < kMoveCount; ++move) {
-      EXPECT_NEAR(Feature(farm, "course." + std::string(ToString(static_cast<Action>(move)))),
-                  sums[move] / 6.0F, 1e-6);
-    }
-    EXPECT_NEAR(Feature(farm, "course.stay"), sums[kMoveCount] / 6.0F, 1e-6);
+      return RiskAt(ahead, cell);
+    });
   }
+  EXPECT_GT(risky, 200);
+}
+
+TEST(Features, TellTheRiskOfTheSeaAlongEachCourse) {
+  Scenario scenario = CrowdedScenario(1, 0);
+  scenario.view.courses = true;
+  scenario.disasters.clear();
+  scenario.seas.emplace();
+  for (int i = 0; i < scenario.CellCount(); ++i) {
+    scenario.seas->risk.push_back(i % 3 == 0 ? 0.0F : -5.0F - static_cast<float>(i % 7));
+  }
+  Farm farm = MakeFarm(scenario);
+  int risky = 0;
+  for (int round = 0; round < 10; ++round) {
+    StepOne(farm, static_cast<Action>(round % kMoveCount));
+    risky += ExpectCourses(farm, [&](Cell cell, int) {
+      const auto index = static_cast<std::size_t>(cell.y * scenario.width + cell.x);
+      return scenario.seas->risk[index];
+    });
+  }
+  EXPECT_GT(risky, 200);
+}
+
+// Out of sight a disaster is where the last bulletin had it, and has gone on for as long since.
+TEST(Features, TellTheRiskThatAnOldBulletinLeadsToExpect) {
+  Scenario scenario = CrowdedScenario(1, 0);
+  scenario.damage.crash_probability = 0.0F;
+  scenario.view = {ViewMode::kPartial, 0.5F, 9, 0.0F};
+  scenario.view.courses = true;
+  DisasterSpec west = StillDisaster(-5.0F, 4.0F, {2.0F, 5.0F}, {-15.0F, -6.0F});
+  west.speed = 0.15F;
+  west.heading_deg = 90;
+  DisasterSpec east = StillDisaster(16.0F, 4.0F, {2.0F, 5.0F}, {-15.0F, -6.0F});
+  east.speed = 0.1F;
+  east.heading_deg = 270;
+  scenario.disasters = {west, east};
+  Farm farm = MakeFarm(scenario);
+  int risky = 0;
+  int old = 0;
+  View view;
+  for (int round = 1; round <= 26 && !farm.over(); ++round) {
+    StepOne(farm, static_cast<Action>(round % kMoveCount));
+    Observe(farm, 0, view);
+    if (view.disasters[0].visible || view.disasters[1].visible) continue;
+    old += view.disasters[0].age > 0 ? 1 : 0;
+    risky += ExpectCourses(farm, [&](Cell cell, int steps) {
+      std::vector<Disaster> ahead = farm.disasters();
+      const auto since = static_cast<float>(round % 9 + steps);
+      ahead[0].x = ahead[0].bulletin.x + 0.15F * since;
+      ahead[1].x = ahead[1].bulletin.x - 0.1F * since;
+      return RiskAt(ahead, cell);
+    });
+  }
+  EXPECT_GT(risky, 100);
+  EXPECT_GT(old, 10);
 }
 
 // What the planes must say, cell by cell, from look-ups.

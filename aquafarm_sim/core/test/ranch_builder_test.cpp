@@ -136,7 +136,7 @@ Ranch WithBulletins(RanchRequest request, int year,
 TEST(Ranch, TakesTheNewestForecastByItsStartAndThoseIssuedInTime) {
   RanchRequest request = Request();
   request.start = kMidnight + 2 * kHour_s;
-  const Ranch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 20}, {4, 22}, {7, 23}});
+  const Ranch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 20}, {4, 22}, {6, 23}});
   EXPECT_TRUE(ranch.warnings.size() == 1) << "of a fix that is there twice";
   const std::vector<IssuedForecast>& told = ranch.scenario.disasters[0].forecasts;
   ASSERT_EQ(told.size(), 2U) << "the storm is over at 06:00";

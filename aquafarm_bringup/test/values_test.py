@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
@@ -11,10 +12,15 @@ import unittest
 
 import numpy as np
 import roslib.packages
+import rospy
 import rostest
+from nav_msgs.msg import OccupancyGrid
+from sensor_msgs import point_cloud2
+from sensor_msgs.msg import PointCloud2
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"))
 
+from aquafarm_report import values_topics  # noqa: E402
 from aquafarm_report.values import ValuesError, compare, make, read  # noqa: E402
 
 
@@ -100,6 +106,18 @@ class ValuesTest(unittest.TestCase):
         with self.assertRaisesRegex(ValuesError, "maps of different sizes"):
             read(path)
 
+    def test_messages_hold_the_map(self):
+        values = np.array([[1.0, np.nan, 3.0], [5.0, 2.0, 4.0]])
+        grid = values_topics.to_grid(values, 200.0, rospy.Time())
+        self.assertEqual([0, -1, 50, 100, 25, 75], list(grid.data))
+        self.assertEqual((3, 2, 200.0), (grid.info.width, grid.info.height, grid.info.resolution))
+        cloud = values_topics.to_points(values, 200.0, rospy.Time())
+        points = list(point_cloud2.read_points(cloud, ("x", "y", "value", "action")))
+        self.assertEqual([(0.0, 0.0, 1.0, 255), (400.0, 0.0, 3.0, 255), (0.0, 200.0, 5.0, 255),
+                          (200.0, 200.0, 2.0, 255), (400.0, 200.0, 4.0, 255)], points)
+        empty = values_topics.to_grid(np.full((2, 2), np.nan), 1.0, rospy.Time())
+        self.assertEqual([-1] * 4, list(empty.data))
+
     def test_the_command_plays_a_planner_on_a_ranch_with_a_sea(self):
         sea = ", ".join(str(20 + i // 6) for i in range(36))
         ranch = os.path.join(self.folder.name, "ranch.yaml")
@@ -120,6 +138,29 @@ class ValuesTest(unittest.TestCase):
         refused = subprocess.run([program, "clairvoyant", ranch + ".none", "-o", output],
                                  check=False, capture_output=True, text=True, timeout=100)
         self.assertEqual(2, refused.returncode)
+        self.publishes([program, "planner", ranch, "-o", output, "--publish",
+                        "--namespace", "/pond"])
+
+    def publishes(self, command):
+        """The maps come as topics, and stay for whoever comes later; without a master: a line."""
+        alone = subprocess.run(command, check=False, capture_output=True, text=True, timeout=100,
+                               env={**os.environ, "ROS_MASTER_URI": "http://127.0.0.1:9"})
+        self.assertEqual(2, alone.returncode)
+        self.assertIn("no ROS master answers at http://127.0.0.1:9", alone.stderr)
+        rospy.init_node("values_test", anonymous=True, disable_signals=True)
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL) as playing:
+            try:
+                grid = rospy.wait_for_message("/pond/values", OccupancyGrid, timeout=100)
+                cloud = rospy.wait_for_message("/pond/values/points", PointCloud2, timeout=30)
+            finally:
+                playing.send_signal(signal.SIGINT)
+                self.assertEqual(0, playing.wait(30))
+        self.assertEqual(36, len(grid.data))
+        values = {(x, y): value for x, y, value in
+                  point_cloud2.read_points(cloud, ("x", "y", "value"))}
+        best = max(values, key=values.get)
+        self.assertEqual(100, grid.data[int(best[1] / grid.info.resolution) * 6 +
+                                        int(best[0] / grid.info.resolution)])
 
 
 if __name__ == "__main__":

@@ -172,15 +172,15 @@ class Checker {
 
   /// @returns false at the first difference
   bool Take(const rosbag::MessageInstance& message, bool is_chart) {
-    if (const auto state = message.instantiate<FarmState>()) {
+    if (const auto state = Instantiate<FarmState>(message)) {
       return Enter({state->seed, state->episode}, state->step) &&
              Compared(state->step, simulation_->Check(*state));
     }
-    if (const auto saved = message.instantiate<SavedState>()) {
+    if (const auto saved = Instantiate<SavedState>(message)) {
       return Enter({saved->seed, saved->episode}, saved->step) &&
              Compared(saved->step, simulation_->Load(*saved)) && NoteChange(saved->step);
     }
-    const auto grid = message.instantiate<OccupancyGrid>();
+    const auto grid = Instantiate<OccupancyGrid>(message);
     if (!grid || !simulation_) return true;
     return Compared(Step(), simulation_->Check(*grid, is_chart));
   }
@@ -269,7 +269,7 @@ using Summaries = std::multimap<Key, EpisodeSummary>;
 Summaries ReadSummaries(const rosbag::Bag& bag, const std::string& topic) {
   Summaries all;
   for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
-    if (const auto one = message.instantiate<EpisodeSummary>()) {
+    if (const auto one = Instantiate<EpisodeSummary>(message)) {
       all.insert({{one->seed, one->episode}, *one});
     }
   }
@@ -280,7 +280,7 @@ Summaries ReadSummaries(const rosbag::Bag& bag, const std::string& topic) {
 Specs ReadSpecs(const rosbag::Bag& bag, const std::string& topic, std::string& difference) {
   Specs all;
   for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
-    const auto one = message.instantiate<FarmSpec>();
+    const auto one = Instantiate<FarmSpec>(message);
     if (!one) continue;
     const auto [first, is_new] = all.insert({{one->seed, one->episode}, *one});
     if (is_new || !difference.empty()) continue;

@@ -17,7 +17,11 @@ int main(int argc, char** argv) {
       "verify_bag");
   app.add_option("bags", bags, "bags with spec and every state")->required();
   app.add_option("--ns", ns, "namespace of the ranch (default: the only one in the bag)");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   int code = 0;
   for (const std::string& bag : bags) {
     try {

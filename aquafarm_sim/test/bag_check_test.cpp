@@ -10,6 +10,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,12 +19,14 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <new>
 #include <sstream>
 
 #include "aquafarm/check.h"
 #include "aquafarm/rng.h"
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm_sim/episode_recorder.h"
+#include "aquafarm_sim/read_bag.h"
 #include "episode_bag_fixture.h"
 
 namespace aquafarm_sim::test {
@@ -204,9 +207,34 @@ TEST_F(EpisodeBag, ABagWhoseIndexIsDamagedHasItsLine) {
   EXPECT_EQ(0U, Refusal(bag).find(bag + ": damaged: a length beyond its end at byte "));
 }
 
-// No checksum guards what is not compressed: here the number of a state's ships, of 2^31 more.
+std::string ContentOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream content;
+  content << file.rdbuf();
+  return content.str();
+}
+
+// Writes bytes over those at a place.
+void Put(const std::string& path, std::size_t place, const std::string& bytes) {
+  ASSERT_NE(place, std::string::npos);
+  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(static_cast<std::streamoff>(place));
+  file << bytes;
+}
+
+rlim_t DataLimit() {
+  rlimit limit{};
+  EXPECT_EQ(getrlimit(RLIMIT_DATA, &limit), 0);
+  return limit.rlim_cur;
+}
+
+// No checksum guards what is not compressed: here the number of a state's ships, of 2^25 more,
+// which would be 4 GB.
 TEST_F(EpisodeBag, ALengthThatAsksForAnyMemoryHasItsLine) {
   const std::string path = Changed(OneBag(), false, [](auto*, auto*, auto*) { return true; });
+  const rlim_t before = DataLimit();
+  EXPECT_EQ("", CheckBag(path, "").difference);
+  EXPECT_EQ(before, DataLimit());
   std::string ship;
   {
     rosbag::Bag bag(path);
@@ -219,16 +247,75 @@ TEST_F(EpisodeBag, ALengthThatAsksForAnyMemoryHasItsLine) {
       stream.next(state->ships);
     }
   }
-  std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
-  std::stringstream content;
-  content << file.rdbuf();
-  const std::size_t place = content.str().find(ship);
-  ASSERT_NE(place, std::string::npos);
-  file.seekp(static_cast<std::streamoff>(place + 3));
-  file.put(static_cast<char>(0x80));
-  file.close();
+  Put(path, ContentOf(path).find(ship) + 3, "\x02");
   EXPECT_EQ(path + ": damaged: it asks for more memory than a bag of its size needs",
             Refusal(path));
+  EXPECT_EQ(before, DataLimit());
+}
+
+// What works on a bag may need any memory; only reading is bounded.
+TEST_F(EpisodeBag, WhatIsDoneWithABagHasNoBoundOfMemory) {
+  const std::string path = OneBag();
+  const rlim_t before = DataLimit();
+  ReadingBag(path, [&] {
+    rosbag::Bag bag;
+    OpenBag<FarmState>(bag, path);
+    EXPECT_EQ(before, DataLimit());
+    rosbag::View states(bag, rosbag::TypeQuery("aquafarm_msgs/FarmState"));
+    EXPECT_NE(nullptr, Instantiate<FarmState>(*states.begin()));
+    EXPECT_EQ(before, DataLimit());
+  });
+  EXPECT_THROW(ReadingBag(path, [] { throw std::bad_alloc(); }), std::bad_alloc);
+}
+
+// rosbag's reader asks for twice what a chunk needs, and ends the process where it gets none.
+TEST_F(EpisodeBag, AChunkOfAnySizeHasItsLine) {
+  const std::string path = folder_ + "/chunks.bag";
+  {
+    rosbag::Bag bag(path, rosbag::bagmode::Write);
+    bag.setCompression(rosbag::compression::LZ4);
+    bag.setChunkThreshold(600'000);
+    aquafarm::RandomStream chance({3, 0, aquafarm::Purpose::kExploration, 0});
+    aquafarm_msgs::SavedState saved;
+    saved.data.resize(700'000);
+    for (auto& byte : saved.data) byte = static_cast<std::uint8_t>(chance.Below(256));
+    for (const double time : {1.0, 2.0}) bag.write("/ranch/saved_state", ros::Time(time), saved);
+  }
+  const std::string content = ContentOf(path);
+  const std::size_t second = content.rfind("compression=lz4");
+  ASSERT_NE(second, content.find("compression=lz4"));
+  Put(path, content.find("size=", second) + 8, "\x66");  // 1.6 GiB
+  EXPECT_EQ("found", EndOf(path));
+  EXPECT_EQ(0U, Refusal(path).find(path + ": damaged: a chunk of more than 256 MiB at byte 70"))
+      << Refusal(path);
+}
+
+TEST_F(EpisodeBag, AMessageOfNoTopicAndAChunkToldOfTwiceHaveTheirLine) {
+  const std::string path = folder_ + "/chunks.bag";
+  {
+    rosbag::Bag bag(path, rosbag::bagmode::Write);
+    bag.setChunkThreshold(1000);
+    aquafarm_msgs::SavedState saved;
+    saved.data.resize(2000);
+    for (int i = 0; i < 2; ++i) bag.write("/ranch/saved_state", ros::Time(1.0), saved);
+  }
+  const std::string sound = ContentOf(path);
+  EXPECT_EQ(path + ": no topic spec, so nothing says what was played", Refusal(path));
+  const std::string place = "chunk_pos=";
+  const std::size_t last = sound.rfind(place) + place.size();
+  const std::size_t first = sound.rfind(place, last - place.size() - 1) + place.size();
+  Put(path, last, sound.substr(first, 8));
+  EXPECT_EQ(0U, Refusal(path).find(path + ": damaged: what is told of a chunk at byte "))
+      << Refusal(path);
+  std::ofstream(path, std::ios::binary) << sound;
+  const std::string zero(4, '\0');
+  const std::string connection = "conn=" + zero + std::string("\x04\0\0\0op=\x07", 8);
+  for (std::size_t at = sound.find(connection); at != std::string::npos;
+       at = sound.find(connection, at + 1)) {
+    Put(path, at + 5, "\x05");
+  }
+  EXPECT_EQ(0U, Refusal(path).find(path + ": damaged: a message of no topic at byte "))
+      << Refusal(path);
 }
 
 TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
@@ -236,6 +323,23 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   EXPECT_NE(std::string::npos, Refusal(folder_ + "/none.bag").find("damaged or no bag"));
   std::ofstream(folder_ + "/text.bag") << "no bag";
   EXPECT_NE(std::string::npos, Refusal(folder_ + "/text.bag").find("damaged or no bag"));
+  const std::string late = folder_ + "/late.bag";
+  {
+    ros::Time time;  // as no constructor makes one
+    time.sec = time.nsec = UINT32_MAX;
+    rosbag::Bag(late, rosbag::bagmode::Write)
+        .write("/ranch/saved_state", time, aquafarm_msgs::SavedState());
+  }
+  EXPECT_EQ(0U, Refusal(late).find(late + ": damaged or no bag: ")) << Refusal(late);
+  // A field of a header that is padded to 4 kB, in place of the count of connections.
+  const std::string encrypted = Changed(bag, true, [](auto*, auto*, auto*) { return true; });
+  const std::string content = ContentOf(encrypted);
+  Put(encrypted, content.find("chunk_count="), "encryptor=a/b");
+  EXPECT_EQ(encrypted + ": encrypted; 'rosbag decrypt' it first", Refusal(encrypted));
+  EXPECT_EQ(folder_ + ": damaged or no bag: no regular file", Refusal(folder_));
+  const std::string pipe = folder_ + "/pipe.bag";
+  ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));
+  EXPECT_EQ(pipe + ": damaged or no bag: no regular file", Refusal(pipe));
   EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
                                  return spec == nullptr;
                                })).find("no topic spec, so nothing says what was played"));

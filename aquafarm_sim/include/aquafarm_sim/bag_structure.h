@@ -14,14 +14,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
+
+#include "aquafarm/check.h"
 
 namespace aquafarm_sim {
 namespace internal {
@@ -43,8 +47,9 @@ class BagRecords {
     kConnection = 7
   };
 
-  explicit BagRecords(std::string_view bytes, std::size_t position = 0)
-      : bytes_(bytes), position_(position) {}
+  /// @param whole what the bytes are, where they are not the bag: " of ..."
+  explicit BagRecords(std::string_view bytes, std::size_t position = 0, std::string whole = "")
+      : bytes_(bytes), position_(position), whole_(std::move(whole)) {}
 
   std::size_t position() const { return position_; }  ///< of the next record
   std::size_t begin() const { return begin_; }        ///< of this record
@@ -72,6 +77,8 @@ class BagRecords {
     return fields;
   }
 
+  bool Has(std::string_view name) const { return fields_.count(name) != 0; }
+
   std::string_view Text(std::string_view name) const {
     const auto found = fields_.find(name);
     if (found == fields_.end()) throw Damage("no field " + std::string(name) + Where());
@@ -97,7 +104,7 @@ class BagRecords {
     return number;
   }
 
-  std::string Where() const { return " at byte " + std::to_string(begin_); }
+  std::string Where() const { return " at byte " + std::to_string(begin_) + whole_; }
 
  private:
   std::string_view TakeFrom(std::string_view& bytes) const {
@@ -119,6 +126,7 @@ class BagRecords {
 
   std::string_view bytes_;
   std::size_t position_;
+  std::string whole_;
   std::size_t begin_{};
   FieldMap fields_;
   std::string_view data_;
@@ -157,10 +165,10 @@ inline void TakeConnection(const BagRecords& record, Connections& connections) {
 /// @param connections gets those of the chunk
 /// @throws Damage, or rosbag::BagException where it cannot be decompressed
 inline ChunkMessages ReadChunk(const BagRecords& chunk, Connections& connections) {
-  constexpr std::size_t kMostGrowth = 100'000;  // of bz2's best case; lz4: 255
+  constexpr std::size_t kMost = std::size_t{256} << 20U;  // rosbag asks for twice as much
   const std::size_t size = chunk.Get<std::uint32_t>("size");
   const std::string_view kind = chunk.Text("compression");
-  if (size / kMostGrowth > chunk.data().size()) throw Damage("a chunk's size" + chunk.Where());
+  if (size > kMost) throw Damage("a chunk of more than 256 MiB" + chunk.Where());
   std::vector<std::uint8_t> room;
   std::string_view content = chunk.data();
   if (kind == "none") {
@@ -177,7 +185,7 @@ inline ChunkMessages ReadChunk(const BagRecords& chunk, Connections& connections
     content = {reinterpret_cast<const char*>(room.data()), size};
   }
   ChunkMessages messages;
-  for (BagRecords records(content); !records.AtEnd();) {
+  for (BagRecords records(content, 0, " of the chunk" + chunk.Where()); !records.AtEnd();) {
     records.Next();
     if (records.Get<std::uint8_t>("op") == BagRecords::kConnection) {
       TakeConnection(records, connections);
@@ -206,9 +214,10 @@ inline void ReadIndex(const BagRecords& index, ChunkMessages& messages) {
   }
 }
 
+/// @param chunks those of which nothing was told so far; loses this one
 /// @throws Damage when what is told of a chunk at the bag's end is not so
-inline void CheckChunkInfo(const BagRecords& info,
-                           const std::map<std::uint64_t, ChunkMessages>& chunks) {
+inline void CheckChunkInfo(const BagRecords& info, const Connections& connections,
+                           std::map<std::uint64_t, ChunkMessages>& chunks) {
   constexpr std::size_t kBytes = 8;  // of an entry: connection and count
   const auto chunk = chunks.find(info.Get<std::uint64_t>("chunk_pos"));
   const std::size_t count = info.Get<std::uint32_t>("count");
@@ -233,13 +242,22 @@ inline void CheckChunkInfo(const BagRecords& info,
       ordered(info.Get<std::uint64_t>("end_time")) != last) {
     throw Damage("what is told of a chunk" + info.Where());
   }
+  for (const auto& [connection, messages] : counts) {
+    if (connections.count(connection) == 0) throw Damage("a message of no topic" + info.Where());
+  }
+  chunks.erase(chunk);
 }
 
 /// Looks through a bag for what its index and its content do not agree in; bags without an index,
 /// and what is none of version 2.0, are left to rosbag, which says so.
 /// @throws Damage or rosbag::BagException when it is damaged
+/// @throws aquafarm::InputError when it is encrypted
 inline void CheckStructure(const std::string& path) {
   static constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+    throw rosbag::BagIOException("no regular file");  // opening another kind may wait forever
+  }
   std::ifstream readable(path, std::ios::binary | std::ios::ate);
   if (!readable || readable.tellg() <= static_cast<std::streamoff>(kBegin.size())) return;
   namespace interprocess = boost::interprocess;
@@ -251,16 +269,24 @@ inline void CheckStructure(const std::string& path) {
   BagRecords records(bytes, kBegin.size());
   records.Next();
   records.Expect(BagRecords::kBag);
+  if (records.Has("encryptor") && !records.Text("encryptor").empty()) {
+    throw aquafarm::InputError(path + ": encrypted; 'rosbag decrypt' it first");
+  }
   const std::uint64_t index = records.Get<std::uint64_t>("index_pos");
   const std::uint32_t chunk_count = records.Get<std::uint32_t>("chunk_count");
   const std::uint32_t connection_count = records.Get<std::uint32_t>("conn_count");
   if (index == 0) return;  // its recording was killed
+  // No recording of a ranch is compressed as much; what is would keep its reader busy for hours.
+  const std::uint64_t most_bytes = (std::uint64_t{1} << 30U) + 4'000 * std::uint64_t{bytes.size()};
+  std::uint64_t all_bytes = 0;
   std::map<std::uint64_t, ChunkMessages> chunks;
   Connections connections;
   while (records.position() < index) {
     records.Next();
     records.Expect(BagRecords::kChunk);
     const std::string where = records.Where();
+    all_bytes += records.Get<std::uint32_t>("size");
+    if (all_bytes > most_bytes) throw Damage("chunks of more than its size can hold" + where);
     ChunkMessages& messages = chunks[records.begin()] = ReadChunk(records, connections);
     ChunkMessages indexed;
     for (std::size_t left = messages.Counts().size(); left > 0; --left) {
@@ -281,7 +307,7 @@ inline void CheckStructure(const std::string& path) {
   for (std::uint32_t i = 0; i < chunk_count; ++i) {
     records.Next();
     records.Expect(BagRecords::kChunkInfo);
-    CheckChunkInfo(records, chunks);
+    CheckChunkInfo(records, connections, chunks);
   }
   if (!records.AtEnd()) throw Damage("more than its index tells of");
 }

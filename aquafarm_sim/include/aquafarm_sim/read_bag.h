@@ -12,7 +12,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <boost/shared_ptr.hpp>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <new>
@@ -51,6 +53,22 @@ class MemoryLimit {
   bool is_set_{};
 };
 
+/// Does what allocates as a bag says.
+/// @param size of the bag, bytes
+/// @throws Damage where it asks for more than a sound one would
+template <typename Work>
+auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
+  constexpr std::uintmax_t kSpareBytes = std::uintmax_t{2} << 30U;
+  const MemoryLimit limit(kSpareBytes + 4 * size);
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    throw Damage("it asks for more memory than a bag of its size needs");
+  } catch (const std::length_error&) {
+    throw Damage("a message of no possible length");
+  }
+}
+
 }  // namespace internal
 
 /// @param to_the_letter whether comments and layout of the definitions count as well
@@ -77,38 +95,49 @@ void CheckMessages(const rosbag::Bag& bag, const std::string& path, bool to_the_
 
 /// Opens a bag that rosbag's reader does not crash of: it trusts lengths and places.
 /// @tparam Messages that will be read, of this version
-/// @throws aquafarm::InputError or what ReadingBag makes one of
+/// @throws aquafarm::InputError of one line with the bag's path
 template <typename... Messages>
 void OpenBag(rosbag::Bag& bag, const std::string& path) {
-  internal::CheckStructure(path);
-  bag.open(path, rosbag::bagmode::Read);
-  CheckMessages<Messages...>(bag, path);
-}
-
-/// Does what reads a bag.
-/// @throws aquafarm::InputError of one line with the bag's path when the bag is at fault
-template <typename Work>
-auto ReadingBag(const std::string& path, const Work& work) -> decltype(work()) {
-  constexpr std::uintmax_t kSpareBytes = std::uintmax_t{2} << 30U;
   std::error_code ignored;
   const std::uintmax_t size = std::filesystem::file_size(path, ignored);
-  const internal::MemoryLimit limit(kSpareBytes + (ignored ? 0 : 4 * size));
   try {
-    return work();
+    internal::Bounded(ignored ? 0 : size, [&] {
+      internal::CheckStructure(path);
+      bag.open(path, rosbag::bagmode::Read);
+    });
+  } catch (const aquafarm::InputError&) {
+    throw;
   } catch (const rosbag::BagUnindexedException&) {
     throw aquafarm::InputError(path + ": its recording was killed; 'rosbag reindex' it first");
   } catch (const internal::Damage& damage) {
     throw aquafarm::InputError(path + ": damaged: " + damage.what() +
                                "; 'rosbag reindex' may mend its index");
+  } catch (const std::exception& error) {  // of rosbag, its plugins, times and the mapping
+    throw aquafarm::InputError(path + ": damaged or no bag: " + error.what());
+  }
+  CheckMessages<Messages...>(bag, path);
+}
+
+/// A message of a bag; nothing when it is of another type.
+/// @throws what ReadingBag makes an InputError of
+template <typename Message>
+boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
+  if (message.getMD5Sum() != ros::message_traits::md5sum<Message>()) return nullptr;
+  return internal::Bounded(0, [&] { return message.instantiate<Message>(); });
+}
+
+/// Does what opens and reads a bag, by OpenBag and Instantiate.
+/// @throws aquafarm::InputError of one line with the bag's path when the bag is at fault
+template <typename Work>
+auto ReadingBag(const std::string& path, const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const internal::Damage& damage) {
+    throw aquafarm::InputError(path + ": damaged: " + damage.what());
   } catch (const rosbag::BagException& error) {
     throw aquafarm::InputError(path + ": damaged or no bag: " + error.what());
   } catch (const ros::Exception& error) {
     throw aquafarm::InputError(path + ": damaged: " + error.what());
-  } catch (const std::bad_alloc&) {
-    throw aquafarm::InputError(path +
-                               ": damaged: it asks for more memory than a bag of its size needs");
-  } catch (const std::length_error&) {
-    throw aquafarm::InputError(path + ": damaged: a message of no possible length");
   }
 }
 

@@ -36,6 +36,7 @@ using aquafarm_viz::names::kTraining;
 using aquafarm_viz::names::kValuePoints;
 
 constexpr int kBadInput = 2;
+constexpr int kStorage = 3;
 
 struct Request {
   std::string bag;
@@ -123,18 +124,20 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   aquafarm_msgs::PolicyChoiceConstPtr choice;
   Found found;
   for (const auto& message : view) {
-    if (const auto spec = message.instantiate<aquafarm_msgs::FarmSpec>()) {
+    if (const auto spec = aquafarm_sim::Instantiate<aquafarm_msgs::FarmSpec>(message)) {
       if (const auto fault = pairing.AddSpec(spec); !fault.empty()) throw std::runtime_error(fault);
-    } else if (const auto status = message.instantiate<aquafarm_msgs::TrainingStatus>()) {
+    } else if (const auto status =
+                   aquafarm_sim::Instantiate<aquafarm_msgs::TrainingStatus>(message)) {
       training = status;
-    } else if (const auto points = message.instantiate<sensor_msgs::PointCloud2>()) {
+    } else if (const auto points = aquafarm_sim::Instantiate<sensor_msgs::PointCloud2>(message)) {
       cloud = points;
       ++found.values;
-    } else if (const auto chosen = message.instantiate<aquafarm_msgs::PolicyChoice>()) {
+    } else if (const auto chosen =
+                   aquafarm_sim::Instantiate<aquafarm_msgs::PolicyChoice>(message)) {
       choice = chosen;
       ++found.choices;
     }
-    const auto state = message.instantiate<FarmState>();
+    const auto state = aquafarm_sim::Instantiate<FarmState>(message);
     if (state == nullptr) continue;
     if (const auto fault = pairing.AddState(state); !fault.empty()) throw std::runtime_error(fault);
     if (pairing.shown().state != state) continue;
@@ -215,7 +218,7 @@ void RenderPicture(const Request& request) {
   if (!file || error) {
     std::error_code ignored;
     std::filesystem::remove(beside, ignored);
-    throw std::runtime_error(request.output + ": could not be written");
+    throw aquafarm_viz::StorageError(request.output + ": could not be written");
   }
 }
 
@@ -278,12 +281,19 @@ int main(int argc, char** argv) {
   app.add_option("--height", request.size.height, "pixels")
       ->check(CLI::Range(aquafarm_viz::kMinImageSide, aquafarm_viz::kMaxImageSide))
       ->capture_default_str();
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadInput;
+  }
   try {
     request.layers = aquafarm_viz::ParseLayers(layers);
     aquafarm_sim::ReadingBag(request.bag, [&] {
       aquafarm_viz::Film::Is(request.output) ? RenderFilm(request) : RenderPicture(request);
     });
+  } catch (const aquafarm_viz::StorageError& fault) {
+    std::fprintf(stderr, "render: %s\n", fault.what());
+    return kStorage;
   } catch (const std::exception& fault) {
     std::fprintf(stderr, "render: %s\n", fault.what());
     return kBadInput;

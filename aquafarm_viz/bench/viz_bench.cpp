@@ -46,12 +46,13 @@ void BM_FrameUnderATyphoonThatCoversAll(benchmark::State& bench) {
 BENCHMARK(BM_FrameUnderATyphoonThatCoversAll)->Unit(benchmark::kMicrosecond);
 
 // What a policy adds: V_π, best moves, its choice; and a route of up to 500 steps.
-void BM_FrameWith(benchmark::State& bench, const char* names) {
+// @param learns whether the map is another each time
+void BM_FrameWith(benchmark::State& bench, const char* names, bool learns = false) {
   cv::setNumThreads(1);
   const int side = static_cast<int>(bench.range(0));
   const auto spec = test::MakeSpec(side);
   auto state = test::MakeState(side);
-  const Values values = ReadValues(test::MakeCloud(side), spec);
+  Values values = ReadValues(test::MakeCloud(side), spec);
   const auto choice = test::MakeChoice();
   Wake wake;
   Wake route(Wake::kWhole);
@@ -60,6 +61,7 @@ void BM_FrameWith(benchmark::State& bench, const char* names) {
   for (auto _ : bench) {
     state.step = (state.step + 1) % 500;  // a new way each time
     state.ships.front().x = static_cast<int>(state.step) % side;
+    if (learns) values.values.front() = static_cast<float>(state.step % 2);
     wake.Update(state);
     route.Update(state);
     benchmark::DoNotOptimize(
@@ -67,8 +69,10 @@ void BM_FrameWith(benchmark::State& bench, const char* names) {
   }
   bench.SetItemsProcessed(bench.iterations());
 }
-#define SIDES Arg(10)->Arg(25)->Arg(100)->Unit(benchmark::kMicrosecond)
+#define SIDES Arg(10)->Arg(25)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond)
 BENCHMARK_CAPTURE(BM_FrameWith, values_and_moves, "wake,risk,values,moves")->SIDES;
+BENCHMARK_CAPTURE(BM_FrameWith, values_and_moves_new_each_time, "wake,risk,values,moves", true)
+    ->SIDES;
 BENCHMARK_CAPTURE(BM_FrameWith, route, "wake,risk,route")->SIDES;
 BENCHMARK_CAPTURE(BM_FrameWith, all, "wake,risk,route,values,moves")->SIDES;
 

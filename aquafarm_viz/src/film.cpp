@@ -34,7 +34,7 @@ std::string Beside(const std::string& path) {
 void MoveToItsPlace(const std::string& path) {
   std::error_code error;
   fs::rename(Beside(path), path, error);
-  if (error) throw std::runtime_error(path + ": could not be written: " + error.message());
+  if (error) throw StorageError(path + ": could not be written: " + error.message());
 }
 
 /// By the codecs that OpenCV finds on this machine.
@@ -108,7 +108,7 @@ class GifFilm final : public Film {
     // giflib's own opening would let nobody else read it.
     const int handle = open(Beside(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (handle >= 0) file_ = EGifOpenFileHandle(handle, &error);
-    if (file_ == nullptr) throw std::runtime_error(path + ": could not be written");
+    if (file_ == nullptr) throw StorageError(path + ": could not be written");
     EGifSetGifVersion(file_, true);
   }
   ~GifFilm() override {
@@ -133,7 +133,7 @@ class GifFilm final : public Film {
   static constexpr std::size_t kFirst = 40;
 
   void Check(int done) const {
-    if (done != GIF_OK) throw std::runtime_error(path_ + ": could not be written");
+    if (done != GIF_OK) throw StorageError(path_ + ": could not be written");
   }
 
   void Begin() {

@@ -50,9 +50,10 @@ struct FarmPainter::Parts {
   FarmSpec drawn;   // what the background shows
   std::string sea;  // which layer of the sea with it
   cv::Mat background;
-  Values values;                 // what the next two show
+  Values values;                 // what the next three are of
   cv::Mat valued;                // the map of the background with V_π; empty: not drawn yet
-  std::optional<Overlay> moves;  // none: not drawn yet
+  bool has_drawn_moves{};        // once, so that they may be wanted again
+  std::optional<Overlay> moves;  // none: not wanted again yet
   cv::Mat image;
 
   /// Forgets what is of other values, or of another background.
@@ -62,6 +63,7 @@ struct FarmPainter::Parts {
     if (!is_new && !is_new_background) return;
     valued.release();
     moves.reset();
+    has_drawn_moves = false;
   }
 };
 
@@ -97,20 +99,26 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   p.Follow(values, is_new);
   if (layers.values && values != nullptr) {
     if (p.valued.empty()) {
-      p.valued = p.background(p.layout.map).clone();
-      DrawValues(p.valued, *values);
+      DrawValues(map, *values);
+      p.valued = map.clone();
+    } else {
+      p.valued.copyTo(map);
     }
-    p.valued.copyTo(map);
   }
   if (layers.wake && extras.wake != nullptr) DrawWakes(map, state, *extras.wake, p.layout);
   if (layers.risk) ShadeDisasters(map, state, p.layout);
   if (layers.route && extras.route != nullptr) DrawRoutes(map, state, *extras.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
   if (layers.moves && values != nullptr) {
-    if (!p.moves) {
-      p.moves.emplace(map.size(), [&](cv::Mat& over) { DrawMoves(over, *values, p.layout); });
+    if (!p.has_drawn_moves) {
+      DrawMoves(map, *values, p.layout);  // an overlay costs more, and a map may be new each time
+      p.has_drawn_moves = true;
+    } else {
+      if (!p.moves) {
+        p.moves.emplace(map.size(), [&](cv::Mat& over) { DrawMoves(over, *values, p.layout); });
+      }
+      p.moves->LayOver(map);
     }
-    p.moves->LayOver(map);
   }
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);

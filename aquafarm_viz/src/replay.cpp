@@ -28,12 +28,11 @@ bool EndsWith(const std::string& text, const std::string& end) {
 // What stands before a topic's last name.
 std::string Namespace(const std::string& topic) { return topic.substr(0, topic.rfind('/') + 1); }
 
-// Observations have the type of states, but tell of one ship.
+}  // namespace
+
 bool IsState(const rosbag::MessageInstance& message) {
   return Is<FarmState>(message) && !EndsWith(message.getTopic(), "/observation");
 }
-
-}  // namespace
 
 ReplayTape::ReplayTape(const std::string& path) {
   aquafarm_sim::ReadingBag(path, [&] { Read(path); });
@@ -51,9 +50,10 @@ void ReplayTape::Read(const std::string& path) {
   for (const rosbag::MessageInstance& message : view_) {
     if (message.getTopic() == "/clock") continue;
     if (IsState(message)) {
-      if (const auto state = message.instantiate<FarmState>()) AddStep(message, *state);
+      if (const auto state = aquafarm_sim::Instantiate<FarmState>(message))
+        AddStep(message, *state);
     } else if (Is<FarmSpec>(message)) {
-      if (const auto spec = message.instantiate<FarmSpec>()) {
+      if (const auto spec = aquafarm_sim::Instantiate<FarmSpec>(message)) {
         specs_.push_back({messages_.size(), spec->seed, spec->episode});
       }
     }

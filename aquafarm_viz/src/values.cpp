@@ -25,7 +25,10 @@ void CheckField(const PointCloud2& cloud, const std::string& name, std::uint8_t 
                 std::uint32_t bytes) {
   for (const PointField& field : cloud.fields) {
     if (field.name != name) continue;
-    if (field.datatype == type && field.offset + bytes <= cloud.point_step) return;
+    if (field.datatype == type && bytes <= cloud.point_step &&
+        field.offset <= cloud.point_step - bytes) {
+      return;
+    }
     throw std::invalid_argument("values/points: field " + name + ": got type " +
                                 std::to_string(field.datatype) + " at byte " +
                                 std::to_string(field.offset) + ", expected type " +
@@ -39,9 +42,12 @@ void Check(const PointCloud2& cloud) {
   for (const char* name : {"x", "y", "value"}) CheckField(cloud, name, PointField::FLOAT32, 4);
   CheckField(cloud, "action", PointField::UINT8, 1);
   const auto points = static_cast<std::uint64_t>(cloud.width) * cloud.height;
-  if (points * cloud.point_step == cloud.data.size()) return;
-  throw std::invalid_argument("values/points: got " + std::to_string(cloud.data.size()) +
-                              " bytes, expected " + std::to_string(points * cloud.point_step));
+  const std::uint64_t size = cloud.data.size();
+  // No product of numbers from outside is made that might not fit.
+  if (points <= size / cloud.point_step && points * cloud.point_step == size) return;
+  throw std::invalid_argument("values/points: got " + std::to_string(size) + " bytes, expected " +
+                              std::to_string(cloud.width) + " x " + std::to_string(cloud.height) +
+                              " points of " + std::to_string(cloud.point_step));
 }
 
 Marker MakeMarker(const char* space, int id, int type, Rgb color) {

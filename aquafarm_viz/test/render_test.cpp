@@ -102,6 +102,8 @@ TEST_F(RenderTest, AsksWhichRanchWhenThereAreSeveral) {
 
 TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
   EXPECT_EQ(WEXITSTATUS(Render("--bag " + Path("none.bag")).code), 2);
+  EXPECT_EQ(Render("--bag " + Path("")).output,
+            "render: " + Path("") + ": damaged or no bag: no regular file\n");
   const std::string bag = MakeBag({"/aquafarm/"});
   test::DamageIndex(bag);
   const Result damaged = Render("--bag " + bag + " -o " + Path("x.png"));
@@ -112,7 +114,10 @@ TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
       << damaged.output;
   MakeBag({"/aquafarm/"});
   const Result unwritable = Render("--bag " + bag + " -o " + Path("no/such/folder/x.png"));
-  EXPECT_NE(unwritable.code, 0);
+  EXPECT_EQ(WEXITSTATUS(unwritable.code), 3);
+  EXPECT_EQ(WEXITSTATUS(Render("--bag " + bag + " -o " + Path("no/such/folder/x.gif")).code), 3);
+  EXPECT_EQ(WEXITSTATUS(Render("--bag " + bag + " --fps fast").code), 2);
+  EXPECT_EQ(WEXITSTATUS(Render("--help").code), 0);
   EXPECT_NE(unwritable.output.find("could not be written"), std::string::npos);
   const Result unknown = Render("--bag " + bag + " -o " + Path("x.nonsense"));
   EXPECT_NE(unknown.code, 0);

@@ -5,22 +5,29 @@
 
 #include <memory>
 #include <opencv2/core.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace aquafarm_viz {
 
+/// A picture or film that could not be written.
+struct StorageError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// A film of pictures of one size. It is written beside its place and comes there when it is whole.
 class Film {
  public:
   /// @param path its ending says what it becomes: .mp4, .webm or .gif
-  /// @throws std::runtime_error for another ending, a place that cannot be written, or no codec
+  /// @throws std::runtime_error for another ending or no codec
+  /// @throws StorageError for a place that cannot be written
   static std::unique_ptr<Film> Open(const std::string& path, cv::Size size, double rate_hz);
 
   virtual ~Film() = default;
   /// @param picture 8-bit BGR of the film's size
   virtual void Add(const cv::Mat& picture) = 0;
-  /// @throws std::runtime_error when it could not be written
+  /// @throws StorageError when it could not be written
   virtual void Close() = 0;
 
   /// Says whether a path has the ending of a film.

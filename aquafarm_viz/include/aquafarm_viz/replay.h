@@ -16,6 +16,9 @@
 
 namespace aquafarm_viz {
 
+/// Whether a message is the state of a ranch; observations have that type, but tell of one ship.
+bool IsState(const rosbag::MessageInstance& message);
+
 /// The messages of a bag in the order of their times, and where its steps are among them.
 class ReplayTape {
  public:

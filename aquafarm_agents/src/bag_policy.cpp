@@ -267,7 +267,7 @@ std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& top
                                   const std::string& path) {
   std::map<Key, FarmSpec> specs;
   for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
-    const auto spec = message.instantiate<FarmSpec>();
+    const auto spec = aquafarm_sim::Instantiate<FarmSpec>(message);
     if (!spec) continue;
     if (spec->version != aquafarm::kVersion) {
       throw InputError(path + ": recorded by version " + spec->version + ", this is " +
@@ -307,12 +307,12 @@ class Walk {
     bool goes_on = true;
     const std::string& topic = message.getTopic();
     if (topic == ranch_ + names::kSavedState) {
-      if (const auto saved = message.instantiate<SavedState>()) {
+      if (const auto saved = aquafarm_sim::Instantiate<SavedState>(message)) {
         Enter({saved->seed, saved->episode}, saved->step);
         goes_on = Holds(saved->step, companion_->Load(*saved));
       }
     } else if (topic == ranch_ + names::kState) {
-      if (const auto state = message.instantiate<FarmState>()) {
+      if (const auto state = aquafarm_sim::Instantiate<FarmState>(message)) {
         goes_on = TakeState(*state, message.getTime());
       }
     }

@@ -165,9 +165,9 @@ TEST_F(BagPolicy, AStateThatWasChangedIsAskedWithTheMemoryOfBefore) {
 // What it has learnt is of no matter: a network of any weights remembers.
 TEST_F(BagPolicy, AMemoryIsCarriedFromTheEpisodesStartOn) {
   const std::string scenario_file = AQUAFARM_TEST_DATA "/tiny.yaml";
-  const std::string train = std::string(AQUAFARM_TRAIN) + " " + scenario_file +
-                            " --algorithm lstm_dqn --steps 400 --evaluate 0 --random 0 --run-dir " +
-                            Path("lstm") + " >" + Path("log") + " 2>&1";
+  const std::string train = "timeout -k 1 120 '" AQUAFARM_TRAIN "' '" + scenario_file +
+                            "' --algorithm lstm_dqn --steps 400 --evaluate 0 --random 0 " +
+                            "--run-dir '" + Path("lstm") + "' >'" + Path("log") + "' 2>&1";
   ASSERT_EQ(0, std::system(train.c_str())) << train;
   const auto saved = aquafarm::agents::FindPolicy(Path("lstm"));
   BagPolicyOptions options;

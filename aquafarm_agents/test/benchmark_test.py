@@ -39,16 +39,28 @@ def running(words):
     return found
 
 
+def send_all(words, sent):
+    """Sends a signal to all that have these words in their command line. Returns how many."""
+    reached = 0
+    for number in running(words):
+        try:
+            os.kill(number, sent)
+            reached += 1
+        except ProcessLookupError:
+            continue  # it has just ended
+    return reached
+
+
 def stop_once_under_way(trainings):
     """Whether each of these run folders' trainings was stopped (SIGSTOP) amid its episodes; stops
     those that have come so far."""
     stopped = 0
     for folder in trainings:
+        if (folder / "evaluation.json").exists():
+            raise AssertionError(f"{folder}: was over before it could be stopped")
         metrics = folder / "metrics.csv"
         if metrics.exists() and metrics.stat().st_size > 4096:
-            for number in running(str(folder)):
-                os.kill(number, signal.SIGSTOP)
-                stopped += 1
+            stopped += send_all(str(folder), signal.SIGSTOP)
     return stopped == len(trainings)
 
 
@@ -100,11 +112,12 @@ class BenchmarkTest(unittest.TestCase):
         part = self.start("parts", *arguments, episodes=60000)
         trainings = self.folder / "parts/runs/q_learning"
         both = [trainings / "seed_1", trainings / "seed_2"]
+        # Whatever fails: none stays stopped.
+        self.addCleanup(send_all, str(trainings), signal.SIGCONT)
         part.wait_for(lambda: stop_once_under_way(both), "two trainings")
         part.send(signal.SIGKILL)
         part.code()
-        for number in running(str(trainings)):
-            os.kill(number, signal.SIGCONT)  # they find that they were interrupted
+        send_all(str(trainings), signal.SIGCONT)  # they find that they were interrupted
         self.assertFalse(list(trainings.glob("*/evaluation.json")), "it was over already")
         rest = self.start("parts", *arguments, episodes=60000)
         self.assertEqual(0, rest.code(), rest.words())

@@ -3,6 +3,7 @@
 """A replay is paused, stepped, paced and sent to a step, beside what another policy would do."""
 import os
 import pathlib
+import select
 import shutil
 import subprocess
 import sys
@@ -243,6 +244,7 @@ class ReplayTest(unittest.TestCase):
             os.close(write)
             self.addCleanup(screen.wait, LIMIT_S)
             self.addCleanup(screen.terminate)
+            self.assertTrue(select.select([number], [], [], LIMIT_S)[0], "Xvfb says no number")
             display = ":" + number.readline().strip()
         done = subprocess.run([SCRIPTS / "with_display", "echo", "shown"], timeout=LIMIT_S,
                               env=dict(os.environ, DISPLAY=display), text=True, check=False,
@@ -252,7 +254,7 @@ class ReplayTest(unittest.TestCase):
     def test_a_ranch_or_replay_at_a_dead_display_says_so(self):
         with mock.patch.dict(os.environ, DISPLAY=DEAD_DISPLAY):
             with Ranch("sim", "viz:=false", "headless:=false") as ranch:
-                ranch.wait_for(lambda: f"rviz: {DEAD}{WAY_OUT}" in ranch.words(), LIMIT_S)
+                ranch.wait_for(lambda: f"rviz: {DEAD}{WAY_OUT}" in ranch.words(), 60)
             with Ranch("replay", f"bag:={self.bag}", "viz:=false") as ranch:
                 self.assertEqual(3, ranch.exit_code(60), ranch.words())
                 self.assertIn(f"rviz: {DEAD}{WAY_OUT}", ranch.words())

@@ -255,7 +255,24 @@ TEST(RightOfWay, ShipsShareAPort) {
   EXPECT_EQ(farm.ships()[0].outcome, Outcome::kOk);
 }
 
-TEST(RightOfWay, HeadOnTheLowerIdGoesFirst) {
+TEST(RightOfWay, HeadOnTheLowerIdTakesTheCellBetween) {
+  Farm farm = TwoShips();
+  for (int i = 0; i < 3; ++i) Both(farm, Action::kNorth, Action::kHold);
+  Both(farm, Action::kHold, Action::kNorth);
+  Both(farm, Action::kSouth, Action::kNorth);  // from (2,3) and (2,1)
+  EXPECT_EQ(farm.ships()[0].cell, (Cell{2, 2}));
+  EXPECT_EQ(farm.ships()[0].outcome, Outcome::kOk);
+  EXPECT_EQ(farm.ships()[1].cell, (Cell{2, 1}));
+  EXPECT_EQ(farm.ships()[1].outcome, Outcome::kCollision);
+  EXPECT_EQ(farm.ships()[1].reward, -5.0F);
+  // On they go: neither can pass.
+  Both(farm, Action::kSouth, Action::kNorth);
+  EXPECT_EQ(farm.ships()[0].cell, (Cell{2, 2}));
+  EXPECT_EQ(farm.ships()[1].cell, (Cell{2, 1}));
+  EXPECT_EQ(farm.record().collisions, 3);
+}
+
+TEST(RightOfWay, OfTwoForOneCellTheLowerIdGoesFirst) {
   Farm farm = TwoShips();
   Both(farm, Action::kNorth, Action::kNorth);
   EXPECT_EQ(farm.ships()[0].cell, (Cell{2, 1}));
@@ -283,6 +300,8 @@ TEST(RightOfWay, ASwapIsBlockedForBoth) {
   Both(farm, Action::kSouth, Action::kNorth);
   EXPECT_EQ(farm.ships()[0].outcome, Outcome::kCollision);
   EXPECT_EQ(farm.ships()[1].outcome, Outcome::kCollision);
+  EXPECT_EQ(farm.ships()[0].cell, (Cell{2, 2}));
+  EXPECT_EQ(farm.ships()[1].cell, (Cell{2, 1}));
   EXPECT_EQ(farm.record().collisions, 2);
 }
 
@@ -295,9 +314,21 @@ TEST(RightOfWay, TheShipInADevicesCellHasItAlone) {
   for (int i = 0; i < 3 && farm.ships()[0].cell != Cell{2, 1}; ++i) {
     Both(farm, farm.ships()[0].cell.x == 3 ? Action::kNorthWest : Action::kNorth, Action::kHold);
   }
+  const Action there =
+      farm.ships()[1].cell.x == 3 ? Action::kNorthWest : Action::kNorth;  // the other wants it too
+  const Cell before = farm.ships()[1].cell;
+  Both(farm, Action::kHold, there);
+  EXPECT_EQ(farm.ships()[1].outcome, Outcome::kCollision);
+  EXPECT_EQ(farm.ships()[1].cell, before);
   Both(farm, Action::kPickup, Action::kPickup);
   EXPECT_EQ(farm.ships()[0].outcome, Outcome::kOk);
   EXPECT_EQ(farm.ships()[1].outcome, Outcome::kIllegalPickup);
+  Both(farm, Action::kNorth, there);
+  ASSERT_EQ(farm.ships()[1].cell, (Cell{2, 1}));
+  Both(farm, Action::kHold, Action::kPickup);  // it is gone
+  EXPECT_EQ(farm.ships()[1].outcome, Outcome::kIllegalPickup);
+  EXPECT_EQ(farm.ships()[1].aboard, 0);
+  EXPECT_EQ(farm.ships()[0].aboard, 1);
 }
 
 TEST(RightOfWay, BothMayDropOffAtOnePort) {

@@ -282,14 +282,14 @@ void Encoder::Courses(const View& view, float* out) const {
                   std::clamp(view.self.y + steps * move.y, 0, scenario_.height - 1)};
     return ForecastRiskAt(view, to, steps) * kRiskScale;
   };
-  const auto course = [&](Cell move) {
-    float sum = 0.0F;
-    for (std::int32_t step = 1; step <= kCourseSteps; ++step) sum += risk(move, step);
+  const auto course = [&](Cell move, float sum) {  // sum: the risk after the first step
+    for (std::int32_t step = 2; step <= kCourseSteps; ++step) sum += risk(move, step);
     return sum / static_cast<float>(kCourseSteps);
   };
+  const float* first = out;
   for (const Cell move : kMoves) *out++ = risk(move, 1);
-  for (const Cell move : kMoves) *out++ = course(move);
-  *out = course({0, 0});
+  for (const Cell move : kMoves) *out++ = course(move, *first++);
+  *out = course({0, 0}, risk({0, 0}, 1));
 }
 
 // The next move and how many are left to every port, and to every device that still waits.

@@ -125,10 +125,9 @@ TEST(Forecasts, AreTheSameAsATrackThatIsYetToBegin) {
   EXPECT_NE(ForecastAt(farm, 0, 100, 149)[0], 5.0F) << "it errs from the first step on";
 }
 
-TEST(Forecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
-  Scenario plain = Forecast();
-  plain.view.forecast_error_km.clear();
-  Farm told = MakeFarm(Forecast());
+// A farm after 60 steps, whose truth must be that of one whose ships are told how it moves now.
+Farm PlayedBeside(const Scenario& plain, const Scenario& scenario) {
+  Farm told = MakeFarm(scenario);
   Farm knows = MakeFarm(plain);
   told.Reset(3, 7);
   knows.Reset(3, 7);
@@ -136,6 +135,13 @@ TEST(Forecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
   test::RandomSteps(knows, 60, 2);
   EXPECT_EQ(told.disasters()[0].y, knows.disasters()[0].y) << "the truth is the same";
   EXPECT_EQ(told.record().episode_return, knows.record().episode_return);
+  return told;
+}
+
+TEST(Forecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
+  Scenario plain = Forecast();
+  plain.view.forecast_error_km.clear();
+  const Farm told = PlayedBeside(plain, Forecast());
   View view;
   Observe(told, 0, view);
   const KnownDisaster& known = view.disasters[0];
@@ -245,13 +251,7 @@ TEST(IssuedForecasts, AreToldFromTheFirstIssueUntilTheyRunOut) {
 TEST(IssuedForecasts, AreWhatShipsAreToldWhileTheTruthFollowsTheTrack) {
   Scenario plain = Said();
   plain.disasters[0].forecasts.clear();
-  Farm told = MakeFarm(Said());
-  Farm knows = MakeFarm(plain);
-  told.Reset(3, 7);
-  knows.Reset(3, 7);
-  test::RandomSteps(told, 60, 2);
-  test::RandomSteps(knows, 60, 2);
-  EXPECT_EQ(told.disasters()[0].y, knows.disasters()[0].y) << "the truth is the same";
+  const Farm told = PlayedBeside(plain, Said());
   View view;
   Observe(told, 0, view);
   const auto there = ForecastAt(told, 0, 60, 60 + kForecastSteps);

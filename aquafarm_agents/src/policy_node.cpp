@@ -17,6 +17,7 @@
 #include "aquafarm_agents/ros_environment.h"
 #include "aquafarm_agents/ship_driver.h"
 #include "aquafarm_agents/signals.h"
+#include "aquafarm_agents/twin.h"
 #include "aquafarm_agents/values_publisher.h"
 #include "aquafarm_sim/params.h"
 
@@ -153,6 +154,7 @@ int Refuse(ExitCode code, const char* what) {
 
 int RunPolicyNode() {
   try {
+    RefuseTwin();
     const ros::NodeHandle node;
     const PolicyParams params = ReadPolicyParams(ros::NodeHandle("~"));
     const agents::SavedPolicy saved = agents::FindPolicy(params.policy);

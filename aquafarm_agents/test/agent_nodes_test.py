@@ -127,7 +127,8 @@ class AgentNodesTest(unittest.TestCase):
         victim.send(signal.SIGKILL)
         self.wait_until(lambda state: state.ships[1].action == HOLD, "the ship to hold")
         died = self.state()
-        self.wait_until(lambda state: state.step > died.step + 20, "the farm to go on")
+        self.wait_until(lambda state: state.step > died.step + 20 and state.ships[0].action != HOLD,
+                        "the farm to go on and the other ship with it")
         on = self.state()
         self.assertEqual(HOLD, on.ships[1].action)
         self.assertEqual(died.ships[1].x, on.ships[1].x)
@@ -142,17 +143,25 @@ class AgentNodesTest(unittest.TestCase):
     def test_one_that_dies_holds_its_ship_only_and_joins_again_when_paced(self):
         self.die_and_join_again("_pace:=paced", "_rate_hz:=50")
 
-    def test_one_that_is_late_holds_its_ship_until_it_is_back(self):
-        self.sim(WIDE, "_late_ships_hold:=true", "_barrier_timeout_s:=0.5")
+    def be_late_and_back(self, *parameters):
+        self.sim(WIDE, *parameters)
         self.agent(0, "random")
         late = self.agent(1, "random")
         self.wait_until(lambda state: state.step > 20, "both ships at work")
         late.send(signal.SIGSTOP)
         self.wait_until(lambda state: state.ships[1].action == HOLD, "the ship to hold")
         step = self.state().step
-        self.wait_until(lambda state: state.step > step + 20, "the farm to go on")
+        self.wait_until(lambda state: state.step > step + 20 and state.ships[0].action != HOLD,
+                        "the farm to go on and the other ship with it")
+        self.assertEqual(HOLD, self.state().ships[1].action)
         late.send(signal.SIGCONT)
         self.wait_until(lambda state: state.ships[1].action != HOLD, "the ship to move again")
+
+    def test_one_that_is_late_holds_its_ship_until_it_is_back(self):
+        self.be_late_and_back("_late_ships_hold:=true", "_barrier_timeout_s:=0.5")
+
+    def test_one_that_is_late_holds_its_ship_until_it_is_back_when_paced(self):
+        self.be_late_and_back("_pace:=paced", "_rate_hz:=50")
 
     def test_a_ship_that_another_holds_is_refused(self):
         self.sim(WIDE, "_barrier_timeout_s:=3600")
@@ -163,6 +172,21 @@ class AgentNodesTest(unittest.TestCase):
         self.assertEqual(2, second.code(), second.words())
         self.assertIn(f"~ship: ship 1 is held by {self.namespace}/agent_1", second.words())
         self.assertEqual(before, self.state().hash)
+
+    def test_a_second_node_of_the_same_name_is_refused(self):
+        self.sim(WIDE, "_barrier_timeout_s:=3600")
+        first = self.agent(1, "random")
+        first.wait_for(lambda: self.is_seen_by("agent_1"), "its ship")
+        before = self.state().hash
+        second = self.agent(1, "random")
+        self.assertEqual(2, second.code(), second.words())
+        self.assertIn(f"node {self.namespace}/agent_1 runs already, at http://", second.words())
+        self.assertEqual(before, self.state().hash)
+        self.assertIsNone(first.process.poll(), first.words())
+        first.send(signal.SIGKILL)  # whom the master remembers, but who is dead, is in nobody's way
+        first.process.wait(20)
+        third = self.agent(1, "random", "_sim_timeout_s:=5")
+        third.wait_for(lambda: "driving ship 1" in third.words(), "its ship")
 
     def test_a_policy_for_another_number_of_ships_is_refused(self):
         self.sim("four_squads")

@@ -19,7 +19,6 @@ using aquafarm_msgs::Outcome;
 constexpr double kTick_s = 0.01;
 constexpr double kMostSpeed = 1000.0;
 constexpr std::uint32_t kQueue = 100;
-constexpr std::uint32_t kQueueOfStates = ReplayTape::kMostStates + 100;  // a jump sends all at once
 
 template <typename Response>
 void Refuse(const std::string& message, Response& response) {
@@ -56,8 +55,8 @@ ReplayNode::ReplayNode(ros::NodeHandle node, const ReplayParams& params)
   for (const rosbag::MessageInstance& message : tape_.messages()) {
     const std::string& topic = message.getTopic();
     if (topics_.count(topic) != 0) continue;
-    ros::AdvertiseOptions options =
-        rosbag::createAdvertiseOptions(message, IsState(message) ? kQueueOfStates : kQueue);
+    ros::AdvertiseOptions options = rosbag::createAdvertiseOptions(
+        message, IsState(message) ? ReplayTape::kQueueOfStates : kQueue);
     // Whoever comes late sees what stands; a state is for those who watch.
     options.latch =
         message.getDataType() != ros::message_traits::datatype<aquafarm_msgs::FarmState>();

@@ -14,6 +14,7 @@
 #include "aquafarm_viz/markers.h"
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/params.h"
+#include "aquafarm_viz/replay.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -21,8 +22,7 @@ namespace {
 constexpr double kWarnEvery_s = 5.0;
 constexpr int kJpegQuality = 90;
 constexpr std::size_t kStamps = 200;  // states among which that of a map of values is looked for
-constexpr std::uint32_t kMostStates = 10'100;  // waiting: a replay that jumps sends a whole run
-constexpr std::int32_t kMostRoutes = 64;       // ships with a topic of their own
+constexpr std::int32_t kMostRoutes = 64;  // ships with a topic of their own
 
 visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
                                        const visualization_msgs::MarkerArray& second) {
@@ -54,7 +54,7 @@ VizNode::VizNode(ros::NodeHandle node, const VizParams& params)
   image_ = node.advertise<sensor_msgs::Image>(names::kImage, 2, redraw);
   compressed_ = node.advertise<sensor_msgs::CompressedImage>(names::kCompressed, 2, redraw);
   spec_ = node.subscribe(names::kSpec, Pairing::kSpecs, &VizNode::OnSpec, this);
-  state_ = node.subscribe(names::kState, kMostStates, &VizNode::OnState, this,
+  state_ = node.subscribe(names::kState, ReplayTape::kQueueOfStates, &VizNode::OnState, this,
                           ros::TransportHints().tcpNoDelay());
   training_topic_ = node.subscribe(names::kTraining, 1, &VizNode::OnTraining, this);
   choice_topic_ = node.subscribe<aquafarm_msgs::PolicyChoice>(

@@ -65,6 +65,11 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   ReadWhole(reader, "n_step", 1, 100, options.n_step);
   ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
   options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
+  options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
+  if (options.mask_blocked && options.network == NetworkKind::kCnn) {
+    throw InputError(
+        "mask_blocked: got true, expected false with network=cnn, which sees no features");
+  }
   ReadNumber(reader, "priority", 0.0, 2.0, options.priority);
   ReadNumber(reader, "importance", 0.0, 1.0, options.importance);
   if (recurrent) {

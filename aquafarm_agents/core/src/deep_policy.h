@@ -8,12 +8,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "aquafarm/agents/checkpoint.h"
 #include "aquafarm/agents/deep_options.h"
 #include "aquafarm/agents/environment.h"
+#include "aquafarm/encoding.h"
 
 namespace aquafarm::agents {
 
@@ -24,6 +27,24 @@ inline std::size_t EntryCount(const EnvironmentSpec& spec) {
 /// What learners may do now: all actions, or the legal ones.
 inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
   return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
+}
+
+/// The same, and where mask_blocked is set, of the moves only those into open water; all of them
+/// for a ship with none around it. @param features of the ship, a row of Results::features
+inline ActionMask Allowed(ActionMask legal, const float* features, const DeepOptions& options) {
+  const ActionMask allowed = Allowed(legal, options.mask_illegal);
+  if (!options.mask_blocked) return allowed;
+  auto open = allowed;
+  for (int move = 0; move < kMoveCount; ++move) {
+    if (features[Encoder::kFirstBlockedFeature + move] == 0.0F) continue;
+    open = static_cast<ActionMask>(open & ~(1U << static_cast<unsigned>(move)));
+  }
+  return open != 0 ? open : allowed;
+}
+
+/// Planes have no such features, and DeepOptions refuses mask_blocked with them.
+inline ActionMask Allowed(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
+  return Allowed(legal, options.mask_illegal);
 }
 
 /// Marks what must not be chosen: 0, or a number far below any value, and finite, so that nothing
@@ -70,6 +91,11 @@ struct Sight<std::uint8_t> {
         .div_(255.0F);
   }
 };
+
+inline std::size_t SizeOf(const std::vector<std::int64_t>& shape) {
+  return static_cast<std::size_t>(
+      std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>()));
+}
 
 /// {count, rest…}
 inline std::vector<std::int64_t> WithCount(std::size_t count, std::vector<std::int64_t> rest) {

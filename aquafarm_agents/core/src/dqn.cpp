@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <utility>
 
@@ -24,8 +23,9 @@ class GreedyDqnPolicy final : public Policy {
                   const std::vector<float>& weights)
       : device_(FindDevice(options.device)),
         shape_(Sight<Scalar>::Shape(spec)),
+        size_(SizeOf(shape_)),
         bits_(options.network == NetworkKind::kCnn ? kPlanesBit : kFeaturesBit),
-        mask_illegal_(options.mask_illegal),
+        options_(options),
         network_(MakeNetwork(spec, options, 0)),
         parameters_(*network_, device_) {
     parameters_.FromVector(weights);
@@ -42,8 +42,9 @@ class GreedyDqnPolicy final : public Policy {
             .cpu();
     values_.resize(actions.size());
     const float* row = values.data_ptr<float>();
-    for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
-      const Best best = BestOf(row, Allowed(results.legal[i], mask_illegal_));
+    const Scalar* seen = Sight<Scalar>::Of(results);
+    for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += size_) {
+      const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
       actions[i] = best.action;
       values_[i] = best.value;
     }
@@ -52,8 +53,9 @@ class GreedyDqnPolicy final : public Policy {
  private:
   torch::Device device_;
   std::vector<std::int64_t> shape_;
+  std::size_t size_;  // of one observation
   std::uint8_t bits_;
-  bool mask_illegal_;
+  DeepOptions options_;
   std::shared_ptr<QNetwork> network_;
   FlatParameters parameters_;
 };
@@ -155,8 +157,7 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       resolved_(std::move(resolved)),
       device_(FindDevice(options.device)),
       shape_(Sight<Scalar>::Shape(spec)),
-      observation_size_(static_cast<std::size_t>(
-          std::accumulate(shape_.begin(), shape_.end(), std::int64_t{1}, std::multiplies<>()))),
+      observation_size_(SizeOf(shape_)),
       online_(MakeNetwork(spec, options, seed)),
       target_(MakeNetwork(spec, options, seed)),
       optimizer_(options, *online_, *target_, device_),
@@ -188,8 +189,9 @@ void DqnLearner<Scalar>::Choose(const Results& results, std::vector<std::uint8_t
   const torch::Tensor values =
       online_->Forward(ToInput(Sight<Scalar>::Of(results), actions.size())).cpu();
   const float* row = values.template data_ptr<float>();
-  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
-    const ActionMask allowed = Allowed(results.legal[i], options_.mask_illegal);
+  const Scalar* seen = Sight<Scalar>::Of(results);
+  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += observation_size_) {
+    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
     actions[i] = explorer_.Choose(row, allowed, BestOf(row, allowed), i);
   }
 }
@@ -247,7 +249,7 @@ void DqnLearner<Scalar>::Fill(std::size_t k, std::size_t from, std::size_t to, f
   std::copy_n(replay_.observation(to), observation_size_, batch_.to.data() + k * observation_size_);
   batch_.actions[k] = replay_.action(from);
   batch_.discounts[k] = discount;
-  MarkForbidden(Allowed(replay_.legal(to), options_.mask_illegal),
+  MarkForbidden(Allowed(replay_.legal(to), replay_.observation(to), options_),
                 batch_.forbidden.data() + k * kActionCount);
 }
 

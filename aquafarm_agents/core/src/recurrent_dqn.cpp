@@ -100,8 +100,9 @@ class RecurrentPolicy final : public Policy {
     actions.resize(results.legal.size());
     values_.resize(actions.size());
     const float* row = values.data_ptr<float>();
-    for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
-      const Best best = BestOf(row, Allowed(results.legal[i], options_.mask_illegal));
+    const float* seen = results.features.data();
+    for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features_) {
+      const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
       actions[i] = best.action;
       values_[i] = best.value;
     }
@@ -230,8 +231,9 @@ void RecurrentDqnLearner::Step(const Results& results, double progress,
   const torch::NoGradGuard no_grad;
   const torch::Tensor values = StepNetwork(*online_, results, spec_.feature_count, carry_, device_);
   const float* row = values.data_ptr<float>();
-  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
-    const ActionMask allowed = Allowed(results.legal[i], options_.mask_illegal);
+  const float* seen = results.features.data();
+  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features()) {
+    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
     actions[i] = explorer_.Choose(row, allowed, BestOf(row, allowed), i);
   }
   replay_.SetActions(actions);
@@ -269,7 +271,7 @@ void RecurrentDqnLearner::FillRun(std::size_t b, std::size_t age, std::size_t en
     const std::size_t row = replay_.Row(age + std::min(t, last), entry);
     std::copy_n(replay_.observation(row), features(),
                 batch_.observations.data() + (t * batch() + b) * features());
-    const ActionMask allowed = Allowed(replay_.legal(row), options_.mask_illegal);
+    const ActionMask allowed = Allowed(replay_.legal(row), replay_.observation(row), options_);
     MarkForbidden(allowed, batch_.forbidden.data() + (t * batch() + b) * kActionCount);
   }
   for (std::size_t t = 0; t < steps; ++t) {

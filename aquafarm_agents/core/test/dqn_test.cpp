@@ -90,6 +90,39 @@ TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
                24000);
 }
 
+/// Crashes in `steps` steps of a learner that explores all the time, and in as many greedy ones.
+int CrashesIn(const std::string& algorithm, const std::string& options, int steps) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(TinyFarm(), {4, entry.encodings(options), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  const auto policy = learner->GreedyPolicy();
+  policy->Begin(1, 4);
+  std::vector<std::uint8_t> actions;
+  int crashes = 0;
+  const Results* results = &environment.Reset(1, 0);
+  for (int step = 0; step < 2 * steps; ++step) {
+    if (step < steps) {
+      learner->Step(*results, 0.0, actions);
+    } else {
+      policy->Act(*results, actions);
+    }
+    results = &environment.Step(actions);
+    for (const EpisodeResult& ended : results->finished) crashes += ended.crashes;
+  }
+  return crashes;
+}
+
+TEST(Dqn, MaskBlockedKeepsShipsOffRocksIslandsAndTheMapsEdge) {
+  for (const auto& [algorithm, small] :
+       {std::pair{"dqn", kSmall}, std::pair{"lstm_dqn", kSmallRecurrent},
+        std::pair{"vdn", kSmall}}) {
+    const std::string options = small + std::string("exploration=epsilon_greedy:1 ");
+    EXPECT_GT(CrashesIn(algorithm, options, 300), 100) << algorithm;
+    EXPECT_EQ(CrashesIn(algorithm, options + "mask_blocked=true", 300), 0) << algorithm;
+  }
+  ExpectSolves("dqn", kSmall + std::string("mask_blocked=true"), 12000);
+}
+
 TEST(Dqn, PaperModeTurnsEverySwitchOff) {
   std::string resolved;
   const DeepOptions paper = DeepOptions::Parse("preset=paper", false, resolved);
@@ -99,6 +132,7 @@ TEST(Dqn, PaperModeTurnsEverySwitchOff) {
   EXPECT_EQ(paper.priority, 0.0);
   EXPECT_EQ(paper.reward_scale, 1.0);
   EXPECT_FALSE(paper.mask_illegal);
+  EXPECT_FALSE(paper.mask_blocked);
   EXPECT_EQ(paper.loss, LossKind::kMse);
   EXPECT_TRUE(DeepOptions::Parse("preset=paper double_q=true", false, resolved).double_q);
   EXPECT_CONTAINS(resolved, "preset=paper");
@@ -108,6 +142,7 @@ TEST(Dqn, WrongOptionsAreAnsweredWithWhatIsAllowed) {
   for (const auto& [options, words] :
        {std::pair{"doubel_q=true", "options: got 'doubel_q', expected one of: batch, device"},
         std::pair{"network=rnn", "network: got 'rnn', expected one of: mlp, cnn"},
+        std::pair{"network=cnn mask_blocked=true", "mask_blocked: got true, expected false"},
         std::pair{"batch=0", "batch: got 0, expected [1, 65536]"},
         std::pair{"batch=2.5", "batch: got 2.5, expected a whole number"},
         std::pair{"loss=l1", "loss: got 'l1', expected one of: huber, mse"},

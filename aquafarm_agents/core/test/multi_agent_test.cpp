@@ -41,11 +41,10 @@ Scenario SmartDevices() {
 }
 
 double SuccessAfter(const std::string& algorithm, const std::string& options, std::uint64_t steps,
-                    const Scenario& scenario) {
+                    const Scenario& scenario, std::uint8_t credit = kOwnRewardsBit) {
   const Algorithm& entry = FindAlgorithm(algorithm);
   LocalEnvironment environment(
-      Share(scenario),
-      {8, static_cast<std::uint8_t>(entry.encodings(options) | kOwnRewardsBit), false, 1});
+      Share(scenario), {8, static_cast<std::uint8_t>(entry.encodings(options) | credit), false, 1});
   const auto learner = entry.make(environment.spec(), 1, options);
   const double before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
   EXPECT_LT(before, 0.5) << algorithm;
@@ -64,12 +63,21 @@ TEST(TwoShips, AreLedHomeByLearnersOfValues) {
 }
 
 // The settings that ship but for size and longer exploration: a run is too short for a tenth of it.
+const std::string kActors =
+    "start=500 replay=20000 exploration=epsilon_greedy:linear:1:0.05:0.5 hidden=";
+
 TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
-  EXPECT_GE(SuccessAfter("maddpg",
-                         "hidden=64 start=500 replay=20000 "
-                         "exploration=epsilon_greedy:linear:1:0.05:0.5",
-                         40000, TwoShips()),
-            0.98);
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips()), 0.98);
+}
+
+TEST(TwoShips, AreLedHomeByActorsWhoAreToldTheTeamsRewardAlone) {
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips(), /*credit=*/0), 0.98);
+}
+
+TEST(TwoShips, AreLedHomeByActorsThatRemember) {
+  EXPECT_GE(
+      SuccessAfter("maddpg", kActors + "32 recurrent=true window=3 batch=32", 32000, TwoShips()),
+      0.98);
 }
 
 // As Lowe et al. print it: targets by the own target actor, moments drawn alike, a network each.

@@ -120,7 +120,7 @@ def make_jobs(options, contestants, folder):
                 commands.append([
                     train, *farm, "--algorithm", one.name, "--episodes", str(options.episodes),
                     "--seed", str(seed), "--run-dir", str(run), "--evaluate", "0", "--random", "0",
-                    "--checkpoint-period", "120",
+                    "--farms", "1", "--checkpoint-period", "120",
                     *(["--exploration", one.exploration] if one.exploration else []),
                     *(word for option in one.options for word in ("--set", option)),
                     *(["--resume"] if resumes else [])])
@@ -227,7 +227,8 @@ def _require_alike(name, of_one):
 
 def run(options):
     """The whole protocol: trains, measures, writes and draws."""
-    contestants = [one for one in CONTESTANTS if one.name in options.algorithms]
+    contestants = [one.for_episodes(options.episodes) for one in CONTESTANTS
+                   if one.name in options.algorithms]
     folder = options.output.resolve()
     settings = settings_of(options, contestants, look_at_farm(options))
     lock = claim(folder, settings)

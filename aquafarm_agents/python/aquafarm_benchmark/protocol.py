@@ -6,7 +6,8 @@ import typing
 
 @dataclasses.dataclass(frozen=True)
 class Contestant:
-    """Someone who takes part."""
+    """Someone who takes part. {explored} and {settled} in its settings are shares of the training
+    that _EXPLORED and _SETTLED episodes are."""
     name: str  # of the algorithm, as --algorithm and policy take it
     label: str  # for tables and figures
     colour: str
@@ -17,9 +18,20 @@ class Contestant:
     episodes: int = 0  # of evaluation at most; 0: as many as asked for
     repeats: bool = True  # False: one run, since another seed would learn nothing else
 
+    def for_episodes(self, episodes):
+        """The same with the settings of a training of so many episodes."""
+        shares = {"explored": f"{min(1.0, _EXPLORED / episodes):.6g}",
+                  "settled": f"{min(1.0, _SETTLED / episodes):.6g}"}
+        return dataclasses.replace(
+            self, exploration=self.exploration.format(**shares),
+            options=tuple(option.format(**shares) for option in self.options))
 
-# Networks have seen enough of chance after some thirty long episodes, tables after a thousand.
-_SOON = "epsilon_greedy:linear:1:0.005:0.015"
+
+# Networks have seen enough of chance after some thirty long episodes, tables after a thousand; what
+# is left of chance is a choice among moves that are worth about the same.
+_EXPLORED = 30
+_COOLING = "boltzmann:linear:1:0.05:{explored}"
+_SETTLED = 400  # from here on a network only refines what it has learnt
 
 CONTESTANTS = (
     Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, repeats=False),
@@ -27,9 +39,12 @@ CONTESTANTS = (
                exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
     Contestant("sarsa", "SARSA", "#17becf", cost=0.02,
                exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
-    Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_SOON,
-               options=("steps_per_update=1",)),
-    Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=5.0, exploration=_SOON),
+    Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING,
+               options=("steps_per_update=1", "mask_blocked=true",
+                        "learning_rate=linear:5e-4:3e-5:{settled}")),
+    Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
+               options=("hidden=64", "mask_blocked=true",
+                        "learning_rate=linear:5e-4:5e-5:{settled}")),
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )

@@ -12,7 +12,7 @@
 namespace aquafarm {
 namespace {
 
-constexpr std::int32_t kSelfFeatures = 5;
+constexpr std::int32_t kSelfFeatures = Encoder::kFirstBlockedFeature;
 constexpr std::int32_t kDeviceFeatures = 5;
 constexpr std::int32_t kPortFeatures = 2;
 constexpr std::int32_t kDisasterFeatures = 7;
@@ -50,6 +50,64 @@ float TimeLeft(const View& view) {
   }
   horizon = horizon == 0 ? view.scenario->step_limit : std::min(horizon, view.scenario->step_limit);
   return 1.0F - static_cast<float>(view.step) / static_cast<float>(horizon);
+}
+
+// The moves' courses and, last, staying.
+constexpr std::size_t kCourseCount = kMoveCount + 1;
+constexpr std::size_t kCourseCells = kCourseCount * kCourseSteps;
+using CourseFloats = std::array<float, kCourseCells>;
+
+/// Where the courses lead, seen from the ship, and when: all courses' first step, then the second.
+struct CourseTable {
+  CourseFloats x{};
+  CourseFloats y{};
+  CourseFloats steps{};
+};
+
+constexpr CourseTable MakeCourses() {
+  CourseTable table;
+  for (std::size_t i = 0; i < kCourseCells; ++i) {
+    const std::size_t course = i % kCourseCount;
+    const Cell move = course < kMoves.size() ? kMoves[course] : Cell{};
+    const auto steps = static_cast<std::int32_t>(i / kCourseCount + 1);
+    table.x[i] = static_cast<float>(steps * move.x);
+    table.y[i] = static_cast<float>(steps * move.y);
+    table.steps[i] = static_cast<float>(steps);
+  }
+  return table;
+}
+
+constexpr CourseTable kCourses = MakeCourses();
+
+// Worsens the risk of each cell of the courses to that of a disaster that holds its motion; as
+// RiskOf, but a ring for all cells at once, which the compiler makes vectors of.
+void WorsenCourses(const KnownDisaster& known, const CourseFloats& x, const CourseFloats& y,
+                   CourseFloats& risk) {
+  const Disaster& disaster = known.belief;
+  const auto age = static_cast<float>(known.age);
+  CourseFloats west;
+  CourseFloats south;
+  CourseFloats distance_squared;
+  for (std::size_t i = 0; i < kCourseCells; ++i) {
+    const float ahead = age + kCourses.steps[i];
+    west[i] = disaster.x - (x[i] - ahead * disaster.dx);
+    south[i] = disaster.y - (y[i] - ahead * disaster.dy);
+    distance_squared[i] = west[i] * west[i] + south[i] * south[i];
+  }
+  CourseFloats there{};
+  if (disaster.by_quadrant) {
+    for (std::size_t i = 0; i < kCourseCells; ++i) {
+      there[i] = RiskByQuadrant(disaster, west[i], south[i], distance_squared[i]);
+    }
+  } else {
+    for (auto k = static_cast<std::size_t>(disaster.rings);
+         k-- > 0;) {  // the innermost ring counts
+      for (std::size_t i = 0; i < kCourseCells; ++i) {
+        there[i] = distance_squared[i] <= disaster.radius_squared[k] ? disaster.risk[k] : there[i];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < kCourseCells; ++i) risk[i] = std::min(risk[i], there[i]);
 }
 
 // The cells [x0, x1) × [y0, y1) that a disaster may reach.
@@ -277,19 +335,33 @@ void Encoder::Features(const View& view, float* out) const {
 // The risk forecast after one step of each move, and on average over the steps of a course that
 // holds on, or of a ship that stays; the map's edge stops a ship.
 void Encoder::Courses(const View& view, float* out) const {
-  const auto risk = [&](Cell move, std::int32_t steps) {
-    const Cell to{std::clamp(view.self.x + steps * move.x, 0, scenario_.width - 1),
-                  std::clamp(view.self.y + steps * move.y, 0, scenario_.height - 1)};
-    return ForecastRiskAt(view, to, steps) * kRiskScale;
-  };
-  const auto course = [&](Cell move, float sum) {  // sum: the risk after the first step
-    for (std::int32_t step = 2; step <= kCourseSteps; ++step) sum += risk(move, step);
-    return sum / static_cast<float>(kCourseSteps);
-  };
-  const float* first = out;
-  for (const Cell move : kMoves) *out++ = risk(move, 1);
-  for (const Cell move : kMoves) *out++ = course(move, *first++);
-  *out = course({0, 0}, risk({0, 0}, 1));
+  CourseFloats x;
+  CourseFloats y;
+  const auto east = static_cast<float>(scenario_.width - 1);
+  const auto north = static_cast<float>(scenario_.height - 1);
+  const auto self_x = static_cast<float>(view.self.x);
+  const auto self_y = static_cast<float>(view.self.y);
+  for (std::size_t i = 0; i < kCourseCells; ++i) {
+    x[i] = std::min(std::max(self_x + kCourses.x[i], 0.0F), east);
+    y[i] = std::min(std::max(self_y + kCourses.y[i], 0.0F), north);
+  }
+  CourseFloats risk{};
+  if (scenario_.seas && !scenario_.seas->risk.empty()) {
+    for (std::size_t i = 0; i < kCourseCells; ++i) {
+      risk[i] =
+          scenario_.SeaRiskAt({static_cast<std::int32_t>(x[i]), static_cast<std::int32_t>(y[i])});
+    }
+  }
+  for (const KnownDisaster& known : view.disasters) {
+    if (known.known && known.belief.active()) WorsenCourses(known, x, y, risk);
+  }
+  for (float& one : risk) one *= kRiskScale;
+  out = std::copy_n(risk.data(), kMoveCount, out);
+  for (std::size_t course = 0; course < kCourseCount; ++course) {
+    float sum = 0.0F;
+    for (std::size_t i = course; i < kCourseCells; i += kCourseCount) sum += risk[i];
+    *out++ = sum / static_cast<float>(kCourseSteps);
+  }
 }
 
 // The next move and how many are left to every port, and to every device that still waits.

@@ -89,16 +89,6 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full, const std::vec
   known.belief.dy = direction[1] * bulletin.speed;
 }
 
-// The worst of the sea's risk at a cell and what `risk` says of each known disaster.
-template <typename Risk>
-float WorstRisk(const View& view, Cell cell, const Risk& risk) {
-  float worst = view.scenario->SeaRiskAt(cell);
-  for (const KnownDisaster& known : view.disasters) {
-    if (known.known) worst = std::min(worst, risk(known));
-  }
-  return worst;
-}
-
 }  // namespace
 
 void Observe(const Farm& farm, std::int32_t ship, View& view) {
@@ -151,17 +141,13 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
 }
 
 float KnownRiskAt(const View& view, Cell cell) {
-  return WorstRisk(view, cell, [&](const KnownDisaster& known) {
-    return RiskOf(known.belief, static_cast<float>(cell.x), static_cast<float>(cell.y));
-  });
-}
-
-float ForecastRiskAt(const View& view, Cell cell, std::int32_t steps) {
-  return WorstRisk(view, cell, [&](const KnownDisaster& known) {
-    const auto ahead = static_cast<float>(known.age + steps);
-    return RiskOf(known.belief, static_cast<float>(cell.x) - ahead * known.belief.dx,
-                  static_cast<float>(cell.y) - ahead * known.belief.dy);
-  });
+  float worst = view.scenario->SeaRiskAt(cell);
+  for (const KnownDisaster& known : view.disasters) {
+    if (!known.known) continue;
+    worst = std::min(worst,
+                     RiskOf(known.belief, static_cast<float>(cell.x), static_cast<float>(cell.y)));
+  }
+  return worst;
 }
 
 }  // namespace aquafarm

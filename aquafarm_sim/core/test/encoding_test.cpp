@@ -217,6 +217,17 @@ int ExpectCourses(const Farm& farm, const Oracle& risk_ahead) {
   return risky;
 }
 
+TEST(Features, HaveTheBlockedMovesWhereTheyAreSaidToBe) {
+  for (const int ships : {1, 3}) {
+    const Scenario scenario = CrowdedScenario(ships, 0);
+    const std::vector<std::string> names = Encoder(scenario).feature_names();
+    for (int move = 0; move < kMoveCount; ++move) {
+      EXPECT_EQ(names[static_cast<std::size_t>(Encoder::kFirstBlockedFeature + move)],
+                "blocked." + std::string(ToString(static_cast<Action>(move))));
+    }
+  }
+}
+
 // Against the disaster itself, moved on step by step.
 TEST(Features, TellTheRiskForecastAlongEachCourse) {
   Scenario scenario = CrowdedScenario(1, 0);

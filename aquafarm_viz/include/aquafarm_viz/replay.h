@@ -32,6 +32,8 @@ class ReplayTape {
   };
 
   static constexpr std::size_t kMostStates = 10'000;  ///< sent before a step that is jumped to
+  /// For senders and receivers: a jump sends them all at once.
+  static constexpr std::uint32_t kQueueOfStates = kMostStates + 100;
 
   /// @throws std::runtime_error in one line when there is nothing to show: no bag, another version
   explicit ReplayTape(const std::string& path);

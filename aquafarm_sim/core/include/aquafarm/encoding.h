@@ -46,6 +46,8 @@ class Encoder {
   };
   TabularState Decode(std::uint32_t index) const;
 
+  /// Where the eight features blocked.<move> begin.
+  inline static constexpr std::int32_t kFirstBlockedFeature = 5;
   /// @param out [feature_count()]
   void Features(const View& view, float* out) const;
   /// @param out [plane_count(), H, W] row-major from the south; 255 stands for 1

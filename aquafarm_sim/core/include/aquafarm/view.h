@@ -60,8 +60,4 @@ void Observe(const Farm& farm, std::int32_t ship, View& view);
 /// Worst risk that the view knows of at a cell.
 float KnownRiskAt(const View& view, Cell cell);
 
-/// Worst risk at a cell in so many steps, as far as the view knows and if headings hold.
-/// @param cell on the map
-float ForecastRiskAt(const View& view, Cell cell, std::int32_t steps);
-
 }  // namespace aquafarm

@@ -9,6 +9,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -19,20 +21,29 @@ namespace {
 
 constexpr int kLimit_ms = 2000;  // for a host that does not say whether anybody listens
 
-bool Connects(const addrinfo& address) {
-  const int connection =
-      socket(address.ai_family, address.ai_socktype | SOCK_NONBLOCK, address.ai_protocol);
-  if (connection < 0) return false;
-  connect(connection, address.ai_addr, address.ai_addrlen);
+bool Completes(int connection) {
   pollfd wanted{connection, POLLOUT, 0};
+  int ready = 0;
+  do {
+    ready = poll(&wanted, 1, kLimit_ms);
+  } while (ready < 0 && errno == EINTR);
   int fault = 0;
   socklen_t size = sizeof(fault);
-  const bool connected = poll(&wanted, 1, kLimit_ms) == 1 &&
-                         getsockopt(connection, SOL_SOCKET, SO_ERROR, &fault, &size) == 0 &&
-                         fault == 0;
+  return ready == 1 && getsockopt(connection, SOL_SOCKET, SO_ERROR, &fault, &size) == 0 &&
+         fault == 0;
+}
+
+bool Connects(const addrinfo& address) {
+  const int connection = socket(
+      address.ai_family, address.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, address.ai_protocol);
+  if (connection < 0) return false;
+  const bool connected = connect(connection, address.ai_addr, address.ai_addrlen) == 0 ||
+                         (errno == EINPROGRESS && Completes(connection));
   close(connection);
   return connected;
 }
+
+}  // namespace
 
 bool IsListenedOn(const std::string& host, std::uint32_t port) {
   addrinfo wanted{};
@@ -40,10 +51,11 @@ bool IsListenedOn(const std::string& host, std::uint32_t port) {
   addrinfo* found = nullptr;
   if (getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found) != 0) return false;
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(found, &freeaddrinfo);
-  return Connects(*found);
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    if (Connects(*one)) return true;
+  }
+  return false;
 }
-
-}  // namespace
 
 void RefuseTwin() {
   const std::string& name = ros::this_node::getName();
@@ -56,6 +68,7 @@ void RefuseTwin() {
   if (!ros::master::execute("lookupNode", request, response, payload, /*wait_for_master=*/false)) {
     return;
   }
+  if (payload.getType() != XmlRpc::XmlRpcValue::TypeString) return;
   const std::string uri = payload;
   std::string host;
   std::uint32_t port = 0;

@@ -9,6 +9,7 @@ import numpy as np
 import rosunit
 
 from aquafarm_benchmark import measures, results
+from aquafarm_benchmark.protocol import CONTESTANTS
 
 
 class MeasuresTest(unittest.TestCase):
@@ -78,9 +79,19 @@ class MeasuresTest(unittest.TestCase):
                                                      "e": 900}))
         self.assertEqual({"a": 4, "b": 4}, measures.convergence_ranks({"a": 70, "b": 70}))
 
+    def test_settings_are_of_so_many_episodes_however_long_a_training_is(self):
+        dqn = next(one for one in CONTESTANTS if one.name == "dqn")
+        for episodes, explored, settled in ((2000, "0.015", "0.2"), (800, "0.0375", "0.5"),
+                                            (10, "1", "1")):
+            given = dqn.for_episodes(episodes)
+            self.assertTrue(given.exploration.endswith(":" + explored), given.exploration)
+            self.assertTrue(given.options[-1].endswith(":" + settled), given.options)
+
     def test_ea_is_equation_16(self):
         # LSTM-DQN's row of Table 1.
         self.assertAlmostEqual(1.67, measures.ea_paper(1.67, 1.0, 4, 1.0), places=2)
+        # RANDOM's, of which the paper prints -0.7: -10 a step, no success, last, never stable.
+        self.assertAlmostEqual(-0.80, measures.ea_paper(-10.0, 0.0, 1, 0.0))
         self.assertAlmostEqual(0.1 * -3.0 + 0.3 * 0.5 + 0.2 * 2 + 0.4 * 0.25,
                                measures.ea_paper(-3.0, 0.5, 2, 0.25))
 

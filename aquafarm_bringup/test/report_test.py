@@ -223,6 +223,9 @@ class ReportTest(unittest.TestCase):
         code, words = run("aquafarm_sim", "episode_bag", own, other, "-o", bag)
         self.assertEqual(2, code)
         self.assertIn(f"episode_bag: {other}: no route: ", words)
+        code, words = run("aquafarm_sim", "episode_bag", own, route)
+        self.assertEqual(2, code)
+        self.assertIn("--output is required", words)
 
     def test_what_cannot_be_reported_on_has_its_line(self):
         empty = self.folder / "empty"

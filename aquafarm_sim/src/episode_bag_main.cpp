@@ -61,7 +61,11 @@ int main(int argc, char** argv) {
   app.add_option("scenario", scenario, "scenario file")->required();
   app.add_option("route", route, "JSON file of aquafarm_evaluate --route")->required();
   app.add_option("-o,--output", bag, "bag to write")->required();
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   try {
     Write(scenario, route, bag);
   } catch (const std::exception& error) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_sim/episode_recorder.h"
 
-#include <pthread.h>
 #include <ros/console.h>
-#include <sched.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <charconv>
@@ -16,13 +15,9 @@
 namespace aquafarm_sim {
 namespace {
 
-// Whoever steps goes first: the writer runs while a core is idle (SCHED_IDLE, sched(7): even a
-// thread of low priority would now and then keep one that has just been woken waiting), or,
-// hurried, like any other. A system that refuses makes it no worse than that.
-void Hurry(std::thread& writer, bool hurried) {
-  const sched_param none{};
-  pthread_setschedparam(writer.native_handle(), hurried ? SCHED_OTHER : SCHED_IDLE, &none);
-}
+// The least there is: whoever steps goes first. Not SCHED_IDLE, which starves beside other programs,
+// and which a user without privileges could not end once the farms have to wait.
+constexpr int kNiceness = 19;
 
 }  // namespace
 
@@ -57,7 +52,6 @@ EpisodeRecorder::EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scena
     throw aquafarm::InputError("~keep_dir: got '" + folder_ + "', expected a folder to write to");
   }
   thread_ = std::thread([this] { Run(); });
-  Hurry(thread_, false);
 }
 
 EpisodeRecorder::~EpisodeRecorder() {
@@ -65,7 +59,6 @@ EpisodeRecorder::~EpisodeRecorder() {
     const std::lock_guard<std::mutex> lock(mutex_);
     ending_ = true;
   }
-  Hurry(thread_, true);
   changed_.notify_all();
   thread_.join();
 }
@@ -128,15 +121,9 @@ void EpisodeRecorder::Enqueue(EpisodeTape tape) {
     for (const EpisodeTape& overtaken : queue_) waiting_bytes_ -= overtaken.actions.size();
     queue_.clear();
   }
-  const auto has_room = [this] {
+  const bool follows = changed_.wait_for(lock, limits_.wait, [this] {
     return waiting_bytes_ < limits_.waiting_bytes || !fault_.empty();
-  };
-  bool follows = has_room();
-  if (!follows) {
-    Hurry(thread_, true);
-    follows = changed_.wait_for(lock, limits_.wait, has_room);
-    Hurry(thread_, false);
-  }
+  });
   if (!follows) {
     fault_ = "the disk does not follow";
     ROS_ERROR("no more episodes are kept: %s", fault_.c_str());
@@ -148,6 +135,7 @@ void EpisodeRecorder::Enqueue(EpisodeTape tape) {
 }
 
 void EpisodeRecorder::Run() {
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);  // of this thread alone
   std::unique_lock<std::mutex> lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return ending_ || !queue_.empty(); });

@@ -206,12 +206,13 @@ void Ranch::GoOnWithoutTheLate() {
   StepPublishedFarm();
 }
 
-bool Ranch::IsHeldByAnother(Slot& slot, const std::string& caller) const {
+bool Ranch::IsHeldByAnother(Slot& slot, const std::string& caller) {
   if (slot.holder.empty() || slot.holder == caller) return false;
   const std::chrono::duration<double> silence = Clock::now() - slot.heard_at;
   // A holder whose command waits for the other ships is there.
   if (slot.pending || silence.count() < options_.claim_timeout_s) return true;
   slot.holder.clear();
+  ++counters_.dropped_clients;
   return false;
 }
 

@@ -228,6 +228,7 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("late ships", now.late_ships);
   status.add("barrier timeouts", now.barrier_timeouts);
   status.add("superseded commands", now.superseded);
+  status.add("dropped clients", now.dropped_clients);
   status.add("refused requests", now.refused);
   status.add("dropped episode summaries", publisher_.dropped_summaries());
   if (recorder_ != nullptr) status.add("kept episodes", recorder_->kept());

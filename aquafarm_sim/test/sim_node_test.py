@@ -186,7 +186,10 @@ class SimNodeTest(unittest.TestCase):
         times = [m.clock.to_nsec() for m in clock.messages]
         self.assertEqual(sorted(times), times)
         status = message("/diagnostics", DiagnosticArray).status[0]
-        self.assertIn("farm steps per second", [v.key for v in status.values])
+        told = {value.key: value.value for value in status.values}
+        for key in ("farm steps per second", "late ships", "dropped clients", "memory [MiB]"):
+            self.assertGreaterEqual(float(told[key]), 0.0, key)
+        self.assertGreater(float(told["memory [MiB]"]), 1.0)
 
     def test_each_end_of_an_episode_is_summed_up(self):
         episodes = Recorder("episode", EpisodeSummary)

@@ -30,7 +30,7 @@ inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
 }
 
 /// The same, and where mask_blocked is set, of the moves only those into open water; all of them
-/// for a ship with none around it. @param features of the ship, a row of Results::features
+/// for a ship that has none around it. @param features of the ship, a row of Results::features
 inline ActionMask Allowed(ActionMask legal, const float* features, const DeepOptions& options) {
   const ActionMask allowed = Allowed(legal, options.mask_illegal);
   if (!options.mask_blocked) return allowed;
@@ -39,7 +39,7 @@ inline ActionMask Allowed(ActionMask legal, const float* features, const DeepOpt
     if (features[Encoder::kFirstBlockedFeature + move] == 0.0F) continue;
     open = static_cast<ActionMask>(open & ~(1U << static_cast<unsigned>(move)));
   }
-  return open != 0 ? open : allowed;
+  return (open & kMoveMask) != 0 ? open : allowed;
 }
 
 /// Planes have no such features, and DeepOptions refuses mask_blocked with them.
@@ -92,7 +92,8 @@ struct Sight<std::uint8_t> {
   }
 };
 
-inline std::size_t SizeOf(const std::vector<std::int64_t>& shape) {
+/// Numbers of one observation.
+inline std::size_t ElementCount(const std::vector<std::int64_t>& shape) {
   return static_cast<std::size_t>(
       std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>()));
 }

@@ -90,36 +90,47 @@ TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
                24000);
 }
 
-/// Crashes in `steps` steps of a learner that explores all the time, and in as many greedy ones.
-int CrashesIn(const std::string& algorithm, const std::string& options, int steps) {
+struct Crashes {
+  int exploring{};
+  int greedy{};
+};
+
+/// Crashes in `steps` steps of a learner that knows nothing, and in as many of its greedy policy.
+Crashes CrashesIn(const std::string& algorithm, const std::string& options, int steps) {
   const Algorithm& entry = FindAlgorithm(algorithm);
   LocalEnvironment environment(TinyFarm(), {4, entry.encodings(options), false, 1});
   const auto learner = entry.make(environment.spec(), 1, options);
   const auto policy = learner->GreedyPolicy();
   policy->Begin(1, 4);
   std::vector<std::uint8_t> actions;
-  int crashes = 0;
-  const Results* results = &environment.Reset(1, 0);
-  for (int step = 0; step < 2 * steps; ++step) {
-    if (step < steps) {
-      learner->Step(*results, 0.0, actions);
-    } else {
-      policy->Act(*results, actions);
+  const auto count = [&](const auto& act) {
+    int crashes = 0;
+    const Results* results = &environment.Reset(1, 0);
+    for (int step = 0; step < steps; ++step) {
+      act(*results);
+      results = &environment.Step(actions);
+      for (const EpisodeResult& ended : results->finished) crashes += ended.crashes;
     }
-    results = &environment.Step(actions);
-    for (const EpisodeResult& ended : results->finished) crashes += ended.crashes;
-  }
-  return crashes;
+    return crashes;
+  };
+  return {count([&](const Results& results) { learner->Step(results, 0.0, actions); }),
+          count([&](const Results& results) { policy->Act(results, actions); })};
 }
 
 TEST(Dqn, MaskBlockedKeepsShipsOffRocksIslandsAndTheMapsEdge) {
+  int greedy = 0;
   for (const auto& [algorithm, small] :
-       {std::pair{"dqn", kSmall}, std::pair{"lstm_dqn", kSmallRecurrent},
-        std::pair{"vdn", kSmall}}) {
+       {std::pair{"dqn", kSmall}, std::pair{"lstm_dqn", kSmallRecurrent}, std::pair{"vdn", kSmall},
+        std::pair{"independent_dqn", kSmall}}) {
     const std::string options = small + std::string("exploration=epsilon_greedy:1 ");
-    EXPECT_GT(CrashesIn(algorithm, options, 300), 100) << algorithm;
-    EXPECT_EQ(CrashesIn(algorithm, options + "mask_blocked=true", 300), 0) << algorithm;
+    const Crashes freely = CrashesIn(algorithm, options, 300);
+    EXPECT_GT(freely.exploring, 50) << algorithm;
+    greedy += freely.greedy;
+    const Crashes masked = CrashesIn(algorithm, options + "mask_blocked=true", 300);
+    EXPECT_EQ(masked.exploring, 0) << algorithm;
+    EXPECT_EQ(masked.greedy, 0) << algorithm;
   }
+  EXPECT_GT(greedy, 50) << "those without the mask, who know nothing";
   ExpectSolves("dqn", kSmall + std::string("mask_blocked=true"), 12000);
 }
 

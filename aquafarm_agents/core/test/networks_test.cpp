@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "aquafarm/check.h"
 #include "aquafarm/rng.h"
+#include "deep_policy.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -213,6 +216,23 @@ TEST(DrawWeights, KeepsToPyTorchsLimits) {
       EXPECT_GT(item.value().abs().max().item<double>(), 0.9 * limit) << item.key();
     }
   }
+}
+
+TEST(Allowed, LeavesMovesIntoOpenWaterOrAllWhereThereIsNone) {
+  DeepOptions options;
+  options.mask_blocked = true;
+  std::vector<float> features(Encoder::kFirstBlockedFeature + kMoveCount, 0.0F);
+  float* const blocked = features.data() + Encoder::kFirstBlockedFeature;
+  const ActionMask legal = kMoveMask | MaskOf(Action::kDropOff);
+  EXPECT_EQ(Allowed(legal, features.data(), options), legal);
+  blocked[static_cast<int>(Action::kWest)] = 1.0F;
+  EXPECT_EQ(Allowed(legal, features.data(), options), legal & ~MaskOf(Action::kWest));
+  options.mask_illegal = false;
+  EXPECT_EQ(Allowed(legal, features.data(), options), kAllActions & ~MaskOf(Action::kWest));
+  std::fill_n(blocked, kMoveCount, 1.0F);
+  EXPECT_EQ(Allowed(legal, features.data(), options), kAllActions);
+  options.mask_illegal = true;
+  EXPECT_EQ(Allowed(legal, features.data(), options), legal);
 }
 
 TEST(FindDevice, RefusesCudaWhereThereIsNone) {

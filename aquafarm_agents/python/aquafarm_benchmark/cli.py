@@ -14,7 +14,7 @@ import tempfile
 import time
 
 from aquafarm_benchmark import results, runs
-from aquafarm_benchmark.protocol import CONTESTANTS, OPTIMUM, PROFILES
+from aquafarm_benchmark.protocol import CONTESTANTS, FARMS, OPTIMUM, PROFILES
 
 _OK, _FAILED, _BAD_INPUT, _STORAGE, _INTERRUPTED = 0, 1, 2, 3, 130
 _EPILOG = """exit codes: 0 all is there, 1 some runs failed (the others are kept), 2 bad argument,
@@ -120,7 +120,7 @@ def make_jobs(options, contestants, folder):
                 commands.append([
                     train, *farm, "--algorithm", one.name, "--episodes", str(options.episodes),
                     "--seed", str(seed), "--run-dir", str(run), "--evaluate", "0", "--random", "0",
-                    "--farms", "1", "--checkpoint-period", "120",
+                    "--farms", str(FARMS), "--checkpoint-period", "120",
                     *(["--exploration", one.exploration] if one.exploration else []),
                     *(word for option in one.options for word in ("--set", option)),
                     *(["--resume"] if resumes else [])])
@@ -143,7 +143,7 @@ def settings_of(options, contestants, farm):
     """What decides the results; a folder holds results of one such set."""
     return {**farm, "runs": options.runs, "episodes": options.episodes,
             "evaluation_episodes": options.evaluation_episodes, "max_steps": options.max_steps,
-            "evaluation_seed": options.evaluation_seed,
+            "evaluation_seed": options.evaluation_seed, "farms": FARMS,
             "learners": {one.name: {"exploration": one.exploration, "options": list(one.options)}
                          for one in contestants}}
 

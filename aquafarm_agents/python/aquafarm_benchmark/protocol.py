@@ -27,8 +27,13 @@ class Contestant:
             options=tuple(option.format(**shares) for option in self.options))
 
 
-# Networks have seen enough of chance after some thirty long episodes, tables after a thousand; what
-# is left of chance is a choice among moves that are worth about the same.
+# Of a training, as §4.2 counts episodes: one after the other. With many farms at a time the first
+# episodes are all of chance, and those that end soon come first.
+FARMS = 1
+
+# Why these numbers: docs/decisions/settling_early.md. Networks have seen enough of chance after
+# some thirty long episodes, tables after a thousand; what is left of chance is a choice among moves
+# that are worth about the same: the temperature is one point of reward, which networks see as 0.05.
 _EXPLORED = 30
 _COOLING = "boltzmann:linear:1:0.05:{explored}"
 _SETTLED = 400  # from here on a network only refines what it has learnt

@@ -100,8 +100,8 @@ void WorsenCourses(const KnownDisaster& known, const CourseFloats& x, const Cour
       there[i] = RiskByQuadrant(disaster, west[i], south[i], distance_squared[i]);
     }
   } else {
-    for (auto k = static_cast<std::size_t>(disaster.rings);
-         k-- > 0;) {  // the innermost ring counts
+    // From the outermost: of the rings that hold a cell the innermost counts.
+    for (auto k = static_cast<std::size_t>(disaster.rings); k-- > 0;) {
       for (std::size_t i = 0; i < kCourseCells; ++i) {
         there[i] = distance_squared[i] <= disaster.radius_squared[k] ? disaster.risk[k] : there[i];
       }

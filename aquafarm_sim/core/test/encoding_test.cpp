@@ -228,11 +228,10 @@ TEST(Features, HaveTheBlockedMovesWhereTheyAreSaidToBe) {
   }
 }
 
-// Against the disaster itself, moved on step by step.
-TEST(Features, TellTheRiskForecastAlongEachCourse) {
-  Scenario scenario = CrowdedScenario(1, 0);
+/// Against the disasters themselves, moved on step by step, and the sea.
+void ExpectCoursesInPlay(Scenario scenario) {
   scenario.view.courses = true;
-  Farm farm = MakeFarm(scenario);
+  Farm farm = MakeFarm(std::move(scenario));
   int risky = 0;
   for (int round = 0; round < 40; ++round) {
     StepOne(farm, static_cast<Action>(round % kMoveCount));
@@ -244,10 +243,24 @@ TEST(Features, TellTheRiskForecastAlongEachCourse) {
           disaster.y += disaster.dy;
         }
       }
-      return RiskAt(ahead, cell);
+      return std::min(RiskAt(ahead, cell), farm.scenario().SeaRiskAt(cell));
     });
   }
   EXPECT_GT(risky, 200);
+}
+
+TEST(Features, TellTheRiskForecastAlongEachCourse) {
+  Scenario scenario = CrowdedScenario(1, 0);
+  ExpectCoursesInPlay(scenario);
+  // One ring is no circle, one is absent in a quadrant, and one storm is over before the other.
+  scenario.disasters[0].quadrants = {{1.0F, 0.5F, 0.0F, 1.0F}, {2.5F, 2.0F, 1.0F, 1.5F}};
+  scenario.disasters[0].duration = 20;
+  ExpectCoursesInPlay(scenario);
+  scenario.seas.emplace();
+  for (int i = 0; i < scenario.CellCount(); ++i) {
+    scenario.seas->risk.push_back(i % 5 == 0 ? -7.0F : 0.0F);
+  }
+  ExpectCoursesInPlay(scenario);
 }
 
 TEST(Features, TellTheRiskOfTheSeaAlongEachCourse) {

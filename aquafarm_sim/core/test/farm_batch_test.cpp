@@ -185,7 +185,9 @@ void ExpectNoAllocation(Scenario scenario) {
 TEST(FarmBatch, NeitherStepsNorEpisodesAllocate) {
   ExpectNoAllocation(CrowdedScenario(2));
   Scenario charted = CrowdedScenario(2);
-  charted.view.waterways = true;
+  charted.view.waterways = charted.view.courses = true;
+  ExpectNoAllocation(charted);
+  charted.view.mode = ViewMode::kPartial;
   ExpectNoAllocation(charted);
   Scenario fixed = CrowdedScenario(1, 0);
   fixed.layout = LayoutMode::kFixed;

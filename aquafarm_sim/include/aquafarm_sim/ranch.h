@@ -78,6 +78,7 @@ struct RanchCounters {
   std::uint64_t late_ships{};  ///< held for want of a command; in lockstep each that was given up
   std::uint64_t barrier_timeouts{};  ///< lockstep: commands answered TIMEOUT
   std::uint64_t superseded{};        ///< clients that were overtaken by another of the same ship
+  std::uint64_t dropped_clients{};   ///< holders of a ship who fell silent and lost it
   std::uint64_t refused{};           ///< requests answered with any other code of refusal
   std::uint64_t saves{};             ///< states handed out by save_state
   double joint_step_age_s{1e9};      ///< since the last joint step
@@ -194,7 +195,7 @@ class Ranch {
   aquafarm_msgs::CommandResult WaitForOthers(const ShipCommand& command, Lock& lock);
   bool EveryShipHasACommand() const;
   std::optional<Refusal> CheckHolder(const ShipCommand& command);
-  bool IsHeldByAnother(Slot& slot, const std::string& caller) const;
+  bool IsHeldByAnother(Slot& slot, const std::string& caller);
   void GoOnWithoutTheLate();
   void StepPublishedFarm();
   void DropPending();

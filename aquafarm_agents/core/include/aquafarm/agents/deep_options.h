@@ -48,8 +48,7 @@ struct DeepOptions {
   double importance{0.4};     ///< exponent β of the same, at the start; 1 at the end
   double reward_scale{0.05};  ///< 1: off
   bool mask_illegal{true};    ///< never try, nor bootstrap on, actions that would be ILLEGAL
-  bool mask_blocked{
-      false};  ///< nor moves that the chart shows to end on rock, island or map's edge
+  bool mask_blocked{false};   ///< nor moves onto a charted rock, an island or off the map
 
   // Recurrent alone (R2D2: Kapturowski et al. 2019).
   std::int32_t sequence{4};  ///< steps learnt from; 1 with burn_in 0: the paper's literal tuples

@@ -15,8 +15,8 @@
 namespace aquafarm_sim {
 namespace {
 
-// The least there is: whoever steps goes first. Not SCHED_IDLE, which starves beside other programs,
-// and which a user without privileges could not end once the farms have to wait.
+// The least there is: whoever steps goes first. Not SCHED_IDLE, which starves beside other
+// programs, and which a user without privileges could not end once the farms have to wait.
 constexpr int kNiceness = 19;
 
 }  // namespace

@@ -43,8 +43,7 @@ bool Connects(const addrinfo& address) {
   return connected;
 }
 
-}  // namespace
-
+/// False also when a host has said nothing until the limit.
 bool IsListenedOn(const std::string& host, std::uint32_t port) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
@@ -56,6 +55,8 @@ bool IsListenedOn(const std::string& host, std::uint32_t port) {
   }
   return false;
 }
+
+}  // namespace
 
 void RefuseTwin() {
   const std::string& name = ros::this_node::getName();

@@ -15,6 +15,10 @@
 namespace aquafarm::agents {
 namespace {
 
+std::uint8_t EncodingOf(NetworkKind network) {
+  return network == NetworkKind::kCnn ? kPlanesBit : kFeaturesBit;
+}
+
 /// Plays the best action of a network.
 template <typename Scalar>
 class GreedyDqnPolicy final : public Policy {
@@ -24,13 +28,12 @@ class GreedyDqnPolicy final : public Policy {
       : device_(FindDevice(options.device)),
         shape_(Sight<Scalar>::Shape(spec)),
         size_(ElementCount(shape_)),
-        bits_(options.network == NetworkKind::kCnn ? kPlanesBit : kFeaturesBit),
         options_(options),
         network_(MakeNetwork(spec, options, 0)),
         parameters_(*network_, device_) {
     parameters_.FromVector(weights);
   }
-  std::uint8_t encodings() const override { return bits_; }
+  std::uint8_t encodings() const override { return EncodingOf(options_.network); }
   void Begin(std::uint64_t, std::int32_t) override {}
   void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
     const torch::InferenceMode inference;
@@ -54,7 +57,6 @@ class GreedyDqnPolicy final : public Policy {
   torch::Device device_;
   std::vector<std::int64_t> shape_;
   std::size_t size_;  // of one observation
-  std::uint8_t bits_;
   DeepOptions options_;
   std::shared_ptr<QNetwork> network_;
   FlatParameters parameters_;
@@ -92,9 +94,7 @@ class DqnLearner final : public Learner {
   DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
              std::string resolved);
 
-  std::uint8_t encodings() const override {
-    return options_.network == NetworkKind::kCnn ? kPlanesBit : kFeaturesBit;
-  }
+  std::uint8_t encodings() const override { return EncodingOf(options_.network); }
   std::string options() const override { return resolved_; }
   void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
@@ -343,7 +343,7 @@ std::unique_ptr<Learner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t 
 
 std::uint8_t DqnEncodings(const std::string& options) {
   std::string resolved;
-  return Parse(options, resolved).network == NetworkKind::kCnn ? kPlanesBit : kFeaturesBit;
+  return EncodingOf(Parse(options, resolved).network);
 }
 
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,

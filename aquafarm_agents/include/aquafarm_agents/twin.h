@@ -1,14 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 namespace aquafarm_agents {
-
-/// Whether somebody accepts connections there; false also when a host has said nothing for two
-/// seconds.
-bool IsListenedOn(const std::string& host, std::uint32_t port);
 
 /// Refuses to be a second node of the same name: ROS would end the first, which drives its ship.
 /// To be called after ros::init and before the first NodeHandle. A name that the master remembers

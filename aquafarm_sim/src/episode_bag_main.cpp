@@ -48,7 +48,7 @@ void Write(const std::string& scenario_path, const std::string& route_path,
     farm.Step(tape.actions.data() + i);
   }
   tape.record = farm.record();
-  aquafarm_sim::WriteEpisodeBag(scenario, tape, {"/aquafarm/", "map", 10.0, 1}, bag_path);
+  aquafarm_sim::EpisodeBagWriter(scenario, {"/aquafarm/", "map", 10.0, 1}).Write(tape, bag_path);
 }
 
 }  // namespace

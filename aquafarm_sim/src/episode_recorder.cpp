@@ -2,7 +2,8 @@
 #include "aquafarm_sim/episode_recorder.h"
 
 #include <ros/console.h>
-#include <sys/resource.h>
+#include <sched.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <charconv>
@@ -15,9 +16,24 @@
 namespace aquafarm_sim {
 namespace {
 
-// The least there is: whoever steps goes first. Not SCHED_IDLE, which starves beside other
-// programs, and which a user without privileges could not end once the farms have to wait.
-constexpr int kNiceness = 19;
+/// Whoever steps goes before this thread. Not SCHED_IDLE, which starves beside other programs, and
+/// which a user without privileges could not end once the farms have to wait.
+void StepBack() {
+  // As sched_setattr(2) has it; its header cannot stand beside sched.h.
+  struct {
+    std::uint32_t size{48};
+    std::uint32_t policy{SCHED_OTHER};
+    std::uint64_t flags{};
+    std::int32_t nice{19};
+    std::uint32_t priority{};
+    // Linux since 6.12 leaves a thread the processor for its slice, whoever wakes in the meantime.
+    std::uint64_t runtime_ns{100'000};  // of a slice: the least there is
+    std::uint64_t deadline_ns{};
+    std::uint64_t period_ns{};
+  } attributes;
+  static_assert(sizeof(attributes) == 48);
+  syscall(SYS_sched_setattr, 0, &attributes, 0U);
+}
 
 }  // namespace
 
@@ -41,10 +57,9 @@ Keep ParseKeep(const std::string& text) {
 
 EpisodeRecorder::EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep,
                                  std::string folder, BagFormat format, RecorderLimits limits)
-    : scenario_(std::move(scenario)),
-      keep_(keep),
+    : keep_(keep),
       folder_(std::move(folder)),
-      format_(std::move(format)),
+      writer_(std::move(scenario), std::move(format)),
       limits_(limits) {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
@@ -135,7 +150,7 @@ void EpisodeRecorder::Enqueue(EpisodeTape tape) {
 }
 
 void EpisodeRecorder::Run() {
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);  // of this thread alone
+  StepBack();
   std::unique_lock<std::mutex> lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return ending_ || !queue_.empty(); });
@@ -173,7 +188,7 @@ void EpisodeRecorder::Write(const EpisodeTape& tape) {
   for (int i = 2; std::filesystem::exists(path); ++i) {
     path = folder_ + "/" + name.substr(0, name.size() - 4) + "_" + std::to_string(i) + ".bag";
   }
-  WriteEpisodeBag(scenario_, tape, format_, path);
+  writer_.Write(tape, path);
   if (keep_.which != Keep::Which::kBest && keep_.which != Keep::Which::kWorst) return;
   std::error_code ignored;
   if (!extreme_path_.empty()) std::filesystem::remove(extreme_path_, ignored);

@@ -2,15 +2,15 @@
 #include "aquafarm_sim/episode_tape.h"
 
 #include <aquafarm_msgs/SavedState.h>
-#include <rosbag/bag.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "aquafarm/scenario_yaml.h"
-#include "aquafarm_sim/abandon_bag.h"
+#include "aquafarm_sim/chunked_bag.h"
 #include "aquafarm_sim/conversions.h"
 #include "aquafarm_sim/names.h"
 
@@ -21,23 +21,21 @@ using aquafarm::Farm;
 
 constexpr std::int32_t kRiskPeriod = 10;  // steps
 constexpr std::int32_t kMoment_ns = 1000;
-constexpr std::uint32_t kChunkBytes = 256 * 1024;  // what a kill may cost at most
 
-/// Writes one episode as it is played.
-class Writer {
+/// The messages of one episode as it is played.
+class Messages {
  public:
-  Writer(rosbag::Bag& bag, const EpisodeTape& tape, const BagFormat& format)
+  Messages(ChunkedBag& bag, const EpisodeTape& tape, const BagFormat& format)
       : bag_(bag), format_(format) {
     context_.map_frame = format.map_frame;
     context_.paced = tape.paced;
     context_.rate_hz = tape.rate_hz > 0.0 ? tape.rate_hz : format.rate_hz;
   }
 
-  void Start(const Farm& farm) {
+  void Start(const Farm& farm, const aquafarm::Encoder& encoder, const std::string& yaml) {
     SetTime(0);
-    const aquafarm::Encoder encoder(farm.scenario());
     aquafarm_msgs::FarmSpec spec;
-    ToMsg(farm, encoder, format_.farms, aquafarm::ToYaml(farm.scenario()), context_, spec);
+    ToMsg(farm, encoder, format_.farms, yaml, context_, spec);
     Write(names::kSpec, spec);
     Write(names::kChart, ChartToMsg(farm, context_));
   }
@@ -78,11 +76,11 @@ class Writer {
   // Readers get messages of one time in any order, so each comes a moment after the one before.
   template <typename Message>
   void Write(const char* name, const Message& message) {
-    bag_.write(format_.ns + name, context_.stamp + ros::Duration(0, kMoment_ns * order_++),
+    bag_.Write(format_.ns + name, context_.stamp + ros::Duration(0, kMoment_ns * order_++),
                message);
   }
 
-  rosbag::Bag& bag_;
+  ChunkedBag& bag_;
   const BagFormat& format_;
   MessageContext context_;
   std::int32_t order_{};  // of the next message among those of this stamp
@@ -90,19 +88,17 @@ class Writer {
   nav_msgs::OccupancyGrid risk_;
 };
 
-void Play(Farm& farm, const EpisodeTape& tape, Writer& writer) {
-  farm.Reset(tape.seed, tape.episode);
-  writer.Start(farm);
+void Play(Farm& farm, const EpisodeTape& tape, Messages& messages) {
   auto change = tape.changes.begin();
   const auto take_changes = [&] {
     for (; change != tape.changes.end() && change->step == farm.step(); ++change) {
       farm.Load(change->state);
-      writer.Change(farm, change->state);
-      writer.State(farm);
+      messages.Change(farm, change->state);
+      messages.State(farm);
     }
   };
   if (tape.first_step == 0) {
-    writer.State(farm);
+    messages.State(farm);
   } else {
     farm.Load(tape.changes.front().state);  // so that the first change is of the farm's step
   }
@@ -110,7 +106,7 @@ void Play(Farm& farm, const EpisodeTape& tape, Writer& writer) {
   const std::size_t agents = farm.ships().size();
   for (std::size_t i = 0; i + agents <= tape.actions.size() && !farm.over(); i += agents) {
     farm.Step(tape.actions.data() + i);
-    writer.State(farm);
+    messages.State(farm);
     take_changes();
   }
   if (farm.record().steps != tape.record.steps ||
@@ -132,27 +128,27 @@ std::string BagName(const EpisodeTape& tape) {
   return name;
 }
 
-void WriteEpisodeBag(const std::shared_ptr<const aquafarm::Scenario>& scenario,
-                     const EpisodeTape& tape, const BagFormat& format, const std::string& path) {
+EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario,
+                                   BagFormat format)
+    : format_(std::move(format)),
+      farm_(std::move(scenario)),
+      encoder_(farm_.scenario()),
+      yaml_(aquafarm::ToYaml(farm_.scenario())) {}
+
+void EpisodeBagWriter::Write(const EpisodeTape& tape, const std::string& path) {
   const std::string active = path + ".active";
   std::error_code error;
   try {
-    auto bag = std::make_unique<rosbag::Bag>(active, rosbag::bagmode::Write);
-    try {
-      bag->setCompression(rosbag::compression::LZ4);
-      bag->setChunkThreshold(kChunkBytes);
-      Farm farm(scenario);
-      Writer writer(*bag, tape, format);
-      Play(farm, tape, writer);
-      writer.End(tape);
-      bag->close();
-    } catch (...) {
-      AbandonBag(std::move(bag));
-      throw;
-    }
-  } catch (const rosbag::BagException& fault) {
+    ChunkedBag bag(active);
+    Messages messages(bag, tape, format_);
+    farm_.Reset(tape.seed, tape.episode);
+    messages.Start(farm_, encoder_, yaml_);
+    Play(farm_, tape, messages);
+    messages.End(tape);
+    bag.Close();
+  } catch (const std::system_error& fault) {
     std::filesystem::remove(active, error);
-    throw std::runtime_error(active + ": cannot be written: " + fault.what());
+    throw std::runtime_error(active + ": cannot be written: " + fault.code().message());
   } catch (...) {
     std::filesystem::remove(active, error);
     throw;

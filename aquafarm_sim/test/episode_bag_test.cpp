@@ -162,11 +162,12 @@ TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
   const EpisodeTape tape = HeldTape(scenario);
   const BagFormat format{"/ranch/", "map", 10, 1};
   const std::string path = folder_ + "/x.bag";
-  WriteEpisodeBag(scenario, tape, format, path);
+  EpisodeBagWriter writer(scenario, format);
+  writer.Write(tape, path);
   const auto size = static_cast<rlim_t>(fs::file_size(path));
   fs::remove(path);
   fs::create_symlink("/dev/full", path + ".active");
-  EXPECT_THROW(WriteEpisodeBag(scenario, tape, format, path), std::runtime_error);
+  EXPECT_THROW(writer.Write(tape, path), std::runtime_error);
   EXPECT_TRUE(Bags().empty());
   const auto write_within = [&](rlim_t bytes) {
     std::signal(SIGXFSZ, SIG_IGN);
@@ -174,7 +175,7 @@ TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
     most.rlim_cur = most.rlim_max = bytes;
     setrlimit(RLIMIT_FSIZE, &most);
     try {
-      WriteEpisodeBag(scenario, tape, format, path);
+      writer.Write(tape, path);
     } catch (const std::runtime_error&) {
       _exit(Bags().empty() ? 0 : 1);
     }
@@ -190,7 +191,7 @@ TEST_F(EpisodeBag, ATapeThatDoesNotGiveItsResultLeavesNothing) {
   const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
   EpisodeTape tape = HeldTape(scenario);
   tape.record.episode_return += 1.0F;
-  EXPECT_THROW(WriteEpisodeBag(scenario, tape, {}, folder_ + "/x.bag"), TapeError);
+  EXPECT_THROW(EpisodeBagWriter(scenario, {}).Write(tape, folder_ + "/x.bag"), TapeError);
   EXPECT_TRUE(Bags().empty());
 }
 

@@ -62,14 +62,13 @@ class EpisodeRecorder final : public RanchRecorder {
   void Run();
   void Write(const EpisodeTape& tape);
 
-  const std::shared_ptr<const aquafarm::Scenario> scenario_;
   const Keep keep_;
   const std::string folder_;
-  const BagFormat format_;
+  EpisodeBagWriter writer_;  // only the writing thread touches it
   const RecorderLimits limits_;
   std::vector<EpisodeTape> tapes_;  // by farm; only the ranch's thread touches them
   std::optional<float> extreme_;    // best or worst return so far
-  std::string extreme_path_;        // its bag; only the writer touches it
+  std::string extreme_path_;        // its bag; only the writing thread touches it
 
   mutable std::mutex mutex_;  // guards the rest
   std::condition_variable changed_;

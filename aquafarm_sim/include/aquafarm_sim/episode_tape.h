@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "aquafarm/encoding.h"
 #include "aquafarm/farm.h"
 
 namespace aquafarm_sim {
@@ -48,11 +49,22 @@ struct BagFormat {
 /// "episode_00000012_seed_1_return_+102.4.bag".
 std::string BagName(const EpisodeTape& tape);
 
-/// Plays a tape again and writes spec, chart, risk (every tenth step), every state, what came from
-/// outside, and the summary into an lz4 bag: first beside `path` as path.active, then renamed.
-/// @throws TapeError when the tape does not give its record
-/// @throws std::runtime_error when it cannot be written; nothing is left of it then
-void WriteEpisodeBag(const std::shared_ptr<const aquafarm::Scenario>& scenario,
-                     const EpisodeTape& tape, const BagFormat& format, const std::string& path);
+/// Plays tapes again and writes them as bags. One serves many: its farm is made once.
+class EpisodeBagWriter {
+ public:
+  EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario, BagFormat format);
+
+  /// Writes spec, chart, risk (every tenth step), every state, what came from outside, and the
+  /// summary into an lz4 bag: first beside `path` as path.active, then renamed.
+  /// @throws TapeError when the tape does not give its record
+  /// @throws std::runtime_error when it cannot be written; nothing is left of it then
+  void Write(const EpisodeTape& tape, const std::string& path);
+
+ private:
+  const BagFormat format_;
+  aquafarm::Farm farm_;
+  const aquafarm::Encoder encoder_;
+  const std::string yaml_;
+};
 
 }  // namespace aquafarm_sim

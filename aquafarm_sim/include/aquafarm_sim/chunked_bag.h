@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Writes a bag of format 2.0 (http://wiki.ros.org/Bags/Format/2.0) with lz4, each chunk put
+/// together in memory and written at once. Why not rosbag::Bag: docs/decisions/chunked_bag.md.
+
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+#include <ros/time.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace aquafarm_sim {
+
+class ChunkedBag {
+ public:
+  /// @throws std::system_error when the file cannot be written
+  explicit ChunkedBag(const std::string& path);
+
+  /// @param time not before that of the message written last
+  /// @throws std::system_error when the file cannot be written
+  template <typename Message>
+  void Write(const std::string& topic, const ros::Time& time, const Message& message) {
+    namespace traits = ros::message_traits;
+    namespace serialization = ros::serialization;
+    const auto known = connections_.find(topic);
+    Connection& connection = known != connections_.end()
+                                 ? known->second
+                                 : Connect(topic, traits::datatype(message),
+                                           traits::md5sum(message), traits::definition(message));
+    const std::uint32_t length = serialization::serializationLength(message);
+    serialization::OStream stream(AddMessage(connection, time, length), length);
+    serialization::serialize(stream, message);
+    if (chunk_.size() >= kChunkBytes) EndChunk();
+  }
+
+  /// Writes what is left, and the index. Without it `rosbag reindex` finds the whole chunks.
+  /// @throws std::system_error when the file cannot be written
+  void Close();
+
+ private:
+  using Bytes = std::vector<std::uint8_t>;
+
+  static constexpr std::size_t kChunkBytes = 256 * 1024;  // what a kill may cost at most
+
+  struct Connection {
+    std::uint32_t number{};
+    Bytes record;           // that tells of it
+    std::uint32_t count{};  // of its messages in this chunk
+    Bytes index;            // of this chunk: time and place of each
+  };
+
+  Connection& Connect(const std::string& topic, const std::string& type, const std::string& md5sum,
+                      const std::string& definition);
+  /// @returns room for the message
+  std::uint8_t* AddMessage(Connection& connection, const ros::Time& time, std::uint32_t length);
+  void EndChunk();
+  void WriteBagHeader(std::uint64_t index_position);
+  void WriteFile(const Bytes& bytes);
+
+  std::ofstream file_;
+  std::map<std::string, Connection> connections_;  // by topic
+  Bytes chunk_;
+  std::pair<ros::Time, ros::Time> chunk_times_;  // of its first and its last message
+  Bytes compressed_;
+  Bytes chunk_infos_;  // records
+  std::uint32_t chunks_{};
+};
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bags written chunk by chunk hold what rosbag's own writer puts into them.
+#include "aquafarm_sim/chunked_bag.h"
+
+#include <diagnostic_msgs/KeyValue.h>
+#include <gtest/gtest.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <filesystem>
+#include <random>
+#include <system_error>
+#include <tuple>
+
+#include "aquafarm_sim/bag_structure.h"
+
+namespace aquafarm_sim::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ChunkedBagTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(testing::TempDir()) / (std::string("chunked_bag_") + test.name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    path_ = (folder_ / "x.bag").string();
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+  std::string path_;
+};
+
+/// Messages of two topics, some 2 MB that lz4 cannot make smaller, so several chunks.
+template <typename Write>
+void WriteMessages(const Write& write) {
+  std::mt19937 chance(1);
+  nav_msgs::OccupancyGrid grid;
+  diagnostic_msgs::KeyValue word;
+  for (std::uint32_t i = 1; i <= 1000; ++i) {
+    word.key = std::to_string(i);
+    write("/ranch/word", ros::Time(i, 5), word);
+    if (i % 10 != 0) continue;
+    grid.data.resize(20'000 + i);
+    for (auto& cell : grid.data) cell = static_cast<std::int8_t>(chance());
+    write("/ranch/grid", ros::Time(i, 6), grid);
+  }
+}
+
+using Entry =
+    std::tuple<std::string, ros::Time, std::string, std::string, std::string, std::string>;
+
+std::vector<Entry> Read(const std::string& path) {
+  std::vector<Entry> entries;
+  rosbag::Bag bag(path);
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    std::string bytes(message.size(), '\0');
+    ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
+                                       static_cast<std::uint32_t>(bytes.size()));
+    message.write(stream);
+    entries.emplace_back(message.getTopic(), message.getTime(), message.getDataType(),
+                         message.getMD5Sum(), message.getMessageDefinition(), bytes);
+  }
+  return entries;
+}
+
+TEST_F(ChunkedBagTest, HoldsWhatRosbagsWriterDoes) {
+  ChunkedBag ours(path_);
+  WriteMessages([&](const auto&... message) { ours.Write(message...); });
+  ours.Close();
+  const std::string reference_path = (folder_ / "reference.bag").string();
+  rosbag::Bag reference(reference_path, rosbag::bagmode::Write);
+  WriteMessages([&](const auto&... message) { reference.write(message...); });
+  reference.close();
+  EXPECT_NO_THROW(internal::CheckStructure(path_));
+  const std::vector<Entry> entries = Read(path_);
+  EXPECT_EQ(1100U, entries.size());
+  EXPECT_TRUE(entries == Read(reference_path));
+  EXPECT_GE(rosbag::View(rosbag::Bag(path_)).getBeginTime(), ros::Time(1, 5));
+}
+
+TEST_F(ChunkedBagTest, WithoutMessagesItIsAnEmptyBag) {
+  ChunkedBag(path_).Close();
+  EXPECT_NO_THROW(internal::CheckStructure(path_));
+  EXPECT_TRUE(Read(path_).empty());
+}
+
+TEST_F(ChunkedBagTest, WhatWasNotClosedAsksForReindexing) {
+  {
+    ChunkedBag ours(path_);
+    WriteMessages([&](const auto&... message) { ours.Write(message...); });
+  }
+  EXPECT_GT(fs::file_size(path_), 1'000'000U);  // whole chunks are on the disk
+  EXPECT_THROW(rosbag::Bag{path_}, rosbag::BagUnindexedException);
+}
+
+TEST_F(ChunkedBagTest, SaysWhyItCannotBeWritten) {
+  const auto error_of = [](const std::string& path) {
+    try {
+      ChunkedBag bag(path);
+      bag.Close();
+    } catch (const std::system_error& error) {
+      return error.code();
+    }
+    return std::error_code();
+  };
+  EXPECT_EQ(std::errc::no_such_file_or_directory, error_of((folder_ / "no/x.bag").string()));
+  EXPECT_EQ(std::errc::no_space_on_device, error_of("/dev/full"));
+}
+
+}  // namespace
+}  // namespace aquafarm_sim::test

@@ -85,10 +85,12 @@ void Run::All(const MakeEnvironment& make_environment) {
   const Algorithm& algorithm = FindAlgorithm(options_.algorithm);
   RunFolder folder(options_.run_dir, options_.resume);
   if (options_.resume) TakeOverLimits(folder);
-  if (options_.episodes == 0 && options_.steps == 0) options_.steps = algorithm.default_steps;
   const std::unique_ptr<Environment> environment = make_environment(
       static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
                                 (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0)));
+  if (options_.episodes == 0 && options_.steps == 0) {
+    options_.steps = DefaultSteps(algorithm, environment->spec(), LearnerOptionsOf(options_));
+  }
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
   const std::string warning = TakeTorchWarning();

@@ -27,6 +27,19 @@ TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
   }
 }
 
+TEST(Algorithms, ATableOfManyStatesIsTrainedForLonger) {
+  EnvironmentSpec spec;
+  const auto steps = [&spec](const char* name) {
+    return DefaultSteps(FindAlgorithm(name), spec, "");
+  };
+  spec.state_count = 20'000;
+  EXPECT_EQ(steps("q_learning"), 4'000'000U);
+  spec.state_count = 17'920'000;
+  EXPECT_EQ(steps("q_learning"), 144'000'000U);
+  EXPECT_EQ(steps("sarsa"), 144'000'000U);
+  EXPECT_EQ(steps("dqn"), 200'000U);
+}
+
 // Deep learners learn too rarely for a short test unless told otherwise.
 std::string Lively(const Algorithm& algorithm) {
   const std::string name = algorithm.name;

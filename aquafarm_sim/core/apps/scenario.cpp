@@ -133,16 +133,15 @@ void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   }
 }
 
-// What to train with: a table, with more steps where it is large, or a network where there is none.
+// What to train with: a table, or a network where it would be too large.
 std::string Learner(const Scenario& made) {
   if (made.AgentCount() > 1) return " algorithm:=auto";
   const std::uint64_t states = Encoder(made).state_count();
-  constexpr std::uint64_t kMillion = 1'000'000;
-  if (states == 0 || states > 100 * kMillion) {  // ten values each: beyond a table of 4 GB
+  constexpr std::uint64_t kMost = 100'000'000;
+  if (states == 0 || states > kMost) {  // ten values each: beyond a table of 4 GB
     return " algorithm:=dqn options:=steps_per_update=4 steps:=1200000";
   }
-  if (states <= kMillion) return "";  // the learner's own number of steps does
-  return " steps:=" + std::to_string((8 * states / kMillion + 1) * kMillion);
+  return "";
 }
 
 void Run(const Arguments& arguments) {

@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The main job on real input: In-Fa 2021 off Dongji island, trained on, recorded, verified, replayed."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rosgraph
+import rospy
+import rostest
+from sensor_msgs.msg import Image
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import Ranch, free_port  # noqa: E402
+
+
+class MainJobTest(unittest.TestCase):
+
+    def setUp(self):
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_main_job_"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def train(self):
+        """The one command; returns its run folder and what greedy and RANDOM reach."""
+        run = self.folder / "run"
+        with Ranch("train", "scenario:=zhoushan_infa_2021", "steps:=3000000", "viz:=false",
+                   "evaluation_episodes:=100", "random_episodes:=50",
+                   f"run_dir:={run}") as ranch:
+            self.assertEqual(0, ranch.exit_code(150), ranch.words())
+        return run, *(json.loads((run / f"{name}.json").read_text())
+                      for name in ("evaluation", "evaluation_random"))
+
+    def record(self, run):
+        """The trained policy's episode as a bag."""
+        with Ranch("evaluate", "scenario:=zhoushan_infa_2021", f"policy:={run}", "episodes:=1",
+                   "record:=all", "viz:=false", f"record_dir:={self.folder}") as ranch:
+            self.assertEqual(0, ranch.exit_code(60), ranch.words())
+        bags = list(self.folder.glob("episode_*.bag"))
+        self.assertEqual(1, len(bags))
+        return bags[0]
+
+    def replay(self, bag):
+        """Pictures of the bag, other than each other, from a ranch without a farm."""
+        images = []
+        with Ranch("replay", f"bag:={bag}", "headless:=true", port=free_port()) as ranch:
+            os.environ.update(ranch.environment)
+            ranch.wait_for(rosgraph.is_master_online, 15)
+            rospy.init_node("main_job_test", disable_signals=True)
+            rospy.Subscriber("/aquafarm/image", Image, images.append)
+            ranch.wait_for(lambda: len({bytes(image.data) for image in images}) > 3, 30)
+
+    def test_a_policy_for_in_fa_beats_random_and_its_bag_replays(self):
+        run, greedy, chance = self.train()
+        self.assertGreaterEqual(greedy["success_rate"], 0.95)
+        self.assertLess(chance["success_rate"], 0.05)
+        self.assertGreater(greedy["return_per_episode"], chance["return_per_episode"] + 1000)
+        bag = self.record(run)
+        done = subprocess.run(["rosrun", "aquafarm_bringup", "verify_bag", str(bag)], timeout=60,
+                              capture_output=True, text=True)
+        self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+        with rosbag.Bag(str(bag)) as opened:
+            spec = next(opened.read_messages("/aquafarm/spec")).message
+            self.assertEqual("zhoushan_infa_2021", spec.scenario_name)
+            states = [m.message for m in opened.read_messages("/aquafarm/state")]
+        self.assertNotEqual((states[0].disasters[0].x, states[0].disasters[0].y),
+                            (states[-1].disasters[0].x, states[-1].disasters[0].y))
+        self.replay(bag)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_bringup", "main_job", MainJobTest, sys.argv)

@@ -31,7 +31,9 @@ inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
 
 /// The same, and where mask_blocked is set, of the moves only those into open water; all of them
 /// for a ship that has none around it. @param features of the ship, a row of Results::features
-inline ActionMask Allowed(ActionMask legal, const float* features, const DeepOptions& options) {
+/// @tparam Options DeepOptions or MaddpgOptions
+template <typename Options>
+ActionMask Allowed(ActionMask legal, const float* features, const Options& options) {
   const ActionMask allowed = Allowed(legal, options.mask_illegal);
   if (!options.mask_blocked) return allowed;
   auto open = allowed;

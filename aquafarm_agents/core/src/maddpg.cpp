@@ -207,9 +207,11 @@ void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& ac
   actions.resize(results.legal.size());
   const torch::Tensor logits = StepActors(actors_, results, spec_, carry_, device_);
   float* row = logits.data_ptr<float>();
+  const float* seen = results.features.data();
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
     for (std::size_t a = 0; a < kActionCount; ++a) row[a] += Gumbel(acting_);
-    const ActionMask allowed = Allowed(results.legal[i], options_.mask_illegal);
+    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
+    seen += spec_.feature_count;
     actions[i] = explorer_.Choose(row, allowed, BestOf(row, allowed), i);
   }
 }
@@ -298,7 +300,7 @@ void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Wind
   for (std::size_t agent = 0; agent < agents(); ++agent) {
     const std::size_t k = i * agents() + agent;
     to.present[k] = IsTerminated(replay_.reason(row + agent)) ? 0.0F : 1.0F;
-    MarkForbidden(Allowed(replay_.legal(row + agent), options_.mask_illegal),
+    MarkForbidden(Allowed(replay_.legal(row + agent), replay_.observation(row + agent), options_),
                   to.forbidden.data() + k * kActionCount);
   }
 }

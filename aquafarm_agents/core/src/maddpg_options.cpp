@@ -28,6 +28,7 @@ MaddpgOptions MaddpgOptions::Parse(const std::string& text, std::string& resolve
   ReadNumber(reader, "gradient_limit", 0.0, 1e9, options.gradient_limit);
   options.best_response = reader.Flag("best_response", options.best_response);
   options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
+  options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
   options.shared = reader.Flag("shared", options.shared);
   options.recurrent = reader.Flag("recurrent", options.recurrent);
   ReadWhole(reader, "window", 1, 100, options.window);

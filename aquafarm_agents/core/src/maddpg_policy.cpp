@@ -14,7 +14,7 @@ class MaddpgPolicy final : public Policy {
   MaddpgPolicy(EnvironmentSpec spec, const MaddpgOptions& options,
                const std::vector<float>& weights)
       : spec_(std::move(spec)),
-        mask_illegal_(options.mask_illegal),
+        options_(options),
         device_(FindDevice(options.device)),
         actors_(spec_, options),
         parameters_(actors_, device_) {
@@ -30,14 +30,16 @@ class MaddpgPolicy final : public Policy {
     const torch::Tensor logits = StepActors(actors_, results, spec_, carry_, device_);
     actions.resize(results.legal.size());
     const float* row = logits.data_ptr<float>();
+    const float* seen = results.features.data();
     for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
-      actions[i] = BestOf(row, Allowed(results.legal[i], mask_illegal_)).action;
+      actions[i] = BestOf(row, Allowed(results.legal[i], seen, options_)).action;
+      seen += spec_.feature_count;
     }
   }
 
  private:
   EnvironmentSpec spec_;
-  bool mask_illegal_;
+  MaddpgOptions options_;
   torch::Device device_;
   ActorTeam actors_;
   FlatParameters parameters_;

@@ -121,7 +121,8 @@ TEST(Dqn, MaskBlockedKeepsShipsOffRocksIslandsAndTheMapsEdge) {
   int greedy = 0;
   for (const auto& [algorithm, small] :
        {std::pair{"dqn", kSmall}, std::pair{"lstm_dqn", kSmallRecurrent}, std::pair{"vdn", kSmall},
-        std::pair{"independent_dqn", kSmall}}) {
+        std::pair{"independent_dqn", kSmall},
+        std::pair{"maddpg", "hidden=16 batch=8 start=100000 replay=1000 "}}) {
     const std::string options = small + std::string("exploration=epsilon_greedy:1 ");
     const Crashes freely = CrashesIn(algorithm, options, 300);
     EXPECT_GT(freely.exploring, 50) << algorithm;

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "aquafarm_sim/bag_op.h"
+
 namespace aquafarm_sim {
 namespace {
 
@@ -17,14 +19,6 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
 constexpr std::size_t kHeaderBytes = 4096;  // of the first record, with what is filled up
 constexpr int kLz4Block = 6;                // of 1 MiB, as rosbag has it
-enum Op : std::uint8_t {
-  kMessage = 2,
-  kBag = 3,
-  kIndex = 4,
-  kChunk = 5,
-  kChunkInfo = 6,
-  kLink = 7
-};
 
 // As the format asks for, and as every machine that ROS runs on has it: the least byte first.
 template <typename Number>
@@ -109,7 +103,7 @@ ChunkedBag::Connection& ChunkedBag::Connect(const std::string& topic, const std:
   Bytes& record = connection.record;
   Fields(record)
       .Add("conn", connection.number)
-      .Add("op", std::uint8_t{kLink})
+      .Add("op", BagOp::kConnection)
       .Add("topic", std::string_view(topic))
       .End();
   Fields(record)
@@ -129,11 +123,7 @@ std::uint8_t* ChunkedBag::AddMessage(Connection& connection, const ros::Time& ti
   ++connection.count;
   Put(time, connection.index);
   Put(static_cast<std::uint32_t>(chunk_.size()), connection.index);
-  Fields(chunk_)
-      .Add("conn", connection.number)
-      .Add("op", std::uint8_t{kMessage})
-      .Add("time", time)
-      .End();
+  Fields(chunk_).Add("conn", connection.number).Add("op", BagOp::kMessage).Add("time", time).End();
   Put(length, chunk_);
   chunk_.resize(chunk_.size() + length);
   return chunk_.data() + chunk_.size() - length;
@@ -145,7 +135,7 @@ void ChunkedBag::EndChunk() {
   Bytes header;
   Fields(header)
       .Add("compression", std::string_view("lz4"))
-      .Add("op", std::uint8_t{kChunk})
+      .Add("op", BagOp::kChunk)
       .Add("size", static_cast<std::uint32_t>(chunk_.size()))
       .End();
   Put(static_cast<std::uint32_t>(compressed_.size()), header);
@@ -160,7 +150,7 @@ void ChunkedBag::EndChunk() {
     Fields(indexes)
         .Add("conn", connection.number)
         .Add("count", connection.count)
-        .Add("op", std::uint8_t{kIndex})
+        .Add("op", BagOp::kIndex)
         .Add("ver", std::uint32_t{1})
         .End();
     PutData(connection.index, indexes);
@@ -174,7 +164,7 @@ void ChunkedBag::EndChunk() {
       .Add("chunk_pos", position)
       .Add("count", connections)
       .Add("end_time", chunk_times_.second)
-      .Add("op", std::uint8_t{kChunkInfo})
+      .Add("op", BagOp::kChunkInfo)
       .Add("start_time", chunk_times_.first)
       .Add("ver", std::uint32_t{1})
       .End();
@@ -201,7 +191,7 @@ void ChunkedBag::WriteBagHeader(std::uint64_t index_position) {
       .Add("chunk_count", chunks_)
       .Add("conn_count", static_cast<std::uint32_t>(connections_.size()))
       .Add("index_pos", index_position)
-      .Add("op", std::uint8_t{kBag})
+      .Add("op", BagOp::kBag)
       .End();
   PutData(Bytes(kHeaderBytes - header.size() - sizeof(std::uint32_t), ' '), header);
   WriteFile(header);

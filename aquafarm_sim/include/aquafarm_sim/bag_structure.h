@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "aquafarm/check.h"
+#include "aquafarm_sim/bag_op.h"
 
 namespace aquafarm_sim {
 namespace internal {
@@ -38,15 +39,6 @@ struct Damage : std::runtime_error {
 /// Walks along the records of a bag, or of a chunk of one (format 2.0, wiki.ros.org/Bags/Format).
 class BagRecords {
  public:
-  enum Op : std::uint8_t {
-    kMessage = 2,
-    kBag = 3,
-    kIndex = 4,
-    kChunk = 5,
-    kChunkInfo = 6,
-    kConnection = 7
-  };
-
   /// @param whole what the bytes are, where they are not the bag: " of ..."
   explicit BagRecords(std::string_view bytes, std::size_t position = 0, std::string whole = "")
       : bytes_(bytes), position_(position), whole_(std::move(whole)) {}
@@ -92,8 +84,10 @@ class BagRecords {
     return Read<Number>(text, 0);
   }
 
-  void Expect(Op op) const {
-    if (Get<std::uint8_t>("op") != op) throw Damage("another kind of record" + Where());
+  bool Is(BagOp op) const { return Get<std::uint8_t>("op") == static_cast<std::uint8_t>(op); }
+
+  void Expect(BagOp op) const {
+    if (!Is(op)) throw Damage("another kind of record" + Where());
   }
 
   /// The number at a place that must be in the bytes.
@@ -187,11 +181,11 @@ inline ChunkMessages ReadChunk(const BagRecords& chunk, Connections& connections
   ChunkMessages messages;
   for (BagRecords records(content, 0, " of the chunk" + chunk.Where()); !records.AtEnd();) {
     records.Next();
-    if (records.Get<std::uint8_t>("op") == BagRecords::kConnection) {
+    if (records.Is(BagOp::kConnection)) {
       TakeConnection(records, connections);
       continue;
     }
-    records.Expect(BagRecords::kMessage);
+    records.Expect(BagOp::kMessage);
     messages.entries.emplace_back(records.Get<std::uint32_t>("conn"),
                                   records.Get<std::uint64_t>("time"),
                                   static_cast<std::uint32_t>(records.begin()));
@@ -268,7 +262,7 @@ inline void CheckStructure(const std::string& path) {
     throw rosbag::BagFormatException("no bag of version 2.0");
   BagRecords records(bytes, kBegin.size());
   records.Next();
-  records.Expect(BagRecords::kBag);
+  records.Expect(BagOp::kBag);
   if (records.Has("encryptor") && !records.Text("encryptor").empty()) {
     throw aquafarm::InputError(path + ": encrypted; 'rosbag decrypt' it first");
   }
@@ -283,7 +277,7 @@ inline void CheckStructure(const std::string& path) {
   Connections connections;
   while (records.position() < index) {
     records.Next();
-    records.Expect(BagRecords::kChunk);
+    records.Expect(BagOp::kChunk);
     const std::string where = records.Where();
     all_bytes += records.Get<std::uint32_t>("size");
     if (all_bytes > most_bytes) throw Damage("chunks of more than its size can hold" + where);
@@ -291,7 +285,7 @@ inline void CheckStructure(const std::string& path) {
     ChunkMessages indexed;
     for (std::size_t left = messages.Counts().size(); left > 0; --left) {
       records.Next();
-      records.Expect(BagRecords::kIndex);
+      records.Expect(BagOp::kIndex);
       ReadIndex(records, indexed);
     }
     indexed.Sort();
@@ -300,13 +294,13 @@ inline void CheckStructure(const std::string& path) {
   if (records.position() != index || chunks.size() != chunk_count) throw Damage("its index");
   for (std::uint32_t i = 0; i < connection_count; ++i) {
     records.Next();
-    records.Expect(BagRecords::kConnection);
+    records.Expect(BagOp::kConnection);
     TakeConnection(records, connections);
   }
   if (connections.size() != connection_count) throw Damage("its connections");
   for (std::uint32_t i = 0; i < chunk_count; ++i) {
     records.Next();
-    records.Expect(BagRecords::kChunkInfo);
+    records.Expect(BagOp::kChunkInfo);
     CheckChunkInfo(records, connections, chunks);
   }
   if (!records.AtEnd()) throw Damage("more than its index tells of");

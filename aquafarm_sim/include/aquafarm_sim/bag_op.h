@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace aquafarm_sim {
+
+/// What a record of a bag is (format 2.0, http://wiki.ros.org/Bags/Format/2.0).
+enum class BagOp : std::uint8_t {
+  kMessage = 2,
+  kBag = 3,
+  kIndex = 4,
+  kChunk = 5,
+  kChunkInfo = 6,
+  kConnection = 7
+};
+
+}  // namespace aquafarm_sim

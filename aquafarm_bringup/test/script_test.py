@@ -62,6 +62,14 @@ class ScriptTest(unittest.TestCase):
             done = run(SCRIPT, "replay", "bag:=day.bag", "start_step:=first", cwd=folder)
             self.assertIn("start_step: got 'first', expected a number", done.stdout)
 
+    def test_a_wrong_word_for_test_or_bench_is_refused_with_what_there_is(self):
+        done = run(SCRIPT, "test", "--quick")
+        self.assertEqual(2, done.returncode, done.stdout)
+        self.assertIn("test: got '--quick', expected --fast or nothing", done.stdout)
+        done = run(SCRIPT, "bench", "simulator")
+        self.assertEqual(2, done.returncode, done.stdout)
+        self.assertIn("bench: got 'simulator', expected sim, import, ros,", done.stdout)
+
     def test_a_picture_with_a_policy_wants_the_bag_first(self):
         done = run(SCRIPT, "render", "-o", "x.png", "--policy", "runs/x")
         self.assertEqual(2, done.returncode, done.stdout)
@@ -90,6 +98,28 @@ class ScriptTest(unittest.TestCase):
             done = run("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", copy, "setup")
         self.assertEqual(3, done.returncode, done.stdout)
         self.assertIn("apt-get install --no-install-recommends no-such-thing\n", done.stdout)
+
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs root, as setup does")
+    def test_without_apt_setup_says_what_to_install_and_ends(self):
+        with tempfile.TemporaryDirectory() as folder:
+            tools = pathlib.Path(folder, "bin")
+            tools.mkdir()
+            for tool in ("bash", "dirname", "realpath", "nproc", "dpkg-query", "comm", "sed", "sort",
+                         "id", "cat", "mkdir"):
+                os.symlink(shutil.which(tool), tools / tool)
+            copy = pathlib.Path(folder, "aquafarm")
+            text = SCRIPT.read_text().replace("packages=(", "packages=(\n  no-such-thing", 1)
+            self.assertIn("export PATH=/usr/bin:/bin:$PATH\n", text)
+            copy.write_text(text.replace("export PATH=/usr/bin:/bin:$PATH\n", ""))
+            done = run(tools / "bash", copy, "setup", env={"PATH": str(tools)})
+            self.assertEqual(3, done.returncode, done.stdout)
+            self.assertIn("no apt-get here; please install: no-such-thing\n", done.stdout)
+            os.remove(tools / "dpkg-query")
+            done = run(tools / "bash", copy, "setup", env={"PATH": str(tools)})
+            self.assertEqual(3, done.returncode, done.stdout)
+            self.assertIn("no dpkg here (made for Debian 12); install the equivalents of: no-such-",
+                          done.stdout)
 
 
 if __name__ == "__main__":

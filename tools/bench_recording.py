@@ -127,8 +127,10 @@ def main():
         print(f"record_all_{what} {statistics.median(with_all):.2f} s")
         ratios = [b / a for a, b in zip(without, with_all)]
         print(f"record_all_{what}_slowdown {100 * (statistics.median(ratios) - 1):.1f} %")
-        for name, cut in zip(("lower", "upper"), statistics.quantiles(ratios, n=4)[::2]):
-            print(f"record_all_{what}_slowdown_{name}_quartile {100 * (cut - 1):.1f} %")
+        if len(ratios) > 1:
+            cuts = statistics.quantiles(ratios, n=4, method="inclusive")
+            for name, cut in zip(("lower", "upper"), cuts[::2]):
+                print(f"record_all_{what}_slowdown_{name}_quartile {100 * (cut - 1):.1f} %")
         total = sum(with_all) / sum(without)
         print(f"record_all_{what}_slowdown_of_all_pairs {100 * (total - 1):.1f} %")
     print(f"record_all_bags {bags / arguments.pairs:.0f} per training")

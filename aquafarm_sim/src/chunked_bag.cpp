@@ -17,8 +17,11 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
-constexpr std::size_t kHeaderBytes = 4096;  // of the first record, with what is filled up
-constexpr int kLz4Block = 6;                // of 1 MiB, as rosbag has it
+// Of the first record's fields and what fills it up. Whoever appends or reindexes writes it again
+// in place, so it has to be as long as rosbag's.
+constexpr std::size_t kHeaderBytes = 4096;
+constexpr std::size_t kMostChunkBytes = std::size_t{256} << 20U;  // lz4 and readers count in int
+constexpr int kLz4Block = 6;                                      // of 1 MiB, as rosbag has it
 
 // As the format asks for, and as every machine that ROS runs on has it: the least byte first.
 template <typename Number>
@@ -71,6 +74,10 @@ void PutData(const Bytes& data, Bytes& bytes) {
   Put(data, bytes);
 }
 
+[[noreturn]] void ThrowErrno() {
+  throw std::system_error(errno != 0 ? errno : EIO, std::generic_category());
+}
+
 void Compress(Bytes& source, Bytes& compressed) {
   // What does not become smaller is stored as it is, with a few bytes a block and at the ends.
   compressed.resize(source.size() + source.size() / 1024 + 64);
@@ -79,7 +86,8 @@ void Compress(Bytes& source, Bytes& compressed) {
       reinterpret_cast<char*>(source.data()), static_cast<unsigned>(source.size()),
       reinterpret_cast<char*>(compressed.data()), &size, kLz4Block);
   if (result != ROSLZ4_OK) {
-    throw std::runtime_error("lz4 failed with " + std::to_string(result));
+    throw std::system_error(std::make_error_code(std::errc::io_error),
+                            "lz4 failed with " + std::to_string(result));
   }
   compressed.resize(size);
 }
@@ -88,7 +96,7 @@ void Compress(Bytes& source, Bytes& compressed) {
 
 ChunkedBag::ChunkedBag(const std::string& path)
     : file_(path, std::ios::binary | std::ios::out | std::ios::trunc) {
-  if (!file_) throw std::system_error(errno, std::generic_category());
+  if (!file_) ThrowErrno();
   Bytes begin;
   Put(kBegin, begin);
   WriteFile(begin);
@@ -118,8 +126,10 @@ ChunkedBag::Connection& ChunkedBag::Connect(const std::string& topic, const std:
 
 std::uint8_t* ChunkedBag::AddMessage(Connection& connection, const ros::Time& time,
                                      std::uint32_t length) {
-  if (chunk_times_.first.isZero()) chunk_times_.first = time;
-  chunk_times_.second = time;
+  if (time < latest_) throw std::invalid_argument("a message before the one written last");
+  if (chunk_.size() + length > kMostChunkBytes) throw std::length_error("a message of 256 MiB");
+  latest_ = time;
+  if (!chunk_start_) chunk_start_ = time;
   ++connection.count;
   Put(time, connection.index);
   Put(static_cast<std::uint32_t>(chunk_.size()), connection.index);
@@ -163,15 +173,15 @@ void ChunkedBag::EndChunk() {
   Fields(chunk_infos_)
       .Add("chunk_pos", position)
       .Add("count", connections)
-      .Add("end_time", chunk_times_.second)
+      .Add("end_time", latest_)
       .Add("op", BagOp::kChunkInfo)
-      .Add("start_time", chunk_times_.first)
+      .Add("start_time", *chunk_start_)
       .Add("ver", std::uint32_t{1})
       .End();
   PutData(counts, chunk_infos_);
   ++chunks_;
   chunk_.clear();
-  chunk_times_ = {};
+  chunk_start_.reset();
 }
 
 void ChunkedBag::Close() {
@@ -181,8 +191,9 @@ void ChunkedBag::Close() {
   WriteFile(chunk_infos_);
   file_.seekp(static_cast<std::streamoff>(kBegin.size()));
   WriteBagHeader(position);
+  errno = 0;
   file_.close();
-  if (!file_) throw std::system_error(errno, std::generic_category());
+  if (!file_) ThrowErrno();
 }
 
 void ChunkedBag::WriteBagHeader(std::uint64_t index_position) {
@@ -193,14 +204,16 @@ void ChunkedBag::WriteBagHeader(std::uint64_t index_position) {
       .Add("index_pos", index_position)
       .Add("op", BagOp::kBag)
       .End();
-  PutData(Bytes(kHeaderBytes - header.size() - sizeof(std::uint32_t), ' '), header);
+  const std::size_t fields = header.size() - sizeof(std::uint32_t);  // without their length
+  PutData(Bytes(kHeaderBytes - fields, ' '), header);
   WriteFile(header);
 }
 
 void ChunkedBag::WriteFile(const Bytes& bytes) {
+  errno = 0;
   file_.write(reinterpret_cast<const char*>(bytes.data()),
               static_cast<std::streamsize>(bytes.size()));
-  if (!file_) throw std::system_error(errno, std::generic_category());
+  if (!file_) ThrowErrno();
 }
 
 }  // namespace aquafarm_sim

@@ -3,6 +3,7 @@
 
 #include <ros/console.h>
 #include <sched.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -26,13 +27,24 @@ void StepBack() {
     std::uint64_t flags{};
     std::int32_t nice{19};
     std::uint32_t priority{};
-    // Linux since 6.12 leaves a thread the processor for its slice, whoever wakes in the meantime.
+    // Linux since 6.6 leaves a thread the processor for its slice, whoever wakes in the meantime,
+    // and since 6.12 lets it ask for a short one.
     std::uint64_t runtime_ns{100'000};  // of a slice: the least there is
     std::uint64_t deadline_ns{};
     std::uint64_t period_ns{};
   } attributes;
   static_assert(sizeof(attributes) == 48);
-  syscall(SYS_sched_setattr, 0, &attributes, 0U);
+  if (syscall(SYS_sched_setattr, 0, &attributes, 0U) == 0) return;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), attributes.nice);  // where it is forbidden
+}
+
+std::string MakeFolder(std::string folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || access(folder.c_str(), W_OK) != 0) {
+    throw aquafarm::InputError("~keep_dir: got '" + folder + "', expected a folder to write to");
+  }
+  return folder;
 }
 
 }  // namespace
@@ -58,14 +70,9 @@ Keep ParseKeep(const std::string& text) {
 EpisodeRecorder::EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep,
                                  std::string folder, BagFormat format, RecorderLimits limits)
     : keep_(keep),
-      folder_(std::move(folder)),
+      folder_(MakeFolder(std::move(folder))),
       writer_(std::move(scenario), std::move(format)),
       limits_(limits) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error || access(folder_.c_str(), W_OK) != 0) {
-    throw aquafarm::InputError("~keep_dir: got '" + folder_ + "', expected a folder to write to");
-  }
   thread_ = std::thread([this] { Run(); });
 }
 

@@ -8,8 +8,10 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <random>
+#include <stdexcept>
 #include <system_error>
 #include <tuple>
 
@@ -83,19 +85,62 @@ TEST_F(ChunkedBagTest, HoldsWhatRosbagsWriterDoes) {
   EXPECT_GE(rosbag::View(rosbag::Bag(path_)).getBeginTime(), ros::Time(1, 5));
 }
 
+TEST_F(ChunkedBagTest, CanBeAppendedTo) {
+  ChunkedBag ours(path_);
+  WriteMessages([&](const auto&... message) { ours.Write(message...); });
+  ours.Close();
+  rosbag::Bag more(path_, rosbag::bagmode::Append);
+  more.write("/ranch/word", ros::Time(2000), diagnostic_msgs::KeyValue());
+  more.close();
+  EXPECT_NO_THROW(internal::CheckStructure(path_));
+  EXPECT_EQ(1101U, Read(path_).size());
+}
+
+TEST_F(ChunkedBagTest, AMessageMayBeLargerThanAChunkAndItsBlocks) {
+  nav_msgs::OccupancyGrid grid;
+  grid.data.resize(5'000'000);
+  std::mt19937 chance(1);
+  for (auto& cell : grid.data) cell = static_cast<std::int8_t>(chance());
+  ChunkedBag ours(path_);
+  ours.Write("/ranch/grid", ros::Time(1), grid);
+  ours.Write("/ranch/grid", ros::Time(1), grid);
+  ours.Close();
+  EXPECT_NO_THROW(internal::CheckStructure(path_));
+  const rosbag::Bag bag(path_);
+  rosbag::View view(bag);
+  ASSERT_EQ(2U, view.size());
+  EXPECT_TRUE(view.begin()->instantiate<nav_msgs::OccupancyGrid>()->data == grid.data);
+}
+
+TEST_F(ChunkedBagTest, RefusesWhatItsReadersCouldNotTake) {
+  ChunkedBag ours(path_);
+  nav_msgs::OccupancyGrid grid;
+  ours.Write("/ranch/grid", ros::Time(2), grid);
+  EXPECT_THROW(ours.Write("/ranch/grid", ros::Time(1), grid), std::invalid_argument);
+  grid.data.resize(std::size_t{256} << 20U);
+  EXPECT_THROW(ours.Write("/ranch/grid", ros::Time(3), grid), std::length_error);
+  ours.Close();
+  EXPECT_NO_THROW(internal::CheckStructure(path_));
+  EXPECT_EQ(1U, Read(path_).size());
+}
+
 TEST_F(ChunkedBagTest, WithoutMessagesItIsAnEmptyBag) {
   ChunkedBag(path_).Close();
   EXPECT_NO_THROW(internal::CheckStructure(path_));
   EXPECT_TRUE(Read(path_).empty());
 }
 
-TEST_F(ChunkedBagTest, WhatWasNotClosedAsksForReindexing) {
+TEST_F(ChunkedBagTest, WhatWasNotClosedIsReindexed) {
   {
     ChunkedBag ours(path_);
     WriteMessages([&](const auto&... message) { ours.Write(message...); });
   }
   EXPECT_GT(fs::file_size(path_), 1'000'000U);  // whole chunks are on the disk
   EXPECT_THROW(rosbag::Bag{path_}, rosbag::BagUnindexedException);
+  ASSERT_EQ(0, std::system(("rosbag reindex -q " + path_).c_str()));
+  const std::size_t whole = Read(path_).size();
+  EXPECT_GT(whole, 900U);
+  EXPECT_LT(whole, 1100U);
 }
 
 TEST_F(ChunkedBagTest, SaysWhyItCannotBeWritten) {

@@ -226,7 +226,8 @@ TEST(Keep, RefusesWhatItDoesNotKnow) {
 
 TEST(Keep, AFolderThatCannotBeMadeIsRefused) {
   try {
-    EpisodeRecorder(nullptr, {}, "/proc/none", {});
+    EpisodeRecorder(std::make_shared<const aquafarm::Scenario>(ShortScenario()), {}, "/proc/none",
+                    {});
     FAIL();
   } catch (const aquafarm::InputError& error) {
     EXPECT_STREQ("~keep_dir: got '/proc/none', expected a folder to write to", error.what());

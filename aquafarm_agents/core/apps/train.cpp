@@ -51,7 +51,8 @@ int Main(int argc, char** argv) {
   app.add_option("-a,--algorithm", options.algorithm, "learner by name, or auto");
   app.add_option("-e,--episodes", options.episodes, "limit of episodes; 0: none");
   app.add_option("-n,--steps", options.steps,
-                 "limit of farm steps; 0: none, or the algorithm's own when there is no limit");
+                 "limit of farm steps; 0: none, or without any limit the algorithm's own, and "
+                 "eight a state of a large table");
   app.add_option("-s,--seed", options.seed, "seed of episodes and exploration");
   app.add_option("-f,--farms", environment.farms, "farms stepped together")
       ->check(CLI::Range(1, 4096));

@@ -144,9 +144,9 @@ std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& sp
                            const std::string& options) {
   if ((algorithm.encodings(options) & kIndexBit) == 0) return algorithm.default_steps;
   // Measured on a ranch of 17.9 million states (docs/data.md): half as many do not suffice.
-  constexpr std::uint64_t kVisits = 8;
+  constexpr std::uint64_t kStepsPerState = 8;
   constexpr std::uint64_t kMillion = 1'000'000;
-  const std::uint64_t enough = (kVisits * spec.state_count / kMillion + 1) * kMillion;
+  const std::uint64_t enough = (kStepsPerState * spec.state_count / kMillion + 1) * kMillion;
   return std::max(algorithm.default_steps, enough);
 }
 

@@ -90,6 +90,11 @@ void Run::All(const MakeEnvironment& make_environment) {
                                 (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0)));
   if (options_.episodes == 0 && options_.steps == 0) {
     options_.steps = DefaultSteps(algorithm, environment->spec(), LearnerOptionsOf(options_));
+    if (options_.steps > algorithm.default_steps) {
+      Tell(RunPhase::kStarting, "a table of " + std::to_string(environment->spec().state_count) +
+                                    " states is trained for " + std::to_string(options_.steps) +
+                                    " steps; a network may need fewer: algorithm dqn");
+    }
   }
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));

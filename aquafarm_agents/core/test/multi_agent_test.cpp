@@ -68,6 +68,7 @@ const std::string kActors =
 
 TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
   EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64 mask_blocked=true", 40000, TwoShips()), 0.98);
 }
 
 TEST(TwoShips, AreLedHomeByActorsWhoAreToldTheTeamsRewardAlone) {

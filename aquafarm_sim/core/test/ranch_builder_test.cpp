@@ -420,8 +420,9 @@ TEST(Program, SaysWhatToTrainWith) {
     const std::size_t at = text.find(made);
     return at == std::string::npos ? text : text.substr(at + made.size());
   };
-  EXPECT_EQ(now("--devices 12"), "\n");
-  EXPECT_EQ(now("--devices 16"), " algorithm:=dqn options:=steps_per_update=4 steps:=1200000\n");
+  EXPECT_EQ(now("--devices 3"), "\n");
+  EXPECT_EQ(now("--devices 14"), "\n");
+  EXPECT_EQ(now("--devices 15"), " algorithm:=dqn options:=steps_per_update=4 steps:=1200000\n");
   EXPECT_EQ(now("--devices 3 --ships 2"), " algorithm:=auto\n");
   fs::remove(path);
 }

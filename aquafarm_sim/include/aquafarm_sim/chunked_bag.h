@@ -12,18 +12,23 @@
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace aquafarm_sim {
 
+/// A bag being written. Close comes last, and once.
 class ChunkedBag {
  public:
   /// @throws std::system_error when the file cannot be written
   explicit ChunkedBag(const std::string& path);
 
+  /// Adds a message to the chunk; a chunk that is large enough is compressed and written.
   /// @param time not before that of the message written last
+  /// @throws std::invalid_argument when it is
+  /// @throws std::length_error when the chunk would have more than 256 MiB
   /// @throws std::system_error when the file cannot be written
   template <typename Message>
   void Write(const std::string& topic, const ros::Time& time, const Message& message) {
@@ -47,11 +52,11 @@ class ChunkedBag {
  private:
   using Bytes = std::vector<std::uint8_t>;
 
-  static constexpr std::size_t kChunkBytes = 256 * 1024;  // what a kill may cost at most
+  static constexpr std::size_t kChunkBytes = 256 * 1024;  // from here on it is written
 
   struct Connection {
     std::uint32_t number{};
-    Bytes record;           // that tells of it
+    Bytes record;           // of this connection; the index repeats it
     std::uint32_t count{};  // of its messages in this chunk
     Bytes index;            // of this chunk: time and place of each
   };
@@ -67,7 +72,8 @@ class ChunkedBag {
   std::ofstream file_;
   std::map<std::string, Connection> connections_;  // by topic
   Bytes chunk_;
-  std::pair<ros::Time, ros::Time> chunk_times_;  // of its first and its last message
+  std::optional<ros::Time> chunk_start_;  // of its first message
+  ros::Time latest_;
   Bytes compressed_;
   Bytes chunk_infos_;  // records
   std::uint32_t chunks_{};

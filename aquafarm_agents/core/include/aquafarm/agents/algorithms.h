@@ -14,7 +14,7 @@ struct Algorithm {
   const char* name;
   const char* summary;          ///< one line for people
   bool learns;                  ///< false: its name alone stands for a policy
-  std::uint64_t default_steps;  ///< of training when no limit is given, and the table is no large one
+  std::uint64_t default_steps;  ///< of training without a limit; see DefaultSteps
   /// EncodingBits that it reads with these options. @throws InputError when an option is wrong
   std::uint8_t (*encodings)(const std::string& options);
   /// Null: there is nothing to train.
@@ -30,8 +30,8 @@ const std::vector<Algorithm>& Algorithms();
 /// @throws InputError "algorithm: got 'dqm', expected one of: random, q_learning, sarsa"
 const Algorithm& FindAlgorithm(const std::string& name);
 
-/// Steps of a training without a limit: the algorithm's own number, or for a table of many states
-/// enough to come to each of them some eight times.
+/// Steps of a training without a limit: the algorithm's own number, or eight for each state of a
+/// table where that is more. (Measured for Q-learning, docs/data.md; SARSA is given the same.)
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 

@@ -26,7 +26,7 @@ struct RunOptions {
   std::string options;                  ///< key=value …; see OptionReader
   std::string credit{"own"};            ///< own or shared; see kCredits
   std::uint64_t seed{1};
-  std::uint64_t episodes{};  ///< 0 with steps 0: the algorithm's own limit
+  std::uint64_t episodes{};  ///< 0 with steps 0: DefaultSteps
   std::uint64_t steps{};
   std::string run_dir;
   bool resume{};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/ascii_grid.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -55,6 +57,15 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
   const bool name_first = IsWord(words[0]);
   if (!name_first && !IsWord(words[1])) return false;
   const std::string key = KeyOf(words[name_first ? 0 : 1]);
+  constexpr std::array<std::string_view, 8> kKeys{"NCOLS",     "NROWS",       "CELLSIZE",
+                                                  "XLLCENTER", "YLLCENTER",   "XLLCORNER",
+                                                  "YLLCORNER", "NODATA_VALUE"};
+  if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+    place.Refuse(internal::Quoted(words[name_first ? 0 : 1]) +
+                 ": is no key of a grid, expected ncols, nrows, cellsize, xllcenter, yllcenter, "
+                 "xllcorner, yllcorner, xlower, ylower or nodata_value");
+  }
+  if (header.Has(key.c_str())) place.Refuse(key + ": is there twice");
   header.values[key] =
       internal::ReadNumber(words[name_first ? 1 : 0], key.c_str(), -1.0e9, 1.0e9, place);
   return true;
@@ -75,13 +86,22 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
   std::vector<std::string_view> words;
   bool more = false;
   while ((more = lines.Next(line))) {
+    if (place.line == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);
     words = internal::SplitWords(line);
     if (!words.empty() && !ReadHeaderLine(words, header, place)) break;
   }
   if (place.line == 0) place.line = 1;
   constexpr double kMost = internal::kMaxMapSide;
-  const auto columns = static_cast<Eigen::Index>(header.Get("NCOLS", 1.0, kMost, place));
-  const auto rows = static_cast<Eigen::Index>(header.Get("NROWS", 1.0, kMost, place));
+  const auto side = [&](const char* key) {
+    const double number = header.Get(key, 1.0, kMost, place);
+    if (number != std::floor(number)) {
+      place.Refuse(std::string(key) + ": got " + std::to_string(number) +
+                   ", expected a whole number");
+    }
+    return static_cast<Eigen::Index>(number);
+  };
+  const Eigen::Index columns = side("NCOLS");
+  const Eigen::Index rows = side("NROWS");
   AsciiGrid grid;
   grid.cell_size = header.Get("CELLSIZE", 1.0e-6, 1.0e6, place);
   constexpr double kFar = 1.0e9;

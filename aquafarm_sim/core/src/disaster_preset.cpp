@@ -55,6 +55,14 @@ class Keys {
     return found->second;
   }
 
+  std::int32_t TakeWhole(const std::string& key, const Interval<double>& domain,
+                         std::optional<double> otherwise = std::nullopt) {
+    const double number = Take(key, domain, otherwise);
+    if (number == std::floor(number)) return static_cast<std::int32_t>(number);
+    throw InputError(where_ + key + ": got " + internal::Format(number) +
+                     ", expected a whole number in " + internal::Describe(domain));
+  }
+
   void Finish() const {
     for (const auto& [key, value] : given_) {
       if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
@@ -142,7 +150,7 @@ void FillStorm(Keys& keys, const GridScale&, DisasterSpec& disaster, double& rad
 
 void FillSurge(Keys& keys, const GridScale&, DisasterSpec& disaster, double& radius_km,
                Flow& flow) {
-  disaster.grade = GradeFrom(keys.Take("level", {1.0, 4.0}), {1.0, 2.0, 3.0, 4.0});
+  disaster.grade = GradeFrom(keys.TakeWhole("level", {1.0, 4.0}), {1.0, 2.0, 3.0, 4.0});
   radius_km = keys.Take("radius_km", kRadius_km);
   flow = TakeCurrent(keys);
 }
@@ -164,7 +172,7 @@ void FillRedTide(Keys& keys, const GridScale&, DisasterSpec& disaster, double& r
 void FillSpill(Keys& keys, const GridScale& scale, DisasterSpec& disaster, double& radius_km,
                Flow& flow) {
   radius_km = RadiusOf(keys.Take("area_km2", kArea_km2));
-  disaster.grade = static_cast<std::int32_t>(std::lround(keys.Take("grade", {1.0, 4.0}, 3.0)));
+  disaster.grade = keys.TakeWhole("grade", {1.0, 4.0}, 3.0);
   flow = TakeCurrent(keys);
   const Flow drift = TakeWindDrift(keys, scale.south);
   flow = {flow.east + drift.east, flow.north + drift.north};

@@ -88,11 +88,11 @@ void ReadRing(const Fields& fields, HazardFix& fix, HazardPlace& place) {
       ReadWholeOrBlank(At(fields, kRadiusWind), "wind of the radii", 0, 100, place).value_or(0);
   const std::string_view code = At(fields, kRadiusCode);
   if (wind_kt == 0 || code.empty()) return;
+  const std::size_t said = code == "AAA" ? 1 : code.back() == 'S' ? 2 : 4;
   std::array<double, 4> radius{};
-  for (std::size_t i = 0; i < radius.size(); ++i) {
-    radius[i] = kKmPerNauticalMile * ReadWholeOrBlank(At(fields, static_cast<Field>(kRadius1 + i)),
-                                                      "radius", 0, 1500, place)
-                                         .value_or(0);
+  for (std::size_t i = 0; i < said; ++i) {
+    radius[i] = kKmPerNauticalMile *
+                ReadWhole(At(fields, static_cast<Field>(kRadius1 + i)), "radius", 0, 1500, place);
   }
   if (AddRing({wind_kt, Quadrants(code, radius, place), false}, fix.rings)) return;
   place.Warn("the radii of " + std::to_string(wind_kt) + " kt are there twice, the second are " +
@@ -128,6 +128,14 @@ HazardFix ReadFix(const Fields& fields, const HazardPlace& place) {
   return fix;
 }
 
+// A time has a row for each wind whose radii are told, alike but for these.
+bool IsSame(const HazardFix& fix, const std::vector<HazardFix>& fixes) {
+  const HazardFix& known = fixes.back();
+  return fix.position.latitude == known.position.latitude &&
+         fix.position.longitude == known.position.longitude && fix.wind_mps == known.wind_mps &&
+         fix.pressure_hpa == known.pressure_hpa;
+}
+
 }  // namespace
 
 std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
@@ -146,6 +154,7 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
     if (fields[kTechnique] != "BEST") {
       place.Refuse("technique: got " + Quoted(fields[kTechnique]) + ", expected BEST: a b-deck");
     }
+    ReadWholeOrBlank(fields[kHours], "TAU of a best track", 0, 0, place);
     HazardFix fix = ReadFix(fields, place);
     const std::string storm = std::string(fields[kBasin]) + std::string(fields[kCyclone]);
     if (storm != current) {
@@ -159,7 +168,7 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
     }
     HazardTrack& track = tracks.back();
     if (!At(fields, kName).empty()) track.name = At(fields, kName);
-    if (track.fixes.empty() || fix.time != track.fixes.back().time) {
+    if (track.fixes.empty() || fix.time != track.fixes.back().time || !IsSame(fix, track.fixes)) {
       AppendFix(std::move(fix), track.fixes, place);
     }
     ReadRing(fields, track.fixes.back(), place);

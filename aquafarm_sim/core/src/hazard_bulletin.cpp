@@ -77,8 +77,16 @@ void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys wh
     const JsonObject quad(*value, Join(point.path(), point.KeyOf(quadrants)), place);
     constexpr std::array<const char*, kQuadrantCount> kKeys{"ne", "se", "sw", "nw"};
     std::array<double, kQuadrantCount> each{};
+    std::size_t said = 0;
     for (std::size_t q = 0; q < each.size(); ++q) {
-      each[q] = quad.Number({kKeys[q]}, 0.0, kMostRadius_km).value_or(0.0);
+      const std::optional<double> one = quad.Number({kKeys[q]}, 0.0, kMostRadius_km);
+      each[q] = one.value_or(radius[q]);
+      said += one ? 1 : 0;
+    }
+    if (said > 0 && said < each.size()) {
+      quad.Here().Warn(std::to_string(wind_kt) +
+                       " kt: not every quadrant is said; the others are " +
+                       "given the radius that is said of all");
     }
     if (*std::max_element(each.begin(), each.end()) > 0.0) radius = each;
   }

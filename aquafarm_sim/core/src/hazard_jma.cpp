@@ -32,16 +32,26 @@ std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double long
   return radius;
 }
 
-// Blank: not said. All zero: no such wind.
+// Blank: not said. All zero: no such wind. A line that ends within was cut.
 void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, HazardFix& fix,
               const HazardPlace& place) {
   const std::string_view direction = Columns(line, at, at + 1);
   const std::string_view longest = Columns(line, at + 1, at + 5);
   if (Trim(direction).empty() && Trim(longest).empty()) return;
+  constexpr std::size_t kWidth = 10;
+  if (line.size() < at + kWidth) {
+    place.Refuse("got a line of " + std::to_string(line.size()) + " columns, expected " +
+                 std::to_string(at + kWidth) + " or more where there are radii of " +
+                 std::to_string(wind_kt) + " kt");
+  }
   const std::int32_t code = ReadWhole(direction, "direction of the longest radius", 0, 9, place);
   const double far = ReadWhole(longest, "longest radius", 0, 2000, place) * kKmPerNauticalMile;
   const double near = ReadWhole(Columns(line, at + 6, at + 10), "shortest radius", 0, 2000, place) *
                       kKmPerNauticalMile;
+  if (code == 0 && far > 0.0) {
+    place.Refuse("direction of the longest radius: got 0, which is none, with a radius of " +
+                 std::to_string(wind_kt) + " kt");
+  }
   if (near > far) {
     place.Refuse("shortest radius: got one longer than the longest, of " + std::to_string(wind_kt) +
                  " kt");
@@ -54,6 +64,11 @@ BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
   header.points = ReadWhole(Columns(line, 12, 15), "number of points", 1, 999, place);
   const std::string_view number = Trim(Columns(line, 6, 10));
   ReadWhole(number, "number", 0, 9999, place);
+  const std::string_view again = Trim(Columns(line, 21, 25));
+  if (!again.empty() && again != number) {
+    place.Refuse("number: got " + Quoted(number) + " and " + Quoted(again) +
+                 ", expected the same twice");
+  }
   header.track.id = number;
   header.track.name = Trim(Columns(line, 30, 50));
   header.track.agency = "JMA";
@@ -75,9 +90,13 @@ StormGrade Grade(std::int32_t code, const std::optional<double>& wind_mps) {
 }
 
 HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
-  constexpr std::size_t kThroughPressure = 28;
-  if (line.size() < kThroughPressure || Columns(line, 9, 12) != "002") {
+  if (Columns(line, 9, 12) != "002") {
     place.Refuse("got " + Quoted(line) + ", expected a point: yymmddhh 002 …");
+  }
+  constexpr std::size_t kThroughWind = 36;
+  if (line.size() < kThroughWind) {
+    place.Refuse("got a line of " + std::to_string(line.size()) + " columns, expected " +
+                 std::to_string(kThroughWind) + " or more of a point, to its wind");
   }
   const std::string_view hour = Columns(line, 0, 8);
   HazardFix fix;
@@ -96,7 +115,11 @@ HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
   fix.extratropical = code == 6;
   fix.grade = Grade(code, fix.wind_mps);
   ReadRing(line, 41, 50, fix, place);
-  ReadRing(line, 52, 30, fix, place);
+  constexpr std::size_t kWeaker = 52;
+  if (!fix.rings.empty() && Trim(Columns(line, kWeaker, kWeaker + 1)).empty()) {
+    place.Refuse("got radii of 50 kt alone, expected those of 30 kt as well");
+  }
+  ReadRing(line, kWeaker, 30, fix, place);
   fix.landfall = Columns(line, 71, 72) == "#";
   return fix;
 }

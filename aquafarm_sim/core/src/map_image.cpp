@@ -38,6 +38,21 @@ class PgmHeader {
     while (at_ < bytes_.size() && bytes_[at_] >= '0' && bytes_[at_] <= '9') ++at_;
     return ReadWhole(std::string_view(bytes_).substr(from, at_ - from), "pixel", 0, max, place_);
   }
+  /// Goes to the pixels: one blank ends the header, or a line's end of two bytes. A line's end may
+  /// stand behind them too.
+  void SkipEnd(std::size_t pixels) {
+    const std::size_t left = bytes_.size() - std::min(bytes_.size(), at_);
+    at_ += left == pixels + 2 && bytes_.compare(at_, 2, "\r\n") == 0 ? 2 : 1;
+    if (left > pixels + 2 ||
+        (left == pixels + 2 && at_ + pixels + 1 == bytes_.size() && bytes_.back() != '\n')) {
+      place_.Refuse("got " + std::to_string(left - 1) + " bytes of pixels, expected " +
+                    std::to_string(pixels));
+    }
+  }
+  bool HasMore() {
+    SkipBlanks();
+    return at_ < bytes_.size();
+  }
   std::size_t at_{2};
 
  private:
@@ -77,7 +92,7 @@ MapImage ParsePgm(const std::string& bytes, HazardPlace& place) {
   const auto rows = static_cast<std::size_t>(height);
   const bool text = bytes[1] == '2';
   const std::size_t depth = white > 255 ? 2 : 1;
-  header.at_ += text ? 0 : 1;  // one blank ends the header
+  if (!text) header.SkipEnd(columns * rows * depth);
   // A pixel of text has at least a digit and a blank, but for the last.
   CheckSize(text ? (bytes.size() - header.at_ + 1) / 2
                  : bytes.size() - std::min(bytes.size(), header.at_),
@@ -93,9 +108,13 @@ MapImage ParsePgm(const std::string& bytes, HazardPlace& place) {
         value = value * 256 + static_cast<unsigned char>(bytes[header.at_ + i * depth + k]);
       }
     }
-    image.grey.data()[i] =
-        static_cast<std::uint8_t>(white == 255 ? value : std::min(value, white) * 255 / white);
+    if (value > white) {
+      place.Refuse("pixel: got " + std::to_string(value) + ", expected one from 0 to " +
+                   std::to_string(white));
+    }
+    image.grey.data()[i] = static_cast<std::uint8_t>(white == 255 ? value : value * 255 / white);
   }
+  if (text && header.HasMore()) place.Refuse("got more pixels than its size says");
   return image;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 
@@ -44,6 +45,12 @@ class NcFile {
     if (status != NC_NOERR) {
       throw InputError(path + ": cannot read as netCDF: " + nc_strerror(status));
     }
+    try {
+      CheckLength();
+    } catch (...) {
+      nc_close(id_);
+      throw;
+    }
   }
   ~NcFile() { nc_close(id_); }
   NcFile(const NcFile&) = delete;
@@ -53,6 +60,40 @@ class NcFile {
   [[noreturn]] void Refuse(const std::string& what) const { throw InputError(path_ + ": " + what); }
   void Need(int status, const std::string& name) const {
     if (status != NC_NOERR) Refuse(name + ": " + nc_strerror(status));
+  }
+
+  // Beyond the end of a file of the classic kinds libnetcdf reads zeros without a word.
+  void CheckLength() const {
+    int format = 0;
+    int variables = 0;
+    Need(nc_inq_format(id_, &format), "format");
+    if (format == NC_FORMAT_NETCDF4 || format == NC_FORMAT_NETCDF4_CLASSIC) return;
+    Need(nc_inq_nvars(id_, &variables), "variables");
+    double bytes = 0.0;
+    for (int variable = 0; variable < variables; ++variable) {
+      nc_type type = NC_NAT;
+      int count = 0;
+      std::array<int, NC_MAX_VAR_DIMS> dimensions{};
+      Need(nc_inq_var(id_, variable, nullptr, &type, &count, dimensions.data(), nullptr),
+           "variable");
+      std::size_t of_type = 0;
+      Need(nc_inq_type(id_, type, nullptr, &of_type), "type");
+      auto of_variable = static_cast<double>(of_type);
+      for (int i = 0; i < count; ++i) {
+        std::size_t length = 0;
+        Need(nc_inq_dimlen(id_, dimensions[static_cast<std::size_t>(i)], &length), "dimension");
+        of_variable *= static_cast<double>(length);
+      }
+      bytes += of_variable;
+    }
+    std::error_code error;
+    const auto size = static_cast<double>(std::filesystem::file_size(path_, error));
+    if (!error && size < bytes) {
+      std::array<char, 120> words{};
+      std::snprintf(words.data(), words.size(),
+                    "is cut off: got %.0f bytes, expected %.0f of values alone", size, bytes);
+      Refuse(words.data());
+    }
   }
 
   std::string Name(int variable) const {
@@ -235,23 +276,40 @@ std::size_t Nearest(const std::vector<double>& at, double wanted) {
   return static_cast<std::size_t>(nearest - at.begin());
 }
 
+// Forms that UDUNITS takes and ISO 8601 does not: "00:00:00.0", "00:00:00 UTC", "00:00:00 +00:00".
+std::string PlainTime(std::string time) {
+  for (const char* utc : {"UTC", "utc", "Z", "+00:00", "+0:00"}) {
+    const std::string_view ending(utc);
+    if (time.size() <= ending.size() ||
+        time.compare(time.size() - ending.size(), time.npos, utc) != 0)
+      continue;
+    time = internal::Trim(time.substr(0, time.size() - ending.size()));
+    break;
+  }
+  const std::size_t point = time.find('.');
+  if (point != std::string::npos && time.find_first_not_of('0', point + 1) == std::string::npos) {
+    time.resize(point);
+  }
+  if (time.size() <= 10) return time + " 00:00";
+  return time.find(':') == std::string::npos ? time + ":00" : time;
+}
+
 // "hours since 2000-01-01 00:00:00" as seconds per unit and the UTC of 0.
 std::pair<double, double> TimeUnits(const NcFile& file, const Dimension& time) {
   const std::string units = file.Text(time.coordinate, "units");
   const std::size_t since = units.find(" since ");
-  const std::string unit = units.substr(0, since);
+  const std::string unit = internal::Upper(units.substr(0, since));
   const std::string calendar = file.Text(time.coordinate, "calendar");
   if (!IsOneOf(calendar, {"", "standard", "gregorian", "proleptic_gregorian"})) {
     file.Refuse(time.name + ": calendar: got " + internal::Quoted(calendar) +
                 ", expected standard, gregorian or proleptic_gregorian");
   }
-  std::string day = since == std::string::npos ? "" : units.substr(since + 7);
-  if (day.size() <= 10) day += " 00:00";
+  const std::string day = since == std::string::npos ? "" : PlainTime(units.substr(since + 7));
   const std::optional<std::int64_t> zero = internal::ParseDateTime(day, 0);
-  const double seconds = IsOneOf(unit, {"second", "seconds", "s"})     ? 1.0
-                         : IsOneOf(unit, {"minute", "minutes"})        ? 60.0
-                         : IsOneOf(unit, {"hour", "hours", "h", "hr"}) ? 3600.0
-                         : IsOneOf(unit, {"day", "days", "d"})         ? 86400.0
+  const double seconds = IsOneOf(unit, {"SECOND", "SECONDS", "S"})     ? 1.0
+                         : IsOneOf(unit, {"MINUTE", "MINUTES"})        ? 60.0
+                         : IsOneOf(unit, {"HOUR", "HOURS", "H", "HR"}) ? 3600.0
+                         : IsOneOf(unit, {"DAY", "DAYS", "D"})         ? 86400.0
                                                                        : 0.0;
   if (!zero || seconds == 0.0) {
     file.Refuse(time.name + ": units: got " + internal::Quoted(units) +
@@ -356,7 +414,7 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
       span.first = choice.time ? Nearest(d.at, static_cast<double>(*choice.time)) : 0;
       field.time = static_cast<std::int64_t>(std::llround(d.at[span.first]));
     } else if (d.axis == Axis::kDepth) {
-      const bool up = file.Text(d.coordinate, "positive") == "up";
+      const bool up = internal::Upper(file.Text(d.coordinate, "positive")) == "UP";
       for (double& at : d.at) at = up ? -at : at;
       span.first = Nearest(d.at, choice.depth_m);
       field.depth_m = d.at[span.first];

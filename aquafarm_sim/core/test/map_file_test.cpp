@@ -131,7 +131,21 @@ TEST_F(MapFiles, ReadPlainAndDeepPgm) {
   EXPECT_EQ(Values(Load().occupancy), (std::vector<int>{0, 100}));
 }
 
+TEST_F(MapFiles, MayHaveLinesOfDos) {
+  Write("m.pgm", std::string("P5\r\n2 2\r\n255\r\n") + '\0' + "\xff\xff" + '\0');
+  EXPECT_EQ(Values(Load().occupancy), (std::vector<int>{0, 100, 100, 0})) << "from the south";
+  // Without a line's end of two bytes the first pixel may be what ends such a line.
+  Write("m.pgm", std::string("P5 2 1 255\n") + "\n" + '\0');
+  EXPECT_EQ(Values(Load().occupancy), (std::vector<int>{100, 100}));
+}
+
 TEST_F(MapFiles, RefusePicturesThatAreNot) {
+  Write("m.pgm", std::string("P5 2 1 255\n") + "abcde");
+  EXPECT_EQ(Refused(), "m.pgm:1: got 5 bytes of pixels, expected 2");
+  Write("m.pgm", std::string("P5 2 1 9\n") + '\1' + '\x0b');
+  EXPECT_EQ(Refused(), "m.pgm:1: pixel: got 11, expected one from 0 to 9");
+  Write("m.pgm", "P2 2 1 255\n1 2 3\n");
+  EXPECT_EQ(Refused(), "m.pgm:2: got more pixels than its size says");
   Write("m.pgm", "P5\n65536 65536\n255\n1234");
   EXPECT_EQ(Refused(), "m.pgm:2: width: got '65536', expected a whole number in [1, 16384]");
   Write("m.pgm", "P5\n16384 16384\n255\n1234");
@@ -298,6 +312,14 @@ TEST(AsciiGrids, AreRefusedWithTheirLine) {
   EXPECT_EQ(refused("ncols 3", "ncols 16384").substr(0, 15), "x:7: got 103 by");
   EXPECT_EQ(refused("ncols 3\n", "").substr(0, 23), "x:6: NCOLS: got nothing");
   EXPECT_EQ(refused(kGrid, "").substr(0, 23), "x:1: NCOLS: got nothing");
+  EXPECT_EQ(refused("cellsize", "cellsise").substr(0, 39),
+            "x:5: 'cellsise': is no key of a grid, e");
+  EXPECT_EQ(refused("nrows 2", "ncols 2"), "x:2: NCOLS: is there twice");
+  EXPECT_EQ(refused("ncols 3", "ncols 3.9").substr(0, 24), "x:7: NCOLS: got 3.900000");
+}
+
+TEST(AsciiGrids, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(ParseAsciiGrid("\xEF\xBB\xBF" + kGrid, "x").value(1, 0), 1.0F);
 }
 
 }  // namespace

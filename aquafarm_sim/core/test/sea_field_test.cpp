@@ -216,6 +216,51 @@ TEST_F(SeaFields, OfAnotherCalendarAreRefused) {
   EXPECT_EQ(Refused(), "was read");
 }
 
+TEST_F(SeaFields, OfAFileCutShortAreRefused) {
+  constexpr std::size_t kSide = 200;
+  for (const int kind : {NC_CLOBBER, NC_64BIT_OFFSET, NC_64BIT_DATA}) {
+    int file = 0;
+    ASSERT_EQ(nc_create(path_.c_str(), kind, &file), NC_NOERR);
+    std::array<int, 2> dims{};
+    std::array<int, 3> variables{};
+    nc_def_dim(file, "lat", kSide, &dims[0]);
+    nc_def_dim(file, "lon", kSide, &dims[1]);
+    nc_def_var(file, "lat", NC_DOUBLE, 1, &dims[0], &variables[0]);
+    nc_def_var(file, "lon", NC_DOUBLE, 1, &dims[1], &variables[1]);
+    nc_def_var(file, "so", NC_FLOAT, 2, dims.data(), &variables[2]);
+    nc_put_att_text(file, variables[0], "units", 13, "degrees_north");
+    nc_put_att_text(file, variables[1], "units", 12, "degrees_east");
+    nc_enddef(file);
+    std::vector<double> at(kSide);
+    for (std::size_t i = 0; i < kSide; ++i) at[i] = 0.01 * static_cast<double>(i);
+    for (double& one : at) one += 29.0;
+    nc_put_var_double(file, variables[0], at.data());
+    for (double& one : at) one += 92.0;
+    nc_put_var_double(file, variables[1], at.data());
+    nc_put_var_float(file, variables[2], std::vector<float>(kSide * kSide, 30.0F).data());
+    nc_close(file);
+    EXPECT_EQ(Refused(), "was read");
+    fs::resize_file(path_, fs::file_size(path_) - 2000);
+    EXPECT_EQ(Refused().substr(0, 10), "is cut off") << kind;
+  }
+}
+
+TEST_F(SeaFields, HaveTimesAsUdunitsWritesThem) {
+  const SeaFieldChoice next_day{"so", 1627257600, 0.0};  // 2021-07-26T00:00:00Z
+  Write({});
+  const auto there = LoadSeaField(path_, next_day, frame_, 4, 4);
+  for (const char* units :
+       {"Hours since 2021-07-25 00:00:00.0", "hours since 2021-07-25 00:00:00 UTC",
+        "hours since 2021-07-25T00:00:00Z", "hours since 2021-07-25 00:00:00 +00:00",
+        "hours since 2021-07-25 00", "hours since 2021-07-25"}) {
+    Shape shape;
+    shape.time_units = units;
+    Write(shape);
+    EXPECT_EQ(Refused(next_day), "was read") << units;
+    EXPECT_EQ(LoadSeaField(path_, next_day, frame_, 4, 4).time, there.time) << units;
+  }
+}
+
 TEST_F(SeaFields, AreRefusedWithTheReason) {
   Write({});
   EXPECT_EQ(Refused({"temperature", {}, 0.0}),

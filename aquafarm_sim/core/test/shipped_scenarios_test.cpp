@@ -34,9 +34,9 @@ Scenario Load(const std::string& name) {
 
 TEST(Shipped, AreThese) {
   EXPECT_EQ(ShippedNames(),
-            (std::vector<std::string>{"four_squads", "networked_devices", "paper", "partial",
-                                      "procedural", "red_tide", "smart_devices", "two_squads",
-                                      "zhoushan_danas_2019", "zhoushan_infa_2021",
+            (std::vector<std::string>{"four_squads", "networked_devices", "paper", "paper_partial",
+                                      "partial", "procedural", "red_tide", "smart_devices",
+                                      "two_squads", "zhoushan_danas_2019", "zhoushan_infa_2021",
                                       "zhoushan_mitag_2019"}));
 }
 

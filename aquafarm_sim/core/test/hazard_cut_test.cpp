@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lines of tracks that end too soon, and values that contradict each other: refused or said, never
+// taken for smaller numbers.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "aquafarm/check.h"
+#include "aquafarm/hazard_file.h"
+
+namespace aquafarm {
+namespace {
+
+namespace fs = std::filesystem;
+const fs::path kData = fs::path(AQUAFARM_CORE_DIR) / "test" / "data";
+
+std::string Sample(const char* name) {
+  std::ifstream file(kData / name, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string With(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::invalid_argument(from);
+  return text.replace(at, from.size(), to);
+}
+
+std::string Refusal(const std::string& text) {
+  try {
+    ParseHazardFile(text, "x");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "was read";
+}
+
+std::string Warnings(const std::string& text) {
+  std::string all;
+  for (const std::string& warning : ParseHazardFile(text, "x").warnings) all += warning + "\n";
+  return all;
+}
+
+// The whole line of In-Fa with radii of 50 and 30 kt.
+const std::string kInFa =
+    "21072506 002 5 300 1225 970      065     90080 0080 20325 0240         #        ";
+
+TEST(Jma, ALineThatEndsWithinAPointIsRefused) {
+  const std::string text = Sample("jma.txt");
+  const HazardFix whole = ParseHazardFile(text, "x").tracks[0].fixes[1];
+  for (std::size_t size = 13; size < kInFa.size(); ++size) {
+    const std::string cut = With(text, kInFa, kInFa.substr(0, size));
+    const std::string refusal = Refusal(cut);
+    if (refusal == "was read") {
+      const HazardFix fix = ParseHazardFile(cut, "x").tracks[0].fixes[1];
+      EXPECT_EQ(fix.wind_mps, whole.wind_mps) << size;
+      if (size <= 41) continue;  // of a storm without radii nothing shows that there were any
+      ASSERT_EQ(fix.rings.size(), whole.rings.size()) << size;
+      for (std::size_t i = 0; i < fix.rings.size(); ++i) {
+        EXPECT_EQ(fix.rings[i].radius_km, whole.rings[i].radius_km) << size;
+      }
+    } else {
+      EXPECT_EQ(refusal.substr(0, 4), "x:3:") << size;
+    }
+  }
+  EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 35))),
+            "x:3: got a line of 35 columns, expected 36 or more of a point, to its wind");
+  EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 60))),
+            "x:3: got a line of 60 columns, expected 62 or more where there are radii of 30 kt");
+  EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 52))),
+            "x:3: got radii of 50 kt alone, expected those of 30 kt as well");
+}
+
+TEST(Jma, WhatContradictsItselfIsRefused) {
+  const std::string text = Sample("jma.txt");
+  EXPECT_EQ(Refusal(With(text, "0011 2106", "0011 9999")),
+            "x:1: number: got '2106' and '9999', expected the same twice");
+  EXPECT_EQ(Refusal(With(text, "90240", "00240")),
+            "x:4: direction of the longest radius: got 0, which is none, with a radius of 30 kt");
+}
+
+TEST(Atcf, ARowThatEndsWithinItsRadiiIsRefused) {
+  const std::string text = Sample("atcf.dat");
+  const std::string radii = "NEQ,  110,   90,    0,  100,";
+  const std::size_t end = text.find('\n', text.find(radii));
+  const auto cut = [&](const std::string& kept) {
+    std::string damaged = text;
+    const std::size_t at = damaged.find(radii);
+    return damaged.replace(at, end - at, kept);
+  };
+  EXPECT_EQ(Refusal(cut("NEQ,  110,   90,    0,  100")), "was read");
+  EXPECT_EQ(Refusal(cut("NEQ,  110,   90")).substr(0, 19), "x:2: radius: got ''");
+  EXPECT_EQ(Refusal(cut("NES,  110,   90")), "was read") << "a semicircle has two";
+  EXPECT_EQ(Refusal(cut("NES,  110")).substr(0, 19), "x:2: radius: got ''");
+  EXPECT_EQ(Refusal(cut("AAA,  110")), "was read") << "a circle has one";
+}
+
+TEST(Atcf, ATimeThatIsThereTwiceWithAnotherPlaceIsSaid) {
+  const std::string text = Sample("atcf.dat");
+  EXPECT_EQ(Warnings(text), "");
+  const std::string moved =
+      With(text, "131N, 1414E,  70,  970, TY,  50", "231N, 1414E,  70,  970, TY,  50");
+  EXPECT_NE(Warnings(moved).find("x:3: time: 2014-07-04T06:00:00Z is there twice"),
+            std::string::npos)
+      << Warnings(moved);
+  EXPECT_NE(Refusal(With(text, "BEST,   0, 131N", "BEST,  12, 131N")).find("TAU"),
+            std::string::npos);
+}
+
+TEST(Bulletin, AQuadrantThatIsNotSaidHasTheRadiusOfAll) {
+  const auto ring = [](const std::string& quadrants) {
+    const HazardFile file = ParseHazardFile(
+        "[{\"tfbh\": \"202106\", \"name\": \"In-fa\", \"points\": [{\"time\": \"2021-07-25 "
+        "14:00:00\","
+        "\"lat\": 30, \"lng\": 122, \"speed\": 38, \"radius7\": 280, \"radius7_quad\": " +
+            quadrants + "}]}]",
+        "x");
+    std::string all;
+    for (const double radius : file.tracks.at(0).fixes.at(0).Ring(34)->radius_km) {
+      all += std::to_string(static_cast<int>(radius)) + " ";
+    }
+    return all + std::to_string(file.warnings.size());
+  };
+  EXPECT_EQ(ring("{\"ne\": 300, \"se\": null, \"sw\": 200, \"nw\": null}"), "300 280 200 280 1");
+  EXPECT_EQ(ring("{\"ne\": 300, \"se\": 250, \"sw\": 200, \"nw\": 0}"), "300 250 200 0 0");
+  EXPECT_EQ(ring("{\"ne\": null, \"se\": null, \"sw\": null, \"nw\": null}"), "280 280 280 280 0");
+}
+
+}  // namespace
+}  // namespace aquafarm

@@ -93,6 +93,29 @@ class RecordReplayTest(unittest.TestCase):
             self.assertNotIn("/aquafarm/sim", names)
         self.assertGreater(images[0].width * images[0].height, 0)
 
+    def test_a_bag_holds_what_other_viewers_draw_and_replay_draws_it_anew(self):
+        bag = self.folder / "drawn.bag"
+        with Ranch("record", "of:=evaluate", "policy:=random", "episodes:=1", f"bag:={bag}",
+                   "rate_hz:=100") as ranch:
+            self.assertEqual(0, ranch.exit_code(90), ranch.words())
+        with rosbag.Bag(str(bag)) as opened:
+            topics = opened.get_type_and_topic_info().topics
+        self.assertEqual("visualization_msgs/MarkerArray", topics["/aquafarm/markers"].msg_type)
+        self.assertEqual("nav_msgs/Path", topics["/aquafarm/ship_0/route"].msg_type)
+        port = free_port()
+        with Ranch("replay", f"bag:={bag}", "headless:=true", port=port) as ranch:
+            master = rosgraph.Master("/who", master_uri=f"http://127.0.0.1:{port}")
+
+            def drawers():
+                try:
+                    return dict(master.getSystemState()[0]).get("/aquafarm/markers")
+                except OSError:
+                    return None
+            ranch.wait_for(drawers, 20)
+            ranch.wait_for(lambda: "/aquafarm/replay" in {
+                name for _, users in master.getSystemState()[0] for name in users}, 20)
+            self.assertEqual(["/aquafarm/viz"], drawers())
+
     def test_a_bag_that_cannot_be_written_or_read_leaves_a_code(self):
         with Ranch("record", "of:=evaluate", "policy:=random", "bag:=/nowhere/x.bag",
                    "viz:=false") as ranch:

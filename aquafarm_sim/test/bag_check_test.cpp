@@ -300,7 +300,10 @@ TEST_F(EpisodeBag, AMessageOfNoTopicAndAChunkToldOfTwiceHaveTheirLine) {
     for (int i = 0; i < 2; ++i) bag.write("/ranch/saved_state", ros::Time(1.0), saved);
   }
   const std::string sound = ContentOf(path);
-  EXPECT_EQ(path + ": no topic spec, so nothing says what was played", Refusal(path));
+  EXPECT_EQ(path +
+                ": no topic spec, so nothing says what was played; record spec and state, as "
+                "record.launch does",
+            Refusal(path));
   const std::string place = "chunk_pos=";
   const std::size_t last = sound.rfind(place) + place.size();
   const std::size_t first = sound.rfind(place, last - place.size() - 1) + place.size();

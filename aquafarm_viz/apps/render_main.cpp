@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "aquafarm/version.h"
 #include "aquafarm_sim/read_bag.h"
 #include "aquafarm_viz/film.h"
 #include "aquafarm_viz/image.h"
@@ -60,6 +61,8 @@ struct Found {
   std::uint64_t first_episode{};
   std::uint64_t last_episode{};
   std::uint64_t last_step{};
+  std::uint64_t gaps{};  // steps that are missing between others
+  std::string version;   // that recorded it, as its spec says
 };
 
 // The bag as who asked for the picture knows it.
@@ -93,7 +96,12 @@ std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
     throw std::runtime_error(request.bag + ": no topic " + (wanted.empty() ? "" : wanted) + state +
                              " of type " + ros::message_traits::datatype<FarmState>());
   }
-  if (prefixes.size() == 1) return *prefixes.begin();
+  if (prefixes.size() == 1) {
+    if (rosbag::View(bag, rosbag::TopicQuery(*prefixes.begin() + kSpec)).size() != 0) {
+      return *prefixes.begin();
+    }
+    throw std::runtime_error(Name(request) + aquafarm_sim::kNoSpec);
+  }
   std::string all;
   for (const auto& prefix : prefixes) all += " " + prefix;
   throw std::runtime_error(request.bag + ": holds several ranches, choose one with --ns:" + all);
@@ -123,8 +131,10 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   sensor_msgs::PointCloud2ConstPtr cloud;  // not yet read: its spec may come after it
   aquafarm_msgs::PolicyChoiceConstPtr choice;
   Found found;
+  std::uint64_t last_step = 0;
   for (const auto& message : view) {
     if (const auto spec = aquafarm_sim::Instantiate<aquafarm_msgs::FarmSpec>(message)) {
+      found.version = spec->version;
       if (const auto fault = pairing.AddSpec(spec); !fault.empty()) throw std::runtime_error(fault);
     } else if (const auto status =
                    aquafarm_sim::Instantiate<aquafarm_msgs::TrainingStatus>(message)) {
@@ -143,6 +153,10 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
     if (pairing.shown().state != state) continue;
     wake.Update(*state);
     route.Update(*state);
+    if (found.states > 0 && state->episode == found.last_episode && state->step > last_step + 1) {
+      found.gaps += state->step - last_step - 1;
+    }
+    last_step = state->step;
     if (found.states++ == 0) found.first_episode = state->episode;
     found.last_episode = state->episode;
     found.last_step = std::max(found.last_step, state->step);
@@ -161,7 +175,15 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
 }
 
 /// What is asked for and not there is said, but a picture can do without.
-void WarnOfMissingValues(const Request& request, const Found& found) {
+void WarnOfMissing(const Request& request, const Found& found) {
+  if (found.gaps > 0) {
+    std::fprintf(stderr, "render: %s: %llu steps are missing; 'verify' says which\n",
+                 Name(request).c_str(), static_cast<unsigned long long>(found.gaps));
+  }
+  if (!found.version.empty() && found.version != aquafarm::kVersion) {
+    std::fprintf(stderr, "render: %s: recorded by version %s, this is %s; drawn as it is\n",
+                 Name(request).c_str(), found.version.c_str(), aquafarm::kVersion);
+  }
   if (found.values > 0 || !(request.layers.values || request.layers.moves)) return;
   if (found.choices > 0) {
     std::fprintf(stderr,
@@ -202,7 +224,7 @@ void RenderPicture(const Request& request) {
     return missing > 0;
   });
   if (missing > 0) throw std::runtime_error(Missing(request, found));
-  WarnOfMissingValues(request, found);
+  WarnOfMissing(request, found);
   cv::Mat picture;
   cv::hconcat(pictures, picture);
   const std::filesystem::path output(request.output);
@@ -243,7 +265,7 @@ void RenderFilm(Request request) {
     return true;
   });
   if (film == nullptr) throw std::runtime_error(Missing(request, found));
-  WarnOfMissingValues(request, found);
+  WarnOfMissing(request, found);
   for (int i = 0; i < cvRound(2.0 * request.rate_hz); ++i) film->Add(last);
   film->Close();
 }
@@ -287,6 +309,10 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
   try {
+    if (aquafarm_viz::Film::Is(request.output) && (request.at_end || step->count() > 0)) {
+      throw std::runtime_error(std::string(request.at_end ? "--end" : "--step") +
+                               ": expected none with a film, which shows a whole episode");
+    }
     request.layers = aquafarm_viz::ParseLayers(layers);
     aquafarm_sim::ReadingBag(request.bag, [&] {
       aquafarm_viz::Film::Is(request.output) ? RenderFilm(request) : RenderPicture(request);

@@ -37,6 +37,11 @@ void MoveToItsPlace(const std::string& path) {
   if (error) throw StorageError(path + ": could not be written: " + error.message());
 }
 
+void RemoveUnfinished(const std::string& path) {
+  std::error_code ignored;
+  fs::remove(Beside(path), ignored);
+}
+
 /// By the codecs that OpenCV finds on this machine.
 class VideoFilm final : public Film {
  public:
@@ -52,22 +57,41 @@ class VideoFilm final : public Film {
       if (writer_.open(Beside(path), cv::CAP_FFMPEG, code, rate_hz, size)) return;
       tried += (tried.empty() ? "" : ", ") + codec;
     }
-    std::error_code ignored;
-    fs::remove(Beside(path), ignored);
+    RemoveUnfinished(path);
     throw std::runtime_error(path + ": no codec for " + Ending(path) + " here (tried " + tried +
                              "), or no place to write; a .gif needs none, or install libavcodec");
   }
 
-  void Add(const cv::Mat& picture) override { writer_.write(picture); }
+  ~VideoFilm() override {
+    writer_.release();
+    RemoveUnfinished(path_);
+  }
 
+  void Add(const cv::Mat& picture) override {
+    writer_.write(picture);
+    ++pictures_;
+  }
+
+  // The writer does not say when the disk is full, so what it wrote is looked at.
   void Close() override {
     writer_.release();
+    if (Pictures() < pictures_) {
+      throw StorageError(path_ + ": could not be written whole");
+    }
     MoveToItsPlace(path_);
   }
 
  private:
+  int Pictures() const {
+    cv::VideoCapture film(Beside(path_), cv::CAP_FFMPEG);
+    int pictures = 0;
+    while (film.grab()) ++pictures;
+    return pictures;
+  }
+
   const std::string path_;
   cv::VideoWriter writer_;
+  int pictures_{};
 };
 
 /// The nearest of 256 colours, looked up in a cube of 32 levels a side.
@@ -113,6 +137,7 @@ class GifFilm final : public Film {
   }
   ~GifFilm() override {
     if (file_ != nullptr) EGifCloseFile(file_, nullptr);
+    RemoveUnfinished(path_);
   }
 
   void Add(const cv::Mat& picture) override {

@@ -45,7 +45,7 @@ void ReplayTape::Read(const std::string& path) {
   if (std::none_of(connections.begin(), connections.end(), [](const auto* connection) {
         return connection->datatype == traits::datatype<FarmSpec>();
       })) {
-    throw std::runtime_error(path + ": no topic spec, so nothing says what was played");
+    throw std::runtime_error(path + aquafarm_sim::kNoSpec);
   }
   for (const rosbag::MessageInstance& message : view_) {
     if (message.getTopic() == "/clock") continue;

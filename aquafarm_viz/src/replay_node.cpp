@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <climits>
+#include <set>
+#include <string>
 
 #include "aquafarm_viz/params.h"
 
@@ -25,6 +27,13 @@ void Refuse(const std::string& message, Response& response) {
   response.ok = false;
   response.code = Outcome::BAD_VALUE;
   response.message = message;
+}
+
+// What viz draws anew from the states of a replay; a recording of it is for other viewers.
+bool IsDrawn(const rosbag::MessageInstance& message) {
+  static const std::set<std::string> kDrawn{"visualization_msgs/MarkerArray", "nav_msgs/Path",
+                                            "sensor_msgs/Image", "sensor_msgs/CompressedImage"};
+  return kDrawn.count(message.getDataType()) != 0;
 }
 
 }  // namespace
@@ -54,7 +63,7 @@ ReplayNode::ReplayNode(ros::NodeHandle node, const ReplayParams& params)
       paused_(params.paused) {
   for (const rosbag::MessageInstance& message : tape_.messages()) {
     const std::string& topic = message.getTopic();
-    if (topics_.count(topic) != 0) continue;
+    if (topics_.count(topic) != 0 || IsDrawn(message)) continue;
     ros::AdvertiseOptions options = rosbag::createAdvertiseOptions(
         message, IsState(message) ? ReplayTape::kQueueOfStates : kQueue);
     // Whoever comes late sees what stands; a state is for those who watch.
@@ -101,7 +110,8 @@ void ReplayNode::PublishClock() {
 
 void ReplayNode::Publish(std::size_t position) {
   const rosbag::MessageInstance& message = tape_.messages()[position];
-  topics_.at(message.getTopic()).publish(message);
+  const auto topic = topics_.find(message.getTopic());
+  if (topic != topics_.end()) topic->second.publish(message);
 }
 
 void ReplayNode::Tick() {

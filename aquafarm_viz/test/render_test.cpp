@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "aquafarm/version.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {
@@ -163,6 +164,59 @@ TEST_F(RenderTest, MakesAFilmOfOneEpisode) {
   for (const auto& entry : fs::directory_iterator(folder_)) {
     EXPECT_EQ(entry.path().string().find(".part"), std::string::npos) << entry.path();
   }
+}
+
+TEST_F(RenderTest, AFilmThatTheDiskHasNoRoomForLeavesNothing) {
+  const std::string bag = MakeBag({"/aquafarm/"});
+  for (const char* ending : {".mp4", ".webm", ".gif"}) {
+    const std::string path = Path(std::string("full") + ending);
+    const Result result = Render(bag + " -o " + path, "trap '' XFSZ; ulimit -f 4;");
+    EXPECT_EQ(WEXITSTATUS(result.code), 3) << ending << result.output;
+    EXPECT_NE(result.output.find(path + ": could not be written"), std::string::npos)
+        << result.output;
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1)
+      << "the bag";
+}
+
+TEST_F(RenderTest, AFilmShowsAWholeEpisode) {
+  const std::string bag = MakeBag({"/aquafarm/"});
+  EXPECT_NE(
+      Render(bag + " --step 3 -o " + Path("x.gif"))
+          .output.find("render: --step: expected none with a film, which shows a whole episode"),
+      std::string::npos);
+  EXPECT_NE(Render(bag + " --end -o " + Path("x.gif")).output.find("render: --end: expected none"),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(Path("x.gif")));
+}
+
+TEST_F(RenderTest, SaysWhatTheBagLacks) {
+  const std::string bag = Path("gap.bag");
+  const auto write = [&](bool with_spec, const char* version) {
+    rosbag::Bag out(bag, rosbag::bagmode::Write);
+    auto spec = test::MakeSpec();
+    spec.version = version;
+    if (with_spec) out.write("/aquafarm/spec", ros::Time(1), spec);
+    for (const std::uint64_t step : {0U, 1U, 4U, 5U}) {
+      auto state = test::MakeState();
+      state.step = step;
+      state.terminated = step == 5;
+      out.write("/aquafarm/state", ros::Time(2 + step), state);
+    }
+  };
+  write(true, aquafarm::kVersion);
+  Result result = Render(bag + " --end -o " + Path("x.png"));
+  EXPECT_EQ(result.code, 0) << result.output;
+  EXPECT_EQ(result.output, "render: " + bag + ": 2 steps are missing; 'verify' says which\n");
+  write(true, "9.9.9");
+  result = Render(bag + " -o " + Path("x.png"));
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.output.find("recorded by version 9.9.9, this is "), std::string::npos);
+  write(false, "");
+  result = Render(bag + " -o " + Path("y.png"));
+  EXPECT_NE(result.output.find("no topic spec, so nothing says what was played; record spec and"),
+            std::string::npos)
+      << result.output;
 }
 
 TEST_F(RenderTest, AFilmMayLeaveStepsOut) {

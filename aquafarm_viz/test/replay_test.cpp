@@ -170,7 +170,10 @@ TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     bag.write("/aquafarm/state", ros::Time(1.0), test::MakeState());
   }
-  EXPECT_EQ(FaultOf(path_), path_ + ": no topic spec, so nothing says what was played");
+  EXPECT_EQ(FaultOf(path_),
+            path_ +
+                ": no topic spec, so nothing says what was played; record spec and state, as "
+                "record.launch does");
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     bag.write("/aquafarm/spec", ros::Time(1.0), test::MakeSpec());

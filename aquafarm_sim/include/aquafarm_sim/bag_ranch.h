@@ -12,6 +12,7 @@
 
 #include "aquafarm/check.h"
 #include "aquafarm_sim/names.h"
+#include "aquafarm_sim/read_bag.h"
 
 namespace aquafarm_sim {
 
@@ -35,10 +36,10 @@ inline std::string FindRanch(const rosbag::Bag& bag, const std::string& path,
   if (wanted.empty() && found.size() == 1) return *found.begin();
   std::string all;
   for (const std::string& one : found) all += (all.empty() ? "" : ", ") + one;
-  throw aquafarm::InputError(path +
-                             (found.empty()    ? ": no topic spec, so nothing says what was played"
-                              : wanted.empty() ? ": several ranches, choose one with --ns: " + all
-                                               : ": no ranch " + wanted + ", there is: " + all));
+  throw aquafarm::InputError(path + (found.empty() ? kNoSpec
+                                     : wanted.empty()
+                                         ? ": several ranches, choose one with --ns: " + all
+                                         : ": no ranch " + wanted + ", there is: " + all));
 }
 
 }  // namespace aquafarm_sim

@@ -26,6 +26,12 @@
 #include "aquafarm_sim/bag_structure.h"
 
 namespace aquafarm_sim {
+
+/// What is said of a bag without a spec, behind its name.
+inline const std::string kNoSpec{
+    ": no topic spec, so nothing says what was played; record spec and state, as record.launch "
+    "does"};
+
 namespace internal {
 
 /// Bounds this process's memory while it lives: a damaged length of a list asks for any.

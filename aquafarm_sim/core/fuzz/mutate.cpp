@@ -59,14 +59,16 @@ void Mutate(aquafarm::RandomStream& chance, std::string& bytes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fprintf(stderr, "usage: %s CHANGES_A_SAMPLE FOLDER\n", argv[0]);
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: %s CHANGES_A_SAMPLE FOLDER…\n", argv[0]);
     return 2;
   }
   std::vector<std::string> samples;
-  for (const auto& entry : fs::directory_iterator(argv[2])) {
-    std::ifstream file(entry.path(), std::ios::binary);
-    samples.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  for (int folder = 2; folder < argc; ++folder) {
+    for (const auto& entry : fs::directory_iterator(argv[folder])) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      samples.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    }
   }
   std::sort(samples.begin(), samples.end());
   // So that a run takes as long however many samples there are.

@@ -14,17 +14,10 @@ import rosbag
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from ranch import Ranch  # noqa: E402
+from ranch import Ranch, verify  # noqa: E402
 
 TRAIN = ["algorithm:=q_learning", "farms:=1", "evaluation_episodes:=0", "random_episodes:=0",
          "viz:=false"]
-
-
-def verify(*bags):
-    """(exit code, words) of verify_bag, called as a person does."""
-    done = subprocess.run(["rosrun", "aquafarm_bringup", "verify_bag", *map(str, bags)], timeout=60,
-                          capture_output=True, text=True)
-    return done.returncode, done.stdout + done.stderr
 
 
 class KeepEpisodesTest(unittest.TestCase):

@@ -5,7 +5,6 @@ import json
 import os
 import pathlib
 import shutil
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -17,7 +16,7 @@ import rostest
 from sensor_msgs.msg import Image
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from ranch import Ranch, free_port  # noqa: E402
+from ranch import Ranch, free_port, verify  # noqa: E402
 
 
 class MainJobTest(unittest.TestCase):
@@ -63,9 +62,8 @@ class MainJobTest(unittest.TestCase):
         self.assertLess(chance["success_rate"], 0.05)
         self.assertGreater(greedy["return_per_episode"], chance["return_per_episode"] + 1000)
         bag = self.record(run)
-        done = subprocess.run(["rosrun", "aquafarm_bringup", "verify_bag", str(bag)], timeout=60,
-                              capture_output=True, text=True)
-        self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+        code, words = verify(bag)
+        self.assertEqual(0, code, words)
         with rosbag.Bag(str(bag)) as opened:
             spec = next(opened.read_messages("/aquafarm/spec")).message
             self.assertEqual("zhoushan_infa_2021", spec.scenario_name)

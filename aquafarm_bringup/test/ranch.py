@@ -16,6 +16,13 @@ def free_port():
         return probe.getsockname()[1]
 
 
+def verify(*bags):
+    """(exit code, words) of verify_bag, called as a person does."""
+    done = subprocess.run(["rosrun", "aquafarm_bringup", "verify_bag", *map(str, bags)], timeout=60,
+                          capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
 class Ranch:
     """A launch in a process group of its own; leaving the context ends all of it."""
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/algorithms.h"
 
+#include <algorithm>
+
 #include "aquafarm/agents/curiosity.h"
 #include "aquafarm/agents/dqn.h"
 #include "aquafarm/agents/independent.h"

@@ -80,13 +80,12 @@ bool AsciiGrid::IsGeographic() const {
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name) {
   std::vector<std::string> unused;
   HazardPlace place(origin_name, unused);
-  internal::LineReader lines(text, place);
+  internal::LineReader lines(internal::WithoutMark(text), place);
   std::string_view line;
   Header header;
   std::vector<std::string_view> words;
   bool more = false;
   while ((more = lines.Next(line))) {
-    if (place.line == 1 && line.substr(0, 3) == "\xEF\xBB\xBF") line.remove_prefix(3);
     words = internal::SplitWords(line);
     if (!words.empty() && !ReadHeaderLine(words, header, place)) break;
   }

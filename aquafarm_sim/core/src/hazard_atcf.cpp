@@ -129,9 +129,8 @@ HazardFix ReadFix(const Fields& fields, const HazardPlace& place) {
 }
 
 // A time has a row for each wind whose radii are told, alike but for these.
-bool IsSame(const HazardFix& fix, const std::vector<HazardFix>& fixes) {
-  const HazardFix& known = fixes.back();
-  return fix.position.latitude == known.position.latitude &&
+bool IsSame(const HazardFix& fix, const HazardFix& known) {
+  return fix.time == known.time && fix.position.latitude == known.position.latitude &&
          fix.position.longitude == known.position.longitude && fix.wind_mps == known.wind_mps &&
          fix.pressure_hpa == known.pressure_hpa;
 }
@@ -168,7 +167,7 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
     }
     HazardTrack& track = tracks.back();
     if (!At(fields, kName).empty()) track.name = At(fields, kName);
-    if (track.fixes.empty() || fix.time != track.fixes.back().time || !IsSame(fix, track.fixes)) {
+    if (track.fixes.empty() || !IsSame(fix, track.fixes.back())) {
       AppendFix(std::move(fix), track.fixes, place);
     }
     ReadRing(fields, track.fixes.back(), place);

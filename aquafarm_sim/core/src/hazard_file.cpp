@@ -10,10 +10,6 @@
 namespace aquafarm {
 namespace {
 
-std::string WithoutMark(const std::string& text) {
-  return text.compare(0, 3, "\xEF\xBB\xBF") == 0 ? text.substr(3) : text;
-}
-
 // The first line from `text` that is not blank; takes it off.
 std::string_view TakeLine(std::string_view& text) {
   while (!text.empty()) {
@@ -44,8 +40,7 @@ bool HasKey(std::string_view text, std::string_view key) {
 }  // namespace
 
 std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
-  std::string_view rest = text;
-  if (rest.substr(0, 3) == "\xEF\xBB\xBF") rest.remove_prefix(3);
+  std::string_view rest = internal::WithoutMark(text);
   const std::string_view whole = rest;
   const std::string_view first = TakeLine(rest);
   if (first.substr(0, 5) == "66666") return DetectBestTrack(rest);
@@ -85,7 +80,7 @@ HazardFile ParseHazardFile(const std::string& text, const std::string& origin_na
                  "bulletin or a weather service's track");
   }
   file.format = *format;
-  const std::string plain = WithoutMark(text);
+  const std::string plain(internal::WithoutMark(text));
   switch (file.format) {
     case HazardFormat::kCma:
       file.tracks = internal::ReadCma(plain, place);

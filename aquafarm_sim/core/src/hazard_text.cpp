@@ -176,6 +176,10 @@ std::string Quoted(std::string_view text) {
   return quoted + (text.size() > kMost ? "…'" : "'");
 }
 
+std::string_view WithoutMark(std::string_view text) {
+  return text.substr(text.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0);
+}
+
 std::string Upper(std::string_view text) {
   std::string upper(text);
   for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;

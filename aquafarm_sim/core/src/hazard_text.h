@@ -59,6 +59,8 @@ class LineReader {
 /// IBTrACS is some 300.
 std::string ReadTextFile(const std::string& path);
 
+/// A file's text without the byte order mark that may stand before it.
+std::string_view WithoutMark(std::string_view text);
 std::string_view Trim(std::string_view text);
 std::vector<std::string_view> SplitWords(std::string_view text);
 /// Fields between commas, blanks around them taken off.

@@ -42,12 +42,13 @@ class PgmHeader {
   /// stand behind them too.
   void SkipEnd(std::size_t pixels) {
     const std::size_t left = bytes_.size() - std::min(bytes_.size(), at_);
-    at_ += left == pixels + 2 && bytes_.compare(at_, 2, "\r\n") == 0 ? 2 : 1;
-    if (left > pixels + 2 ||
-        (left == pixels + 2 && at_ + pixels + 1 == bytes_.size() && bytes_.back() != '\n')) {
+    const bool one_more = left == pixels + 2;
+    const bool dos = one_more && bytes_.compare(at_, 2, "\r\n") == 0;
+    if (left > pixels + 1 && !dos && !(one_more && bytes_.back() == '\n')) {
       place_.Refuse("got " + std::to_string(left - 1) + " bytes of pixels, expected " +
                     std::to_string(pixels));
     }
+    at_ += dos ? 2 : 1;
   }
   bool HasMore() {
     SkipBlanks();

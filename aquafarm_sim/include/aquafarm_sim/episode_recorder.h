@@ -33,7 +33,7 @@ Keep ParseKeep(const std::string& text);
 
 /// How far the writing may fall behind.
 struct RecorderLimits {
-  // Steps are written at some 100,000 a second: this is a few seconds' work.
+  // Steps are written at some 300,000 a second: this is a second's work.
   std::size_t waiting_bytes{300'000};      ///< of actions left to write; then the farms wait
   std::chrono::milliseconds wait{10'000};  ///< that they wait at most; then nothing more is kept
 };

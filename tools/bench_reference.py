@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Measures a well-known reference and relates a benchmark's figure to it.
 
-usage: bench_reference.py taxi | numpy BENCH_OUTPUT, a file with 'metric value unit' lines.
+usage: bench_reference.py taxi | numpy | sb3 | torch BENCH_OUTPUT, a file with 'metric value unit'
+lines. One core each; no reference's environment but Taxi's costs anything, which flatters it.
 """
 import sys
 import time
@@ -12,6 +13,7 @@ import numpy
 CHUNK = 10000
 DURATION_S = 3.0
 STATES, ACTIONS = 20000, 10
+FEATURES, FARMS = 43, 16  # of paper.yaml, without the ways by water and the courses
 
 
 def taxi_steps_per_second():
@@ -51,23 +53,104 @@ def numpy_steps_per_second():
     return steps / (time.perf_counter() - start)
 
 
+def sb3_updates_per_second():
+    """Stable-Baselines3's DQN with the numbers of bench_deep's on 16 environments that give the
+    same observation always; returns updates a second, 4 farm steps and an update each."""
+    import gymnasium
+    import torch
+    from stable_baselines3 import DQN
+    from stable_baselines3.common.vec_env import DummyVecEnv
+    torch.set_num_threads(1)
+
+    class Still(gymnasium.Env):
+        observation_space = gymnasium.spaces.Box(-1, 1, (FEATURES,), numpy.float32)
+        action_space = gymnasium.spaces.Discrete(ACTIONS)
+        seen = observation_space.sample()
+
+        def reset(self, *, seed=None, options=None):
+            return self.seen, {}
+
+        def step(self, action):
+            return self.seen, -1.0, False, False, {}
+
+    start, updates = 5000, 2000
+    model = DQN("MlpPolicy", DummyVecEnv([Still] * FARMS), buffer_size=100000, batch_size=64,
+                learning_starts=start, train_freq=1, gradient_steps=FARMS // 4,
+                target_update_interval=1000, policy_kwargs={"net_arch": [128, 128]},
+                device="cpu", seed=1)
+    model.learn(start)  # only fills the replay
+    begin = time.perf_counter()
+    model.learn(4 * updates, reset_num_timesteps=False)
+    return updates / (time.perf_counter() - begin)
+
+
+def torch_updates_per_second():
+    """The updates alone of a recurrent Q-network in PyTorch: 32 drawn sequences of 16 steps after a
+    burn-in of 8, LSTM of 64 units between two layers, Double DQN, Huber loss, Adam; returns updates
+    a second."""
+    import torch
+    from torch import nn
+    torch.set_num_threads(1)
+    torch.manual_seed(1)
+    batch, sequence, burn_in, hidden = 32, 16, 8, 64
+
+    class Network(nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.input = nn.Linear(FEATURES, hidden)
+            self.lstm = nn.LSTM(hidden, hidden)
+            self.second = nn.Linear(2 * hidden, 2 * hidden)
+            self.head = nn.Linear(2 * hidden, ACTIONS)
+
+        def forward(self, steps):
+            with torch.no_grad():
+                _, state = self.lstm(self.input(steps[:burn_in]).relu())
+            seen = self.input(steps[burn_in:]).relu()
+            output, _ = self.lstm(seen, state)
+            return self.head(self.second(torch.cat([output, seen], -1)).relu())
+
+    online, target = Network(), Network()
+    target.load_state_dict(online.state_dict())
+    optimizer = torch.optim.Adam(online.parameters(), 5e-4)
+    replay = torch.rand(10000, burn_in + sequence + 1, FEATURES)
+    updates = 0
+    begin = time.perf_counter()
+    while time.perf_counter() - begin < DURATION_S:
+        steps = replay[torch.randint(len(replay), (batch,))].transpose(0, 1).contiguous()
+        actions = torch.randint(ACTIONS, (sequence, batch, 1))
+        values = online(steps)
+        with torch.no_grad():
+            best = values[1:].argmax(-1, keepdim=True)
+            wanted = -1.0 + 0.97 * target(steps)[1:-1].gather(-1, best[:-1])
+        loss = nn.functional.smooth_l1_loss(values[:-2].gather(-1, actions[:-1]), wanted)
+        optimizer.zero_grad()
+        loss.backward()
+        nn.utils.clip_grad_norm_(online.parameters(), 10.0)
+        optimizer.step()
+        updates += 1
+    return updates / (time.perf_counter() - begin)
+
+
 # How each reference is measured, its name, and the metric of ours that is related to it.
 REFERENCES = {
     "taxi": (taxi_steps_per_second, "taxi_v3", "farm_steps_tabular"),
     "numpy": (numpy_steps_per_second, "numpy_q_learning", "q_learning_training_steps"),
+    "sb3": (sb3_updates_per_second, "stable_baselines3", "dqn_updates"),
+    "torch": (torch_updates_per_second, "pytorch", "lstm_dqn_updates"),
 }
 
 
 def main(which, path):
     measure, name, metric = REFERENCES[which]
     rate = measure()
-    print(f"{name}_steps {rate:.6g} steps/s")
+    counted = "updates" if metric.endswith("updates") else "steps"
+    print(f"{name}_{counted} {rate:.6g} {counted}/s")
     with open(path, encoding="utf-8") as lines:
         for words in map(str.split, lines):
             if len(words) == 3 and words[0] == metric:
                 print(f"{metric}_to_{name} {float(words[1]) / rate:.6g} ratio")
                 return 0
-    print(f"bench_reference: {path} has no line '{metric} VALUE steps/s'", file=sys.stderr)
+    print(f"bench_reference: {path} has no line '{metric} VALUE UNIT'", file=sys.stderr)
     return 1
 
 

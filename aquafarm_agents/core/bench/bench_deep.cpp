@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Farm steps and updates a second of the deep learners on paper.yaml, 16 farms, one thread.
-// References: Python on such a core for the same work, as measured once: Stable-Baselines3 2.4 with
-// 600 updates a second for DQN, PyTorch with 175 for LSTM-DQN.
+// Farm steps and updates a second of the deep learners on paper.yaml, 16 farms, one thread: with
+// the plain feature vector (43 numbers), as the references of tools/bench_reference.py have it, and
+// with the ways by water and the courses in it (81).
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -17,15 +17,22 @@ namespace aquafarm::agents {
 namespace {
 
 constexpr std::int32_t kFarms = 16;
-constexpr double kPythonDqnUpdates = 600.0;
-constexpr double kPythonLstmUpdates = 175.0;
+
+constexpr const char* kDqnOptions = "batch=64 hidden=128 steps_per_update=4 start=5000 priority=0";
+constexpr const char* kLstmOptions =
+    "batch=32 hidden=64 sequence=16 burn_in=8 steps_per_update=16 start=5000 priority=0";
+
+std::shared_ptr<const Scenario> Paper(bool all_features) {
+  Scenario scenario = LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml");
+  scenario.view.waterways = scenario.view.courses = all_features;
+  return std::make_shared<const Scenario>(std::move(scenario));
+}
 
 // One learner for all repetitions; its replay is full and its updates are under way.
 struct Training {
-  Training(const char* algorithm, const std::string& options)
-      : environment(
-            std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml")),
-            {kFarms, FindAlgorithm(algorithm).encodings(options), false, 1}),
+  Training(const char* algorithm, const std::string& options, bool all_features)
+      : environment(Paper(all_features),
+                    {kFarms, FindAlgorithm(algorithm).encodings(options), false, 1}),
         learner(FindAlgorithm(algorithm).make(environment.spec(), 1, options)),
         results(&environment.Reset(1)) {
     for (int i = 0; i < 1000; ++i) Step();
@@ -46,25 +53,31 @@ void TrainSteps(benchmark::State& state, Training& training) {
 }
 
 void Dqn(benchmark::State& state) {
-  static Training training("dqn", "batch=64 hidden=128 steps_per_update=4 start=5000 priority=0");
+  static Training training("dqn", kDqnOptions, false);
+  TrainSteps(state, training);
+}
+void DqnAllFeatures(benchmark::State& state) {
+  static Training training("dqn", kDqnOptions, true);
   TrainSteps(state, training);
 }
 void LstmDqn(benchmark::State& state) {
-  static Training training(
-      "lstm_dqn",
-      "batch=32 hidden=64 sequence=16 burn_in=8 steps_per_update=16 start=5000 priority=0");
+  static Training training("lstm_dqn", kLstmOptions, false);
+  TrainSteps(state, training);
+}
+void LstmDqnAllFeatures(benchmark::State& state) {
+  static Training training("lstm_dqn", kLstmOptions, true);
   TrainSteps(state, training);
 }
 
 BENCHMARK(Dqn);
+BENCHMARK(DqnAllFeatures);
 BENCHMARK(LstmDqn);
+BENCHMARK(LstmDqnAllFeatures);
 
-void Print(const std::string& name, double steps, double steps_per_update, double python_updates) {
+void Print(const std::string& name, double steps, double steps_per_update) {
   if (steps == 0.0) return;  // not asked for
   bench::PrintMetric(name + "_training_steps", steps, "steps/s");
   bench::PrintMetric(name + "_updates", steps / steps_per_update, "updates/s");
-  bench::PrintMetric(name + "_updates_to_python", steps / steps_per_update / python_updates,
-                     "ratio");
 }
 
 }  // namespace
@@ -74,7 +87,9 @@ int main(int argc, char** argv) {
   aquafarm::bench::MetricReporter reporter;
   if (!aquafarm::bench::RunMedians(argc, argv, reporter)) return 2;
   using namespace aquafarm::agents;  // NOLINT: this file speaks of nothing else
-  Print("dqn", reporter.median("Dqn"), 4.0, kPythonDqnUpdates);
-  Print("lstm_dqn", reporter.median("LstmDqn"), 16.0, kPythonLstmUpdates);
+  Print("dqn", reporter.median("Dqn"), 4.0);
+  Print("dqn_all_features", reporter.median("DqnAllFeatures"), 4.0);
+  Print("lstm_dqn", reporter.median("LstmDqn"), 16.0);
+  Print("lstm_dqn_all_features", reporter.median("LstmDqnAllFeatures"), 16.0);
   return 0;
 }

@@ -172,6 +172,22 @@ class BenchmarkTest(unittest.TestCase):
         with self.assertRaisesRegex(runs.RunFailed, "^dqn 1: exit code 2: damaged"):
             runs.run_all([job], 1, lambda text: None)
 
+    def test_a_policy_that_is_refused_after_its_training_fails_and_is_not_left_out(self):
+        job = runs.Job("dqn", "dqn 1", self.folder / "dqn", self.folder / "dqn/evaluation.json",
+                       [["true"], ["sh", "-c", "echo of another version; exit 2"]], 1.0)
+        with self.assertRaisesRegex(runs.RunFailed, "^dqn 1: exit code 2: of another version"):
+            runs.run_all([job], 1, lambda text: None)
+
+    def test_networks_take_part_with_the_settings_of_the_protocol(self):
+        one = self.start("out", "--algorithms", "dqn,lstm_dqn", episodes=20)
+        self.assertEqual(0, one.code(180), one.words())
+        everything = json.loads((self.folder / "out/results.json").read_text())
+        for name in ("dqn", "lstm_dqn"):
+            self.assertEqual(2, len(everything["runs"][name]), name)
+            options = (self.folder / f"out/runs/{name}/seed_1/run.json").read_text()
+            self.assertIn("mask_blocked=true", options)
+            self.assertIn("device=cpu", options)
+
     def test_interrupted_it_says_how_to_go_on(self):
         one = self.start("out", "--algorithms", "q_learning", episodes=10000000)
         one.wait_for(lambda: list(self.folder.glob("out/runs/q_learning/*/metrics.csv")),

@@ -46,6 +46,7 @@ nlohmann::json ToIndex(const Checkpoint& c) {
           {"team_reward", c.spec.team_reward},
           {"state_count", c.spec.state_count},
           {"feature_count", c.spec.feature_count},
+          {"feature_names", c.spec.feature_names},
           {"plane_count", c.spec.plane_count},
           {"height", c.spec.height},
           {"width", c.spec.width},
@@ -69,6 +70,7 @@ Checkpoint FromIndex(const nlohmann::json& index) {
   c.spec.team_reward = index.value("team_reward", false);
   index.at("state_count").get_to(c.spec.state_count);
   index.at("feature_count").get_to(c.spec.feature_count);
+  index.at("feature_names").get_to(c.spec.feature_names);
   index.at("plane_count").get_to(c.spec.plane_count);
   index.at("height").get_to(c.spec.height);
   index.at("width").get_to(c.spec.width);

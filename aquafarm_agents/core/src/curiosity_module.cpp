@@ -77,10 +77,9 @@ void CuriosityModule::Learn() {
                                         View(to_, {count, features_}), View(actions_, {count}));
   const torch::Tensor loss =
       output.inverse * (1.0 - kForwardShare) + output.error.mean() * kForwardShare;
-  if (!std::isfinite(loss.item<float>())) {
-    throw LearnerFailed("curiosity: its loss is not a number");
+  if (!std::isfinite(loss.item<float>()) || !adam_.Step(loss, kLearningRate, kGradientLimit)) {
+    throw LearnerFailed("curiosity: its loss, or the gradient of it, is not a number");
   }
-  adam_.Step(loss, kLearningRate, kGradientLimit);
   from_.clear();
   to_.clear();
   actions_.clear();

@@ -40,7 +40,7 @@ class CuriosityModule {
   /// @param from, to [B, F], row-major
   /// @param actions [B]
   /// @param errors [B] of each transition, before learning from them
-  /// @throws LearnerFailed when its loss is not finite
+  /// @throws LearnerFailed when its loss or gradient is not finite
   void Step(std::vector<float>& from, std::vector<float>& to, std::vector<std::int64_t>& actions,
             std::vector<float>& errors);
 

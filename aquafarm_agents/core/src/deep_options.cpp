@@ -53,7 +53,8 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)));
   reader.Resolve("exploration", ToString(options.exploration));
   ReadWhole(reader, "batch", 1, 65536, options.batch);
-  ReadNumber(reader, "steps_per_update", 0.01, 1e6, options.steps_per_update);
+  options.steps_per_update =
+      reader.GetSchedule("steps_per_update", options.steps_per_update, 0.01, 1e6);
   ReadWhole(reader, "start", 0, 1e9, options.start);
   ReadWhole(reader, "replay", 100, 1e9, options.replay);
   ReadWhole(reader, "target_period", 1, 1e9, options.target_period);
@@ -64,6 +65,7 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   options.dueling = reader.Flag("dueling", options.dueling);
   ReadWhole(reader, "n_step", 1, 100, options.n_step);
   ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
+  ReadNumber(reader, "average_rate", 0.0, 1.0, options.average_rate);
   options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
   options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
   if (options.mask_blocked && options.network == NetworkKind::kCnn) {
@@ -75,6 +77,11 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   if (recurrent) {
     ReadWhole(reader, "sequence", 1, 1000, options.sequence);
     ReadWhole(reader, "burn_in", 0, 1000, options.burn_in);
+    // A return ends where its sequence does.
+    if (options.n_step > options.sequence) {
+      throw InputError("n_step: got " + std::to_string(options.n_step) +
+                       ", expected at most sequence, which is " + std::to_string(options.sequence));
+    }
     // Beyond it, steps near an episode's beginning would never be learnt from.
     if (options.burn_in > 0 && options.burn_in >= options.sequence) {
       throw InputError("burn_in: got " + std::to_string(options.burn_in) +

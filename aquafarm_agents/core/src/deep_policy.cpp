@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "deep_policy.h"
 
+#include <algorithm>
+
 #include "aquafarm/check.h"
 
 namespace aquafarm::agents {
 
 void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network) {
   const EnvironmentSpec& own = checkpoint.spec;
-  const auto compare = [&](const std::string& what, std::int32_t got, std::int32_t expected) {
-    if (got == expected) return;
+  const auto refuse = [&](const std::string& what, const std::string& got,
+                          const std::string& expected) {
     throw InputError("policy: " + checkpoint.algorithm + " of scenario " + own.scenario_name +
                      " does not fit scenario " + spec.scenario_name + ": " + what + ": it knows " +
-                     std::to_string(got) + ", the farm has " + std::to_string(expected));
+                     got + ", the farm has " + expected);
+  };
+  const auto compare = [&](const std::string& what, std::int32_t got, std::int32_t expected) {
+    if (got != expected) refuse(what, std::to_string(got), std::to_string(expected));
   };
   compare("agents", own.agents, spec.agents);
   if (network == NetworkKind::kCnn) {
@@ -20,6 +25,11 @@ void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, Networ
     compare("height", own.height, spec.height);
   } else {
     compare("features", own.feature_count, spec.feature_count);
+    const auto [mine, theirs] = std::mismatch(own.feature_names.begin(), own.feature_names.end(),
+                                              spec.feature_names.begin(), spec.feature_names.end());
+    if (mine == own.feature_names.end() || theirs == spec.feature_names.end()) return;
+    const auto number = mine - own.feature_names.begin();
+    refuse("feature " + std::to_string(number), *mine, *theirs);
   }
 }
 

@@ -100,10 +100,10 @@ class DqnLearner final : public Learner {
   LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
   std::unique_ptr<Policy> GreedyPolicy() const override {
     return std::make_unique<GreedyDqnPolicy<Scalar>>(spec_, options_,
-                                                     optimizer_.online().ToVector());
+                                                     optimizer_.acting().ToVector());
   }
   void SavePolicy(Checkpoint& checkpoint) const override {
-    checkpoint.SetArray("weights", optimizer_.online().ToVector());
+    checkpoint.SetArray("weights", optimizer_.acting().ToVector());
   }
   void Save(Checkpoint& checkpoint) const override;
   void Load(const Checkpoint& checkpoint) override;
@@ -138,6 +138,7 @@ class DqnLearner final : public Learner {
   const std::size_t observation_size_;
   std::shared_ptr<QNetwork> online_;
   std::shared_ptr<QNetwork> target_;
+  std::shared_ptr<QNetwork> acting_;  // online_ itself, unless it acts by an average
   ValueOptimizer optimizer_;
   Explorer explorer_;
   RandomStream chance_;
@@ -160,12 +161,13 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       observation_size_(ElementCount(shape_)),
       online_(MakeNetwork(spec, options, seed)),
       target_(MakeNetwork(spec, options, seed)),
-      optimizer_(options, *online_, *target_, device_),
-      explorer_(options.exploration, seed, EntryCount(spec)),
+      acting_(options.average_rate > 0.0 ? MakeNetwork(spec, options, seed) : online_),
+      optimizer_(options, *online_, *target_, *acting_, device_),
+      explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
       chance_({seed, 0, Purpose::kLearner, 1}),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents,
                observation_size_, 0}),
-      sampler_(replay_, options, static_cast<std::size_t>(options.n_step)),
+      sampler_(replay_, options, static_cast<std::size_t>(options.n_step), group()),
       batch_(size(), rows(), observation_size_),
       team_rewards_(static_cast<std::size_t>(spec.agents)) {}
 
@@ -187,7 +189,7 @@ void DqnLearner<Scalar>::Choose(const Results& results, std::vector<std::uint8_t
   actions.resize(results.legal.size());
   const torch::InferenceMode inference;
   const torch::Tensor values =
-      online_->Forward(ToInput(Sight<Scalar>::Of(results), actions.size())).cpu();
+      acting_->Forward(ToInput(Sight<Scalar>::Of(results), actions.size())).cpu();
   const float* row = values.template data_ptr<float>();
   const Scalar* seen = Sight<Scalar>::Of(results);
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += observation_size_) {
@@ -225,7 +227,7 @@ void DqnLearner<Scalar>::DrawAlone(std::size_t i, const Moment& moment) {
 // An agent that is done adds nothing to the team's value, before or after.
 template <typename Scalar>
 void DqnLearner<Scalar>::DrawJoint(std::size_t i, const Moment& moment) {
-  const std::size_t first = moment.entry / group() * group();
+  const std::size_t first = moment.entry;
   const JointTransition all =
       replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
                       static_cast<float>(options_.discount), team_rewards_.data());
@@ -361,9 +363,7 @@ std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const Enviro
   const DeepOptions options = Parse(checkpoint.options, resolved);
   PrepareTorch(options.threads);
   CheckFits(checkpoint, spec, options.network);
-  const std::size_t size = checkpoint.Section("weights").size() / sizeof(float);
-  std::vector<float> weights;
-  checkpoint.GetArray("weights", size, weights);
+  const std::vector<float> weights = ActingWeights(checkpoint);
   if (options.network == NetworkKind::kCnn) {
     return std::make_unique<GreedyDqnPolicy<std::uint8_t>>(spec, options, weights);
   }

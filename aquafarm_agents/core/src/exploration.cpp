@@ -95,8 +95,9 @@ std::array<double, kActionCount> BoltzmannProbabilities(const float* values, Act
   return probabilities;
 }
 
-Explorer::Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries)
-    : kind_(options.kind), schedule_(options.level) {
+Explorer::Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries,
+                   double value_scale)
+    : kind_(options.kind), schedule_(options.level), value_scale_(value_scale) {
   streams_.reserve(entries);
   for (std::size_t i = 0; i < entries; ++i) {
     streams_.emplace_back(StreamKey{seed, 0, Purpose::kExploration, static_cast<std::uint32_t>(i)});
@@ -111,7 +112,7 @@ void Explorer::SetProgress(double progress) {
 }
 
 std::uint8_t Explorer::ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t entry) {
-  const auto probabilities = BoltzmannProbabilities(values, allowed, level_);
+  const auto probabilities = BoltzmannProbabilities(values, allowed, level_ * value_scale_);
   auto left = static_cast<double>(streams_[entry].Unit());
   std::uint8_t chosen = 0;
   for (std::uint8_t a = 0; a < kActionCount; ++a) {

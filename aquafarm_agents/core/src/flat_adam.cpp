@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "flat_adam.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -11,16 +12,16 @@ FlatAdam::FlatAdam(torch::nn::Module& module, torch::Device device)
   State();
 }
 
-void FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double gradient_limit) {
+bool FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double gradient_limit) {
   torch::Tensor gradient = parameters_.values().grad();
   gradient.zero_();
   loss.backward();
-  if (gradient_limit > 0.0) {
-    const double norm = gradient.norm().item<double>();
-    if (norm > gradient_limit) gradient.mul_(gradient_limit / norm);
-  }
+  const double norm = gradient.norm().item<double>();
+  if (!std::isfinite(norm)) return false;
+  if (gradient_limit > 0.0 && norm > gradient_limit) gradient.mul_(gradient_limit / norm);
   static_cast<torch::optim::AdamOptions&>(adam_.param_groups()[0].options()).lr(learning_rate);
   adam_.step();
+  return true;
 }
 
 // Made by the library at its first step; made here before, so that it can be saved and loaded at

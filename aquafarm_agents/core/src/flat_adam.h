@@ -19,7 +19,8 @@ class FlatAdam {
 
   /// Takes one step down the gradient of `loss`.
   /// @param gradient_limit largest norm of the gradient; 0: none
-  void Step(const torch::Tensor& loss, double learning_rate, double gradient_limit);
+  /// @returns false when the gradient is not finite; the parameters are then as they were
+  [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double gradient_limit);
 
   FlatParameters& parameters() { return parameters_; }
   const FlatParameters& parameters() const { return parameters_; }

@@ -50,6 +50,7 @@ EnvironmentSpec MakeSpec(const Scenario& scenario, const Encoder& encoder, std::
   spec.team_reward = scenario.rewards.sharing == RewardSharing::kTeam;
   spec.state_count = encoder.state_count();
   spec.feature_count = encoder.feature_count();
+  spec.feature_names = encoder.feature_names();
   spec.plane_count = encoder.plane_count();
   spec.height = scenario.height;
   spec.width = scenario.width;

@@ -89,7 +89,7 @@ class MaddpgLearner final : public Learner {
   torch::Tensor GumbelNoise();
   torch::Tensor UpdateCritic(const torch::Tensor& observations);
   void UpdateActors(const torch::Tensor& observations);
-  void CheckLoss(float loss, const char* what, std::uint64_t position) const;
+  void Check(bool is_finite, const char* what, std::uint64_t position) const;
   static void Follow(FlatParameters& target, const FlatParameters& online, double rate);
 
   const EnvironmentSpec spec_;
@@ -159,7 +159,7 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       carry_(EntryCount(spec) * carry_size()),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
                carry_size()}),
-      sampler_(replay_, SamplingOf(options), static_cast<std::size_t>(options.n_step)),
+      sampler_(replay_, SamplingOf(options), static_cast<std::size_t>(options.n_step), agents()),
       loss_(std::nanf("")),
       from_(MakeWindow()),
       to_(MakeWindow()),
@@ -217,7 +217,7 @@ void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& ac
 }
 
 // A moment with a whole window before it, or its episode's start. The oldest moments of the replay
-// may have neither: the first one of the same agent that has stands for them.
+// may have neither: the first one of the same farm that has stands for them.
 Moment MaddpgLearner::DrawMoment(std::size_t i) {
   const Moment drawn = sampler_.Draw(chance_, i);
   for (std::size_t back = 0; back <= drawn.age; ++back) {
@@ -226,7 +226,7 @@ Moment MaddpgLearner::DrawMoment(std::size_t i) {
   }
   const auto steps = static_cast<std::size_t>(options_.n_step);
   for (std::size_t age = window() - 1; age + steps < replay_.size(); ++age) {
-    if (replay_.Begins(age, drawn.entry, steps)) return {age, drawn.entry};
+    if (replay_.BeginsForAny(age, drawn.entry, steps)) return {age, drawn.entry};
   }
   return drawn;
 }
@@ -235,7 +235,7 @@ void MaddpgLearner::Draw() {
   const auto scale = static_cast<float>(options_.reward_scale);
   for (std::size_t i = 0; i < batch(); ++i) {
     const Moment moment = DrawMoment(i);
-    const std::size_t first = moment.entry / agents() * agents();
+    const std::size_t first = moment.entry;
     drawn_[i] = moment;
     const JointTransition all =
         replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
@@ -267,14 +267,14 @@ void MaddpgLearner::Draw() {
   for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] *= importance[k / agents()];
 }
 
-// A moment is as surprising as the agent for whom it was drawn found it.
+// A moment is as surprising as those who learn from it found it in the mean. @param errors [B, S]
 void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
-  const torch::Tensor values = errors.cpu().contiguous();
-  const float* error = values.data_ptr<float>();
+  const torch::Tensor learnt = ToDevice(weights_, {options_.batch, spec_.agents}) > 0.0F;
+  const torch::Tensor means =
+      ((errors * learnt).sum(1) / learnt.sum(1).clamp_min(1)).cpu().contiguous();
+  const float* error = means.data_ptr<float>();
   for (std::size_t i = 0; i < batch(); ++i) {
-    const Moment& moment = drawn_[i];
-    sampler_.SetError(replay_.Row(moment.age, moment.entry),
-                      error[i * agents() + moment.entry % agents()]);
+    sampler_.SetError(replay_.Row(drawn_[i].age, drawn_[i].entry), error[i]);
   }
 }
 
@@ -334,9 +334,9 @@ void MaddpgLearner::Update() {
   Draw();
   const torch::Tensor observations = Observations(from_)[options_.window - 1];
   const torch::Tensor loss = UpdateCritic(observations);
-  const auto value = loss.item<float>();
-  CheckLoss(value, "critic", position);
-  judge_.Step(loss, options_.critic_rate.At(progress_), options_.gradient_limit);
+  Check(std::isfinite(loss.item<float>()), "loss of the critic", position);
+  Check(judge_.Step(loss, options_.critic_rate.At(progress_), options_.gradient_limit),
+        "gradient of the critic's loss", position);
   UpdateActors(observations);
   Follow(actor_target_, actor_.parameters(), options_.target_rate);
   Follow(judge_target_, judge_.parameters(), options_.target_rate);
@@ -356,8 +356,11 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
     const torch::Tensor chosen = torch::one_hot(best, kActionCount).to(torch::kFloat);
     const torch::Tensor values = target_critic_.Forward(Observations(to_)[options_.window - 1],
                                                         chosen * present.unsqueeze(2));
-    const torch::Tensor next =
-        options_.best_response ? (values + forbidden).amax(2) : (values * chosen).sum(2);
+    torch::Tensor next = (values * chosen).sum(2);
+    // Of an agent that is done, action 0 alone is ever fitted: it stands for none.
+    if (options_.best_response) {
+      next = torch::where(present > 0.0F, (values + forbidden).amax(2), next);
+    }
     targets = ToDevice(rewards_, each) + ToDevice(discounts_, each) * next;
   }
   const torch::Tensor taken = ToDevice(taken_, joint);
@@ -389,16 +392,17 @@ void MaddpgLearner::UpdateActors(const torch::Tensor& observations) {
       ToDevice(from_.present, {options_.batch, spec_.agents}) / std::max(1.0F, Sum(from_.present));
   const torch::Tensor loss =
       -((action * slope).sum(2) * weights).sum() + options_.logit_penalty * logits.square().mean();
-  CheckLoss(loss.item<float>(), "actors", chance_.position());
-  actor_.Step(loss, options_.actor_rate.At(progress_), options_.gradient_limit);
+  Check(std::isfinite(loss.item<float>()), "loss of the actors", chance_.position());
+  Check(actor_.Step(loss, options_.actor_rate.At(progress_), options_.gradient_limit),
+        "gradient of the actors' loss", chance_.position());
 }
 
-void MaddpgLearner::CheckLoss(float loss, const char* what, std::uint64_t position) const {
-  if (std::isfinite(loss)) return;
-  throw LearnerFailed("loss of the " + std::string(what) + ": got " + std::to_string(loss) +
-                      " at update " + std::to_string(updates_ + 1) + ", after " +
-                      std::to_string(steps_) + " farm steps, on the batch drawn from seed " +
-                      std::to_string(seed_) + " at position " + std::to_string(position) +
+void MaddpgLearner::Check(bool is_finite, const char* what, std::uint64_t position) const {
+  if (is_finite) return;
+  throw LearnerFailed(std::string(what) + ": is not finite at update " +
+                      std::to_string(updates_ + 1) + ", after " + std::to_string(steps_) +
+                      " farm steps, on the batch drawn from seed " + std::to_string(seed_) +
+                      " at position " + std::to_string(position) +
                       "; expected a number: try a smaller actor_rate, critic_rate or reward_scale");
 }
 

@@ -31,7 +31,7 @@ struct MaddpgOptions {
   bool best_response{true};     ///< targets: the best own answer to the others' target actors; else
                                 ///< the own target actor's, as printed
   bool mask_illegal{true};      ///< never try, nor bootstrap on, actions that would be ILLEGAL
-  bool mask_blocked{false};     ///< nor moves onto a charted rock, an island or off the map
+  bool mask_blocked{true};      ///< nor moves onto a charted rock, an island or off the map
   bool shared{true};       ///< one network for all actors, which tells them apart by their index
   bool recurrent{false};   ///< actors with a memory
   std::int32_t window{4};  ///< steps through which a recurrent actor learns

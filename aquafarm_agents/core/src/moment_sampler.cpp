@@ -13,11 +13,12 @@ constexpr float kSmallestPriority = 1e-4F;
 
 template <typename Scalar>
 MomentSampler<Scalar>::MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options,
-                                     std::size_t steps)
+                                     std::size_t steps, std::size_t group)
     : replay_(replay),
       priority_(options.priority),
       importance_(options.importance),
       steps_(steps),
+      group_(group),
       beginnings_(replay.rows()),
       weights_(static_cast<std::size_t>(options.batch), 1.0F) {
   if (priority_ > 0.0) priorities_ = std::make_unique<SumTree>(replay.rows());
@@ -25,11 +26,11 @@ MomentSampler<Scalar>::MomentSampler(const Replay<Scalar>& replay, const DeepOpt
 
 template <typename Scalar>
 void MomentSampler<Scalar>::Remember() {
-  for (std::size_t entry = 0; entry < replay_.entries(); ++entry) {
+  for (std::size_t entry = 0; entry < replay_.entries(); entry += group_) {
     Mark(replay_.Row(replay_.size() - 1, entry), false);  // whatever was there is gone
     if (replay_.size() <= steps_) continue;
     const std::size_t age = replay_.size() - 1 - steps_;
-    Mark(replay_.Row(age, entry), replay_.Begins(age, entry, steps_));
+    Mark(replay_.Row(age, entry), Begins(age, entry));
   }
 }
 
@@ -58,8 +59,9 @@ Moment MomentSampler<Scalar>::Draw(RandomStream& chance, std::size_t i) {
   const auto moments = static_cast<std::uint32_t>(replay_.size() - steps_);
   for (;;) {  // most moments begin a transition, and IsReady has seen one
     const std::size_t age = chance.Below(moments);
-    const std::size_t entry = chance.Below(static_cast<std::uint32_t>(replay_.entries()));
-    if (replay_.Begins(age, entry, steps_)) return {age, entry};
+    const std::size_t entry =
+        group_ * chance.Below(static_cast<std::uint32_t>(replay_.entries() / group_));
+    if (Begins(age, entry)) return {age, entry};
   }
 }
 
@@ -100,8 +102,8 @@ void MomentSampler<Scalar>::Load(const Checkpoint& checkpoint) {
   std::fill(beginnings_.begin(), beginnings_.end(), std::uint8_t{0});
   beginning_count_ = 0;
   for (std::size_t age = 0; age < replay_.size(); ++age) {
-    for (std::size_t entry = 0; entry < replay_.entries(); ++entry) {
-      Mark(replay_.Row(age, entry), replay_.Begins(age, entry, steps_));
+    for (std::size_t entry = 0; entry < replay_.entries(); entry += group_) {
+      Mark(replay_.Row(age, entry), Begins(age, entry));
     }
   }
   if (!priorities_) return;

@@ -15,7 +15,7 @@
 
 namespace aquafarm::agents {
 
-/// A moment of one agent in a replay.
+/// A moment of one agent, or of a whole farm, in a replay.
 struct Moment {
   std::size_t age{};
   std::size_t entry{};
@@ -26,7 +26,10 @@ class MomentSampler {
  public:
   /// @param replay must outlive the sampler
   /// @param steps that a moment must have after it
-  MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps);
+  /// @param group 1, or the agents of a farm, to draw moments of whole farms: their entry is that
+  /// of the farm's first agent, who may be done
+  MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps,
+                std::size_t group = 1);
 
   /// The replay got a moment more.
   void Remember();
@@ -37,7 +40,7 @@ class MomentSampler {
   /// Weights of the batch just drawn, [batch], the largest 1. @param progress of the run: β rises
   /// to 1 with it
   const std::vector<float>& Weigh(double progress);
-  /// The error that was found at a row; of no use when all are drawn alike.
+  /// The error that was found at the row of a drawn moment; of no use when all are drawn alike.
   void SetError(std::size_t row, float error);
 
   void Save(Checkpoint& checkpoint) const;
@@ -46,11 +49,16 @@ class MomentSampler {
 
  private:
   void Mark(std::size_t row, bool begins);
+  bool Begins(std::size_t age, std::size_t entry) const {
+    return group_ == 1 ? replay_.Begins(age, entry, steps_)
+                       : replay_.BeginsForAny(age, entry, steps_);
+  }
 
   const Replay<Scalar>& replay_;
   const double priority_;    // α; 0: all alike
   const double importance_;  // β at the start
   const std::size_t steps_;
+  const std::size_t group_;
   std::vector<std::uint8_t> beginnings_;  // by row: 1 where a transition begins
   std::size_t beginning_count_{};
   std::unique_ptr<SumTree> priorities_;  // by row; null: all alike

@@ -63,9 +63,11 @@ void Planner::Solver::ListOptions(const Farm& farm) {
       std::vector<Option>& options = options_[static_cast<std::size_t>(here)];
       options.clear();
       if ((layout_->bits({x, y}) & kBlockedBits) != 0) continue;
-      // Standing still: of all ways to stay without a crash, the cheapest.
+      // Standing still: of all ways to stay without a crash, the cheapest. Of the two that do
+      // nothing here, not the one that might pick up a device, or drop one off.
+      const bool at_port = (layout_->bits({x, y}) & kPortBit) != 0;
       Option stay{here, scenario_.rewards.illegal, 0.0F,
-                  static_cast<std::uint8_t>(Action::kPickup)};
+                  static_cast<std::uint8_t>(at_port ? Action::kPickup : Action::kDropOff)};
       for (std::uint8_t action = 0; action < kMoveCount; ++action) {
         const Cell to{x + kMoves[action].x, y + kMoves[action].y};
         const bool on_map =

@@ -8,6 +8,7 @@
 #include "aquafarm/check.h"
 #include "deep_policy.h"
 #include "moment_sampler.h"
+#include "sequence_batch.h"
 #include "value_optimizer.h"
 
 namespace aquafarm::agents {
@@ -118,36 +119,6 @@ class RecurrentPolicy final : public Policy {
   Carry carry_;
 };
 
-/// A minibatch of B runs of moments, time first. A run has burn_in moments that warm up the state,
-/// then the moments 0 … T whose first T are learnt from while their episode lasts.
-struct SequenceBatch {
-  std::vector<float> warm_up;         // [burn_in, B, F]
-  std::vector<float> observations;    // [T + 1, B, F]
-  std::vector<float> carry;           // [B, 2, hidden] before the first moment of warm_up
-  std::vector<float> keeps_state;     // [B] 0: the run begins its episode, with an empty state
-  std::vector<std::int64_t> actions;  // [T, B]
-  std::vector<float> rewards;         // [T, B] summed over the steps to `next`
-  std::vector<float> discounts;       // [T, B] of the value at `next`
-  std::vector<std::int64_t> next;     // [T, B] moment that the target looks at
-  std::vector<float> forbidden;       // [T + 1, B, kActionCount]
-  std::vector<float> weights;         // [T, B], summing to 1 at most; 0: not learnt
-  std::vector<std::size_t> rows;      // [T, B] of the replay
-
-  SequenceBatch(std::size_t b, std::size_t t, std::size_t burn_in, std::size_t features,
-                std::size_t carry_size)
-      : warm_up(burn_in * b * features),
-        observations((t + 1) * b * features),
-        carry(b * carry_size),
-        keeps_state(b),
-        actions(t * b),
-        rewards(t * b),
-        discounts(t * b),
-        next(t * b),
-        forbidden((t + 1) * b * kActionCount),
-        weights(t * b),
-        rows(t * b) {}
-};
-
 class RecurrentDqnLearner final : public Learner {
  public:
   RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
@@ -158,18 +129,15 @@ class RecurrentDqnLearner final : public Learner {
   void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
   std::unique_ptr<Policy> GreedyPolicy() const override {
-    return std::make_unique<RecurrentPolicy>(spec_, options_, optimizer_.online().ToVector());
+    return std::make_unique<RecurrentPolicy>(spec_, options_, optimizer_.acting().ToVector());
   }
   void SavePolicy(Checkpoint& checkpoint) const override {
-    checkpoint.SetArray("weights", optimizer_.online().ToVector());
+    checkpoint.SetArray("weights", optimizer_.acting().ToVector());
   }
   void Save(Checkpoint& checkpoint) const override;
   void Load(const Checkpoint& checkpoint) override;
 
  private:
-  std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
-  std::size_t sequence() const { return static_cast<std::size_t>(options_.sequence); }
-  std::size_t burn_in() const { return static_cast<std::size_t>(options_.burn_in); }
   std::size_t features() const { return static_cast<std::size_t>(spec_.feature_count); }
   template <typename T>
   torch::Tensor ToDevice(std::vector<T>& values, std::vector<std::int64_t> shape) const {
@@ -177,8 +145,6 @@ class RecurrentDqnLearner final : public Learner {
   }
   void Update();
   void Draw();
-  void DrawOne(std::size_t b);
-  void FillRun(std::size_t b, std::size_t age, std::size_t entry);
   RecurrentNetwork::State WarmState(RecurrentNetwork& network);
   void Reprioritise(const torch::Tensor& errors);
 
@@ -189,6 +155,7 @@ class RecurrentDqnLearner final : public Learner {
   const torch::Device device_;
   std::shared_ptr<RecurrentNetwork> online_;
   std::shared_ptr<RecurrentNetwork> target_;
+  std::shared_ptr<RecurrentNetwork> acting_;  // online_ itself, unless it acts by an average
   ValueOptimizer optimizer_;
   Explorer explorer_;
   RandomStream chance_;
@@ -208,14 +175,15 @@ RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint6
       device_(FindDevice(options.device)),
       online_(MakeRecurrent(spec, options, seed)),
       target_(MakeRecurrent(spec, options, seed)),
-      optimizer_(options, *online_, *target_, device_),
-      explorer_(options.exploration, seed, EntryCount(spec)),
+      acting_(options.average_rate > 0.0 ? MakeRecurrent(spec, options, seed) : online_),
+      optimizer_(options, *online_, *target_, *acting_, device_),
+      explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
       chance_({seed, 0, Purpose::kLearner, 1}),
       carry_(EntryCount(spec), options.hidden),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
                carry_.size_of_one()}),
       sampler_(replay_, options, 1),
-      batch_(batch(), sequence(), burn_in(), features(), carry_.size_of_one()) {}
+      batch_(options, features(), carry_.size_of_one()) {}
 
 void RecurrentDqnLearner::Step(const Results& results, double progress,
                                std::vector<std::uint8_t>& actions) {
@@ -229,7 +197,7 @@ void RecurrentDqnLearner::Step(const Results& results, double progress,
   explorer_.SetProgress(progress);
   actions.resize(results.legal.size());
   const torch::NoGradGuard no_grad;
-  const torch::Tensor values = StepNetwork(*online_, results, spec_.feature_count, carry_, device_);
+  const torch::Tensor values = StepNetwork(*acting_, results, spec_.feature_count, carry_, device_);
   const float* row = values.data_ptr<float>();
   const float* seen = results.features.data();
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features()) {
@@ -239,86 +207,38 @@ void RecurrentDqnLearner::Step(const Results& results, double progress,
   replay_.SetActions(actions);
 }
 
-// Draws a moment to learn from, and where to warm up the state before it: at most burn_in moments
-// back, with the state stored there. A run never crosses an episode: near its beginning it starts
-// there, with the empty state that is exact.
-void RecurrentDqnLearner::DrawOne(std::size_t b) {
-  const auto [age, entry] = sampler_.Draw(chance_, b);
-  std::size_t back = 0;
-  while (back < burn_in() && back < age && !replay_.started(replay_.Row(age - back, entry))) ++back;
-  const bool at_start = replay_.started(replay_.Row(age - back, entry));
-  // Full burn-in, or from the episode's first moment; what the ring has dropped cannot warm up.
-  const bool warms_up = back == burn_in() && !at_start;
-  const std::size_t first = warms_up ? age : age - back;
-  const std::size_t from = warms_up ? age - burn_in() : first;
-  const bool empty = !warms_up && at_start;
-  batch_.keeps_state[b] = empty ? 0.0F : 1.0F;
-  for (std::size_t t = 0; t < burn_in(); ++t) {
-    const std::size_t row = replay_.Row(warms_up ? from + t : first, entry);
-    std::copy_n(replay_.observation(row), features(),
-                batch_.warm_up.data() + (t * batch() + b) * features());
-  }
-  std::copy_n(replay_.carry(replay_.Row(from, entry)), carry_.size_of_one(),
-              batch_.carry.data() + b * carry_.size_of_one());
-  FillRun(b, first, entry);
-}
-
-void RecurrentDqnLearner::FillRun(std::size_t b, std::size_t age, std::size_t entry) {
-  const std::size_t steps = sequence();
-  std::size_t last = 0;  // moment at which the run ends
-  while (last < steps && replay_.Begins(age + last, entry, 1)) ++last;
-  for (std::size_t t = 0; t <= steps; ++t) {
-    const std::size_t row = replay_.Row(age + std::min(t, last), entry);
-    std::copy_n(replay_.observation(row), features(),
-                batch_.observations.data() + (t * batch() + b) * features());
-    const ActionMask allowed = Allowed(replay_.legal(row), replay_.observation(row), options_);
-    MarkForbidden(allowed, batch_.forbidden.data() + (t * batch() + b) * kActionCount);
-  }
-  for (std::size_t t = 0; t < steps; ++t) {
-    const std::size_t i = t * batch() + b;
-    const bool is_learnt = t < last;
-    batch_.rows[i] = replay_.Row(age + std::min(t, last), entry);
-    batch_.weights[i] = is_learnt ? 1.0F : 0.0F;
-    batch_.actions[i] = 0;
-    batch_.rewards[i] = batch_.discounts[i] = 0.0F;
-    batch_.next[i] = static_cast<std::int64_t>(last);
-    if (!is_learnt) continue;
-    const std::size_t reach = std::min(static_cast<std::size_t>(options_.n_step), last - t);
-    const Transition one = replay_.At(age + t, entry, reach, static_cast<float>(options_.discount));
-    batch_.actions[i] = one.action;
-    batch_.rewards[i] = one.reward * static_cast<float>(options_.reward_scale);
-    batch_.discounts[i] = one.discount;
-    batch_.next[i] = static_cast<std::int64_t>(t + reach);
-  }
-}
-
 void RecurrentDqnLearner::Draw() {
-  for (std::size_t b = 0; b < batch(); ++b) DrawOne(b);
+  for (std::size_t b = 0; b < batch_.size(); ++b) {
+    batch_.Fill(b, replay_, sampler_.Draw(chance_, b), options_);
+  }
   const std::vector<float>& importance = sampler_.Weigh(progress_);
   float sum = 0.0F;
   for (std::size_t i = 0; i < batch_.weights.size(); ++i) {
     sum += batch_.weights[i];
-    batch_.weights[i] *= importance[i % batch()];
+    batch_.weights[i] *= importance[i % batch_.size()];
   }
   for (float& weight : batch_.weights) weight /= sum;
 }
 
 RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network) {
   const torch::NoGradGuard no_grad;
-  const auto count = static_cast<std::int64_t>(batch());
+  const auto count = static_cast<std::int64_t>(batch_.size());
   RecurrentNetwork::State state =
       Carry::StateOf(batch_.carry.data(), count, options_.hidden, device_);
-  if (burn_in() == 0) return state;
+  if (options_.burn_in == 0) return state;
+  const RecurrentNetwork::State stored = state;
   network.WarmUp(ToDevice(batch_.warm_up, {options_.burn_in, count, spec_.feature_count}), state);
-  const torch::Tensor keeps = ToDevice(batch_.keeps_state, {1, count, 1});
-  return {state.first * keeps, state.second * keeps};
+  const torch::Tensor warms_up = ToDevice(batch_.warms_up, {1, count, 1}) > 0.0F;
+  return {torch::where(warms_up, state.first, stored.first),
+          torch::where(warms_up, state.second, stored.second)};
 }
 
 void RecurrentDqnLearner::Update() {
-  if (replay_.size() < 2 + burn_in() + sequence() || !sampler_.IsReady()) return;
+  const auto longest = static_cast<std::size_t>(options_.burn_in + options_.sequence);
+  if (replay_.size() < 2 + longest || !sampler_.IsReady()) return;
   const BatchOrigin origin{seed_, chance_.position()};
   Draw();
-  const auto count = static_cast<std::int64_t>(batch());
+  const auto count = static_cast<std::int64_t>(batch_.size());
   const std::int64_t steps = options_.sequence;
   const torch::Tensor observations =
       ToDevice(batch_.observations, {steps + 1, count, spec_.feature_count});
@@ -403,9 +323,7 @@ std::unique_ptr<Policy> MakeRecurrentDqnPolicy(const Checkpoint& checkpoint,
   const DeepOptions options = Parse(checkpoint.options, resolved);
   PrepareTorch(options.threads);
   CheckFits(checkpoint, spec, NetworkKind::kMlp);
-  std::vector<float> weights;
-  checkpoint.GetArray("weights", checkpoint.Section("weights").size() / sizeof(float), weights);
-  return std::make_unique<RecurrentPolicy>(spec, options, weights);
+  return std::make_unique<RecurrentPolicy>(spec, options, ActingWeights(checkpoint));
 }
 
 }  // namespace aquafarm::agents

@@ -81,6 +81,7 @@ Transition Replay<Scalar>::At(std::size_t age, std::size_t entry, std::size_t st
   transition.discount = 1.0F;
   for (std::size_t k = 1; k <= steps; ++k) {
     const std::size_t row = Row(age + k, entry);
+    if (k > 1 && started(row)) break;  // the episode was lost; its last known moment is the end
     transition.reward += transition.discount * rewards_[row];
     transition.discount *= discount;
     transition.to = row;
@@ -100,6 +101,7 @@ JointTransition Replay<Scalar>::JointAt(std::size_t age, std::size_t first, std:
   std::fill_n(rewards, agents, 0.0F);
   for (std::size_t k = 1; k <= steps; ++k) {
     const std::size_t row = Row(age + k, first);
+    if (k > 1 && started(row)) break;
     bool goes_on = false;
     for (std::size_t agent = 0; agent < agents; ++agent) {
       rewards[agent] += transition.discount * rewards_[row + agent];

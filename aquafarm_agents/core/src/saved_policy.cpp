@@ -37,6 +37,13 @@ SavedPolicy FindPolicy(const std::string& where) {
 }
 
 std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSpec& spec) {
+  const std::string& version = saved.checkpoint.version;  // of those that do not learn: none
+  if (!version.empty() && version != spec.version) {
+    throw InputError(saved.path + ": was trained by aquafarm " + version + ", expected " +
+                     spec.version +
+                     ", whose farms it is to play on: train it again, or play it "
+                     "with the version it knows");
+  }
   try {
     return FindAlgorithm(saved.checkpoint.algorithm).make_policy(saved.checkpoint, spec);
   } catch (const InputError& error) {

@@ -81,8 +81,9 @@ double Cost(const Work& work, const Shares& shares) {
 /// Moves and swaps devices between ships while that is better.
 class LocalSearch {
  public:
-  LocalSearch(const Work& work, std::size_t slots, Shares& shares)
-      : work_(work), slots_(slots), shares_(shares), cost_(Cost(work, shares)) {}
+  /// @param room devices that each ship may be given
+  LocalSearch(const Work& work, const std::vector<std::size_t>& room, Shares& shares)
+      : work_(work), room_(room), shares_(shares), cost_(Cost(work, shares)) {}
   void Run() {
     while (Improve()) {
     }
@@ -100,7 +101,7 @@ class LocalSearch {
     return false;
   }
   bool TryMove(std::size_t a, std::size_t i, std::size_t b) {
-    if (shares_[b].size() >= slots_) return false;
+    if (shares_[b].size() >= room_[b]) return false;
     Shares changed = shares_;
     changed[b].push_back(changed[a][i]);
     changed[a].erase(changed[a].begin() + static_cast<std::ptrdiff_t>(i));
@@ -123,7 +124,7 @@ class LocalSearch {
   }
 
   const Work& work_;
-  std::size_t slots_;
+  const std::vector<std::size_t>& room_;
   Shares& shares_;
   double cost_;
 };
@@ -147,7 +148,12 @@ class TeamPlanner::Impl {
     const Work work(farm);
     const auto slots = static_cast<std::size_t>(Slots(scenario_));
     Shares shares(static_cast<std::size_t>(scenario_.ships.count));
+    // Ships may have more aboard than they would be given: whoever drove them before gave it.
     std::vector<std::size_t> room(shares.size());
+    for (std::size_t ship = 0; ship < shares.size(); ++ship) {
+      const auto aboard = static_cast<std::size_t>(farm.ships()[ship].aboard);
+      room[ship] = slots - std::min(slots, aboard);
+    }
     std::vector<std::int32_t> waiting;
     for (std::size_t id = 0; id < farm.devices().size(); ++id) {
       const Device& device = farm.devices()[id];
@@ -158,13 +164,14 @@ class TeamPlanner::Impl {
     std::stable_sort(waiting.begin(), waiting.end(), [&work](std::int32_t a, std::int32_t b) {
       return work.ToPort(a) > work.ToPort(b);
     });
-    const std::size_t most = slots - static_cast<std::size_t>(MostAboard(farm));
-    for (const std::int32_t device : waiting) Give(work, device, most, shares);
-    if (!shares.empty()) LocalSearch(work, std::max<std::size_t>(most, 1), shares).Run();
+    for (const std::int32_t device : waiting) Give(work, device, room, shares);
+    LocalSearch(work, room, shares).Run();
     for (std::size_t id = 0; id < farm.devices().size(); ++id) {
       const Device& device = farm.devices()[id];
       if (device.carrier == kNone) continue;
-      shares[static_cast<std::size_t>(device.carrier)].push_back(static_cast<std::int32_t>(id));
+      auto& share = shares[static_cast<std::size_t>(device.carrier)];
+      // The rest of a larger load is landed with it, or planned for afterwards.
+      if (share.size() < slots) share.push_back(static_cast<std::int32_t>(id));
     }
     for (std::size_t id = shares.size(); id < farm.ships().size(); ++id) {
       const Ship& ship = farm.ships()[id];
@@ -174,17 +181,12 @@ class TeamPlanner::Impl {
   }
 
  private:
-  static std::int32_t MostAboard(const Farm& farm) {
-    std::int32_t most = 0;
-    for (const Ship& ship : farm.ships()) most = std::max(most, ship.aboard);
-    return most;
-  }
-
-  static void Give(const Work& work, std::int32_t device, std::size_t most, Shares& shares) {
+  static void Give(const Work& work, std::int32_t device, const std::vector<std::size_t>& room,
+                   Shares& shares) {
     std::size_t best = shares.size();
     double best_cost = 0.0;
     for (std::size_t ship = 0; ship < shares.size(); ++ship) {
-      if (shares[ship].size() >= most) continue;
+      if (shares[ship].size() >= room[ship]) continue;
       shares[ship].push_back(device);
       const double cost = Cost(work, shares);
       shares[ship].pop_back();

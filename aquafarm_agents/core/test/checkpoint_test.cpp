@@ -82,7 +82,7 @@ TEST_F(CheckpointFile, RefusalsSayWhatTheFileIs) {
   std::string bytes = ReadFile(path);
   bytes[8] = 9;
   WriteFileAtomically(path, bytes);
-  EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "of format 9, expected 1");
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "of format 9, expected 2");
 }
 
 TEST_F(CheckpointFile, MissingAndWrongSectionsAreNamed) {
@@ -162,6 +162,7 @@ TEST_F(SavedPolicyFile, PlaysLikeTheLearnerThatSavedIt) {
   checkpoint.kind = Checkpoint::kPolicy;
   checkpoint.algorithm = "sarsa";
   checkpoint.spec = environment.spec();
+  checkpoint.version = checkpoint.spec.version;
   learner.SavePolicy(checkpoint);
   WriteCheckpoint(folder_ + "/policy.ckpt", checkpoint);
   const SavedPolicy saved = FindPolicy(folder_);
@@ -176,6 +177,11 @@ TEST_F(SavedPolicyFile, PlaysLikeTheLearnerThatSavedIt) {
   other.width = 30;
   EXPECT_CONTAINS(MessageOf<InputError>([&] { MakePolicy(saved, other); }),
                   "does not fit scenario tiny: width: it knows 5, the farm has 30");
+  SavedPolicy old = saved;
+  old.checkpoint.version = "0.0.1";
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([&] { MakePolicy(old, environment.spec()); }),
+      "policy.ckpt: was trained by aquafarm 0.0.1, expected " + environment.spec().version);
 }
 
 TEST_F(SavedPolicyFile, AFolderWithoutAPolicyIsRefused) {

@@ -10,6 +10,7 @@
 #include "aquafarm/check.h"
 #include "aquafarm/rng.h"
 #include "deep_policy.h"
+#include "flat_adam.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -202,6 +203,19 @@ TEST(FlatParameters, AreTheNetworksOwn) {
   of_other.FromVector(parameters.ToVector());
   const torch::Tensor input = Noise({2, 5}, 1);
   EXPECT_TRUE(torch::equal(network->Forward(input), other->Forward(input)));
+}
+
+TEST(FlatAdam, TakesNoStepDownAGradientThatIsNoNumber) {
+  const auto network = MakeNetwork(SmallSpec(), {}, 3);
+  FlatAdam adam(*network, torch::kCPU);
+  const std::vector<float> before = adam.parameters().ToVector();
+  for (const double limit : {0.0, 10.0}) {
+    const torch::Tensor zero = adam.parameters().values().sum() * 0.0;
+    EXPECT_FALSE(adam.Step(zero.sqrt(), 0.01, limit)) << "a loss of 0, whose slope is none";
+    EXPECT_EQ(adam.parameters().ToVector(), before);
+  }
+  EXPECT_TRUE(adam.Step(adam.parameters().values().square().sum(), 0.01, 0.0));
+  EXPECT_NE(adam.parameters().ToVector(), before);
 }
 
 TEST(DrawWeights, KeepsToPyTorchsLimits) {

@@ -90,6 +90,26 @@ TEST(Replay, NothingBeginsAtAnEpisodesLastMomentOrWithoutASuccessor) {
   EXPECT_FALSE(replay.Begins(2, 1, 1)) << "the newest";
 }
 
+// The farms were gone and are back with new episodes: what was done last led nowhere.
+TEST(Replay, ALostEpisodeEndsAtItsLastKnownMoment) {
+  TwoFarms farms(10);
+  for (int t = 0; t < 3; ++t) farms.Add(kNot, kNot);
+  farms.Add(kNot, kNot, true);
+  farms.Add(kNot, kNot);
+  const auto& replay = farms.replay();
+  EXPECT_FALSE(replay.Begins(2, 0, 1));
+  EXPECT_TRUE(replay.Begins(2, 1, 1)) << "the other farm goes on";
+  EXPECT_TRUE(replay.Begins(1, 0, 3));
+  const Transition one = replay.At(1, 0, 3, 0.5F);
+  EXPECT_FLOAT_EQ(one.reward, 2.0F) << "nothing of the next episode";
+  EXPECT_FLOAT_EQ(one.discount, 0.5F);
+  EXPECT_EQ(one.to, replay.Row(2, 0));
+  float reward = 0.0F;
+  const JointTransition all = replay.JointAt(1, 0, 3, 0.5F, &reward);
+  EXPECT_FLOAT_EQ(reward, 2.0F);
+  EXPECT_EQ(all.to, replay.Row(2, 0));
+}
+
 TEST(Replay, ContinuesFromACheckpoint) {
   TwoFarms farms(4, 1);
   for (int t = 0; t < 7; ++t) farms.Add(kNot, kNot);

@@ -210,6 +210,34 @@ TEST(TeamPlanner, SharesOutTheWorkEvenly) {
   EXPECT_NE(shares[0], shares[1]);
 }
 
+// A person, or another policy, may have loaded a ship with more than the planner would.
+TEST(TeamPlanner, TakesOverShipsWithAnyLoad) {
+  Scenario scenario = TinyTeam();
+  scenario.width = 10;
+  scenario.ships.capacity = 8;
+  scenario.devices.sites.clear();
+  for (std::int32_t x = 2; x < 9; ++x) {
+    scenario.devices.sites.push_back({{x, 0}, DeviceKind::kMonitoring, 60.0F, false});
+  }
+  scenario.devices.sites.push_back({{9, 3}, DeviceKind::kMonitoring, 60.0F, false});
+  scenario.step_limit = 80;
+  Farm farm = aquafarm::test::MakeFarm(scenario);
+  const std::int32_t start = farm.ships()[0].cell.x;
+  for (std::int32_t x = start + 1; x < 9; ++x) {
+    const std::uint8_t east[] = {aquafarm::test::Act(Action::kEast),
+                                 aquafarm::test::Act(Action::kDropOff)};
+    farm.Step(east);
+    const std::uint8_t pick_up[] = {aquafarm::test::Act(Action::kPickup),
+                                    aquafarm::test::Act(Action::kDropOff)};
+    if (x >= 2) farm.Step(pick_up);
+  }
+  ASSERT_EQ(farm.ships()[0].aboard, 7) << "more than an even share and two";
+  const auto shares = TeamPlanner(scenario, Foresight::kClairvoyant).Assign(farm);
+  EXPECT_EQ(shares[1], std::vector<std::int32_t>{7}) << "the other ship has room";
+  Play(farm, Foresight::kClairvoyant);
+  EXPECT_TRUE(farm.record().Success());
+}
+
 TEST(TeamPlanner, KeepsShipsOutOfEachOthersWay) {
   Scenario scenario = aquafarm::test::CrowdedScenario(4, 2);
   scenario.width = scenario.height = 14;

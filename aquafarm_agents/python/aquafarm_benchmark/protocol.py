@@ -31,11 +31,12 @@ class Contestant:
 # episodes are all of chance, and those that end soon come first.
 FARMS = 1
 
-# Why these numbers: docs/decisions/settling_early.md. Networks have seen enough of chance after
+# Trainings run side by side, a core each, and their numbers are to be the same on every machine:
+# hence device=cpu. Why these numbers: docs/decisions/settling_early.md. Networks have seen enough of chance after
 # some thirty long episodes, tables after a thousand; what is left of chance is a choice among moves
-# that are worth about the same: the temperature is one point of reward, which networks see as 0.05.
+# that are worth about the same: the temperature is one point of reward.
 _EXPLORED = 30
-_COOLING = "boltzmann:linear:1:0.05:{explored}"
+_COOLING = "boltzmann:linear:20:1:{explored}"
 _SETTLED = 400  # from here on a network only refines what it has learnt
 
 CONTESTANTS = (
@@ -45,10 +46,10 @@ CONTESTANTS = (
     Contestant("sarsa", "SARSA", "#17becf", cost=0.02,
                exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
     Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING,
-               options=("steps_per_update=1", "mask_blocked=true",
+               options=("device=cpu", "steps_per_update=1", "mask_blocked=true",
                         "learning_rate=linear:5e-4:3e-5:{settled}")),
     Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
-               options=("hidden=64", "mask_blocked=true",
+               options=("device=cpu", "hidden=64", "mask_blocked=true",
                         "learning_rate=linear:5e-4:5e-5:{settled}")),
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
                repeats=False),

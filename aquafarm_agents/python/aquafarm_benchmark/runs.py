@@ -93,7 +93,8 @@ def run_all(jobs, at_once, report, lock=None, period_s=10.0):
     """Runs the jobs that have no result yet, the longest first, `at_once` side by side.
 
     report(text) is told what is going on every period_s. Returns {name of contestant: reason} of
-    those who refused to take part (exit code 2, such as a table on a farm with too many states).
+    those whose first program refused to begin (exit code 2, such as a table on a farm with too many
+    states). Whoever refuses later on, or after a run of theirs is over, has failed.
     lock is a file descriptor that every process keeps open until it has ended.
     Raises RunFailed when some failed (the others are run all the same), Interrupted on Ctrl-C after
     every process has saved and ended.
@@ -104,6 +105,7 @@ def run_all(jobs, at_once, report, lock=None, period_s=10.0):
     if over:
         report(f"{over} of {len(jobs)} runs are there already")
     progress = _Progress(jobs, over, waiting, at_once)
+    took_part = {job.contestant for job in jobs if is_complete(job.result)}
     running, failures, declined, told = [], [], {}, time.monotonic()
     try:
         while waiting or running:
@@ -124,8 +126,10 @@ def run_all(jobs, at_once, report, lock=None, period_s=10.0):
                 running.remove(job)
                 if code == 0 and is_complete(job.result):
                     progress.finish(job)
+                    took_part.add(job.contestant)
                     shutil.rmtree(job.folder / "checkpoints", ignore_errors=True)
-                elif code == _REFUSED and not job.resumes:
+                elif (code == _REFUSED and not job.resumes and job.next_command == 1 and
+                      job.contestant not in took_part):
                     declined.setdefault(job.contestant, job.last_words())
                     waiting = [one for one in waiting if one.contestant != job.contestant]
                 else:

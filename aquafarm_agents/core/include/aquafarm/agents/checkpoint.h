@@ -18,7 +18,7 @@
 
 namespace aquafarm::agents {
 
-inline constexpr std::uint32_t kCheckpointFormat = 1;
+inline constexpr std::uint32_t kCheckpointFormat = 2;
 
 struct Checkpoint {
   // What it is.

@@ -31,10 +31,10 @@ struct DeepOptions {
   double discount{0.97};
   ExplorationOptions exploration{
       ExplorationKind::kEpsilonGreedy, {ScheduleKind::kLinear, 1.0, 0.005, 0.1}, {}};
-  std::int32_t batch{64};            ///< transitions, or sequences, of an update
-  double steps_per_update{2.0};      ///< farm steps between updates
-  std::uint64_t start{5000};         ///< farm steps before the first update
-  std::uint64_t replay{100000};      ///< transitions kept
+  std::int32_t batch{64};  ///< transitions, or sequences, of an update
+  Schedule steps_per_update{ScheduleKind::kConstant, 2.0};  ///< farm steps between updates
+  std::uint64_t start{5000};                                ///< farm steps before the first update
+  std::uint64_t replay{100000};                             ///< transitions kept
   std::uint64_t target_period{250};  ///< updates between copies to the target network (hard)
   double target_rate{0.0};           ///< share copied at each update (soft) instead; 0: hard
   LossKind loss{LossKind::kHuber};
@@ -47,8 +47,11 @@ struct DeepOptions {
   double priority{0.6};       ///< exponent α of Schaul et al. 2016; 0: uniform
   double importance{0.4};     ///< exponent β of the same, at the start; 1 at the end
   double reward_scale{0.05};  ///< 1: off
-  bool mask_illegal{true};    ///< never try, nor bootstrap on, actions that would be ILLEGAL
-  bool mask_blocked{false};   ///< nor moves onto a charted rock, an island or off the map
+  /// Share of each update in the average of all weights so far, which then acts instead of the
+  /// newest (Polyak and Juditsky 1992); 0: off
+  double average_rate{0.0};
+  bool mask_illegal{true};   ///< never try, nor bootstrap on, actions that would be ILLEGAL
+  bool mask_blocked{false};  ///< nor moves onto a charted rock, an island or off the map
 
   // Recurrent alone (R2D2: Kapturowski et al. 2019).
   std::int32_t sequence{4};  ///< steps learnt from; 1 with burn_in 0: the paper's literal tuples

@@ -42,6 +42,7 @@ struct EnvironmentSpec {
   bool team_reward{};           ///< every agent is given the sum of all agents' rewards here
   std::uint32_t state_count{};  ///< tabular states; 0: too many for a table
   std::int32_t feature_count{};
+  std::vector<std::string> feature_names;  ///< [feature_count] as Encoder::feature_names
   std::int32_t plane_count{};
   std::int32_t height{};
   std::int32_t width{};

@@ -4,8 +4,8 @@
 /// How a learner that knows action values tries others (Fig. 7).
 ///
 ///   ε-greedy (Eq. 7)   with probability ε any action, else the best known
-///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. The paper prints no
-///                      temperature, which is T = 1 here
+///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. T counts in units of
+///                      reward. The paper prints no temperature, which is T = 1 here
 ///   curiosity            either of them, paid besides for what could not be foreseen; curiosity.h
 ///
 /// ε and T follow a Schedule. Every agent of every farm draws from a stream of its own.
@@ -82,8 +82,11 @@ std::array<double, kActionCount> BoltzmannProbabilities(const float* values, Act
 class Explorer {
  public:
   /// @param entries farms × agents; entry i draws from stream i of (seed, exploration)
-  Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries);
+  /// @param value_scale what a reward of 1 is among the values that Choose is given
+  Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries,
+           double value_scale = 1.0);
 
+  /// @param progress of the run, [0, 1]
   void SetProgress(double progress);
   /// ε or temperature in force.
   double level() const { return level_; }
@@ -109,6 +112,7 @@ class Explorer {
 
   ExplorationKind kind_;
   Schedule schedule_;
+  double value_scale_;
   double level_{};
   float epsilon_{};
   std::vector<RandomStream> streams_;

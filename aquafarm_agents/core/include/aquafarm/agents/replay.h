@@ -11,7 +11,8 @@
 ///   reward        r_t          r_t+1        …         that led to o_t
 ///
 /// An episode's last moment has a reason; its action counts for nothing, and the next moment is the
-/// first of another episode.
+/// first of another episode. So is one that started without a reason before it: the farms were lost
+/// in mid-episode, and what was done last led nowhere that is known.
 
 #include <cstdint>
 #include <string>
@@ -46,7 +47,7 @@ struct ReplayOptions {
   std::size_t carry_size{};        ///< numbers that an agent carries from step to step; 0: none
 };
 
-/// One transition over n steps, or until its episode ended.
+/// One transition over n steps, or until its episode ended or was lost.
 struct Transition {
   std::size_t from{};  ///< row of the observation; see Replay::observation
   std::size_t to{};    ///< row of the observation that the target looks at
@@ -79,9 +80,18 @@ class Replay {
   std::size_t entries() const { return options_.entries; }
 
   /// Whether a transition (or a run of `steps` moments) begins here: the moment has `steps` later
-  /// ones, and its episode was not over. @param age moments back from the oldest kept, [0, size())
+  /// ones, its episode was not over, and the next moment is of the same episode, which it is not
+  /// where farms were lost on the way. @param age moments after the oldest kept, [0, size())
   bool Begins(std::size_t age, std::size_t entry, std::size_t steps) const {
-    return age + steps < size_ && reasons_[Row(age, entry)] == 0;
+    return age + steps < size_ && reasons_[Row(age, entry)] == 0 &&
+           started_[Row(age + 1, entry)] == 0;
+  }
+  /// Whether it does for any agent of a farm. @param first entry of its first agent
+  bool BeginsForAny(std::size_t age, std::size_t first, std::size_t steps) const {
+    for (std::size_t agent = 0; agent < static_cast<std::size_t>(options_.agents); ++agent) {
+      if (Begins(age, first + agent, steps)) return true;
+    }
+    return false;
   }
   /// @returns the transition over `steps` steps that begins at a row where Begins holds
   Transition At(std::size_t age, std::size_t entry, std::size_t steps, float discount) const;

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The clairvoyant plan of one episode of paper.yaml, and the decisions a second of the planner that
+// goes by the forecast and plans anew each step; one thread, episodes of unlike seeds.
+#include <benchmark/benchmark.h>
+
+#include <memory>
+
+#include "aquafarm/agents/planner.h"
+#include "aquafarm/farm.h"
+#include "aquafarm/scenario_yaml.h"
+#include "metric_reporter.h"
+
+namespace aquafarm::agents {
+namespace {
+
+Farm Paper() {
+  return Farm(std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml")));
+}
+
+void Clairvoyant(benchmark::State& state) {
+  Farm farm = Paper();
+  Planner planner(farm.scenario());
+  std::uint64_t episode = 0;
+  for (auto _ : state) {
+    farm.Reset(1, episode++);
+    benchmark::DoNotOptimize(planner.Solve(farm, Foresight::kClairvoyant).expected_return);
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+void RecedingHorizon(benchmark::State& state) {
+  Farm farm = Paper();
+  Planner planner(farm.scenario());
+  std::uint64_t episode = 0;
+  farm.Reset(1, episode);
+  for (auto _ : state) {
+    const std::uint8_t action = planner.Solve(farm, Foresight::kHeadingHolds).actions.at(0);
+    farm.Step(&action);
+    if (farm.over()) farm.Reset(1, ++episode);
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+BENCHMARK(Clairvoyant);
+BENCHMARK(RecedingHorizon);
+
+}  // namespace
+}  // namespace aquafarm::agents
+
+int main(int argc, char** argv) {
+  aquafarm::bench::MetricReporter reporter;
+  if (!aquafarm::bench::RunMedians(argc, argv, reporter)) return 2;
+  aquafarm::bench::PrintMetric("clairvoyant_plan", 1.0 / reporter.median("Clairvoyant"),
+                               "s/episode");
+  aquafarm::bench::PrintMetric("receding_horizon_decisions", reporter.median("RecedingHorizon"),
+                               "decisions/s");
+  return 0;
+}

@@ -31,6 +31,9 @@ struct Shape {
   std::vector<short> valid_range{};     ///< as the file stores values
   std::array<short, 2> valid_bounds{};  ///< valid_min and valid_max; alike: none
   bool own_fill{true};                  ///< else netCDF's default for the type
+  const char* vertical{"depth"};        ///< name of the vertical axis
+  std::vector<std::array<const char*, 2>> vertical_attributes{};  ///< besides depth_up's
+  bool strings{};  ///< attributes as netCDF-4 strings instead of characters
 };
 
 constexpr int kLatitudes = 5;
@@ -44,20 +47,25 @@ class SeaFields : public testing::Test {
 
   void Write(const Shape& shape) const {
     int file = 0;
-    ASSERT_EQ(nc_create(path_.c_str(), NC_CLOBBER, &file), NC_NOERR);
+    ASSERT_EQ(nc_create(path_.c_str(), NC_CLOBBER | (shape.strings ? NC_NETCDF4 : 0), &file),
+              NC_NOERR);
+    strings_ = shape.strings;
     std::array<int, 4> dims{};
     nc_def_dim(file, "time", 2, &dims[0]);
-    nc_def_dim(file, "depth", 3, &dims[1]);
+    nc_def_dim(file, shape.vertical, 3, &dims[1]);
     nc_def_dim(file, shape.curvilinear ? "eta" : "lat", kLatitudes, &dims[2]);
     nc_def_dim(file, shape.curvilinear ? "xi" : "lon", kLongitudes, &dims[3]);
     std::array<int, 4> axes{};
-    const std::array<const char*, 4> names{"time", "depth", "lat", "lon"};
+    const std::array<const char*, 4> names{"time", shape.vertical, "lat", "lon"};
     for (std::size_t i = 0; i < 4; ++i) {
       const bool flat = shape.curvilinear && i >= 2;
       nc_def_var(file, names[i], NC_DOUBLE, flat ? 2 : 1, flat ? &dims[2] : &dims[i], &axes[i]);
     }
     Put(file, axes[0], "units", shape.time_units);
-    Put(file, axes[1], "positive", shape.depth_up ? "up" : "down");
+    if (shape.vertical_attributes.empty()) {
+      Put(file, axes[1], "positive", shape.depth_up ? "up" : "down");
+    }
+    for (const auto& [key, text] : shape.vertical_attributes) Put(file, axes[1], key, text);
     Put(file, axes[2], "units", "degrees_north");
     Put(file, axes[3], "units", "degrees_east");
     int variable = 0;
@@ -117,7 +125,12 @@ class SeaFields : public testing::Test {
   const GeoFrame frame_{{30.15, 122.15}, 1000.0};
 
  private:
+  static inline bool strings_{};
   static void Put(int file, int variable, const char* key, const char* text) {
+    if (strings_) {
+      nc_put_att_string(file, variable, key, 1, &text);
+      return;
+    }
     nc_put_att_text(file, variable, key, std::char_traits<char>::length(text), text);
   }
   static void PutAxes(int file, const std::array<int, 4>& axes, const Shape& shape) {
@@ -163,6 +176,41 @@ TEST_F(SeaFields, RunEitherWayInLatitudeDepthAndLongitude) {
     EXPECT_EQ(field.depth_m, 5.0);
     EXPECT_NEAR(ToLayer(field, frame_, 4, 4)(0, 0), kThere + 5.0F, 0.02F);
   }
+}
+
+// By units of pressure, positive, standard_name or axis, as CF 4.3 has it.
+TEST_F(SeaFields, HaveAVerticalAxisOfAnyNameThatCfKnows) {
+  const auto with = [](std::vector<std::array<const char*, 2>> attributes, bool up = false) {
+    Shape shape{false, up};
+    shape.vertical = "s";
+    shape.vertical_attributes = std::move(attributes);
+    return shape;
+  };
+  for (const Shape& shape :
+       {with({{"positive", "down"}}), with({{"positive", "up"}}, true), with({{"units", "dbar"}}),
+        with({{"axis", "Z"}}), with({{"standard_name", "depth"}}),
+        with({{"standard_name", "height"}}, true), with({{"axis", "Z"}, {"units", "metres"}})}) {
+    Write(shape);
+    const SeaField field = LoadSeaField(path_, {"so", {}, 4.0}, frame_, 4, 4);
+    EXPECT_EQ(field.depth_m, 5.0) << shape.vertical_attributes[0][1];
+    EXPECT_NEAR(ToLayer(field, frame_, 4, 4)(0, 0), kThere + 5.0F, 0.02F);
+  }
+  Write(with({{"axis", "Z"}, {"units", "km"}}));
+  EXPECT_EQ(LoadSeaField(path_, {"so", {}, 4000.0}, frame_, 4, 4).depth_m, 5000.0);
+  Write(with({{"units", "hPa"}}));
+  EXPECT_EQ(Refused(),
+            "s: units: got 'hPa', expected metres, km, cm or dbar, to find a depth among 3");
+  Write(with({{"long_name", "s"}}));
+  EXPECT_EQ(Refused(), "so: dimension s is none of time, depth, latitude, longitude");
+}
+
+TEST_F(SeaFields, MayHaveAttributesAsStrings) {
+  Shape shape{false, true};
+  shape.strings = true;
+  Write(shape);
+  const SeaField field = LoadSeaField(path_, {"sea_water_salinity", {}, 4.0}, frame_, 4, 4);
+  EXPECT_EQ(field.depth_m, 5.0);
+  EXPECT_EQ(field.units, "psu");
 }
 
 TEST_F(SeaFields, GiveTheNearestTime) {
@@ -280,7 +328,7 @@ TEST_F(SeaFields, AreRefusedWithTheReason) {
             "time: units: got 'fortnights since 2021-07-25', expected such as 'hours "
             "since 2000-01-01 00:00:00'");
   std::ofstream(path_) << "not a netCDF file";
-  EXPECT_EQ(Refused(), "cannot read as netCDF: NetCDF: Unknown file format");
+  EXPECT_EQ(Refused(), "got 'not a netCDF file', expected a netCDF file");
   fs::remove(path_);
   EXPECT_EQ(Refused(), "cannot read as netCDF: No such file or directory");
 }

@@ -2,16 +2,15 @@
 #include "aquafarm/ranch_builder.h"
 
 #include <gtest/gtest.h>
-#include <netcdf.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 
 #include "aquafarm/scenario_yaml.h"
 #include "ranch_request.h"
+#include "write_sea.h"
 
 namespace aquafarm {
 namespace {
@@ -198,23 +197,7 @@ TEST(Ranch, CountsNoticesAfterItsLastStepAsOfOtherTimes) {
 
 TEST(Ranch, KeepsASeaOfSmallNumbersAndRulesByWhatItWrites) {
   const fs::path path = fs::temp_directory_path() / ("small." + std::to_string(getpid()) + ".nc");
-  int file = 0;
-  std::array<int, 2> dims{};
-  std::array<int, 3> variables{};
-  nc_create(path.c_str(), NC_CLOBBER, &file);
-  nc_def_dim(file, "lat", 2, &dims[0]);
-  nc_def_dim(file, "lon", 2, &dims[1]);
-  nc_def_var(file, "lat", NC_DOUBLE, 1, &dims[0], &variables[0]);
-  nc_def_var(file, "lon", NC_DOUBLE, 1, &dims[1], &variables[1]);
-  nc_def_var(file, "chl", NC_FLOAT, 2, dims.data(), &variables[2]);
-  nc_enddef(file);
-  const std::array<double, 2> latitude{29.0, 31.0};
-  const std::array<double, 2> longitude{121.0, 123.0};
-  const std::array<float, 4> values{1e-5F, 1e-5F, 1e-5F, 1e-5F};
-  nc_put_var_double(file, variables[0], latitude.data());
-  nc_put_var_double(file, variables[1], longitude.data());
-  nc_put_var_float(file, variables[2], values.data());
-  nc_close(file);
+  WriteSea(path.string(), "chl", {29.0, 31.0}, {121.0, 123.0}, {1e-5F, 1e-5F, 1e-5F, 1e-5F});
   RanchRequest request = Request();
   request.sea = {{"chl", path.string(), "chl"}};
   request.value = "chl > 0.000009 ? 70.125 : 1";

@@ -13,6 +13,7 @@
 
 #include "aquafarm/check.h"
 #include "shared_data.h"
+#include "write_sea.h"
 
 namespace aquafarm {
 namespace {
@@ -267,26 +268,13 @@ TEST_F(SeaFields, OfAnotherCalendarAreRefused) {
 TEST_F(SeaFields, OfAFileCutShortAreRefused) {
   constexpr std::size_t kSide = 200;
   for (const int kind : {NC_CLOBBER, NC_64BIT_OFFSET, NC_64BIT_DATA}) {
-    int file = 0;
-    ASSERT_EQ(nc_create(path_.c_str(), kind, &file), NC_NOERR);
-    std::array<int, 2> dims{};
-    std::array<int, 3> variables{};
-    nc_def_dim(file, "lat", kSide, &dims[0]);
-    nc_def_dim(file, "lon", kSide, &dims[1]);
-    nc_def_var(file, "lat", NC_DOUBLE, 1, &dims[0], &variables[0]);
-    nc_def_var(file, "lon", NC_DOUBLE, 1, &dims[1], &variables[1]);
-    nc_def_var(file, "so", NC_FLOAT, 2, dims.data(), &variables[2]);
-    nc_put_att_text(file, variables[0], "units", 13, "degrees_north");
-    nc_put_att_text(file, variables[1], "units", 12, "degrees_east");
-    nc_enddef(file);
-    std::vector<double> at(kSide);
-    for (std::size_t i = 0; i < kSide; ++i) at[i] = 0.01 * static_cast<double>(i);
-    for (double& one : at) one += 29.0;
-    nc_put_var_double(file, variables[0], at.data());
-    for (double& one : at) one += 92.0;
-    nc_put_var_double(file, variables[1], at.data());
-    nc_put_var_float(file, variables[2], std::vector<float>(kSide * kSide, 30.0F).data());
-    nc_close(file);
+    std::vector<double> latitude(kSide);
+    std::vector<double> longitude(kSide);
+    for (std::size_t i = 0; i < kSide; ++i) {
+      latitude[i] = 29.0 + 0.01 * static_cast<double>(i);
+      longitude[i] = latitude[i] + 92.0;
+    }
+    WriteSea(path_, "so", latitude, longitude, std::vector<float>(kSide * kSide, 30.0F), kind);
     EXPECT_EQ(Refused(), "was read");
     fs::resize_file(path_, fs::file_size(path_) - 2000);
     EXPECT_EQ(Refused().substr(0, 10), "is cut off") << kind;
@@ -334,25 +322,7 @@ TEST_F(SeaFields, AreRefusedWithTheReason) {
 }
 
 TEST_F(SeaFields, OfTenMegabytesAreCutInHalfASecond) {
-  int file = 0;
-  ASSERT_EQ(nc_create(path_.c_str(), NC_CLOBBER, &file), NC_NOERR);
-  constexpr std::size_t kSide = 1600;  // 2.56 million values of float: 10.2 MB
-  std::array<int, 2> dims{};
-  nc_def_dim(file, "lat", kSide, &dims[0]);
-  nc_def_dim(file, "lon", kSide, &dims[1]);
-  std::array<int, 3> variables{};
-  nc_def_var(file, "lat", NC_DOUBLE, 1, &dims[0], &variables[0]);
-  nc_def_var(file, "lon", NC_DOUBLE, 1, &dims[1], &variables[1]);
-  nc_def_var(file, "t", NC_FLOAT, 2, dims.data(), &variables[2]);
-  nc_enddef(file);
-  std::vector<double> axis(kSide);
-  for (std::size_t i = 0; i < kSide; ++i) axis[i] = 30.0 + 0.001 * static_cast<double>(i);
-  nc_put_var_double(file, variables[0], axis.data());
-  for (double& at : axis) at += 92.0;
-  nc_put_var_double(file, variables[1], axis.data());
-  const std::vector<float> values(kSide * kSide, 17.0F);
-  nc_put_var_float(file, variables[2], values.data());
-  nc_close(file);
+  WriteSeaOfTenMegabytes(path_);
   const GeoFrame frame({30.1, 122.1}, 200.0);
   double fastest_s = 1.0e9;  // of a few, for a busy machine
   for (int run = 0; run < 5; ++run) {

@@ -142,10 +142,13 @@ const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {
                (internal::Upper(track.name) == wanted || track.local_name == storm)) {
       named.push_back(&track);
     }
-    constexpr std::size_t kMostNamed = 60;
-    if (names.size() < kMostNamed) {
-      names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
-    }
+    names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
+  }
+  constexpr std::size_t kMostNamed = 60;
+  if (names.size() > kMostNamed) {
+    const std::string more = std::to_string(names.size() - kMostNamed) + " more";
+    names.resize(kMostNamed);
+    names.push_back(more);
   }
   if (found.empty()) found = named;
   if (found.size() == 1) return *found[0];

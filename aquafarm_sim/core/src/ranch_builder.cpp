@@ -427,14 +427,22 @@ class Builder {
 
   void ReadSea() {
     for (const SeaLayerRequest& sea : request_.sea) plan_.layers.push_back(ReadLayer(sea));
-    if (!request_.sea_risk.empty()) Say("risk of the sea: " + request_.sea_risk);
-    if (request_.value.empty()) return;
-    try {
-      value_ = Evaluate(request_.value, plan_.layers);
-    } catch (const InputError& error) {
-      throw InputError(std::string("value: ") + error.what());
+    if (!request_.sea_risk.empty()) {
+      OfSea("sea_risk", request_.sea_risk);
+      Say("risk of the sea: " + request_.sea_risk);
     }
+    if (request_.value.empty()) return;
+    value_ = OfSea("value", request_.value);
     Say("values: " + request_.value);
+  }
+
+  // An option's expression at every cell.
+  Layer OfSea(const char* option, const std::string& expression) const {
+    try {
+      return Evaluate(expression, plan_.layers);
+    } catch (const InputError& error) {
+      throw InputError(std::string(option) + ": " + error.what());
+    }
   }
 
   // The devices stay where they were drawn, each with the value of its cell.

@@ -53,6 +53,19 @@ TEST(FindTrack, NamesWhatThereIs) {
   }
 }
 
+TEST(FindTrack, SaysHowManyMoreThereAre) {
+  HazardFile file;
+  file.tracks.resize(62);
+  for (HazardTrack& track : file.tracks) track.id = "x";
+  try {
+    FindTrack(file, "y");
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string words = error.what();
+    EXPECT_EQ(words.substr(words.size() - 12), "x, x, 2 more");
+  }
+}
+
 TEST(FindTrack, TakesIdsBeforeNamesAndNoEmptyWord) {
   HazardFile file;
   file.tracks.resize(3);

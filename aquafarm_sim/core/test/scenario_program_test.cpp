@@ -11,6 +11,7 @@
 
 #include "aquafarm/scenario_yaml.h"
 #include "ranch_request.h"
+#include "write_sea.h"
 
 namespace aquafarm {
 namespace {
@@ -84,6 +85,17 @@ TEST(Program, RefusesWrongArguments) {
     EXPECT_EQ(code, 2) << arguments;
     EXPECT_NE(text.find(words), std::string::npos) << text;
   }
+}
+
+TEST(Program, RefusesAWrongRuleOfTheSeaByItsOption) {
+  const fs::path path = fs::temp_directory_path() / ("rule." + std::to_string(getpid()) + ".nc");
+  WriteSea(path.string(), "t", {29.0, 31.0}, {121.0, 123.0}, {20.0F, 20.0F, 20.0F, 20.0F});
+  const std::string sea = "--center 30,122 --sea t=" + path.string() + ":t ";
+  EXPECT_EQ(RunApp(sea + "--sea-risk 't > '").second.substr(0, 53),
+            "sea_risk: got 't > ', expected an expression: Unexpec");
+  EXPECT_EQ(RunApp(sea + "--value 't > '").second.substr(0, 50),
+            "value: got 't > ', expected an expression: Unexpec");
+  fs::remove(path);
 }
 
 TEST(Program, RefusesASizeForAChartWithItsOwn) {

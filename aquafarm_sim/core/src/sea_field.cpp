@@ -71,12 +71,14 @@ Axis AxisOf(const NcFile& file, int coordinate, const std::string& name) {
   const std::string units = file.Text(coordinate, "units");
   const std::string axis = file.Text(coordinate, "axis");
   if (standard == "latitude" || axis == "Y" ||
-      IsOneOf(units, {"degrees_north", "degree_north", "degrees_N"}) ||
+      IsOneOf(units,
+              {"degrees_north", "degree_north", "degrees_N", "degree_N", "degreesN", "degreeN"}) ||
       IsOneOf(name, {"lat", "latitude"})) {
     return Axis::kLatitude;
   }
   if (standard == "longitude" || axis == "X" ||
-      IsOneOf(units, {"degrees_east", "degree_east", "degrees_E"}) ||
+      IsOneOf(units,
+              {"degrees_east", "degree_east", "degrees_E", "degree_E", "degreesE", "degreeE"}) ||
       IsOneOf(name, {"lon", "longitude"})) {
     return Axis::kLongitude;
   }

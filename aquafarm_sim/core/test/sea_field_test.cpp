@@ -34,6 +34,8 @@ struct Shape {
   bool own_fill{true};                  ///< else netCDF's default for the type
   const char* vertical{"depth"};        ///< name of the vertical axis
   std::vector<std::array<const char*, 2>> vertical_attributes{};  ///< besides depth_up's
+  std::array<const char*, 2> sides{"lat", "lon"};                 ///< names of those axes
+  std::array<const char*, 2> units{"degrees_north", "degrees_east"};
   bool strings{};  ///< attributes as netCDF-4 strings instead of characters
 };
 
@@ -54,10 +56,10 @@ class SeaFields : public testing::Test {
     std::array<int, 4> dims{};
     nc_def_dim(file, "time", 2, &dims[0]);
     nc_def_dim(file, shape.vertical, 3, &dims[1]);
-    nc_def_dim(file, shape.curvilinear ? "eta" : "lat", kLatitudes, &dims[2]);
-    nc_def_dim(file, shape.curvilinear ? "xi" : "lon", kLongitudes, &dims[3]);
+    nc_def_dim(file, shape.curvilinear ? "eta" : shape.sides[0], kLatitudes, &dims[2]);
+    nc_def_dim(file, shape.curvilinear ? "xi" : shape.sides[1], kLongitudes, &dims[3]);
     std::array<int, 4> axes{};
-    const std::array<const char*, 4> names{"time", shape.vertical, "lat", "lon"};
+    const std::array<const char*, 4> names{"time", shape.vertical, shape.sides[0], shape.sides[1]};
     for (std::size_t i = 0; i < 4; ++i) {
       const bool flat = shape.curvilinear && i >= 2;
       nc_def_var(file, names[i], NC_DOUBLE, flat ? 2 : 1, flat ? &dims[2] : &dims[i], &axes[i]);
@@ -67,8 +69,8 @@ class SeaFields : public testing::Test {
       Put(file, axes[1], "positive", shape.depth_up ? "up" : "down");
     }
     for (const auto& [key, text] : shape.vertical_attributes) Put(file, axes[1], key, text);
-    Put(file, axes[2], "units", "degrees_north");
-    Put(file, axes[3], "units", "degrees_east");
+    Put(file, axes[2], "units", shape.units[0]);
+    Put(file, axes[3], "units", shape.units[1]);
     int variable = 0;
     nc_def_var(file, "so", shape.packed ? NC_SHORT : NC_FLOAT, 4, dims.data(), &variable);
     Put(file, variable, "standard_name", "sea_water_salinity");
@@ -203,6 +205,17 @@ TEST_F(SeaFields, HaveAVerticalAxisOfAnyNameThatCfKnows) {
             "s: units: got 'hPa', expected metres, km, cm or dbar, to find a depth among 3");
   Write(with({{"long_name", "s"}}));
   EXPECT_EQ(Refused(), "so: dimension s is none of time, depth, latitude, longitude");
+}
+
+TEST_F(SeaFields, HaveSidesByAnyUnitsThatCfKnows) {
+  for (const auto& units : std::vector<std::array<const char*, 2>>{
+           {"degrees_N", "degrees_E"}, {"degree_N", "degree_E"}, {"degreesN", "degreeE"}}) {
+    Shape shape;
+    shape.sides = {"row", "column"};
+    shape.units = units;
+    Write(shape);
+    EXPECT_EQ(Refused(), "was read") << units[0];
+  }
 }
 
 TEST_F(SeaFields, MayHaveAttributesAsStrings) {

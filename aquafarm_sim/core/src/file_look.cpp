@@ -21,6 +21,18 @@ bool HasLine(std::string_view text, const std::string& start) {
   return Starts(text, start) || Has(text, "\n" + start);
 }
 
+// The beginning of JSON, which may have a bracket alone on its first line.
+std::string OnOneLine(const std::string& text, std::size_t begin) {
+  constexpr std::size_t kEnough = 200;
+  std::string part = text.substr(begin, kEnough);
+  std::replace(part.begin(), part.end(), '\n', ' ');
+  std::string words;
+  for (const std::string_view word : SplitWords(part)) {
+    words += (words.empty() ? "" : " ") + std::string(word);
+  }
+  return words;
+}
+
 FileLook LookAtJson(const std::string& text) {
   const bool collected = Has(text, "\"features\"") || Has(text, "\"geometries\"");
   if (Has(text, "\"type\"") && (collected || Has(text, "\"coordinates\""))) {
@@ -71,6 +83,8 @@ FileLook LookAt(const std::string& text) {
   if (HasLine(clean, "image:") && HasLine(clean, "resolution:")) {
     return {FileKind::kMapYaml, "a map of map_server"};
   }
+  if (line[0] == '{' || line[0] == '[')
+    return {FileKind::kUnknown, Quoted(OnOneLine(clean, begin))};
   return {FileKind::kUnknown, Quoted(Trim(line))};
 }
 

@@ -75,7 +75,8 @@ std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
       (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
     return HazardFormat::kBulletin;
   }
-  if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"")) {
+  if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"") ||
+      (HasKey(whole, "\"forecast\"") && HasKey(whole, "\"fxTime\""))) {
     return HazardFormat::kWeatherService;
   }
   return std::nullopt;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A weather service's answer to "where is this storm": {code, now, track}; every value is text.
-// (QWeather's storm-track API: windRadius30, 50 and 64 are the winds of force 7, 10 and 12.)
+// (QWeather's storm-track API: windRadius30, 50 and 64 are the winds of force 7, 10 and 12; its
+// storm-forecast API has forecast in place of track and no radii.)
 #include <algorithm>
 #include <array>
 
@@ -91,9 +92,10 @@ std::vector<HazardTrack> ReadWeatherService(const std::string& text, HazardPlace
   if (track.id.empty()) track.id = "storm";
   track.name = answer.Text({"name"});
   track.agency = "weather service";
-  const Json* points = answer.List({"track", "forecast"});
+  const JsonObject::Keys keys{"track", "forecast"};
+  const Json* points = answer.List(keys);
   for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
-    const JsonObject point((*points)[i], At("track", i), place);
+    const JsonObject point((*points)[i], At(answer.KeyOf(keys), i), place);
     if (IsLandfall(point)) {
       track.landfalls.push_back(
           {point.NeedTime({"time"}, kBeijing_s), point.NeedPosition({"lat"}, {"lon"}), ""});

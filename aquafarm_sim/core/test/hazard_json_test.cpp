@@ -121,6 +121,18 @@ TEST(WeatherService, ReadsTextForNumbersInsideAMarkdownFence) {
   EXPECT_DOUBLE_EQ(storm.landfalls[0].position.longitude, 122.4);
 }
 
+TEST(WeatherService, MayAnswerWithAForecastAlone) {
+  const std::string answer = R"({"code": "200", "updateTime": "2021-07-27T03:00+00:00",
+    "forecast": [
+    {"fxTime": "2021-07-27T20:00+08:00", "lat": "31.7", "lon": "118.4", "type": "TS",
+     "windSpeed": "18", "moveDir": ""},
+    {"fxTime": "2021-07-28T20:00+08:00", "lat": "95", "lon": "117.2"}]})";
+  EXPECT_EQ(Refusal(answer), "x:5: forecast[1].lat: got '95', expected a number in [-90, 90]");
+  const HazardFile file = ParseHazardFile(With(answer, "\"95\"", "\"33\""), "x");
+  EXPECT_TRUE(file.warnings.empty());
+  EXPECT_EQ(file.tracks.at(0).fixes.size(), 2U);
+}
+
 TEST(WeatherService, SaysWhatItDoesNotRead) {
   const std::string track = R"("track": [{"time": "2021-07-25T08:00+08:00", "lat": "30",
     "lon": "122"}])";

@@ -23,6 +23,8 @@ const std::vector<WrongText> kWrongTexts{
     {"Empty", "", "x:1: got an empty file, expected tracks of storms"},
     {"EmptyList", " [] \n", "x:1: got an empty list, expected a list of storms"},
     {"OtherFormat", "P5\n10 10\n", "x:1: got a PGM picture, expected tracks of storms: a CMA"},
+    {"OtherJson", "{\n  \"code\":  \"200\",\r\n \"daily\": []\n}\n",
+     "x:1: got '{ \"code\": \"200\", \"daily\": [] }', expected tracks of storms: a CMA"},
     {"HeaderAlone", "66666\n2021\x01", "x:1: got '66666', expected tracks of storms: a CMA or J"},
     {"CmaTruncated", CMA_HEAD CMA_POINT,
      "x:2: got 1 points, expected the 2 points of the header on line 1"},

@@ -167,7 +167,7 @@ int Main(int argc, char** argv) {
   app.footer("exit codes: 0 made, 2 bad argument or file");
   app.option_defaults()->always_capture_default();
   app.add_option("--chart", ranch.chart,
-                 "GeoJSON coast, map_server YAML or ASCII grid (.asc, .tt2); empty: open sea");
+                 "GeoJSON coast, map_server YAML or ASCII grid of heights; empty: open sea");
   app.add_option("--center", arguments.center, "LATITUDE,LONGITUDE of the ranch's middle");
   CLI::Option* size = app.add_option("--size", arguments.size, "WIDTHxHEIGHT in cells");
   CLI::Option* cell = app.add_option("--cell", arguments.cell, "side of a cell, as 200m or 0.2km");

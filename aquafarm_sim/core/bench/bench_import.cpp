@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reading what authorities publish: a year of CMA best tracks.
+// Reading what authorities publish: a year of CMA best tracks, and a field of the sea onto a farm.
 #include <benchmark/benchmark.h>
+#include <unistd.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 #include "aquafarm/hazard_file.h"
+#include "aquafarm/sea_field.h"
 #include "metric_reporter.h"
+#include "write_sea.h"
 
 namespace aquafarm {
 namespace {
@@ -37,6 +41,20 @@ void CmaYear(benchmark::State& state) {
 }
 BENCHMARK(CmaYear);
 
+void SeaLayer(benchmark::State& state) {
+  namespace fs = std::filesystem;
+  const fs::path path = fs::temp_directory_path() / ("bench." + std::to_string(getpid()) + ".nc");
+  WriteSeaOfTenMegabytes(path.string());
+  const GeoFrame frame({30.1, 122.1}, 200.0);
+  for (auto _ : state) {
+    const SeaField field = LoadSeaField(path.string(), {"t", {}, 0.0}, frame, 500, 500);
+    benchmark::DoNotOptimize(ToLayer(field, frame, 500, 500));
+  }
+  state.SetItemsProcessed(state.iterations());
+  fs::remove(path);
+}
+BENCHMARK(SeaLayer);
+
 }  // namespace
 }  // namespace aquafarm
 
@@ -44,5 +62,6 @@ int main(int argc, char** argv) {
   aquafarm::bench::MetricReporter reporter;
   if (!aquafarm::bench::RunMedians(argc, argv, reporter)) return 2;
   aquafarm::bench::PrintMetric("cma_year", 1000.0 / reporter.median("CmaYear"), "ms");
+  aquafarm::bench::PrintMetric("sea_layer", 1000.0 / reporter.median("SeaLayer"), "ms");
   return 0;
 }

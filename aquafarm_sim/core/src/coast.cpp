@@ -29,9 +29,21 @@ bool Cross(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoPoi
   return Cross(a, b, c) * Cross(a, b, d) < 0.0 && Cross(c, d, a) * Cross(c, d, b) < 0.0;
 }
 
-// Compares only lines whose spans of longitude meet; stops after a number of comparisons that no
-// sensible coast needs, so that one made to be slow is not.
-bool CrossesItself(const CoastRing& ring) {
+// Whether two lines that lie on one have more than an end in common.
+bool Doubles(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoPoint& d) {
+  if (Cross(a, b, c) != 0.0 || Cross(a, b, d) != 0.0) return false;
+  const auto overlap = [&](double GeoPoint::*along) {
+    const auto [a_low, a_high] = std::minmax(a.*along, b.*along);
+    const auto [c_low, c_high] = std::minmax(c.*along, d.*along);
+    return std::min(a_high, c_high) - std::max(a_low, c_low);
+  };
+  return std::max(overlap(&GeoPoint::longitude), overlap(&GeoPoint::latitude)) > 0.0 &&
+         std::min(overlap(&GeoPoint::longitude), overlap(&GeoPoint::latitude)) >= 0.0;
+}
+
+// What is wrong with a ring, or nothing. Compares only lines whose spans of longitude meet; stops
+// after a number of comparisons that no sensible coast needs, so that one made to be slow is not.
+std::string FaultOf(const CoastRing& ring) {
   const std::size_t lines = ring.size() - 1;
   const auto west = [&ring](std::size_t i) {
     return std::min(ring[i].longitude, ring[i + 1].longitude);
@@ -43,16 +55,21 @@ bool CrossesItself(const CoastRing& ring) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
             [&west](std::size_t a, std::size_t b) { return west(a) < west(b); });
-  std::size_t left = 50'000'000;
+  bool doubles = false;
+  constexpr std::size_t kMostComparisons = 50'000'000;
+  std::size_t left = kMostComparisons;
   for (std::size_t i = 0; i < lines; ++i) {
     const std::size_t a = order[i];
     for (std::size_t k = i + 1; k < lines && west(order[k]) <= east(a); ++k) {
       const std::size_t b = order[k];
-      if (Cross(ring[a], ring[a + 1], ring[b], ring[b + 1])) return true;
-      if (--left == 0) return false;
+      if (Cross(ring[a], ring[a + 1], ring[b], ring[b + 1])) return "crosses itself";
+      doubles = doubles || Doubles(ring[a], ring[a + 1], ring[b], ring[b + 1]);
+      if (--left > 0) continue;
+      return "of " + std::to_string(lines) + " lines was not looked through for crossings after " +
+             std::to_string(kMostComparisons) + " comparisons";
     }
   }
-  return false;
+  return doubles ? "runs along itself" : "";
 }
 
 class CoastReader {
@@ -131,9 +148,10 @@ class CoastReader {
         ring.front().longitude != ring.back().longitude) {
       place_.RefuseValue(path, "the ring is open, expected its last point to be its first");
     }
-    if (CrossesItself(ring)) {
-      place_.WarnValue(
-          path, "the ring crosses itself; what it goes round an odd number of times is land");
+    const std::string fault = FaultOf(ring);
+    if (!fault.empty()) {
+      place_.WarnValue(path,
+                       "the ring " + fault + "; what it goes round an odd number of times is land");
     }
     return ring;
   }

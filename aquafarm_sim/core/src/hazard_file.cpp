@@ -2,9 +2,12 @@
 #include "aquafarm/hazard_file.h"
 
 #include <algorithm>
+#include <map>
 
 #include "aquafarm/check.h"
 #include "field_domain.h"
+#include "field_error.h"
+#include "file_look.h"
 #include "hazard_json.h"
 
 namespace aquafarm {
@@ -37,6 +40,22 @@ bool HasKey(std::string_view text, std::string_view key) {
   return text.find(key) != std::string_view::npos;
 }
 
+// Gives storms that share an id one each: files of several years put together have such.
+void TellApart(HazardFile& file, internal::HazardPlace& place) {
+  std::map<std::string, int> seen;
+  place.path.clear();
+  for (std::size_t i = 0; i < file.tracks.size(); ++i) {
+    HazardTrack& track = file.tracks[i];
+    const int times = ++seen[track.id];
+    if (times == 1) continue;
+    const std::string id = track.id + "-" + std::to_string(times);
+    const std::string what = "storm " + track.id + " is there again; this one is called " + id;
+    place.line = track.line;
+    place.locate ? place.WarnValue(internal::At("", i), what) : place.Warn(what);
+    track.id = id;
+  }
+}
+
 }  // namespace
 
 std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
@@ -56,7 +75,8 @@ std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
       (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
     return HazardFormat::kBulletin;
   }
-  if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"")) {
+  if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"") ||
+      (HasKey(whole, "\"forecast\"") && HasKey(whole, "\"fxTime\""))) {
     return HazardFormat::kWeatherService;
   }
   return std::nullopt;
@@ -69,15 +89,13 @@ HazardFile ParseHazardFile(const std::string& text, const std::string& origin_na
   const std::string clean = internal::CleanJson(text);
   std::string_view content = clean;
   const std::string_view first = TakeLine(content);
-  if (first.empty()) place.Refuse("got an empty file, expected tracks of storms");
   if (first == "[]") place.Refuse("got an empty list, expected a list of storms");
-  const std::size_t binary = text.find('\0');
-  if (binary != std::string::npos) place.Refuse("got a binary file, expected tracks of storms");
-  const std::optional<HazardFormat> format = DetectHazardFormat(text);
+  const bool binary = text.find('\0') != std::string::npos;
+  const std::optional<HazardFormat> format = binary ? std::nullopt : DetectHazardFormat(text);
   if (!format) {
-    place.Refuse("got " + internal::Quoted(first) +
-                 ", expected a CMA or JMA best track, an ATCF b-deck, IBTrACS CSV, or JSON of a "
-                 "bulletin or a weather service's track");
+    place.Refuse("got " + internal::LookAt(text).words +
+                 ", expected tracks of storms: a CMA or JMA best track, an ATCF b-deck, IBTrACS "
+                 "CSV, or JSON of a bulletin or a weather service's track");
   }
   file.format = *format;
   const std::string plain(internal::WithoutMark(text));
@@ -105,6 +123,7 @@ HazardFile ParseHazardFile(const std::string& text, const std::string& origin_na
                         : internal::ReadWeatherService(clean, place);
       break;
   }
+  TellApart(file, place);
   return file;
 }
 
@@ -124,10 +143,13 @@ const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {
                (internal::Upper(track.name) == wanted || track.local_name == storm)) {
       named.push_back(&track);
     }
-    constexpr std::size_t kMostNamed = 60;
-    if (names.size() < kMostNamed) {
-      names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
-    }
+    names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
+  }
+  constexpr std::size_t kMostNamed = 60;
+  if (names.size() > kMostNamed) {
+    const std::string more = std::to_string(names.size() - kMostNamed) + " more";
+    names.resize(kMostNamed);
+    names.push_back(more);
   }
   if (found.empty()) found = named;
   if (found.size() == 1) return *found[0];

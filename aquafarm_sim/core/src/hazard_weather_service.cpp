@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A weather service's answer to "where is this storm": {code, now, track}; every value is text.
-// (QWeather's storm-track API: windRadius30, 50 and 64 are the winds of force 7, 10 and 12.)
+// (QWeather's storm-track API: windRadius30, 50 and 64 are the winds of force 7, 10 and 12; its
+// storm-forecast API has forecast in place of track and no radii.)
+#include <algorithm>
 #include <array>
 
 #include "field_error.h"
@@ -61,6 +63,17 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
   return fix;
 }
 
+// Sections that an answer may have besides, and a forecast beside the track.
+void WarnOfUnread(const Json& document, HazardPlace& place) {
+  constexpr std::array<std::string_view, 10> kKnown{
+      "code", "updateTime", "fxLink", "isActive", "now", "track", "refer", "id", "stormid", "name"};
+  for (const auto& [key, value] : document.items()) {
+    const bool known = std::find(kKnown.begin(), kKnown.end(), key) != kKnown.end() ||
+                       (key == "forecast" && !document.contains("track"));
+    if (!known && !IsBlank(value)) place.WarnValue(key, "is not read");
+  }
+}
+
 // A point of type DL marks a landfall and says nothing else.
 bool IsLandfall(const JsonObject& point) { return point.Text({"type"}) == "DL"; }
 
@@ -73,14 +86,16 @@ std::vector<HazardTrack> ReadWeatherService(const std::string& text, HazardPlace
   if (!code.empty() && code != "200") {
     answer.Here().Refuse("code: got " + Quoted(code) + ", expected '200'");
   }
+  WarnOfUnread(document, place);
   HazardTrack track;
   track.id = answer.Text({"id", "stormid"});
   if (track.id.empty()) track.id = "storm";
   track.name = answer.Text({"name"});
   track.agency = "weather service";
-  const Json* points = answer.List({"track", "forecast"});
+  const JsonObject::Keys keys{"track", "forecast"};
+  const Json* points = answer.List(keys);
   for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
-    const JsonObject point((*points)[i], At("track", i), place);
+    const JsonObject point((*points)[i], At(answer.KeyOf(keys), i), place);
     if (IsLandfall(point)) {
       track.landfalls.push_back(
           {point.NeedTime({"time"}, kBeijing_s), point.NeedPosition({"lat"}, {"lon"}), ""});

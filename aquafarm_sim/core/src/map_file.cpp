@@ -129,7 +129,7 @@ void SaveMap(const MapFile& map, const std::string& yaml_path) {
 
 LandShare ShareOfLand(const MapFile& map) {
   if (map.origin[2] != 0.0) {
-    throw InputError("chart: origin[2]: got a yaw of " + internal::Format(map.origin[2]) +
+    throw InputError("origin[2]: got a yaw of " + internal::Format(map.origin[2]) +
                      ", expected 0: a ranch's grid points north");
   }
   return (map.occupancy < 0)

@@ -7,6 +7,7 @@
 
 #include "field_domain.h"
 #include "field_error.h"
+#include "file_look.h"
 #include "hazard_json.h"
 
 namespace aquafarm {
@@ -18,6 +19,7 @@ using internal::Quoted;
 using Json = nlohmann::json;
 
 constexpr std::int64_t kBeijing_s = 8 * 3600;
+constexpr const char* kExpected = ", expected a weather service's warnings or anchorage forecasts";
 
 // Blue, Yellow, Orange, Red; White is no warning.
 std::int32_t GradeOf(const JsonObject& warning, const std::string& color) {
@@ -190,18 +192,29 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, HazardPlace& place)
 NoticeFile ParseNotices(const std::string& text, const std::string& origin_name) {
   NoticeFile file;
   HazardPlace place(origin_name, file.warnings);
+  const internal::FileLook look = internal::LookAt(text);
+  const bool object = look.kind == internal::FileKind::kUnknown && look.words.substr(0, 2) == "'{";
+  if (look.kind != internal::FileKind::kNotices && !object) {
+    place.line = 1;
+    place.Refuse("got " + look.words + kExpected);
+  }
   const std::string clean = internal::CleanJson(text);
   place.locate = [&clean](const std::string& path) { return internal::LineOfJson(clean, path); };
   const Json document = internal::ParseJson(clean, place);
   const JsonObject answer(document, "", place);
+  if (answer.Find({"alerts"}) != nullptr) {
+    place.RefuseValue(
+        "alerts", std::string("got the newer interface's alerts, which are not read") + kExpected);
+  }
   if (answer.Find({"anchors"}) != nullptr) {
     file.notices = ReadAnchorages(answer, place);
+    if (answer.Find({"warning"}) != nullptr) {
+      place.WarnValue("warning", "is not read beside anchors");
+    }
   } else if (answer.Find({"warning"}) != nullptr) {
     file.notices = ReadWarnings(answer, place);
   } else {
-    answer.Here().Refuse(
-        "got neither \"warning\" nor \"anchors\", expected a weather service's "
-        "warnings or anchorage forecasts");
+    answer.Here().Refuse(std::string("got neither \"warning\" nor \"anchors\"") + kExpected);
   }
   return file;
 }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
 #include "aquafarm/ascii_grid.h"
 #include "aquafarm/check.h"
@@ -19,13 +18,13 @@
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm/sea_field.h"
 #include "field_domain.h"
+#include "file_look.h"
 #include "hazard_text.h"
 #include "ranch_text.h"
 
 namespace aquafarm {
 namespace {
 
-namespace fs = std::filesystem;
 using internal::CellText;
 using internal::FileName;
 using internal::Format;
@@ -119,29 +118,50 @@ class Builder {
     return GeoFrame(*plan_.origin, plan_.cell_size_m);
   }
 
+  // What is said of the land or water of a chart goes behind its name.
+  template <typename Make>
+  auto OfChart(Make make) {
+    try {
+      return make();
+    } catch (const InputError& error) {
+      throw InputError(request_.chart + ": " + error.what());
+    }
+  }
+
   LandShare ReadChart() {
-    const std::string extension = fs::path(request_.chart).extension().string();
     if (request_.chart.empty()) return LandShare::Zero(height(), width());
-    if (extension == ".yaml" || extension == ".yml") {
-      const MapFile map = LoadMap(request_.chart);
-      Resize(map.occupancy.rows(), map.occupancy.cols(), map.cell_size_m);
-      return ShareOfLand(map);
-    }
-    if (extension == ".asc" || extension == ".tt2") {
-      const AsciiGrid grid = LoadAsciiGrid(request_.chart);
-      if (grid.IsGeographic()) {
-        return ShareOfLand(grid, Frame(), width(), height(), request_.sea_level);
+    const std::string text = internal::ReadTextFile(request_.chart);
+    const internal::FileLook look = internal::LookAt(text);
+    const bool unknown = look.kind == internal::FileKind::kUnknown;
+    switch (unknown ? internal::KindByName(request_.chart) : look.kind) {
+      case internal::FileKind::kMapYaml: {
+        const MapFile map = LoadMap(request_.chart);
+        Resize(map.occupancy.rows(), map.occupancy.cols(), map.cell_size_m);
+        return OfChart([&map] { return ShareOfLand(map); });
       }
-      Resize(grid.value.rows(), grid.value.cols(), grid.cell_size);
-      return ShareOfLand(grid, request_.sea_level);
+      case internal::FileKind::kAsciiGrid: {
+        const AsciiGrid grid = ParseAsciiGrid(text, request_.chart);
+        if (grid.IsGeographic()) {
+          return ShareOfLand(grid, Frame(), width(), height(), request_.sea_level);
+        }
+        Resize(grid.value.rows(), grid.value.cols(), grid.cell_size);
+        return ShareOfLand(grid, request_.sea_level);
+      }
+      case internal::FileKind::kGeoJson: {
+        const Coast coast = ParseCoast(text, request_.chart);
+        Keep(coast.warnings);
+        return ShareOfLand(coast, Frame(), width(), height());
+      }
+      default:
+        throw InputError(request_.chart + ":1: got " + look.words +
+                         ", expected a chart: a coast as GeoJSON, a map of map_server (its YAML) "
+                         "or an ASCII grid of heights");
     }
-    const Coast coast = LoadCoast(request_.chart);
-    Keep(coast.warnings);
-    return ShareOfLand(coast, Frame(), width(), height());
   }
 
   void PlaceTerrain() {
-    plan_.terrain = ToTerrain(ReadChart());
+    const LandShare share = ReadChart();
+    plan_.terrain = OfChart([&share] { return ToTerrain(share); });
     if (request_.center) Frame();
     Say(Text("ranch: %d x %d cells of %s m", width(), height(), Format(plan_.cell_size_m).c_str()) +
         (request_.center
@@ -210,6 +230,25 @@ class Builder {
     }
   }
 
+  // In the name of a fix of the track's file; JSON has no lines here.
+  [[noreturn]] void Refuse(const HazardFix& fix, const std::string& what) const {
+    throw InputError(request_.track + ":" + (fix.line > 0 ? std::to_string(fix.line) + ":" : "") +
+                     " " + FormatTime(fix.time) + ": " + what);
+  }
+
+  // The scenario's reader says the same of the line that is written here.
+  void CheckReach(const HazardTrack& track) {
+    const GeoFrame frame = Frame();
+    for (const HazardFix& fix : track.fixes) {
+      const bool kept = fix.time >= plan_.storm.waypoints.front().time &&
+                        fix.time <= plan_.storm.waypoints.back().time;
+      if (!kept || frame.Faces(fix.position)) continue;
+      Refuse(fix, Text("got latitude %g, longitude %g, expected a place within 60 degrees of the "
+                       "ranch",
+                       fix.position.latitude, fix.position.longitude));
+    }
+  }
+
   HazardTrack ReadTrack() {
     const auto only = [](const HazardFile& file, const std::string& storm) {
       return storm.empty() && file.tracks.size() == 1 ? file.tracks[0] : FindTrack(file, storm);
@@ -217,6 +256,11 @@ class Builder {
     const HazardFile file = LoadHazardFile(request_.track);
     Keep(file.warnings);
     HazardTrack track = only(file, request_.storm);
+    if (track.fixes.size() == 1) {
+      Refuse(track.fixes[0], "got the only point of " +
+                                 (track.name.empty() ? track.id : track.name) +
+                                 ", expected two or more to know how the storm moves");
+    }
     std::string radii;
     if (!request_.radii.empty()) {
       const HazardFile other = LoadHazardFile(request_.radii);
@@ -225,13 +269,15 @@ class Builder {
                    FileName(request_.radii).c_str());
     }
     plan_.storm = ToRings(track, request_.reduction);
+    const bool blank = file.format == HazardFormat::kIbtracs && plan_.storm.estimated > 0;
     const std::int32_t averaging = track.fixes.front().averaging_min;
     plan_.storm_text = (track.name.empty() ? track.id : track.name + " (" + track.id + ")") + ", " +
                        std::string(ToString(file.format)) + " " + FileName(request_.track);
     Say("storm: " + plan_.storm_text +
         Text(", %d fixes, winds of %d minutes", static_cast<int>(track.fixes.size()), averaging) +
         radii +
-        Text("; radii estimated at %d, unknown at %d", plan_.storm.estimated, plan_.storm.silent));
+        Text("; radii estimated at %d%s, unknown at %d", plan_.storm.estimated,
+             blank ? ", where quadrants are blank" : "", plan_.storm.silent));
     return track;
   }
 
@@ -273,6 +319,7 @@ class Builder {
     Say(Text("time: %g s a step, from %s, over after %d steps", plan_.step_s,
              FormatTime(plan_.start).c_str(), duration_));
     Trim(end);
+    CheckReach(track);
     ReadForecasts(track, end);
   }
 
@@ -380,14 +427,22 @@ class Builder {
 
   void ReadSea() {
     for (const SeaLayerRequest& sea : request_.sea) plan_.layers.push_back(ReadLayer(sea));
-    if (!request_.sea_risk.empty()) Say("risk of the sea: " + request_.sea_risk);
-    if (request_.value.empty()) return;
-    try {
-      value_ = Evaluate(request_.value, plan_.layers);
-    } catch (const InputError& error) {
-      throw InputError(std::string("value: ") + error.what());
+    if (!request_.sea_risk.empty()) {
+      OfSea("sea_risk", request_.sea_risk);
+      Say("risk of the sea: " + request_.sea_risk);
     }
+    if (request_.value.empty()) return;
+    value_ = OfSea("value", request_.value);
     Say("values: " + request_.value);
+  }
+
+  // An option's expression at every cell.
+  Layer OfSea(const char* option, const std::string& expression) const {
+    try {
+      return Evaluate(expression, plan_.layers);
+    } catch (const InputError& error) {
+      throw InputError(std::string(option) + ": " + error.what());
+    }
   }
 
   // The devices stay where they were drawn, each with the value of its cell.

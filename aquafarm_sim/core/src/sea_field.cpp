@@ -7,16 +7,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <limits>
 
 #include "aquafarm/check.h"
 #include "field_domain.h"
 #include "hazard_text.h"
+#include "nc_file.h"
 
 namespace aquafarm {
 namespace {
+
+using internal::NcFile;
 
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMostAlong = 1'000'000;    // coordinates of an axis
@@ -29,144 +30,6 @@ struct Dimension {
   std::string name;
   int coordinate{-1};  // its 1-D variable
   std::vector<double> at;
-};
-
-// An open file; what netCDF says of an error goes behind the file and the variable.
-class NcFile {
- public:
-  explicit NcFile(const std::string& path) : path_(path) {
-    std::error_code ignored;
-    const auto kind = std::filesystem::status(path, ignored).type();
-    if (kind != std::filesystem::file_type::not_found &&
-        kind != std::filesystem::file_type::regular) {  // a pipe would be waited for
-      throw InputError(path + ": cannot read as netCDF: is no regular file");
-    }
-    const int status = nc_open(path.c_str(), NC_NOWRITE, &id_);
-    if (status != NC_NOERR) {
-      throw InputError(path + ": cannot read as netCDF: " + nc_strerror(status));
-    }
-    try {
-      CheckLength();
-    } catch (...) {
-      nc_close(id_);
-      throw;
-    }
-  }
-  ~NcFile() { nc_close(id_); }
-  NcFile(const NcFile&) = delete;
-  NcFile& operator=(const NcFile&) = delete;
-
-  int id() const { return id_; }
-  [[noreturn]] void Refuse(const std::string& what) const { throw InputError(path_ + ": " + what); }
-  void Need(int status, const std::string& name) const {
-    if (status != NC_NOERR) Refuse(name + ": " + nc_strerror(status));
-  }
-
-  // Beyond the end of a file of the classic kinds libnetcdf reads zeros without a word.
-  void CheckLength() const {
-    int format = 0;
-    int variables = 0;
-    Need(nc_inq_format(id_, &format), "format");
-    if (format == NC_FORMAT_NETCDF4 || format == NC_FORMAT_NETCDF4_CLASSIC) return;
-    Need(nc_inq_nvars(id_, &variables), "variables");
-    double bytes = 0.0;
-    for (int variable = 0; variable < variables; ++variable) {
-      nc_type type = NC_NAT;
-      int count = 0;
-      std::array<int, NC_MAX_VAR_DIMS> dimensions{};
-      Need(nc_inq_var(id_, variable, nullptr, &type, &count, dimensions.data(), nullptr),
-           "variable");
-      std::size_t of_type = 0;
-      Need(nc_inq_type(id_, type, nullptr, &of_type), "type");
-      auto of_variable = static_cast<double>(of_type);
-      for (int i = 0; i < count; ++i) {
-        std::size_t length = 0;
-        Need(nc_inq_dimlen(id_, dimensions[static_cast<std::size_t>(i)], &length), "dimension");
-        of_variable *= static_cast<double>(length);
-      }
-      bytes += of_variable;
-    }
-    std::error_code error;
-    const auto size = static_cast<double>(std::filesystem::file_size(path_, error));
-    if (!error && size < bytes) {
-      std::array<char, 120> words{};
-      std::snprintf(words.data(), words.size(),
-                    "is cut off: got %.0f bytes, expected %.0f of values alone", size, bytes);
-      Refuse(words.data());
-    }
-  }
-
-  std::string Name(int variable) const {
-    std::array<char, NC_MAX_NAME + 1> name{};
-    Need(nc_inq_varname(id_, variable, name.data()), "variable");
-    return name.data();
-  }
-  // An attribute of text, or "".
-  std::string Text(int variable, const char* key) const {
-    nc_type type = NC_NAT;
-    std::size_t length = 0;
-    if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR || type != NC_CHAR ||
-        length > 10000) {
-      return "";
-    }
-    std::string text(length, '\0');
-    Need(nc_get_att_text(id_, variable, key, text.data()), key);
-    return text.substr(0, text.find('\0'));
-  }
-  std::optional<double> Number(int variable, const char* key) const {
-    nc_type type = NC_NAT;
-    std::size_t length = 0;
-    if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR || type == NC_CHAR ||
-        type == NC_STRING || length != 1) {
-      return std::nullopt;
-    }
-    double value = 0.0;
-    const int status = nc_get_att_double(id_, variable, key, &value);
-    return status == NC_NOERR ? std::optional<double>(value) : std::nullopt;
-  }
-  // An attribute of two numbers.
-  std::optional<std::array<double, 2>> Pair(int variable, const char* key) const {
-    nc_type type = NC_NAT;
-    std::size_t length = 0;
-    std::array<double, 2> values{};
-    if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR || type == NC_CHAR ||
-        type == NC_STRING || length != 2 ||
-        nc_get_att_double(id_, variable, key, values.data()) != NC_NOERR) {
-      return std::nullopt;
-    }
-    return values;
-  }
-  // What netCDF itself writes where nothing was put; bytes have no such value.
-  std::optional<double> DefaultFill(int variable) const {
-    nc_type type = NC_NAT;
-    Need(nc_inq_vartype(id_, variable, &type), "type");
-    switch (type) {
-      case NC_SHORT:
-        return NC_FILL_SHORT;
-      case NC_USHORT:
-        return NC_FILL_USHORT;
-      case NC_INT:
-        return NC_FILL_INT;
-      case NC_UINT:
-        return NC_FILL_UINT;
-      case NC_FLOAT:
-      case NC_DOUBLE:
-        return NC_FILL_DOUBLE;
-      default:
-        return std::nullopt;
-    }
-  }
-  std::vector<int> Variables() const {
-    int count = 0;
-    Need(nc_inq_nvars(id_, &count), "variables");
-    std::vector<int> variables(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i) variables[static_cast<std::size_t>(i)] = i;
-    return variables;
-  }
-
- private:
-  std::string path_;
-  int id_{};
 };
 
 int FindVariable(const NcFile& file, const std::string& wanted) {
@@ -182,25 +45,51 @@ bool IsOneOf(const std::string& text, std::initializer_list<const char*> names) 
   return std::find(names.begin(), names.end(), text) != names.end();
 }
 
+// "UP", "DOWN" or "".
+std::string Positive(const NcFile& file, int coordinate) {
+  return internal::Upper(file.Text(coordinate, "positive"));
+}
+
+bool IsUpwards(const NcFile& file, int coordinate) {
+  const std::string positive = Positive(file, coordinate);
+  return positive == "UP" || (positive.empty() && IsOneOf(file.Text(coordinate, "standard_name"),
+                                                          {"height", "altitude"}));
+}
+
+// Metres a unit of a vertical axis; a decibar of sea water is nearly one. 0: other units.
+double MetresPer(const std::string& units) {
+  if (units == "km") return 1000.0;
+  if (units == "cm") return 0.01;
+  const bool metres = IsOneOf(
+      units, {"", "m", "meter", "meters", "metre", "metres", "dbar", "decibar", "decibars"});
+  return metres ? 1.0 : 0.0;
+}
+
 // By what CF says, else by its name.
 Axis AxisOf(const NcFile& file, int coordinate, const std::string& name) {
   const std::string standard = file.Text(coordinate, "standard_name");
   const std::string units = file.Text(coordinate, "units");
   const std::string axis = file.Text(coordinate, "axis");
   if (standard == "latitude" || axis == "Y" ||
-      IsOneOf(units, {"degrees_north", "degree_north", "degrees_N"}) ||
+      IsOneOf(units,
+              {"degrees_north", "degree_north", "degrees_N", "degree_N", "degreesN", "degreeN"}) ||
       IsOneOf(name, {"lat", "latitude"})) {
     return Axis::kLatitude;
   }
   if (standard == "longitude" || axis == "X" ||
-      IsOneOf(units, {"degrees_east", "degree_east", "degrees_E"}) ||
+      IsOneOf(units,
+              {"degrees_east", "degree_east", "degrees_E", "degree_E", "degreesE", "degreeE"}) ||
       IsOneOf(name, {"lon", "longitude"})) {
     return Axis::kLongitude;
   }
   if (standard == "time" || axis == "T" || units.find(" since ") != std::string::npos) {
     return Axis::kTime;
   }
-  if (standard == "depth" || axis == "Z" || IsOneOf(name, {"depth", "lev", "zlev", "level"})) {
+  const bool pressure = IsOneOf(units, {"dbar", "decibar", "decibars", "bar", "mbar", "millibar",
+                                        "millibars", "hPa", "Pa", "atm"});
+  if (pressure || axis == "Z" || IsOneOf(Positive(file, coordinate), {"UP", "DOWN"}) ||
+      IsOneOf(standard, {"depth", "height", "altitude", "sea_water_pressure"}) ||
+      IsOneOf(name, {"depth", "lev", "zlev", "level"})) {
     return Axis::kDepth;
   }
   return Axis::kOther;
@@ -414,10 +303,17 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
       span.first = choice.time ? Nearest(d.at, static_cast<double>(*choice.time)) : 0;
       field.time = static_cast<std::int64_t>(std::llround(d.at[span.first]));
     } else if (d.axis == Axis::kDepth) {
-      const bool up = internal::Upper(file.Text(d.coordinate, "positive")) == "UP";
-      for (double& at : d.at) at = up ? -at : at;
+      const std::string units = file.Text(d.coordinate, "units");
+      const double metres = MetresPer(units);
+      if (metres == 0.0 && d.at.size() > 1) {
+        file.Refuse(d.name + ": units: got " + internal::Quoted(units) +
+                    ", expected metres, km, cm or dbar, to find a depth among " +
+                    std::to_string(d.at.size()));
+      }
+      const double down = IsUpwards(file, d.coordinate) ? -metres : metres;
+      for (double& at : d.at) at *= down;
       span.first = Nearest(d.at, choice.depth_m);
-      field.depth_m = d.at[span.first];
+      if (metres > 0.0) field.depth_m = d.at[span.first];
     } else if (d.axis == Axis::kLatitude) {
       along_latitude = i;
       span = Window(d.at, extent.south, extent.north);

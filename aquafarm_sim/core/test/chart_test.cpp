@@ -127,6 +127,40 @@ TEST(Coast, WarnsOfARingThatCrossesItself) {
                                      "round an odd number of times is land"});
 }
 
+TEST(Coast, WarnsOfARingThatRunsAlongItself) {
+  const auto said = [](const std::string& ring) {
+    const Coast coast = ParseCoast(
+        "{\"type\": \"Feature\", \"geometry\": {\"type\": \"Polygon\",\n\"coordinates\": [" + ring +
+            "]}}",
+        "x");
+    return coast.warnings.empty() ? "" : coast.warnings[0];
+  };
+  const std::string along =
+      "x:2: geometry.coordinates[0]: the ring runs along itself; what it goes round an odd number "
+      "of times is land";
+  EXPECT_EQ(said("[[0,0],[2,0],[2,2],[3,3],[2,2],[0,2],[0,0]]"), along) << "out and back";
+  EXPECT_EQ(said("[[0,0],[4,0],[4,1],[4,-1],[4,2],[0,2],[0,0]]"), along) << "upright";
+  EXPECT_EQ(said("[[0,0],[3,0],[3,1],[2,1],[2,0],[1,0],[1,2],[0,2],[0,0]]"), along)
+      << "in parts of a line";
+  EXPECT_EQ(said("[[0,0],[1,0],[2,0],[2,2],[2,2],[0,2],[0,0]]"), "")
+      << "a point on a line, and one that is there twice";
+  EXPECT_EQ(said("[[0,0],[2,0],[1,1],[2,2],[0,2],[1,1],[0,0]]"), "") << "touched in a point";
+}
+
+TEST(Coast, SaysWhenARingHasTooManyLinesToLookThrough) {
+  std::string ring;
+  for (int i = 0; i < 11'000; ++i) {
+    ring += "[" + std::to_string(i % 2) + "," + std::to_string(i / 11'000.0) + "],";
+  }
+  const Coast coast = ParseCoast(
+      "{\"type\": \"Polygon\", \"coordinates\": [[" + ring + "[-1,1],[-1,0],[0,0.0]]]}", "x");
+  ASSERT_EQ(coast.warnings.size(), 1U);
+  EXPECT_EQ(
+      coast.warnings[0].substr(0, 100),
+      "x:1: coordinates[0]: the ring of 11002 lines was not looked through for crossings after "
+      "50000000 com");
+}
+
 TEST(Coast, RefusesWhatIsNoCoast) {
   const auto refused = [](const std::string& text) {
     try {

@@ -3,46 +3,10 @@
 // taken for smaller numbers.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-
-#include "aquafarm/check.h"
-#include "aquafarm/hazard_file.h"
+#include "hazard_samples.h"
 
 namespace aquafarm {
 namespace {
-
-namespace fs = std::filesystem;
-const fs::path kData = fs::path(AQUAFARM_CORE_DIR) / "test" / "data";
-
-std::string Sample(const char* name) {
-  std::ifstream file(kData / name, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-std::string With(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos) throw std::invalid_argument(from);
-  return text.replace(at, from.size(), to);
-}
-
-std::string Refusal(const std::string& text) {
-  try {
-    ParseHazardFile(text, "x");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "was read";
-}
-
-std::string Warnings(const std::string& text) {
-  std::string all;
-  for (const std::string& warning : ParseHazardFile(text, "x").warnings) all += warning + "\n";
-  return all;
-}
 
 // The whole line of In-Fa with radii of 50 and 30 kt.
 const std::string kInFa =

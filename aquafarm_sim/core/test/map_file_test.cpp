@@ -191,7 +191,7 @@ TEST_F(MapFiles, OfATurnedMapGiveNoRanch) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "chart: origin[2]: got a yaw of 1, expected 0: a ranch's grid points north");
+                 "origin[2]: got a yaw of 1, expected 0: a ranch's grid points north");
   }
 }
 
@@ -316,10 +316,6 @@ TEST(AsciiGrids, AreRefusedWithTheirLine) {
             "x:5: 'cellsise': is no key of a grid, e");
   EXPECT_EQ(refused("nrows 2", "ncols 2"), "x:2: NCOLS: is there twice");
   EXPECT_EQ(refused("ncols 3", "ncols 3.9").substr(0, 24), "x:7: NCOLS: got 3.900000");
-}
-
-TEST(AsciiGrids, MayBeginWithAByteOrderMark) {
-  EXPECT_EQ(ParseAsciiGrid("\xEF\xBB\xBF" + kGrid, "x").value(1, 0), 1.0F);
 }
 
 }  // namespace

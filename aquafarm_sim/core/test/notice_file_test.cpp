@@ -112,9 +112,21 @@ TEST(Notices, ThatAreWrongAreRefusedWithTheirLine) {
       Refused("anchorage.json", "5.6", "560"),
       "x.json:3: anchors.东锚地.PreciseForecast[0].WindSpeed: got 560, expected a number in [0, "
       "150]");
-  EXPECT_NE(Refused("cma.txt", "", "").find("x.json:1: got no valid JSON"), std::string::npos);
-  EXPECT_NE(Refused("weather_service.json", "", "").find("got neither \"warning\" nor \"anchors\""),
-            std::string::npos);
+  const std::string expected = ", expected a weather service's warnings or anchorage forecasts";
+  EXPECT_EQ(Refused("cma.txt", "", ""),
+            "x.json:1: got tracks of storms (CMA best track)" + expected);
+  EXPECT_EQ(Refused("coast.json", "", ""), "x.json:1: got GeoJSON" + expected);
+  EXPECT_EQ(Refused("warning.json", "\"warning\"", "\"warnings\""),
+            "x.json:1: got neither \"warning\" nor \"anchors\"" + expected);
+  EXPECT_EQ(Refused("warning.json", "\"warning\"", "\"alerts\""),
+            "x.json:2: alerts: got the newer interface's alerts, which are not read" + expected);
+}
+
+TEST(Notices, BesideAnchoragesAreSaidNotToBeRead) {
+  std::string text = Sample("anchorage.json");
+  text.insert(text.find('{') + 1, "\"warning\": [{}],");
+  EXPECT_EQ(ParseNotices(text, "x.json").warnings,
+            std::vector<std::string>{"x.json:1: warning: is not read beside anchors"});
 }
 
 TEST(RealNotices, AreRead) {

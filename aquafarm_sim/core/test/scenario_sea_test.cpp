@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sea of a scenario: as numbers, from a netCDF file, by rules; and what it does in play.
 #include <gtest/gtest.h>
-#include <netcdf.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include "aquafarm/encoding.h"
 #include "aquafarm/scenario_yaml.h"
 #include "tiny_farms.h"
+#include "write_sea.h"
 
 namespace aquafarm {
 namespace {
@@ -195,24 +195,8 @@ class SeaFiles : public testing::Test {
  protected:
   SeaFiles() : folder_(fs::temp_directory_path() / ("seas." + std::to_string(getpid()))) {
     fs::create_directories(folder_);
-    int file = 0;
-    std::array<int, 2> dims{};
-    std::array<int, 3> variables{};
-    nc_create((folder_ / "sea.nc").c_str(), NC_CLOBBER, &file);
-    nc_def_dim(file, "lat", 3, &dims[0]);
-    nc_def_dim(file, "lon", 3, &dims[1]);
-    nc_def_var(file, "lat", NC_DOUBLE, 1, &dims[0], &variables[0]);
-    nc_def_var(file, "lon", NC_DOUBLE, 1, &dims[1], &variables[1]);
-    nc_def_var(file, "thetao", NC_FLOAT, 2, dims.data(), &variables[2]);
-    nc_put_att_text(file, variables[2], "units", 4, "degC");
-    nc_enddef(file);
-    const std::array<double, 3> latitude{29.0, 30.0, 31.0};
-    const std::array<double, 3> longitude{121.0, 122.0, 123.0};
-    const std::array<float, 9> values{-100, -100, -100, 0, 0, 0, 100, 100, 100};
-    nc_put_var_double(file, variables[0], latitude.data());
-    nc_put_var_double(file, variables[1], longitude.data());
-    nc_put_var_float(file, variables[2], values.data());
-    nc_close(file);
+    WriteSea((folder_ / "sea.nc").string(), "thetao", {29.0, 30.0, 31.0}, {121.0, 122.0, 123.0},
+             {-100, -100, -100, 0, 0, 0, 100, 100, 100});
   }
   ~SeaFiles() override { fs::remove_all(folder_); }
 

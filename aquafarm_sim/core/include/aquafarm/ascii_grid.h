@@ -22,6 +22,7 @@ struct AsciiGrid {
 
 /// @throws InputError "bay.asc:3: cellsize: got '0', expected …"
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name);
+/// The same of a file. @throws InputError also when it cannot be read
 AsciiGrid LoadAsciiGrid(const std::string& path);
 
 /// Land is what lies higher than `sea_level`, or has no data. Of a grid in degrees the nearest

@@ -22,10 +22,11 @@ struct Coast {
   std::vector<std::string> warnings;  ///< "coast.json:3: features[0]…: ring crosses itself, …"
 };
 
-/// Reads a GeoJSON text. A ring that crosses itself is kept with a warning: what lies inside it an
-/// odd number of times is land.
+/// Reads a GeoJSON text. A ring that crosses or runs along itself, or has too many lines to tell,
+/// is kept with a warning: what lies inside it an odd number of times is land.
 /// @throws InputError "coast.json:7: features[0].geometry.coordinates[0]: the ring is open, …"
 Coast ParseCoast(const std::string& text, const std::string& origin_name);
+/// The same of a file. @throws InputError also when it cannot be read
 Coast LoadCoast(const std::string& path);
 
 /// How much of each cell of a width × height grid is land, by 5 × 5 samples a cell.

@@ -88,6 +88,7 @@ struct HazardFix {
   bool landfall{};         ///< the source marks a landfall or passage at this hour
   std::int32_t line{};     ///< of the file; 0 in JSON
 
+  /// The ring of a wind; null: none was said.
   const WindRing* Ring(std::int32_t wind_kt) const;
 };
 
@@ -106,7 +107,7 @@ struct Landfall {
 
 /// One storm.
 struct HazardTrack {
-  std::string id;    ///< the only one in its file: "2106", "CMA0003" (unnumbered), "WP082014", SID
+  std::string id;    ///< the only one in its file: "2106", "CMA3" (unnumbered), "WP082014", SID
   std::string name;  ///< as written; empty: none was given
   std::string local_name;        ///< in the agency's own writing; empty: none was given
   std::string agency;            ///< whose positions these are

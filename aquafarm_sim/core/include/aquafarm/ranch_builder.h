@@ -22,7 +22,7 @@ struct SeaLayerRequest {
 /// What a ranch shall be. What is left open is decided, and said.
 struct RanchRequest {
   std::string name{"my_ranch"};
-  std::string chart;  ///< GeoJSON, map_server YAML or ASCII grid (.asc, .tt2); empty: open sea
+  std::string chart;               ///< GeoJSON, map_server YAML or ASCII grid; empty: open sea
   std::optional<GeoPoint> center;  ///< of the ranch; needed but for a chart in metres without storm
   std::int32_t width{25};          ///< cells; a chart in metres has its own
   std::int32_t height{25};

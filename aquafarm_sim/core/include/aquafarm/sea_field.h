@@ -31,7 +31,7 @@ struct SeaField {
   std::string name;                  ///< of the variable
   std::string units;                 ///< as the file says
   std::optional<std::int64_t> time;  ///< of the values, UTC; none: the file has no time
-  std::optional<double> depth_m;     ///< of the values; none: the file has no depth
+  std::optional<double> depth_m;     ///< of the values; none: the file has none, or not in metres
   std::vector<double> latitude;      ///< ascending [degrees]
   std::vector<double> longitude;     ///< ascending [degrees], near those of the ranch
   Grid<float> value;                 ///< [latitude, longitude]; NaN: land or unknown

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "nc_file.h"
+
+#include <netcdf.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "aquafarm/check.h"
+#include "file_look.h"
+#include "hazard_text.h"
+
+namespace aquafarm::internal {
+
+NcFile::NcFile(const std::string& path) : path_(path) {
+  std::error_code ignored;
+  const auto kind = std::filesystem::status(path, ignored).type();
+  if (kind != std::filesystem::file_type::not_found &&
+      kind != std::filesystem::file_type::regular) {  // a pipe would be waited for
+    throw InputError(path + ": cannot read as netCDF: is no regular file");
+  }
+  const int status = nc_open(path.c_str(), NC_NOWRITE, &id_);
+  if (status == NC_ENOTNC) {
+    throw InputError(path + ": got " + LookAt(ReadTextFile(path)).words +
+                     ", expected a netCDF file");
+  }
+  if (status != NC_NOERR) {
+    throw InputError(path + ": cannot read as netCDF: " + nc_strerror(status));
+  }
+  try {
+    CheckLength();
+  } catch (...) {
+    nc_close(id_);
+    throw;
+  }
+}
+
+NcFile::~NcFile() { nc_close(id_); }
+
+void NcFile::Refuse(const std::string& what) const { throw InputError(path_ + ": " + what); }
+
+void NcFile::Need(int status, const std::string& name) const {
+  if (status != NC_NOERR) Refuse(name + ": " + nc_strerror(status));
+}
+
+// Beyond the end of a file of the classic kinds libnetcdf reads zeros without a word.
+void NcFile::CheckLength() const {
+  int format = 0;
+  int variables = 0;
+  Need(nc_inq_format(id_, &format), "format");
+  if (format == NC_FORMAT_NETCDF4 || format == NC_FORMAT_NETCDF4_CLASSIC) return;
+  Need(nc_inq_nvars(id_, &variables), "variables");
+  double bytes = 0.0;
+  for (int variable = 0; variable < variables; ++variable) {
+    nc_type type = NC_NAT;
+    int count = 0;
+    std::array<int, NC_MAX_VAR_DIMS> dimensions{};
+    Need(nc_inq_var(id_, variable, nullptr, &type, &count, dimensions.data(), nullptr), "variable");
+    std::size_t of_type = 0;
+    Need(nc_inq_type(id_, type, nullptr, &of_type), "type");
+    auto of_variable = static_cast<double>(of_type);
+    for (int i = 0; i < count; ++i) {
+      std::size_t length = 0;
+      Need(nc_inq_dimlen(id_, dimensions[static_cast<std::size_t>(i)], &length), "dimension");
+      of_variable *= static_cast<double>(length);
+    }
+    bytes += of_variable;
+  }
+  std::error_code error;
+  const auto size = static_cast<double>(std::filesystem::file_size(path_, error));
+  if (!error && size < bytes) {
+    std::array<char, 120> words{};
+    std::snprintf(words.data(), words.size(),
+                  "is cut off: got %.0f bytes, expected %.0f of values alone", size, bytes);
+    Refuse(words.data());
+  }
+}
+
+std::string NcFile::Name(int variable) const {
+  std::array<char, NC_MAX_NAME + 1> name{};
+  Need(nc_inq_varname(id_, variable, name.data()), "variable");
+  return name.data();
+}
+
+std::string NcFile::Text(int variable, const char* key) const {
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR || length > 10000) return "";
+  if (type == NC_STRING && length == 1) {
+    char* words = nullptr;
+    Need(nc_get_att_string(id_, variable, key, &words), key);
+    const std::string text = words == nullptr ? "" : words;
+    nc_free_string(1, &words);
+    return text;
+  }
+  if (type != NC_CHAR) return "";
+  std::string text(length, '\0');
+  Need(nc_get_att_text(id_, variable, key, text.data()), key);
+  return text.substr(0, text.find('\0'));
+}
+
+std::optional<double> NcFile::Number(int variable, const char* key) const {
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR || type == NC_CHAR ||
+      type == NC_STRING || length != 1) {
+    return std::nullopt;
+  }
+  double value = 0.0;
+  const int status = nc_get_att_double(id_, variable, key, &value);
+  return status == NC_NOERR ? std::optional<double>(value) : std::nullopt;
+}
+
+std::optional<std::array<double, 2>> NcFile::Pair(int variable, const char* key) const {
+  nc_type type = NC_NAT;
+  std::size_t length = 0;
+  std::array<double, 2> values{};
+  if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR || type == NC_CHAR ||
+      type == NC_STRING || length != 2 ||
+      nc_get_att_double(id_, variable, key, values.data()) != NC_NOERR) {
+    return std::nullopt;
+  }
+  return values;
+}
+
+std::optional<double> NcFile::DefaultFill(int variable) const {
+  nc_type type = NC_NAT;
+  Need(nc_inq_vartype(id_, variable, &type), "type");
+  switch (type) {
+    case NC_SHORT:
+      return NC_FILL_SHORT;
+    case NC_USHORT:
+      return NC_FILL_USHORT;
+    case NC_INT:
+      return NC_FILL_INT;
+    case NC_UINT:
+      return NC_FILL_UINT;
+    case NC_FLOAT:
+    case NC_DOUBLE:
+      return NC_FILL_DOUBLE;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::vector<int> NcFile::Variables() const {
+  int count = 0;
+  Need(nc_inq_nvars(id_, &count), "variables");
+  std::vector<int> variables(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) variables[static_cast<std::size_t>(i)] = i;
+  return variables;
+}
+
+}  // namespace aquafarm::internal

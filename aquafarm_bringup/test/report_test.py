@@ -200,7 +200,7 @@ class ReportTest(unittest.TestCase):
         folder = self.folder / "launched"
         with Ranch("train", f"scenario:={self.scenario}", "episodes:=40", "farms:=4",
                    "evaluation_episodes:=0", "random_episodes:=0", "viz:=false",
-                   f"run_dir:={folder}", f"report:={folder}") as ranch:
+                   f"run_dir:={folder}", reports=True) as ranch:
             self.assertEqual(0, ranch.exit_code(90), ranch.words())
             self.assertIn(f"report     {(folder / 'report.html').as_uri()}", ranch.words())
         Page(folder / "report.html")

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every launch file parses, documents its arguments and stays on the loopback address."""
 import pathlib
+import re
 import sys
 import tempfile
 import unittest
@@ -95,7 +96,17 @@ class LaunchFilesTest(unittest.TestCase):
             value = {name: parameter.value for name, parameter in parameters.items()}
             self.assertEqual(value["/aquafarm/train/run_dir"] + "/episodes",
                              value["/aquafarm/sim/keep_dir"])
-        self.assertNotIn("/aquafarm/train/run_dir", load(LAUNCH / "train.launch", []).params)
+
+    def test_trainings_and_benchmarks_end_with_the_report_of_their_own_folder(self):
+        def made_of(name, *arguments):
+            prefixes = [node.launch_prefix for node in load(LAUNCH / name, arguments).nodes]
+            return re.findall("--report='(.*?)'", " ".join(filter(None, prefixes)))
+
+        self.assertRegex(made_of("train.launch")[0], r"^runs/run_\w+$")
+        self.assertEqual(["/tmp/run"], made_of("train.launch", "run_dir:=/tmp/run"))
+        self.assertEqual(["/tmp/run"], made_of("record.launch", "of:=train", "run_dir:=/tmp/run"))
+        self.assertEqual(["none"], made_of("train.launch", "report:=none"))
+        self.assertEqual(["benchmark"], made_of("benchmark.launch"))
 
     def test_replay_runs_no_farm(self):
         nodes = load(LAUNCH / "replay.launch", ["bag:=/tmp/none.bag"]).nodes

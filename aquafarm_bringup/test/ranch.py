@@ -24,9 +24,12 @@ def verify(*bags):
 
 
 class Ranch:
-    """A launch in a process group of its own; leaving the context ends all of it."""
+    """A launch in a process group of its own; leaving the context ends all of it.
 
-    def __init__(self, launch, *arguments, port=None, stdin=subprocess.DEVNULL):
+    Trainings make their report, which takes seconds, only where a test asks for it.
+    """
+
+    def __init__(self, launch, *arguments, port=None, stdin=subprocess.DEVNULL, reports=False):
         self._folder = tempfile.TemporaryDirectory(prefix="aquafarm_test_")
         self.folder = pathlib.Path(self._folder.name)
         self.log = self.folder / "launch.log"
@@ -37,6 +40,8 @@ class Ranch:
             ROS_IP="127.0.0.1", ROS_MASTER_URI=f"http://127.0.0.1:{self.port}")
         self._command = ["roslaunch", "aquafarm_bringup", f"{launch}.launch", *arguments]
         self._command.append(f"exit_file:={self._exit_file}")
+        if launch in ("train", "record") and not reports:
+            self._command.append("report:=none")
         self._stdin = stdin
         self._process = None
 

@@ -5,6 +5,7 @@ import os
 import pathlib
 import select
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -274,6 +275,30 @@ class ReplayTest(unittest.TestCase):
                                *arguments) as ranch:
                         self.assertEqual(2, ranch.exit_code(60), ranch.words())
                         self.assertIn(words, ranch.words())
+
+    def test_a_policy_of_another_farm_has_its_line_with_the_way_out(self):
+        other = self.folder / "other"
+        farm = self.folder / "cove.yaml"
+        farm.write_text("name: cove\ngrid: {width: 6, height: 6}\n"
+                        "layout: {rocks: {count: [2, 2]}, devices: {count: 1}}\n")
+        subprocess.run([roslib.packages.find_node("aquafarm_agents", "aquafarm_train")[0], farm,
+                        "--algorithm", "q_learning", "--episodes", "1", "--evaluate", "0",
+                        "--random", "0", "--run-dir", other],
+                       check=True, stdout=subprocess.DEVNULL, timeout=60)
+        with Ranch("replay", f"bag:={self.bag}", "headless:=true", "viz:=false",
+                   f"policy:={other}") as ranch:
+            self.assertEqual(2, ranch.exit_code(60), ranch.words())
+            self.assertRegex(ranch.words(), "does not fit scenario .*: it knows .*; give a policy "
+                             "that was trained on a farm like the bag's, or none\n")
+
+    def test_a_planner_in_the_midst_of_its_plan_ends_with_the_launch(self):
+        with Ranch("replay", f"bag:={self.bag}", "headless:=true", "viz:=false",
+                   "policy:=clairvoyant") as ranch:
+            pid = ranch.wait_for(lambda: ranch.node_pid("bag_policy"), 60)
+            os.kill(pid, signal.SIGSTOP)  # hears nothing
+            ranch.interrupt()
+            ranch.exit_code(10)
+            self.assertFalse(pathlib.Path(f"/proc/{pid}").exists())
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report of a run and of a benchmark: what must be in it, and what it is refused for."""
 import base64
+import html
 import html.parser
 import json
 import os
@@ -20,6 +21,7 @@ import roslib.packages
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from aquafarm_report.page import page as make_page, tiles  # noqa: E402
 from ranch import Ranch  # noqa: E402
 
 SCENARIO = """
@@ -27,6 +29,22 @@ name: cove
 grid: {width: 6, height: 6}
 time: {step_limit: 60}
 layout: {rocks: {count: [2, 2]}, ports: {count: 1}, devices: {count: 1}}
+"""
+
+# A page in a window of 390 pixels, and its elements that stand out of it or of their box; tables and
+# texts may scroll in theirs.
+PHONE = """<!DOCTYPE html><iframe width="390" height="844" frameborder="0" srcdoc="PAGE"></iframe>
+<script>
+onload = () => {
+  const inside = document.querySelector("iframe").contentDocument;
+  inside.querySelectorAll("details").forEach(one => one.open = true);
+  const wide = [...inside.querySelectorAll("body, body *")].filter(one => !one.closest(
+    "pre, .wide, svg *") && (one.getBoundingClientRect().right > 390 ||
+                             one.clientWidth > 0 && one.scrollWidth > one.clientWidth + 1));
+  document.body.innerHTML = "<p>too wide:" + wide.map(one => one.outerHTML.slice(0, 60)
+    .replaceAll("<", "&lt;")).join("; ") + "</p>";
+};
+</script>
 """
 
 
@@ -138,9 +156,24 @@ class ReportTest(unittest.TestCase):
         self.assertFalse([one for one in re.findall(r"url\(([^)]*)\)", self.page.text)
                           if not one.startswith(("#", "data:"))])
 
-    def test_it_fits_a_phone(self):
+    def too_wide(self, text):
+        """What of a page stands out of a phone's window, in words."""
+        browser = shutil.which("chromium") or shutil.which("google-chrome")
+        if browser is None:
+            self.skipTest("chromium is not installed")
+        path = self.folder / "phone.html"
+        path.write_text(PHONE.replace("PAGE", html.escape(text)))
+        done = subprocess.run(
+            [browser, "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom",
+             f"--user-data-dir={self.folder / 'browser'}", path.as_uri()],
+            capture_output=True, text=True, timeout=60, check=False)
+        return re.findall(r"<p>too wide:(.*?)</p>", done.stdout, re.S)
+
+    def test_nothing_in_it_is_wider_than_a_phone(self):
         self.assertEqual("width=device-width, initial-scale=1", self.page.meta["viewport"])
-        self.assertTrue("img,video,svg{max-width:100%" in self.page.text)
+        self.assertEqual([""], self.too_wide(self.page.text))
+        words = "clairvoyant_planner_on_zhoushan_mitag_2019_with_floats"
+        self.assertEqual([""], self.too_wide(make_page(words, tiles([(words, words)]))))
 
     def test_it_tells_learner_scenario_seeds_and_version(self):
         settings = json.loads((self.trained / "run.json").read_text())
@@ -179,6 +212,17 @@ class ReportTest(unittest.TestCase):
                 pictures += 1
             self.assertGreater(pictures, 24)  # its steps, and two seconds of its end
 
+    def test_without_an_encoder_that_browsers_play_the_films_are_gifs(self):
+        output = self.folder / "gifs.html"
+        code, words = run("aquafarm_bringup", "make_report", self.trained, "-o", output,
+                          "--episodes", 1, env={**os.environ, "OPENCV_VIDEOIO_PRIORITY_FFMPEG": "0"})
+        self.assertEqual(0, code, words)
+        page = Page(output)
+        self.assertEqual([], page.embedded("video/mp4"))
+        self.assertEqual(1, len(page.embedded("image/gif")))
+        for film in self.page.embedded("video/mp4"):
+            self.assertIn(b"avc1", film)
+
     def test_a_benchmark_shows_its_table_figures_and_best_learner(self):
         output = self.folder / "benchmark"
         code, words = run("aquafarm_agents", "aquafarm_benchmark", self.scenario, "--output",
@@ -195,12 +239,13 @@ class ReportTest(unittest.TestCase):
         for word in ("Benchmark on cove", "Q-learning, paper", "RANDOM", "The best learner",
                      "Seeds of the trainings", "evaluation_episodes"):
             self.assertIn(word, page.words)
+        self.assertEqual([""], self.too_wide(page.text))
 
     def test_a_launch_ends_with_the_report(self):
         folder = self.folder / "launched"
         with Ranch("train", f"scenario:={self.scenario}", "episodes:=40", "farms:=4",
                    "evaluation_episodes:=0", "random_episodes:=0", "viz:=false",
-                   f"run_dir:={folder}", f"report:={folder}") as ranch:
+                   f"run_dir:={folder}", reports=True) as ranch:
             self.assertEqual(0, ranch.exit_code(90), ranch.words())
             self.assertIn(f"report     {(folder / 'report.html').as_uri()}", ranch.words())
         Page(folder / "report.html")

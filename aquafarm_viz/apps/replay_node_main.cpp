@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdio>
 #include <exception>
+#include <string>
 
+#include "aquafarm/version.h"
 #include "aquafarm_viz/replay_node.h"
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "replay");
   try {
-    const aquafarm_viz::ReplayNode node(ros::NodeHandle(),
-                                        aquafarm_viz::ReadReplayParams(ros::NodeHandle("~")));
+    const auto params = aquafarm_viz::ReadReplayParams(ros::NodeHandle("~"));
+    const aquafarm_viz::ReplayNode node(ros::NodeHandle(), params);
+    for (const std::string& note : node.tape().Notes(aquafarm::kVersion)) {
+      std::fprintf(stderr, "replay: %s: %s\n", params.bag.c_str(), note.c_str());
+    }
     ros::spin();
   } catch (const std::exception& fault) {
     std::fprintf(stderr, "replay: %s\n", fault.what());

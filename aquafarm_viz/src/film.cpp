@@ -48,9 +48,9 @@ class VideoFilm final : public Film {
   VideoFilm(const std::string& path, cv::Size size, double rate_hz, bool is_mp4) : path_(path) {
     setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
     setenv("OPENCV_LOG_LEVEL", "OFF", 0);
-    // H.264 first, which browsers play.
-    const std::vector<std::string> codecs = is_mp4 ? std::vector<std::string>{"avc1", "mp4v"}
-                                                   : std::vector<std::string>{"VP90", "VP80"};
+    // H.264 alone: what else there is for mp4, no browser plays.
+    const std::vector<std::string> codecs =
+        is_mp4 ? std::vector<std::string>{"avc1"} : std::vector<std::string>{"VP90", "VP80"};
     std::string tried;
     for (const std::string& codec : codecs) {
       const int code = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);

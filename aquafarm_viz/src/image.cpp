@@ -50,20 +50,16 @@ struct FarmPainter::Parts {
   FarmSpec drawn;   // what the background shows
   std::string sea;  // which layer of the sea with it
   cv::Mat background;
-  Values values;                 // what the next three are of
-  cv::Mat valued;                // the map of the background with V_π; empty: not drawn yet
-  bool has_drawn_moves{};        // once, so that they may be wanted again
-  std::optional<Overlay> moves;  // none: not wanted again yet
+  std::optional<MoveSigns> moves;  // of the layout; none: not wanted yet
+  Values values;                   // what the next is of
+  cv::Mat valued;                  // the map of the background with V_π; empty: not drawn yet
   cv::Mat image;
 
   /// Forgets what is of other values, or of another background.
   void Follow(const Values* now, bool is_new_background) {
     const bool is_new = now != nullptr && !SameMap(*now, values);
     if (is_new) values = *now;
-    if (!is_new && !is_new_background) return;
-    valued.release();
-    moves.reset();
-    has_drawn_moves = false;
+    if (is_new || is_new_background) valued.release();
   }
 };
 
@@ -82,6 +78,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   if (is_new) {
     p.background.release();  // until all of it is drawn: a sea may be refused
     p.layout = MakeLayout(spec.width, spec.height, p.size);
+    p.moves.reset();
     cv::Mat background = DrawBackground(spec, p.layout, p.fonts, p.size);
     cv::Mat below = background(p.layout.map);
     if (!sea.empty()) DrawSea(below, spec, sea, p.layout, p.fonts);
@@ -110,15 +107,8 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   if (layers.route && extras.route != nullptr) DrawRoutes(map, state, *extras.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
   if (layers.moves && values != nullptr) {
-    if (!p.has_drawn_moves) {
-      DrawMoves(map, *values, p.layout);  // an overlay costs more, and a map may be new each time
-      p.has_drawn_moves = true;
-    } else {
-      if (!p.moves) {
-        p.moves.emplace(map.size(), [&](cv::Mat& over) { DrawMoves(over, *values, p.layout); });
-      }
-      p.moves->LayOver(map);
-    }
+    if (!p.moves) p.moves.emplace(p.layout);
+    p.moves->Draw(map, *values);
   }
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);

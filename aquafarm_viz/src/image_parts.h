@@ -82,25 +82,46 @@ void DrawValues(cv::Mat& map, const Values& values);
 /// Draws the scale of those colours into a corner of the map.
 void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, const Fonts& fonts);
 
-/// Draws the best move of each cell as an arrow, pickups as discs, drop-offs as rings.
-void DrawMoves(cv::Mat& map, const Values& values, const Layout& layout);
-
 /// What is drawn over a map, kept to be laid over others: premultiplied colours with what they keep
 /// of what is below.
 class Overlay {
  public:
-  /// @param draw draws the same onto whatever map it is given
-  Overlay(cv::Size size, const std::function<void(cv::Mat& map)>& draw);
-  /// @param map of that size
-  void LayOver(cv::Mat& map) const;
+  /// @param middle of what is drawn, on a canvas of a size
+  /// @param draw draws the same onto whatever it is given
+  Overlay(cv::Size size, cv::Point middle, const std::function<void(cv::Mat& map)>& draw);
+  /// Puts the middle to a place of a map, which may leave out part of it.
+  void LayOver(cv::Mat& map, cv::Point middle) const;
 
  private:
   struct Pixel {
-    cv::Point at;
+    cv::Point at;     // from the middle
     cv::Vec3b color;  // as over black
     int keep;         // of 255
   };
   std::vector<Pixel> pixels_;
+};
+
+/// Draws one best move: an arrow, for a pickup a disc, for a drop-off a ring.
+void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
+              const Layout& layout);
+
+/// The best move of each cell, by signs that are drawn once and put to the nearest pixel.
+class MoveSigns {
+ public:
+  explicit MoveSigns(const Layout& layout);
+  void Draw(cv::Mat& map, const Values& values) const;
+  /// Of cells that have a sign, along each axis.
+  int every() const { return every_; }
+  double size_px() const { return size_px_; }
+
+ private:
+  static constexpr std::uint8_t kSigns = 10;  // actions but hold
+
+  MapView view_;
+  int every_;
+  double size_px_;
+  cv::Point2d phase_;  // of a cell's middle within its pixel
+  std::vector<Overlay> signs_;
 };
 
 /// Draws what another policy would do with each ship.

@@ -65,7 +65,7 @@ class Maker {
   Maker(const FarmSpec& spec, const std_msgs::Header& header)
       : cell_m_(spec.cell_size_m),
         // On large farms things are drawn larger than a cell, or nobody could see them.
-        thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 60.0)),
+        thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
         layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
         header_(header) {
     header_.frame_id = names::kMapFrame;

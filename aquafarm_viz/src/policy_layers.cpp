@@ -30,16 +30,15 @@ void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px
 }  // namespace
 
 void DrawValues(cv::Mat& map, const Values& values) {
-  cv::Mat1b shares(values.height, values.width, std::uint8_t{0});
-  cv::Mat1b known(values.height, values.width, std::uint8_t{0});
-  for (int y = 0; y < values.height; ++y) {
-    for (int x = 0; x < values.width; ++x) {
-      const float value = values.values[values.Index(x, y)];
-      if (std::isnan(value)) continue;
-      const int row = values.height - 1 - y;
-      shares(row, x) = static_cast<std::uint8_t>(cvRound(255.0 * values.Share(value)));
-      known(row, x) = 255;
-    }
+  // A header over the values, which are only read; row 0 is the north then.
+  const cv::Mat from_south(values.height, values.width, CV_32F,
+                           const_cast<float*>(values.values.data()));
+  cv::Mat north_up;
+  cv::flip(from_south, north_up, 0);
+  const cv::Mat known = north_up == north_up;  // not NaN
+  cv::Mat shares(north_up.size(), CV_8U, cv::Scalar(128));
+  if (const double span = double(values.highest) - double(values.lowest); span > 0.0) {
+    north_up.convertTo(shares, CV_8U, 255.0 / span, -255.0 * double(values.lowest) / span);
   }
   cv::Mat large;
   cv::Mat mask;
@@ -71,28 +70,47 @@ void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, co
   fonts.small.Draw(map, high, {x + bar + gap, base}, Bgr(kWords));
 }
 
-void DrawMoves(cv::Mat& map, const Values& values, const Layout& layout) {
-  const double cell = layout.view.cell_px();
-  const int every = std::max(1, int(std::ceil(kLeastArrow_px * layout.unit / cell)));
-  const double size = 0.8 * every * cell;
-  const int thickness = size > 40.0 ? 2 : 1;
-  for (int y = every / 2; y < values.height; y += every) {
-    for (int x = every / 2; x < values.width; x += every) {
+void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
+              const Layout& layout) {
+  const int thickness = size_px > 40.0 ? 2 : 1;
+  if (const int bearing = MoveBearingDeg(action); bearing >= 0) {
+    DrawArrow(map, at, bearing, size_px, Bgr(kInk), thickness + 2);
+    DrawArrow(map, at, bearing, size_px, Bgr(kPaper), thickness);
+  } else if (action == 8) {
+    FillCircle(map, at, 0.22 * size_px, Bgr(kPaper));
+  } else if (action == 9) {
+    StrokeCircle(map, at, 0.22 * size_px, Bgr(kPaper), layout.Px(1.5));
+  }
+}
+
+MoveSigns::MoveSigns(const Layout& layout)
+    : view_(layout.view),
+      every_(std::max(1, int(std::ceil(kLeastArrow_px * layout.unit / view_.cell_px())))),
+      size_px_(0.8 * every_ * view_.cell_px()) {
+  // Between pixels as the cells' middles are where cells have whole pixels.
+  const int half = cvCeil(0.5 * size_px_) + 3;
+  const cv::Point2d middle = view_.ToPixel(0, view_.height() - 1);
+  phase_ = middle - cv::Point2d(std::floor(middle.x), std::floor(middle.y));
+  for (std::uint8_t action = 0; action < kSigns; ++action) {
+    signs_.emplace_back(cv::Size(2 * half + 1, 2 * half + 1), cv::Point(half, half),
+                        [&](cv::Mat& map) {
+                          DrawMove(map, cv::Point2d(half, half) + phase_, action, size_px_, layout);
+                        });
+  }
+}
+
+void MoveSigns::Draw(cv::Mat& map, const Values& values) const {
+  for (int y = every_ / 2; y < values.height; y += every_) {
+    for (int x = every_ / 2; x < values.width; x += every_) {
       const std::uint8_t action = values.actions[values.Index(x, y)];
-      const cv::Point2d at = layout.view.ToPixel(x, y);
-      if (const int bearing = MoveBearingDeg(action); bearing >= 0) {
-        DrawArrow(map, at, bearing, size, Bgr(kInk), thickness + 2);
-        DrawArrow(map, at, bearing, size, Bgr(kPaper), thickness);
-      } else if (action == 8) {
-        FillCircle(map, at, 0.22 * size, Bgr(kPaper));
-      } else if (action == 9) {
-        StrokeCircle(map, at, 0.22 * size, Bgr(kPaper), layout.Px(1.5));
-      }
+      if (action >= kSigns) continue;
+      const cv::Point2d at = view_.ToPixel(x, y) - phase_;
+      signs_[action].LayOver(map, {cvRound(at.x), cvRound(at.y)});
     }
   }
 }
 
-Overlay::Overlay(cv::Size size, const std::function<void(cv::Mat& map)>& draw) {
+Overlay::Overlay(cv::Size size, cv::Point middle, const std::function<void(cv::Mat& map)>& draw) {
   cv::Mat3b on_black(size, cv::Vec3b::all(0));
   cv::Mat3b on_white(size, cv::Vec3b::all(255));
   draw(on_black);
@@ -101,14 +119,17 @@ Overlay::Overlay(cv::Size size, const std::function<void(cv::Mat& map)>& draw) {
     for (int x = 0; x < size.width; ++x) {
       const cv::Vec3b color = on_black(y, x);
       const int keep = int(on_white(y, x)[1]) - int(color[1]);
-      if (keep < 255) pixels_.push_back({{x, y}, color, std::max(0, keep)});
+      if (keep < 255) pixels_.push_back({cv::Point(x, y) - middle, color, std::max(0, keep)});
     }
   }
 }
 
-void Overlay::LayOver(cv::Mat& map) const {
+void Overlay::LayOver(cv::Mat& map, cv::Point middle) const {
+  const cv::Rect whole({0, 0}, map.size());
   for (const Pixel& pixel : pixels_) {
-    auto& below = map.at<cv::Vec3b>(pixel.at);
+    const cv::Point at = middle + pixel.at;
+    if (!whole.contains(at)) continue;
+    auto& below = map.at<cv::Vec3b>(at);
     for (int i = 0; i < 3; ++i) {
       const int sum = int(pixel.color[i]) + (int(below[i]) * pixel.keep + 127) / 255;
       below[i] = static_cast<std::uint8_t>(std::min(255, sum));

@@ -55,6 +55,7 @@ void ReplayTape::Read(const std::string& path) {
     } else if (Is<FarmSpec>(message)) {
       if (const auto spec = aquafarm_sim::Instantiate<FarmSpec>(message)) {
         specs_.push_back({messages_.size(), spec->seed, spec->episode});
+        versions_.insert(spec->version);
       }
     }
     messages_.push_back(message);
@@ -76,6 +77,7 @@ void ReplayTape::AddStep(const rosbag::MessageInstance& message, const FarmState
                        last->second.episode == step.episode && last->second.step <= step.step;
   if (goes_on) {
     step.run = last->second.run;
+    if (step.step > last->second.step + 1) missing_ += step.step - last->second.step - 1;
   } else {
     ++runs_;
   }
@@ -132,6 +134,17 @@ std::vector<std::size_t> ReplayTape::UpTo(const Step& step) const {
   positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
   if (spec) positions.insert(positions.begin(), *spec);
   return positions;
+}
+
+std::vector<std::string> ReplayTape::Notes(const std::string& version) const {
+  std::vector<std::string> notes;
+  if (missing_ > 0)
+    notes.push_back(std::to_string(missing_) + " steps are missing; 'verify' says which");
+  for (const std::string& other : versions_) {
+    if (other == version) continue;
+    notes.push_back("recorded by version " + other + ", this is " + version + "; shown as it is");
+  }
+  return notes;
 }
 
 double ReplayTape::StepPeriod_s(std::size_t run) const {

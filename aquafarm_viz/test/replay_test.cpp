@@ -68,6 +68,16 @@ TEST_F(Replay, FindsAStepOrTheNextLaterOneOrTheLast) {
   EXPECT_NEAR(tape.StepPeriod_s(at.run), 0.1, 1e-6);
 }
 
+TEST_F(Replay, MissingStepsAndAnotherVersionAreSaid) {
+  using Notes = std::vector<std::string>;
+  const std::string missing = "98 steps are missing; 'verify' says which";
+  const ReplayTape tape(MakeBag());
+  const std::string own = test::MakeSpec().version;
+  EXPECT_EQ(tape.Notes(own), Notes({missing}));
+  EXPECT_EQ(tape.Notes("9.9"),
+            Notes({missing, "recorded by version " + own + ", this is 9.9; shown as it is"}));
+}
+
 TEST_F(Replay, AJumpBringsTheSpecTheWholeWayAndTheStepLast) {
   const ReplayTape tape(MakeBag());
   const auto step = *tape.Find(tape.steps().front(), 14, 60);

@@ -40,6 +40,7 @@ WANTED = {
     "full health": (0x3d, 0xdc, 0x6f),
     "outer ring": (0xff, 0xd4, 0x3b),
 }
+ROUTE = {"route, a thin line over the sea": (0x57, 0x97, 0xc5)}
 CHOICE = {"choice of the other policy": (0xff, 0x4f, 0xd8)}
 # The same in the panel: CurveWidget's colours.
 PANEL = {
@@ -50,9 +51,10 @@ PANEL = {
 PANEL_WIDTH = 560  # of a window of 1600 x 900
 VIEW = (slice(80, 860), slice(600, 1190))
 
-def farm_spec():
-    spec = FarmSpec(scenario_name="rviz", seed=1, width=SIDE, height=SIDE, cell_size_m=1000,
-                    step_limit=5000, ships=1, agents=1)
+
+def farm_spec(width=SIDE, height=SIDE, cell_size_m=1000.0, episode=0):
+    spec = FarmSpec(scenario_name="rviz", seed=1, width=width, height=height, episode=episode,
+                    cell_size_m=cell_size_m, step_limit=5000, ships=1, agents=1)
     spec.islands = [Cell(x, y) for x in range(9, 14) for y in range(10, 13)]
     spec.rocks = [RockInfo(cell=Cell(3 * i + 1, (7 * i) % SIDE), reward=-3) for i in range(8)]
     spec.ports = [PortInfo(id=0, cell=Cell(14, 11))]
@@ -61,13 +63,23 @@ def farm_spec():
 
 def farm_state(step):
     state = FarmState(observer=-1, seed=1, step=step)
-    state.ships = [ShipState(x=18, y=6, visible=True, own_device=-1, capacity=1, active=True,
-                             action=3)]
+    state.ships = [ShipState(x=step % SIDE, y=16, visible=True, own_device=-1, capacity=1,
+                             active=True, action=3)]
     state.devices = [DeviceState(id=kind, kind=kind, x=3 + 5 * kind, y=21, value=75, health=1,
                                  health_known=True, carrier=-1) for kind in range(4)]
     state.disasters = [DisasterState(grade=3, x=6, y=5, heading_deg=90, speed=0.5,
                                      radii=[1, 2, 4], risks=[-20, -10, -5], steps_left=900,
                                      known=True, visible=True)]
+    return state
+
+
+def corner_state(spec, step):
+    """A device of each kind in each corner."""
+    state = FarmState(observer=-1, seed=1, episode=spec.episode, step=step)
+    corners = [(x, y) for x in (0, spec.width - 1) for y in (0, spec.height - 1)]
+    state.devices = [DeviceState(id=kind, kind=kind, x=x, y=y, value=75, health=1,
+                                 health_known=True, carrier=-1)
+                     for kind, (x, y) in enumerate(corners)]
     return state
 
 
@@ -165,15 +177,19 @@ class RvizTest(unittest.TestCase):
         import cv2  # only for people who look
         cv2.imwrite(os.path.join(folder, name + ".png"), picture[:, :, ::-1])
 
-    def show(self, job, view_wanted, look=lambda view: True):
-        """Shows the ranch with a configuration until all that is wanted is seen."""
+    def open_rviz(self, job):
+        """Opens rviz with a configuration; returns where its screen's picture is."""
         self.start("xvfb", "Xvfb", DISPLAY, "-screen", "0", "1600x900x24", "-fbdir", self.folder,
                    "-nolisten", "tcp")
         time.sleep(1)
         path = os.path.join(rospkg.RosPack().get_path("aquafarm_viz"), "rviz", job + ".rviz")
         self.start("rviz", "rviz", "-d", path, "__name:=rviz_" + job, DISPLAY=DISPLAY,
                    LIBGL_ALWAYS_SOFTWARE="1", XDG_RUNTIME_DIR=self.folder)
-        frame_buffer = os.path.join(self.folder, "Xvfb_screen0")
+        return os.path.join(self.folder, "Xvfb_screen0")
+
+    def show(self, job, view_wanted, look=lambda view: True):
+        """Shows the ranch with a configuration until all that is wanted is seen."""
+        frame_buffer = self.open_rviz(job)
         end = time.monotonic() + LIMIT_S
         step = 0
         absent, picture, looks_right = {"everything": 0}, None, False
@@ -196,6 +212,22 @@ class RvizTest(unittest.TestCase):
         self.assertTrue(looks_right, "ink in the panel: %d, arrows in the view: %d" %
                         (words(picture[:, :PANEL_WIDTH]), arrows(picture[VIEW])))
 
+    def test_a_farm_of_any_size_is_seen_up_to_its_corners(self):
+        frame_buffer = self.open_rviz("watch")
+        devices = dict(list(WANTED.items())[:4])
+        for episode, size in enumerate(((SIDE, SIDE, 1000.0), (500, 500, 100.0), (20, 14, 0.5))):
+            spec = farm_spec(*size, episode)
+            end, absent, step = time.monotonic() + LIMIT_S, devices, 0
+            while absent and time.monotonic() < end:
+                step += 1
+                self.send("spec", spec, latch=True)
+                self.send("state", corner_state(spec, step))
+                time.sleep(0.5)
+                picture = screen(frame_buffer)
+                absent = missing(picture[VIEW], devices)
+            self.keep(picture, "size_%d" % episode)
+            self.assertFalse(absent, "a farm of %d x %d cells of %g m" % size)
+
     def test_watch_shows_the_ranch_and_the_panel(self):
         self.show("watch", WANTED)
 
@@ -203,7 +235,7 @@ class RvizTest(unittest.TestCase):
         self.show("train", WANTED, lambda view: arrows(view) > 8000)
 
     def test_replay_shows_the_ranch_and_the_panel(self):
-        self.show("replay", WANTED)
+        self.show("replay", {**WANTED, **ROUTE})
 
     def test_compare_shows_what_another_policy_would_do(self):
         self.show("compare", {**WANTED, **CHOICE}, lambda view: arrows(view) > 8000)

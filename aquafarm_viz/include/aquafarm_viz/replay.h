@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,10 @@ class ReplayTape {
   /// positions, the step's own last.
   std::vector<std::size_t> UpTo(const Step& step) const;
 
+  /// What people should know before they look, a line each: missing steps, another version.
+  /// @param version of this suite
+  std::vector<std::string> Notes(const std::string& version) const;
+
   /// Seconds of the bag between two steps of a run, above 0.
   double StepPeriod_s(std::size_t run) const;
 
@@ -77,6 +82,8 @@ class ReplayTape {
   std::vector<Spec> specs_;
   std::map<std::string, Step> last_;  // by topic, while reading
   std::size_t runs_{};                // begun so far
+  std::uint64_t missing_{};           // steps between others
+  std::set<std::string> versions_;    // that recorded it
 };
 
 }  // namespace aquafarm_viz

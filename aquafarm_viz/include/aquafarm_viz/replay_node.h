@@ -38,6 +38,8 @@ class ReplayNode {
   /// @throws std::runtime_error when the bag cannot be shown
   ReplayNode(ros::NodeHandle node, const ReplayParams& params);
 
+  const ReplayTape& tape() const { return tape_; }
+
  private:
   void Begin();
   void Tick();

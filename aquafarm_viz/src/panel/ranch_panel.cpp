@@ -24,6 +24,7 @@ constexpr double kCallLimit_s = 5.0;
 // A command in lockstep waits for the other ships, as long as the ranch's ~barrier_timeout_s.
 constexpr double kCommandLimit_s = 60.0;
 constexpr int kRefresh_ms = 200;
+constexpr char kWholeFarm[] = "Whole Farm";
 
 std::string InWords(const aquafarm_msgs::Command& answer) {
   const auto& result = answer.response.result;
@@ -59,11 +60,25 @@ RanchPanel::RanchPanel(QWidget* parent)
         changed_ = true;
       });
   connect(&timer_, &QTimer::timeout, this, [this] {
+    // Also without news: the window may have another size.
+    if (vis_manager_ != nullptr && model_.shown().spec) {
+      whole_view_.Follow(*vis_manager_, *model_.shown().spec);
+    }
     if (!changed_) return;
     changed_ = false;
     widget_->Refresh();
   });
   timer_.start(kRefresh_ms);
+}
+
+void RanchPanel::load(const rviz::Config& config) {
+  rviz::Panel::load(config);
+  config.mapGetBool(kWholeFarm, &whole_view_.wanted);
+}
+
+void RanchPanel::save(rviz::Config config) const {
+  rviz::Panel::save(config);
+  config.mapSetValue(kWholeFarm, vis_manager_ != nullptr && whole_view_.IsKept(*vis_manager_));
 }
 
 std::unique_ptr<ServiceCaller> RanchPanel::MakeCaller(double limit_s) {

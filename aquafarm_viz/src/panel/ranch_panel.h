@@ -9,6 +9,7 @@
 
 #include "ranch_widget.h"
 #include "service_caller.h"
+#include "whole_view.h"
 
 namespace aquafarm_viz {
 
@@ -17,6 +18,9 @@ namespace aquafarm_viz {
 class RanchPanel : public rviz::Panel {
  public:
   explicit RanchPanel(QWidget* parent = nullptr);
+
+  void load(const rviz::Config& config) override;
+  void save(rviz::Config config) const override;
 
  private:
   RanchButtons MakeButtons();
@@ -30,6 +34,7 @@ class RanchPanel : public rviz::Panel {
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_;
+  WholeView whole_view_;
   QTimer timer_;
   bool changed_{};
   std::uint64_t token_{ros::WallTime::now().toNSec()};

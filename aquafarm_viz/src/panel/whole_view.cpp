@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "whole_view.h"
+
+#include <rviz/render_panel.h>
+#include <rviz/view_controller.h>
+#include <rviz/view_manager.h>
+#include <rviz/visualization_manager.h>
+
+#include <algorithm>
+
+namespace aquafarm_viz {
+
+constexpr double kMargin = 0.05;  // of the farm on each side; the words above it need as much
+
+rviz::ViewController* WholeView::FromAbove(rviz::VisualizationManager& rviz) {
+  rviz::ViewController* view = rviz.getViewManager()->getCurrent();
+  return view != nullptr && view->getClassId() == "rviz/TopDownOrtho" ? view : nullptr;
+}
+
+WholeView::Place WholeView::Read(rviz::ViewController& view) {
+  const auto value = [&view](const char* name) { return view.subProp(name)->getValue().toFloat(); };
+  return {value("X"), value("Y"), value("Scale")};
+}
+
+bool WholeView::IsKept(rviz::VisualizationManager& rviz) const {
+  if (!wanted || width_m_ == 0.0) return wanted;
+  rviz::ViewController* view = FromAbove(rviz);
+  return view != nullptr && Read(*view) == place_;
+}
+
+void WholeView::Follow(rviz::VisualizationManager& rviz, const aquafarm_msgs::FarmSpec& spec) {
+  rviz::ViewController* view = FromAbove(rviz);
+  const QWidget* window = rviz.getRenderPanel();
+  if (!wanted || view == nullptr || window == nullptr) return;
+  const double width_m = spec.width * spec.cell_size_m;
+  const double height_m = spec.height * spec.cell_size_m;
+  const bool is_new = width_m != width_m_ || height_m != height_m_;
+  if (!is_new && !(Read(*view) == place_)) return;  // somebody moved it
+  const double scale = std::min(window->width() / width_m, window->height() / height_m) *
+                       window->devicePixelRatioF() / (1.0 + 2.0 * kMargin);
+  const Place wanted_place{static_cast<float>(0.5 * (width_m - spec.cell_size_m)),
+                           static_cast<float>(0.5 * (height_m - spec.cell_size_m)),
+                           static_cast<float>(scale)};
+  if (!is_new && wanted_place == place_) return;
+  view->subProp("X")->setValue(wanted_place.x_m);
+  view->subProp("Y")->setValue(wanted_place.y_m);
+  view->subProp("Scale")->setValue(wanted_place.scale);
+  width_m_ = width_m;
+  height_m_ = height_m;
+  place_ = Read(*view);
+}
+
+}  // namespace aquafarm_viz

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_agents/agent_driver.h"
 
-#include <aquafarm_msgs/Claim.h>
 #include <aquafarm_msgs/DropOff.h>
 #include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/GetState.h>
@@ -20,6 +19,8 @@
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm_agents/service_link.h"
+#include "aquafarm_agents/ship_claim.h"
+#include "aquafarm_agents/slow_warning.h"
 #include "aquafarm_sim/names.h"
 #include "aquafarm_sim/observation.h"
 
@@ -35,10 +36,6 @@ using aquafarm_msgs::Outcome;
 
 // Without an observation for so long, the last one is acted on again.
 constexpr double kSilence_s = 2.0;
-// Claiming anew also finds out whether the sim node is there, within the limit.
-constexpr double kClaimPeriod_s = 3.0;
-constexpr double kReleaseLimit_s = 1.0;
-constexpr double kWarnPeriod_s = 5.0;
 constexpr std::uint32_t kQueue = 10;
 
 }  // namespace
@@ -50,11 +47,7 @@ class AgentDriver::Impl {
         encodings_(encodings),
         node_(node),
         get_(node, options.wait_limit_s, options.stop),
-        reset_(node, options.wait_limit_s, options.stop),
-        claim_(node, options.wait_limit_s, options.stop),
-        move_(node, options.wait_limit_s, options.stop),
-        pickup_(node, options.wait_limit_s, options.stop),
-        drop_off_(node, options.wait_limit_s, options.stop) {
+        reset_(node, options.wait_limit_s, options.stop) {
     aquafarm_msgs::GetState get;
     get.request.with_spec = true;
     get_.Call(names::kGetState, get);
@@ -73,21 +66,9 @@ class AgentDriver::Impl {
       throw InputError("policy: scenario " + spec_.scenario_name + " has too many states for it");
     }
     SizeResults();
-    Claim();
-    node_.setCallbackQueue(&queue_);
-    observation_ = node_.subscribe<FarmState>(
-        names::Observation(options_.ship), kQueue,
-        [this](const FarmState::ConstPtr& message) { Take(message); }, ros::VoidConstPtr(),
-        ros::TransportHints().tcpNoDelay());
-  }
-
-  ~Impl() {
-    aquafarm_msgs::Claim claim;
-    claim.request.release = true;
-    try {
-      ServiceLink(node_, kReleaseLimit_s, nullptr, kReleaseLimit_s)
-          .Call(names::Claim(options_.ship), claim);
-    } catch (const EnvironmentLost&) {  // the claim ends by itself
+    const double limit_s = CommandLimit_s(get.response.barrier_timeout_s);
+    for (auto* link : {&move_, &pickup_, &drop_off_}) {
+      link->emplace(node_, options_.wait_limit_s, options_.stop, limit_s);
     }
   }
 
@@ -95,6 +76,7 @@ class AgentDriver::Impl {
 
   std::vector<bool> Drive(Policy& policy, std::uint64_t seed, std::int32_t episodes) {
     std::vector<bool> ended;
+    Board();
     policy.Begin(seed, 1);
     while (!Stopped() && (episodes == 0 || ended.size() < static_cast<std::size_t>(episodes))) {
       const FarmState::ConstPtr now = WaitForObservation();
@@ -137,20 +119,25 @@ class AgentDriver::Impl {
     if ((encodings_ & kPlanesBit) != 0) results_.planes.resize(agents * encoder_->planes_size());
   }
 
+  void Board() {
+    claim_.emplace(node_, options_.ship, options_.wait_limit_s, options_.stop);
+    node_.setCallbackQueue(&queue_);
+    observation_ = node_.subscribe<FarmState>(
+        names::Observation(options_.ship), kQueue,
+        [this](const FarmState::ConstPtr& message) { Take(message); }, ros::VoidConstPtr(),
+        ros::TransportHints().tcpNoDelay());
+  }
+
   // Another ship's agent may have begun the next episode before this one looks.
   void Take(const FarmState::ConstPtr& message) {
     newest_ = message;
-    if (message->reason == FarmState::NONE) return;
+    if (message->reason == FarmState::NONE) {
+      over_seen_.reset();  // the same episode may be played, and end, again
+      return;
+    }
     if (over_seen_ && *over_seen_ == std::pair(message->seed, message->episode)) return;
     over_seen_ = {message->seed, message->episode};
     over_.push_back(message);
-  }
-
-  void Claim() {
-    aquafarm_msgs::Claim claim;
-    claim_.Call(names::Claim(options_.ship), claim);
-    claimed_at_ = ros::WallTime::now();
-    if (!claim.response.ok) throw InputError("~ship: " + claim.response.message);
   }
 
   // Newer than what has been acted on; null when there is none yet.
@@ -158,7 +145,7 @@ class AgentDriver::Impl {
     const ros::WallTime start = ros::WallTime::now();
     while (!Stopped()) {
       queue_.callAvailable(ros::WallDuration(0.05));
-      if ((ros::WallTime::now() - claimed_at_).toSec() >= kClaimPeriod_s) Claim();
+      claim_->RenewWhenDue();
       if (newest_ && (again_ || newest_ != seen_)) {
         seen_ = newest_;
         again_ = false;
@@ -177,6 +164,7 @@ class AgentDriver::Impl {
       farm_->Reset(message.seed, message.episode);
       results_.started[0] = 1;
     }
+    if (message.step == 0) results_.started[0] = 1;  // also of the same episode, begun again
     const auto ship = static_cast<std::size_t>(options_.ship);
     aquafarm_sim::FromMsg(message, *scenario_, farm_->layout(), view_);
     results_.legal[ship] = message.ships[ship].legal_actions;
@@ -196,7 +184,7 @@ class AgentDriver::Impl {
     results_.started[0] = 1;
     if (over.pace == FarmState::PACED) return;
     aquafarm_msgs::Reset reset;
-    reset.request.sequence = ResetNumber(over.seed, over.episode);
+    reset.request.only_if_over = true;
     reset_.Call(names::kReset, reset);
     if (!reset.response.ok) throw EnvironmentLost("sim node: reset: " + reset.response.message);
   }
@@ -207,13 +195,13 @@ class AgentDriver::Impl {
     if (action < aquafarm::kMoveCount) {
       aquafarm_msgs::Move move;
       move.request.direction = action;
-      Command(now, names::Move(options_.ship), move_, move);
+      Command(now, names::Move(options_.ship), *move_, move);
     } else if (action == static_cast<std::uint8_t>(Action::kPickup)) {
       aquafarm_msgs::Pickup pickup;
-      Command(now, names::Pickup(options_.ship), pickup_, pickup);
+      Command(now, names::Pickup(options_.ship), *pickup_, pickup);
     } else {
       aquafarm_msgs::DropOff drop_off;
-      Command(now, names::DropOff(options_.ship), drop_off_, drop_off);
+      Command(now, names::DropOff(options_.ship), *drop_off_, drop_off);
     }
   }
 
@@ -232,7 +220,7 @@ class AgentDriver::Impl {
       case Outcome::TIMEOUT:
       case Outcome::PAUSED:
         again_ = true;  // the command was dropped
-        ROS_WARN_THROTTLE(kWarnPeriod_s, "ship %d: %s", options_.ship, result.message.c_str());
+        warning_.Say("ship " + std::to_string(options_.ship) + ": " + result.message);
         ros::WallDuration(0.1).sleep();
         return;
       case Outcome::CLAIMED:
@@ -248,10 +236,11 @@ class AgentDriver::Impl {
   ros::NodeHandle node_;
   ServiceLink get_;
   ServiceLink reset_;
-  ServiceLink claim_;
-  ServiceLink move_;
-  ServiceLink pickup_;
-  ServiceLink drop_off_;
+  std::optional<ServiceLink> move_;
+  std::optional<ServiceLink> pickup_;
+  std::optional<ServiceLink> drop_off_;
+  std::optional<ShipClaim> claim_;
+  SlowWarning warning_;
   std::shared_ptr<const aquafarm::Scenario> scenario_;
   std::unique_ptr<aquafarm::Farm> farm_;  // for its layout alone
   std::unique_ptr<aquafarm::Encoder> encoder_;
@@ -265,7 +254,6 @@ class AgentDriver::Impl {
   FarmState::ConstPtr acted_on_;  // what the present actions were chosen from
   FarmState::ConstPtr seen_;      // what was handed out last
   std::optional<std::pair<std::uint64_t, std::uint64_t>> acted_in_;  // seed and episode
-  ros::WallTime claimed_at_;
   bool again_{};
   std::uint64_t token_{ros::WallTime::now().toNSec()};
   ros::Subscriber observation_;

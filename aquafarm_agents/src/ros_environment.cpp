@@ -28,6 +28,8 @@ static_assert(int{StepResult::FEATURES} == int{aquafarm::agents::kFeaturesBit});
 static_assert(int{StepResult::PLANES} == int{aquafarm::agents::kPlanesBit});
 
 constexpr double kRetryPeriod_s = 0.1;
+// Without an episode that ends: another trains on the same farms.
+constexpr int kMostRestarts = 20;
 // Those that the sim node knows as well.
 constexpr int kFarmEncodings =
     aquafarm::agents::kIndexBit | aquafarm::agents::kFeaturesBit | aquafarm::agents::kPlanesBit;
@@ -121,9 +123,6 @@ const Results& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first_epi
                      " now, expected " + spec_.scenario_name + " as before");
   }
   seed_ = seed;
-  episode_ = first_episode;
-  steps_ = 0;
-  over_ = false;
   next_episode_ = first_episode + static_cast<std::uint64_t>(spec_.farms);
   Take(reset.response.result);
   return results_;
@@ -136,41 +135,27 @@ const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
   step_.request.actions.assign(actions.begin(), actions.end());
   step_.request.encodings = encodings_;
   step_.request.sequence = ++sequence_;
+  step_.request.turn = turn_;
   double waited_s = 0.0;
   ros::WallTime lost_since;
-  while (!Try(step_client_, names::kStep, step_) || !step_.response.ok) {
-    const int code = step_client_.isValid() ? int{step_.response.code} : int{Outcome::OK};
-    if (code == Outcome::PAUSED || code == Outcome::WRONG_PACE) {
-      WaitToGoOn(step_.response.message, waited_s);
-    } else if (code == Outcome::OK || code == Outcome::SHUTTING_DOWN) {
-      if (lost_since.isZero()) {
-        lost_since = ros::WallTime::now();
-        Notice("the sim node is gone; waiting up to " + Seconds(options_.wait_limit_s) +
-               " for its return");
-      }
-      if (!IsStillThere()) {
-        Restart();
-        return results_;
-      }
-      if (Stopped() || (ros::WallTime::now() - lost_since).toSec() >= options_.wait_limit_s) {
-        throw EnvironmentLost("sim node: answers, but takes no steps");
-      }
-      Sleep();
-    } else if (code == Outcome::BAD_LENGTH) {  // it came back with another number of farms
-      Restart();
+  for (;;) {
+    const bool answered = Try(step_client_, names::kStep, step_);
+    if (answered && step_.response.ok) break;
+    const int code = answered ? int{step_.response.code} : int{Outcome::SHUTTING_DOWN};
+    if (code == Outcome::STALE) {
+      Restart(step_.response.message);
       return results_;
+    }
+    if (code == Outcome::SHUTTING_DOWN) {
+      WaitForReturn(lost_since);
+    } else if (code == Outcome::PAUSED || code == Outcome::WRONG_PACE || code == Outcome::CLAIMED) {
+      WaitToGoOn(step_.response.message, waited_s);
     } else {
       throw EnvironmentLost("sim node: step refused: " + step_.response.message);
     }
   }
-  if (step_.response.result.started[0] != 0) {
-    episode_ += static_cast<std::uint64_t>(spec_.farms);
-    steps_ = 0;
-  } else {
-    ++steps_;
-  }
   Take(step_.response.result);
-  over_ = results_.reasons[0] != 0;
+  if (!results_.finished.empty()) restarts_ = 0;
   for (const EpisodeResult& ended : results_.finished) {  // its farm goes on N episodes later
     next_episode_ =
         std::max(next_episode_, ended.episode + static_cast<std::uint64_t>(spec_.farms) + 1);
@@ -181,6 +166,7 @@ const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
 // The state comes by a call of its own: planners take longer than that at any step.
 void RosEnvironment::Take(StepResult& result) {
   if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) results_.states = Save();
+  turn_ = result.turn;
   results_.rewards.swap(result.rewards);
   if (own_rewards_) aquafarm::agents::AddUpTerms(result.terms, results_.rewards);
   results_.outcomes.swap(result.outcomes);
@@ -221,10 +207,7 @@ void RosEnvironment::ReadProgress() {
   for (std::int32_t farm = spec_.farms - 1; farm >= 0; --farm) {
     const auto state = GetState(farm, false).state;
     seed_ = state.seed;
-    episode_ = state.episode;
-    steps_ = state.step;
-    over_ = state.reason != 0;
-    next_episode_ = std::max(next_episode_, episode_ + 1);
+    next_episode_ = std::max(next_episode_, state.episode + 1);
   }
 }
 
@@ -237,23 +220,28 @@ aquafarm_msgs::GetState::Response RosEnvironment::GetState(std::int32_t farm, bo
   return get.response;
 }
 
-// The farm is where it was before the call, or where the call brought it; then the call may be
-// sent again. A fresh node at episode 0, step 0 of the same seed is as good as the same one.
-bool RosEnvironment::IsStillThere() {
-  const auto state = GetState(0, false).state;
-  if (state.seed != seed_) return false;
-  if (state.episode == episode_ && state.step == steps_) return true;
-  if (over_) {
-    return state.step == 0 && state.episode == episode_ + static_cast<std::uint64_t>(spec_.farms);
+void RosEnvironment::Restart(const std::string& why) {
+  if (++restarts_ > kMostRestarts) {
+    throw EnvironmentLost("sim node: its farms are taken away again and again: " + why);
   }
-  return state.episode == episode_ && state.step == steps_ + 1;
-}
-
-void RosEnvironment::Restart() {
-  Notice("the sim node came back without its farms; going on with fresh episodes from number " +
-         std::to_string(next_episode_));
+  Notice("the farms are not as they were left (" + why +
+         "); going on with fresh episodes from number " + std::to_string(next_episode_));
   Reset(seed_, next_episode_);
   restarted_ = true;
+}
+
+void RosEnvironment::WaitForReturn(ros::WallTime& lost_since) {
+  if (lost_since.isZero()) {
+    lost_since = ros::WallTime::now();
+    Notice("the sim node is gone; waiting up to " + Seconds(options_.wait_limit_s) +
+           " for its return");
+  }
+  const double waited_s = (ros::WallTime::now() - lost_since).toSec();
+  if (Stopped() || waited_s >= options_.wait_limit_s) {
+    throw EnvironmentLost("sim node: no answer from service " + node_.resolveName(names::kStep) +
+                          " for " + Seconds(waited_s));
+  }
+  Sleep();
 }
 
 void RosEnvironment::WaitToGoOn(const std::string& why, double& waited_s) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_agents/ship_driver.h"
 
-#include <aquafarm_msgs/Claim.h>
 #include <aquafarm_msgs/Command.h>
 #include <aquafarm_msgs/GetState.h>
 #include <aquafarm_msgs/Outcome.h>
@@ -11,12 +10,13 @@
 #include <ros/init.h>
 
 #include <future>
-#include <mutex>
 #include <utility>
 
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
 #include "aquafarm_agents/service_link.h"
+#include "aquafarm_agents/ship_claim.h"
+#include "aquafarm_agents/slow_warning.h"
 #include "aquafarm_sim/names.h"
 
 namespace aquafarm_agents {
@@ -29,7 +29,6 @@ using aquafarm_msgs::Outcome;
 
 constexpr double kPollPeriod_s = 0.01;
 constexpr double kRetryPeriod_s = 0.1;
-constexpr double kWarnPeriod_s = 5.0;
 
 }  // namespace
 
@@ -37,10 +36,10 @@ class ShipDriver::Impl {
  public:
   Impl(const ros::NodeHandle& node, std::uint8_t encodings, ShipDriverOptions options)
       : options_(std::move(options)),
+        node_(node),
         get_(node, options_.wait_limit_s, options_.stop),
         save_(node, options_.wait_limit_s, options_.stop),
-        reset_(node, options_.wait_limit_s, options_.stop),
-        claim_(node, options_.wait_limit_s, options_.stop) {
+        reset_(node, options_.wait_limit_s, options_.stop) {
     aquafarm_msgs::GetState get;
     get.request.with_spec = true;
     get_.Call(names::kGetState, get);
@@ -59,9 +58,9 @@ class ShipDriver::Impl {
     for (std::int32_t ship = 0; ship < spec.agents; ++ship) {
       if (options_.ship >= 0 && ship != options_.ship) continue;
       ships_.push_back(ship);
-      if (options_.ship >= 0) Claim(ship);
       commands_.push_back(
-          std::make_unique<ServiceLink>(node, options_.wait_limit_s, options_.stop));
+          std::make_unique<ServiceLink>(node, options_.wait_limit_s, options_.stop,
+                                        CommandLimit_s(get.response.barrier_timeout_s)));
     }
   }
 
@@ -69,6 +68,9 @@ class ShipDriver::Impl {
 
   std::vector<EpisodeResult> Drive(Policy& policy, std::uint64_t seed, std::int32_t episodes) {
     std::vector<EpisodeResult> ended;
+    if (options_.ship >= 0) {
+      claim_.emplace(node_, options_.ship, options_.wait_limit_s, options_.stop);
+    }
     policy.Begin(seed, spec().farms);
     while (!Stopped() && (episodes == 0 || ended.size() < static_cast<std::size_t>(episodes))) {
       const Results& results = Look();
@@ -97,13 +99,6 @@ class ShipDriver::Impl {
  private:
   bool Stopped() const { return !ros::ok() || (options_.stop != nullptr && *options_.stop); }
 
-  // Its commands renew it.
-  void Claim(std::int32_t ship) {
-    aquafarm_msgs::Claim claim;
-    claim_.Call(names::Claim(ship), claim);
-    if (!claim.response.ok) throw InputError("~ship: " + claim.response.message);
-  }
-
   const Results& Look() {
     aquafarm_msgs::SaveState save;
     save_.Call(names::kSaveState, save);
@@ -121,6 +116,7 @@ class ShipDriver::Impl {
   void WaitForChange() {
     while (!Stopped()) {
       ros::WallDuration(kPollPeriod_s).sleep();
+      if (claim_) claim_->RenewWhenDue();
       const aquafarm_msgs::FarmState state = State();
       if (state.episode != seen_->first || state.step != seen_->second) return;
     }
@@ -130,9 +126,7 @@ class ShipDriver::Impl {
   void StartNext() {
     if (State().pace == aquafarm_msgs::FarmState::PACED) return;
     aquafarm_msgs::Reset reset;
-    // Several drivers may ask for it: with the same number it is done once.
-    reset.request.sequence =
-        ResetNumber(mirror_->batch().farm(0).seed(), mirror_->batch().farm(0).episode());
+    reset.request.only_if_over = true;  // several drivers may ask for it
     reset_.Call(names::kReset, reset);
     if (!reset.response.ok) throw EnvironmentLost("sim node: reset: " + reset.response.message);
   }
@@ -166,17 +160,8 @@ class ShipDriver::Impl {
     }
     if (code == Outcome::TIMEOUT || code == Outcome::PAUSED) {
       again_ = true;  // the command was dropped
-      WarnNowAndThen("ship " + std::to_string(ships_[i]) + ": " + command.response.result.message);
+      warning_.Say("ship " + std::to_string(ships_[i]) + ": " + command.response.result.message);
     }
-  }
-
-  // By the wall clock: ROS time stands still with the farm.
-  void WarnNowAndThen(const std::string& text) {
-    const std::lock_guard<std::mutex> lock(warn_mutex_);
-    const ros::WallTime now = ros::WallTime::now();
-    if ((now - warned_).toSec() < kWarnPeriod_s) return;
-    warned_ = now;
-    ROS_WARN("%s", text.c_str());
   }
 
   static EpisodeResult Record(const aquafarm::Farm& farm) {
@@ -190,18 +175,18 @@ class ShipDriver::Impl {
   }
 
   const ShipDriverOptions options_;
+  const ros::NodeHandle node_;
   ServiceLink get_;
   ServiceLink save_;
   ServiceLink reset_;
-  ServiceLink claim_;
+  std::optional<ShipClaim> claim_;  // none where it drives all ships
   std::vector<std::int32_t> ships_;
   std::vector<std::unique_ptr<ServiceLink>> commands_;  // one a ship
   std::unique_ptr<LocalEnvironment> mirror_;
   std::vector<std::uint8_t> actions_;
   std::atomic<bool> again_{};  // a command was dropped: look and send anew
   std::atomic<std::uint64_t> token_{ros::WallTime::now().toNSec()};  // of the last command
-  std::mutex warn_mutex_;
-  ros::WallTime warned_;
+  SlowWarning warning_;
   std::optional<std::pair<std::uint64_t, std::uint64_t>> seen_;  // episode and step
 };
 

@@ -13,7 +13,8 @@ import unittest
 import rosgraph
 import rospy
 import rostest
-from aquafarm_msgs.srv import GetState
+from aquafarm_msgs.srv import Claim, GetState, LoadState, Pause, SaveState
+from diagnostic_msgs.msg import DiagnosticArray
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, SecondHost, free_port, program, start_sim  # noqa: E402
@@ -47,7 +48,7 @@ class AgentNodesTest(unittest.TestCase):
         return folder
 
     def sim(self, scenario, *parameters):
-        start_sim(self, self.namespace, scenario, *parameters)
+        self.ranch = start_sim(self, self.namespace, scenario, *parameters)
         self.get_state = rospy.ServiceProxy(f"{self.namespace}/get_state", GetState)
         self.get_state.wait_for_service(20)
 
@@ -61,6 +62,12 @@ class AgentNodesTest(unittest.TestCase):
         subscribers = rosgraph.Master("/test").getSystemState()[1]
         return any(topic.startswith(self.namespace) and topic.endswith("/observation")
                    and f"{self.namespace}/{name}" in nodes for topic, nodes in subscribers)
+
+    def call(self, name, kind, **fields):
+        """Calls a service of the ranch; what it refuses fails the test."""
+        answer = rospy.ServiceProxy(f"{self.namespace}/{name}", kind)(**fields)
+        self.assertTrue(answer.ok, answer.message)
+        return answer
 
     def state(self):
         return self.get_state().state
@@ -124,6 +131,7 @@ class AgentNodesTest(unittest.TestCase):
         victim = self.agent(1, "random")
         self.wait_until(lambda state: state.step > 20 and state.ships[1].action != HOLD,
                         "both ships at work")
+        before = len(self.ranch.words())
         victim.send(signal.SIGKILL)
         self.wait_until(lambda state: state.ships[1].action == HOLD, "the ship to hold")
         died = self.state()
@@ -136,9 +144,17 @@ class AgentNodesTest(unittest.TestCase):
         self.agent(1, "random")
         self.wait_until(lambda state: state.ships[1].action != HOLD, "the ship to move again")
         self.assertEqual(on.episode, self.state().episode)
+        return lambda: self.ranch.words()[before:]
 
     def test_one_that_dies_holds_its_ship_only_and_joins_again(self):
-        self.die_and_join_again("_late_ships_hold:=true", "_barrier_timeout_s:=0.5")
+        told = []
+        rospy.Subscriber("/diagnostics", DiagnosticArray,
+                         lambda array: told.append(array.status[0].message))
+        words = self.die_and_join_again("_late_ships_hold:=true", "_barrier_timeout_s:=0.5")
+        self.ranch.wait_for(lambda: "back: ship 1" in words(), "a word of its return")
+        self.assertEqual(1, words().count(
+            "no command within ~barrier_timeout_s, 0.5 s, of ship 1: it holds until it is back"))
+        self.assertIn("given up until they command again: ship 1", told)
 
     def test_one_that_dies_holds_its_ship_only_and_joins_again_when_paced(self):
         self.die_and_join_again("_pace:=paced", "_rate_hz:=50")
@@ -162,6 +178,49 @@ class AgentNodesTest(unittest.TestCase):
 
     def test_one_that_is_late_holds_its_ship_until_it_is_back_when_paced(self):
         self.be_late_and_back("_pace:=paced", "_rate_hz:=50")
+
+    def test_an_episode_that_is_played_again_and_ends_again_is_followed_by_the_next(self):
+        self.sim(TEAM, "_seed:=7")
+        agents = [self.agent(ship, "random") for ship in (0, 1)]
+        self.wait_until(lambda state: state.episode > 0, "an episode to end")
+        self.call("pause", Pause, paused=True)
+        saved, state = self.call("save_state", SaveState), self.state()
+        self.call("pause", Pause, paused=True, steps=60 - state.step + 10)
+        self.wait_until(lambda now: now.paused and now.episode == state.episode + 1,
+                        "a pause in the next episode")
+        self.call("load_state", LoadState, data=saved.data)
+        self.call("pause", Pause, paused=False)
+        self.wait_until(lambda now: now.episode > state.episode + 1, "the episodes after it")
+        for run in agents:
+            self.assertIsNone(run.process.poll(), run.words())
+
+    def test_one_that_waits_for_the_others_waits_as_long_as_the_farm_does(self):
+        self.sim(WIDE, "_barrier_timeout_s:=3600")
+        first = self.agent(0, "random", "_sim_timeout_s:=1")
+        first.wait_for(lambda: self.is_seen_by("agent_0"), "its ship")
+        time.sleep(32)  # longer than any other call may take
+        self.assertIsNone(first.process.poll(), first.words())
+        self.agent(1, "random")
+        self.wait_until(lambda state: state.step > 20, "both ships at work")
+
+    def test_a_wait_in_vain_is_told_while_the_farms_clock_stands_still(self):
+        rospy.set_param("/use_sim_time", True)
+        self.addCleanup(rospy.delete_param, "/use_sim_time")
+        self.sim(WIDE, "_barrier_timeout_s:=0.2")
+        run = self.agent(0, "random")
+        run.wait_for(lambda: "ship 0: other ships gave no command within" in run.words(),
+                     "a warning")
+
+    def test_a_ship_driven_by_what_the_whole_farm_tells_is_held_until_its_node_ends(self):
+        self.sim(WIDE, "_pace:=paced", "_rate_hz:=0.02", "_claim_timeout_s:=5")
+        rospy.wait_for_service(f"{self.namespace}/ship_1/claim", 20)
+        claim = rospy.ServiceProxy(f"{self.namespace}/ship_1/claim", Claim)
+        run = self.agent(1, "planner")
+        run.wait_for(lambda: claim(release=True).holder == f"{self.namespace}/agent_1", "its ship")
+        time.sleep(7)  # it has nothing to command
+        self.assertEqual(f"{self.namespace}/agent_1", claim(release=False).holder)
+        run.interrupt()
+        self.assertTrue(claim(release=False).ok, "it gave the ship back")
 
     def test_a_ship_that_another_holds_is_refused(self):
         self.sim(WIDE, "_barrier_timeout_s:=3600")
@@ -191,6 +250,7 @@ class AgentNodesTest(unittest.TestCase):
 
     def test_a_policy_for_another_number_of_ships_is_refused(self):
         self.sim("four_squads")
+        self.call("ship_0/claim", Claim)  # it is not asked for by a policy that cannot drive it
         before = self.state().hash
         run = self.agent(0, self.trained())
         self.assertEqual(2, run.code(), run.words())

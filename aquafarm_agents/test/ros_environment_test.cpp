@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <ros/init.h>
 
+#include <functional>
+
 #include "agents_fixture.h"
 #include "aquafarm_sim/names.h"
 #include "environment_contract.h"
@@ -172,6 +174,54 @@ TEST(RosEnvironment, WaitsWhileTheFarmIsPaused) {
   EXPECT_CONTAINS(notices[0], "waiting up to 1 s for the sim node");
   ASSERT_TRUE(pause(false));
   environment.Step(std::vector<std::uint8_t>(2, 0));
+}
+
+TEST(RosEnvironment, StartsAfreshWhenAnotherHasMovedOrResetTheFarms) {
+  namespace names = aquafarm_sim::names;
+  ros::NodeHandle node("paper");
+  RosEnvironmentOptions options;
+  options.farms = 3;
+  std::vector<std::string> notices;
+  options.on_notice = [&notices](const std::string& text) { notices.push_back(text); };
+  RosEnvironment environment(node, options);
+  environment.Reset(1, 10);
+  const std::vector<std::uint8_t> actions(3, 0);
+  const auto step = [&] { return environment.Step(actions).started[0] != 0; };
+  EXPECT_FALSE(step());
+  const auto foreign_reset = [&] {
+    aquafarm_msgs::Reset reset;
+    ASSERT_TRUE(node.serviceClient<aquafarm_msgs::Reset>(names::kReset).call(reset));
+    ASSERT_TRUE(reset.response.ok) << reset.response.message;
+  };
+  const auto foreign_command = [&] {
+    aquafarm_msgs::Move move;
+    ASSERT_TRUE(node.serviceClient<aquafarm_msgs::Move>(names::Move(0)).call(move));
+    ASSERT_TRUE(move.response.result.ok) << move.response.result.message;
+  };
+  const std::vector<std::function<void()>> others{foreign_reset, foreign_command};
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    others[i]();
+    EXPECT_TRUE(step()) << "no transition leads from one episode into another";
+    EXPECT_TRUE(environment.TakeRestarted());
+    ASSERT_EQ(i + 1, notices.size());
+    EXPECT_CONTAINS(notices.back(), "another has moved or reset them, or the node is new");
+    EXPECT_CONTAINS(notices.back(), "fresh episodes from number " + std::to_string(13 + 3 * i));
+    EXPECT_FALSE(step());
+    EXPECT_FALSE(environment.TakeRestarted());
+  }
+}
+
+TEST(RosEnvironment, EndsWhereAnotherTrainsOnTheSameFarms) {
+  ros::NodeHandle node("paper");
+  RosEnvironment environment(node, {});
+  aquafarm_msgs::Reset reset;
+  auto other = node.serviceClient<aquafarm_msgs::Reset>(aquafarm_sim::names::kReset, true);
+  environment.Reset(1);
+  const std::vector<std::uint8_t> actions(static_cast<std::size_t>(environment.spec().farms), 0);
+  EXPECT_CONTAINS(MessageOf<EnvironmentLost>([&] {
+                    for (int i = 0; i < 100 && other.call(reset); ++i) environment.Step(actions);
+                  }),
+                  "its farms are taken away again and again");
 }
 
 TEST(RosEnvironment, RefusesFarmsThatItCannotUse) {

@@ -11,6 +11,7 @@ import unittest
 import rospy
 import rostest
 from aquafarm_msgs.msg import TrainingStatus
+from aquafarm_msgs.srv import Claim
 from sensor_msgs.msg import PointCloud2
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -117,6 +118,17 @@ class TrainNodeTest(unittest.TestCase):
         column = lines[0].split(",").index("episode")
         episodes = [int(line.split(",")[column]) for line in lines[1:]]
         self.assertEqual(len(episodes), len(set(episodes)), "an episode was trained on twice")
+
+    def test_it_waits_while_a_ship_is_held_by_another(self):
+        start_sim(self, self.namespace, TINY, "_claim_timeout_s:=3600")
+        rospy.wait_for_service(f"{self.namespace}/ship_0/claim", 20)
+        claim = rospy.ServiceProxy(f"{self.namespace}/ship_0/claim", Claim)
+        self.assertTrue(claim(release=False).ok)
+        run = self.train("run", "_steps:=1000")
+        run.wait_for(lambda: "for the sim node: ship 0 is held by /train_node_test" in run.words(),
+                     "a word of the holder")
+        self.assertTrue(claim(release=True).ok)
+        self.assertEqual(0, run.code(), run.words())
 
     def test_status_goes_to_a_topic(self):
         start_sim(self, self.namespace, TINY)

@@ -43,6 +43,12 @@ class PlayLaunchTest(unittest.TestCase):
             os.write(self._keys, b"q")
             self.assertEqual(0, ranch.exit_code(20))
 
+    def test_a_ship_that_the_farm_has_not_is_refused_with_those_it_has(self):
+        for ship in ("9", "-1", "abc"):
+            with self.subTest(ship=ship), self.play(f"ship:={ship}") as ranch:
+                self.assertEqual(2, ranch.exit_code(START_LIMIT_S + 20))
+                self.assertIn(f"keyboard: got ship {ship}, expected one of 0 to 0", ranch.words())
+
     def test_ships_that_are_not_driven_hold(self):
         with self.play("scenario:=two_squads") as ranch:
             ranch.wait_for(lambda: "driving ship 0" in ranch.words(), START_LIMIT_S)

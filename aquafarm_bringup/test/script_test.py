@@ -87,6 +87,35 @@ class ScriptTest(unittest.TestCase):
                 self.assertEqual(0, done.returncode, done.stdout)
                 self.assertIn(f"usage: ./aquafarm {verb}", done.stdout)
 
+    def test_what_another_tree_or_type_has_built_is_built_anew(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder).resolve()
+            ws, tree = folder / "ws", folder / "tree"
+            for part in ("src", "build", "devel"):
+                (ws / part).mkdir(parents=True)
+            (tree / "aquafarm_x").mkdir(parents=True)
+            copy = tree / "aquafarm"
+            copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "echo -C"))
+            cache = ws / "build" / "CMakeCache.txt"
+
+            def words(root, home=ws / "src", build_type="Release"):
+                (ws / "build").mkdir(exist_ok=True)
+                cache.write_text(f"CMAKE_BUILD_TYPE:STRING={build_type}\n"
+                                 f"CMAKE_HOME_DIRECTORY:INTERNAL={home}\n")
+                (ws / "src" / "aquafarm").unlink(missing_ok=True)
+                (ws / "src" / "aquafarm").symlink_to(root)
+                (ws / "built").touch()
+                done = run("bash", copy, "ask", "--help", env=dict(os.environ, AQUAFARM_WS=str(ws)))
+                self.assertEqual(str(tree), os.readlink(ws / "src" / "aquafarm"), done.stdout)
+                return done.stdout
+
+            self.assertNotIn("building in", words(tree))
+            self.assertIn("building in", words(tree, build_type="Debug"))
+            self.assertTrue(cache.exists(), "another type is compiled in place")
+            for other in ((folder / "other",), (tree, folder / "moved" / "src")):
+                self.assertIn("is of another tree or place; building all anew", words(*other))
+                self.assertFalse(cache.exists())
+
     @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "needs root and setpriv")
     def test_without_root_setup_says_what_to_install_and_ends(self):
         with tempfile.TemporaryDirectory() as folder:

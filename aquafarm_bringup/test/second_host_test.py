@@ -24,7 +24,7 @@ LAUNCH = """<launch>
     <arg name="scenario" value="{scenario}"/>
     <arg name="ships" value="1"/>
     <arg name="viz" value="false"/>
-    <arg name="late_s" value="30"/>
+    <arg name="late_s" value="3600"/>
   </include>
   <include file="$(find aquafarm_bringup)/launch/agent.launch">
     <arg name="ship" value="1"/>

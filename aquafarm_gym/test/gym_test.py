@@ -210,6 +210,19 @@ class GymTest(unittest.TestCase):
                                     " for 0.5 s"):
             RosFarms("/nowhere", wait_limit_s=0.5)
 
+    def test_farms_that_another_has_reset_are_not_gone_on_with(self):
+        mine, other = RosFarms("/ranch"), RosFarms("/ranch")
+        north = np.zeros((1, 1), np.uint8)
+        mine.reset(1)
+        mine.step(north)
+        other.reset(2)
+        with self.assertRaisesRegex(ConnectionError, "^sim node: not as it was left .* reset to go"):
+            mine.step(north)
+        with self.assertRaisesRegex(ValueError, "^step: got no reset before, expected one"):
+            mine.step(north)
+        mine.reset(1)
+        mine.step(north)
+
     def test_no_master_is_said_at_once(self):
         code = ("from aquafarm_gym import RosFarms\n"
                 "try:\n    RosFarms()\nexcept ConnectionError as error:\n    print(error)")

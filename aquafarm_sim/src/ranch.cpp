@@ -27,6 +27,8 @@ Ranch::Ranch(std::shared_ptr<const aquafarm::Scenario> scenario, const RanchOpti
       options_(options),
       agents_(scenario_->AgentCount()),
       batch_(std::make_unique<aquafarm::FarmBatch>(scenario_, options.farms, options.threads)),
+      turn_(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch() /
+                                       std::chrono::nanoseconds(1))),
       actions_(static_cast<std::size_t>(agents_)) {
   context_.map_frame = options.map_frame;
   context_.paced = options.paced;
@@ -63,9 +65,8 @@ aquafarm_msgs::CommandResult Ranch::Command(const ShipCommand& command) {
       const Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
       if (slot.last && *slot.last == command) return slot.answer;
     }
-    if (const auto refusal = CheckHolder(command)) {
+    if (const auto refusal = Hear(command))
       return Refuse(command.ship, refusal->code, refusal->message);
-    }
     if (const auto refusal = Check(command))
       return Refuse(command.ship, refusal->code, refusal->message);
     if (context_.paced) return AcceptPaced(command);
@@ -133,6 +134,9 @@ aquafarm_msgs::CommandResult Ranch::AcceptPaced(const ShipCommand& command) {
   }
   Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
   slot.pending = command;
+  slot.reply = nullptr;  // a command that waited when the pace changed is superseded
+  ++slot.ticket;
+  slot.changed.notify_all();
   slot.last = command;
   slot.answer = CommandResult();
   Describe(command.ship, slot.answer);
@@ -146,21 +150,22 @@ aquafarm_msgs::CommandResult Ranch::AcceptPaced(const ShipCommand& command) {
 
 aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lock& lock) {
   Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
+  std::optional<CommandResult> reply;
   slot.pending = command;
+  slot.reply = &reply;
   const std::uint64_t ticket = ++slot.ticket;
   slot.changed.notify_all();  // An earlier command of this ship that still waits is superseded.
   if (EveryShipHasACommand()) {
     StepPublishedFarm();
-    return slot.answer;
+    return *reply;
   }
   const auto deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options_.barrier_timeout_s));
   const std::uint64_t episodes = episode_count_;
-  const bool woken = slot.changed.wait_until(lock, deadline, [&] {
-    return slot.answered >= ticket || slot.ticket != ticket || !slot.pending || ending_;
-  });
-  if (slot.answered == ticket) return slot.answer;
+  const bool woken = slot.changed.wait_until(
+      lock, deadline, [&] { return reply || slot.ticket != ticket || !slot.pending || ending_; });
+  if (reply) return *reply;  // even if the ship has had newer commands since
   if (slot.ticket != ticket) {
     ++counters_.superseded;
     return Refuse(
@@ -170,9 +175,11 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
   slot.heard_at = Clock::now();  // it was there all the time
   if (!woken && !ending_ && options_.late_ships_hold && !context_.paused && !context_.paced) {
     GoOnWithoutTheLate();
-    return slot.answer;
+    return *reply;
   }
+  const std::string missing = MissingShips();
   slot.pending.reset();
+  slot.reply = nullptr;
   if (ending_) return Refuse(command.ship, Outcome::SHUTTING_DOWN, "the sim node is ending");
   if (woken) {
     return Refuse(command.ship, Outcome::STALE,
@@ -180,27 +187,37 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
                                              : "another episode has begun meanwhile");
   }
   ++counters_.barrier_timeouts;
-  return Refuse(
-      command.ship, Outcome::TIMEOUT,
-      "other ships gave no command within " + std::to_string(options_.barrier_timeout_s) + " s");
+  return Refuse(command.ship, Outcome::TIMEOUT,
+                "other ships gave no command within " + std::to_string(options_.barrier_timeout_s) +
+                    " s: " + missing);
+}
+
+// Whether the farm waits for a ship's command.
+bool Ranch::IsMissing(std::int32_t ship) const {
+  const auto i = static_cast<std::size_t>(ship);
+  return batch_->farm(0).ships()[i].in_play && !slots_[i]->is_absent && !slots_[i]->pending;
 }
 
 bool Ranch::EveryShipHasACommand() const {
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
-    const bool in_play = batch_->farm(0).ships()[static_cast<std::size_t>(ship)].in_play;
-    const Slot& slot = *slots_[static_cast<std::size_t>(ship)];
-    if (in_play && !slot.is_absent && !slot.pending) return false;
+    if (IsMissing(ship)) return false;
   }
   return true;
+}
+
+std::string Ranch::MissingShips() const {
+  std::string names;
+  for (std::int32_t ship = 0; ship < agents_; ++ship) {
+    if (IsMissing(ship)) names += (names.empty() ? "" : ", ") + std::to_string(ship);
+  }
+  return names;
 }
 
 // A ship whose node died or is late holds, and is not waited for again until it is back.
 void Ranch::GoOnWithoutTheLate() {
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
-    Slot& slot = *slots_[static_cast<std::size_t>(ship)];
-    const bool in_play = batch_->farm(0).ships()[static_cast<std::size_t>(ship)].in_play;
-    if (!in_play || slot.pending || slot.is_absent) continue;
-    slot.is_absent = true;
+    if (!IsMissing(ship)) continue;
+    slots_[static_cast<std::size_t>(ship)]->is_absent = true;
     ++counters_.late_ships;
   }
   StepPublishedFarm();
@@ -216,14 +233,17 @@ bool Ranch::IsHeldByAnother(Slot& slot, const std::string& caller) {
   return false;
 }
 
+std::optional<Ranch::Refusal> Ranch::CheckHolder(std::int32_t ship, const std::string& caller) {
+  Slot& slot = *slots_[static_cast<std::size_t>(ship)];
+  if (!IsHeldByAnother(slot, caller)) return std::nullopt;
+  return Refusal{Outcome::CLAIMED, "ship " + std::to_string(ship) + " is held by " + slot.holder};
+}
+
 // Whoever may command a ship and says something, even too late, is there.
-std::optional<Ranch::Refusal> Ranch::CheckHolder(const ShipCommand& command) {
+std::optional<Ranch::Refusal> Ranch::Hear(const ShipCommand& command) {
   if (command.ship < 0 || command.ship >= agents_) return std::nullopt;
+  if (auto refusal = CheckHolder(command.ship, command.caller)) return refusal;
   Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
-  if (IsHeldByAnother(slot, command.caller)) {
-    return Refusal{Outcome::CLAIMED,
-                   "ship " + std::to_string(command.ship) + " is held by " + slot.holder};
-  }
   slot.heard_at = Clock::now();
   slot.is_absent = false;
   return std::nullopt;
@@ -233,14 +253,15 @@ void Ranch::Claim(std::int32_t ship, const std::string& caller, bool release,
                   aquafarm_msgs::Claim::Response& response) {
   const Lock lock(mutex_);
   Slot& slot = *slots_[static_cast<std::size_t>(ship)];
-  response.ok = !IsHeldByAnother(slot, caller);
-  response.code = response.ok ? Outcome::OK : Outcome::CLAIMED;
-  if (response.ok) {
+  const auto refusal = CheckHolder(ship, caller);
+  response.ok = !refusal;
+  response.code = refusal ? refusal->code : std::uint8_t{Outcome::OK};
+  if (refusal) {
+    ++counters_.refused;
+    response.message = refusal->message;
+  } else {
     slot.holder = release ? std::string() : caller;
     slot.heard_at = Clock::now();
-  } else {
-    ++counters_.refused;
-    response.message = "ship " + std::to_string(ship) + " is held by " + slot.holder;
   }
   response.holder = slot.holder;
 }
@@ -254,15 +275,17 @@ void Ranch::StepPublishedFarm() {
   farm.Step(actions_.data());
   if (recorder_ != nullptr) recorder_->OnStep(farm, 0, actions_.data());
   ++counters_.farm_steps;
-  AdvanceClock();
+  Advance();
   for (std::size_t ship = 0; ship < slots_.size(); ++ship) {
     Slot& slot = *slots_[ship];
     if (!slot.pending) continue;
     slot.answer = AnswerOf(static_cast<std::int32_t>(ship));
     slot.last = slot.pending;
     slot.pending.reset();
-    slot.answered = slot.ticket;
-    if (slots_.size() > 1) slot.changed.notify_all();
+    if (slot.reply == nullptr) continue;
+    *slot.reply = slot.answer;
+    slot.reply = nullptr;
+    slot.changed.notify_all();
   }
   Changed();
   if (farm.over() && listener_ != nullptr) {
@@ -275,6 +298,7 @@ void Ranch::DropPending() {
   for (const auto& slot : slots_) {
     if (!slot->pending) continue;
     slot->pending.reset();
+    slot->reply = nullptr;
     slot->changed.notify_all();
   }
 }
@@ -366,7 +390,8 @@ void Ranch::Shutdown() {
   for (const auto& slot : slots_) slot->changed.notify_all();
 }
 
-void Ranch::AdvanceClock() {
+void Ranch::Advance() {
+  ++turn_;
   clock_ns_ += static_cast<std::uint64_t>(1e9 / context_.rate_hz);
   context_.stamp.fromNSec(clock_ns_);
   if (steps_to_pause_ > 0 && --steps_to_pause_ == 0) context_.paused = true;
@@ -375,7 +400,7 @@ void Ranch::AdvanceClock() {
 // Begins with a tick of its own, so that an episode's end and the next one's start differ in stamp.
 void Ranch::EpisodeBegan(bool by_joint_step) {
   ++episode_count_;
-  AdvanceClock();
+  Advance();
   Changed(by_joint_step);
 }
 
@@ -400,6 +425,9 @@ RanchCounters Ranch::counters() {
   if (joint_step_at_ != Clock::time_point{}) {
     counters.joint_step_age_s =
         std::chrono::duration<double>(Clock::now() - joint_step_at_).count();
+  }
+  for (std::int32_t ship = 0; ship < agents_; ++ship) {
+    if (slots_[static_cast<std::size_t>(ship)]->is_absent) counters.absent.push_back(ship);
   }
   return counters;
 }

@@ -19,25 +19,6 @@ using aquafarm_msgs::StepResult;
 constexpr std::uint8_t kAllEncodings = StepResult::INDEX | StepResult::FEATURES |
                                        StepResult::PLANES | StepResult::HASHES | StepResult::TERMS;
 
-template <typename Response>
-void Answer(std::uint8_t code, const std::string& message, Response& response) {
-  response.ok = code == Outcome::OK;
-  response.code = code;
-  response.message = message;
-}
-
-/// Runs a request; what it throws becomes a code. @param bad_input code for an InputError
-template <typename Response, typename Request>
-void Guarded(std::uint8_t bad_input, Response& response, Request&& request) {
-  try {
-    request();
-  } catch (const aquafarm::InputError& error) {
-    Answer(bad_input, error.what(), response);
-  } catch (const std::exception& error) {
-    Answer(Outcome::INTERNAL_ERROR, error.what(), response);
-  }
-}
-
 std::string OutOfRange(const std::string& name, std::int64_t got, std::int64_t least,
                        std::int64_t most) {
   return name + ": got " + std::to_string(got) + ", expected [" + std::to_string(least) + ", " +
@@ -58,33 +39,60 @@ T* Sized(bool wanted, std::size_t size, std::vector<T>& entries) {
 
 }  // namespace
 
+template <typename Response>
+void Ranch::Answer(std::uint8_t code, const std::string& message, Response& response) {
+  response.ok = code == Outcome::OK;
+  response.code = code;
+  response.message = message;
+  if (!response.ok) ++counters_.refused;
+}
+
+/// Runs a request; what it throws becomes a code. @param bad_input code for an InputError
+template <typename Response, typename Request>
+void Ranch::Guarded(std::uint8_t bad_input, Response& response, Request&& request) {
+  try {
+    request();
+  } catch (const aquafarm::InputError& error) {
+    Answer(bad_input, error.what(), response);
+  } catch (const std::exception& error) {
+    Answer(Outcome::INTERNAL_ERROR, error.what(), response);
+  }
+}
+
 // --- joint steps --------------------------------------------------------------------------------
 
-const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Request& request) {
+const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Request& request,
+                                                 const std::string& caller) {
   const Lock lock(mutex_);
-  if (request.sequence != 0 && request.sequence == last_sequence_) return step_answer_;
+  if (last_step_.IsRepeated(request.sequence, caller)) return step_answer_;
   try {
-    if (const auto refusal = Check(request)) {
-      ++counters_.refused;
+    if (const auto refusal = Check(request, caller)) {
       Answer(refusal->code, refusal->message, step_refusal_);
       return step_refusal_;
     }
-    last_sequence_ = 0;  // until the answer is complete
+    last_step_.sequence = 0;  // until the answer is complete
     joint_step_at_ = Clock::now();
     Answer(Outcome::OK, "", step_answer_);
     batch_->Step(request.actions.data(), Prepare(request.encodings, step_answer_.result));
     DropPending();
     Complete(request.actions.data(), step_answer_.result);
-    last_sequence_ = request.sequence;
+    last_step_ = {request.sequence, caller};
     return step_answer_;
   } catch (const std::exception& error) {
+    ++turn_;  // some farms may have stepped
     Answer(Outcome::INTERNAL_ERROR, error.what(), step_refusal_);
     return step_refusal_;
   }
 }
 
-std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& request) const {
+std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& request,
+                                           const std::string& caller) {
   if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is ending"};
+  if (request.turn != 0 && request.turn != turn_) {
+    return Refusal{Outcome::STALE, "turn: got " + std::to_string(request.turn) +
+                                       ", the farms are at " + std::to_string(turn_) +
+                                       ": another has moved or reset them, or the node is new"};
+  }
   const auto expected = static_cast<std::size_t>(batch_->farms()) * slots_.size();
   if (request.actions.size() != expected) {
     return Refusal{Outcome::BAD_LENGTH, "actions: got " + std::to_string(request.actions.size()) +
@@ -101,6 +109,9 @@ std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& r
     return Refusal{Outcome::WRONG_PACE, "joint steps need pace lockstep; call set_pace"};
   }
   if (context_.paused) return Refusal{Outcome::PAUSED, "the farm is paused"};
+  for (std::int32_t ship = 0; ship < agents_; ++ship) {
+    if (auto refusal = CheckHolder(ship, caller)) return refusal;
+  }
   return CheckAnswerSize(batch_->farms(), request.encodings);
 }
 
@@ -153,7 +164,8 @@ aquafarm::BatchOutput Ranch::Prepare(std::uint8_t encodings, StepResult& result)
   return output;
 }
 
-void Ranch::DescribeEnds(StepResult& result) {
+void Ranch::Describe(StepResult& result) const {
+  result.turn = turn_;
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
     const auto reason = static_cast<aquafarm::EndReason>(result.reasons[i]);
     result.terminated[i] = aquafarm::IsTerminated(reason) ? 1 : 0;
@@ -162,7 +174,6 @@ void Ranch::DescribeEnds(StepResult& result) {
 }
 
 void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
-  DescribeEnds(result);
   constexpr bool kByJointStep = true;
   for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
     if (result.started[static_cast<std::size_t>(i)] != 0) {
@@ -174,9 +185,10 @@ void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
   if (result.started[0] != 0) {
     EpisodeBegan(kByJointStep);
   } else {
-    AdvanceClock();
+    Advance();
     Changed(kByJointStep);
   }
+  Describe(result);
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
     counters_.farm_steps += result.started[i] == 0 ? 1 : 0;
     if (result.reasons[i] == 0) continue;
@@ -197,14 +209,15 @@ std::uint64_t Ranch::NextEpisode() const {
 }
 
 void Ranch::Reset(const aquafarm_msgs::Reset::Request& request,
-                  aquafarm_msgs::Reset::Response& response) {
+                  aquafarm_msgs::Reset::Response& response, const std::string& caller) {
   const Lock lock(mutex_);
-  if (request.sequence != 0 && request.sequence == last_reset_sequence_) {
+  if (last_reset_.IsRepeated(request.sequence, caller)) {
     response = reset_answer_;
     return;
   }
   Guarded(Outcome::BAD_VALUE, response, [&] {
-    const std::int32_t farms = request.farms == 0 ? batch_->farms() : request.farms;
+    const bool goes_on = request.only_if_over && !batch_->farm(0).over();
+    const std::int32_t farms = request.farms == 0 || goes_on ? batch_->farms() : request.farms;
     if (farms < 1 || farms > kMaxFarms) {
       return Answer(Outcome::BAD_VALUE, OutOfRange("farms", farms, 1, kMaxFarms), response);
     }
@@ -225,19 +238,16 @@ void Ranch::Reset(const aquafarm_msgs::Reset::Request& request,
     const std::uint64_t first = request.has_episode ? request.episode
                                 : request.has_seed  ? 0
                                                     : NextEpisode();
-    StartEpisodes(farms, seed, first);
+    if (!goes_on) StartEpisodes(farms, seed, first);
     batch_->Write(Prepare(request.encodings, response.result));
-    DescribeEnds(response.result);
-    response.seed = seed;
-    response.episode = first;
+    Describe(response.result);
+    response.seed = batch_->farm(0).seed();
+    response.episode = batch_->farm(0).episode();
     if (request.with_spec) FillSpec(0, response.spec);
     Answer(Outcome::OK, "", response);
   });
-  if (!response.ok) {
-    ++counters_.refused;
-    return;
-  }
-  last_reset_sequence_ = request.sequence;
+  if (!response.ok) return;
+  last_reset_ = {request.sequence, caller};
   if (request.sequence != 0) reset_answer_ = response;
 }
 
@@ -256,7 +266,8 @@ void Ranch::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t 
 }
 
 void Ranch::ForgetAnswers() {
-  last_sequence_ = 0;
+  last_step_.sequence = 0;
+  last_reset_.sequence = 0;
   DropCommands();
 }
 
@@ -283,6 +294,7 @@ void Ranch::GetState(const aquafarm_msgs::GetState::Request& request,
     } else {
       ToMsg(farm, context_, response.state);
     }
+    response.barrier_timeout_s = options_.barrier_timeout_s;
     if (request.with_spec) FillSpec(request.farm, response.spec);
     Answer(Outcome::OK, "", response);
   });
@@ -314,7 +326,7 @@ void Ranch::LoadState(const aquafarm_msgs::LoadState::Request& request,
     ForgetAnswers();
     EpisodeBegan();
     batch_->Write(Prepare(request.encodings, response.result));
-    DescribeEnds(response.result);
+    Describe(response.result);
     response.hash = batch_->farm(0).Hash();
     if (request.with_spec) FillSpec(0, response.spec);
     Answer(Outcome::OK, "", response);

@@ -18,6 +18,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "aquafarm/check.h"
 #include "aquafarm/scenario_yaml.h"
@@ -60,7 +61,7 @@ ros::ServiceServer Serve(ros::NodeHandle& node, const std::string& name, Handle 
   return node.advertiseService(name, callback);
 }
 
-/// The same for a service of a ship, which is told who calls.
+/// The same, told who calls.
 template <typename Service, typename Handle>
 ros::ServiceServer ServeCaller(ros::NodeHandle& node, const std::string& name, Handle handle) {
   using Event = ros::ServiceEvent<typename Service::Request, typename Service::Response>;
@@ -89,6 +90,12 @@ ros::NodeHandle OnQueue(const ros::NodeHandle& node, ros::CallbackQueue& queue) 
   ros::NodeHandle handle(node);
   handle.setCallbackQueue(&queue);
   return handle;
+}
+
+std::string Joined(const std::vector<std::int32_t>& ships) {
+  std::string text;
+  for (const std::int32_t ship : ships) text += (text.empty() ? "" : ", ") + std::to_string(ship);
+  return text;
 }
 
 double ResidentMebibytes() {
@@ -187,10 +194,12 @@ void SimNode::AdvertiseFarm() {
         response.result = ranch_.Command(ToCommand(request.ship, request.action, request, caller));
       }));
   services_.push_back(ReusingService<msgs::Step>::Advertise(
-      node_,
-      names::kStep, [this](const auto& request) -> const auto& { return ranch_.Step(request); }));
-  services_.push_back(Serve<msgs::Reset>(node_, names::kReset,
-                                         [this](const auto& q, auto& a) { ranch_.Reset(q, a); }));
+      node_, names::kStep, [this](const auto& request, const std::string& caller) -> const auto& {
+        return ranch_.Step(request, caller);
+      }));
+  services_.push_back(ServeCaller<msgs::Reset>(
+      node_, names::kReset,
+      [this](const auto& q, auto& a, const std::string& caller) { ranch_.Reset(q, a, caller); }));
   services_.push_back(Serve<msgs::GetState>(
       node_, names::kGetState, [this](const auto& q, auto& a) { ranch_.GetState(q, a); }));
   services_.push_back(Serve<msgs::SaveState>(
@@ -211,10 +220,15 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const double elapsed_s = std::max((time - diagnosed_at_).toSec(), 1e-3);
   const double steps_per_s =
       static_cast<double>(now.farm_steps - diagnosed_.farm_steps) / elapsed_s;
-  const bool timed_out = now.barrier_timeouts > diagnosed_.barrier_timeouts;
-  status.summary(
-      timed_out ? diagnostic_msgs::DiagnosticStatus::WARN : diagnostic_msgs::DiagnosticStatus::OK,
-      timed_out ? "a ship waited in vain for the others" : "running");
+  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
+  if (now.barrier_timeouts > diagnosed_.barrier_timeouts) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "a ship waited in vain for the others");
+  }
+  if (!now.absent.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
+                   "given up until they command again: ship " + Joined(now.absent));
+  }
+  TellAbsent(now.absent);
   const std::string lost = recorder_ == nullptr ? "" : recorder_->fault();
   if (!lost.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "episodes are no longer kept: " + lost);
@@ -235,6 +249,24 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("memory [MiB]", ResidentMebibytes());
   diagnosed_ = now;
   diagnosed_at_ = time;
+}
+
+// Once when a ship is given up and once when it is back.
+void SimNode::TellAbsent(const std::vector<std::int32_t>& absent) const {
+  const auto without = [](const std::vector<std::int32_t>& ships,
+                          const std::vector<std::int32_t>& others) {
+    std::vector<std::int32_t> left;
+    std::set_difference(ships.begin(), ships.end(), others.begin(), others.end(),
+                        std::back_inserter(left));
+    return left;
+  };
+  const auto lost = without(absent, diagnosed_.absent);
+  const auto back = without(diagnosed_.absent, absent);
+  if (!lost.empty()) {
+    ROS_WARN("no command within ~barrier_timeout_s, %g s, of ship %s: it holds until it is back",
+             params_.ranch.barrier_timeout_s, Joined(lost).c_str());
+  }
+  if (!back.empty()) ROS_WARN("back: ship %s", Joined(back).c_str());
 }
 
 // Ctrl-C in a launch reaches trainer and farm at once: a trainer at work gets the time to save.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "aquafarm/rng.h"
@@ -89,6 +90,109 @@ TEST(RanchServices, RepeatingTheLastSequenceStepsNothing) {
   EXPECT_FALSE(refused.ok);
   EXPECT_EQ(first, StepAll(*ranch, {0, 1, 2, 3}, StepResult::HASHES, 41));
   EXPECT_EQ(1U, StateOf(*ranch).step);
+}
+
+TEST(RanchServices, TheNumbersOfAnotherClientAreNoRepeats) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::Step::Request step;
+  step.actions = {kNorth};
+  step.sequence = 1;
+  EXPECT_EQ(1U, (ranch->Step(step, "/one"), StateOf(*ranch).step));
+  EXPECT_EQ(2U, (ranch->Step(step, "/two"), StateOf(*ranch).step));
+  EXPECT_EQ(2U, (ranch->Step(step, "/two"), StateOf(*ranch).step));
+  aquafarm_msgs::Reset reset;
+  reset.request.sequence = 1;
+  for (const char* caller : {"/one", "/two", "/two"}) {
+    ranch->Reset(reset.request, reset.response, caller);
+    EXPECT_TRUE(reset.response.ok);
+  }
+  EXPECT_EQ(2U, StateOf(*ranch).episode);
+}
+
+TEST(RanchServices, AStepForFarmsThatAnotherHasMovedIsStale) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::Step::Request mine;
+  mine.actions = {kNorth};
+  mine.turn = ResetTo(*ranch, 3).result.turn;
+  mine.turn = ranch->Step(mine).result.turn;
+  aquafarm_msgs::SaveState saved;
+  ranch->SaveState(saved.response);
+  mine.turn = ranch->Step(mine).result.turn;
+  ASSERT_EQ(2U, StateOf(*ranch).step) << "its own steps are no others'";
+  const std::vector<std::function<void()>> others{
+      [&] {
+        ranch->Command({0, kNorth, 0, 0, 1});
+      },
+      [&] { StepAll(*ranch, {kNorth}); },
+      [&] { ResetTo(*ranch, 3); },
+      [&] {
+        aquafarm_msgs::LoadState load;
+        load.request.data = saved.response.data;
+        ranch->LoadState(load.request, load.response);
+        EXPECT_TRUE(load.response.ok);
+      },
+  };
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    others[i]();
+    const std::uint64_t hash = StateOf(*ranch).hash;
+    const auto stale = ranch->Step(mine);
+    EXPECT_EQ(Outcome::STALE, stale.code) << i;
+    EXPECT_NE(std::string::npos, stale.message.find("another has moved or reset them")) << i;
+    EXPECT_EQ(hash, StateOf(*ranch).hash) << i;
+    mine.turn = StepAll(*ranch, {kHold}).result.turn;
+  }
+}
+
+TEST(RanchServices, PausesAndBulletinsMakeNoStepStale) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::Step::Request mine;
+  mine.actions = {kNorth};
+  mine.turn = ResetTo(*ranch, 3).result.turn;
+  for (const bool paused : {true, false}) {
+    aquafarm_msgs::Pause pause;
+    pause.request.paused = paused;
+    ranch->Pause(pause.request, pause.response);
+  }
+  aquafarm_msgs::SetDisaster bulletin;
+  bulletin.request.info.grade = 3;
+  bulletin.request.info.radii = {1.0F};
+  bulletin.request.info.risks = {-20.0F};
+  bulletin.request.info.duration = 50;
+  bulletin.request.info.has_start = true;
+  ranch->SetDisaster(bulletin.request, bulletin.response);
+  ASSERT_TRUE(bulletin.response.ok) << bulletin.response.message;
+  EXPECT_TRUE(ranch->Step(mine).ok);
+}
+
+TEST(RanchServices, AJointStepIsRefusedWhileAnotherHoldsAShip) {
+  const auto ranch = MakeRanch(TwoShips(), 2);
+  aquafarm_msgs::Claim::Response claim;
+  ranch->Claim(1, "/agent", false, claim);
+  aquafarm_msgs::Step::Request step;
+  step.actions = {kNorth, kNorth, kNorth, kNorth};
+  const auto refused = ranch->Step(step, "/trainer");
+  EXPECT_EQ(Outcome::CLAIMED, refused.code);
+  EXPECT_EQ("ship 1 is held by /agent", refused.message);
+  EXPECT_EQ(0U, StateOf(*ranch).step);
+  EXPECT_TRUE(ranch->Step(step, "/agent").ok) << "of the holder itself";
+  ranch->Claim(1, "/agent", true, claim);
+  EXPECT_TRUE(ranch->Step(step, "/trainer").ok);
+}
+
+TEST(RanchServices, EveryRefusalIsCounted) {
+  const auto ranch = MakeRanch(TwoShips());
+  const auto refuse = [&](auto service, auto handler) {
+    const std::uint64_t before = ranch->counters().refused;
+    handler(service.request, service.response);
+    EXPECT_FALSE(service.response.ok);
+    EXPECT_EQ(before + 1, ranch->counters().refused);
+  };
+  refuse(aquafarm_msgs::Step(), [&](auto& q, auto& a) { a = ranch->Step(q); });
+  refuse(aquafarm_msgs::Reset(), [&](auto& q, auto& a) { q.farms = -1, ranch->Reset(q, a); });
+  refuse(aquafarm_msgs::GetState(), [&](auto& q, auto& a) { q.farm = 9, ranch->GetState(q, a); });
+  refuse(aquafarm_msgs::LoadState(), [&](auto& q, auto& a) { ranch->LoadState(q, a); });
+  refuse(aquafarm_msgs::SetPace(), [&](auto& q, auto& a) { q.pace = "x", ranch->SetPace(q, a); });
+  refuse(aquafarm_msgs::SetDisaster(), [&](auto& q, auto& a) { ranch->SetDisaster(q, a); });
 }
 
 TEST(RanchServices, JointStepsOutOfRangeAreRefused) {
@@ -181,6 +285,42 @@ TEST(RanchServices, RepeatingAResetBeginsNoFurtherEpisode) {
   again.request.sequence = 9;
   ranch->Reset(again.request, again.response);
   EXPECT_EQ(call.response, again.response);
+  EXPECT_EQ(1U, StateOf(*ranch).episode);
+}
+
+TEST(RanchServices, AResetOnlyIfOverLeavesAnEpisodeInProgressAlone) {
+  aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.step_limit = 2;
+  const auto ranch = MakeRanch(scenario);
+  const auto reset = [&] {
+    aquafarm_msgs::Reset call;
+    call.request.only_if_over = true;
+    ranch->Reset(call.request, call.response);
+    EXPECT_TRUE(call.response.ok) << call.response.message;
+    return call.response;
+  };
+  const std::uint64_t turn = StepAll(*ranch, {kNorth}).result.turn;
+  EXPECT_EQ(turn, reset().result.turn);
+  EXPECT_EQ(0U, reset().episode);
+  EXPECT_EQ(1U, StateOf(*ranch).step);
+  StepAll(*ranch, {kNorth});
+  EXPECT_EQ(1U, reset().episode);
+  EXPECT_EQ(1U, reset().episode) << "asked for by another";
+  EXPECT_EQ(0U, StateOf(*ranch).step);
+}
+
+TEST(RanchServices, AfterALoadANumberedResetIsDoneAgain) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::SaveState save;
+  ranch->SaveState(save.response);
+  aquafarm_msgs::Reset reset;
+  reset.request.sequence = 9;
+  ranch->Reset(reset.request, reset.response);
+  aquafarm_msgs::LoadState load;
+  load.request.data = save.response.data;
+  ranch->LoadState(load.request, load.response);
+  ASSERT_EQ(0U, StateOf(*ranch).episode);
+  ranch->Reset(reset.request, reset.response);
   EXPECT_EQ(1U, StateOf(*ranch).episode);
 }
 

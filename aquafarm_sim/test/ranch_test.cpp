@@ -106,6 +106,7 @@ TEST(Ranch, ALoneCommandTimesOutAndIsTakenBack) {
   const std::uint64_t hash = StateOf(*ranch).hash;
   const CommandResult lone = ranch->Command({0, kNorth, 0, 0, 1});
   EXPECT_EQ(Outcome::TIMEOUT, lone.code);
+  EXPECT_EQ("other ships gave no command within 0.200000 s: 1", lone.message);
   EXPECT_EQ(hash, StateOf(*ranch).hash);
   const CommandResult other = ranch->Command({1, kNorth, 0, 0, 1});
   EXPECT_EQ(Outcome::TIMEOUT, other.code);
@@ -126,6 +127,7 @@ TEST(Ranch, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   }
   EXPECT_LT(std::chrono::steady_clock::now() - again, milliseconds(200)) << "it waits but once";
   EXPECT_EQ(1U, ranch->counters().late_ships);
+  EXPECT_EQ(std::vector<std::int32_t>{1}, ranch->counters().absent);
   // Back again, it joins in the running episode and is waited for.
   auto back = std::async(std::launch::async, [&] { return ranch->Command({1, kHold, 0, 0, 1}); });
   std::this_thread::sleep_for(milliseconds(50));
@@ -133,6 +135,7 @@ TEST(Ranch, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   const auto answer = back.get();
   EXPECT_EQ(Outcome::HELD, answer.code);
   EXPECT_EQ(12U, answer.step);
+  EXPECT_TRUE(ranch->counters().absent.empty());
 }
 
 TEST(Ranch, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
@@ -202,6 +205,42 @@ TEST(Ranch, ANewerCommandOfTheSameShipSupersedesTheWaitingOne) {
   EXPECT_EQ(Outcome::SUPERSEDED, old.get().code);
   ranch->Command({1, kHold, 0, 0, 1});
   EXPECT_EQ(Outcome::HELD, newer.get().code);
+}
+
+/// Lets others queue up for the ranch before a step is told to those who wait for it.
+class SlowRecorder : public RanchRecorder {
+ public:
+  void OnStart(const aquafarm::Farm&, std::int32_t, const MessageContext&) override {}
+  void OnStep(const aquafarm::Farm&, std::int32_t, const std::uint8_t*) override {
+    std::this_thread::sleep_for(milliseconds(30));
+  }
+  void OnIntervention(const aquafarm::Farm&, std::int32_t) override {}
+};
+
+TEST(Ranch, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
+  SlowRecorder recorder;
+  const auto ranch = MakeRanch(TwoShips());
+  ranch->SetRecorder(&recorder);
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    const auto start = [&](std::int32_t ship, std::uint8_t action, std::uint64_t token) {
+      auto result = std::async(std::launch::async, [=, &ranch] {
+        return ranch->Command({ship, action, 0, 0, token});
+      });
+      std::this_thread::sleep_for(milliseconds(10));
+      return result;
+    };
+    auto first = start(0, kHold, 4 * i + 1);
+    auto partner = start(1, kHold, 4 * i + 2);  // a step begins, and takes a while
+    auto second = start(0, kHold, 4 * i + 3);   // these two bring about the one after it
+    auto last = start(1, kHold, 4 * i + 4);
+    EXPECT_EQ(Outcome::HELD, first.get().code);
+    EXPECT_EQ(Outcome::HELD, partner.get().code);
+    EXPECT_EQ(Outcome::HELD, second.get().code);
+    EXPECT_EQ(Outcome::HELD, last.get().code);
+  }
+  EXPECT_EQ(10U, StateOf(*ranch).step);
+  EXPECT_EQ(0U, ranch->counters().superseded);
+  ranch->SetRecorder(nullptr);
 }
 
 TEST(Ranch, AResetReleasesThoseWhoWait) {

@@ -25,17 +25,19 @@ struct AgentDriverOptions {
 /// the middle of an episode it joins there.
 class AgentDriver {
  public:
-  /// Waits for the sim node and claims the ship.
+  /// Waits for the sim node.
   /// @param encodings of the policy; not kStatesBit, which asks for the whole farm
-  /// @throws InputError when there is no such ship or another node holds it, EnvironmentLost
+  /// @throws InputError when there is no such ship, EnvironmentLost
   AgentDriver(const ros::NodeHandle& node, std::uint8_t encodings, AgentDriverOptions options);
   ~AgentDriver();
 
   const aquafarm::agents::EnvironmentSpec& spec() const;
 
-  /// Drives until `episodes` have ended, or for ever when 0; returns early when stopped.
+  /// Claims the ship, and drives it until `episodes` have ended, or for ever when 0; returns early
+  /// when stopped.
   /// @returns of those episodes that it saw end, whether every device was delivered
-  /// @throws EnvironmentLost when the sim node is gone for longer than the limit
+  /// @throws InputError when another node holds the ship, EnvironmentLost when the sim node is gone
+  ///         for longer than the limit
   std::vector<bool> Drive(aquafarm::agents::Policy& policy, std::uint64_t seed,
                           std::int32_t episodes);
 

@@ -31,8 +31,9 @@ struct RosEnvironmentOptions {
 };
 
 /// Farms behind a sim node's services. Connections are persistent. A lost call is sent again with
-/// its number, so that no farm steps twice; a sim node that came back without its farms is reset
-/// to fresh episodes of the same seed and TakeRestarted() says so. Any call throws EnvironmentLost
+/// its number, so that no farm steps twice; farms that another has moved, reset or loaded, or a sim
+/// node that came back without its farms, are reset to fresh episodes of the same seed and
+/// TakeRestarted() says so. Any call throws EnvironmentLost
 /// when the sim node is gone for longer than the limits.
 class RosEnvironment final : public aquafarm::agents::Environment {
  public:
@@ -56,8 +57,8 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   bool Stopped() const;
   void Notice(const std::string& text) const;
   void Sleep() const;
-  bool IsStillThere();
-  void Restart();
+  void Restart(const std::string& why);
+  void WaitForReturn(ros::WallTime& lost_since);
   void WaitToGoOn(const std::string& why, double& waited_s);
   void Take(aquafarm_msgs::StepResult& result);
   aquafarm_msgs::GetState::Response GetState(std::int32_t farm, bool with_spec);
@@ -79,12 +80,10 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   aquafarm_msgs::Step step_;  // its memory is reused
   std::uint64_t sequence_;
   bool restarted_{};
+  int restarts_{};  // since an episode has ended
 
-  // Where farm 0 is: tells whether a sim node that answers again is still the same.
+  std::uint64_t turn_{};  // of the last result: tells whether the farms are still as it left them
   std::uint64_t seed_{};
-  std::uint64_t episode_{};
-  std::uint64_t steps_{};
-  bool over_{};
   std::uint64_t next_episode_{};  // beyond all that have begun
 };
 

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "aquafarm/agents/environment.h"
-#include "aquafarm/hash.h"
 #include "aquafarm_agents/call_limit.h"
 
 namespace aquafarm_agents {
@@ -52,13 +51,9 @@ class ServiceLink {
   ros::ServiceClient client_;
 };
 
-/// The number of the reset after an episode: all who drive ships of one farm ask with the same, so
-/// that it is done once.
-inline std::uint64_t ResetNumber(std::uint64_t seed, std::uint64_t episode) {
-  aquafarm::Hasher hasher;
-  hasher.Add(seed);
-  hasher.Add(episode);
-  return hasher.value() | 1U;  // 0 would stand for none
+/// Limit of a ship's command, which may wait for those of the others.
+inline double CommandLimit_s(double barrier_timeout_s) {
+  return barrier_timeout_s + ServiceLink::kCallLimit_s;
 }
 
 }  // namespace aquafarm_agents

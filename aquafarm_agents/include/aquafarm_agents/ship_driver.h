@@ -33,8 +33,10 @@ class ShipDriver {
 
   const aquafarm::agents::EnvironmentSpec& spec() const;
 
-  /// Drives until `episodes` have ended, or for ever when 0; returns early when stopped.
-  /// @throws EnvironmentLost when the sim node is gone for longer than the limit
+  /// Drives until `episodes` have ended, or for ever when 0; returns early when stopped. A ship
+  /// that it drives alone is claimed until then.
+  /// @throws InputError when another node holds the ship, EnvironmentLost when the sim node is gone
+  /// for longer than the limit
   std::vector<aquafarm::agents::EpisodeResult> Drive(aquafarm::agents::Policy& policy,
                                                      std::uint64_t seed, std::int32_t episodes);
 

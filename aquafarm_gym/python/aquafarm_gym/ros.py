@@ -69,7 +69,8 @@ class RosFarms:
     """Farms behind the sim node of a namespace.
 
     A call that was lost is sent again with its number, so no farm steps twice. A sim node that
-    came back without its farms, or stays away for longer than wait_limit_s, is a ConnectionError.
+    came back without its farms, or whose farms another has moved, or one that stays away for longer
+    than wait_limit_s, is a ConnectionError.
     """
 
     def __init__(self, namespace="/aquafarm", farms=1, observation="features", hashes=False,
@@ -88,9 +89,9 @@ class RosFarms:
         self.state_count, self.feature_count = spec.state_count, spec.feature_count
         self.plane_count, self.height, self.width = spec.plane_count, spec.height, spec.width
         self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
-        # Different from those of another client, so that its last answer is never taken for ours.
+        # Different from those of an earlier client of this node.
         self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)
-        self._place = None  # (seed, episode, step, over) of farm 0
+        self._turn = None  # of the last answer; None: to be reset
         self._finished = []
         entries = (farms, self.agents)
         shape = {"index": (*entries,), "features": (*entries, self.feature_count),
@@ -107,20 +108,18 @@ class RosFarms:
 
     def reset(self, seed, first_episode=0):
         """As FarmBatch.reset."""
-        self._place = None
+        self._turn = None
         answer = self._call("reset", has_seed=True, seed=seed, has_episode=True,
                             episode=first_episode, farms=self.farms, encodings=self._encodings,
                             sequence=next(self._sequence))
-        self._place = (seed, first_episode, 0, False)
         self._take(answer.result)
 
     def step(self, actions):
         """As FarmBatch.step."""
-        if self._place is None:
+        if self._turn is None:
             raise ValueError("step: got no reset before, expected one")
         answer = self._call("step", sequence=next(self._sequence), actions=actions.tobytes(),
-                            encodings=self._encodings)
-        self._place = self._next_place()
+                            encodings=self._encodings, turn=self._turn)
         self._take(answer.result)
 
     def finished(self):
@@ -137,7 +136,7 @@ class RosFarms:
             got = getattr(result, name)
             flat = np.frombuffer(got, np.uint8) if isinstance(got, bytes) else got
             array.reshape(-1)[:] = flat
-        self._place = (*self._place[:3], bool(self.buffers["reasons"][0]))
+        self._turn = result.turn
         self._finished = [
             {**{key: getattr(one, key) for key in (
                 "farm", "seed", "episode", "steps", "episode_return", "devices", "delivered",
@@ -145,36 +144,23 @@ class RosFarms:
              "reason": core.REASONS[one.reason], "success": bool(one.success)}
             for one in result.finished]
 
-    def _next_place(self):
-        seed, episode, step, over = self._place
-        return (seed, episode + self.farms, 0, False) if over else (seed, episode, step + 1, False)
-
     def _call(self, name, **fields):
-        service, lost = self._services[name], False
+        service = self._services[name]
         end = time.monotonic() + self._limit_s
         while True:
             try:
-                if lost and name == "step":
-                    self._check_place(service)
                 answer = service.call(service.request_class(**fields))
                 if answer.ok:
                     return answer
                 why = answer.message
-                if answer.code not in (Outcome.PAUSED, Outcome.SHUTTING_DOWN):
+                if answer.code == Outcome.STALE:
+                    self._turn = None
+                    raise ConnectionError(f"sim node: not as it was left ({why}); reset to go on")
+                if answer.code not in (Outcome.PAUSED, Outcome.CLAIMED, Outcome.SHUTTING_DOWN):
                     raise ValueError(f"sim node: {name} refused: {why}")
             except rospy.ServiceException as error:
-                why, lost = str(error), True
+                why = str(error)
             if rospy.is_shutdown() or time.monotonic() > end:
                 raise ConnectionError(f"sim node: no answer from {service.resolved_name} for "
                                       f"{self._limit_s:g} s: {why}")
             time.sleep(RETRY_PERIOD_S)
-
-    def _check_place(self, service):
-        """After a loss: the farms are where they were, or where the lost call brought them."""
-        get = self._services["get_state"]
-        state = get.call(get.request_class(farm=0)).state
-        place = (state.seed, state.episode, state.step)
-        if place not in (self._place[:3], self._next_place()[:3]):
-            self._place = None
-            service.close()
-            raise ConnectionError("sim node: came back without its farms; reset to go on")

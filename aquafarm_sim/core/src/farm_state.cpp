@@ -354,6 +354,7 @@ void Farm::Load(const std::string& bytes) {
     RequireSame("checksum", HashBytes(payload), sealed.at("checksum").get<std::uint64_t>());
     const json state = ParseCbor(payload);
     RequireSame("format", state.at("format").get<int>(), kStateFormat);
+    RequireSame("version", state.at("version").get<std::string>(), std::string(kVersion));
     RequireSame("scenario", state.at("scenario").get<std::string>(), scenario_->name);
     RequireSame("scenario_hash", state.at("scenario_hash").get<std::uint64_t>(), scenario_->hash);
     const EpisodeRecord record = RecordFromJson(state.at("record"));

@@ -10,6 +10,7 @@
 #include "aquafarm/check.h"
 #include "aquafarm/farm.h"
 #include "aquafarm/hash.h"
+#include "aquafarm/version.h"
 #include "tiny_farms.h"
 
 namespace aquafarm {
@@ -120,6 +121,19 @@ std::string Forge(const Farm& farm, const std::function<void(json&)>& change) {
       {{"checksum", HashBytes(payload)}, {"state", json::binary({payload.begin(), payload.end()})}},
       bytes);
   return bytes;
+}
+
+TEST(SaveLoad, AStateOfAnotherVersionIsRefusedWithBoth) {
+  Farm farm = MakeFarm(CrowdedScenario(2));
+  const std::uint64_t hash = farm.Hash();
+  try {
+    farm.Load(Forge(farm, [](json& s) { s["version"] = "0.0.7"; }));
+    FAIL() << "it was let through";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              std::string("state: version: got 0.0.7, expected ") + kVersion);
+  }
+  EXPECT_EQ(farm.Hash(), hash);
 }
 
 TEST(SaveLoad, ForgedStatesAreRefusedBeforeTheirHashIsLookedAt) {

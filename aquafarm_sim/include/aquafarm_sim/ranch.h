@@ -81,6 +81,7 @@ struct RanchCounters {
   std::uint64_t dropped_clients{};   ///< holders of a ship who fell silent and lost it
   std::uint64_t refused{};           ///< requests answered with any other code of refusal
   std::uint64_t saves{};             ///< states handed out by save_state
+  std::vector<std::int32_t> absent;  ///< ships that lockstep has given up until they command again
   double joint_step_age_s{1e9};      ///< since the last joint step
   std::string fault;                 ///< why paced running paused itself; empty: it did not
 };
@@ -138,9 +139,11 @@ class Ranch {
   /// The same as Command for a move, whose action must be one.
   aquafarm_msgs::CommandResult MoveShip(const ShipCommand& command);
   /// The answer stays valid until the next call of Step, which the caller must not overlap.
-  const aquafarm_msgs::Step::Response& Step(const aquafarm_msgs::Step::Request& request);
-  void Reset(const aquafarm_msgs::Reset::Request& request,
-             aquafarm_msgs::Reset::Response& response);
+  /// @param caller node that asks; empty: not known
+  const aquafarm_msgs::Step::Response& Step(const aquafarm_msgs::Step::Request& request,
+                                            const std::string& caller = {});
+  void Reset(const aquafarm_msgs::Reset::Request& request, aquafarm_msgs::Reset::Response& response,
+             const std::string& caller = {});
   void GetState(const aquafarm_msgs::GetState::Request& request,
                 aquafarm_msgs::GetState::Response& response);
   void SaveState(aquafarm_msgs::SaveState::Response& response);
@@ -173,10 +176,10 @@ class Ranch {
 
   /// What is known of one ship's commands.
   struct Slot {
-    std::optional<ShipCommand> pending;  // for the next step
-    std::uint64_t ticket{};              // of the newest command
-    std::uint64_t answered{};            // ticket of the newest command that was carried out
-    std::optional<ShipCommand> last;     // the last accepted command and its answer
+    std::optional<ShipCommand> pending;                    // for the next step
+    std::uint64_t ticket{};                                // of the newest command
+    std::optional<aquafarm_msgs::CommandResult>* reply{};  // of who waits for it; null: nobody
+    std::optional<ShipCommand> last;  // the last accepted command and its answer
     aquafarm_msgs::CommandResult answer;
     std::condition_variable changed;
     bool is_absent{};            // it was late, and nobody waits for it until it is back
@@ -187,14 +190,25 @@ class Ranch {
     std::uint8_t code{};
     std::string message;
   };
+  /// The last accepted request of its kind; another client's numbers mean nothing.
+  struct Numbered {
+    std::uint64_t sequence{};  // 0: none
+    std::string caller;
+    bool IsRepeated(std::uint64_t by_sequence, const std::string& by_caller) const {
+      return sequence != 0 && sequence == by_sequence && caller == by_caller;
+    }
+  };
 
   std::optional<Refusal> Check(const ShipCommand& command) const;
   aquafarm_msgs::CommandResult Refuse(std::int32_t ship, std::uint8_t code,
                                       const std::string& message);
   aquafarm_msgs::CommandResult AcceptPaced(const ShipCommand& command);
   aquafarm_msgs::CommandResult WaitForOthers(const ShipCommand& command, Lock& lock);
+  bool IsMissing(std::int32_t ship) const;
   bool EveryShipHasACommand() const;
-  std::optional<Refusal> CheckHolder(const ShipCommand& command);
+  std::string MissingShips() const;
+  std::optional<Refusal> Hear(const ShipCommand& command);
+  std::optional<Refusal> CheckHolder(std::int32_t ship, const std::string& caller);
   bool IsHeldByAnother(Slot& slot, const std::string& caller);
   void GoOnWithoutTheLate();
   void StepPublishedFarm();
@@ -203,10 +217,15 @@ class Ranch {
   void Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) const;
   aquafarm_msgs::CommandResult AnswerOf(std::int32_t ship) const;
 
-  std::optional<Refusal> Check(const aquafarm_msgs::Step::Request& request) const;
+  template <typename Response>
+  void Answer(std::uint8_t code, const std::string& message, Response& response);
+  template <typename Response, typename Request>
+  void Guarded(std::uint8_t bad_input, Response& response, Request&& request);
+  std::optional<Refusal> Check(const aquafarm_msgs::Step::Request& request,
+                               const std::string& caller);
   std::optional<Refusal> CheckAnswerSize(std::int32_t farms, std::uint8_t encodings) const;
   aquafarm::BatchOutput Prepare(std::uint8_t encodings, aquafarm_msgs::StepResult& result) const;
-  static void DescribeEnds(aquafarm_msgs::StepResult& result);
+  void Describe(aquafarm_msgs::StepResult& result) const;
   void Complete(const std::uint8_t* actions, aquafarm_msgs::StepResult& result);
   void RecordStarts();
   std::uint64_t NextEpisode() const;
@@ -214,7 +233,7 @@ class Ranch {
   void FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const;
   void ForgetAnswers();
 
-  void AdvanceClock();
+  void Advance();
   void Changed(bool by_joint_step = false);
   void EpisodeBegan(bool by_joint_step = false);
   RanchView View() const;
@@ -231,6 +250,7 @@ class Ranch {
   std::uint32_t steps_to_pause_{};  // 0: it does not pause by itself
   std::uint64_t episode_count_{};
   std::uint64_t version_{};
+  std::uint64_t turn_;  // of StepResult; begins so that a node that came back has others
   bool ending_{};
   bool changed_jointly_{};  // the last change was a joint step's
   std::condition_variable pace_changed_;
@@ -242,10 +262,10 @@ class Ranch {
   RanchCounters counters_;
   Clock::time_point joint_step_at_{};  // of the last joint step; the clock's zero: none
 
-  std::uint64_t last_sequence_{};  // of the last accepted joint step; 0: none
+  Numbered last_step_;
   aquafarm_msgs::Step::Response step_answer_;
   aquafarm_msgs::Step::Response step_refusal_;
-  std::uint64_t last_reset_sequence_{};
+  Numbered last_reset_;
   aquafarm_msgs::Reset::Response reset_answer_;
 };
 

@@ -18,8 +18,8 @@ class ReusingService : public ros::ServiceCallbackHelper {
  public:
   using Request = typename Service::Request;
   using Response = typename Service::Response;
-  /// The answer must stay as it is until the next call.
-  using Handler = std::function<const Response&(const Request&)>;
+  /// Is told the calling node's name. The answer must stay as it is until the next call.
+  using Handler = std::function<const Response&(const Request&, const std::string&)>;
 
   explicit ReusingService(Handler handler) : handler_(std::move(handler)) {}
 
@@ -27,7 +27,8 @@ class ReusingService : public ros::ServiceCallbackHelper {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
     ros::serialization::deserializeMessage(params.request, request_);
-    params.response = ros::serialization::serializeServiceResponse(true, handler_(request_));
+    params.response = ros::serialization::serializeServiceResponse(
+        true, handler_(request_, (*params.connection_header)["callerid"]));
     if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
     return true;
   }

@@ -19,6 +19,7 @@
 
 namespace aquafarm {
 
+/// Writes views of one scenario as numbers; const and without memory of the last view.
 class Encoder {
  public:
   /// @param scenario must outlive the encoder
@@ -27,11 +28,15 @@ class Encoder {
   /// Number of tabular states, or 0 when they are more than kMaxStates.
   std::uint32_t state_count() const { return state_count_; }
   inline static constexpr std::uint64_t kMaxStates = 1ULL << 28U;
+  /// Length of a ship's feature vector.
   std::int32_t feature_count() const { return feature_count_; }
+  /// Planes of a ship, each [H, W].
   std::int32_t plane_count() const { return kPlaneCount; }
   /// Bytes of all planes of one ship: plane_count · H · W.
   std::size_t planes_size() const { return planes_size_; }
+  /// What each feature is, in order, [feature_count()].
   std::vector<std::string> feature_names() const;
+  /// What each plane is, in order, [plane_count()].
   static std::vector<std::string> plane_names();
   inline static constexpr std::int32_t kPlaneCount = 8;
 
@@ -39,18 +44,20 @@ class Encoder {
   /// and status are known.
   std::uint32_t Index(const Farm& farm, std::int32_t ship) const;
   std::uint32_t Index(const View& view) const;
-  /// The ship's cell and the status of each device that can be fetched, back from an index.
+  /// A tabular state: the ship's cell and the status of each device that can be fetched, back from
+  /// an index.
   struct TabularState {
     Cell cell{};
     std::vector<DeviceStatus> status;  ///< kDelivered stands for gone
   };
+  /// The inverse of Index. @param index [0, state_count())
   TabularState Decode(std::uint32_t index) const;
 
   /// Where the eight features blocked.<move> begin.
   inline static constexpr std::int32_t kFirstBlockedFeature = 5;
-  /// @param out [feature_count()]
+  /// Writes the feature vector. @param out [feature_count()]
   void Features(const View& view, float* out) const;
-  /// @param out [plane_count(), H, W] row-major from the south; 255 stands for 1
+  /// Writes the planes. @param out [plane_count(), H, W] row-major from the south; 255 stands for 1
   void Planes(const View& view, std::uint8_t* out) const;
 
  private:

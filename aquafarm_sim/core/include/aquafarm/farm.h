@@ -55,39 +55,54 @@ struct EpisodeRecord {
   std::int32_t collisions{};
   std::int32_t steps_in_disaster{};  ///< ship-steps spent at a risk
   EndReason reason{};
+  /// Whether every device was delivered.
   bool Success() const { return reason == EndReason::kAllRetrieved; }
 };
 
 /// One farm; stepping after the end is a programmer's mistake.
 class Farm {
  public:
-  /// @param scenario must have passed ValidateScenario and must outlive the farm
+  /// Stands at the start of episode 0 of seed 0.
+  /// @param scenario must have passed ValidateScenario
+  /// @throws InputError when its layout cannot be drawn
   explicit Farm(std::shared_ptr<const Scenario> scenario);
   /// Shares a fixed layout between farms instead of drawing it again.
   Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layout> fixed_layout);
 
   /// Starts episode `episode` of the sequence `seed`.
+  /// @throws InputError when the episode's own layout cannot be drawn; Reset to another then
   void Reset(std::uint64_t seed, std::uint64_t episode);
 
   /// Takes one step. @param actions one per agent, [AgentCount()], each an Action incl. kHold
   void Step(const std::uint8_t* actions);
 
   const Scenario& scenario() const { return *scenario_; }
+  /// Chart, ports and places of the devices in this episode.
   const Layout& layout() const { return *layout_; }
+  /// The same, for other farms of a fixed layout.
   const std::shared_ptr<const Layout>& shared_layout() const { return layout_; }
+  /// By id: the rescue ships, then the self-propelled devices, [AgentCount()].
   const std::vector<Ship>& ships() const { return ships_; }
+  /// By id, delivered ones too.
   const std::vector<Device>& devices() const { return devices_; }
+  /// By id, as they are, whatever a ship knows of them.
   const std::vector<Disaster>& disasters() const { return disasters_; }
   /// Each disaster's waypoints; empty for one that moves on its own.
   const std::vector<Track>& tracks() const { return tracks_; }
+  /// What this episode came to so far.
   const EpisodeRecord& record() const { return record_; }
+  /// Key of all chance of the sequence of episodes.
   std::uint64_t seed() const { return record_.seed; }
+  /// Number of this episode in the sequence, from 0.
   std::uint64_t episode() const { return record_.episode; }
+  /// Steps taken in this episode.
   std::int32_t step() const { return record_.steps; }
+  /// Why the episode ended; kNone while it goes on.
   EndReason reason() const { return record_.reason; }
+  /// Whether the episode has ended; only Reset and Load go on then.
   bool over() const { return record_.reason != EndReason::kNone; }
 
-  /// Worst risk of disasters and sea at a cell now; 0 or negative.
+  /// Worst risk of disasters and sea at a cell of the map now; 0 or negative.
   float RiskAt(Cell cell) const;
 
   /// Where a device is now: its own cell, or its carrier's.
@@ -112,6 +127,7 @@ class Farm {
   /// told only of the scenario's own track: a spec has none.
   /// @throws InputError on an id or spec out of range, or forecasts; the farm is then as it was
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
+  /// Most disasters of a farm, those added by bulletins included.
   inline static constexpr std::int32_t kMaxDisasters = 64;
 
   /// Puts a ship elsewhere, for questions of what it would do there.

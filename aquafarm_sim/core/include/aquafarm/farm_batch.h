@@ -31,14 +31,17 @@ struct BatchOutput {
   std::uint8_t* planes{};    ///< [N, S, P, H, W]
 };
 
+/// N farms of one scenario, each at its own episode; not for several callers at once.
 class FarmBatch {
  public:
   /// Farm i of N plays episodes i, i + N, i + 2N, … of a seed.
   /// @param threads used to step; results do not depend on it
+  /// @throws InputError when the layout cannot be drawn
   FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms, std::int32_t threads = 1);
 
   /// Starts the sequence `seed` in all farms, farm i at episode first_episode + i, and writes the
   /// first observations.
+  /// @throws InputError when an episode's layout cannot be drawn; Reset to another then
   void Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output);
 
   /// Steps every farm. @param actions [N, S], each in [0, kActionCount] (kHold allowed)
@@ -48,20 +51,28 @@ class FarmBatch {
   /// Writes the present state's results again without stepping (after Load).
   void Write(const BatchOutput& output);
 
+  /// N of BatchOutput.
   std::int32_t farms() const { return static_cast<std::int32_t>(farms_.size()); }
+  /// S of BatchOutput: ships and self-propelled devices of one farm.
   std::int32_t agents() const { return agents_; }
   const Scenario& scenario() const { return *scenario_; }
+  /// What writes the index, the features and the planes.
   const Encoder& encoder() const { return encoder_; }
+  /// @param i [0, farms())
   const Farm& farm(std::int32_t i) const { return farms_[static_cast<std::size_t>(i)]; }
   /// For what is done to one farm: SetDisaster, Load, single steps.
   Farm& farm(std::int32_t i) { return farms_[static_cast<std::size_t>(i)]; }
 
   /// Starts farm i's next episode.
+  /// @throws InputError when its layout cannot be drawn
   void StartNext(std::int32_t i);
 
   /// All farms as bytes; Load continues them bit for bit.
   std::string Save() const;
-  /// @throws InputError; nothing has changed then
+  /// Continues farms that Save wrote.
+  /// @throws InputError when the bytes are damaged, of another version, scenario or number of
+  /// farms;
+  ///         nothing has changed then
   void Load(const std::string& bytes);
 
  private:

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/console.h>
+
+#include <mutex>
+#include <string>
+
+namespace aquafarm_agents {
+
+/// Warns at most once in 5 s by the wall clock: ROS time stands still with the farm. For any
+/// thread.
+class SlowWarning {
+ public:
+  void Say(const std::string& text) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const ros::WallTime now = ros::WallTime::now();
+    if ((now - said_at_).toSec() < kPeriod_s) return;
+    said_at_ = now;
+    ROS_WARN("%s", text.c_str());
+  }
+
+ private:
+  inline static constexpr double kPeriod_s = 5.0;
+
+  std::mutex mutex_;
+  ros::WallTime said_at_;
+};
+
+}  // namespace aquafarm_agents

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "aquafarm/check.h"
+#include "aquafarm/encoding.h"
+#include "aquafarm/scenario_yaml.h"
 #include "aquafarm_sim/names.h"
 
 namespace aquafarm_agents {
@@ -45,8 +47,9 @@ EnvironmentSpec FromMsg(const aquafarm_msgs::FarmSpec& message) {
   spec.team_reward = message.rewards.team;
   spec.state_count = message.state_count;
   spec.feature_count = message.feature_count;
-  const Scenario scenario = ParseScenario(message.scenario_yaml, message.scenario_name);
-  spec.feature_names = Encoder(scenario).feature_names();
+  const aquafarm::Scenario scenario =
+      aquafarm::ParseScenario(message.scenario_yaml, message.scenario_name);
+  spec.feature_names = aquafarm::Encoder(scenario).feature_names();
   spec.plane_count = message.plane_count;
   spec.height = message.height;
   spec.width = message.width;

@@ -96,6 +96,11 @@ class BulletinNode {
     const aquafarm::HazardTrack& storm = params_.storm.empty() && file.tracks.size() == 1
                                              ? file.tracks[0]
                                              : aquafarm::FindTrack(file, params_.storm);
+    const std::string name = storm.name.empty() ? storm.id : storm.name;
+    if (storm.fixes.front().time < 0) {
+      throw aquafarm::InputError(path + ": " + name + ": got positions of before 1970, expected " +
+                                 "later ones: a ROS time begins there");
+    }
     const auto call = std::make_shared<Call>();
     call->message.request.farm = -1;
     call->message.request.id = params_.id;
@@ -114,8 +119,7 @@ class BulletinNode {
     }
     const auto& response = call->message.response;
     if (!response.ok) throw aquafarm::InputError(path + ": refused: " + response.message);
-    ROS_INFO("%s: %s is now disaster %d", path.c_str(),
-             (storm.name.empty() ? storm.id : storm.name).c_str(), params_.id);
+    ROS_INFO("%s: %s is now disaster %d", path.c_str(), name.c_str(), params_.id);
   }
 
   const BulletinParams params_;

@@ -95,6 +95,21 @@ class BulletinNodeTest(unittest.TestCase):
         self.assertEqual(2, node.returncode)
         self.assertIn(f"bulletin_node: {missing}: cannot read this folder: No such file", error)
 
+    def test_a_storm_of_before_1970_is_refused_by_its_time(self):
+        folder = tempfile.mkdtemp(prefix="bulletins.")
+        self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
+        with open(os.path.join(folder, "old.json"), "w", encoding="utf-8") as file:
+            file.write(storm(30.0, 50.0).replace("2021-07-24", "1949-07-24"))
+        node = self.start(folder)
+        words = "old.json: In-Fa: got positions of before 1970, expected later ones"
+        for line in node.stderr:  # it ends when the node does, which the test's own limit sees to
+            if words in line:
+                break
+        else:
+            self.fail("the node ended without a word")
+        node.terminate()
+        node.communicate(timeout=LIMIT_S)
+
     def test_a_ranch_that_is_away_or_hangs_gets_the_bulletin_later(self):
         calls = []
 

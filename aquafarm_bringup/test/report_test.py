@@ -31,8 +31,8 @@ time: {step_limit: 60}
 layout: {rocks: {count: [2, 2]}, ports: {count: 1}, devices: {count: 1}}
 """
 
-# A page in a window of 390 pixels, and its elements that stand out of it or of their box; tables and
-# texts may scroll in theirs.
+# A page in a window of 390 pixels, and its elements that stand out of it or of their box; tables
+# and texts may scroll in theirs.
 PHONE = """<!DOCTYPE html><iframe width="390" height="844" frameborder="0" srcdoc="PAGE"></iframe>
 <script>
 onload = () => {
@@ -215,7 +215,8 @@ class ReportTest(unittest.TestCase):
     def test_without_an_encoder_that_browsers_play_the_films_are_gifs(self):
         output = self.folder / "gifs.html"
         code, words = run("aquafarm_bringup", "make_report", self.trained, "-o", output,
-                          "--episodes", 1, env={**os.environ, "OPENCV_VIDEOIO_PRIORITY_FFMPEG": "0"})
+                          "--episodes", 1,
+                          env={**os.environ, "OPENCV_VIDEOIO_PRIORITY_FFMPEG": "0"})
         self.assertEqual(0, code, words)
         page = Page(output)
         self.assertEqual([], page.embedded("video/mp4"))

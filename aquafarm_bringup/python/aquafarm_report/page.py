@@ -10,7 +10,8 @@ STYLE = """
 @media(prefers-color-scheme:dark){:root{--ink:#e6edf3;--paper:#0c1620;--card:#12202e;--rule:#2b3d4f;
 --accent:#7fc1e8}.chart{background:#f4f7f9;border-radius:6px}}
 *{box-sizing:border-box}body{margin:0 auto;max-width:60rem;padding:1rem;background:var(--paper);
-color:var(--ink);font:16px/1.5 system-ui,sans-serif;overflow-wrap:anywhere}h1{font-size:1.5rem;margin:.2rem 0}
+color:var(--ink);font:16px/1.5 system-ui,sans-serif;
+overflow-wrap:anywhere}h1{font-size:1.5rem;margin:.2rem 0}
 h2{font-size:1.15rem;margin:1.6rem 0 .5rem;color:var(--accent)}
 .tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(8.5rem,1fr));gap:.6rem}
 .tile{background:var(--card);border:1px solid var(--rule);border-radius:8px;padding:.6rem .8rem}

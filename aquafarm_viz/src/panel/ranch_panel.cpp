@@ -61,8 +61,8 @@ RanchPanel::RanchPanel(QWidget* parent)
       });
   connect(&timer_, &QTimer::timeout, this, [this] {
     // Also without news: the window may have another size.
-    if (vis_manager_ != nullptr && model_.shown().spec) {
-      whole_view_.Follow(*vis_manager_, *model_.shown().spec);
+    if (rviz_ != nullptr && model_.shown().spec) {
+      whole_view_.Follow(*rviz_, *model_.shown().spec);
     }
     if (!changed_) return;
     changed_ = false;
@@ -78,7 +78,7 @@ void RanchPanel::load(const rviz::Config& config) {
 
 void RanchPanel::save(rviz::Config config) const {
   rviz::Panel::save(config);
-  config.mapSetValue(kWholeFarm, vis_manager_ != nullptr && whole_view_.IsKept(*vis_manager_));
+  config.mapSetValue(kWholeFarm, rviz_ != nullptr && whole_view_.IsKept(*rviz_));
 }
 
 std::unique_ptr<ServiceCaller> RanchPanel::MakeCaller(double limit_s) {

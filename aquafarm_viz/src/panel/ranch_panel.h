@@ -19,6 +19,7 @@ class RanchPanel : public rviz::Panel {
  public:
   explicit RanchPanel(QWidget* parent = nullptr);
 
+  void onInitialize() override { rviz_ = vis_manager_; }
   void load(const rviz::Config& config) override;
   void save(rviz::Config config) const override;
 
@@ -34,6 +35,7 @@ class RanchPanel : public rviz::Panel {
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_;
+  rviz::VisualizationManager* rviz_{};  // null outside rviz, where Panel's own is not set
   WholeView whole_view_;
   QTimer timer_;
   bool changed_{};

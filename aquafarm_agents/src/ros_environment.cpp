@@ -152,6 +152,7 @@ const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
     if (code == Outcome::SHUTTING_DOWN) {
       WaitForReturn(lost_since);
     } else if (code == Outcome::PAUSED || code == Outcome::WRONG_PACE || code == Outcome::CLAIMED) {
+      lost_since = {};
       WaitToGoOn(step_.response.message, waited_s);
     } else {
       throw EnvironmentLost("sim node: step refused: " + step_.response.message);

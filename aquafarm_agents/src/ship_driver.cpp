@@ -73,6 +73,7 @@ class ShipDriver::Impl {
     }
     policy.Begin(seed, spec().farms);
     while (!Stopped() && (episodes == 0 || ended.size() < static_cast<std::size_t>(episodes))) {
+      if (claim_) claim_->RenewWhenDue();
       const Results& results = Look();
       const aquafarm::Farm& farm = mirror_->batch().farm(0);
       const bool is_new = !seen_ || seen_->first != farm.episode() ||
@@ -93,6 +94,7 @@ class ShipDriver::Impl {
       seen_.reset();
       ros::WallDuration(kRetryPeriod_s).sleep();
     }
+    claim_.reset();
     return ended;
   }
 

@@ -38,13 +38,14 @@ class LaunchFilesTest(unittest.TestCase):
 
     def test_the_launch_files_are_there(self):
         names = {path.stem for path in FILES}
-        self.assertLessEqual(
-            {"train", "evaluate", "benchmark", "sim", "play", "record", "replay", "agents", "agent"},
-            names)
+        self.assertLessEqual({"train", "evaluate", "benchmark", "sim", "play", "record", "replay",
+                              "agents", "agent"}, names)
 
     def test_every_argument_says_what_it_is_and_has_a_default(self):
         for path in FILES:
             for argument in ElementTree.parse(path).getroot().findall("arg"):
+                if argument.get("value"):
+                    continue  # made of others; nobody can give it
                 where = f"{path.name}: {argument.get('name')}"
                 self.assertGreater(len(argument.get("doc") or ""), 15, where)
                 if where != "replay.launch: bag":
@@ -91,20 +92,33 @@ class LaunchFilesTest(unittest.TestCase):
                                         f"{node.package}/{node.type}")
 
     def test_kept_episodes_lie_in_the_folder_of_the_run(self):
-        for arguments in (["record:=best"], ["record:=best", "run_dir:=/tmp/a run"]):
+        for arguments in (["record:=best"], ["record:=best", "run_dir:=auto"],
+                          ["record:=best", "run_dir:=/tmp/a run"]):
             parameters = load(LAUNCH / "train.launch", arguments).params
             value = {name: parameter.value for name, parameter in parameters.items()}
             self.assertEqual(value["/aquafarm/train/run_dir"] + "/episodes",
                              value["/aquafarm/sim/keep_dir"])
+
+    def test_a_run_without_a_folder_gets_a_new_one_under_one_name(self):
+        for name, *arguments in (("train",), ("train", "run_dir:=auto"), ("record", "of:=train"),
+                                 ("record", "of:=train", "run_dir:=auto")):
+            with self.subTest(file=name, arguments=arguments):
+                parameters = load(LAUNCH / f"{name}.launch", arguments).params
+                run = parameters["/aquafarm/train/run_dir"].value
+                self.assertRegex(run, r"^runs/run_\w+$")
+                self.assertEqual(run + "/episodes", parameters["/aquafarm/sim/keep_dir"].value)
 
     def test_trainings_and_benchmarks_end_with_the_report_of_their_own_folder(self):
         def made_of(name, *arguments):
             prefixes = [node.launch_prefix for node in load(LAUNCH / name, arguments).nodes]
             return re.findall("--report='(.*?)'", " ".join(filter(None, prefixes)))
 
-        self.assertRegex(made_of("train.launch")[0], r"^runs/run_\w+$")
+        for arguments in ([], ["run_dir:=auto"]):
+            self.assertRegex(made_of("train.launch", *arguments)[0], r"^runs/run_\w+$")
         self.assertEqual(["/tmp/run"], made_of("train.launch", "run_dir:=/tmp/run"))
-        self.assertEqual(["/tmp/run"], made_of("record.launch", "of:=train", "run_dir:=/tmp/run"))
+        recorded = ("record.launch", "of:=train", "run_dir:=/tmp/run")
+        self.assertEqual(["none"], made_of(*recorded))
+        self.assertEqual(["/tmp/run"], made_of(*recorded, "report:=/tmp/run"))
         self.assertEqual(["none"], made_of("train.launch", "report:=none"))
         self.assertEqual(["benchmark"], made_of("benchmark.launch"))
 

@@ -171,6 +171,9 @@ class ReportTest(unittest.TestCase):
 
     def test_nothing_in_it_is_wider_than_a_phone(self):
         self.assertEqual("width=device-width, initial-scale=1", self.page.meta["viewport"])
+        for rule in ("img,video,svg{max-width:100%", ".wide{overflow-x:auto", "pre{overflow-x:auto",
+                     "overflow-wrap:anywhere", "repeat(auto-fit,"):
+            self.assertTrue(rule in self.page.text, rule)
         self.assertEqual([""], self.too_wide(self.page.text))
         words = "clairvoyant_planner_on_zhoushan_mitag_2019_with_floats"
         self.assertEqual([""], self.too_wide(make_page(words, tiles([(words, words)]))))
@@ -221,7 +224,9 @@ class ReportTest(unittest.TestCase):
         page = Page(output)
         self.assertEqual([], page.embedded("video/mp4"))
         self.assertEqual(1, len(page.embedded("image/gif")))
-        for film in self.page.embedded("video/mp4"):
+        films = self.page.embedded("video/mp4")
+        self.assertTrue(films, "there is no encoder of H.264 here")
+        for film in films:
             self.assertIn(b"avc1", film)
 
     def test_a_benchmark_shows_its_table_figures_and_best_learner(self):

@@ -116,6 +116,20 @@ class ScriptTest(unittest.TestCase):
                 self.assertIn("is of another tree or place; building all anew", words(*other))
                 self.assertFalse(cache.exists())
 
+    def test_a_workspace_of_somebody_else_is_left_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            ws = pathlib.Path(folder).resolve()
+            (ws / "build").mkdir()
+            (ws / "build" / "theirs").touch()
+            (ws / "src").mkdir()
+            for place, words in ((ws / "src", "got a build that this script has not made"),
+                                 (ws / "src" / "aquafarm", "got a folder, expected this checkout")):
+                place.mkdir(exist_ok=True)
+                done = run(SCRIPT, "build", env=dict(os.environ, AQUAFARM_WS=str(ws)))
+                self.assertEqual(2, done.returncode, done.stdout)
+                self.assertIn(words, done.stdout)
+                self.assertTrue((ws / "build" / "theirs").exists())
+
     @unittest.skipUnless(os.geteuid() == 0 and shutil.which("setpriv"), "needs root and setpriv")
     def test_without_root_setup_says_what_to_install_and_ends(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -216,7 +216,8 @@ class GymTest(unittest.TestCase):
         mine.reset(1)
         mine.step(north)
         other.reset(2)
-        with self.assertRaisesRegex(ConnectionError, "^sim node: not as it was left .* reset to go"):
+        with self.assertRaisesRegex(ConnectionError,
+                                    "^sim node: not as it was left .* reset to go"):
             mine.step(north)
         with self.assertRaisesRegex(ValueError, "^step: got no reset before, expected one"):
             mine.step(north)

@@ -75,6 +75,7 @@ aquafarm_msgs::CommandResult Ranch::Command(const ShipCommand& command) {
     StepPublishedFarm();
     return AnswerOf(0);
   } catch (const std::exception& error) {
+    ++turn_;  // the farm may have stepped
     DropCommands();
     return Refuse(command.ship, Outcome::INTERNAL_ERROR, error.what());
   }
@@ -352,6 +353,7 @@ void Ranch::Tick() {
     }
     StepPublishedFarm();
   } catch (const std::exception& error) {
+    ++turn_;  // the farm may have stepped
     DropCommands();
     context_.paused = true;  // A farm that cannot go on must not fail at every tick.
     counters_.fault = error.what();

@@ -88,11 +88,6 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
 std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& request,
                                            const std::string& caller) {
   if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is ending"};
-  if (request.turn != 0 && request.turn != turn_) {
-    return Refusal{Outcome::STALE, "turn: got " + std::to_string(request.turn) +
-                                       ", the farms are at " + std::to_string(turn_) +
-                                       ": another has moved or reset them, or the node is new"};
-  }
   const auto expected = static_cast<std::size_t>(batch_->farms()) * slots_.size();
   if (request.actions.size() != expected) {
     return Refusal{Outcome::BAD_LENGTH, "actions: got " + std::to_string(request.actions.size()) +
@@ -111,6 +106,12 @@ std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& r
   if (context_.paused) return Refusal{Outcome::PAUSED, "the farm is paused"};
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (auto refusal = CheckHolder(ship, caller)) return refusal;
+  }
+  // Last: whoever waits until the farms are free again is told once that they have moved.
+  if (request.turn != 0 && request.turn != turn_) {
+    return Refusal{Outcome::STALE, "turn: got " + std::to_string(request.turn) +
+                                       ", the farms are at " + std::to_string(turn_) +
+                                       ": another has moved or reset them, or the node is new"};
   }
   return CheckAnswerSize(batch_->farms(), request.encodings);
 }

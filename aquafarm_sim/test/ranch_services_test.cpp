@@ -179,6 +179,33 @@ TEST(RanchServices, AJointStepIsRefusedWhileAnotherHoldsAShip) {
   EXPECT_TRUE(ranch->Step(step, "/trainer").ok);
 }
 
+// A learner that waits is told once, when it may go on, that its farms have moved.
+TEST(RanchServices, AJointStepHearsWhoIsInTheWayBeforeItIsStale) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
+  aquafarm_msgs::Step::Request mine;
+  mine.actions = {kNorth};
+  mine.turn = ResetTo(*ranch, 3).result.turn;
+  const auto set_pace = [&](const char* pace) {
+    aquafarm_msgs::SetPace call;
+    call.request.pace = pace;
+    ranch->SetPace(call.request, call.response);
+  };
+  set_pace("paced");
+  ranch->Tick();
+  EXPECT_EQ(Outcome::WRONG_PACE, ranch->Step(mine).code);
+  set_pace("lockstep");
+  EXPECT_EQ(Outcome::STALE, ranch->Step(mine).code);
+  mine.turn = ResetTo(*ranch, 3).result.turn;
+  aquafarm_msgs::Claim::Response claim;
+  ranch->Claim(0, "/agent", false, claim);
+  aquafarm_msgs::Step::Request theirs;
+  theirs.actions = {kNorth};
+  EXPECT_TRUE(ranch->Step(theirs, "/agent").ok);
+  EXPECT_EQ(Outcome::CLAIMED, ranch->Step(mine, "/trainer").code);
+  ranch->Claim(0, "/agent", true, claim);
+  EXPECT_EQ(Outcome::STALE, ranch->Step(mine, "/trainer").code);
+}
+
 TEST(RanchServices, EveryRefusalIsCounted) {
   const auto ranch = MakeRanch(TwoShips());
   const auto refuse = [&](auto service, auto handler) {

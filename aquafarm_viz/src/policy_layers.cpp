@@ -38,7 +38,9 @@ void DrawValues(cv::Mat& map, const Values& values) {
   const cv::Mat known = north_up == north_up;  // not NaN
   cv::Mat shares(north_up.size(), CV_8U, cv::Scalar(128));
   if (const double span = double(values.highest) - double(values.lowest); span > 0.0) {
-    north_up.convertTo(shares, CV_8U, 255.0 / span, -255.0 * double(values.lowest) / span);
+    // First the difference: scaled, values far from 0 have too few digits.
+    cv::subtract(north_up, cv::Scalar(double(values.lowest)), north_up);
+    north_up.convertTo(shares, CV_8U, 255.0 / span);
   }
   cv::Mat large;
   cv::Mat mask;

@@ -89,11 +89,6 @@ void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m
 
 }  // namespace
 
-double Values::Share(float value) const {
-  if (!(highest > lowest)) return 0.5;
-  return std::clamp(double(value - lowest) / double(highest - lowest), 0.0, 1.0);
-}
-
 Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec) {
   Check(cloud);
   Values read;

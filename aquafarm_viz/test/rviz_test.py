@@ -73,10 +73,12 @@ def farm_state(step):
     return state
 
 
-def corner_state(spec, step):
-    """A device of each kind in each corner."""
+def corner_state(spec, step, outside=False):
+    """A device of each kind, in a corner each, or outside of the farm, where none is drawn."""
     state = FarmState(observer=-1, seed=1, episode=spec.episode, step=step)
     corners = [(x, y) for x in (0, spec.width - 1) for y in (0, spec.height - 1)]
+    if outside:
+        corners = [(-1, -1)] * 4
     state.devices = [DeviceState(id=kind, kind=kind, x=x, y=y, value=75, health=1,
                                  health_known=True, carrier=-1)
                      for kind, (x, y) in enumerate(corners)]
@@ -118,7 +120,8 @@ def screen(path):
     height, width, bytes_per_line = header[5], header[4], header[12]
     start = header[0] + 12 * header[19]
     rows = numpy.frombuffer(data, numpy.uint8, height * bytes_per_line, start)
-    return rows.reshape(height, bytes_per_line)[:, :4 * width].reshape(height, width, 4)[:, :, 2::-1]
+    lines = rows.reshape(height, bytes_per_line)[:, :4 * width]
+    return lines.reshape(height, width, 4)[:, :, 2::-1]
 
 
 def missing(picture, wanted):
@@ -227,6 +230,14 @@ class RvizTest(unittest.TestCase):
                 absent = missing(picture[VIEW], devices)
             self.keep(picture, "size_%d" % episode)
             self.assertFalse(absent, "a farm of %d x %d cells of %g m" % size)
+            # The next farm must not be taken for seen on this one's picture.
+            end = time.monotonic() + LIMIT_S
+            while len(absent) < len(devices) and time.monotonic() < end:
+                step += 1
+                self.send("state", corner_state(spec, step, outside=True))
+                time.sleep(0.5)
+                absent = missing(screen(frame_buffer)[VIEW], devices)
+            self.assertEqual(set(devices), set(absent), "devices that are gone are seen")
 
     def test_watch_shows_the_ranch_and_the_panel(self):
         self.show("watch", WANTED)

@@ -25,7 +25,21 @@ TEST(Values, AreReadByCellWithTheirRange) {
   EXPECT_EQ(values.actions[values.Index(3, 4)], 5);
   EXPECT_EQ(values.lowest, 0.0F);
   EXPECT_EQ(values.highest, 48.0F);
-  EXPECT_DOUBLE_EQ(values.Share(12.0F), 0.25);
+}
+
+TEST(Values, FarFromZeroHaveTheColoursOfTheirDifferences) {
+  const auto drawn = [](float lowest) {
+    Values values;
+    values.width = 3;
+    values.height = 1;
+    values.lowest = lowest;
+    values.highest = lowest + 4.0F;
+    values.values = {lowest, lowest + 1.0F, lowest + 4.0F};
+    cv::Mat map(10, 30, CV_8UC3, cv::Scalar::all(0));
+    DrawValues(map, values);
+    return map;
+  };
+  EXPECT_EQ(cv::norm(drawn(0.0F), drawn(-1.0e7F), cv::NORM_INF), 0.0);
 }
 
 TEST(Values, LeavesOutWhatIsNoCellNoActionAndNoNumber) {

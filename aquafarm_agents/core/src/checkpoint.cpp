@@ -67,7 +67,7 @@ Checkpoint FromIndex(const nlohmann::json& index) {
   index.at("scenario_hash").get_to(c.spec.scenario_hash);
   index.at("farms").get_to(c.spec.farms);
   index.at("agents").get_to(c.spec.agents);
-  c.spec.team_reward = index.value("team_reward", false);
+  index.at("team_reward").get_to(c.spec.team_reward);
   index.at("state_count").get_to(c.spec.state_count);
   index.at("feature_count").get_to(c.spec.feature_count);
   index.at("feature_names").get_to(c.spec.feature_names);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "value_optimizer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "aquafarm/check.h"
@@ -60,7 +61,10 @@ void ValueOptimizer::Update(const torch::Tensor& predicted, const torch::Tensor&
   }
   ++updates_;
   const torch::NoGradGuard no_grad;
-  if (average_) average_->values().lerp_(online().values(), options_.average_rate);
+  if (average_) {  // of all weights alike, until those of late count for more
+    const double share = std::max(options_.average_rate, 1.0 / static_cast<double>(updates_));
+    average_->values().lerp_(online().values(), share);
+  }
   if (options_.target_rate > 0.0) {
     target_.values().lerp_(online().values(), options_.target_rate);
   } else if (updates_ % options_.target_period == 0) {

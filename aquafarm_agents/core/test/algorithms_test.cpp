@@ -83,6 +83,10 @@ TEST(Algorithms, EachContinuesBitForBit) {
     if (!algorithm.learns) continue;
     ExpectContinues(algorithm, Lively(algorithm) + " exploration=icm:1+boltzmann:5");
   }
+  for (const char* name : {"dqn", "lstm_dqn"}) {
+    const Algorithm& algorithm = FindAlgorithm(name);
+    ExpectContinues(algorithm, Lively(algorithm) + " average_rate=0.02");
+  }
 }
 
 TEST(Algorithms, AutoChoosesByThoseWhoDecideAndSaysWhy) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sequence_batch.h"
 
+#include <set>
+
 #include "agents_fixture.h"
 
 namespace aquafarm::agents::test {
@@ -95,6 +97,50 @@ TEST(SequenceBatch, NeverCrossesAnEpisode) {
     }
     EXPECT_GT(cold, 5);
     EXPECT_GT(warm, 5);
+  }
+}
+
+// Two agents, the first of whom is done from the third moment on.
+TEST(MomentSampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
+  constexpr std::size_t kFarms = 2;
+  constexpr std::size_t kAgents = 2;
+  for (const double priority : {0.0, 0.6}) {
+    Replay<float> replay({8 * kFarms * kAgents, kFarms * kAgents, kAgents, 1, 0});
+    DeepOptions options = Options(1);
+    options.batch = 4;
+    options.priority = priority;
+    MomentSampler<float> sampler(replay, options, 1, kAgents);
+    Results results;
+    results.rewards = results.features = {0, 0, 0, 0};
+    results.legal = {kAllActions, kAllActions, kAllActions, kAllActions};
+    std::set<std::size_t> over;  // rows at which the first farm's episodes are over
+    RandomStream chance({1, 0, Purpose::kLearner, 1});
+    for (int moment = 0; moment < 30; ++moment) {
+      const int step = moment % 6;
+      const std::uint8_t working = step < 2 ? 1 : 0;
+      const auto reason = step == 5 ? EndReason::kAllRetrieved : EndReason::kNone;
+      results.started = {step == 0 ? std::uint8_t{1} : std::uint8_t{0}, 0};
+      results.in_play = {working, 1, 1, 1};
+      results.reasons = {static_cast<std::uint8_t>(reason), 0};
+      replay.Add(results, results.features.data());
+      replay.SetActions({0, 0, 0, 0});
+      sampler.Remember();
+      const std::size_t row = replay.Row(replay.size() - 1, 0);
+      over.erase(row);
+      if (step == 5) over.insert(row);
+      if (!sampler.IsReady()) continue;
+      std::set<std::size_t> drawn;
+      for (int k = 0; k < 200; ++k) {
+        const Moment one = sampler.Draw(chance, static_cast<std::size_t>(k) % 4);
+        EXPECT_EQ(one.entry % kAgents, 0U);
+        EXPECT_LT(one.age + 1, replay.size());
+        drawn.insert(replay.Row(one.age, one.entry));
+      }
+      for (const std::size_t at : over) EXPECT_EQ(drawn.count(at), 0U) << "moment " << moment;
+      const std::size_t begun = kFarms * (replay.size() - 1) - over.size() + over.count(row);
+      EXPECT_EQ(drawn.size(), begun) << "moment " << moment << ", priority " << priority;
+      sampler.SetError(*drawn.begin(), 1.0F);
+    }
   }
 }
 

@@ -31,10 +31,10 @@ class Contestant:
 # episodes are all of chance, and those that end soon come first.
 FARMS = 1
 
-# Trainings run side by side, a core each, and their numbers are to be the same on every machine:
-# hence device=cpu. Why these numbers: docs/decisions/settling_early.md. Networks have seen enough of chance after
-# some thirty long episodes, tables after a thousand; what is left of chance is a choice among moves
-# that are worth about the same: the temperature is one point of reward.
+# Trainings run side by side, a core each, hence device=cpu. Why these numbers:
+# docs/decisions/settling_early.md. Networks have seen enough of chance after some thirty long
+# episodes, tables after a thousand; what is left of chance is a choice among moves that are worth
+# about the same: the temperature is one point of reward.
 _EXPLORED = 30
 _COOLING = "boltzmann:linear:20:1:{explored}"
 _SETTLED = 400  # from here on a network only refines what it has learnt

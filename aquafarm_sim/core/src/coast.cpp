@@ -65,8 +65,9 @@ std::string FaultOf(const CoastRing& ring) {
       if (Cross(ring[a], ring[a + 1], ring[b], ring[b + 1])) return "crosses itself";
       doubles = doubles || Doubles(ring[a], ring[a + 1], ring[b], ring[b + 1]);
       if (--left > 0) continue;
-      return "of " + std::to_string(lines) + " lines was not looked through for crossings after " +
-             std::to_string(kMostComparisons) + " comparisons";
+      return "of " + std::to_string(lines) + " lines " + (doubles ? "runs along itself and " : "") +
+             "was not looked through for crossings after " + std::to_string(kMostComparisons) +
+             " comparisons";
     }
   }
   return doubles ? "runs along itself" : "";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "aquafarm/check.h"
 #include "field_domain.h"
@@ -42,16 +43,32 @@ bool HasKey(std::string_view text, std::string_view key) {
 
 // Gives storms that share an id one each: files of several years put together have such.
 void TellApart(HazardFile& file, internal::HazardPlace& place) {
-  std::map<std::string, int> seen;
+  std::map<std::string, int> times;
+  std::set<std::string> seen;
+  for (const HazardTrack& track : file.tracks) {
+    ++times[internal::Upper(track.id)];
+    seen.insert(internal::Upper(track.id));
+  }
+  std::map<std::string, int> last;
   place.path.clear();
   for (std::size_t i = 0; i < file.tracks.size(); ++i) {
     HazardTrack& track = file.tracks[i];
-    const int times = ++seen[track.id];
-    if (times == 1) continue;
-    const std::string id = track.id + "-" + std::to_string(times);
-    const std::string what = "storm " + track.id + " is there again; this one is called " + id;
+    const std::string shared = internal::Upper(track.id);
+    const int storms = times[shared];
+    if (storms == 1) continue;
+    std::string id;
+    do {
+      id = track.id + "-" + std::to_string(++last[shared]);
+    } while (!seen.insert(internal::Upper(id)).second);
+    const std::string what = "storm " + track.id + " is there " + std::to_string(storms) +
+                             " times; this one is called " + id;
     place.line = track.line;
-    place.locate ? place.WarnValue(internal::At("", i), what) : place.Warn(what);
+    if (place.locate) {
+      place.WarnValue(internal::At("", i), what);
+    } else {
+      place.Warn(what);
+    }
+    track.shared_id = track.id;
     track.id = id;
   }
 }
@@ -137,7 +154,8 @@ const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {
   std::vector<const HazardTrack*> named;
   std::vector<std::string> names;
   for (const HazardTrack& track : file.tracks) {
-    if (!storm.empty() && internal::Upper(track.id) == wanted) {
+    if (!storm.empty() &&
+        (internal::Upper(track.id) == wanted || internal::Upper(track.shared_id) == wanted)) {
       found.push_back(&track);
     } else if (!storm.empty() &&
                (internal::Upper(track.name) == wanted || track.local_name == storm)) {

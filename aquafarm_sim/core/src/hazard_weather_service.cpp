@@ -63,13 +63,19 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
   return fix;
 }
 
-// Sections that an answer may have besides, and a forecast beside the track.
-void WarnOfUnread(const Json& document, HazardPlace& place) {
+// The list of points: the track, else the forecast. A track that says nothing is none.
+const char* KeyOfPoints(const JsonObject& answer) {
+  const Json* track = answer.List({"track"});
+  return track == nullptr || track->empty() ? "forecast" : "track";
+}
+
+// Sections that an answer may have besides its points, and a forecast beside the track.
+void WarnOfUnread(const Json& document, std::string_view points, HazardPlace& place) {
   constexpr std::array<std::string_view, 10> kKnown{
       "code", "updateTime", "fxLink", "isActive", "now", "track", "refer", "id", "stormid", "name"};
   for (const auto& [key, value] : document.items()) {
-    const bool known = std::find(kKnown.begin(), kKnown.end(), key) != kKnown.end() ||
-                       (key == "forecast" && !document.contains("track"));
+    const bool known =
+        std::find(kKnown.begin(), kKnown.end(), key) != kKnown.end() || key == points;
     if (!known && !IsBlank(value)) place.WarnValue(key, "is not read");
   }
 }
@@ -86,16 +92,16 @@ std::vector<HazardTrack> ReadWeatherService(const std::string& text, HazardPlace
   if (!code.empty() && code != "200") {
     answer.Here().Refuse("code: got " + Quoted(code) + ", expected '200'");
   }
-  WarnOfUnread(document, place);
+  const char* key = KeyOfPoints(answer);
+  WarnOfUnread(document, key, place);
   HazardTrack track;
   track.id = answer.Text({"id", "stormid"});
   if (track.id.empty()) track.id = "storm";
   track.name = answer.Text({"name"});
   track.agency = "weather service";
-  const JsonObject::Keys keys{"track", "forecast"};
-  const Json* points = answer.List(keys);
+  const Json* points = answer.List({key});
   for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
-    const JsonObject point((*points)[i], At(answer.KeyOf(keys), i), place);
+    const JsonObject point((*points)[i], At(key, i), place);
     if (IsLandfall(point)) {
       track.landfalls.push_back(
           {point.NeedTime({"time"}, kBeijing_s), point.NeedPosition({"lat"}, {"lon"}), ""});

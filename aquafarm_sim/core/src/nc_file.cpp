@@ -5,12 +5,24 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "aquafarm/check.h"
 #include "file_look.h"
-#include "hazard_text.h"
 
 namespace aquafarm::internal {
+namespace {
+
+// As much of a file as tells what it is.
+FileLook LookAtBeginning(const std::string& path) {
+  std::string text(std::size_t{64} << 10U, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return LookAt(text);
+}
+
+}  // namespace
 
 NcFile::NcFile(const std::string& path) : path_(path) {
   std::error_code ignored;
@@ -21,7 +33,9 @@ NcFile::NcFile(const std::string& path) : path_(path) {
   }
   const int status = nc_open(path.c_str(), NC_NOWRITE, &id_);
   if (status == NC_ENOTNC) {
-    throw InputError(path + ": got " + LookAt(ReadTextFile(path)).words +
+    const FileLook look = LookAtBeginning(path);
+    throw InputError(path + ": got " +
+                     (look.kind == FileKind::kNetcdf ? "a damaged netCDF file" : look.words) +
                      ", expected a netCDF file");
   }
   if (status != NC_NOERR) {

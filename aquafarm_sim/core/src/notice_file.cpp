@@ -192,13 +192,15 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, HazardPlace& place)
 NoticeFile ParseNotices(const std::string& text, const std::string& origin_name) {
   NoticeFile file;
   HazardPlace place(origin_name, file.warnings);
+  const std::string clean = internal::CleanJson(text);
   const internal::FileLook look = internal::LookAt(text);
-  const bool object = look.kind == internal::FileKind::kUnknown && look.words.substr(0, 2) == "'{";
-  if (look.kind != internal::FileKind::kNotices && !object) {
+  const bool notices = look.kind == internal::FileKind::kNotices;
+  const std::size_t begin = clean.find_first_not_of(" \t\r\n");
+  const bool object = begin != std::string::npos && clean[begin] == '{';
+  if (!object && !notices) {
     place.line = 1;
     place.Refuse("got " + look.words + kExpected);
   }
-  const std::string clean = internal::CleanJson(text);
   place.locate = [&clean](const std::string& path) { return internal::LineOfJson(clean, path); };
   const Json document = internal::ParseJson(clean, place);
   const JsonObject answer(document, "", place);
@@ -214,7 +216,9 @@ NoticeFile ParseNotices(const std::string& text, const std::string& origin_name)
   } else if (answer.Find({"warning"}) != nullptr) {
     file.notices = ReadWarnings(answer, place);
   } else {
-    answer.Here().Refuse(std::string("got neither \"warning\" nor \"anchors\"") + kExpected);
+    const bool known = look.kind != internal::FileKind::kUnknown && !notices;
+    answer.Here().Refuse("got " + (known ? look.words : "neither \"warning\" nor \"anchors\"") +
+                         kExpected);
   }
   return file;
 }

@@ -58,10 +58,11 @@ bool IsUpwards(const NcFile& file, int coordinate) {
 
 // Metres a unit of a vertical axis; a decibar of sea water is nearly one. 0: other units.
 double MetresPer(const std::string& units) {
-  if (units == "km") return 1000.0;
-  if (units == "cm") return 0.01;
-  const bool metres = IsOneOf(
-      units, {"", "m", "meter", "meters", "metre", "metres", "dbar", "decibar", "decibars"});
+  const std::string unit = internal::Upper(internal::Trim(units));
+  if (unit == "KM") return 1000.0;
+  if (unit == "CM") return 0.01;
+  const bool metres =
+      IsOneOf(unit, {"", "M", "METER", "METERS", "METRE", "METRES", "DBAR", "DECIBAR", "DECIBARS"});
   return metres ? 1.0 : 0.0;
 }
 

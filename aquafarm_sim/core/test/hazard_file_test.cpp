@@ -34,12 +34,28 @@ TEST(HazardFile, TellsStormsOfOneIdApart) {
       "2019072500 1 297 1230 1000 12\n"
       "66666 0000 01 0012 0000 0 6 (nameless) 20220101\n"
       "2021072500 1 297 1230 1000 12\n";
-  EXPECT_EQ(Warnings(years), "x:3: storm CMA12 is there again; this one is called CMA12-2\n");
-  EXPECT_EQ(FindTrack(ParseHazardFile(years, "x"), "cma12-2").line, 3);
+  EXPECT_EQ(Warnings(years),
+            "x:1: storm CMA12 is there 2 times; this one is called CMA12-1\n"
+            "x:3: storm CMA12 is there 2 times; this one is called CMA12-2\n");
+  const HazardFile file = ParseHazardFile(years, "x");
+  EXPECT_EQ(FindTrack(file, "cma12-1").line, 1);
+  EXPECT_EQ(FindTrack(file, "cma12-2").line, 3);
+  try {
+    FindTrack(file, "CMA12");
+    FAIL() << "took one of two";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "storm: got 'CMA12', expected an id, as there are CMA12-1 from "
+                 "2019-07-25T00:00:00Z, CMA12-2 from 2021-07-25T00:00:00Z");
+  }
   const std::string storm = R"({"tfbh": "202106", "points": [
     {"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122}]})";
-  EXPECT_EQ(Warnings("[" + storm + ",\n" + storm + "]").substr(0, 27),
-            "x:3: [1]: storm 202106 is t");
+  const std::string twice = storm + ",\n" + storm;
+  EXPECT_EQ(Warnings("[" + twice + "]"),
+            "x:1: [0]: storm 202106 is there 2 times; this one is called 202106-1\n"
+            "x:3: [1]: storm 202106 is there 2 times; this one is called 202106-2\n");
+  const std::string taken = With(storm, "202106", "202106-2");
+  EXPECT_EQ(ParseHazardFile("[" + twice + "," + taken + "]", "x").tracks[1].id, "202106-3");
 }
 
 TEST(FindTrack, NamesWhatThereIs) {

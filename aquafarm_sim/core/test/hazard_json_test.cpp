@@ -142,6 +142,11 @@ TEST(WeatherService, SaysWhatItDoesNotRead) {
             "x:4: forecast: is not read\n");
   EXPECT_EQ(Warnings("{" + track + ",\n\"alerts\": [{\"id\": 1}], \"gusts\": null}"),
             "x:3: alerts: is not read\n");
+  for (const char* none : {"null", "\"\"", "[]"}) {
+    const std::string answer = std::string("{\"track\": ") + none + ",\n" + forecast + "}";
+    EXPECT_EQ(Warnings(answer), "") << none;
+    EXPECT_EQ(ParseHazardFile(answer, "x").tracks.at(0).fixes.size(), 1U) << none;
+  }
 }
 
 TEST(Motion, OfZeroWasNotSaid) {

@@ -129,6 +129,15 @@ TEST(Notices, BesideAnchoragesAreSaidNotToBeRead) {
             std::vector<std::string>{"x.json:1: warning: is not read beside anchors"});
 }
 
+TEST(Notices, MayHaveKeysThatOtherFilesHave) {
+  for (const char* sample : {"warning.json", "anchorage.json"}) {
+    std::string text = Sample(sample);
+    text.insert(text.find('{') + 1,
+                R"("type": "x", "coordinates": [122.1, 30.1], "features": [], "track": null,)");
+    EXPECT_FALSE(ParseNotices(text, "x.json").notices.empty()) << sample;
+  }
+}
+
 TEST(RealNotices, AreRead) {
   const fs::path folder = SharedData() / "bulletins";
   if (!fs::exists(folder)) GTEST_SKIP() << "no bulletins at " << folder;

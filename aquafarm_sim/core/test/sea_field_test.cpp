@@ -192,7 +192,9 @@ TEST_F(SeaFields, HaveAVerticalAxisOfAnyNameThatCfKnows) {
   for (const Shape& shape :
        {with({{"positive", "down"}}), with({{"positive", "up"}}, true), with({{"units", "dbar"}}),
         with({{"axis", "Z"}}), with({{"standard_name", "depth"}}),
-        with({{"standard_name", "height"}}, true), with({{"axis", "Z"}, {"units", "metres"}})}) {
+        with({{"standard_name", "height"}}, true), with({{"axis", "Z"}, {"units", "metres"}}),
+        with({{"axis", "Z"}, {"units", "Meters"}}), with({{"axis", "Z"}, {"units", "METRES"}}),
+        with({{"axis", "Z"}, {"units", "m "}})}) {
     Write(shape);
     const SeaField field = LoadSeaField(path_, {"so", {}, 4.0}, frame_, 4, 4);
     EXPECT_EQ(field.depth_m, 5.0) << shape.vertical_attributes[0][1];
@@ -330,6 +332,8 @@ TEST_F(SeaFields, AreRefusedWithTheReason) {
             "since 2000-01-01 00:00:00'");
   std::ofstream(path_) << "not a netCDF file";
   EXPECT_EQ(Refused(), "got 'not a netCDF file', expected a netCDF file");
+  std::ofstream(path_) << "CDF\x07 of no kind that there is";
+  EXPECT_EQ(Refused(), "got a damaged netCDF file, expected a netCDF file");
   fs::remove(path_);
   EXPECT_EQ(Refused(), "cannot read as netCDF: No such file or directory");
 }

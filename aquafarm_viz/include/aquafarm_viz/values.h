@@ -37,8 +37,6 @@ struct Values {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
            static_cast<std::size_t>(x);
   }
-  /// Where a value lies between the lowest and the highest, [0, 1].
-  double Share(float value) const;
 };
 
 /// Reads a cloud of the farm of `spec`. Points outside of it are left out.

@@ -19,7 +19,7 @@ rviz::ViewController* WholeView::FromAbove(rviz::VisualizationManager& rviz) {
 
 WholeView::Place WholeView::Read(rviz::ViewController& view) {
   const auto value = [&view](const char* name) { return view.subProp(name)->getValue().toFloat(); };
-  return {value("X"), value("Y"), value("Scale")};
+  return {value("X"), value("Y"), value("Scale"), value("Angle")};
 }
 
 bool WholeView::IsKept(rviz::VisualizationManager& rviz) const {
@@ -32,19 +32,29 @@ void WholeView::Follow(rviz::VisualizationManager& rviz, const aquafarm_msgs::Fa
   rviz::ViewController* view = FromAbove(rviz);
   const QWidget* window = rviz.getRenderPanel();
   if (!wanted || view == nullptr || window == nullptr) return;
+  const Place now = Read(*view);
+  if (width_m_ != 0.0 && !(now == place_)) {  // somebody moved it
+    wanted = false;
+    return;
+  }
   const double width_m = spec.width * spec.cell_size_m;
   const double height_m = spec.height * spec.cell_size_m;
   const bool is_new = width_m != width_m_ || height_m != height_m_;
-  if (!is_new && !(Read(*view) == place_)) return;  // somebody moved it
   const double scale = std::min(window->width() / width_m, window->height() / height_m) *
                        window->devicePixelRatioF() / (1.0 + 2.0 * kMargin);
   const Place wanted_place{static_cast<float>(0.5 * (width_m - spec.cell_size_m)),
                            static_cast<float>(0.5 * (height_m - spec.cell_size_m)),
-                           static_cast<float>(scale)};
+                           static_cast<float>(scale), now.angle};
   if (!is_new && wanted_place == place_) return;
-  view->subProp("X")->setValue(wanted_place.x_m);
-  view->subProp("Y")->setValue(wanted_place.y_m);
-  view->subProp("Scale")->setValue(wanted_place.scale);
+  const auto set = [view](const char* name, float value) {
+    rviz::Property* property = view->subProp(name);
+    property->setShouldBeSaved(false);  // rviz would ask whether to save what nobody changed
+    property->setValue(value);
+    property->setShouldBeSaved(true);
+  };
+  set("X", wanted_place.x_m);
+  set("Y", wanted_place.y_m);
+  set("Scale", wanted_place.scale);
   width_m_ = width_m;
   height_m_ = height_m;
   place_ = Read(*view);

@@ -22,9 +22,9 @@ class WholeView {
 
  private:
   struct Place {
-    float x_m, y_m, scale;  // of the view's middle; pixels a metre
+    float x_m, y_m, scale, angle;  // of the view's middle; pixels a metre; as rviz counts it
     bool operator==(const Place& other) const {
-      return x_m == other.x_m && y_m == other.y_m && scale == other.scale;
+      return x_m == other.x_m && y_m == other.y_m && scale == other.scale && angle == other.angle;
     }
   };
   static rviz::ViewController* FromAbove(rviz::VisualizationManager& rviz);

@@ -115,6 +115,7 @@ struct HazardTrack {
   std::vector<HazardForecast> forecasts;
   std::vector<Landfall> landfalls;  ///< in order of time
   std::int32_t line{};              ///< of the file, where it starts; 0 in JSON
+  std::string shared_id;  ///< in the file, where others have it too; `id` tells them apart
 };
 
 /// A grade as the bulletin's colours have it (1 blue … 4 red): TD and TS 1, STS 2, TY 3, STY and

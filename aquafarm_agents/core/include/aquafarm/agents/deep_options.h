@@ -47,8 +47,8 @@ struct DeepOptions {
   double priority{0.6};       ///< exponent α of Schaul et al. 2016; 0: uniform
   double importance{0.4};     ///< exponent β of the same, at the start; 1 at the end
   double reward_scale{0.05};  ///< 1: off
-  /// Share of each update in the average of all weights so far, which then acts instead of the
-  /// newest (Polyak and Juditsky 1992); 0: off
+  /// Share of the newest weights in a moving average, which then acts instead of them (Polyak and
+  /// Juditsky 1992; the plain mean until there are 1 / share of them); 0: off
   double average_rate{0.0};
   bool mask_illegal{true};   ///< never try, nor bootstrap on, actions that would be ILLEGAL
   bool mask_blocked{false};  ///< nor moves onto a charted rock, an island or off the map

@@ -195,6 +195,12 @@ class ReplayTest(unittest.TestCase):
         workspace = self.folder / "ws"  # one that nothing needs to be built in
         workspace.mkdir()
         (workspace / "devel").symlink_to(devel)
+        (workspace / "src").mkdir()
+        (workspace / "src" / "aquafarm").symlink_to(SCRIPT.resolve().parent)
+        (workspace / "build").mkdir()
+        (workspace / "build" / "CMakeCache.txt").write_text(
+            f"CMAKE_BUILD_TYPE:STRING={os.environ.get('AQUAFARM_BUILD_TYPE', 'Release')}\n"
+            f"CMAKE_HOME_DIRECTORY:INTERNAL={workspace.resolve()}/src\n")
         (workspace / "built").touch()
         os.utime(workspace / "built", (4e9, 4e9))
         scenario = roslib.packages.get_pkg_dir("aquafarm_sim") + "/scenarios/paper.yaml"

@@ -130,6 +130,7 @@ class BulletinNode {
 
 int Run() {
   try {
+    const ros::NodeHandle lives;  // ROS's console is gone for good once the last handle is
     const BulletinParams params = ReadParams();
     BulletinNode node(params);
     ros::WallTime next = ros::WallTime::now();

@@ -3,6 +3,8 @@
 // where the one who wrote them stopped. (science.nrlmry.navy.mil, abrdeck.html)
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "hazard_text.h"
 
@@ -143,9 +145,15 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
   Fields fields;
   std::string_view line;
   std::string current;
+  // A row that ends before the last radius, in a deck whose others do not, was cut.
+  constexpr std::size_t kThroughRadii = kRadius4 + 2;
+  std::size_t widest = 0;
+  std::optional<std::pair<std::int32_t, std::size_t>> narrow;
   while (lines.Next(line)) {
     if (Trim(line).empty()) continue;
     SplitFields(line, fields);
+    widest = std::max(widest, fields.size());
+    if (!narrow && fields.size() < kThroughRadii) narrow = {place.line, fields.size()};
     if (fields.size() <= kType) {
       place.Refuse("got " + std::to_string(fields.size()) + " fields, expected at least " +
                    std::to_string(kType + 1) + " of an ATCF row, from basin to type");
@@ -173,6 +181,12 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
     ReadRing(fields, track.fixes.back(), place);
   }
   if (!tracks.empty()) FinishTrack(tracks.back(), place);
+  if (narrow && widest >= kThroughRadii) {
+    place.line = narrow->first;
+    place.Refuse("got " + std::to_string(narrow->second) + " fields, expected " +
+                 std::to_string(kThroughRadii) + " or more, to a comma after the radii, as other " +
+                 "rows have");
+  }
   return tracks;
 }
 

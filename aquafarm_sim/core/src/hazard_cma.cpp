@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // CMA best track, CHyyyyBST.txt: a header of words a storm, then its points. Words, not columns: a
 // header of 2018 is shifted. (tcdata.typhoon.org.cn/zjljsjj.html)
+#include <algorithm>
+#include <array>
+
 #include "hazard_text.h"
 
 namespace aquafarm::internal {
@@ -70,8 +73,40 @@ HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
 
 }  // namespace
 
+namespace {
+
+// Columns are fixed, and the last number stands at the right of its own: a point that is shorter
+// than others of as many words has lost digits of it.
+void WarnOfShortPoints(std::string_view text, HazardPlace& place) {
+  constexpr std::size_t kMostWords = 7;
+  const auto each = [&](auto&& act) {
+    LineReader lines(text, place);
+    std::string_view line;
+    while (lines.Next(line)) {
+      const std::size_t words = SplitWords(line).size();
+      const std::string_view end = line.substr(0, line.find_last_not_of(" \t\r") + 1);
+      if (words > 0 && words <= kMostWords && Trim(line).substr(0, 5) != "66666") {
+        act(words, end.size());
+      }
+    }
+  };
+  std::array<std::size_t, kMostWords + 1> longest{};
+  each([&](std::size_t words, std::size_t size) {
+    longest[words] = std::max(longest[words], size);
+  });
+  each([&](std::size_t words, std::size_t size) {
+    if (size == longest[words]) return;
+    place.Warn("got a point of " + std::to_string(size) + " columns, the file's others have " +
+               std::to_string(longest[words]) + ": was it cut off?");
+  });
+}
+
+}  // namespace
+
 std::vector<HazardTrack> ReadCma(std::string_view text, HazardPlace& place) {
-  return ReadBestTracks(text, place, ReadHeader, ReadPoint);
+  std::vector<HazardTrack> tracks = ReadBestTracks(text, place, ReadHeader, ReadPoint);
+  WarnOfShortPoints(text, place);
+  return tracks;
 }
 
 }  // namespace aquafarm::internal

@@ -120,6 +120,14 @@ HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
     place.Refuse("got radii of 50 kt alone, expected those of 30 kt as well");
   }
   ReadRing(line, kWeaker, 30, fix, place);
+  // Since 1977 storms have radii; where there are none the columns are blank, not missing.
+  constexpr std::int64_t k1977 = 220924800;
+  constexpr std::size_t kThroughRadii = 62;
+  const bool is_storm = code >= 3 && code <= 5;
+  if (is_storm && fix.time >= k1977 && line.size() < kThroughRadii) {
+    place.Refuse("got a line of " + std::to_string(line.size()) + " columns, expected " +
+                 std::to_string(kThroughRadii) + " or more of a storm, to its radii");
+  }
   fix.landfall = Columns(line, 71, 72) == "#";
   return fix;
 }

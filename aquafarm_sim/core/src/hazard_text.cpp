@@ -266,6 +266,11 @@ void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place)
   if (fixes.size() >= kMaxFixes) {
     place.Refuse("got more than " + std::to_string(kMaxFixes) + " points of one storm");
   }
+  constexpr double kLeastPressure_hpa = 800.0;  // no storm's was ever below 870
+  if (fix.pressure_hpa && *fix.pressure_hpa < kLeastPressure_hpa) {
+    place.Refuse("pressure: got " + Format(*fix.pressure_hpa) +
+                 " hPa, expected [800, 1100], or 0 where it is not known");
+  }
   if (!fixes.empty() && fix.time == fixes.back().time) {
     place.Warn("time: " + FormatTime(fix.time) + " is there twice, the second is left out");
     return;

@@ -21,7 +21,6 @@ TEST(Jma, ALineThatEndsWithinAPointIsRefused) {
     if (refusal == "was read") {
       const HazardFix fix = ParseHazardFile(cut, "x").tracks[0].fixes[1];
       EXPECT_EQ(fix.wind_mps, whole.wind_mps) << size;
-      if (size <= 41) continue;  // of a storm without radii nothing shows that there were any
       ASSERT_EQ(fix.rings.size(), whole.rings.size()) << size;
       for (std::size_t i = 0; i < fix.rings.size(); ++i) {
         EXPECT_EQ(fix.rings[i].radius_km, whole.rings[i].radius_km) << size;
@@ -36,6 +35,8 @@ TEST(Jma, ALineThatEndsWithinAPointIsRefused) {
             "x:3: got a line of 60 columns, expected 62 or more where there are radii of 30 kt");
   EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 52))),
             "x:3: got radii of 50 kt alone, expected those of 30 kt as well");
+  EXPECT_EQ(Refusal(With(text, kInFa, kInFa.substr(0, 36))),
+            "x:3: got a line of 36 columns, expected 62 or more of a storm, to its radii");
 }
 
 TEST(Jma, WhatContradictsItselfIsRefused) {
@@ -55,11 +56,16 @@ TEST(Atcf, ARowThatEndsWithinItsRadiiIsRefused) {
     const std::size_t at = damaged.find(radii);
     return damaged.replace(at, end - at, kept);
   };
-  EXPECT_EQ(Refusal(cut("NEQ,  110,   90,    0,  100")), "was read");
+  EXPECT_EQ(Refusal(cut("NEQ,  110,   90,    0,  100,")), "was read");
   EXPECT_EQ(Refusal(cut("NEQ,  110,   90")).substr(0, 19), "x:2: radius: got ''");
-  EXPECT_EQ(Refusal(cut("NES,  110,   90")), "was read") << "a semicircle has two";
+  EXPECT_EQ(Refusal(cut("NES,  110,   90,    ,     ,")), "was read") << "a semicircle has two";
   EXPECT_EQ(Refusal(cut("NES,  110")).substr(0, 19), "x:2: radius: got ''");
-  EXPECT_EQ(Refusal(cut("AAA,  110")), "was read") << "a circle has one";
+  EXPECT_EQ(Refusal(cut("AAA,  110,     ,    ,     ,")), "was read") << "a circle has one";
+  const std::string words =
+      " fields, expected 18 or more, to a comma after the radii, as other rows";
+  EXPECT_NE(Refusal(cut("NEQ,  110,   90,    0,  10")).find("x:2: got 17" + words),
+            std::string::npos);
+  EXPECT_NE(Refusal(cut("AAA,  110")).find("x:2: got 14" + words), std::string::npos);
 }
 
 TEST(Atcf, ATimeThatIsThereTwiceWithAnotherPlaceIsSaid) {
@@ -71,6 +77,15 @@ TEST(Atcf, ATimeThatIsThereTwiceWithAnotherPlaceIsSaid) {
             std::string::npos)
       << Warnings(moved);
   EXPECT_NE(Refusal(With(text, "BEST,   0, 131N", "BEST,  12, 131N")).find("TAU"),
+            std::string::npos);
+}
+
+TEST(Cma, APointThatIsShorterThanTheOthersIsSaid) {
+  const std::string head = "66666 2106   02 0011 2106 0 3 In-fa   20220410\n";
+  const std::string whole = "2021072500 4 297 1230  968      35\n";
+  EXPECT_EQ(Warnings(head + whole + "2021072506 4 300 1222  970      33\n"), "");
+  EXPECT_NE(Warnings(head + whole + "2021072506 4 300 1222  970      3\n")
+                .find("x:3: got a point of 33 columns, the file's others have 34: was it cut off?"),
             std::string::npos);
 }
 

@@ -45,6 +45,8 @@ const std::vector<WrongText> kWrongTexts{
      "x:2: grade: got 7, expected one of 0 to 6 or 9"},
     {"CmaWord", CMA_HEAD "2021072500 4 297 1230  abc 35\n",
      "x:2: pressure: got 'abc', expected a whole number in [0, 1100]"},
+    {"CmaPressure", CMA_HEAD "2021072500 4 297 1230   97 35\n",
+     "x:2: pressure: got 97 hPa, expected [800, 1100], or 0 where it is not known"},
     {"CmaBackwards", CMA_HEAD CMA_POINT "2021072418 4 300 1222  970 33\n",
      "x:3: time: got 2021-07-24T18:00:00Z, expected one after 2021-07-25T00:00:00Z of the point"},
     {"JmaTruncated", "66666 2106  002 0011 2106 0 6\n21072500 002 2 297 1230  998     000\n",

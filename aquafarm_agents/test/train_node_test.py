@@ -125,8 +125,8 @@ class TrainNodeTest(unittest.TestCase):
         claim = rospy.ServiceProxy(f"{self.namespace}/ship_0/claim", Claim)
         self.assertTrue(claim(release=False).ok)
         run = self.train("run", "_steps:=1000")
-        run.wait_for(lambda: "for the sim node: ship 0 is held by /train_node_test" in run.words(),
-                     "a word of the holder")
+        words = f"for the sim node: ship 0 is held by {rospy.get_name()}"
+        run.wait_for(lambda: words in run.words(), "a word of the holder")
         self.assertTrue(claim(release=True).ok)
         self.assertEqual(0, run.code(), run.words())
 

@@ -88,18 +88,6 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
 std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& request,
                                            const std::string& caller) {
   if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is ending"};
-  const auto expected = static_cast<std::size_t>(batch_->farms()) * slots_.size();
-  if (request.actions.size() != expected) {
-    return Refusal{Outcome::BAD_LENGTH, "actions: got " + std::to_string(request.actions.size()) +
-                                            " entries, expected " + std::to_string(expected) +
-                                            " (" + std::to_string(batch_->farms()) + " farms x " +
-                                            std::to_string(agents_) + " agents)"};
-  }
-  constexpr auto kLast = static_cast<std::uint8_t>(aquafarm::Action::kHold);
-  const std::uint8_t highest = *std::max_element(request.actions.begin(), request.actions.end());
-  if (highest > kLast) {
-    return Refusal{Outcome::BAD_ACTION, OutOfRange("actions", highest, 0, kLast)};
-  }
   if (context_.paced) {
     return Refusal{Outcome::WRONG_PACE, "joint steps need pace lockstep; call set_pace"};
   }
@@ -112,6 +100,18 @@ std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& r
     return Refusal{Outcome::STALE, "turn: got " + std::to_string(request.turn) +
                                        ", the farms are at " + std::to_string(turn_) +
                                        ": another has moved or reset them, or the node is new"};
+  }
+  const auto expected = static_cast<std::size_t>(batch_->farms()) * slots_.size();
+  if (request.actions.size() != expected) {
+    return Refusal{Outcome::BAD_LENGTH, "actions: got " + std::to_string(request.actions.size()) +
+                                            " entries, expected " + std::to_string(expected) +
+                                            " (" + std::to_string(batch_->farms()) + " farms x " +
+                                            std::to_string(agents_) + " agents)"};
+  }
+  constexpr auto kLast = static_cast<std::uint8_t>(aquafarm::Action::kHold);
+  const std::uint8_t highest = *std::max_element(request.actions.begin(), request.actions.end());
+  if (highest > kLast) {
+    return Refusal{Outcome::BAD_ACTION, OutOfRange("actions", highest, 0, kLast)};
   }
   return CheckAnswerSize(batch_->farms(), request.encodings);
 }

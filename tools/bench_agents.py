@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joint steps a second with a policy_node for each of eight ships, in lockstep through ROS.
 
-Prints `metric value unit` lines, the median of a few rounds. Needs a built workspace in the
-environment; starts a master of its own when there is none."""
+Prints a `metric value unit` line for RANDOM and one for a network, each the median of a few rounds.
+Needs a built workspace in the environment; starts a master of its own when there is none."""
 import argparse
 import pathlib
 import signal
@@ -47,9 +47,24 @@ def scenario_of(ships, folder):
     return path
 
 
+def train_network(scenario, folder):
+    """A DQN of the usual size. What it has learnt does not matter to its speed, but a good one
+    would end episodes within a round."""
+    run = pathlib.Path(folder) / "dqn"
+    subprocess.run([program("aquafarm_agents", "aquafarm_train"), scenario, "-a", "dqn", "-n",
+                    "6000", "-o", "device=cpu", "--random", "0", "--evaluate", "0", "-d", run],
+                   check=True, stdout=subprocess.DEVNULL, timeout=300)
+    return run
+
+
 def measure(get_state, rounds, round_s):
     """Joint steps a second of each round that stayed within an episode."""
     rates = []
+    end = time.monotonic() + LIMIT_S
+    while get_state().state.step < 100:
+        if time.monotonic() > end:
+            raise SystemExit("bench_agents: the agents take no steps")
+        time.sleep(0.1)
     end = time.monotonic() + LIMIT_S
     while len(rates) < rounds:
         if time.monotonic() > end:
@@ -62,8 +77,37 @@ def measure(get_state, rounds, round_s):
     return rates
 
 
+def end_all(children):
+    """Interrupts programs, the youngest first, and waits for them."""
+    for child in reversed(children):
+        child.send_signal(signal.SIGINT)
+    for child in reversed(children):
+        try:
+            child.wait(10)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.wait()
+
+
+def measure_agents(name, policy, scenario, arguments):
+    """Starts a farm and its agents, measures and ends them."""
+    space = f"/bench_agents_{name}_{socket.gethostname().replace('-', '_')}"
+    children = [start(program("aquafarm_sim", "sim_node"), f"__ns:={space}", "__name:=sim",
+                      "_publish_clock:=false", f"_scenario:={scenario}")]
+    children += [start(program("aquafarm_agents", "policy_node"), f"__ns:={space}",
+                       f"__name:=agent_{ship}", "_mode:=act", f"_policy:={policy}",
+                       f"_ship:={ship}") for ship in range(arguments.ships)]
+    try:
+        get_state = rospy.ServiceProxy(f"{space}/get_state", GetState, persistent=True)
+        get_state.wait_for_service(LIMIT_S)
+        rates = measure(get_state, arguments.rounds, arguments.round_s)
+    finally:
+        end_all(children)
+    print(f"ros_{arguments.ships}_agent_nodes_{name} {statistics.median(rates):.0f} joint_steps/s")
+
+
 def main():
-    """Starts the farm and its agents, measures, ends them."""
+    """Measures RANDOM, then a network."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--ships", type=int, default=8)
     parser.add_argument("--rounds", type=int, default=5)
@@ -80,32 +124,12 @@ def main():
                 if time.monotonic() > end:
                     raise SystemExit("bench_agents: no ROS master came up")
                 time.sleep(0.2)
-            space = f"/bench_agents_{socket.gethostname().replace('-', '_')}"
-            children.append(start(program("aquafarm_sim", "sim_node"), f"__ns:={space}",
-                                  "__name:=sim", "_publish_clock:=false",
-                                  f"_scenario:={scenario_of(arguments.ships, folder)}"))
-            for ship in range(arguments.ships):
-                children.append(start(program("aquafarm_agents", "policy_node"), f"__ns:={space}",
-                                      f"__name:=agent_{ship}", "_mode:=act", "_policy:=random",
-                                      f"_ship:={ship}"))
             rospy.init_node("bench_agents", anonymous=True, disable_signals=True)
-            get_state = rospy.ServiceProxy(f"{space}/get_state", GetState, persistent=True)
-            get_state.wait_for_service(LIMIT_S)
-            end = time.monotonic() + LIMIT_S
-            while get_state().state.step < 100:
-                if time.monotonic() > end:
-                    raise SystemExit("bench_agents: the agents take no steps")
-                time.sleep(0.1)
-            rates = measure(get_state, arguments.rounds, arguments.round_s)
-            print(f"ros_{arguments.ships}_agent_nodes {statistics.median(rates):.0f} joint_steps/s")
+            scenario = scenario_of(arguments.ships, folder)
+            for name, policy in (("random", "random"), ("dqn", train_network(scenario, folder))):
+                measure_agents(name, policy, scenario, arguments)
         finally:
-            for child in reversed(children):
-                child.send_signal(signal.SIGINT)
-            for child in reversed(children):
-                try:
-                    child.wait(10)
-                except subprocess.TimeoutExpired:
-                    child.kill()
+            end_all(children)
 
 
 if __name__ == "__main__":

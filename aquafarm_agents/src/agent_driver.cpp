@@ -109,7 +109,8 @@ class AgentDriver::Impl {
     results_.rewards.resize(agents);
     results_.outcomes.resize(agents);
     results_.legal.assign(agents, aquafarm::kMoveMask);
-    results_.in_play.assign(agents, 1);
+    results_.in_play.assign(agents, 0);
+    results_.in_play[static_cast<std::size_t>(options_.ship)] = 1;
     results_.reasons.resize(1);
     results_.started.assign(1, 1);
     if ((encodings_ & kIndexBit) != 0) results_.index.resize(agents);

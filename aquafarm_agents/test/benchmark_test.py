@@ -184,6 +184,8 @@ class BenchmarkTest(unittest.TestCase):
         everything = json.loads((self.folder / "out/results.json").read_text())
         for name in ("dqn", "lstm_dqn"):
             self.assertEqual(2, len(everything["runs"][name]), name)
+            for run in everything["runs"][name]:
+                self.assertRegex(run["libraries"], r"^libtorch \d")
             options = (self.folder / f"out/runs/{name}/seed_1/run.json").read_text()
             self.assertIn("mask_blocked=true", options)
             self.assertIn("device=cpu", options)

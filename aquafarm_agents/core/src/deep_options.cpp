@@ -30,9 +30,33 @@ DeepOptions Paper(bool recurrent) {
   options.priority = 0.0;
   options.reward_scale = 1.0;
   options.mask_illegal = false;
-  options.sequence = 1;
-  options.burn_in = 0;
   return options;
+}
+
+// Algorithm 2 as printed replays single tuples, each with its own stored (h, c).
+enum class Replayed : std::uint8_t { kSequences, kPaperTuple };
+constexpr std::array<std::string_view, 2> kReplayed{"sequences", "paper_tuple"};
+
+void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
+  const Replayed replayed = ReadWord(
+      reader, "replayed", is_paper ? Replayed::kPaperTuple : Replayed::kSequences, kReplayed);
+  const bool is_tuple = replayed == Replayed::kPaperTuple;
+  if (is_tuple) {
+    options.sequence = 1;
+    options.burn_in = 0;
+  }
+  ReadWhole(reader, "sequence", 1, is_tuple ? 1 : 1000, options.sequence);
+  ReadWhole(reader, "burn_in", 0, is_tuple ? 0 : 1000, options.burn_in);
+  // A return ends where its sequence does.
+  if (options.n_step > options.sequence) {
+    throw InputError("n_step: got " + std::to_string(options.n_step) +
+                     ", expected at most sequence, which is " + std::to_string(options.sequence));
+  }
+  // Beyond it, steps near an episode's beginning would never be learnt from.
+  if (options.burn_in > 0 && options.burn_in >= options.sequence) {
+    throw InputError("burn_in: got " + std::to_string(options.burn_in) +
+                     ", expected less than sequence, which is " + std::to_string(options.sequence));
+  }
 }
 
 }  // namespace
@@ -74,21 +98,7 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   }
   ReadNumber(reader, "priority", 0.0, 2.0, options.priority);
   ReadNumber(reader, "importance", 0.0, 1.0, options.importance);
-  if (recurrent) {
-    ReadWhole(reader, "sequence", 1, 1000, options.sequence);
-    ReadWhole(reader, "burn_in", 0, 1000, options.burn_in);
-    // A return ends where its sequence does.
-    if (options.n_step > options.sequence) {
-      throw InputError("n_step: got " + std::to_string(options.n_step) +
-                       ", expected at most sequence, which is " + std::to_string(options.sequence));
-    }
-    // Beyond it, steps near an episode's beginning would never be learnt from.
-    if (options.burn_in > 0 && options.burn_in >= options.sequence) {
-      throw InputError("burn_in: got " + std::to_string(options.burn_in) +
-                       ", expected less than sequence, which is " +
-                       std::to_string(options.sequence));
-    }
-  }
+  if (recurrent) ReadSequences(reader, preset == Preset::kPaper, options);
   options.device = ReadDevice(reader);
   ReadWhole(reader, "threads", 1, 256, options.threads);
   reader.Finish();

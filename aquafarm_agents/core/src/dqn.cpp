@@ -35,18 +35,24 @@ class GreedyDqnPolicy final : public Policy {
   }
   std::uint8_t encodings() const override { return EncodingOf(options_.network); }
   void Begin(std::uint64_t, std::int32_t) override {}
+  /// Rows before the first agent in play and after the last get action 0 unlooked at.
   void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+    const auto is_in_play = [](std::uint8_t flag) { return flag != 0; };
+    const auto& flags = results.in_play;
+    const auto first = static_cast<std::size_t>(
+        std::find_if(flags.begin(), flags.end(), is_in_play) - flags.begin());
+    const auto end = static_cast<std::size_t>(
+        flags.rend() - std::find_if(flags.rbegin(), flags.rend(), is_in_play));
+    actions.assign(results.legal.size(), 0);
+    values_.assign(results.legal.size(), 0.0F);
+    if (first >= end) return;
     const torch::InferenceMode inference;
-    actions.resize(results.legal.size());
+    const Scalar* seen = Sight<Scalar>::Of(results) + first * size_;
     const torch::Tensor values =
-        network_
-            ->Forward(Sight<Scalar>::ToInput(Sight<Scalar>::Of(results),
-                                             WithCount(actions.size(), shape_), device_))
+        network_->Forward(Sight<Scalar>::ToInput(seen, WithCount(end - first, shape_), device_))
             .cpu();
-    values_.resize(actions.size());
     const float* row = values.data_ptr<float>();
-    const Scalar* seen = Sight<Scalar>::Of(results);
-    for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += size_) {
+    for (std::size_t i = first; i < end; ++i, row += kActionCount, seen += size_) {
       const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
       actions[i] = best.action;
       values_[i] = best.value;

@@ -60,6 +60,7 @@ class CnnNetwork final : public QNetwork {
 };
 
 std::string torch_warning;
+std::string network_libraries;
 
 // Whether the BLAS in force is OpenBLAS, MKL or the like; the reference BLAS has no such symbol.
 bool HasFastBlas() {
@@ -90,6 +91,10 @@ void PrepareTorch(std::int32_t threads) {
   if (set_threads != nullptr) set_threads(threads);
   static std::once_flag looked;
   std::call_once(looked, [] {
+    network_libraries = "libtorch " TORCH_VERSION;
+    using Config = const char* (*)();
+    const auto openblas = reinterpret_cast<Config>(dlsym(RTLD_DEFAULT, "openblas_get_config"));
+    if (openblas != nullptr) network_libraries += std::string(", ") + openblas();
     if (HasFastBlas()) return;
     torch_warning =
         "libblas.so.3 is the reference BLAS, some ten times slower than OpenBLAS; install "
@@ -98,6 +103,7 @@ void PrepareTorch(std::int32_t threads) {
 }
 
 std::string TakeTorchWarning() { return std::exchange(torch_warning, {}); }
+std::string NetworkLibraries() { return network_libraries; }
 
 HeadImpl::HeadImpl(std::int64_t inputs, bool dueling)
     : advantage_(register_module("advantage", nn::Linear(inputs, kActionCount))) {

@@ -163,6 +163,7 @@ void Run::Describe(const EnvironmentSpec& spec, const Learner& learner,
                            {"scenario", spec.scenario_name},
                            {"scenario_hash", spec.scenario_hash},
                            {"version", spec.version},
+                           {"libraries", NetworkLibraries()},
                            {"arguments", options_.arguments}};
   folder.Write("run.json", run.dump(2) + "\n");
 }

@@ -96,7 +96,7 @@ TEST(RecurrentDqn, SolvesItWithEachSwitchTurnedRound) {
 TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
   ExpectSolves("lstm_dqn",
                "hidden=24 batch=64 start=500 replay=5000 target_period=50 steps_per_update=4 "
-               "sequence=1 burn_in=0 learning_rate=linear:0.003:0.0001:1",
+               "replayed=paper_tuple learning_rate=linear:0.003:0.0001:1",
                24000);
 }
 
@@ -178,6 +178,20 @@ TEST(RecurrentDqn, WarmsUpForLessThanItLearnsFrom) {
   EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("sequence=4 burn_in=4"); }),
                   "burn_in: got 4, expected less than sequence, which is 4");
   RecurrentDqnEncodings("sequence=1 burn_in=0");
+}
+
+TEST(RecurrentDqn, ReplaysThePapersTuplesByName) {
+  for (const std::string name : {"preset=paper", "replayed=paper_tuple"}) {
+    const std::string resolved = Resolved(name, true);
+    EXPECT_CONTAINS(resolved, "replayed=paper_tuple");
+    EXPECT_CONTAINS(resolved, "sequence=1 ");
+    EXPECT_CONTAINS(resolved, "burn_in=0 ");
+  }
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=paper_tuple sequence=8"); }),
+      "sequence: got 8, expected [1, 1]");
+  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=tuples"); }),
+                  "replayed: got 'tuples', expected one of: sequences, paper_tuple");
 }
 
 TEST(RecurrentDqn, SumsRewardsOverNoMoreStepsThanItLearnsFrom) {

@@ -3,6 +3,7 @@
 // more, and what is saved goes on bit for bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "agents_fixture.h"
@@ -224,6 +225,36 @@ TEST_P(Saved, PoliciesForTwoShipsAreRefusedByAFarmWithFour) {
       MessageOf<InputError>([&] { entry.make_policy(checkpoint, four.spec()); }),
       GetParam() +
           " of scenario two does not fit scenario four: agents: it knows 2, the farm has 4");
+}
+
+// As the node of a ship does, which knows its own share alone.
+TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
+  const Algorithm& entry = FindAlgorithm(GetParam());
+  LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});
+  const EnvironmentSpec& spec = environment.spec();
+  const auto learner = entry.make(spec, 1, "hidden=8");
+  Checkpoint checkpoint;
+  checkpoint.algorithm = GetParam();
+  checkpoint.options = learner->options();
+  checkpoint.spec = spec;
+  learner->SavePolicy(checkpoint);
+  const auto both = entry.make_policy(checkpoint, spec);
+  const auto own = entry.make_policy(checkpoint, spec);
+  both->Begin(1, 1);
+  own->Begin(1, 1);
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint8_t> own_actions;
+  const Results* all = &environment.Reset(1, 0);
+  for (int step = 0; step < 20; ++step) {
+    Results share = *all;
+    share.in_play[0] = 0;
+    std::fill_n(share.features.begin(), spec.feature_count, 0.0F);
+    both->Act(*all, actions);
+    own->Act(share, own_actions);
+    ASSERT_EQ(own_actions[1], actions[1]) << step;
+    actions[0] = static_cast<std::uint8_t>(step % kMoveCount);
+    all = &environment.Step(actions);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Saved,

@@ -39,6 +39,9 @@ def read_run(folder):
     run = {name: evaluation[name] for name in _EVALUATED}
     run.update(seed=int(folder.name.rsplit("_", maxsplit=1)[-1]), folder=folder, curve=curve,
                convergence=None, settled=None, evaluation=evaluation)
+    settings = folder / "run.json"
+    if settings.exists():
+        run["libraries"] = json.loads(settings.read_text()).get("libraries", "")
     if curve is not None:
         run["convergence"] = measures.convergence(curve["return"], curve["success"])
         run["settled"] = measures.convergence(curve["return"], curve["success"], measures.NOISE)

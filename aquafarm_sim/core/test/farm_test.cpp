@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
+#include <utility>
 
 #include "aquafarm/check.h"
 #include "oracle_farm.h"
@@ -291,6 +293,26 @@ TEST(RightOfWay, AChainFollowsWhenTheLowerIdLeads) {
   Both(farm, Action::kSouth, Action::kSouth);
   EXPECT_EQ(farm.ships()[0].outcome, Outcome::kCollision);
   EXPECT_EQ(farm.ships()[1].cell, (Cell{2, 0}));
+}
+
+TEST(RightOfWay, AChainOfThreeGoesAsFarAsItsLowerIdsLead) {
+  Scenario scenario = TinyScenario();
+  scenario.ships.count = 3;
+  const std::uint8_t north[] = {Act(Action::kNorth), Act(Action::kNorth), Act(Action::kNorth)};
+  for (const auto& [order, moved] :
+       {std::pair{std::array{0, 1, 2}, std::array{true, true, true}},
+        std::pair{std::array{2, 1, 0}, std::array{true, false, false}},
+        std::pair{std::array{1, 0, 2}, std::array{true, false, false}},
+        std::pair{std::array{1, 2, 0}, std::array{true, true, false}}}) {
+    Farm farm = MakeFarm(scenario);
+    for (std::size_t i = 0; i < 3; ++i) farm.PlaceShip(order[i], {4, 2 - static_cast<int>(i)});
+    farm.Step(north);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Ship& ship = farm.ships()[static_cast<std::size_t>(order[i])];
+      EXPECT_EQ(ship.cell, (Cell{4, 2 - static_cast<int>(i) + (moved[i] ? 1 : 0)})) << order[i];
+      EXPECT_EQ(ship.outcome, moved[i] ? Outcome::kOk : Outcome::kCollision) << order[i];
+    }
+  }
 }
 
 TEST(RightOfWay, ASwapIsBlockedForBoth) {

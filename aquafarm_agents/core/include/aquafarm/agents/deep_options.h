@@ -54,7 +54,7 @@ struct DeepOptions {
   bool mask_blocked{false};  ///< nor moves onto a charted rock, an island or off the map
 
   // Recurrent alone (R2D2: Kapturowski et al. 2019).
-  std::int32_t sequence{4};  ///< steps learnt from; 1 with burn_in 0: the paper's literal tuples
+  std::int32_t sequence{4};  ///< steps learnt from; replayed=paper_tuple: 1, with burn_in 0
   std::int32_t burn_in{2};   ///< steps before them that only warm up the state
 
   /// Learn the sum of all agents' values instead of each on its own (VDN); set by the algorithm.

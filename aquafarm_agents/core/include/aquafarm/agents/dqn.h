@@ -36,6 +36,10 @@ std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const Enviro
 /// What there is to warn of about the network library, told once, after a learner or a policy was
 /// made; one line for people, empty: nothing.
 std::string TakeTorchWarning();
+/// The libraries that networks count with here, such as "libtorch 1.13.1, OpenBLAS 0.3.21 …
+/// SkylakeX": where they or the kernels differ, the last bits of a training do. Empty: no network
+/// was made.
+std::string NetworkLibraries();
 
 // The same of LSTM-DQN.
 std::uint8_t RecurrentDqnEncodings(const std::string& options);

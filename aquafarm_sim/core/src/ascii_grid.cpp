@@ -7,12 +7,14 @@
 #include <limits>
 #include <map>
 
+#include "field_domain.h"
 #include "hazard_text.h"
 #include "map_image.h"
 
 namespace aquafarm {
 namespace {
 
+using internal::Format;
 using internal::HazardPlace;
 
 float LandAt(float value, float sea_level) {
@@ -30,18 +32,46 @@ std::string KeyOf(std::string_view word) {
   return key == "NODATA" ? "NODATA_VALUE" : key;
 }
 
-struct Header {
-  std::map<std::string, double> values;
+struct Entry {
+  double number{};
+  std::int32_t line{};
+};
 
-  bool Has(const char* key) const { return values.count(key) != 0; }
-  double Get(const char* key, double min, double max, const HazardPlace& place) const {
-    const auto found = values.find(key);
-    if (found != values.end() && found->second >= min && found->second <= max) {
-      return found->second;
+struct Header {
+  std::map<std::string, Entry> entries;
+
+  bool Has(const std::string& key) const { return entries.count(key) != 0; }
+  /// On the key's line.
+  [[noreturn]] void Refuse(const std::string& key, const std::string& what,
+                           HazardPlace place) const {
+    if (Has(key)) place.line = entries.at(key).line;
+    place.Refuse(key + ": got " + (Has(key) ? Format(entries.at(key).number) : "nothing") + what);
+  }
+  double Get(const std::string& key, double min, double max, const HazardPlace& place) const {
+    const auto found = entries.find(key);
+    if (found != entries.end() && found->second.number >= min && found->second.number <= max) {
+      return found->second.number;
     }
-    place.Refuse(std::string(key) + ": got " +
-                 (found == values.end() ? "nothing" : std::to_string(found->second)) +
-                 ", expected a number from " + std::to_string(min) + " to " + std::to_string(max));
+    Refuse(key, ", expected a number in [" + Format(min) + ", " + Format(max) + "]", place);
+  }
+  /// The centre of the first of `count` cells along an axis, by one key or the other. In degrees
+  /// all cells are within `most` of 0.
+  double First(const std::string& center, const std::string& corner, Eigen::Index count,
+               double most, const AsciiGrid& grid, const HazardPlace& place) const {
+    const bool centered = Has(center);
+    const std::string& key = centered ? center : corner;
+    constexpr double kFar = 1.0e9;
+    const double first = Get(key, -kFar, kFar, place);
+    constexpr double kParts = 1.0e6;  // of a degree, for sums that are not exact
+    const double span = static_cast<double>(centered ? count - 1 : count) * grid.cell_size;
+    const double last = std::round((first + span) * kParts) / kParts;
+    if (grid.IsGeographic() && (first < -most || last > most)) {
+      Refuse(key,
+             " and " + Format(last) + " at the other end, expected degrees in [" + Format(-most) +
+                 ", " + Format(most) + "], as CELLSIZE is below 1",
+             place);
+    }
+    return centered ? first : first + grid.cell_size / 2.0;
   }
 };
 
@@ -50,32 +80,42 @@ bool IsWord(std::string_view text) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
+// What others write for a value that there is not; no key.
+bool IsNoNumber(std::string_view word) {
+  const std::string upper = internal::Upper(word);
+  return upper == "NAN" || upper == "NULL" || upper == "NA" || upper == "NONE" || upper == "INF";
+}
+
 // True when a line was one of the header.
 bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
                     const HazardPlace& place) {
   if (words.size() < 2) return false;
   const bool name_first = IsWord(words[0]);
-  if (!name_first && !IsWord(words[1])) return false;
-  const std::string key = KeyOf(words[name_first ? 0 : 1]);
+  const std::string_view name = words[name_first ? 0 : 1];
+  if (!IsWord(name) || IsNoNumber(name)) return false;
+  const std::string key = KeyOf(name);
   constexpr std::array<std::string_view, 8> kKeys{"NCOLS",     "NROWS",       "CELLSIZE",
                                                   "XLLCENTER", "YLLCENTER",   "XLLCORNER",
                                                   "YLLCORNER", "NODATA_VALUE"};
   if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
-    place.Refuse(internal::Quoted(words[name_first ? 0 : 1]) +
+    place.Refuse(internal::Quoted(name) +
                  ": is no key of a grid, expected ncols, nrows, cellsize, xllcenter, yllcenter, "
                  "xllcorner, yllcorner, xlower, ylower or nodata_value");
   }
-  if (header.Has(key.c_str())) place.Refuse(key + ": is there twice");
-  header.values[key] =
-      internal::ReadNumber(words[name_first ? 1 : 0], key.c_str(), -1.0e9, 1.0e9, place);
+  if (header.Has(key)) place.Refuse(key + ": is there twice");
+  const std::string axis = key.substr(0, 4);  // XLLC or YLLC
+  for (const std::string& other : {axis + "ENTER", axis + "ORNER"}) {
+    if (header.Has(other)) place.Refuse(key + ": is there beside " + other + ", expected one");
+  }
+  header.entries[key] = {
+      internal::ReadNumber(words[name_first ? 1 : 0], key.c_str(), -1.0e9, 1.0e9, place),
+      place.line};
   return true;
 }
 
 }  // namespace
 
-bool AsciiGrid::IsGeographic() const {
-  return cell_size < 1.0 && std::abs(west) <= 360.0 && std::abs(south) <= 90.0;
-}
+bool AsciiGrid::IsGeographic() const { return cell_size < 1.0; }
 
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name) {
   std::vector<std::string> unused;
@@ -93,23 +133,17 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
   constexpr double kMost = internal::kMaxMapSide;
   const auto side = [&](const char* key) {
     const double number = header.Get(key, 1.0, kMost, place);
-    if (number != std::floor(number)) {
-      place.Refuse(std::string(key) + ": got " + std::to_string(number) +
-                   ", expected a whole number");
-    }
+    if (number != std::floor(number)) header.Refuse(key, ", expected a whole number", place);
     return static_cast<Eigen::Index>(number);
   };
   const Eigen::Index columns = side("NCOLS");
   const Eigen::Index rows = side("NROWS");
   AsciiGrid grid;
   grid.cell_size = header.Get("CELLSIZE", 1.0e-6, 1.0e6, place);
-  constexpr double kFar = 1.0e9;
-  const double half = grid.cell_size / 2.0;
-  grid.west = header.Has("XLLCENTER") ? header.Get("XLLCENTER", -kFar, kFar, place)
-                                      : header.Get("XLLCORNER", -kFar, kFar, place) + half;
-  grid.south = header.Has("YLLCENTER") ? header.Get("YLLCENTER", -kFar, kFar, place)
-                                       : header.Get("YLLCORNER", -kFar, kFar, place) + half;
-  const double nodata = header.Has("NODATA_VALUE") ? header.values["NODATA_VALUE"] : -9999.0;
+  grid.west = header.First("XLLCENTER", "XLLCORNER", columns, 360.0, grid, place);
+  grid.south = header.First("YLLCENTER", "YLLCORNER", rows, 90.0, grid, place);
+  const double nodata =
+      header.Has("NODATA_VALUE") ? header.entries["NODATA_VALUE"].number : -9999.0;
   const auto wanted = static_cast<std::size_t>(columns * rows);
   if (text.size() / 2 + 1 < wanted) {  // a value has a digit and a blank
     place.Refuse("got " + std::to_string(text.size()) + " bytes, expected " +

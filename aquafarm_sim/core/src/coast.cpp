@@ -41,9 +41,12 @@ bool Doubles(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoP
          std::min(overlap(&GeoPoint::longitude), overlap(&GeoPoint::latitude)) >= 0.0;
 }
 
-// What is wrong with a ring, or nothing. Compares only lines whose spans of longitude meet; stops
-// after a number of comparisons that no sensible coast needs, so that one made to be slow is not.
-std::string FaultOf(const CoastRing& ring) {
+constexpr std::size_t kMostComparisons = 50'000'000;  // of a file made to be slow
+
+// What is wrong with a ring, or nothing. Compares only lines whose spans of longitude meet, and
+// takes each comparison off those `left` for the file: no sensible coast needs them all.
+std::string FaultOf(const CoastRing& ring, std::size_t& left) {
+  if (left == 0) return "";
   const std::size_t lines = ring.size() - 1;
   const auto west = [&ring](std::size_t i) {
     return std::min(ring[i].longitude, ring[i + 1].longitude);
@@ -56,8 +59,6 @@ std::string FaultOf(const CoastRing& ring) {
   std::sort(order.begin(), order.end(),
             [&west](std::size_t a, std::size_t b) { return west(a) < west(b); });
   bool doubles = false;
-  constexpr std::size_t kMostComparisons = 50'000'000;
-  std::size_t left = kMostComparisons;
   for (std::size_t i = 0; i < lines; ++i) {
     const std::size_t a = order[i];
     for (std::size_t k = i + 1; k < lines && west(order[k]) <= east(a); ++k) {
@@ -67,7 +68,7 @@ std::string FaultOf(const CoastRing& ring) {
       if (--left > 0) continue;
       return "of " + std::to_string(lines) + " lines " + (doubles ? "runs along itself and " : "") +
              "was not looked through for crossings after " + std::to_string(kMostComparisons) +
-             " comparisons";
+             " comparisons of the file, nor are those behind it";
     }
   }
   return doubles ? "runs along itself" : "";
@@ -149,7 +150,7 @@ class CoastReader {
         ring.front().longitude != ring.back().longitude) {
       place_.RefuseValue(path, "the ring is open, expected its last point to be its first");
     }
-    const std::string fault = FaultOf(ring);
+    const std::string fault = FaultOf(ring, comparisons_left_);
     if (!fault.empty()) {
       place_.WarnValue(path,
                        "the ring " + fault + "; what it goes round an odd number of times is land");
@@ -160,6 +161,7 @@ class CoastReader {
   Coast& coast_;
   HazardPlace& place_;
   std::size_t points_{};
+  std::size_t comparisons_left_{kMostComparisons};
 };
 
 // A part of the globe; longitudes are relative to `middle`.

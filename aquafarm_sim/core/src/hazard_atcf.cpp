@@ -145,15 +145,17 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
   Fields fields;
   std::string_view line;
   std::string current;
-  // A row that ends before the last radius, in a deck whose others do not, was cut.
+  // A row that ends before the last radius, in a deck whose others do not, was cut; one that ends
+  // before the radius of the greatest wind may have been.
   constexpr std::size_t kThroughRadii = kRadius4 + 2;
+  constexpr std::size_t kThroughMaxWind = kMaxWindRadius + 2;
   std::size_t widest = 0;
-  std::optional<std::pair<std::int32_t, std::size_t>> narrow;
+  std::vector<std::pair<std::int32_t, std::size_t>> narrow;
   while (lines.Next(line)) {
     if (Trim(line).empty()) continue;
     SplitFields(line, fields);
     widest = std::max(widest, fields.size());
-    if (!narrow && fields.size() < kThroughRadii) narrow = {place.line, fields.size()};
+    if (fields.size() < kThroughMaxWind) narrow.emplace_back(place.line, fields.size());
     if (fields.size() <= kType) {
       place.Refuse("got " + std::to_string(fields.size()) + " fields, expected at least " +
                    std::to_string(kType + 1) + " of an ATCF row, from basin to type");
@@ -181,11 +183,16 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
     ReadRing(fields, track.fixes.back(), place);
   }
   if (!tracks.empty()) FinishTrack(tracks.back(), place);
-  if (narrow && widest >= kThroughRadii) {
-    place.line = narrow->first;
-    place.Refuse("got " + std::to_string(narrow->second) + " fields, expected " +
-                 std::to_string(kThroughRadii) + " or more, to a comma after the radii, as other " +
-                 "rows have");
+  for (const auto& [number, size] : narrow) {
+    place.line = number;
+    if (size < kThroughRadii && widest >= kThroughRadii) {
+      place.Refuse("got " + std::to_string(size) + " fields, expected " +
+                   std::to_string(kThroughRadii) + " or more, to a comma after the radii, as " +
+                   "other rows have");
+    }
+    if (widest < kThroughMaxWind) continue;
+    place.Warn("got " + std::to_string(size) + " fields, the file's others have up to " +
+               std::to_string(widest) + ": was it cut off?");
   }
   return tracks;
 }

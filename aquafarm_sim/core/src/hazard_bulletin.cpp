@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "field_domain.h"
 #include "field_error.h"
 #include "hazard_json.h"
 
@@ -16,7 +17,6 @@ using Json = nlohmann::json;
 
 constexpr std::int64_t kBeijing_s = 8 * 3600;  // times have no zone
 constexpr std::int32_t kAveraging_min = 2;
-constexpr double kMostRadius_km = 3000.0;
 
 // "强台风(STY)", "台风", "Super TY" …
 StormGrade GradeOfText(const std::string& text) {
@@ -48,7 +48,8 @@ StormGrade GradeOfText(const std::string& text) {
 std::array<double, kQuadrantCount> ParseRadii(const JsonObject& point, JsonObject::Keys keys,
                                               HazardPlace& place) {
   std::array<double, kQuadrantCount> radius{};
-  const std::string text = point.Text(keys);
+  const Json* value = point.Find(keys);
+  const std::string text = value != nullptr && value->is_string() ? value->get<std::string>() : "";
   if (text.find('|') == std::string::npos) {
     radius.fill(point.Number(keys, 0.0, kMostRadius_km).value_or(0.0));
     return radius;
@@ -74,20 +75,8 @@ void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys wh
               JsonObject::Keys quadrants, HazardFix& fix, HazardPlace& place) {
   std::array<double, kQuadrantCount> radius = ParseRadii(point, whole, place);
   if (const Json* value = point.Find(quadrants)) {
-    const JsonObject quad(*value, Join(point.path(), point.KeyOf(quadrants)), place);
-    constexpr std::array<const char*, kQuadrantCount> kKeys{"ne", "se", "sw", "nw"};
-    std::array<double, kQuadrantCount> each{};
-    std::size_t said = 0;
-    for (std::size_t q = 0; q < each.size(); ++q) {
-      const std::optional<double> one = quad.Number({kKeys[q]}, 0.0, kMostRadius_km);
-      each[q] = one.value_or(radius[q]);
-      said += one ? 1 : 0;
-    }
-    if (said > 0 && said < each.size()) {
-      quad.Here().Warn(std::to_string(wind_kt) +
-                       " kt: not every quadrant is said; the others are " +
-                       "given the radius that is said of all");
-    }
+    const auto each = ReadQuadrants(*value, Join(point.path(), point.KeyOf(quadrants)),
+                                    {"ne", "se", "sw", "nw"}, wind_kt, radius, place);
     if (*std::max_element(each.begin(), each.end()) > 0.0) radius = each;
   }
   AddSaidRing(wind_kt, radius, fix);
@@ -124,6 +113,16 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
   return fix;
 }
 
+// The first point of a forecast may be where the storm is at its issue.
+void CheckLead(std::int64_t time, std::int64_t issued, const std::string& path,
+               HazardPlace& place) {
+  constexpr std::int64_t kMostDays = 15;
+  if (time >= issued && time - issued <= kMostDays * 86400) return;
+  place.RefuseValue(path, "got " + FormatTime(time) + ", expected a forecast's within " +
+                              std::to_string(kMostDays) + " days after its issue at " +
+                              FormatTime(issued));
+}
+
 void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& track,
                    HazardPlace& place) {
   const Json* forecasts = point.List({"forecast"});
@@ -137,9 +136,14 @@ void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& tr
     for (std::size_t k = 0; points != nullptr && k < points->size(); ++k) {
       const JsonObject entry((*points)[k], At(Join(one.path(), one.KeyOf(keys)), k), place);
       HazardFix fix = ReadPoint(entry, place);
+      CheckLead(fix.time, issued, Join(entry.path(), "time"), place);
       AppendFix(std::move(fix), forecast.fixes, entry.Here());
     }
-    if (!forecast.fixes.empty()) track.forecasts.push_back(std::move(forecast));
+    if (!forecast.fixes.empty() && forecast.fixes.back().time > issued) {
+      track.forecasts.push_back(std::move(forecast));
+    } else {
+      place.WarnValue(one.path(), "got no points after its issue, the forecast is left out");
+    }
   }
 }
 

@@ -16,7 +16,7 @@ constexpr std::int32_t kAveraging_min = 2;
 BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   constexpr std::size_t kBeforeName = 7;
-  if (words.size() < kBeforeName + 1) {
+  if (words.size() < kBeforeName + 2) {
     place.Refuse("got " + std::to_string(words.size()) +
                  " words, expected a header: 66666, numbers, points, serial, number, end, hours, "
                  "name, date");
@@ -27,10 +27,11 @@ BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
   const std::int32_t serial = ReadWhole(words[3], "serial number", 0, 9999, place);
   header.track.id = number == "0000" ? "CMA" + std::to_string(serial) : std::string(number);
   header.track.agency = "CMA";
-  const bool has_date = words.back().size() == 8 &&
-                        words.back().find_first_not_of("0123456789") == std::string_view::npos;
-  const std::size_t name_end = words.size() - (has_date ? 1 : 0);
-  for (std::size_t i = kBeforeName; i < name_end; ++i) {
+  const std::string_view date = words.back();
+  if (date.size() != 8 || date.find_first_not_of("0123456789") != std::string_view::npos) {
+    place.Refuse("date: got " + Quoted(date) + " at the end, expected YYYYMMDD: was it cut off?");
+  }
+  for (std::size_t i = kBeforeName; i + 1 < words.size(); ++i) {
     header.track.name += (i > kBeforeName ? " " : "") + std::string(words[i]);
   }
   if (header.track.name == "(nameless)") header.track.name.clear();

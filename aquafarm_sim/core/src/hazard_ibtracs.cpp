@@ -82,9 +82,10 @@ void ReadStrength(const Columns& columns, const Fields& fields, HazardFix& fix,
     fix.wind_mps = *wind_kt * kMpsPerKnot;
     fix.grade = GradeOfWind(*fix.wind_mps);
   }
-  fix.pressure_hpa = Number(columns.Get(fields, "WMO_PRES"), "WMO_PRES", 1100.0, place);
-  if (!fix.pressure_hpa) {
-    fix.pressure_hpa = Number(columns.Get(fields, "USA_PRES"), "USA_PRES", 1100.0, place);
+  for (const char* key : {"WMO_PRES", "USA_PRES"}) {
+    const std::string_view pressure = columns.Get(fields, key);
+    if (fix.pressure_hpa || pressure.empty()) continue;
+    fix.pressure_hpa = ReadNumber(pressure, key, kLeastPressure_hpa, 1100.0, place);
   }
   const auto radius = Number(columns.Get(fields, "USA_RMW"), "USA_RMW", 999.0, place);
   if (radius) fix.max_wind_radius_km = *radius * kKmPerNauticalMile;

@@ -8,6 +8,11 @@ namespace aquafarm::internal {
 namespace {
 
 constexpr std::int32_t kAveraging_min = 10;
+// Lines end here or are filled up to 80 columns.
+constexpr std::size_t kThroughHeader = 72;
+constexpr std::size_t kThroughWind = 36;
+constexpr std::size_t kThroughRadii = 62;
+constexpr std::size_t kThroughMark = 72;
 
 std::string_view Columns(std::string_view line, std::size_t first, std::size_t end) {
   if (first >= line.size()) return {};
@@ -60,6 +65,10 @@ void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, Hazar
 }
 
 BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
+  if (line.size() < kThroughHeader) {
+    place.Refuse("got a header of " + std::to_string(line.size()) + " columns, expected " +
+                 std::to_string(kThroughHeader) + " or more, to its date");
+  }
   BestTrackHeader header;
   header.points = ReadWhole(Columns(line, 12, 15), "number of points", 1, 999, place);
   const std::string_view number = Trim(Columns(line, 6, 10));
@@ -93,7 +102,6 @@ HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
   if (Columns(line, 9, 12) != "002") {
     place.Refuse("got " + Quoted(line) + ", expected a point: yymmddhh 002 …");
   }
-  constexpr std::size_t kThroughWind = 36;
   if (line.size() < kThroughWind) {
     place.Refuse("got a line of " + std::to_string(line.size()) + " columns, expected " +
                  std::to_string(kThroughWind) + " or more of a point, to its wind");
@@ -122,7 +130,6 @@ HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
   ReadRing(line, kWeaker, 30, fix, place);
   // Since 1977 storms have radii; where there are none the columns are blank, not missing.
   constexpr std::int64_t k1977 = 220924800;
-  constexpr std::size_t kThroughRadii = 62;
   const bool is_storm = code >= 3 && code <= 5;
   if (is_storm && fix.time >= k1977 && line.size() < kThroughRadii) {
     place.Refuse("got a line of " + std::to_string(line.size()) + " columns, expected " +
@@ -132,10 +139,28 @@ HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
   return fix;
 }
 
+// Below a header that is filled up with blanks a point is, too; below one that ends with its date a
+// point ends with its wind, its radii or its mark.
+void WarnOfShortPoints(std::string_view text, HazardPlace& place) {
+  LineReader lines(text, place);
+  std::string_view line;
+  std::size_t header = 0;
+  while (lines.Next(line)) {
+    if (line.substr(0, 5) == "66666") header = line.size();
+    const bool filled = header > kThroughHeader;
+    const bool ends = line.size() == kThroughWind || line.size() == kThroughRadii;
+    if (Trim(line).empty() || line.size() >= kThroughMark || (ends && !filled)) continue;
+    place.Warn("got a point of " + std::to_string(line.size()) + " columns, its header has " +
+               std::to_string(header) + ": was it cut off?");
+  }
+}
+
 }  // namespace
 
 std::vector<HazardTrack> ReadJma(std::string_view text, HazardPlace& place) {
-  return ReadBestTracks(text, place, ReadHeader, ReadPoint);
+  std::vector<HazardTrack> tracks = ReadBestTracks(text, place, ReadHeader, ReadPoint);
+  WarnOfShortPoints(text, place);
+  return tracks;
 }
 
 }  // namespace aquafarm::internal

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 
 #include "field_domain.h"
 
@@ -52,10 +53,12 @@ class ReadingIterator {
   const char** read_;
 };
 
-// Walks to a path and stops there.
+// Walks to a path and stops there; remembers where the last of its parents began.
 class PathFinder : public nlohmann::json_sax<Json> {
  public:
-  explicit PathFinder(const std::string& wanted) : wanted_(wanted) {}
+  PathFinder(const std::string& wanted, const char* const& read) : wanted_(wanted), read_(read) {}
+  /// Behind the path's value, or behind the beginning of its nearest parent where it has none.
+  const char* found() const { return found_; }
   bool null() override { return Value(); }
   bool boolean(bool) override { return Value(); }
   bool number_integer(number_integer_t) override { return Value(); }
@@ -87,14 +90,22 @@ class PathFinder : public nlohmann::json_sax<Json> {
     const Level& level = levels_.back();
     return level.array ? internal::At(level.path, level.index) : Join(level.path, level.key);
   }
+  // Whether it is the path's. A parent's is noted on the way; a later one lies deeper.
+  bool IsWanted(const std::string& path) {
+    const bool holds = wanted_.compare(0, path.size(), path) == 0;
+    const bool ends = path.empty() || path.size() == wanted_.size() ||
+                      (holds && (wanted_[path.size()] == '.' || wanted_[path.size()] == '['));
+    if (holds && ends) found_ = read_;
+    return path == wanted_;
+  }
   bool Value() {
-    if (Path() == wanted_) return false;
+    if (IsWanted(Path())) return false;
     if (!levels_.empty()) ++levels_.back().index;
     return true;
   }
   bool Open(bool array) {
     const std::string path = Path();
-    if (path == wanted_) return false;
+    if (IsWanted(path)) return false;
     levels_.push_back({array, 0, "", path});
     return true;
   }
@@ -104,6 +115,8 @@ class PathFinder : public nlohmann::json_sax<Json> {
     return true;
   }
   const std::string& wanted_;
+  const char* const& read_;
+  const char* found_{};
   std::vector<Level> levels_;
 };
 
@@ -189,8 +202,21 @@ std::string CleanJson(const std::string& text) {
 
 Json ParseJson(const std::string& text, HazardPlace& place) {
   CheckDepth(text, place);
+  const char* read = text.data();
+  const char* const end = text.data() + text.size();
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  const auto check = [&](int, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event != Json::parse_event_t::key) return true;
+    const std::string& key = parsed.get_ref<const std::string&>();
+    if (keys.back().insert(key).second) return true;
+    place.path.clear();
+    place.line = LineAt(text, static_cast<std::size_t>(read - text.data()));
+    place.Refuse("got the key " + Quoted(key) + " twice in an object, expected it once");
+  };
   try {
-    return Json::parse(text);
+    return Json::parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), check);
   } catch (const Json::parse_error& error) {
     place.path.clear();
     place.line = LineAt(text, error.byte == 0 ? 0 : error.byte - 1);
@@ -215,14 +241,14 @@ bool IsBlank(const Json& value) {
 
 std::int32_t LineOfJson(const std::string& text, const std::string& path) {
   const char* read = text.data();
-  PathFinder finder(path);
+  PathFinder finder(path, read);
   // A number is known to end only with the character behind it.
   const char* end = text.data() + text.size();
-  if (Json::sax_parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), &finder)) {
-    return 1;
-  }
-  const auto offset = static_cast<std::size_t>(read - text.data());
-  return LineAt(text, offset == 0 ? 0 : offset - 1);
+  Json::sax_parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), &finder);
+  const char* found = finder.found();
+  return found == nullptr || found == text.data()
+             ? 1
+             : LineAt(text, static_cast<std::size_t>(found - text.data() - 1));
 }
 
 JsonObject::JsonObject(const Json& value, std::string path, HazardPlace& place)
@@ -272,7 +298,8 @@ double JsonObject::NeedNumber(Keys keys, double min, double max) const {
 std::string JsonObject::Text(Keys keys) const {
   const Json* value = Find(keys);
   if (value == nullptr) return "";
-  if (!value->is_string()) return value->is_number() ? value->dump() : "";
+  if (value->is_number()) return value->dump();
+  if (!value->is_string()) Refuse(keys, value, "a text");
   return value->get<std::string>();
 }
 
@@ -296,6 +323,30 @@ HazardPlace& JsonObject::Here() const {
   place_.line = 0;
   place_.path = path_;
   return place_;
+}
+
+std::array<double, kQuadrantCount> ReadQuadrants(
+    const Json& value, const std::string& path, const std::array<const char*, kQuadrantCount>& keys,
+    std::int32_t wind_kt, const std::array<double, kQuadrantCount>& otherwise, HazardPlace& place) {
+  const JsonObject object(value, path, place);
+  std::array<double, kQuadrantCount> radius_km = otherwise;
+  std::size_t said = 0;
+  for (std::size_t q = 0; q < keys.size(); ++q) {
+    const std::string upper = Upper(keys[q]);
+    const auto one = object.Number({keys[q], upper.c_str()}, 0.0, kMostRadius_km);
+    radius_km[q] = one.value_or(otherwise[q]);
+    said += one ? 1 : 0;
+  }
+  const bool all = *std::max_element(otherwise.begin(), otherwise.end()) > 0.0;
+  const std::string wind = std::to_string(wind_kt) + " kt: ";
+  if (said == 0 && !IsBlank(value)) {
+    place.WarnValue(path, wind + "has none of the quadrants " + keys[0] + ", " + keys[1] + ", " +
+                              keys[2] + " and " + keys[3]);
+  } else if (said > 0 && said < keys.size()) {
+    place.WarnValue(path, wind + "not every quadrant is said; the others are given " +
+                              (all ? "the radius that is said of all" : "0"));
+  }
+  return radius_km;
 }
 
 void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,

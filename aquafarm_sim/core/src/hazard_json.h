@@ -18,13 +18,14 @@ bool IsAssignment(std::string_view text);
 /// A JSON text without byte-order mark, Markdown fence and JavaScript; lines stay where they are.
 std::string CleanJson(const std::string& text);
 
-/// @throws InputError "file:line: got no valid JSON: …"
+/// @throws InputError "file:line: got no valid JSON: …", also for a key that an object has twice
 nlohmann::json ParseJson(const std::string& text, HazardPlace& place);
 
 /// Whether JSON says nothing: null, blank or "null" as text, or an object of nothing else.
 bool IsBlank(const nlohmann::json& value);
 
-/// The line on which the value of a path such as "[0].points[3].lat" ends; 1 when there is none.
+/// The line on which the value of a path such as "[0].points[3].lat" ends, or a list or an object
+/// begins; where there is no such value, that of the nearest parent there is.
 std::int32_t LineOfJson(const std::string& text, const std::string& path);
 
 /// A JSON object with its path, and the first of several spellings of a key.
@@ -41,7 +42,7 @@ class JsonObject {
   /// @throws InputError when it is no number in [min, max]
   std::optional<double> Number(Keys keys, double min, double max) const;
   double NeedNumber(Keys keys, double min, double max) const;
-  /// Text, or "" when nothing is said.
+  /// Text, or a number as such, or "" when nothing is said. @throws InputError
   std::string Text(Keys keys) const;
   /// UTC; `zone_s` where the text has no zone. @throws InputError
   std::int64_t NeedTime(Keys keys, std::int64_t zone_s) const;
@@ -58,6 +59,15 @@ class JsonObject {
   std::string path_;
   HazardPlace& place_;
 };
+
+inline constexpr double kMostRadius_km = 3000.0;
+
+/// The radii of an object by the keys of its quadrants, north-east first and in either case. Those
+/// that it leaves out beside others are as `otherwise`, with a warning.
+std::array<double, kQuadrantCount> ReadQuadrants(
+    const nlohmann::json& value, const std::string& path,
+    const std::array<const char*, kQuadrantCount>& keys, std::int32_t wind_kt,
+    const std::array<double, kQuadrantCount>& otherwise, HazardPlace& place);
 
 /// The ring of a wind from what a bulletin says of its quadrants. Bulletins write 0 and nothing
 /// alike: where the storm itself blows that hard, no radius means that it was not said; where it

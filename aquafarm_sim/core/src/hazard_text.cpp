@@ -35,15 +35,15 @@ bool ParseAll(std::string_view text, T& value) {
   return result.ec == std::errc() && result.ptr == end;
 }
 
-// Takes up to `most` digits off a text; none when there is none.
-std::optional<int> TakeDigits(std::string_view& text, std::size_t most) {
+// Takes up to `most` digits off a text; none when there are less than `least`.
+std::optional<int> TakeDigits(std::string_view& text, std::size_t most, std::size_t least = 1) {
   std::size_t count = 0;
   int value = 0;
   while (count < most && count < text.size() && text[count] >= '0' && text[count] <= '9') {
     value = value * 10 + (text[count++] - '0');
   }
   text.remove_prefix(count);
-  if (count == 0) return std::nullopt;
+  if (count < least) return std::nullopt;
   return value;
 }
 
@@ -61,7 +61,7 @@ std::optional<std::int64_t> TakeZone(std::string_view text, std::int64_t otherwi
   if (!Take(text, "+-")) return std::nullopt;
   const std::optional<int> hours = TakeDigits(text, 2);
   Take(text, ":");
-  const std::optional<int> minutes = TakeDigits(text, 2);
+  const std::optional<int> minutes = TakeDigits(text, 2, 2);
   if (!hours || !minutes || *hours > 14 || *minutes > 59 || !text.empty()) return std::nullopt;
   const std::int64_t zone_s = *hours * 3600 + *minutes * 60;
   return west ? -zone_s : zone_s;
@@ -119,22 +119,27 @@ bool LineReader::Next(std::string_view& line) {
   return true;
 }
 
+void NeedRegularFile(const std::string& path) {
+  std::error_code error;  // that it is not there is said by who reads it
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (error || std::filesystem::is_regular_file(status)) return;
+  throw InputError(path + ": cannot read: is no regular file");
+}
+
 std::string ReadTextFile(const std::string& path) {
   constexpr std::streamoff kMostBytes = std::streamoff{512} << 20U;
+  NeedRegularFile(path);
   errno = 0;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
-  if (size > kMostBytes && !std::filesystem::is_directory(path)) {
+  if (size > kMostBytes) {
     throw InputError(path + ": got " + std::to_string(size) + " bytes, expected at most " +
                      std::to_string(kMostBytes));
   }
-  std::string text(
-      size > kMostBytes ? 0 : static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
+  std::string text(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
   file.seekg(0);
-  if (size < 0 || size > kMostBytes ||
-      !file.read(text.data(), static_cast<std::streamsize>(text.size()))) {
-    throw InputError(path +
-                     ": cannot read: " + (errno != 0 ? std::strerror(errno) : "not a plain file"));
+  if (size < 0 || !file.read(text.data(), static_cast<std::streamsize>(text.size()))) {
+    throw InputError(path + ": cannot read: " + std::strerror(errno));
   }
   return text;
 }
@@ -232,7 +237,7 @@ std::optional<std::int64_t> ParseDateTime(std::string_view text, std::int64_t zo
   std::array<int, 6> part{};
   constexpr std::array<std::string_view, 5> kAfter{"-/", "-/", "T ", ":", ":"};
   for (std::size_t i = 0; i < part.size(); ++i) {
-    const std::optional<int> digits = TakeDigits(text, i == 0 ? 4 : 2);
+    const std::optional<int> digits = TakeDigits(text, i == 0 ? 4 : 2, i < 4 ? 1 : 2);
     if (!digits) return std::nullopt;
     part[i] = *digits;
     if (i < kAfter.size() && !Take(text, kAfter[i])) {
@@ -266,7 +271,6 @@ void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place)
   if (fixes.size() >= kMaxFixes) {
     place.Refuse("got more than " + std::to_string(kMaxFixes) + " points of one storm");
   }
-  constexpr double kLeastPressure_hpa = 800.0;  // no storm's was ever below 870
   if (fix.pressure_hpa && *fix.pressure_hpa < kLeastPressure_hpa) {
     place.Refuse("pressure: got " + Format(*fix.pressure_hpa) +
                  " hPa, expected [800, 1100], or 0 where it is not known");

@@ -16,6 +16,8 @@ namespace aquafarm::internal {
 
 /// Most fixes of one storm: a year of hourly ones.
 inline constexpr std::size_t kMaxFixes = 10000;
+/// No storm's was ever below 870.
+inline constexpr double kLeastPressure_hpa = 800.0;
 
 /// Where a reader stands: it refuses and warns in the name of a file and a line.
 class HazardPlace {
@@ -55,8 +57,12 @@ class LineReader {
   HazardPlace& place_;
 };
 
-/// A whole file. @throws InputError when it cannot be read, or is larger than 512 MiB: all of
-/// IBTrACS is some 300.
+/// Refuses what is there and no regular file: a pipe would be waited for, a device never ends.
+/// @throws InputError "path: cannot read: is no regular file"
+void NeedRegularFile(const std::string& path);
+
+/// A whole regular file. @throws InputError when it cannot be read, or is larger than 512 MiB: all
+/// of IBTrACS is some 300.
 std::string ReadTextFile(const std::string& path);
 
 /// A file's text without the byte order mark that may stand before it.
@@ -84,8 +90,9 @@ std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* 
 
 /// UTC seconds of YYYYMMDDHH. @throws InputError for a date that is not
 std::int64_t ReadHour(std::string_view text, const HazardPlace& place);
-/// UTC seconds of "YYYY-MM-DD HH:MM[:SS]" with T or a blank, '-' or '/', one or two digits a
-/// part, and Z or ±HH:MM or, without a zone, `zone_s` east of Greenwich; none: it is no such time.
+/// UTC seconds of "YYYY-MM-DD HH:MM[:SS]" with T or a blank, '-' or '/', one or two digits of
+/// month, day and hour, and Z or ±HH:MM or, without a zone, `zone_s` east of Greenwich; none: it is
+/// no such time.
 std::optional<std::int64_t> ParseDateTime(std::string_view text, std::int64_t zone_s);
 
 /// Tenths of a degree, at most 90 either way. @throws InputError

@@ -42,12 +42,9 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
   for (const auto& [key, wind_kt] : kRings) {
     std::array<double, kQuadrantCount> radius{};
     if (const Json* value = point.Find({key})) {
-      const JsonObject ring(*value, Join(point.path(), key), place);
-      constexpr std::array<const char*, kQuadrantCount> kKeys{"neRadius", "seRadius", "swRadius",
-                                                              "nwRadius"};
-      for (std::size_t q = 0; q < radius.size(); ++q) {
-        radius[q] = ring.Number({kKeys[q]}, 0.0, 3000.0).value_or(0.0);
-      }
+      radius =
+          ReadQuadrants(*value, Join(point.path(), key),
+                        {"neRadius", "seRadius", "swRadius", "nwRadius"}, wind_kt, radius, place);
     }
     AddSaidRing(wind_kt, radius, fix);
   }

@@ -25,19 +25,10 @@ class PgmHeader {
   }
 
   std::int32_t Next(const char* name, std::int32_t max) {
-    SkipBlanks();
-    const std::size_t from = at_;
-    while (at_ < bytes_.size() && bytes_[at_] >= '0' && bytes_[at_] <= '9') ++at_;
-    return ReadWhole(std::string_view(bytes_).substr(from, std::max<std::size_t>(at_ - from, 1)),
-                     name, 1, max, place_);
+    return ReadWhole(Word(), name, 1, max, place_);
   }
   /// A pixel written as text.
-  std::int32_t Pixel(std::int32_t max) {
-    SkipBlanks();
-    const std::size_t from = at_;
-    while (at_ < bytes_.size() && bytes_[at_] >= '0' && bytes_[at_] <= '9') ++at_;
-    return ReadWhole(std::string_view(bytes_).substr(from, at_ - from), "pixel", 0, max, place_);
-  }
+  std::int32_t Pixel(std::int32_t max) { return ReadWhole(Word(), "pixel", 0, max, place_); }
   /// Goes to the pixels: one blank ends the header, or a line's end of two bytes. A line's end may
   /// stand behind them too.
   void SkipEnd(std::size_t pixels) {
@@ -57,6 +48,12 @@ class PgmHeader {
   std::size_t at_{2};
 
  private:
+  std::string_view Word() {
+    SkipBlanks();
+    const std::size_t from = std::min(at_, bytes_.size());
+    at_ = std::min(bytes_.find_first_of(" \t\r\n#", from), bytes_.size());
+    return std::string_view(bytes_).substr(from, at_ - from);
+  }
   void SkipBlanks() {
     bool comment = false;
     for (; at_ < bytes_.size(); ++at_) {

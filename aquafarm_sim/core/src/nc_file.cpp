@@ -3,12 +3,14 @@
 
 #include <netcdf.h>
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
 #include "aquafarm/check.h"
+#include "field_domain.h"
 #include "file_look.h"
+#include "hazard_text.h"
+#include "nc_classic.h"
 
 namespace aquafarm::internal {
 namespace {
@@ -25,12 +27,8 @@ FileLook LookAtBeginning(const std::string& path) {
 }  // namespace
 
 NcFile::NcFile(const std::string& path) : path_(path) {
-  std::error_code ignored;
-  const auto kind = std::filesystem::status(path, ignored).type();
-  if (kind != std::filesystem::file_type::not_found &&
-      kind != std::filesystem::file_type::regular) {  // a pipe would be waited for
-    throw InputError(path + ": cannot read as netCDF: is no regular file");
-  }
+  NeedRegularFile(path);
+  CheckLength();
   const int status = nc_open(path.c_str(), NC_NOWRITE, &id_);
   if (status == NC_ENOTNC) {
     const FileLook look = LookAtBeginning(path);
@@ -40,12 +38,6 @@ NcFile::NcFile(const std::string& path) : path_(path) {
   }
   if (status != NC_NOERR) {
     throw InputError(path + ": cannot read as netCDF: " + nc_strerror(status));
-  }
-  try {
-    CheckLength();
-  } catch (...) {
-    nc_close(id_);
-    throw;
   }
 }
 
@@ -57,37 +49,21 @@ void NcFile::Need(int status, const std::string& name) const {
   if (status != NC_NOERR) Refuse(name + ": " + nc_strerror(status));
 }
 
-// Beyond the end of a file of the classic kinds libnetcdf reads zeros without a word.
+// Beyond the end of a file of the classic kinds libnetcdf reads zeros without a word, and of one
+// cut within its header it says "invalid argument". Those of HDF5 see to it themselves.
 void NcFile::CheckLength() const {
-  int format = 0;
-  int variables = 0;
-  Need(nc_inq_format(id_, &format), "format");
-  if (format == NC_FORMAT_NETCDF4 || format == NC_FORMAT_NETCDF4_CLASSIC) return;
-  Need(nc_inq_nvars(id_, &variables), "variables");
-  double bytes = 0.0;
-  for (int variable = 0; variable < variables; ++variable) {
-    nc_type type = NC_NAT;
-    int count = 0;
-    std::array<int, NC_MAX_VAR_DIMS> dimensions{};
-    Need(nc_inq_var(id_, variable, nullptr, &type, &count, dimensions.data(), nullptr), "variable");
-    std::size_t of_type = 0;
-    Need(nc_inq_type(id_, type, nullptr, &of_type), "type");
-    auto of_variable = static_cast<double>(of_type);
-    for (int i = 0; i < count; ++i) {
-      std::size_t length = 0;
-      Need(nc_inq_dimlen(id_, dimensions[static_cast<std::size_t>(i)], &length), "dimension");
-      of_variable *= static_cast<double>(length);
-    }
-    bytes += of_variable;
-  }
+  std::ifstream file(path_, std::ios::binary);
+  std::array<char, 4> magic{};
+  file.read(magic.data(), magic.size());
+  const bool kind = magic[3] == 1 || magic[3] == 2 || magic[3] == 5;
+  if (!file || std::string_view(magic.data(), 3) != "CDF" || !kind) return;
+  file.seekg(0);
+  const std::optional<double> end = EndOfClassicValues(file);
   std::error_code error;
   const auto size = static_cast<double>(std::filesystem::file_size(path_, error));
-  if (!error && size < bytes) {
-    std::array<char, 120> words{};
-    std::snprintf(words.data(), words.size(),
-                  "is cut off: got %.0f bytes, expected %.0f of values alone", size, bytes);
-    Refuse(words.data());
-  }
+  if (error || (end && size >= *end)) return;
+  Refuse("is cut off: got " + Format(size) + " bytes, " +
+         (end ? "expected " + Format(*end) : "which end within its header"));
 }
 
 std::string NcFile::Name(int variable) const {
@@ -116,10 +92,12 @@ std::string NcFile::Text(int variable, const char* key) const {
 std::optional<double> NcFile::Number(int variable, const char* key) const {
   nc_type type = NC_NAT;
   std::size_t length = 0;
-  if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR || type == NC_CHAR ||
-      type == NC_STRING || length != 1) {
-    return std::nullopt;
+  if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR) return std::nullopt;
+  if (type == NC_CHAR || type == NC_STRING) {
+    Refuse(Name(variable) + ": " + key + ": got the text " + Quoted(Text(variable, key)) +
+           ", expected a number");
   }
+  if (length != 1) return std::nullopt;
   double value = 0.0;
   const int status = nc_get_att_double(id_, variable, key, &value);
   return status == NC_NOERR ? std::optional<double>(value) : std::nullopt;

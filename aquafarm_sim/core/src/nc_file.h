@@ -27,7 +27,7 @@ class NcFile {
   std::string Name(int variable) const;
   /// An attribute of text, or "".
   std::string Text(int variable, const char* key) const;
-  /// An attribute of one number.
+  /// An attribute of one number. @throws InputError for text
   std::optional<double> Number(int variable, const char* key) const;
   /// An attribute of two numbers.
   std::optional<std::array<double, 2>> Pair(int variable, const char* key) const;

@@ -157,10 +157,14 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, HazardPlace& place)
   std::vector<Notice> notices;
   const Json* anchors = answer.Find({"anchors"});
   const JsonObject named(*anchors, "anchors", place);
+  if (anchors->empty()) place.WarnValue("anchors", "got none, expected anchorages by name");
   for (const auto& [name, value] : anchors->items()) {
     const std::string path = internal::Join("anchors", name);
     const JsonObject anchor(value, path, place);
     const Json* periods = anchor.List({"PreciseForecast"});
+    if (periods == nullptr || periods->empty()) {
+      place.WarnValue(path, "got no PreciseForecast, the anchorage is left out");
+    }
     for (std::size_t i = 0; periods != nullptr && i < periods->size(); ++i) {
       const JsonObject period((*periods)[i],
                               internal::At(internal::Join(path, "PreciseForecast"), i), place);

@@ -155,6 +155,17 @@ std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const st
         !std::is_sorted(d.at.rbegin(), d.at.rend())) {
       file.Refuse(d.name + ": got coordinates up and down, expected them in order");
     }
+    const auto again = std::adjacent_find(d.at.begin(), d.at.end());
+    if (along && again != d.at.end()) {
+      file.Refuse(d.name + ": got " + internal::Format(*again) + " twice, expected it once");
+    }
+    if (d.axis != Axis::kLatitude) continue;
+    constexpr double kPole = 90.0 + 1.0e-3;  // packed numbers are rounded
+    for (const double latitude : d.at) {
+      if (std::abs(latitude) <= kPole) continue;
+      file.Refuse(d.name + ": got a latitude of " + internal::Format(latitude) +
+                  ", expected [-90, 90]");
+    }
   }
   return dimensions;
 }
@@ -166,7 +177,8 @@ std::size_t Nearest(const std::vector<double>& at, double wanted) {
   return static_cast<std::size_t>(nearest - at.begin());
 }
 
-// Forms that UDUNITS takes and ISO 8601 does not: "00:00:00.0", "00:00:00 UTC", "00:00:00 +00:00".
+// Forms that UDUNITS takes and ISO 8601 does not: "0:0:0", "00:00:00.0", "00:00:00 UTC",
+// "00:00:00 +00:00".
 std::string PlainTime(std::string time) {
   for (const char* utc : {"UTC", "utc", "Z", "+00:00", "+0:00"}) {
     const std::string_view ending(utc);
@@ -179,6 +191,11 @@ std::string PlainTime(std::string time) {
   const std::size_t point = time.find('.');
   if (point != std::string::npos && time.find_first_not_of('0', point + 1) == std::string::npos) {
     time.resize(point);
+  }
+  for (std::size_t at = time.find(':'); at != time.npos; at = time.find(':', at + 1)) {
+    if (at + 2 == time.size() || (at + 2 < time.size() && time[at + 2] == ':')) {
+      time.insert(at + 1, "0");
+    }
   }
   if (time.size() <= 10) return time + " 00:00";
   return time.find(':') == std::string::npos ? time + ":00" : time;

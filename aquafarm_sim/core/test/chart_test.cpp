@@ -168,6 +168,24 @@ TEST(Coast, SaysWhenARingHasTooManyLinesToLookThrough) {
       << "out and back before there were too many";
 }
 
+TEST(Coast, SpendsItsComparisonsOnTheWholeFile) {
+  std::string ring;  // 18.7 million comparisons
+  for (int i = 0; i < 6'114; ++i) {
+    ring += "[" + std::to_string(i % 2) + "," + std::to_string(i / 6'114.0) + "],";
+  }
+  ring = "[[" + ring + "[-1,1],[-1,0],[0,0.0]]]";
+  std::string rings = ring;
+  for (int i = 1; i < 12; ++i) rings += ",\n" + ring;
+  const Coast coast =
+      ParseCoast("{\"type\": \"MultiPolygon\", \"coordinates\": [\n" + rings + "]}", "x");
+  EXPECT_EQ(coast.polygons.size(), 12U);
+  ASSERT_EQ(coast.warnings.size(), 1U);
+  EXPECT_EQ(coast.warnings[0],
+            "x:4: coordinates[2][0]: the ring of 6116 lines was not looked through for crossings "
+            "after 50000000 comparisons of the file, nor are those behind it; what it goes round "
+            "an odd number of times is land");
+}
+
 TEST(Coast, RefusesWhatIsNoCoast) {
   const auto refused = [](const std::string& text) {
     try {
@@ -189,6 +207,11 @@ TEST(Coast, RefusesWhatIsNoCoast) {
             "x:3: coordinates[0][1]: got '[1,95]', expected [longitude, latitude] in degrees");
   EXPECT_EQ(refused(polygon("[[0,0],[1,\"a\"],[1,1],[0,0]]")),
             "x:2: coordinates[0][1]: got '[1,\"a\"]', expected [longitude, latitude] in degrees");
+  EXPECT_EQ(refused("{\"type\": \"FeatureCollection\",\n\"features\": [\n{\"type\": \"Feature\",\n"
+                    "\"geometry\": {\"type\":\n\"Polygon\"\n}}]}"),
+            "x:4: features[0].geometry.coordinates: got nothing, expected a list");
+  EXPECT_EQ(refused("{\"type\": \"Polygon\",\n\"type\": \"Point\"}"),
+            "x:2: got the key 'type' twice in an object, expected it once");
   EXPECT_EQ(refused("{\"type\": \"Polygon\"}"), "x:1: coordinates: got nothing, expected a list");
   EXPECT_EQ(refused("{\"type\": \"Ocean\"}"), "x:1: type: got 'Ocean', expected a type of GeoJSON");
   EXPECT_EQ(refused("{\"type\": \"FeatureCollection\", \"features\": []}"),

@@ -39,6 +39,42 @@ TEST(Jma, ALineThatEndsWithinAPointIsRefused) {
             "x:3: got a line of 36 columns, expected 62 or more of a storm, to its radii");
 }
 
+// A header that is filled up with blanks has points that are, one that ends with its date has not.
+TEST(Jma, APointThatIsShorterThanItsHeaderIsSaid) {
+  const std::string head =
+      "66666 2106  002 0011 2106 0 6                IN-FA              20220101";
+  const std::string rest(8, ' ');
+  const std::string storm = "21072500 002 5 300 1225  970     065     90080 0080 20325 0240";
+  const auto said = [&](const std::string& header, const std::string& point) {
+    return Warnings(header + "\n" + storm + "         #" + rest + "\n" + point + "\n");
+  };
+  const std::string grade_7 = "21072506 002 7 300 1225  970     065     90080 0080 20325 0240";
+  struct Case {
+    bool filled;
+    std::size_t columns;
+    bool said;
+  };
+  for (const Case& one : {Case{true, 80, false},
+                          {true, 72, false},
+                          {true, 71, true},
+                          {true, 62, true},
+                          {true, 41, true},
+                          {true, 36, true},
+                          {false, 72, false},
+                          {false, 71, true},
+                          {false, 62, false},
+                          {false, 41, true},
+                          {false, 36, false}}) {
+    const std::string point = (grade_7 + "         #" + rest).substr(0, one.columns);
+    const std::string size = std::to_string(one.columns);
+    EXPECT_EQ(said(head + (one.filled ? rest : ""), point),
+              !one.said ? ""
+                        : "x:3: got a point of " + size + " columns, its header has " +
+                              (one.filled ? "80" : "72") + ": was it cut off?\n")
+        << size;
+  }
+}
+
 TEST(Jma, WhatContradictsItselfIsRefused) {
   const std::string text = Sample("jma.txt");
   EXPECT_EQ(Refusal(With(text, "0011 2106", "0011 9999")),
@@ -66,6 +102,18 @@ TEST(Atcf, ARowThatEndsWithinItsRadiiIsRefused) {
   EXPECT_NE(Refusal(cut("NEQ,  110,   90,    0,  10")).find("x:2: got 17" + words),
             std::string::npos);
   EXPECT_NE(Refusal(cut("AAA,  110")).find("x:2: got 14" + words), std::string::npos);
+}
+
+TEST(Atcf, ARowThatEndsBeforeTheRadiusOfItsGreatestWindIsSaid) {
+  const std::string row =
+      "WP, 08, 2014070312,   , BEST,   0, 109N, 1440E,  30, 1000, TD,  34, NEQ, "
+      " 10,   10,   10,   10, ";
+  const std::string next = With(row, "2014070312", "2014070318");
+  const std::string rest = "1006,  200,  45,";
+  EXPECT_EQ(Warnings(row + rest + "\n" + next + rest + "\n"), "");
+  EXPECT_EQ(Warnings(row + "\n" + next + "\n"), "") << "all end there";
+  EXPECT_EQ(Warnings(row + rest + "\n" + next + "1006,  200,  4\n"),
+            "x:2: got 20 fields, the file's others have up to 21: was it cut off?\n");
 }
 
 TEST(Atcf, ATimeThatIsThereTwiceWithAnotherPlaceIsSaid) {
@@ -106,6 +154,8 @@ TEST(Bulletin, AQuadrantThatIsNotSaidHasTheRadiusOfAll) {
   EXPECT_EQ(ring("{\"ne\": 300, \"se\": null, \"sw\": 200, \"nw\": null}"), "300 280 200 280 1");
   EXPECT_EQ(ring("{\"ne\": 300, \"se\": 250, \"sw\": 200, \"nw\": 0}"), "300 250 200 0 0");
   EXPECT_EQ(ring("{\"ne\": null, \"se\": null, \"sw\": null, \"nw\": null}"), "280 280 280 280 0");
+  EXPECT_EQ(ring("{\"NE\": 300, \"SE\": 250, \"SW\": 200, \"NW\": 100}"), "300 250 200 100 0");
+  EXPECT_EQ(ring("{\"north\": 300}"), "280 280 280 280 1");
 }
 
 }  // namespace

@@ -2,8 +2,14 @@
 #include "aquafarm/hazard_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include "aquafarm/ascii_grid.h"
 #include "aquafarm/check.h"
+#include "aquafarm/coast.h"
+#include "aquafarm/map_file.h"
+#include "aquafarm/notice_file.h"
 #include "hazard_samples.h"
 
 namespace aquafarm {
@@ -101,14 +107,33 @@ TEST(FindTrack, TakesIdsBeforeNamesAndNoEmptyWord) {
   }
 }
 
+// Every reader of text: a pipe is not waited for, a device not read without end.
 TEST(LoadHazardFile, NamesAFileThatIsNot) {
-  try {
-    LoadHazardFile("/nowhere/track.txt");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "/nowhere/track.txt: cannot read: No such file or directory");
+  const std::string pipe =
+      (std::filesystem::temp_directory_path() / ("hazard_file_test." + std::to_string(getpid())))
+          .string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::string no_file = ": cannot read: is no regular file";
+  for (const auto& [path, words] :
+       {std::pair(std::string("/nowhere/track.txt"),
+                  std::string(": cannot read: No such file or directory")),
+        std::pair(pipe, no_file), std::pair(std::string("/dev/zero"), no_file),
+        std::pair(std::string("/tmp"), no_file)}) {
+    const auto refused = [&path = path](auto load) -> std::string {
+      try {
+        load(path);
+      } catch (const InputError& error) {
+        return error.what();
+      }
+      return "was read";
+    };
+    EXPECT_EQ(refused(LoadHazardFile), path + words);
+    EXPECT_EQ(refused(LoadNotices), path + words);
+    EXPECT_EQ(refused(LoadCoast), path + words);
+    EXPECT_EQ(refused(LoadAsciiGrid), path + words);
+    EXPECT_EQ(refused(LoadMap), path + words);
   }
-  EXPECT_THROW(LoadHazardFile("/tmp"), InputError);
+  std::filesystem::remove(pipe);
 }
 
 // Every cut of every sample is read, or refused with a line; nothing else happens.

@@ -91,6 +91,41 @@ TEST(Bulletin, KnowsBothSpellingsAndWhatIsUnknown) {
   EXPECT_EQ(file.tracks[1].local_name, "");
 }
 
+TEST(Bulletin, SaysWhichForecastsHaveNoPoints) {
+  const auto said = [](const std::string& forecasts) {
+    return Warnings(
+        "[{\"tfbh\": \"1\", \"points\": [\n{\"time\": \"2021-07-25T08:00:00\", \"lat\": 30, "
+        "\"lng\": 122,\n\"forecast\": [" +
+        forecasts + "]}]}]");
+  };
+  const std::string point = R"([{"time": "2021-07-25T20:00:00", "lat": 30, "lng": 121}])";
+  const std::string left_out = ": got no points after its issue, the forecast is left out\n";
+  EXPECT_EQ(said(""), "");
+  EXPECT_EQ(said("{\"sets\": \"中国\", \"points\": " + point + "}"), "");
+  for (const std::string none :
+       {R"({"sets": "中国"})", R"({"sets": "中国", "points": []})",
+        R"({"sets": "中国", "points": null})", R"({"sets": "中国", "point": [{"lat": 30}]})",
+        R"({"points": [{"time": "2021-07-25T08:00:00", "lat": 30, "lng": 122}]})"}) {
+    EXPECT_EQ(said(none), "x:3: [0].points[0].forecast[0]" + left_out) << none;
+    EXPECT_EQ(said("{\"points\": " + point + "},\n" + none),
+              "x:4: [0].points[0].forecast[1]" + left_out);
+  }
+}
+
+TEST(Bulletin, RefusesForecastsOfAnotherTime) {
+  const auto refused = [](const std::string& time) {
+    return Refusal(With(Sample("bulletin.json"), "2021-07-26T08:00:00", time));
+  };
+  EXPECT_EQ(refused("2021-08-09T08:00:00"), "was read") << "15 days";
+  EXPECT_EQ(refused("2021-08-09T08:01:00"),
+            "x:15: [0].points[0].forecast[0].points[1].time: got 2021-08-09T00:01:00Z, expected a "
+            "forecast's within 15 days after its issue at 2021-07-25T00:00:00Z");
+  EXPECT_EQ(Refusal(With(Sample("bulletin.json"), "\"time\": \"2021-07-25T20:00:00\"",
+                         "\"time\": \"2021-07-25T07:00:00\"")),
+            "x:13: [0].points[0].forecast[0].points[0].time: got 2021-07-24T23:00:00Z, expected a "
+            "forecast's within 15 days after its issue at 2021-07-25T00:00:00Z");
+}
+
 TEST(Bulletin, KeepsForecastsAndLandfallsInOrder) {
   const HazardTrack storm = FindTrack(Load("bulletin.json"), "In-Fa");
   ASSERT_EQ(storm.forecasts.size(), 1U);
@@ -104,8 +139,10 @@ TEST(Bulletin, KeepsForecastsAndLandfallsInOrder) {
 }
 
 TEST(WeatherService, ReadsTextForNumbersInsideAMarkdownFence) {
-  const HazardFile file = Load("weather_service.json");
-  EXPECT_TRUE(file.warnings.empty());
+  const HazardFile file = ParseHazardFile(Sample("weather_service.json"), "x");
+  EXPECT_EQ(file.warnings,
+            std::vector<std::string>{"x:9: track[0].windRadius64: 64 kt: not every quadrant is "
+                                     "said; the others are given 0"});
   const HazardTrack& storm = file.tracks.at(0);
   ASSERT_EQ(storm.fixes.size(), 3U);
   EXPECT_EQ(storm.fixes[0].grade, StormGrade::kSuperTyphoon);

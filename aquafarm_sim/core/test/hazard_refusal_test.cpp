@@ -33,6 +33,10 @@ const std::vector<WrongText> kWrongTexts{
     {"CmaCountTooLow", CMA_HEAD CMA_POINT "2021072506 4 300 1222  970 33\n" CMA_POINT,
      "x:4: got '2021072500', expected a header, 66666 …"},
     {"CmaHeaderCut", "66666 2106 2\n" CMA_POINT, "x:1: got 3 words, expected a header"},
+    {"CmaHeaderWithoutDate", "66666 2106   01 0011 2106 0 3 In-fa\n" CMA_POINT,
+     "x:1: got 8 words, expected a header"},
+    {"CmaHeaderDateCut", "66666 2106   01 0011 2106 0 3 In-fa   202204\n" CMA_POINT,
+     "x:1: date: got '202204' at the end, expected YYYYMMDD: was it cut off?"},
     {"CmaPointCut", CMA_HEAD "2021072500 4 297 1230\n",
      "x:2: got 4 words, expected a point: time, grade, latitude"},
     {"CmaDay", CMA_HEAD "2021023000 4 297 1230  968 35\n",
@@ -49,8 +53,14 @@ const std::vector<WrongText> kWrongTexts{
      "x:2: pressure: got 97 hPa, expected [800, 1100], or 0 where it is not known"},
     {"CmaBackwards", CMA_HEAD CMA_POINT "2021072418 4 300 1222  970 33\n",
      "x:3: time: got 2021-07-24T18:00:00Z, expected one after 2021-07-25T00:00:00Z of the point"},
-    {"JmaTruncated", "66666 2106  002 0011 2106 0 6\n21072500 002 2 297 1230  998     000\n",
+    {"JmaTruncated",
+     "66666 2106  002 0011 2106 0 6                IN-FA              20220101\n"
+     "21072500 002 2 297 1230  998     000\n",
      "x:2: got 1 points, expected the 2 points of the header on line 1"},
+    {"JmaHeaderCut",
+     "66666 2106  001 0011 2106 0 6                IN-FA              2022010\n"
+     "21072500 002 2 297 1230  998     000\n",
+     "x:1: got a header of 71 columns, expected 72 or more, to its date"},
     {"JmaCut", JMA_HEAD "21072500 002 2 297\n", "x:2: got a line of 18 columns, expected 36"},
     {"JmaHour", JMA_HEAD "21072524 002 2 297 1230  998     000\n",
      "x:2: time: got '2021072524', expected an hour of UTC"},
@@ -88,6 +98,32 @@ const std::vector<WrongText> kWrongTexts{
      "x:2: [0].points[0].lat: got nothing, expected a number in [-90, 90]"},
     {"BulletinTime", R"([{"tfbh": "1", "points": [{"time": "2021-02-30T00:00:00"}]}])",
      "x:1: [0].points[0].time: got '2021-02-30T00:00:00', expected a time as"},
+    {"BulletinKeyMissing",
+     "[\n{\"tfbh\": \"1\",\n\"points\": [\n{\"time\": \"2021-07-25T14:00:00\",\n\"lat\": 30, "
+     "\"lng\": "
+     "1},\n{\"time\": \"2021-07-25T20:00:00\",\n\"lng\": 1\n}\n]\n}\n]",
+     "x:6: [0].points[1].lat: got nothing, expected a number in [-90, 90]"},
+    {"BulletinPointsMissing",
+     "[\n{\"tfbh\": \"1\",\n\"points\": [\n{\"time\": \"2021-07-25T14:00:00\", "
+     "\"lat\": 30, \"lng\": 1}]},\n{\"tfbh\": \"2\",\n\"name\": \"a\"}]",
+     "x:5: [1].points: got none, expected at least one"},
+    {"BulletinKeyTwice",
+     "[{\"tfbh\": \"1\", \"points\": [],\n\"land\": [{\"points\": 1}],\n\"points\": []}]",
+     "x:3: got the key 'points' twice in an object, expected it once"},
+    {"BulletinTimeCut", R"([{"tfbh": "1", "points": [{"time": "2021-07-25T14:0"}]}])",
+     "x:1: [0].points[0].time: got '2021-07-25T14:0', expected a time as"},
+    {"BulletinTimeCutLater", R"([{"tfbh": "1", "points": [{"time": "2021-07-25 14:00:0"}]}])",
+     "x:1: [0].points[0].time: got '2021-07-25 14:00:0', expected a time as"},
+    {"BulletinDirection",
+     "[{\"tfbh\": \"1\", \"points\": [{\"time\": \"2021-07-25T14:00:00\", \"lat\": 30, \"lng\": "
+     "1,\n"
+     "\"move_dir\": [\"西\"]}]}]",
+     "x:2: [0].points[0].move_dir: got a list, expected a text"},
+    {"BulletinRadius",
+     "[{\"tfbh\": \"1\", \"points\": [{\"time\": \"2021-07-25T14:00:00\", \"lat\": 30, \"lng\": "
+     "1,\n"
+     "\"radius7\": [1]}]}]",
+     "x:2: [0].points[0].radius7: got a list, expected a number in [0, 3000]"},
     {"BulletinShape", "[{\"tfbh\": \"1\",\n\"points\": [7]}]",
      "x:2: [0].points[0]: got 7, expected an object"},
     {"BulletinList", R"([{"tfbh": "1", "points": "none"}])",
@@ -96,6 +132,10 @@ const std::vector<WrongText> kWrongTexts{
     {"JsonNumber", "[{\"tfbh\": \"1\",\n\"points\": 1e999}]",
      "x:2: got '1e999', expected a number that a double can hold"},
     {"ServiceCode", R"({"code": "404", "track": []})", "x:1: code: got '404', expected '200'"},
+    {"ServiceKeyMissing",
+     "{\"code\": \"200\",\n\"track\": [\n{\"time\": \"2021-07-25T14:00+08:00\",\n\"lat\": "
+     "\"30\"}]}",
+     "x:3: track[0].lon: got nothing, expected a number in [-180, 360]"},
     {"ServiceEmpty", R"({"code": "200", "track": []})",
      "x:1: points: got none, expected at least one"},
 };
@@ -119,6 +159,8 @@ TEST(Refusals, NameTheUnitsAndRowsOfIbtracs) {
             "x:4: LAT: got '-93', expected a number in [-90, 90]");
   EXPECT_EQ(Refusal(With(text, "2024-05-16 15:00:00", "2024-05-16 25:00:00")),
             "x:4: ISO_TIME: got '2024-05-16 25:00:00', expected UTC as YYYY-MM-DD HH:MM:SS");
+  EXPECT_EQ(Refusal(With(text, "2024-05-16 15:00:00", "2024-05-16 15:00:0")),
+            "x:4: ISO_TIME: got '2024-05-16 15:00:0', expected UTC as YYYY-MM-DD HH:MM:SS");
   EXPECT_EQ(Refusal(With(text, "IALY,", "")), "x:3: got 28 fields, expected the 29 of row 1");
 }
 

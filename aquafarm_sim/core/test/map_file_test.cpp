@@ -2,6 +2,7 @@
 #include "aquafarm/map_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -154,12 +155,16 @@ TEST_F(MapFiles, RefusePicturesThatAreNot) {
   EXPECT_EQ(Refused().substr(0, 17), "m.pgm:3: got 2 by");
   Write("m.pgm", "P2\n2 2\n255\n1 2 300 4\n");
   EXPECT_EQ(Refused(), "m.pgm:4: pixel: got '300', expected a whole number in [0, 255]");
+  Write("m.pgm", "P2\n2 2\n255\n1 2 three 4\n");
+  EXPECT_EQ(Refused(), "m.pgm:4: pixel: got 'three', expected a whole number in [0, 255]");
   Write("m.pgm", "P5\n2 2");
   EXPECT_EQ(Refused(), "m.pgm:2: greatest value: got '', expected a whole number in [1, 65535]");
   Write("m.pgm", "GIF89a");
   EXPECT_EQ(Refused().substr(0, 48), "m.pgm:1: got no picture that can be read (unknow");
   fs::remove(folder_ / "m.pgm");
   EXPECT_EQ(Refused(), "m.pgm: cannot read: No such file or directory");
+  ASSERT_EQ(mkfifo(Path("m.pgm").c_str(), 0600), 0);
+  EXPECT_EQ(Refused(), "m.pgm: cannot read: is no regular file") << "a pipe is not waited for";
 }
 
 TEST_F(MapFiles, RefuseWrongKeys) {
@@ -315,7 +320,44 @@ TEST(AsciiGrids, AreRefusedWithTheirLine) {
   EXPECT_EQ(refused("cellsize", "cellsise").substr(0, 39),
             "x:5: 'cellsise': is no key of a grid, e");
   EXPECT_EQ(refused("nrows 2", "ncols 2"), "x:2: NCOLS: is there twice");
-  EXPECT_EQ(refused("ncols 3", "ncols 3.9").substr(0, 24), "x:7: NCOLS: got 3.900000");
+  EXPECT_EQ(refused("ncols 3", "ncols 3.9"), "x:1: NCOLS: got 3.9, expected a whole number");
+  EXPECT_EQ(refused("ncols 3", "ncols 0"), "x:1: NCOLS: got 0, expected a number in [1, 16384]");
+  EXPECT_EQ(refused("cellsize 0.01", "cellsize -1"),
+            "x:5: CELLSIZE: got -1, expected a number in [1e-06, 1000000]");
+  EXPECT_EQ(refused("cellsize", "xllcenter 122\ncellsize"),
+            "x:5: XLLCENTER: is there beside XLLCORNER, expected one");
+  const std::string number = "expected a number in [-1000000000, 1000000000]";
+  EXPECT_EQ(refused("1 -2 3", "1 nan 3"), "x:7: value: got 'nan', " + number);
+  EXPECT_EQ(refused("1 -2 3", "null -2 3"), "x:7: value: got 'null', " + number);
+}
+
+TEST(AsciiGrids, InDegreesLieOnTheGlobe) {
+  const auto read = [](const std::string& from, const std::string& to) {
+    std::string text = kGrid;
+    text.replace(text.find(from), from.size(), to);
+    try {
+      return ParseAsciiGrid(text, "x").IsGeographic() ? "in degrees" : "in metres";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  const std::string latitude = ", expected degrees in [-90, 90], as CELLSIZE is below 1";
+  const std::string longitude = ", expected degrees in [-360, 360], as CELLSIZE is below 1";
+  const std::vector<std::array<std::string, 3>> cases{
+      {"yllcorner 30.0", "yllcorner 89.98", "in degrees"},
+      {"yllcorner 30.0", "yllcorner 95",
+       "x:4: YLLCORNER: got 95 and 95.02 at the other end" + latitude},
+      {"yllcorner 30.0", "yllcorner -90.5",
+       "x:4: YLLCORNER: got -90.5 and -90.48 at the other end" + latitude},
+      {"yllcorner 30.0", "yllcorner 89.99",
+       "x:4: YLLCORNER: got 89.99 and 90.01 at the other end" + latitude},
+      {"yllcorner 30.0", "yllcenter 89.99", "in degrees"},
+      {"xllcorner 122.0", "xllcorner -180", "in degrees"},
+      {"xllcorner 122.0", "xllcorner 361",
+       "x:3: XLLCORNER: got 361 and 361.03 at the other end" + longitude},
+      {"cellsize 0.01", "cellsize 1", "in metres"},
+  };
+  for (const auto& [from, to, words] : cases) EXPECT_EQ(read(from, to), words) << to;
 }
 
 }  // namespace

@@ -54,6 +54,23 @@ TEST(Anchorages, HaveWindsWavesAndTheWorstRating) {
   EXPECT_EQ(night.suitability, 1);
 }
 
+TEST(Anchorages, WithoutForecastsAreSaid) {
+  const auto said = [](const std::string& anchors) {
+    const NoticeFile file = ParseNotices(
+        "{\"publishCode\": \"2026043011\",\n\"anchors\": {" + anchors + "}}", "x.json");
+    EXPECT_TRUE(file.notices.empty());
+    return file.warnings;
+  };
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(said(""), Words{"x.json:2: anchors: got none, expected anchorages by name"});
+  for (const std::string none : {R"("Time": "2026043011")", R"("PreciseForecast": [])",
+                                 R"("PreciseForecast": null)", R"("preciseForecast": [{}])"}) {
+    EXPECT_EQ(said("\n\"东锚地\": {" + none + "}"),
+              Words{"x.json:3: anchors.东锚地: got no PreciseForecast, the anchorage is left out"})
+        << none;
+  }
+}
+
 // The periods of the sample, published at a time and named by its days and hours.
 std::int64_t StartOf(const std::string& published, const std::string& period) {
   std::string text = Sample("anchorage.json");

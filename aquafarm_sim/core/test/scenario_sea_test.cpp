@@ -242,7 +242,7 @@ TEST_F(SeaFiles, ThatAreNotThereAreRefused) {
   ASSERT_EQ(mkfifo((folder_ / "pipe.nc").c_str(), 0600), 0);
   for (const std::string& name : {std::string("pipe.nc"), std::string(".")}) {
     EXPECT_EQ(RefusedFile(Write(name)), "seas.layers[0].file: " + (folder_ / name).string() +
-                                            ": cannot read as netCDF: is no regular file");
+                                            ": cannot read: is no regular file");
   }
   EXPECT_EQ(RefusedFile(Write("sea.nc", "so")),
             "seas.layers[0].file: " + (folder_ / "sea.nc").string() +

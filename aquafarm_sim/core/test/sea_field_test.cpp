@@ -303,7 +303,8 @@ TEST_F(SeaFields, HaveTimesAsUdunitsWritesThem) {
   for (const char* units :
        {"Hours since 2021-07-25 00:00:00.0", "hours since 2021-07-25 00:00:00 UTC",
         "hours since 2021-07-25T00:00:00Z", "hours since 2021-07-25 00:00:00 +00:00",
-        "hours since 2021-07-25 00", "hours since 2021-07-25"}) {
+        "hours since 2021-07-25 00", "hours since 2021-07-25", "hours since 2021-7-25 0:0:0",
+        "hours since 2021-7-25 0:0"}) {
     Shape shape;
     shape.time_units = units;
     Write(shape);
@@ -336,6 +337,39 @@ TEST_F(SeaFields, AreRefusedWithTheReason) {
   EXPECT_EQ(Refused(), "got a damaged netCDF file, expected a netCDF file");
   fs::remove(path_);
   EXPECT_EQ(Refused(), "cannot read as netCDF: No such file or directory");
+}
+
+TEST_F(SeaFields, WithCoordinatesThatAreNoneAreRefused) {
+  const auto refused = [&](const std::vector<double>& latitude,
+                           const std::vector<double>& longitude) {
+    WriteSea(path_, "so", latitude, longitude, std::vector<float>(9, 30.0F));
+    return Refused();
+  };
+  EXPECT_EQ(refused({30.1, 30.2, 30.3}, {122.1, 122.2, 122.3}), "was read");
+  EXPECT_EQ(refused({30.1, 30.2, 95}, {122.1, 122.2, 122.3}),
+            "lat: got a latitude of 95, expected [-90, 90]");
+  EXPECT_EQ(refused({30.1, 30.2, 30.2}, {122.1, 122.2, 122.3}),
+            "lat: got 30.2 twice, expected it once");
+  EXPECT_EQ(refused({30.1, 30.2, 30.3}, {122.2, 122.2, 122.1}),
+            "lon: got 122.2 twice, expected it once");
+  EXPECT_EQ(refused({30.1, 30.3, 30.2}, {122.1, 122.2, 122.3}),
+            "lat: got coordinates up and down, expected them in order");
+}
+
+TEST_F(SeaFields, WithTextForANumberAreRefused) {
+  for (const std::string key : {"scale_factor", "add_offset", "_FillValue", "missing_value"}) {
+    WriteSea(path_, "so", {30.1, 30.2}, {122.1, 122.2}, std::vector<float>(4, 30.0F));
+    int file = 0;
+    int variable = 0;
+    ASSERT_EQ(nc_open(path_.c_str(), NC_WRITE, &file), NC_NOERR);
+    nc_inq_varid(file, "so", &variable);
+    // libnetcdf refuses a fill value of another type, so it gets its name afterwards.
+    nc_redef(file);
+    nc_put_att_text(file, variable, "later", 4, "0.01");
+    EXPECT_EQ(nc_rename_att(file, variable, "later", key.c_str()), NC_NOERR);
+    nc_close(file);
+    EXPECT_EQ(Refused(), "so: " + key + ": got the text '0.01', expected a number");
+  }
 }
 
 TEST_F(SeaFields, OfTenMegabytesAreCutInHalfASecond) {

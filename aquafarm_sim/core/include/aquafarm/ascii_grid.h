@@ -16,7 +16,7 @@ struct AsciiGrid {
   double west{};      ///< of the centre of the south-west cell
   double south{};
   double cell_size{};
-  /// Whether places are degrees: they fit the globe and cells are smaller than one. Else metres.
+  /// Whether places are degrees: cells are smaller than one. Else metres.
   bool IsGeographic() const;
 };
 

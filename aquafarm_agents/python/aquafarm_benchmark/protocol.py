@@ -50,7 +50,7 @@ CONTESTANTS = (
                options=("device=cpu", "steps_per_update=1", "mask_blocked=true", _AVERAGE,
                         "learning_rate=linear:5e-4:3e-5:{settled}")),
     Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
-               options=("device=cpu", "hidden=64", "mask_blocked=true", _AVERAGE,
+               options=("device=cpu", "hidden=64", "batch=64", "mask_blocked=true", _AVERAGE,
                         "learning_rate=linear:5e-4:5e-5:{settled}")),
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
                repeats=False),

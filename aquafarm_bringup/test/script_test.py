@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The script ./aquafarm refuses what it does not know and says what is missing."""
+import fcntl
 import os
 import pathlib
 import shutil
@@ -115,6 +116,27 @@ class ScriptTest(unittest.TestCase):
             for other in ((folder / "other",), (tree, folder / "moved" / "src")):
                 self.assertIn("is of another tree or place; building all anew", words(*other))
                 self.assertFalse(cache.exists())
+
+    def test_a_second_build_waits_for_the_first_and_takes_what_it_made(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder).resolve()
+            ws, copy = folder / "ws", folder / "tree" / "aquafarm"
+            for part in ("ws/src", "ws/build", "tree/aquafarm_x"):
+                (folder / part).mkdir(parents=True)
+            copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "echo -C"))
+            (ws / "src" / "aquafarm").symlink_to(copy.parent)
+            (ws / "build" / "CMakeCache.txt").write_text(
+                f"CMAKE_BUILD_TYPE:STRING=Release\nCMAKE_HOME_DIRECTORY:INTERNAL={ws / 'src'}\n")
+            with open(ws / "lock", "w") as lock:
+                fcntl.flock(lock, fcntl.LOCK_EX)
+                second = subprocess.Popen(["bash", copy, "ask", "--help"], text=True,
+                                          env=dict(os.environ, AQUAFARM_WS=str(ws)),
+                                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                self.addCleanup(second.kill)
+                self.assertIn("something else is building in", second.stdout.readline())
+                (ws / "built").touch()  # what the first one does at its end
+            words, _ = second.communicate(timeout=LIMIT_S)
+            self.assertNotIn("building in", words)
 
     def test_a_workspace_of_somebody_else_is_left_alone(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -155,6 +155,12 @@ class BagPolicyTest(unittest.TestCase):
         without = self.changed(bag, lambda topic, message: None if topic.endswith(
             "/state") and message.step == 2 else message)
         self.refused("differs: episode 0 step 3: step 2 is missing", 1, without, self.trained())
+        without = self.changed(bag, lambda topic, message: None if topic.endswith(
+            "/state") and message.step == 0 else message)
+        run = self.ask(without, self.trained())
+        self.assertEqual(1, run.code(), run.words())
+        self.assertIn("differs: episode 0 step 1: step 0 is missing", run.words())
+        self.assertNotIn("choices agree", run.words())  # nothing was compared
 
     def test_what_cannot_be_asked_has_its_line(self):
         bag, policy = self.bag_of("clairvoyant", TINY), self.trained()

@@ -45,21 +45,31 @@ using Key = std::pair<std::uint64_t, std::uint64_t>;  // seed and episode
 
 std::string Number(std::uint64_t value) { return std::to_string(value); }
 
+/// @param path of the bag, for messages
+std::shared_ptr<const aquafarm::Scenario> ScenarioOf(const FarmSpec& spec,
+                                                     const std::string& path) {
+  return aquafarm_sim::NamingBag(path, [&] {
+    return std::make_shared<const aquafarm::Scenario>(
+        aquafarm::ParseScenario(spec.scenario_yaml, "spec.scenario_yaml"));
+  });
+}
+
 /// A farm as recorded, and a policy that is asked along.
 class Companion {
  public:
-  /// @throws InputError when the policy does not fit
+  /// @param path of the bag, for messages
   /// @param rewinds whether states may be changed from outside, so that it must know those before
-  Companion(const FarmSpec& spec, const agents::SavedPolicy& saved, bool rewinds)
+  /// @throws InputError when the spec's scenario is none, or the policy does not fit it
+  Companion(const FarmSpec& spec, const std::string& path, const agents::SavedPolicy& saved,
+            bool rewinds)
       : rewinds_(rewinds),
         name_(saved.checkpoint.algorithm),
-        scenario_(std::make_shared<const aquafarm::Scenario>(
-            aquafarm::ParseScenario(spec.scenario_yaml, "spec.scenario_yaml"))),
+        scenario_(ScenarioOf(spec, path)),
         farms_(scenario_, 1),
         environment_(scenario_, {1, saved.encodings, false, 1}),
         policy_(agents::MakePolicy(saved, environment_.spec())),
         elsewhere_(agents::MakePolicy(saved, environment_.spec())) {
-    farms_.Reset(spec.seed, spec.episode, {});
+    aquafarm_sim::NamingBag(path, [&] { farms_.Reset(spec.seed, spec.episode, {}); });
     policy_->Begin(spec.seed, 1);
     episode_.seed = spec.seed;
     episode_.episode = spec.episode;
@@ -270,7 +280,7 @@ std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& top
     const auto spec = aquafarm_sim::Instantiate<FarmSpec>(message);
     if (!spec) continue;
     if (spec->version != aquafarm::kVersion) {
-      throw InputError(path + ": recorded by version " + spec->version + ", this is " +
+      throw InputError(path + ": " + aquafarm_sim::RecordedBy(spec->version) + ", this is " +
                        aquafarm::kVersion + "; use the version that it was recorded by");
     }
     specs.insert({{spec->seed, spec->episode}, *spec});
@@ -376,7 +386,7 @@ class Walk {
                        ": the bag holds no spec of it");
     }
     key_ = key;
-    companion_.emplace(spec->second, saved_, rewinds_);
+    companion_.emplace(spec->second, path_, saved_, rewinds_);
   }
 
   void EndEpisode() {

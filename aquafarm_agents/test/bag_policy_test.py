@@ -11,6 +11,7 @@ import unittest
 
 import rosbag
 import rostest
+from aquafarm_msgs.msg import PolicyChoice
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from processes import DATA, Program, program  # noqa: E402
@@ -155,6 +156,12 @@ class BagPolicyTest(unittest.TestCase):
         without = self.changed(bag, lambda topic, message: None if topic.endswith(
             "/state") and message.step == 2 else message)
         self.refused("differs: episode 0 step 3: step 2 is missing", 1, without, self.trained())
+        without = self.changed(bag, lambda topic, message: None if topic.endswith(
+            "/state") and message.step == 0 else message)
+        run = self.ask(without, self.trained())
+        self.assertEqual(1, run.code(), run.words())
+        self.assertIn("differs: episode 0 step 1: step 0 is missing", run.words())
+        self.assertNotIn("choices agree", run.words())  # nothing was compared
 
     def test_what_cannot_be_asked_has_its_line(self):
         bag, policy = self.bag_of("clairvoyant", TINY), self.trained()
@@ -162,6 +169,7 @@ class BagPolicyTest(unittest.TestCase):
                      self.bag_of("random", PAIR), policy)
         self.refused("/no/such/folder", 2, bag, "/no/such/folder")
         self.refused("damaged or no bag", 2, TINY, policy)
+        self.refused("/nowhere/x.bag: there is no such file", 2, "/nowhere/x.bag", policy)
         data = bytearray(bag.read_bytes())
         place = data.index(b"ver=\x01\0\0\0") + 8 + 4 + 8  # of an index's first entry
         data[place:place + 4] = struct.pack("<I", 0x7ffffff0)
@@ -172,12 +180,23 @@ class BagPolicyTest(unittest.TestCase):
         self.refused("no topic spec, so nothing says what was played", 2, self.changed(
             bag, lambda topic, message: None if topic.endswith("/spec") else message), policy)
 
-        def older(topic, message):
-            if topic.endswith("/spec"):
-                message.version = "0.0.9"
-            return message
+        def with_spec(field, value):
+            def change(topic, message):
+                if topic.endswith("/spec"):
+                    setattr(message, field, value)
+                return message
+            return self.changed(bag, change)
 
-        self.refused("recorded by version 0.0.9, this is ", 2, self.changed(bag, older), policy)
+        self.refused("recorded by version 0.0.9, this is ", 2, with_spec("version", "0.0.9"),
+                     policy)
+        self.refused(": recorded by an unnamed version, this is ", 2, with_spec("version", ""),
+                     policy)
+        self.refused("changed.bag: spec.scenario_yaml:", 2, with_spec("scenario_yaml", "name: {"),
+                     policy)
+        self.refused("changed.bag: topic /aquafarm/spec: got type aquafarm_msgs/PolicyChoice, "
+                     "expected aquafarm_msgs/FarmSpec; ", 2, self.changed(
+                         bag, lambda topic, message: PolicyChoice() if topic.endswith("/spec")
+                         else message), policy)
         self.refused("no state follows its spec", 2, self.changed(
             bag, lambda topic, message: None if topic.endswith("/state") else message), policy)
         self.refused("no ranch /other/, there is: /aquafarm/", 2, bag, policy, "--ns", "/other")

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import rosbag
@@ -18,6 +19,16 @@ from ranch import Ranch, verify  # noqa: E402
 
 TRAIN = ["algorithm:=q_learning", "farms:=1", "evaluation_episodes:=0", "random_episodes:=0",
          "viz:=false"]
+FIRST_CHUNK = 4117  # bytes before it in every bag
+
+
+def is_stopped(pid):
+    """Whether each thread of a process has stopped."""
+    try:
+        return all((task / "stat").read_text().rpartition(")")[2].split()[0] == "T"
+                   for task in pathlib.Path(f"/proc/{pid}/task").iterdir())
+    except OSError:  # one has just ended
+        return False
 
 
 class KeepEpisodesTest(unittest.TestCase):
@@ -27,6 +38,35 @@ class KeepEpisodesTest(unittest.TestCase):
 
     def bags(self):
         return sorted(self.folder.rglob("episode_*.bag"))
+
+    def half_written(self):
+        """Returns a bag being written of which a chunk and its index are on the disk, or None."""
+        for bag in self.folder.rglob("*.active"):
+            try:
+                content = bag.read_bytes()
+            except FileNotFoundError:  # it is whole now
+                continue
+            end = FIRST_CHUNK
+            for _ in range(2):  # its header and what it holds, each behind its length
+                end += 4 + int.from_bytes(content[end:end + 4], "little")
+            if len(content) > end:  # the index behind it is written at once
+                return bag
+        return None
+
+    def stop_in_a_bag(self, pid, limit_s):
+        """Stops a sim node between the first and the last chunk of a bag; returns the bag."""
+        end = time.monotonic() + limit_s
+        while time.monotonic() < end:
+            if self.half_written():
+                os.kill(pid, signal.SIGSTOP)
+                while not is_stopped(pid) and time.monotonic() < end:
+                    time.sleep(0.001)
+                bag = self.half_written()
+                if bag and is_stopped(pid):
+                    return bag
+                os.kill(pid, signal.SIGCONT)
+            time.sleep(0.001)
+        self.fail(f"no bag of several chunks was written within {limit_s} s")
 
     def test_a_training_keeps_every_episode_in_its_run_folder(self):
         with Ranch("train", *TRAIN, "episodes:=8", "record:=all",
@@ -52,12 +92,21 @@ class KeepEpisodesTest(unittest.TestCase):
         with Ranch("train", *TRAIN, "episodes:=100000", "record:=all", "sim_restarts:=0",
                    "sim_timeout_s:=1", f"run_dir:={self.folder / 'run'}") as ranch:
             ranch.wait_for(lambda: len(self.bags()) >= 5, 60)
-            os.kill(ranch.node_pid("sim_node"), signal.SIGKILL)
+            pid = ranch.node_pid("sim_node")
+            cut = self.stop_in_a_bag(pid, 60)
+            os.kill(pid, signal.SIGKILL)
             ranch.exit_code(60)
         self.assertGreaterEqual(len(self.bags()), 5)
-        code, words = verify(*self.bags())
+        code, words = verify(*self.bags()[-20:])
         self.assertEqual(0, code, words)
-        self.assertLessEqual(len(list(self.folder.rglob("*.active"))), 1)
+        self.assertEqual([cut], list(self.folder.rglob("*.active")))
+        subprocess.run(["rosbag", "reindex", str(cut)], check=True, timeout=60,
+                       capture_output=True)
+        code, words = verify(cut)
+        self.assertEqual(0, code, words)
+        # All that was missing may have been its name: a kill just before it is renamed.
+        self.assertRegex(words, r": identical: 1 episode, \d+ steps"
+                         r"(, the end of one is not in the bag)?\n")
 
     def test_a_recording_that_was_cut_off_is_told_so_and_can_be_reindexed(self):
         with Ranch("evaluate", "policy:=random", "episodes:=1", "record:=all", "viz:=false",

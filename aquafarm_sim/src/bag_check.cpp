@@ -36,6 +36,11 @@ using nav_msgs::OccupancyGrid;
 
 std::string Number(std::uint64_t value) { return std::to_string(value); }
 
+std::string Missing(std::uint64_t first, std::uint64_t last) {
+  if (first == last) return "step " + Number(first) + " is missing";
+  return "steps " + Number(first) + " to " + Number(last) + " are missing";
+}
+
 /// One episode of a bag, simulated along.
 class Simulation {
  public:
@@ -61,11 +66,7 @@ class Simulation {
   std::string Check(const FarmState& state) {
     const auto step = static_cast<std::uint64_t>(farm_.step());
     const std::uint64_t expected = seen_ ? step + 1 : step;
-    if (state.step > expected) {
-      return (expected + 1 == state.step
-                  ? "step " + Number(expected) + " is missing"
-                  : "steps " + Number(expected) + " to " + Number(state.step - 1) + " are missing");
-    }
+    if (state.step > expected) return Missing(expected, state.step - 1);
     if (state.step + 1 < expected) return "steps are out of order";
     if (state.step > step) {
       if (const std::string fault = Step(state); !fault.empty()) return fault;
@@ -109,9 +110,7 @@ class Simulation {
 
   std::string Load(const SavedState& saved) {
     const auto step = static_cast<std::uint64_t>(farm_.step());
-    if (begun_ && saved.step > step) {
-      return "steps " + Number(step + 1) + " to " + Number(saved.step) + " are missing";
-    }
+    if (begun_ && saved.step > step) return Missing(step + 1, saved.step);
     if (begun_ && saved.step < step) return "steps are out of order";
     try {
       Farm loaded(scenario_);
@@ -167,8 +166,10 @@ using Key = std::pair<std::uint64_t, std::uint64_t>;
 /// recording may hold an episode's first state before its spec and its summary before its end.
 class Checker {
  public:
-  Checker(std::map<Key, FarmSpec> specs, std::multimap<Key, EpisodeSummary> summaries)
-      : specs_(std::move(specs)), summaries_(std::move(summaries)) {}
+  /// @param path of the bag, for messages
+  Checker(std::map<Key, FarmSpec> specs, std::multimap<Key, EpisodeSummary> summaries,
+          std::string path)
+      : specs_(std::move(specs)), summaries_(std::move(summaries)), path_(std::move(path)) {}
 
   /// @returns false at the first difference
   bool Take(const rosbag::MessageInstance& message, bool is_chart) {
@@ -245,7 +246,7 @@ class Checker {
     key_ = key;
     const auto spec = specs_.find(key);
     if (spec == specs_.end()) return Compared(step, "the bag holds no spec of this episode");
-    simulation_.emplace(spec->second);
+    NamingBag(path_, [&] { simulation_.emplace(spec->second); });
     return Compared(0, simulation_->Check(spec->second));
   }
 
@@ -258,7 +259,8 @@ class Checker {
 
   const std::map<Key, FarmSpec> specs_;
   std::multimap<Key, EpisodeSummary> summaries_;  // those not yet compared
-  Key key_;                                       // of the simulation
+  const std::string path_;
+  Key key_;  // of the simulation
   std::optional<Simulation> simulation_;
   BagCheck check_;
 };
@@ -297,8 +299,8 @@ Specs ReadSpecs(const rosbag::Bag& bag, const std::string& topic, std::string& d
 void CheckVersions(const std::map<Key, FarmSpec>& specs, const std::string& path) {
   for (const auto& [key, spec] : specs) {
     if (spec.version == aquafarm::kVersion) continue;
-    throw InputError(path + ": recorded by version " + spec.version + ", this is " +
-                     aquafarm::kVersion + "; use the version that it was recorded by");
+    throw InputError(path + ": " + RecordedBy(spec.version) + ", this is " + aquafarm::kVersion +
+                     "; use the version that it was recorded by");
   }
 }
 
@@ -322,7 +324,7 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
     auto specs = ReadSpecs(bag, ranch + names::kSpec, refused.difference);
     CheckVersions(specs, path);
     if (!refused.difference.empty()) return refused;
-    Checker checker(std::move(specs), ReadSummaries(bag, ranch + names::kEpisode));
+    Checker checker(std::move(specs), ReadSummaries(bag, ranch + names::kEpisode), path);
     const std::string chart = ranch + names::kChart;
     rosbag::View view(bag, rosbag::TopicQuery({ranch + names::kState, ranch + names::kSavedState,
                                                chart, ranch + names::kRisk}));

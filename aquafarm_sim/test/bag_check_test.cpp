@@ -43,6 +43,10 @@ TEST_F(EpisodeBag, ChangesFromOutsideAreCountedAndHideNoMissingStep) {
     return state->step == 10 && ++tenth == 2;  // that after the change
   });
   EXPECT_EQ("episode 0 step 10: steps 5 to 10 are missing", CheckBag(gap, "").difference);
+  const std::string one = Changed(whole, true, [](FarmSpec*, FarmState* state, auto*) {
+    return state == nullptr || state->step != 10;
+  });
+  EXPECT_EQ("episode 0 step 10: step 10 is missing", CheckBag(one, "").difference);
   tenth = 0;
   const std::string back = Changed(whole, true, [&tenth](FarmSpec*, FarmState* state, auto*) {
     if (state != nullptr && state->step == 10 && ++tenth == 1) state->step = 11;
@@ -323,7 +327,7 @@ TEST_F(EpisodeBag, AMessageOfNoTopicAndAChunkToldOfTwiceHaveTheirLine) {
 
 TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   const std::string bag = OneBag();
-  EXPECT_NE(std::string::npos, Refusal(folder_ + "/none.bag").find("damaged or no bag"));
+  EXPECT_EQ(folder_ + "/none.bag: there is no such file", Refusal(folder_ + "/none.bag"));
   std::ofstream(folder_ + "/text.bag") << "no bag";
   EXPECT_NE(std::string::npos, Refusal(folder_ + "/text.bag").find("damaged or no bag"));
   const std::string late = folder_ + "/late.bag";
@@ -350,6 +354,25 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
                                  if (spec != nullptr) spec->version = "9.9.9";
                                  return true;
                                })).find("recorded by version 9.9.9, this is "));
+  EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
+                                 if (spec != nullptr) spec->version = "";
+                                 return true;
+                               })).find(": recorded by an unnamed version, this is "));
+  const std::string no_scenario = Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
+    if (spec != nullptr) spec->scenario_yaml = "name: {";
+    return true;
+  });
+  EXPECT_EQ(0U, Refusal(no_scenario).find(no_scenario + ": spec.scenario_yaml:"))
+      << Refusal(no_scenario);
+  const std::string other = folder_ + "/other.bag";
+  {
+    aquafarm_msgs::SavedState no_spec;
+    rosbag::Bag(other, rosbag::bagmode::Write).write("/ranch/spec", ros::Time(1.0), no_spec);
+  }
+  EXPECT_EQ(other +
+                ": topic /ranch/spec: got type aquafarm_msgs/SavedState, expected "
+                "aquafarm_msgs/FarmSpec; record spec and state, as record.launch does",
+            Refusal(other));
   EXPECT_NE(std::string::npos, Refusal(bag, "/lake").find("no ranch /lake/, there is: /ranch/"));
   EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
                                  return spec != nullptr;

@@ -22,6 +22,7 @@
 
 #include "aquafarm/version.h"
 #include "aquafarm_sim/read_bag.h"
+#include "aquafarm_viz/facts.h"
 #include "aquafarm_viz/film.h"
 #include "aquafarm_viz/image.h"
 #include "aquafarm_viz/names.h"
@@ -53,6 +54,22 @@ struct Request {
   aquafarm_viz::ImageSize size;
 };
 
+// The steps around one that is asked for, in the first episode that has a later one.
+struct Gap {
+  std::uint64_t step{};  // asked for
+  std::uint64_t episode{};
+  std::optional<std::uint64_t> before;  // none: the episode begins later
+  std::optional<std::uint64_t> after;
+
+  void See(const FarmState& state) {
+    if (after) return;
+    if (state.episode != episode) before.reset();
+    episode = state.episode;
+    if (state.step < step) before = state.step;
+    if (state.step > step) after = state.step;
+  }
+};
+
 // What the bag holds, to say what may be asked for.
 struct Found {
   std::uint64_t values{};
@@ -61,8 +78,8 @@ struct Found {
   std::uint64_t first_episode{};
   std::uint64_t last_episode{};
   std::uint64_t last_step{};
-  std::uint64_t gaps{};  // steps that are missing between others
-  std::string version;   // that recorded it, as its spec says
+  std::uint64_t gaps{};                // steps that are missing between others
+  std::optional<std::string> version;  // that recorded it, as its spec says
 };
 
 // The bag as who asked for the picture knows it.
@@ -70,8 +87,18 @@ const std::string& Name(const Request& request) {
   return request.asked.empty() ? request.bag : request.asked;
 }
 
-std::string Missing(const Request& request, const Found& found) {
+std::string Missing(const Request& request, const Found& found, const std::vector<Gap>& gaps = {}) {
   if (found.states == 0) return Name(request) + ": no state follows the spec of its episode";
+  for (const Gap& gap : gaps) {
+    if (!gap.after) continue;
+    const std::string after = std::to_string(*gap.after);
+    return Name(request) + ": no step " + std::to_string(gap.step) + "; episode " +
+           std::to_string(gap.episode) +
+           (gap.before
+                ? " has steps " + std::to_string(*gap.before) + " and " + after + " around it"
+                : " begins with step " + after) +
+           "; 'verify' tells more";
+  }
   return Name(request) + ": no such step; the bag has episodes " +
          std::to_string(found.first_episode) + " to " + std::to_string(found.last_episode) +
          " and steps up to " + std::to_string(found.last_step) +
@@ -97,10 +124,13 @@ std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
                              " of type " + ros::message_traits::datatype<FarmState>());
   }
   if (prefixes.size() == 1) {
-    if (rosbag::View(bag, rosbag::TopicQuery(*prefixes.begin() + kSpec)).size() != 0) {
-      return *prefixes.begin();
+    rosbag::View specs(bag, rosbag::TopicQuery(*prefixes.begin() + kSpec));
+    for (const auto* connection : specs.getConnections()) {
+      if (connection->datatype == ros::message_traits::datatype<aquafarm_msgs::FarmSpec>()) {
+        return *prefixes.begin();
+      }
     }
-    throw std::runtime_error(Name(request) + aquafarm_sim::kNoSpec);
+    throw std::runtime_error(Name(request) + aquafarm_sim::NoSpec(bag));
   }
   std::string all;
   for (const auto& prefix : prefixes) all += " " + prefix;
@@ -131,11 +161,14 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   sensor_msgs::PointCloud2ConstPtr cloud;  // not yet read: its spec may come after it
   aquafarm_msgs::PolicyChoiceConstPtr choice;
   Found found;
+  const auto expect_none = [&](const std::string& fault) {
+    if (!fault.empty()) throw std::runtime_error(Name(request) + ": " + fault);
+  };
   std::uint64_t last_step = 0;
   for (const auto& message : view) {
     if (const auto spec = aquafarm_sim::Instantiate<aquafarm_msgs::FarmSpec>(message)) {
       found.version = spec->version;
-      if (const auto fault = pairing.AddSpec(spec); !fault.empty()) throw std::runtime_error(fault);
+      expect_none(pairing.AddSpec(spec));
     } else if (const auto status =
                    aquafarm_sim::Instantiate<aquafarm_msgs::TrainingStatus>(message)) {
       training = status;
@@ -149,7 +182,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
     }
     const auto state = aquafarm_sim::Instantiate<FarmState>(message);
     if (state == nullptr) continue;
-    if (const auto fault = pairing.AddState(state); !fault.empty()) throw std::runtime_error(fault);
+    expect_none(pairing.AddState(state));
     if (pairing.shown().state != state) continue;
     wake.Update(*state);
     route.Update(*state);
@@ -177,12 +210,12 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
 /// What is asked for and not there is said, but a picture can do without.
 void WarnOfMissing(const Request& request, const Found& found) {
   if (found.gaps > 0) {
-    std::fprintf(stderr, "render: %s: %llu steps are missing; 'verify' says which\n",
-                 Name(request).c_str(), static_cast<unsigned long long>(found.gaps));
+    std::fprintf(stderr, "render: %s: %s\n", Name(request).c_str(),
+                 aquafarm_viz::MissingSteps(found.gaps).c_str());
   }
-  if (!found.version.empty() && found.version != aquafarm::kVersion) {
-    std::fprintf(stderr, "render: %s: recorded by version %s, this is %s; drawn as it is\n",
-                 Name(request).c_str(), found.version.c_str(), aquafarm::kVersion);
+  if (found.version && *found.version != aquafarm::kVersion) {
+    std::fprintf(stderr, "render: %s: %s, this is %s; drawn as it is\n", Name(request).c_str(),
+                 aquafarm_sim::RecordedBy(*found.version).c_str(), aquafarm::kVersion);
   }
   if (found.values > 0 || !(request.layers.values || request.layers.moves)) return;
   if (found.choices > 0) {
@@ -211,19 +244,26 @@ void RenderPicture(const Request& request) {
   std::vector<cv::Mat> pictures(request.at_end ? 1 : steps.size());
   std::optional<std::uint64_t> episode;  // all pictures are of the first that has one of them
   std::size_t missing = pictures.size();
+  std::vector<Gap> gaps(pictures.size());
+  for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i].step = steps[i];
   const Found found = ForEachScene(request, [&](const Scene& scene) {
     if (episode && *episode != scene.state.episode) return true;
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       const bool asked = request.at_end ? scene.state.terminated || scene.state.truncated
                                         : scene.state.step == steps[i];
-      if (!asked || !pictures[i].empty()) continue;
+      if (!pictures[i].empty()) continue;
+      if (!asked) {
+        if (!request.at_end) gaps[i].See(scene.state);
+        continue;
+      }
       pictures[i] = painter.Draw(scene.spec, scene.state, scene.extras).clone();
+      gaps[i] = {};
       episode = scene.state.episode;
       --missing;
     }
     return missing > 0;
   });
-  if (missing > 0) throw std::runtime_error(Missing(request, found));
+  if (missing > 0) throw std::runtime_error(Missing(request, found, gaps));
   WarnOfMissing(request, found);
   cv::Mat picture;
   cv::hconcat(pictures, picture);

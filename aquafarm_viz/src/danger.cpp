@@ -196,8 +196,8 @@ std::string Distance(double metres) {
                             : Number(metres, 0) + " m";
 }
 
-// A pointer at the border towards a centre that lies outside the map, with its distance from the
-// farm's middle.
+// A pointer at the border towards a centre that lies outside the map, with its heading and its
+// distance from the farm's middle.
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, cv::Point2d centre,
                        double cell_size_m, const Layout& layout, const Fonts& fonts) {
   static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
@@ -205,6 +205,19 @@ void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, cv::Point2d 
   const cv::Point2d at(std::clamp(centre.x, margin, map.cols - margin),
                        std::clamp(centre.y, margin, map.rows - margin));
   const double bearing = std::atan2(centre.x - at.x, at.y - centre.y) * 180.0 / CV_PI;
+  double top = at.y;
+  double foot = at.y;
+  if (disaster.speed > 0.0F) {  // beside the pointer, so that all of it is on the map
+    const double length = 40.0 * layout.unit;
+    const double turn = disaster.heading_deg * CV_PI / 180.0;
+    const cv::Point2d way(length * std::sin(turn), -length * std::cos(turn));
+    const double room = std::min(2.0 * margin, std::min(map.cols, map.rows) / 2.0);
+    const cv::Point2d head(std::clamp(at.x + way.x, room, map.cols - room),
+                           std::clamp(at.y + way.y, room, map.rows - room));
+    DrawArrow(map, head - way, disaster.heading_deg, length, layout);
+    top = std::min({top, head.y, head.y - way.y});
+    foot = std::max({foot, head.y, head.y - way.y});
+  }
   const Placing placing{at, 9.0 * layout.unit, bearing};
   StrokeShape(map, kPointer, placing, Bgr(kPaper), layout.Px(3));
   FillShape(map, kPointer, placing, Bgr(GradeColor(disaster.grade)));
@@ -214,11 +227,11 @@ void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, cv::Point2d 
       Distance(cell_size_m * std::hypot(disaster.x - (view.width() - 1) / 2.0,
                                         disaster.y - (view.height() - 1) / 2.0));
   const int width = fonts.bold.Width(text);
-  const cv::Point words(
-      std::clamp(cvRound(at.x) - width / 2, layout.Px(4),
-                 std::max(layout.Px(4), map.cols - width - layout.Px(4))),
-      cvRound(at.y) +
-          (at.y > map.rows / 2.0 ? -layout.Px(15) : layout.Px(15) + fonts.bold.cap_height()));
+  const cv::Point words(std::clamp(cvRound(at.x) - width / 2, layout.Px(4),
+                                   std::max(layout.Px(4), map.cols - width - layout.Px(4))),
+                        at.y > map.rows / 2.0
+                            ? cvRound(top) - layout.Px(15)
+                            : cvRound(foot) + layout.Px(15) + fonts.bold.cap_height());
   fonts.bold.Draw(map, text, words + cv::Point(1, 1), Bgr(kInk));
   fonts.bold.Draw(map, text, words, Bgr(kPaper));
 }

@@ -67,6 +67,11 @@ std::string PhaseName(std::uint8_t phase) {
 
 std::string Signed(double value) { return (value > 0.0 ? "+" : "") + Number(value, 1); }
 
+std::string MissingSteps(std::uint64_t count) {
+  return std::to_string(count) + (count == 1 ? " step is" : " steps are") +
+         " missing; 'verify' says which";
+}
+
 std::array<std::pair<const char*, float>, 7> RewardTermsOf(const aquafarm_msgs::FarmState& state) {
   std::array<std::pair<const char*, float>, 7> sums{{{"crash", 0.0F},
                                                      {"disaster", 0.0F},

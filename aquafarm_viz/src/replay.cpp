@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "aquafarm_sim/read_bag.h"
+#include "aquafarm_viz/facts.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -45,7 +46,7 @@ void ReplayTape::Read(const std::string& path) {
   if (std::none_of(connections.begin(), connections.end(), [](const auto* connection) {
         return connection->datatype == traits::datatype<FarmSpec>();
       })) {
-    throw std::runtime_error(path + aquafarm_sim::kNoSpec);
+    throw std::runtime_error(path + aquafarm_sim::NoSpec(bag_));
   }
   for (const rosbag::MessageInstance& message : view_) {
     if (message.getTopic() == "/clock") continue;
@@ -138,11 +139,10 @@ std::vector<std::size_t> ReplayTape::UpTo(const Step& step) const {
 
 std::vector<std::string> ReplayTape::Notes(const std::string& version) const {
   std::vector<std::string> notes;
-  if (missing_ > 0)
-    notes.push_back(std::to_string(missing_) + " steps are missing; 'verify' says which");
+  if (missing_ > 0) notes.push_back(MissingSteps(missing_));
   for (const std::string& other : versions_) {
     if (other == version) continue;
-    notes.push_back("recorded by version " + other + ", this is " + version + "; shown as it is");
+    notes.push_back(aquafarm_sim::RecordedBy(other) + ", this is " + version + "; shown as it is");
   }
   return notes;
 }

@@ -169,6 +169,27 @@ TEST(Image, PointsToADisasterOutside) {
   EXPECT_NEAR(middle.y, empty.rows / 2.0, 25.0);
 }
 
+TEST(Image, ShowsWhereADisasterOutsideIsHeading) {
+  const auto spec = test::MakeSpec();
+  for (const auto& [x, y] : {std::pair(60.0F, 12.0F),
+                             {-40.0F, 12.0F},
+                             {12.0F, 60.0F},
+                             {12.0F, -40.0F},
+                             {60.0F, 60.0F}}) {
+    auto state = Empty();
+    state.disasters.push_back(test::MakeDisaster(0, x, y));
+    const auto paper = [&](int heading_deg, float speed) {
+      state.disasters.front().heading_deg = heading_deg;
+      state.disasters.front().speed = speed;
+      return cv::countNonZero(Near(MapOf(DrawFarm(spec, state, kSize)), kPaper, 30));
+    };
+    for (const int heading_deg : {0, 90, 180, 270}) {
+      EXPECT_GT(paper(heading_deg, 0.5F), paper(heading_deg, 0.0F) + 60)
+          << heading_deg << " at " << x << ", " << y;
+    }
+  }
+}
+
 TEST(Image, ShowsIslandAndPorts) {
   const auto spec = test::MakeSpec();
   const auto map = MapOf(DrawFarm(spec, Empty(), kSize));

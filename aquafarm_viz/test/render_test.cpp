@@ -102,7 +102,9 @@ TEST_F(RenderTest, AsksWhichRanchWhenThereAreSeveral) {
 }
 
 TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
-  EXPECT_EQ(WEXITSTATUS(Render("--bag " + Path("none.bag")).code), 2);
+  const Result none = Render("--bag " + Path("none.bag"));
+  EXPECT_EQ(WEXITSTATUS(none.code), 2);
+  EXPECT_EQ(none.output, "render: " + Path("none.bag") + ": there is no such file\n");
   EXPECT_EQ(Render("--bag " + Path("")).output,
             "render: " + Path("") + ": damaged or no bag: no regular file\n");
   const std::string bag = MakeBag({"/aquafarm/"});
@@ -192,12 +194,13 @@ TEST_F(RenderTest, AFilmShowsAWholeEpisode) {
 
 TEST_F(RenderTest, SaysWhatTheBagLacks) {
   const std::string bag = Path("gap.bag");
-  const auto write = [&](bool with_spec, const char* version) {
+  using Steps = std::vector<std::uint64_t>;
+  const auto write = [&](bool with_spec, const char* version, const Steps& steps = {0, 1, 4, 5}) {
     rosbag::Bag out(bag, rosbag::bagmode::Write);
     auto spec = test::MakeSpec();
     spec.version = version;
     if (with_spec) out.write("/aquafarm/spec", ros::Time(1), spec);
-    for (const std::uint64_t step : {0U, 1U, 4U, 5U}) {
+    for (const std::uint64_t step : steps) {
       auto state = test::MakeState();
       state.step = step;
       state.terminated = step == 5;
@@ -208,15 +211,50 @@ TEST_F(RenderTest, SaysWhatTheBagLacks) {
   Result result = Render(bag + " --end -o " + Path("x.png"));
   EXPECT_EQ(result.code, 0) << result.output;
   EXPECT_EQ(result.output, "render: " + bag + ": 2 steps are missing; 'verify' says which\n");
+  result = Render(bag + " --step 4 --step 2 -o " + Path("z.png"));
+  EXPECT_EQ(WEXITSTATUS(result.code), 2);
+  EXPECT_EQ(result.output, "render: " + bag +
+                               ": no step 2; episode 12 has steps 1 and 4 around it; 'verify' "
+                               "tells more\n");
+  write(true, aquafarm::kVersion, {2, 3, 5});
+  EXPECT_EQ(Render(bag + " -o " + Path("z.png")).output,
+            "render: " + bag + ": no step 0; episode 12 begins with step 2; 'verify' tells more\n");
+  EXPECT_EQ(Render(bag + " --end -o " + Path("x.png")).output,
+            "render: " + bag + ": 1 step is missing; 'verify' says which\n");
   write(true, "9.9.9");
   result = Render(bag + " -o " + Path("x.png"));
   EXPECT_EQ(result.code, 0);
   EXPECT_NE(result.output.find("recorded by version 9.9.9, this is "), std::string::npos);
+  write(true, "");
+  result = Render(bag + " -o " + Path("x.png"));
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.output.find(": recorded by an unnamed version, this is "), std::string::npos);
   write(false, "");
   result = Render(bag + " -o " + Path("y.png"));
   EXPECT_NE(result.output.find("no topic spec, so nothing says what was played; record spec and"),
             std::string::npos)
       << result.output;
+}
+
+TEST_F(RenderTest, ASpecThatCannotBeDrawnHasItsLineWithTheBag) {
+  const std::string bag = Path("odd.bag");
+  const auto output_with = [&](const auto& spec) {
+    {
+      rosbag::Bag out(bag, rosbag::bagmode::Write);
+      out.write("/aquafarm/spec", ros::Time(1), spec);
+      out.write("/aquafarm/state", ros::Time(2), test::MakeState());
+    }
+    const Result result = Render(bag + " -o " + Path("x.png"));
+    EXPECT_EQ(WEXITSTATUS(result.code), 2);
+    return result.output;
+  };
+  auto spec = test::MakeSpec();
+  spec.width = -1;
+  EXPECT_EQ(output_with(spec), "render: " + bag + ": spec.width: got -1, expected [1, 4096]\n");
+  EXPECT_EQ(output_with(test::MakeChoice()),
+            "render: " + bag +
+                ": topic /aquafarm/spec: got type aquafarm_msgs/PolicyChoice, expected "
+                "aquafarm_msgs/FarmSpec; record spec and state, as record.launch does\n");
 }
 
 TEST_F(RenderTest, AFilmMayLeaveStepsOut) {

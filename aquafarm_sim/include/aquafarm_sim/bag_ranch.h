@@ -36,7 +36,7 @@ inline std::string FindRanch(const rosbag::Bag& bag, const std::string& path,
   if (wanted.empty() && found.size() == 1) return *found.begin();
   std::string all;
   for (const std::string& one : found) all += (all.empty() ? "" : ", ") + one;
-  throw aquafarm::InputError(path + (found.empty() ? kNoSpec
+  throw aquafarm::InputError(path + (found.empty() ? NoSpec(bag)
                                      : wanted.empty()
                                          ? ": several ranches, choose one with --ns: " + all
                                          : ": no ranch " + wanted + ", there is: " + all));

@@ -245,11 +245,15 @@ inline void CheckChunkInfo(const BagRecords& info, const Connections& connection
 /// Looks through a bag for what its index and its content do not agree in; bags without an index,
 /// and what is none of version 2.0, are left to rosbag, which says so.
 /// @throws Damage or rosbag::BagException when it is damaged
-/// @throws aquafarm::InputError when it is encrypted
+/// @throws aquafarm::InputError when it is encrypted, or there is none
 inline void CheckStructure(const std::string& path) {
   static constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
   std::error_code ignored;
-  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored)) {
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    throw aquafarm::InputError(path + ": there is no such file");
+  }
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     throw rosbag::BagIOException("no regular file");  // opening another kind may wait forever
   }
   std::ifstream readable(path, std::ios::binary | std::ios::ate);

@@ -4,6 +4,7 @@
 /// How bags are opened, and what is said of those that cannot be read; in a header alone, for
 /// agents and viewers link no library of this package but the core.
 
+#include <aquafarm_msgs/FarmSpec.h>
 #include <ros/exception.h>
 #include <ros/message_traits.h>
 #include <rosbag/bag.h>
@@ -24,13 +25,41 @@
 
 #include "aquafarm/check.h"
 #include "aquafarm_sim/bag_structure.h"
+#include "aquafarm_sim/names.h"
 
 namespace aquafarm_sim {
 
-/// What is said of a bag without a spec, behind its name.
-inline const std::string kNoSpec{
-    ": no topic spec, so nothing says what was played; record spec and state, as record.launch "
-    "does"};
+/// What is said of a bag without a spec, behind its name: that there is none, or of what type.
+inline std::string NoSpec(const rosbag::Bag& bag) {
+  const std::string type = ros::message_traits::datatype<aquafarm_msgs::FarmSpec>();
+  const std::string name = std::string("/") + names::kSpec;
+  const std::string way_out = "; record spec and state, as record.launch does";
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
+    const std::string topic = "/" + connection->topic;  // bags also hold names without a slash
+    if (connection->datatype == type || topic.size() < name.size()) continue;
+    if (topic.compare(topic.size() - name.size(), name.size(), name) != 0) continue;
+    return ": topic " + connection->topic + ": got type " + connection->datatype + ", expected " +
+           type + way_out;
+  }
+  return ": no topic spec, so nothing says what was played" + way_out;
+}
+
+/// Who recorded a bag, by the version that its spec has.
+inline std::string RecordedBy(const std::string& version) {
+  return version.empty() ? "recorded by an unnamed version" : "recorded by version " + version;
+}
+
+/// Does what a bag's content may be at fault for.
+/// @throws aquafarm::InputError with the bag's path before what the work threw
+template <typename Work>
+auto NamingBag(const std::string& path, const Work& work) -> decltype(work()) {
+  try {
+    return work();
+  } catch (const aquafarm::InputError& error) {
+    throw aquafarm::InputError(path + ": " + error.what());
+  }
+}
 
 namespace internal {
 

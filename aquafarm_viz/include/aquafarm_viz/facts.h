@@ -33,6 +33,9 @@ std::string Rate(double value);
 /// With its sign, one decimal.
 std::string Signed(double value);
 
+/// "2 steps are missing; 'verify' says which".
+std::string MissingSteps(std::uint64_t count);
+
 /// The reward terms of the last step by name, each summed over ships.
 std::array<std::pair<const char*, float>, 7> RewardTermsOf(const aquafarm_msgs::FarmState& state);
 

@@ -92,12 +92,14 @@ def end_all(children):
 def measure_agents(name, policy, scenario, arguments):
     """Starts a farm and its agents, measures and ends them."""
     space = f"/bench_agents_{name}_{socket.gethostname().replace('-', '_')}"
-    children = [start(program("aquafarm_sim", "sim_node"), f"__ns:={space}", "__name:=sim",
-                      "_publish_clock:=false", f"_scenario:={scenario}")]
-    children += [start(program("aquafarm_agents", "policy_node"), f"__ns:={space}",
-                       f"__name:=agent_{ship}", "_mode:=act", f"_policy:={policy}",
-                       f"_ship:={ship}") for ship in range(arguments.ships)]
+    children = []
     try:
+        children.append(start(program("aquafarm_sim", "sim_node"), f"__ns:={space}", "__name:=sim",
+                              "_publish_clock:=false", f"_scenario:={scenario}"))
+        for ship in range(arguments.ships):
+            children.append(start(program("aquafarm_agents", "policy_node"), f"__ns:={space}",
+                                  f"__name:=agent_{ship}", "_mode:=act", f"_policy:={policy}",
+                                  f"_ship:={ship}"))
         get_state = rospy.ServiceProxy(f"{space}/get_state", GetState, persistent=True)
         get_state.wait_for_service(LIMIT_S)
         rates = measure(get_state, arguments.rounds, arguments.round_s)

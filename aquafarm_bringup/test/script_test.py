@@ -127,7 +127,13 @@ class ScriptTest(unittest.TestCase):
             (ws / "src" / "aquafarm").symlink_to(copy.parent)
             (ws / "build" / "CMakeCache.txt").write_text(
                 f"CMAKE_BUILD_TYPE:STRING=Release\nCMAKE_HOME_DIRECTORY:INTERNAL={ws / 'src'}\n")
-            with open(ws / "lock", "w") as lock:
+            program = ws / "devel/lib/aquafarm_agents/bag_policy"
+            program.parent.mkdir(parents=True)
+            program.write_text("#!/bin/sh\necho asked\n")
+            program.chmod(0o755)
+            (ws / "devel/setup.bash").touch()
+            lock = os.open(ws, os.O_RDONLY)
+            try:
                 fcntl.flock(lock, fcntl.LOCK_EX)
                 second = subprocess.Popen(["bash", copy, "ask", "--help"], text=True,
                                           env=dict(os.environ, AQUAFARM_WS=str(ws)),
@@ -135,7 +141,11 @@ class ScriptTest(unittest.TestCase):
                 self.addCleanup(second.kill)
                 self.assertIn("something else is building in", second.stdout.readline())
                 (ws / "built").touch()  # what the first one does at its end
+            finally:
+                os.close(lock)
             words, _ = second.communicate(timeout=LIMIT_S)
+            self.assertEqual(0, second.returncode, words)
+            self.assertTrue(words.endswith("asked\n"), words)
             self.assertNotIn("building in", words)
 
     def test_a_workspace_of_somebody_else_is_left_alone(self):

@@ -42,7 +42,7 @@ std::string WhyNoBestMoves(const Scenario& scenario) {
 std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy& policy,
                                 const std::atomic<bool>* stop) {
   const auto scenario = std::make_shared<const Scenario>(farm.scenario());
-  if (!WhyNoBestMoves(*scenario).empty()) return {};
+  if (!WhyNoBestMoves(*scenario).empty() || !farm.ships()[0].in_play) return {};
   const std::vector<Cell> cells = FreeCells(farm);
   const std::string state = farm.Save();
   std::vector<BestMove> moves;

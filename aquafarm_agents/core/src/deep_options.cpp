@@ -45,8 +45,13 @@ void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
     options.sequence = 1;
     options.burn_in = 0;
   }
-  ReadWhole(reader, "sequence", 1, is_tuple ? 1 : 1000, options.sequence);
-  ReadWhole(reader, "burn_in", 0, is_tuple ? 0 : 1000, options.burn_in);
+  ReadWhole(reader, "sequence", 1, 1000, options.sequence);
+  ReadWhole(reader, "burn_in", 0, 1000, options.burn_in);
+  if (is_tuple && (options.sequence != 1 || options.burn_in != 0)) {
+    throw InputError("replayed: got paper_tuple with sequence=" + std::to_string(options.sequence) +
+                     " burn_in=" + std::to_string(options.burn_in) +
+                     ", expected 1 and 0, or replayed=sequences");
+  }
   // A return ends where its sequence does.
   if (options.n_step > options.sequence) {
     throw InputError("n_step: got " + std::to_string(options.n_step) +

@@ -35,7 +35,8 @@ class GreedyDqnPolicy final : public Policy {
   }
   std::uint8_t encodings() const override { return EncodingOf(options_.network); }
   void Begin(std::uint64_t, std::int32_t) override {}
-  /// Rows before the first agent in play and after the last get action 0 unlooked at.
+  /// An agent who is done gets action 0 and value 0; the network sees the rows from the first to
+  /// the last who is in play.
   void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
     const auto is_in_play = [](std::uint8_t flag) { return flag != 0; };
     const auto& flags = results.in_play;
@@ -53,6 +54,7 @@ class GreedyDqnPolicy final : public Policy {
             .cpu();
     const float* row = values.data_ptr<float>();
     for (std::size_t i = first; i < end; ++i, row += kActionCount, seen += size_) {
+      if (flags[i] == 0) continue;
       const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
       actions[i] = best.action;
       values_[i] = best.value;

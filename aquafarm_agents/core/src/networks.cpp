@@ -96,6 +96,7 @@ void PrepareTorch(std::int32_t threads) {
     const auto openblas = reinterpret_cast<Config>(dlsym(RTLD_DEFAULT, "openblas_get_config"));
     if (openblas != nullptr) network_libraries += std::string(", ") + openblas();
     if (HasFastBlas()) return;
+    network_libraries += ", reference BLAS";
     torch_warning =
         "libblas.so.3 is the reference BLAS, some ten times slower than OpenBLAS; install "
         "libopenblas0-pthread";

@@ -189,7 +189,7 @@ TEST(RecurrentDqn, ReplaysThePapersTuplesByName) {
   }
   EXPECT_CONTAINS(
       MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=paper_tuple sequence=8"); }),
-      "sequence: got 8, expected [1, 1]");
+      "paper_tuple with sequence=8 burn_in=0, expected 1 and 0, or replayed=sequences");
   EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=tuples"); }),
                   "replayed: got 'tuples', expected one of: sequences, paper_tuple");
 }

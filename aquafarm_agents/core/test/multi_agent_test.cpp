@@ -257,6 +257,32 @@ TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
   }
 }
 
+TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
+  Scenario scenario = TwoShips();
+  scenario.ships.count = 3;
+  LocalEnvironment environment(Share(scenario), {1, kFeaturesBit, false, 1});
+  const auto learner = FindAlgorithm("dqn").make(environment.spec(), 1, "hidden=8");
+  Checkpoint checkpoint;
+  checkpoint.algorithm = "dqn";
+  checkpoint.options = learner->options();
+  checkpoint.spec = environment.spec();
+  learner->SavePolicy(checkpoint);
+  const auto policy = FindAlgorithm("dqn").make_policy(checkpoint, environment.spec());
+  Results results = environment.Reset(1, 0);
+  std::vector<std::uint8_t> actions;
+  policy->Act(results, actions);
+  const std::vector<float> values = policy->values();
+  for (std::size_t done = 0; done < 3; ++done) {
+    results.in_play = {1, 1, 1};
+    results.in_play[done] = 0;
+    policy->Act(results, actions);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(policy->values()[i], i == done ? 0.0F : values[i], 1e-4F) << done << ' ' << i;
+    }
+    EXPECT_EQ(actions[done], 0) << done;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Saved,
                          testing::Values("dqn", "lstm_dqn", "independent_dqn",
                                          "independent_lstm_dqn", "vdn", "maddpg"),

@@ -54,24 +54,25 @@ struct Header {
     }
     Refuse(key, ", expected a number in [" + Format(min) + ", " + Format(max) + "]", place);
   }
-  /// The centre of the first of `count` cells along an axis, by one key or the other. In degrees
-  /// all cells are within `most` of 0.
-  double First(const std::string& center, const std::string& corner, Eigen::Index count,
-               double most, const AsciiGrid& grid, const HazardPlace& place) const {
-    const bool centered = Has(center);
-    const std::string& key = centered ? center : corner;
+  /// The centre of the first cell along an axis, by one key or the other.
+  double First(const std::string& center, const std::string& corner, double cell_size,
+               const HazardPlace& place) const {
     constexpr double kFar = 1.0e9;
-    const double first = Get(key, -kFar, kFar, place);
-    constexpr double kParts = 1.0e6;  // of a degree, for sums that are not exact
-    const double span = static_cast<double>(centered ? count - 1 : count) * grid.cell_size;
-    const double last = std::round((first + span) * kParts) / kParts;
-    if (grid.IsGeographic() && (first < -most || last > most)) {
-      Refuse(key,
-             " and " + Format(last) + " at the other end, expected degrees in [" + Format(-most) +
-                 ", " + Format(most) + "], as CELLSIZE is below 1",
-             place);
-    }
-    return centered ? first : first + grid.cell_size / 2.0;
+    if (Has(center)) return Get(center, -kFar, kFar, place);
+    return Get(corner, -kFar, kFar, place) + cell_size / 2.0;
+  }
+  /// The centres of `count` cells from `first` on lie within `most` degrees of 0, but for the half
+  /// cell by which grids with a node on the edge reach over it.
+  void NeedDegrees(const std::string& center, const std::string& corner, double first,
+                   Eigen::Index count, double most, const AsciiGrid& grid,
+                   const HazardPlace& place) const {
+    const double last = first + static_cast<double>(count - 1) * grid.cell_size;
+    const double limit = most + grid.cell_size * 0.501;
+    if (first >= -limit && last <= limit) return;
+    Refuse(Has(center) ? center : corner,
+           ", cells from " + Format(first) + " to " + Format(last) + ", expected degrees in [" +
+               Format(-most) + ", " + Format(most) + "], as CELLSIZE is below 1",
+           place);
   }
 };
 
@@ -115,7 +116,10 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
 
 }  // namespace
 
-bool AsciiGrid::IsGeographic() const { return cell_size < 1.0; }
+// Further off than a slip of degrees would be: metres of a projection, with cells below one.
+bool AsciiGrid::IsGeographic() const {
+  return cell_size < 1.0 && std::abs(west) <= 720.0 && std::abs(south) <= 180.0;
+}
 
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name) {
   std::vector<std::string> unused;
@@ -140,8 +144,12 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
   const Eigen::Index rows = side("NROWS");
   AsciiGrid grid;
   grid.cell_size = header.Get("CELLSIZE", 1.0e-6, 1.0e6, place);
-  grid.west = header.First("XLLCENTER", "XLLCORNER", columns, 360.0, grid, place);
-  grid.south = header.First("YLLCENTER", "YLLCORNER", rows, 90.0, grid, place);
+  grid.west = header.First("XLLCENTER", "XLLCORNER", grid.cell_size, place);
+  grid.south = header.First("YLLCENTER", "YLLCORNER", grid.cell_size, place);
+  if (grid.IsGeographic()) {
+    header.NeedDegrees("XLLCENTER", "XLLCORNER", grid.west, columns, 360.0, grid, place);
+    header.NeedDegrees("YLLCENTER", "YLLCORNER", grid.south, rows, 90.0, grid, place);
+  }
   const double nodata =
       header.Has("NODATA_VALUE") ? header.entries["NODATA_VALUE"].number : -9999.0;
   const auto wanted = static_cast<std::size_t>(columns * rows);

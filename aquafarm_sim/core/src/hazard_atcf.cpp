@@ -155,7 +155,11 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
     if (Trim(line).empty()) continue;
     SplitFields(line, fields);
     widest = std::max(widest, fields.size());
-    if (fields.size() < kThroughMaxWind) narrow.emplace_back(place.line, fields.size());
+    // Some rows end in the comma behind the radii by right.
+    const bool ends_in_radii = fields.size() == kThroughRadii && fields.back().empty();
+    if (fields.size() < kThroughMaxWind && !ends_in_radii) {
+      narrow.emplace_back(place.line, fields.size());
+    }
     if (fields.size() <= kType) {
       place.Refuse("got " + std::to_string(fields.size()) + " fields, expected at least " +
                    std::to_string(kType + 1) + " of an ATCF row, from basin to type");

@@ -113,14 +113,20 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
   return fix;
 }
 
-// The first point of a forecast may be where the storm is at its issue.
-void CheckLead(std::int64_t time, std::int64_t issued, const std::string& path,
-               HazardPlace& place) {
+// Whether a forecast's point is after the observed one that it hangs on, which for some agencies is
+// later than their own issue. @throws InputError when it is too far ahead for a forecast
+bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
+             HazardPlace& place) {
   constexpr std::int64_t kMostDays = 15;
-  if (time >= issued && time - issued <= kMostDays * 86400) return;
-  place.RefuseValue(path, "got " + FormatTime(time) + ", expected a forecast's within " +
-                              std::to_string(kMostDays) + " days after its issue at " +
-                              FormatTime(issued));
+  if (time - observed > kMostDays * 86400) {
+    place.RefuseValue(path, "got " + FormatTime(time) + ", expected a forecast's within " +
+                                std::to_string(kMostDays) + " days after " + FormatTime(observed));
+  }
+  if (time < observed) {
+    place.WarnValue(path, "got " + FormatTime(time) + ", before " + FormatTime(observed) +
+                              ", whose forecast it is; left out");
+  }
+  return time >= observed;
 }
 
 void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& track,
@@ -136,8 +142,9 @@ void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& tr
     for (std::size_t k = 0; points != nullptr && k < points->size(); ++k) {
       const JsonObject entry((*points)[k], At(Join(one.path(), one.KeyOf(keys)), k), place);
       HazardFix fix = ReadPoint(entry, place);
-      CheckLead(fix.time, issued, Join(entry.path(), "time"), place);
-      AppendFix(std::move(fix), forecast.fixes, entry.Here());
+      if (IsAhead(fix.time, issued, Join(entry.path(), "time"), place)) {
+        AppendFix(std::move(fix), forecast.fixes, entry.Here());
+      }
     }
     if (!forecast.fixes.empty() && forecast.fixes.back().time > issued) {
       track.forecasts.push_back(std::move(forecast));

@@ -139,7 +139,8 @@ std::string ReadTextFile(const std::string& path) {
   std::string text(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
   file.seekg(0);
   if (size < 0 || !file.read(text.data(), static_cast<std::streamsize>(text.size()))) {
-    throw InputError(path + ": cannot read: " + std::strerror(errno));
+    throw InputError(path +
+                     ": cannot read: " + (errno != 0 ? std::strerror(errno) : "ended early"));
   }
   return text;
 }

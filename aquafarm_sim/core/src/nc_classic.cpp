@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace aquafarm::internal {
@@ -12,7 +13,8 @@ namespace {
 // Bytes of a value by type, from NC_BYTE = 1 to NC_UINT64 = 11.
 constexpr std::array<std::uint64_t, 12> kBytesOfType{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
-// The words of a header, most significant byte first. Once the file has ended all are 0.
+// The words of a header, most significant byte first. Once the file has ended, or a word made no
+// sense, all are 0.
 class HeaderReader {
  public:
   explicit HeaderReader(std::istream& file) : file_(file) {
@@ -20,43 +22,51 @@ class HeaderReader {
     version_ = file.get();
   }
   bool good() const { return file_.good(); }
+  bool ended() const { return ended_; }
   std::uint64_t Tag() { return Word(4); }
   std::uint64_t Count() { return Word(version_ == 5 ? 8 : 4); }
   std::uint64_t Offset() { return Word(version_ == 1 ? 4 : 8); }
+  /// At most so many as no file of use exceeds.
+  std::uint64_t FewCount() { return AtMost(Count(), std::uint64_t{1} << 16U); }
   /// Of a list, behind its tag.
   std::uint64_t ListCount() {
     Tag();
-    return Count();
+    return FewCount();
   }
-  std::uint64_t BytesOfType() {
-    const std::uint64_t type = Tag();
-    return type < kBytesOfType.size() ? kBytesOfType[type] : 0;
-  }
+  std::uint64_t BytesOfType() { return kBytesOfType[AtMost(Tag(), kBytesOfType.size() - 1)]; }
   void SkipName() { Skip(Count()); }
   void SkipAttributes() {
     for (std::uint64_t left = ListCount(); left > 0 && good(); --left) {
       SkipName();
       const std::uint64_t bytes = BytesOfType();
-      Skip(Count() * bytes);
+      Skip(AtMost(Count(), kMostBytes) * bytes);
     }
   }
 
  private:
+  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40U;
+
+  std::uint64_t AtMost(std::uint64_t value, std::uint64_t most) {
+    if (value <= most) return value;
+    file_.setstate(std::ios::failbit);
+    return 0;
+  }
   std::uint64_t Word(int bytes) {
     std::uint64_t word = 0;
     for (int i = 0; i < bytes; ++i) {
       word = word << 8U | static_cast<unsigned char>(file_.get());
     }
+    ended_ = ended_ || file_.eof();
     return good() ? word : 0;
   }
   // Names and values are filled up to four bytes.
   void Skip(std::uint64_t bytes) {
-    constexpr std::uint64_t kMost = std::uint64_t{1} << 40U;
-    if (bytes > kMost) return file_.setstate(std::ios::failbit);
-    file_.seekg(static_cast<std::streamoff>((bytes + 3) / 4 * 4), std::ios::cur);
+    const std::uint64_t filled = (AtMost(bytes, kMostBytes * 8) + 3) / 4 * 4;
+    if (good()) file_.seekg(static_cast<std::streamoff>(filled), std::ios::cur);
   }
   std::istream& file_;
   int version_{};
+  bool ended_{};
 };
 
 struct Variable {
@@ -68,7 +78,7 @@ struct Variable {
 Variable ReadVariable(HeaderReader& header, const std::vector<double>& dimensions) {
   Variable variable;
   header.SkipName();
-  const std::uint64_t rank = header.Count();
+  const std::uint64_t rank = header.FewCount();
   for (std::uint64_t i = 0; i < rank && header.good(); ++i) {
     const std::uint64_t dimension = header.Count();
     const double length = dimension < dimensions.size() ? dimensions[dimension] : 0.0;
@@ -100,6 +110,7 @@ std::optional<double> EndOfClassicValues(std::istream& file) {
   for (std::uint64_t left = header.ListCount(); left > 0 && header.good(); --left) {
     variables.push_back(ReadVariable(header, dimensions));
   }
+  if (header.ended()) return std::numeric_limits<double>::infinity();
   if (!header.good()) return std::nullopt;
   double record_bytes = 0.0;
   int with_records = 0;

@@ -3,6 +3,7 @@
 
 #include <netcdf.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -61,9 +62,9 @@ void NcFile::CheckLength() const {
   const std::optional<double> end = EndOfClassicValues(file);
   std::error_code error;
   const auto size = static_cast<double>(std::filesystem::file_size(path_, error));
-  if (error || (end && size >= *end)) return;
+  if (error || !end || size >= *end) return;  // libnetcdf says what else is wrong
   Refuse("is cut off: got " + Format(size) + " bytes, " +
-         (end ? "expected " + Format(*end) : "which end within its header"));
+         (std::isfinite(*end) ? "expected " + Format(*end) : "which end within its header"));
 }
 
 std::string NcFile::Name(int variable) const {

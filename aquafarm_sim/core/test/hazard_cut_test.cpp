@@ -112,6 +112,7 @@ TEST(Atcf, ARowThatEndsBeforeTheRadiusOfItsGreatestWindIsSaid) {
   const std::string rest = "1006,  200,  45,";
   EXPECT_EQ(Warnings(row + rest + "\n" + next + rest + "\n"), "");
   EXPECT_EQ(Warnings(row + "\n" + next + "\n"), "") << "all end there";
+  EXPECT_EQ(Warnings(row + rest + "\n" + next + "\n"), "") << "some rows are so by right";
   EXPECT_EQ(Warnings(row + rest + "\n" + next + "1006,  200,  4\n"),
             "x:2: got 20 fields, the file's others have up to 21: was it cut off?\n");
 }

@@ -345,16 +345,18 @@ TEST(AsciiGrids, InDegreesLieOnTheGlobe) {
   const std::string longitude = ", expected degrees in [-360, 360], as CELLSIZE is below 1";
   const std::vector<std::array<std::string, 3>> cases{
       {"yllcorner 30.0", "yllcorner 89.98", "in degrees"},
+      {"yllcorner 30.0", "yllcorner 89.99", "in degrees"},  // a node on the pole
+      {"yllcorner 30.0", "yllcorner -90.005", "in degrees"},
       {"yllcorner 30.0", "yllcorner 95",
-       "x:4: YLLCORNER: got 95 and 95.02 at the other end" + latitude},
+       "x:4: YLLCORNER: got 95, cells from 95.005 to 95.015" + latitude},
       {"yllcorner 30.0", "yllcorner -90.5",
-       "x:4: YLLCORNER: got -90.5 and -90.48 at the other end" + latitude},
-      {"yllcorner 30.0", "yllcorner 89.99",
-       "x:4: YLLCORNER: got 89.99 and 90.01 at the other end" + latitude},
-      {"yllcorner 30.0", "yllcenter 89.99", "in degrees"},
+       "x:4: YLLCORNER: got -90.5, cells from -90.495 to -90.485" + latitude},
+      {"yllcorner 30.0", "yllcenter 91",
+       "x:4: YLLCENTER: got 91, cells from 91 to 91.01" + latitude},
+      {"yllcorner 30.0", "yllcorner 3400000", "in metres"},
       {"xllcorner 122.0", "xllcorner -180", "in degrees"},
       {"xllcorner 122.0", "xllcorner 361",
-       "x:3: XLLCORNER: got 361 and 361.03 at the other end" + longitude},
+       "x:3: XLLCORNER: got 361, cells from 361.005 to 361.025" + longitude},
       {"cellsize 0.01", "cellsize 1", "in metres"},
   };
   for (const auto& [from, to, words] : cases) EXPECT_EQ(read(from, to), words) << to;

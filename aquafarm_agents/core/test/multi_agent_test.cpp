@@ -177,6 +177,16 @@ TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
 
 class Saved : public testing::TestWithParam<std::string> {};
 
+Checkpoint PolicyOf(const Learner& learner, const std::string& algorithm,
+                    const EnvironmentSpec& spec) {
+  Checkpoint checkpoint;
+  checkpoint.algorithm = algorithm;
+  checkpoint.options = learner.options();
+  checkpoint.spec = spec;
+  learner.SavePolicy(checkpoint);
+  return checkpoint;
+}
+
 TEST_P(Saved, LearnersOfSeveralAgentsGoOnBitForBit) {
   const std::string options = "hidden=8 batch=8 start=50 replay=500";
   const Algorithm& entry = FindAlgorithm(GetParam());
@@ -212,11 +222,7 @@ TEST_P(Saved, PoliciesForTwoShipsAreRefusedByAFarmWithFour) {
   scenario.name = "two";
   LocalEnvironment two(Share(scenario), {1, kFeaturesBit, false, 1});
   const auto learner = entry.make(two.spec(), 1, "hidden=8");
-  Checkpoint checkpoint;
-  checkpoint.algorithm = GetParam();
-  checkpoint.options = learner->options();
-  checkpoint.spec = two.spec();
-  learner->SavePolicy(checkpoint);
+  const Checkpoint checkpoint = PolicyOf(*learner, GetParam(), two.spec());
   EXPECT_NE(entry.make_policy(checkpoint, two.spec()), nullptr);
   scenario.name = "four";
   scenario.ships.count = 4;
@@ -233,11 +239,7 @@ TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
   LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});
   const EnvironmentSpec& spec = environment.spec();
   const auto learner = entry.make(spec, 1, "hidden=8");
-  Checkpoint checkpoint;
-  checkpoint.algorithm = GetParam();
-  checkpoint.options = learner->options();
-  checkpoint.spec = spec;
-  learner->SavePolicy(checkpoint);
+  const Checkpoint checkpoint = PolicyOf(*learner, GetParam(), spec);
   const auto both = entry.make_policy(checkpoint, spec);
   const auto own = entry.make_policy(checkpoint, spec);
   both->Begin(1, 1);
@@ -262,11 +264,7 @@ TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
   scenario.ships.count = 3;
   LocalEnvironment environment(Share(scenario), {1, kFeaturesBit, false, 1});
   const auto learner = FindAlgorithm("dqn").make(environment.spec(), 1, "hidden=8");
-  Checkpoint checkpoint;
-  checkpoint.algorithm = "dqn";
-  checkpoint.options = learner->options();
-  checkpoint.spec = environment.spec();
-  learner->SavePolicy(checkpoint);
+  const Checkpoint checkpoint = PolicyOf(*learner, "dqn", environment.spec());
   const auto policy = FindAlgorithm("dqn").make_policy(checkpoint, environment.spec());
   Results results = environment.Reset(1, 0);
   std::vector<std::uint8_t> actions;

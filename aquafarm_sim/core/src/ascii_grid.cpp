@@ -116,7 +116,6 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
 
 }  // namespace
 
-// Further off than a slip of degrees would be: metres of a projection, with cells below one.
 bool AsciiGrid::IsGeographic() const {
   return cell_size < 1.0 && std::abs(west) <= 720.0 && std::abs(south) <= 180.0;
 }

@@ -8,8 +8,8 @@
 namespace aquafarm::internal {
 
 /// Where the values of a netCDF file of a classic kind (CDF-1, 2 or 5) end [bytes], as its header
-/// says: what fills up the last variable may be missing behind. None: the file ends, or cannot be
-/// followed, before its header does. (NetCDF classic format specification)
+/// says: what fills up the last variable may be missing behind. Infinity: the file ends before its
+/// header does; none: the header makes no sense. (NetCDF classic format specification)
 std::optional<double> EndOfClassicValues(std::istream& file);
 
 }  // namespace aquafarm::internal

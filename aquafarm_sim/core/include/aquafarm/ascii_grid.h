@@ -16,7 +16,8 @@ struct AsciiGrid {
   double west{};      ///< of the centre of the south-west cell
   double south{};
   double cell_size{};
-  /// Whether places are degrees: cells are smaller than one. Else metres.
+  /// Whether places are degrees: cells are smaller than one and the corner is no further off than a
+  /// slip of degrees would be. Else metres.
   bool IsGeographic() const;
 };
 

@@ -216,10 +216,7 @@ def look_at_farm(options):
 
 def _require_alike(name, of_one):
     """Refuses to pool runs that learnt with other settings than their neighbours."""
-    kinds = set()
-    for run in of_one:
-        path = run["folder"] / "run.json"
-        kinds.add(json.loads(path.read_text())["options"] if path.exists() else "")
+    kinds = {run["training"].get("options", "") for run in of_one}
     if len(kinds) > 1:
         raise BadInput(f"{name}: its runs were made with different options ({'; '.join(kinds)}); "
                        "remove their folders or name another one")

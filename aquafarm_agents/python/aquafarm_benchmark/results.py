@@ -32,7 +32,8 @@ def read_curve(metrics):
 
 
 def read_run(folder):
-    """What one seed of one contestant came to; 'curve' is None when nothing was trained."""
+    """What one seed of one contestant came to; 'curve' is None and 'training', its run.json, is
+    empty when nothing was trained."""
     evaluation = json.loads((folder / "evaluation.json").read_text())
     metrics = folder / "metrics.csv"
     curve = read_curve(metrics) if metrics.exists() else None
@@ -40,8 +41,9 @@ def read_run(folder):
     run.update(seed=int(folder.name.rsplit("_", maxsplit=1)[-1]), folder=folder, curve=curve,
                convergence=None, settled=None, evaluation=evaluation)
     settings = folder / "run.json"
-    if settings.exists():
-        run["libraries"] = json.loads(settings.read_text()).get("libraries", "")
+    run["training"] = json.loads(settings.read_text()) if settings.exists() else {}
+    if run["training"]:
+        run["libraries"] = run["training"].get("libraries", "")
     if curve is not None:
         run["convergence"] = measures.convergence(curve["return"], curve["success"])
         run["settled"] = measures.convergence(curve["return"], curve["success"], measures.NOISE)
@@ -169,7 +171,7 @@ def write(folder, settings, rows, runs):
     write_atomically(folder / "runs.csv", "\n".join(lines) + "\n")
 
     everything = {"settings": settings, "table": rows,
-                  "runs": {name: [_without(run, "curve", "folder") for run in of_one]
+                  "runs": {name: [_without(run, "curve", "folder", "training") for run in of_one]
                            for name, of_one in runs.items()}}
     text = json.dumps(_without_nan(everything), indent=2, allow_nan=False)
     write_atomically(folder / "results.json", text + "\n")

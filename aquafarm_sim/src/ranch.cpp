@@ -283,21 +283,19 @@ void Ranch::StepPublishedFarm() {
     slot.answer = AnswerOf(static_cast<std::int32_t>(ship));
     slot.last = slot.pending;
     slot.pending.reset();
-    if (slot.reply == nullptr) continue;
-    *slot.reply = slot.answer;
+    if (slot.reply != nullptr) *slot.reply = slot.answer;
     slot.reply = nullptr;
-    slot.changed.notify_all();
   }
   Changed();
   if (farm.over() && listener_ != nullptr) {
     listener_->OnEpisodeEnd(ToMsg(farm.record(), 0, context_));
   }
+  for (const auto& slot : slots_) slot->changed.notify_all();  // last: whoever wakes needs the lock
 }
 
 // Those who wait are answered STALE.
 void Ranch::DropPending() {
   for (const auto& slot : slots_) {
-    if (!slot->pending) continue;
     slot->pending.reset();
     slot->reply = nullptr;
     slot->changed.notify_all();

@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "aquafarm/agents/replay.h"
 #include "aquafarm/check.h"
 #include "deep_policy.h"
 #include "moment_sampler.h"
+#include "row_network.h"
 #include "value_optimizer.h"
 
 namespace aquafarm::agents {
@@ -32,6 +35,9 @@ class GreedyDqnPolicy final : public Policy {
         network_(MakeNetwork(spec, options, 0)),
         parameters_(*network_, device_) {
     parameters_.FromVector(weights);
+    if (options.network == NetworkKind::kMlp && device_.is_cpu()) {
+      row_network_.emplace(size_, options, weights);
+    }
   }
   std::uint8_t encodings() const override { return EncodingOf(options_.network); }
   void Begin(std::uint64_t, std::int32_t) override {}
@@ -47,12 +53,8 @@ class GreedyDqnPolicy final : public Policy {
     actions.assign(results.legal.size(), 0);
     values_.assign(results.legal.size(), 0.0F);
     if (first >= end) return;
-    const torch::InferenceMode inference;
     const Scalar* seen = Sight<Scalar>::Of(results) + first * size_;
-    const torch::Tensor values =
-        network_->Forward(Sight<Scalar>::ToInput(seen, WithCount(end - first, shape_), device_))
-            .cpu();
-    const float* row = values.data_ptr<float>();
+    const float* row = Values(seen, end - first);
     for (std::size_t i = first; i < end; ++i, row += kActionCount, seen += size_) {
       if (flags[i] == 0) continue;
       const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
@@ -62,12 +64,25 @@ class GreedyDqnPolicy final : public Policy {
   }
 
  private:
+  /// @returns [count, kActionCount], until the next call
+  const float* Values(const Scalar* seen, std::size_t count) {
+    if constexpr (std::is_same_v<Scalar, float>) {
+      if (count == 1 && row_network_) return row_network_->Forward(seen);
+    }
+    const torch::InferenceMode inference;
+    computed_ =
+        network_->Forward(Sight<Scalar>::ToInput(seen, WithCount(count, shape_), device_)).cpu();
+    return computed_.template data_ptr<float>();
+  }
+
   torch::Device device_;
   std::vector<std::int64_t> shape_;
   std::size_t size_;  // of one observation
   DeepOptions options_;
   std::shared_ptr<QNetwork> network_;
   FlatParameters parameters_;
+  torch::Tensor computed_;
+  std::optional<RowNetwork> row_network_;  // of features on the CPU
 };
 
 /// A minibatch of B samples on its way from the replay to the network; a sample is one agent's

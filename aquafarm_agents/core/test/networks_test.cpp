@@ -11,6 +11,7 @@
 #include "aquafarm/rng.h"
 #include "deep_policy.h"
 #include "flat_adam.h"
+#include "row_network.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -52,6 +53,29 @@ void ExpectGradientsAreDifferences(torch::nn::Module& network, Loss loss) {
       weights[i] = weight;
       EXPECT_NEAR(gradient[i], (above - below) / (2.0 * kStep), 1e-6) << item.key() << ' ' << i;
     }
+  }
+}
+
+TEST(Networks, OneRowAloneHasTheValuesOfLibtorch) {
+  const torch::NoGradGuard no_grad;
+  const EnvironmentSpec spec = SmallSpec();
+  for (const bool dueling : {false, true}) {
+    DeepOptions options;
+    options.network = NetworkKind::kMlp;
+    options.hidden = 11;  // no multiple of a vector's width
+    options.dueling = dueling;
+    const auto network = MakeNetwork(spec, options, 3);
+    const std::vector<float> weights = FlatParameters(*network, torch::kCPU).ToVector();
+    RowNetwork row(static_cast<std::size_t>(spec.feature_count), options, weights);
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      const torch::Tensor seen = Noise({1, spec.feature_count}, i);
+      const torch::Tensor expected = network->Forward(seen);
+      const float* const values = row.Forward(seen.data_ptr<float>());
+      for (std::int64_t a = 0; a < expected.numel(); ++a) {
+        EXPECT_NEAR(expected.data_ptr<float>()[a], values[a], 1e-6F) << dueling << ' ' << i;
+      }
+    }
+    EXPECT_THROW(RowNetwork(4, options, weights), LogicError);
   }
 }
 

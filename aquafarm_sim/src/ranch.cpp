@@ -287,15 +287,14 @@ void Ranch::StepPublishedFarm() {
     slot.reply = nullptr;
   }
   Changed();
-  if (farm.over() && listener_ != nullptr) {
-    listener_->OnEpisodeEnd(ToMsg(farm.record(), 0, context_));
-  }
+  if (farm.over()) TellEnd(ToMsg(farm.record(), 0, context_));
   for (const auto& slot : slots_) slot->changed.notify_all();  // last: whoever wakes needs the lock
 }
 
 // Those who wait are answered STALE.
 void Ranch::DropPending() {
   for (const auto& slot : slots_) {
+    if (!slot->pending) continue;
     slot->pending.reset();
     slot->reply = nullptr;
     slot->changed.notify_all();
@@ -407,7 +406,21 @@ void Ranch::EpisodeBegan(bool by_joint_step) {
 void Ranch::Changed(bool by_joint_step) {
   changed_jointly_ = by_joint_step;
   ++version_;
-  if (listener_ != nullptr) listener_->OnChange(View());
+  Tell([this](RanchListener& listener) { listener.OnChange(View()); });
+}
+
+void Ranch::TellEnd(const aquafarm_msgs::EpisodeSummary& summary) {
+  Tell([&summary](RanchListener& listener) { listener.OnEpisodeEnd(summary); });
+}
+
+// What has happened stands, also where it cannot be told.
+void Ranch::Tell(const std::function<void(RanchListener&)>& telling) {
+  if (listener_ == nullptr) return;
+  try {
+    telling(*listener_);
+  } catch (const std::exception& error) {
+    counters_.untold = error.what();
+  }
 }
 
 RanchView Ranch::View() const {

@@ -80,6 +80,7 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
     return step_answer_;
   } catch (const std::exception& error) {
     ++turn_;  // some farms may have stepped
+    DropCommands();
     Answer(Outcome::INTERNAL_ERROR, error.what(), step_refusal_);
     return step_refusal_;
   }
@@ -195,7 +196,7 @@ void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
     if (result.reasons[i] == 0) continue;
     const auto farm = static_cast<std::int32_t>(i);
     result.finished.push_back(ToMsg(batch_->farm(farm).record(), farm, context_));
-    if (listener_ != nullptr) listener_->OnEpisodeEnd(result.finished.back());
+    TellEnd(result.finished.back());
   }
 }
 

@@ -243,6 +243,30 @@ TEST(Ranch, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
   ranch->SetRecorder(nullptr);
 }
 
+TEST(Ranch, AStepThatCannotBeToldStandsForAllShips) {
+  struct Deaf final : RanchListener {
+    void OnChange(const RanchView& view) override {
+      if (view.batch.farm(0).step() > 0) throw std::runtime_error("no memory");
+    }
+    void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary&) override {}
+  } deaf;
+  const auto ranch = MakeRanch(TwoShips());
+  ranch->SetListener(&deaf);
+  auto waiting = std::async(std::launch::async, [&] {
+    return ranch->Command({0, kNorth, 0, 0, 1});
+  });
+  std::this_thread::sleep_for(milliseconds(50));
+  const CommandResult last = ranch->Command({1, kHold, 0, 0, 1});
+  const CommandResult first = waiting.get();
+  EXPECT_TRUE(last.ok) << last.message;
+  EXPECT_TRUE(first.ok) << first.message;
+  EXPECT_EQ(1U, first.step);
+  EXPECT_EQ(last, ranch->Command({1, kHold, 0, 0, 1}));
+  EXPECT_EQ(1U, StateOf(*ranch).step);
+  EXPECT_EQ("no memory", ranch->counters().untold);
+  ranch->SetListener(nullptr);
+}
+
 TEST(Ranch, AResetReleasesThoseWhoWait) {
   const auto ranch = MakeRanch(TwoShips());
   auto waiting = std::async(std::launch::async, [&] {

@@ -3,8 +3,8 @@
 
 #include <utility>
 
-#include "aquafarm/agents/exploration.h"
 #include "aquafarm/check.h"
+#include "aquafarm/types.h"
 
 namespace aquafarm::agents {
 namespace {

@@ -254,6 +254,10 @@ TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
     both->Act(*all, actions);
     own->Act(share, own_actions);
     ASSERT_EQ(own_actions[1], actions[1]) << step;
+    ASSERT_EQ(own->values().size(), both->values().size());
+    if (!own->values().empty()) {
+      EXPECT_NEAR(own->values()[1], both->values()[1], 1e-4F) << step;
+    }
     actions[0] = static_cast<std::uint8_t>(step % kMoveCount);
     all = &environment.Step(actions);
   }
@@ -278,6 +282,14 @@ TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
       EXPECT_NEAR(policy->values()[i], i == done ? 0.0F : values[i], 1e-4F) << done << ' ' << i;
     }
     EXPECT_EQ(actions[done], 0) << done;
+  }
+  for (std::size_t left = 0; left < 3; ++left) {
+    results.in_play = {0, 0, 0};
+    results.in_play[left] = 1;
+    policy->Act(results, actions);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(policy->values()[i], i == left ? values[i] : 0.0F, 1e-4F) << left << ' ' << i;
+    }
   }
 }
 

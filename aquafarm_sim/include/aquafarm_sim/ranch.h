@@ -84,6 +84,7 @@ struct RanchCounters {
   std::vector<std::int32_t> absent;  ///< ships that lockstep has given up until they command again
   double joint_step_age_s{1e9};      ///< since the last joint step
   std::string fault;                 ///< why paced running paused itself; empty: it did not
+  std::string untold;                ///< why the listener last missed something; empty: it did not
 };
 
 /// The farms as they stand, seen while nothing moves.
@@ -235,6 +236,8 @@ class Ranch {
 
   void Advance();
   void Changed(bool by_joint_step = false);
+  void TellEnd(const aquafarm_msgs::EpisodeSummary& summary);
+  void Tell(const std::function<void(RanchListener&)>& telling);
   void EpisodeBegan(bool by_joint_step = false);
   RanchView View() const;
 

@@ -36,7 +36,7 @@ std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const Enviro
 /// What there is to warn of about the network library, told once, after a learner or a policy was
 /// made; one line for people, empty: nothing.
 std::string TakeTorchWarning();
-/// The libraries that networks count with here, such as "libtorch 1.13.1, OpenBLAS 0.3.21 …
+/// The libraries that networks learn with here, such as "libtorch 1.13.1, OpenBLAS 0.3.21 …
 /// SkylakeX": where they or the kernels differ, the last bits of a training do. Empty: no network
 /// was made.
 std::string NetworkLibraries();

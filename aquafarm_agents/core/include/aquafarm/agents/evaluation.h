@@ -38,7 +38,8 @@ struct Evaluation {
 };
 
 /// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). The result does not depend on the
-/// number of farms for a policy that uses no chance.
+/// number of farms for a policy that uses no chance, but for the rounding of a network, which may
+/// differ between numbers of rows.
 /// @param stop may be set by a signal handler; null: never
 /// @param on_progress is told now and then how many episodes are over
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,

@@ -61,6 +61,24 @@ class TrainLaunchTest(unittest.TestCase):
             for word in ("atlantis", "paper", "procedural", "red_tide", "zhoushan_infa_2021"):
                 self.assertIn(word, ranch.words())
 
+    def test_every_launch_with_a_farm_refuses_an_unknown_scenario(self):
+        for launch, *arguments in (("sim", "headless:=true"), ("record", "viz:=false"),
+                                   ("evaluate", "policy:=random", "viz:=false")):
+            with self.subTest(launch), Ranch(launch, "scenario:=atlantis", *arguments) as ranch:
+                self.assertEqual(ARGUMENT_REFUSED, ranch.exit_code(START_LIMIT_S), ranch.words())
+                for word in ("atlantis", "paper", "zhoushan_infa_2021"):
+                    self.assertIn(word, ranch.words())
+
+    def test_a_benchmark_is_launched_and_leaves_its_table(self):
+        output = self.run_dir.parent / "benchmark"
+        with Ranch("benchmark", "algorithms:=random,q_learning", "runs:=1", "episodes:=150",
+                   "evaluation_episodes:=5", f"output:={output}", "report:=none") as ranch:
+            self.assertEqual(0, ranch.exit_code(120), ranch.words())
+            self.assertIn(f"tables and figures are in {output}", ranch.words())
+        table = (output / "table.md").read_text(encoding="utf-8")
+        for name in ("RANDOM", "Q-learning", "*Q-learning, paper*"):
+            self.assertIn(name, table)
+
     def test_a_run_folder_that_cannot_be_made_ends_at_the_start(self):
         self.run_dir.parent.joinpath("file").write_text("in the way")
         self.run_dir = self.run_dir.parent / "file" / "run"

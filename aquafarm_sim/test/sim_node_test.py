@@ -62,6 +62,23 @@ class SimNodeTest(unittest.TestCase):
         self.assertEqual(first, again)
         self.assertEqual(2, state().step)
 
+    def test_a_repeated_pickup_and_drop_off_count_once(self):
+        call("ship_0/move", direction=NORTH)
+        call("ship_0/move", direction=NORTH)
+        first = call("ship_0/pickup", episode=0, step=2).result
+        self.assertEqual(Outcome.OK, first.code, first.message)
+        self.assertEqual(first, call("ship_0/pickup", episode=0, step=2).result)
+        self.assertEqual(3, state().step)
+        call("ship_0/move", direction=SOUTH)
+        call("ship_0/move", direction=SOUTH)
+        last = call("ship_0/drop_off", episode=0, step=5).result
+        self.assertEqual(FarmState.ALL_RETRIEVED, last.reason)
+        joint_return = state().joint_return
+        # The episode is over: a repeat is still answered as the first, and pays nothing more.
+        self.assertEqual(last, call("ship_0/drop_off", episode=0, step=5).result)
+        self.assertEqual(joint_return, state().joint_return)
+        self.assertEqual(6, state().step)
+
     def test_another_step_is_stale(self):
         call("ship_0/move", direction=NORTH)
         call("ship_0/move", direction=NORTH)

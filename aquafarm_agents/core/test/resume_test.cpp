@@ -47,6 +47,7 @@ class Resume : public FolderTest {
         << "metrics differ";
   }
 
+  /// @param run its name begins with that of its algorithm
   std::vector<std::string> Command(const std::string& run, bool resume) const {
     std::vector<std::string> command{AQUAFARM_TRAIN,
                                      "paper",
@@ -59,7 +60,7 @@ class Resume : public FolderTest {
                                      "--evaluate",
                                      "0",
                                      "--algorithm",
-                                     "q_learning",
+                                     run.substr(0, run.find('.')),
                                      "--checkpoint-period",
                                      "0.05",
                                      "--scenarios",
@@ -101,24 +102,29 @@ TEST_F(Resume, WorksForLimitsByEpisodes) {
 }
 
 TEST_F(Resume, KilledEqualsNeverStopped) {
-  Process whole(Command("whole", false), Output("whole"));
-  ASSERT_EQ(whole.Wait(), 0) << ReadFile(Output("whole"));
-  EXPECT_EQ(StopAfterACheckpoint("parts", false, SIGKILL), -SIGKILL);
-  EXPECT_EQ(StopAfterACheckpoint("parts", true, SIGKILL), -SIGKILL);
-  Process rest(Command("parts", true), Output("parts"));
-  ASSERT_EQ(rest.Wait(), 0) << ReadFile(Output("parts"));
-  EXPECT_CONTAINS(ReadFile(Output("parts")), "resuming from");
-  ExpectSameRuns("whole", "parts");
-  EXPECT_TRUE(ReadFile(folder_ + "/whole/policy.ckpt") == ReadFile(folder_ + "/parts/policy.ckpt"));
+  for (const std::string name : {"q_learning", "sarsa"}) {
+    const std::string whole = name + ".whole";
+    const std::string parts = name + ".parts";
+    Process uninterrupted(Command(whole, false), Output(whole));
+    ASSERT_EQ(uninterrupted.Wait(), 0) << ReadFile(Output(whole));
+    EXPECT_EQ(StopAfterACheckpoint(parts, false, SIGKILL), -SIGKILL);
+    EXPECT_EQ(StopAfterACheckpoint(parts, true, SIGKILL), -SIGKILL);
+    Process rest(Command(parts, true), Output(parts));
+    ASSERT_EQ(rest.Wait(), 0) << ReadFile(Output(parts));
+    EXPECT_CONTAINS(ReadFile(Output(parts)), "resuming from");
+    ExpectSameRuns(whole, parts);
+    EXPECT_TRUE(ReadFile(folder_ + "/" + whole + "/policy.ckpt") ==
+                ReadFile(folder_ + "/" + parts + "/policy.ckpt"));
+  }
 }
 
 TEST_F(Resume, CtrlCSavesAndResumes) {
-  EXPECT_EQ(StopAfterACheckpoint("run", false, SIGINT), 130);
-  EXPECT_CONTAINS(ReadFile(Output("run")), "interrupted; saved in");
-  Process again(Command("run", false), Output("again"));
+  EXPECT_EQ(StopAfterACheckpoint("q_learning.run", false, SIGINT), 130);
+  EXPECT_CONTAINS(ReadFile(Output("q_learning.run")), "interrupted; saved in");
+  Process again(Command("q_learning.run", false), Output("again"));
   EXPECT_EQ(again.Wait(), 2);
   EXPECT_CONTAINS(ReadFile(Output("again")), "holds a run already");
-  Process rest(Command("run", true), Output("rest"));
+  Process rest(Command("q_learning.run", true), Output("rest"));
   EXPECT_EQ(rest.Wait(), 0) << ReadFile(Output("rest"));
 }
 

@@ -178,19 +178,38 @@ int End(ExitCode code, const std::string& summary) {
   return static_cast<int>(code);
 }
 
+/// What train.launch needs to be told so that the run may be gone on with; farms 0: unknown.
+std::string Arguments(const agents::RunReport& report, const agents::RunOptions& run) {
+  const agents::RunOptions defaults;
+  std::string text = " scenario:=" + run.run_dir + "/scenario.yaml";
+  const auto add = [&text](const std::string& name, const std::string& value, bool differs) {
+    if (differs) text += " " + name + ":=" + value;
+  };
+  const std::string& algorithm = report.status.algorithm;
+  add("algorithm", algorithm, algorithm != defaults.algorithm);
+  add("options", "'" + run.options + "'", run.options != defaults.options);
+  add("exploration", run.exploration, run.exploration != defaults.exploration);
+  add("credit", run.credit, run.credit != defaults.credit);
+  add("seed", std::to_string(run.seed), run.seed != defaults.seed);
+  add("farms", std::to_string(report.farms), report.farms != 0);
+  return text;
+}
+
 /// What people may want to do next.
-std::string Next(const agents::RunReport& report, const std::string& run_dir) {
+std::string Next(const agents::RunReport& report, const agents::RunOptions& run) {
   const char* const script = std::getenv("AQUAFARM_LAUNCHER");
   const auto launch = [script](const std::string& name) {
     return script != nullptr ? std::string(script) + " " + name
                              : "roslaunch aquafarm_bringup " + name + ".launch";
   };
   if (report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost) {
-    return "go on      " + launch("train") + " … resume:=true run_dir:=" + run_dir + "\n";
+    // The script takes from the run folder what it is not told; roslaunch cannot.
+    return "go on      " + launch("train") + (script != nullptr ? "" : Arguments(report, run)) +
+           " resume:=true run_dir:=" + run.run_dir + "\n";
   }
   if (report.code != ExitCode::kOk) return "";
-  return "watch it   " + launch("sim") + " scenario:=" + run_dir +
-         "/scenario.yaml policy:=" + run_dir + "\n";
+  return "watch it   " + launch("sim") + " scenario:=" + run.run_dir +
+         "/scenario.yaml policy:=" + run.run_dir + "\n";
 }
 
 }  // namespace
@@ -200,7 +219,7 @@ int RunTrainNode() {
     ros::NodeHandle node;
     const TrainParams params = ReadTrainParams(ros::NodeHandle("~"));
     const agents::RunReport report = Train(node, params);
-    return End(report.code, report.summary + Next(report, params.run.run_dir));
+    return End(report.code, report.summary + Next(report, params.run));
   } catch (const aquafarm::InputError& error) {
     return End(ExitCode::kBadInput, std::string("train_node: ") + error.what() + "\n");
   } catch (const std::exception& error) {

@@ -3,6 +3,7 @@
 """Training through ROS from start to end, and what it makes of faults and accidents."""
 import os
 import pathlib
+import shlex
 import signal
 import sys
 import tempfile
@@ -104,15 +105,20 @@ class TrainLaunchTest(unittest.TestCase):
             self.assertIn("starting it again", ranch.words())
 
     def test_ctrl_c_saves_and_resume_ends_in_the_bits_of_a_run_never_stopped(self):
-        limit = "episodes:=6000"
-        with self.train(limit, "checkpoint_period_s:=1000") as ranch:
+        begun = ("episodes:=6000", "algorithm:=sarsa", "options:=discount=0.9 mask_illegal=true",
+                 "exploration:=epsilon_greedy:0.2", "credit:=shared", "seed:=3", "farms:=32")
+        with self.train(*begun, "checkpoint_period_s:=1000") as ranch:
             self.wait_until_training(ranch)
             ranch.interrupt()
             self.assertEqual(INTERRUPTED, ranch.exit_code(30), ranch.words())
-        with self.train("resume:=true") as ranch:  # the limit is the run's own
+            told = next(line for line in ranch.words().splitlines() if line.startswith("go on "))
+        words = shlex.split(told)
+        self.assertEqual(["go", "on", "roslaunch", "aquafarm_bringup", "train.launch"], words[:5])
+        self.assertEqual(["resume:=true", f"run_dir:={self.run_dir}"], words[-2:])
+        with self.train(*words[5:-1]) as ranch:  # the limit is the run's own
             self.assertEqual(0, ranch.exit_code(90), ranch.words())
         parts, self.run_dir = self.run_dir, self.run_dir.parent / "whole"
-        with self.train(limit) as ranch:
+        with self.train(*begun) as ranch:
             self.assertEqual(0, ranch.exit_code(90), ranch.words())
         for name in ("metrics.csv", "policy.ckpt", "evaluation.csv"):
             self.assertEqual((self.run_dir / name).read_bytes(), (parts / name).read_bytes(), name)

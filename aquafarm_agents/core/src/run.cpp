@@ -88,6 +88,7 @@ void Run::All(const MakeEnvironment& make_environment) {
   const std::unique_ptr<Environment> environment = make_environment(
       static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
                                 (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0)));
+  report_.farms = environment->spec().farms;
   if (options_.episodes == 0 && options_.steps == 0) {
     options_.steps = DefaultSteps(algorithm, environment->spec(), LearnerOptionsOf(options_));
     if (options_.steps > algorithm.default_steps) {

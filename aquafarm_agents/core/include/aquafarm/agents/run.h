@@ -54,6 +54,7 @@ struct RunReport {
   ExitCode code{};
   RunStatus status;
   Evaluation random;
+  std::int32_t farms{};     ///< stepped together; 0: none were reached
   std::string summary;      ///< a few lines for people
   std::string policy_path;  ///< empty: none was written
 };

@@ -2,19 +2,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The script ./aquafarm refuses what it does not know and says what is missing."""
 import fcntl
+import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import rostest
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from ranch import free_port  # noqa: E402
+
 PACKAGE = pathlib.Path(__file__).resolve().parent.parent
 SCRIPT = PACKAGE.parent / "aquafarm"
 LIMIT_S = 20
+INTERRUPTED = 130
 
 
 def run(*command, **options):
@@ -62,6 +69,92 @@ class ScriptTest(unittest.TestCase):
             self.assertIn("paused: got 'perhaps', expected true or false", done.stdout)
             done = run(SCRIPT, "replay", "bag:=day.bag", "start_step:=first", cwd=folder)
             self.assertIn("start_step: got 'first', expected a number", done.stdout)
+
+    def test_a_resumed_run_takes_what_is_not_given_from_its_folder(self):
+        def taken(folder, *arguments):  # refused after the defaults are told
+            done = run(SCRIPT, "train", "resume:=true", "viz:=perhaps", *arguments, cwd=folder)
+            self.assertEqual(2, done.returncode, done.stdout)
+            self.assertIn("viz: got 'perhaps', expected true or false", done.stdout)
+            start = "aquafarm: taking "
+            return {line[len(start):].split(":=")[0]: line.split(":=", maxsplit=1)[1]
+                    for line in done.stdout.splitlines() if line.startswith(start)}
+
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder).resolve()
+            newest = folder / "runs" / "newest"
+            (newest / "checkpoints").mkdir(parents=True)
+            (newest / "checkpoints" / "step_7.ckpt").touch()
+            (newest / "scenario.yaml").touch()
+            (newest / "run.json").write_text(json.dumps({
+                "algorithm": "sarsa", "credit": "shared", "episodes": 9, "farms": 8, "seed": 3,
+                "options": "discount=0.9 exploration=boltzmann:5 mask_illegal=true"}))
+            of_run = {"scenario": f"{newest}/scenario.yaml", "algorithm": "sarsa", "credit": "shared",
+                      "farms": "8", "seed": "3", "exploration": "boltzmann:5",
+                      "options": "discount=0.9 mask_illegal=true"}
+            self.assertEqual({"run_dir": str(newest), "report": str(newest), **of_run},
+                             taken(folder))
+            self.assertEqual({"report": str(newest), **of_run},
+                             taken(folder, "run_dir:=runs/newest"))
+            with self.subTest("what is given wins"):
+                mine = taken(folder, "algorithm:=q_learning", "seed:=4", "report:=none",
+                             "options:=exploration=boltzmann:1")
+                self.assertEqual({"run_dir", "scenario", "farms", "credit"}, set(mine))
+            with self.subTest("a learner without options"):
+                words = json.loads((newest / "run.json").read_text())
+                (newest / "run.json").write_text(json.dumps(dict(words, options="")))
+                self.assertFalse({"options", "exploration"} & set(taken(folder)))
+            with self.subTest("a new run"):
+                self.assertEqual({"run_dir", "report"}, set(taken(folder, "resume:=false")))
+            with self.subTest("damaged"):
+                (newest / "run.json").write_text("{")
+                done = run(SCRIPT, "train", "resume:=true", "viz:=perhaps", cwd=folder)
+                self.assertIn(f"{newest}/run.json: damaged: ", done.stdout)
+
+    def test_an_interrupted_training_goes_on_with_resume_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder).resolve()
+            ws, tree = folder / "ws", folder / "tree"
+            for part in (ws / "src", ws / "build", ws / "devel", tree):
+                part.mkdir(parents=True)
+            copy = tree / "aquafarm"  # whose workspace is built already: this test's own
+            copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "false -C"))
+            (tree / "aquafarm_bringup").symlink_to(PACKAGE)
+            (ws / "src" / "aquafarm").symlink_to(tree)
+            (ws / "build" / "CMakeCache.txt").write_text(
+                f"CMAKE_BUILD_TYPE:STRING=Release\nCMAKE_HOME_DIRECTORY:INTERNAL={ws / 'src'}\n")
+            (ws / "devel" / "setup.bash").touch()
+            (ws / "built").touch()
+
+            def train(*arguments):
+                env = dict(os.environ, AQUAFARM_WS=str(ws), AQUAFARM_BUILD_TYPE="Release",
+                           ROS_MASTER_URI=f"http://127.0.0.1:{free_port()}",
+                           ROS_HOME=str(folder / "ros"), ROS_LOG_DIR=str(folder / "ros" / "log"))
+                process = subprocess.Popen(
+                    ["bash", copy, "train", "viz:=false", "report:=none", "evaluation_episodes:=0",
+                     *arguments], cwd=folder, env=env, stdin=subprocess.DEVNULL, text=True,
+                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                self.addCleanup(process.stdout.close)
+                self.addCleanup(process.wait)
+                self.addCleanup(process.terminate)  # the script lets its nodes end
+                return process
+
+            first = train("scenario:=zhoushan_infa_2021", "algorithm:=sarsa", "farms:=8", "seed:=3",
+                          "options:=discount=0.9", "exploration:=boltzmann:5", "steps:=300000")
+            end = time.monotonic() + LIMIT_S
+            while not any(path.read_text().count("\n") > 1
+                          for path in folder.glob("runs/*/metrics.csv")):
+                self.assertIsNone(first.poll(), "ended before it trained")
+                self.assertLess(time.monotonic(), end, "does not train")
+                time.sleep(0.05)
+            first.send_signal(signal.SIGINT)
+            words, _ = first.communicate(timeout=LIMIT_S)
+            self.assertEqual(INTERRUPTED, first.returncode, words)
+            self.assertIn(f"go on      {copy} train resume:=true run_dir:={folder}/runs/", words)
+            rest = train("resume:=true")
+            words, _ = rest.communicate(timeout=2 * LIMIT_S)
+            self.assertEqual(0, rest.returncode, words)
+            self.assertIn("resuming from ", words)
+            self.assertIn("trained    sarsa, 300,00", words)
 
     def test_a_wrong_word_for_test_or_bench_is_refused_with_what_there_is(self):
         done = run(SCRIPT, "test", "--quick")

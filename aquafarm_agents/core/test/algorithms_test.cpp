@@ -60,7 +60,9 @@ void ExpectContinues(const Algorithm& algorithm, const std::string& options) {
   }
   Checkpoint checkpoint;
   learner->Save(checkpoint);
-  const auto resumed = algorithm.make(environment.spec(), 1, options);
+  // From what it says of itself: a resumed run may be given no more than that.
+  const auto resumed = algorithm.make(environment.spec(), 1, learner->options());
+  EXPECT_EQ(resumed->options(), learner->options()) << algorithm.name << ' ' << options;
   resumed->Load(checkpoint);
   std::vector<std::uint8_t> expected;
   for (int i = 0; i < 100; ++i) {

@@ -20,6 +20,11 @@
 
 namespace aquafarm::agents {
 
+/// Where a saved policy plays: what learnt on CUDA need not find it again.
+inline std::string PlayingDevice(const std::string& trained_on) {
+  return trained_on == "cuda" ? "auto" : trained_on;
+}
+
 inline std::size_t EntryCount(const EnvironmentSpec& spec) {
   return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
 }

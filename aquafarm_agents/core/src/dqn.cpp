@@ -383,7 +383,8 @@ std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed
 
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {
   std::string resolved;
-  const DeepOptions options = Parse(checkpoint.options, resolved);
+  DeepOptions options = Parse(checkpoint.options, resolved);
+  options.device = PlayingDevice(options.device);
   PrepareTorch(options.threads);
   CheckFits(checkpoint, spec, options.network);
   const std::vector<float> weights = ActingWeights(checkpoint);

@@ -473,7 +473,8 @@ std::unique_ptr<Learner> MakeMaddpg(const EnvironmentSpec& spec, std::uint64_t s
 std::unique_ptr<Policy> MakeMaddpgPolicy(const Checkpoint& checkpoint,
                                          const EnvironmentSpec& spec) {
   std::string resolved;
-  const MaddpgOptions options = MaddpgOptions::Parse(checkpoint.options, resolved);
+  MaddpgOptions options = MaddpgOptions::Parse(checkpoint.options, resolved);
+  options.device = PlayingDevice(options.device);
   PrepareTorch(options.threads);
   CheckFits(checkpoint, spec, NetworkKind::kMlp);
   std::vector<float> weights;

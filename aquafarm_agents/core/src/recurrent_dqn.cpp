@@ -320,7 +320,8 @@ std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint
 std::unique_ptr<Policy> MakeRecurrentDqnPolicy(const Checkpoint& checkpoint,
                                                const EnvironmentSpec& spec) {
   std::string resolved;
-  const DeepOptions options = Parse(checkpoint.options, resolved);
+  DeepOptions options = Parse(checkpoint.options, resolved);
+  options.device = PlayingDevice(options.device);
   PrepareTorch(options.threads);
   CheckFits(checkpoint, spec, NetworkKind::kMlp);
   return std::make_unique<RecurrentPolicy>(spec, options, ActingWeights(checkpoint));

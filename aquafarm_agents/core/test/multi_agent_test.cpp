@@ -263,6 +263,31 @@ TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
   }
 }
 
+// The weights are the same on every device. On a machine with CUDA this shows less.
+TEST_P(Saved, PoliciesTrainedOnCudaPlayWhereThereIsNone) {
+  const Algorithm& entry = FindAlgorithm(GetParam());
+  LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});
+  const auto learner = entry.make(environment.spec(), 1, "hidden=8 device=cpu");
+  Checkpoint checkpoint = PolicyOf(*learner, GetParam(), environment.spec());
+  const std::string cpu = "device=cpu";
+  const std::size_t at = checkpoint.options.find(cpu);
+  ASSERT_NE(at, std::string::npos) << checkpoint.options;
+  checkpoint.options.replace(at, cpu.size(), "device=cuda");
+  const auto policy = entry.make_policy(checkpoint, environment.spec());
+  const auto own = learner->GreedyPolicy();
+  policy->Begin(1, 1);
+  own->Begin(1, 1);
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint8_t> own_actions;
+  const Results* results = &environment.Reset(1, 0);
+  for (int step = 0; step < 20; ++step) {
+    policy->Act(*results, actions);
+    own->Act(*results, own_actions);
+    ASSERT_EQ(actions, own_actions) << step;
+    results = &environment.Step(actions);
+  }
+}
+
 TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
   Scenario scenario = TwoShips();
   scenario.ships.count = 3;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "curiosity_module.h"
+#include "deep_policy.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -44,6 +45,7 @@ class CuriousLearner final : public Learner {
   std::vector<std::uint8_t> taken_;        // [N, S] there
   std::vector<std::uint8_t> was_in_play_;  // [N, S] there
   float mean_error_{};                     // of late; 0: none yet
+  std::uint64_t steps_{};                  // of all farms
   // Scratch: the transitions of this step.
   std::vector<float> from_;
   std::vector<float> to_;
@@ -55,6 +57,7 @@ class CuriousLearner final : public Learner {
 void CuriousLearner::Step(const Results& results, double progress,
                           std::vector<std::uint8_t>& actions) {
   const auto weight = static_cast<float>(weight_.At(progress));
+  steps_ += FarmSteps(results);
   if (weight > 0.0F && !seen_.empty()) {
     Pay(results, weight);
     learner_->Step(paid_, progress, actions);
@@ -82,7 +85,7 @@ void CuriousLearner::Pay(const Results& results, float weight) {
   }
   paid_ = results;
   if (entries_.empty()) return;
-  module_.Step(from_, to_, actions_, errors_);
+  module_.Step(from_, to_, actions_, steps_, errors_);
   float sum = 0.0F;
   for (const float error : errors_) sum += error;
   const float mean = sum / static_cast<float>(errors_.size());
@@ -100,6 +103,7 @@ void CuriousLearner::Save(Checkpoint& checkpoint) const {
   checkpoint.SetArray("curiosity.taken", taken_);
   checkpoint.SetArray("curiosity.in_play", was_in_play_);
   checkpoint.SetArray("curiosity.mean", std::vector<float>{mean_error_});
+  checkpoint.SetArray("curiosity.steps", std::vector<std::uint64_t>{steps_});
 }
 
 void CuriousLearner::Load(const Checkpoint& checkpoint) {
@@ -107,16 +111,20 @@ void CuriousLearner::Load(const Checkpoint& checkpoint) {
   std::vector<std::uint8_t> taken;
   std::vector<std::uint8_t> in_play;
   std::vector<float> mean;
+  std::vector<std::uint64_t> steps{0};
   checkpoint.GetArray("curiosity.taken", checkpoint.Section("curiosity.taken").size(), taken);
   checkpoint.GetArray("curiosity.seen", taken.size() * features_, seen);
   checkpoint.GetArray("curiosity.in_play", taken.size(), in_play);
   checkpoint.GetArray("curiosity.mean", 1, mean);
+  // Trainings from before it was saved go on too.
+  if (checkpoint.Has("curiosity.steps")) checkpoint.GetArray("curiosity.steps", 1, steps);
   learner_->Load(checkpoint);
   module_.Load(checkpoint);
   seen_ = std::move(seen);
   taken_ = std::move(taken);
   was_in_play_ = std::move(in_play);
   mean_error_ = mean[0];
+  steps_ = steps[0];
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "curiosity_module.h"
 
 #include <cmath>
+#include <string>
 
 #include "aquafarm/agents/learner.h"
 #include "aquafarm/types.h"
@@ -48,6 +49,7 @@ CuriosityNetwork::Output CuriosityNetwork::Forward(const torch::Tensor& from,
 
 CuriosityModule::CuriosityModule(std::int64_t features, std::uint64_t seed)
     : features_(features),
+      seed_(seed),
       network_([&] {
         auto network = std::make_shared<CuriosityNetwork>(features);
         DrawWeights(*network, seed, 2);
@@ -56,7 +58,8 @@ CuriosityModule::CuriosityModule(std::int64_t features, std::uint64_t seed)
       adam_(*network_, torch::kCPU) {}
 
 void CuriosityModule::Step(std::vector<float>& from, std::vector<float>& to,
-                           std::vector<std::int64_t>& actions, std::vector<float>& errors) {
+                           std::vector<std::int64_t>& actions, std::uint64_t farm_steps,
+                           std::vector<float>& errors) {
   const auto count = static_cast<std::int64_t>(actions.size());
   {
     const torch::NoGradGuard no_grad;
@@ -68,17 +71,20 @@ void CuriosityModule::Step(std::vector<float>& from, std::vector<float>& to,
   from_.insert(from_.end(), from.begin(), from.end());
   to_.insert(to_.end(), to.begin(), to.end());
   actions_.insert(actions_.end(), actions.begin(), actions.end());
-  if (actions_.size() >= kBatch) Learn();
+  if (actions_.size() >= kBatch) Learn(farm_steps);
 }
 
-void CuriosityModule::Learn() {
+void CuriosityModule::Learn(std::uint64_t farm_steps) {
   const auto count = static_cast<std::int64_t>(actions_.size());
   const auto output = network_->Forward(View(from_, {count, features_}),
                                         View(to_, {count, features_}), View(actions_, {count}));
   const torch::Tensor loss =
       output.inverse * (1.0 - kForwardShare) + output.error.mean() * kForwardShare;
   if (!std::isfinite(loss.item<float>()) || !adam_.Step(loss, kLearningRate, kGradientLimit)) {
-    throw LearnerFailed("curiosity: its loss, or the gradient of it, is not a number");
+    throw LearnerFailed("curiosity: its loss, or the gradient of it, is not finite after " +
+                        std::to_string(farm_steps) + " farm steps, on the last " +
+                        std::to_string(count) + " transitions of seed " + std::to_string(seed_) +
+                        "; expected a number");
   }
   from_.clear();
   to_.clear();

@@ -39,19 +39,21 @@ class CuriosityModule {
 
   /// @param from, to [B, F], row-major
   /// @param actions [B]
+  /// @param farm_steps until now, which a failure names
   /// @param errors [B] of each transition, before learning from them
   /// @throws LearnerFailed when its loss or gradient is not finite
   void Step(std::vector<float>& from, std::vector<float>& to, std::vector<std::int64_t>& actions,
-            std::vector<float>& errors);
+            std::uint64_t farm_steps, std::vector<float>& errors);
 
   void Save(Checkpoint& checkpoint) const;
   /// @throws InputError
   void Load(const Checkpoint& checkpoint);
 
  private:
-  void Learn();
+  void Learn(std::uint64_t farm_steps);
 
   const std::int64_t features_;
+  const std::uint64_t seed_;
   std::shared_ptr<CuriosityNetwork> network_;
   FlatAdam adam_;
   std::vector<float> from_;  // transitions not yet learnt from

@@ -88,7 +88,7 @@ class MaddpgLearner final : public Learner {
   torch::Tensor Logits(ActorTeam& actors, Window& window);
   torch::Tensor GumbelNoise();
   torch::Tensor UpdateCritic(const torch::Tensor& observations);
-  void UpdateActors(const torch::Tensor& observations);
+  void UpdateActors(const torch::Tensor& observations, std::uint64_t position);
   void Check(bool is_finite, const char* what, std::uint64_t position) const;
   static void Follow(FlatParameters& target, const FlatParameters& online, double rate);
 
@@ -337,7 +337,7 @@ void MaddpgLearner::Update() {
   Check(std::isfinite(loss.item<float>()), "loss of the critic", position);
   Check(judge_.Step(loss, options_.critic_rate.At(progress_), options_.gradient_limit),
         "gradient of the critic's loss", position);
-  UpdateActors(observations);
+  UpdateActors(observations, position);
   Follow(actor_target_, actor_.parameters(), options_.target_rate);
   Follow(judge_target_, judge_.parameters(), options_.target_rate);
   ++updates_;
@@ -376,7 +376,7 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
 }
 
 // The critic is linear in an agent's own action, so its slope there is its value of each action.
-void MaddpgLearner::UpdateActors(const torch::Tensor& observations) {
+void MaddpgLearner::UpdateActors(const torch::Tensor& observations, std::uint64_t position) {
   const std::vector<std::int64_t> joint{options_.batch, spec_.agents, kActionCount};
   torch::Tensor slope;
   {
@@ -392,9 +392,9 @@ void MaddpgLearner::UpdateActors(const torch::Tensor& observations) {
       ToDevice(from_.present, {options_.batch, spec_.agents}) / std::max(1.0F, Sum(from_.present));
   const torch::Tensor loss =
       -((action * slope).sum(2) * weights).sum() + options_.logit_penalty * logits.square().mean();
-  Check(std::isfinite(loss.item<float>()), "loss of the actors", chance_.position());
+  Check(std::isfinite(loss.item<float>()), "loss of the actors", position);
   Check(actor_.Step(loss, options_.actor_rate.At(progress_), options_.gradient_limit),
-        "gradient of the actors' loss", chance_.position());
+        "gradient of the actors' loss", position);
 }
 
 void MaddpgLearner::Check(bool is_finite, const char* what, std::uint64_t position) const {

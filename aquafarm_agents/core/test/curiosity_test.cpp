@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/curiosity.h"
 
+#include <algorithm>
+
 #include "agents_fixture.h"
 #include "curiosity_module.h"
 
@@ -28,7 +30,7 @@ Transitions Draw(RandomStream& chance, std::size_t count, float second) {
 
 float MeanError(CuriosityModule& module, Transitions transitions) {
   std::vector<float> errors;
-  module.Step(transitions.from, transitions.to, transitions.actions, errors);
+  module.Step(transitions.from, transitions.to, transitions.actions, 0, errors);
   float sum = 0.0F;
   for (const float error : errors) sum += error;
   return sum / static_cast<float>(errors.size());
@@ -104,6 +106,29 @@ TEST(Curiosity, PaysForTransitionsAloneAndNothingOnceItsWeightIsGone) {
     results = &environment.Step(actions);
   }
   EXPECT_GT(starts, 3);  // beyond the first
+}
+
+TEST(Curiosity, ALossThatIsNoNumberNamesTheStepAndTheSeed) {
+  LocalEnvironment environment(TinyFarm(), {3, kIndexBit | kFeaturesBit, false, 1});
+  std::vector<float> paid;
+  const auto learner = WithCuriosity(std::make_unique<Purse>(paid), environment.spec(), 7,
+                                     ParseExploration("icm:1"));
+  Checkpoint checkpoint;
+  learner->Save(checkpoint);
+  std::fill_n(checkpoint.sections["curiosity.weights"].begin() + 40, 4, '\xff');  // a NaN
+  checkpoint.SetArray("curiosity.steps", std::vector<std::uint64_t>{1000});
+  learner->Load(checkpoint);
+  std::vector<std::uint8_t> actions;
+  const Results* results = &environment.Reset(1);
+  std::int64_t steps = 1000;
+  std::string message;
+  for (int i = 0; i < 100 && message.empty(); ++i) {
+    steps += std::count(results->started.begin(), results->started.end(), std::uint8_t{0});
+    message = MessageOf<LearnerFailed>([&] { learner->Step(*results, 0.1, actions); });
+    results = &environment.Step(actions);
+  }
+  EXPECT_CONTAINS(message, "is not finite after " + std::to_string(steps) + " farm steps, on the ");
+  EXPECT_CONTAINS(message, " transitions of seed 7; expected a number");
 }
 
 }  // namespace

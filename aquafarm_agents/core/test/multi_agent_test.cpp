@@ -106,6 +106,30 @@ TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
   EXPECT_TRUE(std::isfinite(learner->status().loss));
 }
 
+TEST(Maddpg, AnActorsLossThatIsNoNumberNamesTheBatchItWasDrawnFor) {
+  const std::string options = "hidden=8 batch=8 start=10 replay=500 steps_per_update=2";
+  LocalEnvironment environment(Share(TwoShips()), {2, kFeaturesBit, false, 1});
+  const auto learner = FindAlgorithm("maddpg").make(environment.spec(), 1, options);
+  Checkpoint checkpoint;
+  learner->Save(checkpoint);
+  std::fill_n(checkpoint.sections["weights"].begin() + 40, 4, '\xff');  // a NaN
+  learner->Load(checkpoint);
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint64_t> chance;
+  const Results* results = &environment.Reset(1);
+  std::string message;
+  for (int i = 0; i < 100 && message.empty(); ++i) {
+    Checkpoint before;
+    learner->Save(before);
+    before.GetArray("chance", 4, chance);
+    message = MessageOf<LearnerFailed>([&] { learner->Step(*results, 0.1, actions); });
+    results = &environment.Step(actions);
+  }
+  EXPECT_CONTAINS(message, "loss of the actors: is not finite at update 1, after ");
+  EXPECT_CONTAINS(message, "farm steps, on the batch drawn from seed 1 at position " +
+                               std::to_string(chance[0]) + ";");
+}
+
 TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {
   EXPECT_GE(SuccessAfter("q_learning", "", 200000, SmartDevices()), 0.98);
   EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, SmartDevices()), 0.98);

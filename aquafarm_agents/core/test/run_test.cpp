@@ -188,6 +188,28 @@ TEST_F(Programs, RefuseWhatTheyDoNotKnow) {
   EXPECT_CONTAINS(output_, "holds neither policy.ckpt nor a checkpoint");
 }
 
+TEST_F(Programs, NameTheLastGoodCheckpointOfATrainingThatDivergedAndPlayIt) {
+  std::vector<std::string> command{AQUAFARM_TRAIN, "paper", "-d", folder_ + "/run", "-a", "dqn"};
+  command.insert(command.end(), {"-f", "4", "-n", "100000", "--checkpoint-period", "0.05"});
+  // Weights that grow by 1 an update, until gradients of such rewards are beyond any float.
+  for (const char* option :
+       {"learning_rate=1", "reward_scale=1e9", "gradient_limit=0", "loss=mse", "discount=1",
+        "target_period=1", "priority=0", "hidden=128", "batch=8", "start=500", "replay=1000"}) {
+    command.insert(command.end(), {"-o", option});
+  }
+  ASSERT_EQ(Run(command), static_cast<int>(ExitCode::kDiverged)) << output_;
+  EXPECT_CONTAINS(output_, "farm steps, on the batch drawn from seed 1 at position ");
+  const std::string words = "; the last good checkpoint is ";
+  const std::size_t at = output_.find(words);
+  ASSERT_NE(at, std::string::npos) << output_;
+  const std::size_t begin = at + words.size();
+  const std::string path = output_.substr(begin, output_.find('\n', begin) - begin);
+  EXPECT_GT(ReadCheckpoint(path).steps, 0U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/run/policy.ckpt"));
+  EXPECT_EQ(Run({AQUAFARM_EVALUATE, path, "-e", "2"}), 0) << output_;
+  EXPECT_CONTAINS(output_, "dqn on paper: success ");
+}
+
 TEST_F(Programs, TrainAndEvaluateOnTheShippedFarm) {
   const std::string run = folder_ + "/run";
   ASSERT_EQ(Run({AQUAFARM_TRAIN, "paper", "-d", run, "-n", "2000000", "--evaluate", "100"}), 0)

@@ -20,6 +20,10 @@ constexpr const char* kSmall =
     "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
     "learning_rate=linear:0.002:0.0001:1";
 
+constexpr const char* kSmallRecurrent =
+    "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=4 "
+    "burn_in=2 learning_rate=linear:0.003:0.0001:1";
+
 /// Two ships at two ports, two devices, one reward.
 Scenario TwoShips() {
   Scenario scenario = aquafarm::test::TinyScenario();
@@ -61,6 +65,12 @@ TEST(TwoShips, AreLedHomeByLearnersOfValues) {
   EXPECT_GE(SuccessAfter("dqn", kSmall, 24000, TwoShips()), 0.98);
   EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, TwoShips()), 0.98);
   EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, TwoShips()), 0.98);
+}
+
+TEST(TwoShips, AreLedHomeByLearnersOfValuesThatRemember) {
+  for (const char* algorithm : {"lstm_dqn", "independent_lstm_dqn"}) {
+    EXPECT_GE(SuccessAfter(algorithm, kSmallRecurrent, 24000, TwoShips()), 0.98) << algorithm;
+  }
 }
 
 // The settings that ship but for size and longer exploration: a run is too short for a tenth of it.

@@ -267,13 +267,12 @@ TEST_P(Saved, PoliciesForTwoShipsAreRefusedByAFarmWithFour) {
           " of scenario two does not fit scenario four: agents: it knows 2, the farm has 4");
 }
 
-// As the node of a ship does, which knows its own share alone.
-TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
-  const Algorithm& entry = FindAlgorithm(GetParam());
+void ExpectTheOwnShareIsEnough(const std::string& algorithm, const std::string& options) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
   LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});
   const EnvironmentSpec& spec = environment.spec();
-  const auto learner = entry.make(spec, 1, "hidden=8");
-  const Checkpoint checkpoint = PolicyOf(*learner, GetParam(), spec);
+  const auto learner = entry.make(spec, 1, options);
+  const Checkpoint checkpoint = PolicyOf(*learner, algorithm, spec);
   const auto both = entry.make_policy(checkpoint, spec);
   const auto own = entry.make_policy(checkpoint, spec);
   both->Begin(1, 1);
@@ -287,14 +286,23 @@ TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
     std::fill_n(share.features.begin(), spec.feature_count, 0.0F);
     both->Act(*all, actions);
     own->Act(share, own_actions);
-    ASSERT_EQ(own_actions[1], actions[1]) << step;
+    ASSERT_EQ(own_actions[1], actions[1]) << options << ' ' << step;
     ASSERT_EQ(own->values().size(), both->values().size());
     if (!own->values().empty()) {
-      EXPECT_NEAR(own->values()[1], both->values()[1], 1e-4F) << step;
+      EXPECT_NEAR(own->values()[1], both->values()[1], 1e-4F) << options << ' ' << step;
     }
     actions[0] = static_cast<std::uint8_t>(step % kMoveCount);
     all = &environment.Step(actions);
   }
+}
+
+// As the node of a ship does, which knows its own share alone.
+TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
+  ExpectTheOwnShareIsEnough(GetParam(), "hidden=8");
+  if (GetParam() != "maddpg") return;
+  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 shared=false");
+  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 recurrent=true");
+  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 shared=false recurrent=true");
 }
 
 // The weights are the same on every device. On a machine with CUDA this shows less.

@@ -86,7 +86,7 @@ TEST(Dqn, SolvesItFromThePlanes) {
 
 TEST(RecurrentDqn, SolvesATinyFarm) { ExpectSolves("lstm_dqn", kSmallRecurrent, 20000); }
 
-TEST(RecurrentDqn, SolvesItWithEachSwitchTurnedRound) {
+TEST(RecurrentDqn, SolvesItByLongerSumsWithoutPriorityAndByAnAverage) {
   for (const std::string change : {"n_step=3", "priority=0", "average_rate=0.02"}) {
     EXPECT_NE(Resolved(kSmallRecurrent + change, true), Resolved(kSmallRecurrent, true)) << change;
     ExpectSolves("lstm_dqn", kSmallRecurrent + change, 20000);

@@ -34,11 +34,10 @@ FARMS = 1
 # Trainings run side by side, a core each, hence device=cpu. Why these numbers:
 # docs/decisions/settling_early.md. Networks have seen enough of chance after some thirty long
 # episodes, tables after a thousand; what is left of chance is a choice among moves that are worth
-# about the same: the temperature is a point of reward, or half of one with a memory.
+# about the same: the temperature is a point of reward.
 _EXPLORED = 30
-_COOLING = "boltzmann:linear:20:%s:{explored}"
-_SETTLED = 250  # from here on a network only refines what it has learnt
-_AVERAGE = "average_rate=0.002"  # of its weights acts, so that an odd update throws no episode
+_COOLING = "boltzmann:linear:20:1:{explored}"
+_SETTLED = 400  # from here on a network only refines what it has learnt
 
 CONTESTANTS = (
     Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, repeats=False),
@@ -46,11 +45,11 @@ CONTESTANTS = (
                exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
     Contestant("sarsa", "SARSA", "#17becf", cost=0.02,
                exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
-    Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING % 1,
-               options=("device=cpu", "steps_per_update=1", "mask_blocked=true", _AVERAGE,
+    Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING,
+               options=("device=cpu", "steps_per_update=1", "mask_blocked=true",
                         "learning_rate=linear:5e-4:3e-5:{settled}")),
-    Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING % 0.5,
-               options=("device=cpu", "hidden=64", "batch=64", "mask_blocked=true", _AVERAGE,
+    Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
+               options=("device=cpu", "hidden=64", "mask_blocked=true",
                         "learning_rate=linear:5e-4:5e-5:{settled}")),
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
                repeats=False),

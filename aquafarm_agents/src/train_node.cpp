@@ -178,16 +178,22 @@ int End(ExitCode code, const std::string& summary) {
   return static_cast<int>(code);
 }
 
+/// name:=value as a shell takes it.
+std::string Argument(const std::string& name, const std::string& value) {
+  const bool is_plain = value.find_first_of(" '") == std::string::npos;
+  return ' ' + name + ":=" + (is_plain ? value : '"' + value + '"');
+}
+
 /// What train.launch needs to be told so that the run may be gone on with; farms 0: unknown.
 std::string Arguments(const agents::RunReport& report, const agents::RunOptions& run) {
   const agents::RunOptions defaults;
-  std::string text = " scenario:=" + run.run_dir + "/scenario.yaml";
+  std::string text = Argument("scenario", run.run_dir + "/scenario.yaml");
   const auto add = [&text](const std::string& name, const std::string& value, bool differs) {
-    if (differs) text += " " + name + ":=" + value;
+    if (differs) text += Argument(name, value);
   };
   const std::string& algorithm = report.status.algorithm;
   add("algorithm", algorithm, algorithm != defaults.algorithm);
-  add("options", "'" + run.options + "'", run.options != defaults.options);
+  add("options", run.options, run.options != defaults.options);
   add("exploration", run.exploration, run.exploration != defaults.exploration);
   add("credit", run.credit, run.credit != defaults.credit);
   add("seed", std::to_string(run.seed), run.seed != defaults.seed);
@@ -203,13 +209,14 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
                              : "roslaunch aquafarm_bringup " + name + ".launch";
   };
   if (report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost) {
+    if (report.farms == 0) return "";  // it never began
     // The script takes from the run folder what it is not told; roslaunch cannot.
     return "go on      " + launch("train") + (script != nullptr ? "" : Arguments(report, run)) +
-           " resume:=true run_dir:=" + run.run_dir + "\n";
+           " resume:=true" + Argument("run_dir", run.run_dir) + "\n";
   }
   if (report.code != ExitCode::kOk) return "";
-  return "watch it   " + launch("sim") + " scenario:=" + run.run_dir +
-         "/scenario.yaml policy:=" + run.run_dir + "\n";
+  return "watch it   " + launch("sim") + Argument("scenario", run.run_dir + "/scenario.yaml") +
+         Argument("policy", run.run_dir) + "\n";
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ class MeasuresTest(unittest.TestCase):
 
     def test_settings_are_of_so_many_episodes_however_long_a_training_is(self):
         dqn = next(one for one in CONTESTANTS if one.name == "dqn")
-        for episodes, explored, settled in ((2000, "0.015", "0.125"), (800, "0.0375", "0.3125"),
+        for episodes, explored, settled in ((2000, "0.015", "0.2"), (800, "0.0375", "0.5"),
                                             (10, "1", "1")):
             given = dqn.for_episodes(episodes)
             self.assertTrue(given.exploration.endswith(":" + explored), given.exploration)

@@ -99,6 +99,11 @@ class ScriptTest(unittest.TestCase):
                 mine = taken(folder, "algorithm:=q_learning", "seed:=4", "report:=none",
                              "options:=exploration=boltzmann:1")
                 self.assertEqual({"run_dir", "scenario", "farms", "credit"}, set(mine))
+            with self.subTest("the options of another algorithm are of no use"):
+                self.assertFalse({"options", "exploration"} &
+                                 set(taken(folder, "algorithm:=q_learning")))
+                self.assertEqual("discount=0.9 mask_illegal=true",
+                                 taken(folder, "algorithm:=sarsa")["options"])
             with self.subTest("a learner without options"):
                 words = json.loads((newest / "run.json").read_text())
                 (newest / "run.json").write_text(json.dumps(dict(words, options="")))

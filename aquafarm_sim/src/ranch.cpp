@@ -287,7 +287,7 @@ void Ranch::StepPublishedFarm() {
     slot.reply = nullptr;
   }
   Changed();
-  if (farm.over()) TellEnd(ToMsg(farm.record(), 0, context_));
+  if (farm.over()) TellEnd(0);
   for (const auto& slot : slots_) slot->changed.notify_all();  // last: whoever wakes needs the lock
 }
 
@@ -409,8 +409,10 @@ void Ranch::Changed(bool by_joint_step) {
   Tell([this](RanchListener& listener) { listener.OnChange(View()); });
 }
 
-void Ranch::TellEnd(const aquafarm_msgs::EpisodeSummary& summary) {
-  Tell([&summary](RanchListener& listener) { listener.OnEpisodeEnd(summary); });
+void Ranch::TellEnd(std::int32_t farm) {
+  Tell([this, farm](RanchListener& listener) {
+    listener.OnEpisodeEnd(ToMsg(batch_->farm(farm).record(), farm, context_));
+  });
 }
 
 // What has happened stands, also where it cannot be told.
@@ -419,7 +421,8 @@ void Ranch::Tell(const std::function<void(RanchListener&)>& telling) {
   try {
     telling(*listener_);
   } catch (const std::exception& error) {
-    counters_.untold = error.what();
+    ++counters_.untold;
+    counters_.untold_why = error.what();
   }
 }
 

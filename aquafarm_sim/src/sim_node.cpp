@@ -233,9 +233,9 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (!lost.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "episodes are no longer kept: " + lost);
   }
-  if (!now.untold.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
-                   "something was not published: " + now.untold);
+  if (now.untold > diagnosed_.untold) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                        "something was not published: " + now.untold_why);
   }
   if (!now.fault.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "paused itself: " + now.fault);

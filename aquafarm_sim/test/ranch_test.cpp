@@ -263,7 +263,8 @@ TEST(Ranch, AStepThatCannotBeToldStandsForAllShips) {
   EXPECT_EQ(1U, first.step);
   EXPECT_EQ(last, ranch->Command({1, kHold, 0, 0, 1}));
   EXPECT_EQ(1U, StateOf(*ranch).step);
-  EXPECT_EQ("no memory", ranch->counters().untold);
+  EXPECT_EQ(1U, ranch->counters().untold);
+  EXPECT_EQ("no memory", ranch->counters().untold_why);
   ranch->SetListener(nullptr);
 }
 

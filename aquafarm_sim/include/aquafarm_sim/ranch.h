@@ -84,7 +84,8 @@ struct RanchCounters {
   std::vector<std::int32_t> absent;  ///< ships that lockstep has given up until they command again
   double joint_step_age_s{1e9};      ///< since the last joint step
   std::string fault;                 ///< why paced running paused itself; empty: it did not
-  std::string untold;                ///< why the listener last missed something; empty: it did not
+  std::uint64_t untold{};            ///< what the listener missed
+  std::string untold_why;            ///< the last time; empty: it missed nothing
 };
 
 /// The farms as they stand, seen while nothing moves.
@@ -236,7 +237,7 @@ class Ranch {
 
   void Advance();
   void Changed(bool by_joint_step = false);
-  void TellEnd(const aquafarm_msgs::EpisodeSummary& summary);
+  void TellEnd(std::int32_t farm);
   void Tell(const std::function<void(RanchListener&)>& telling);
   void EpisodeBegan(bool by_joint_step = false);
   RanchView View() const;

@@ -287,7 +287,10 @@ void Ranch::StepPublishedFarm() {
     slot.reply = nullptr;
   }
   Changed();
-  if (farm.over()) TellEnd(0);
+  if (farm.over()) {
+    Tell(
+        [&](RanchListener& listener) { listener.OnEpisodeEnd(ToMsg(farm.record(), 0, context_)); });
+  }
   for (const auto& slot : slots_) slot->changed.notify_all();  // last: whoever wakes needs the lock
 }
 
@@ -407,12 +410,6 @@ void Ranch::Changed(bool by_joint_step) {
   changed_jointly_ = by_joint_step;
   ++version_;
   Tell([this](RanchListener& listener) { listener.OnChange(View()); });
-}
-
-void Ranch::TellEnd(std::int32_t farm) {
-  Tell([this, farm](RanchListener& listener) {
-    listener.OnEpisodeEnd(ToMsg(batch_->farm(farm).record(), farm, context_));
-  });
 }
 
 // What has happened stands, also where it cannot be told.

@@ -196,7 +196,7 @@ void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
     if (result.reasons[i] == 0) continue;
     const auto farm = static_cast<std::int32_t>(i);
     result.finished.push_back(ToMsg(batch_->farm(farm).record(), farm, context_));
-    TellEnd(farm);
+    Tell([&](RanchListener& listener) { listener.OnEpisodeEnd(result.finished.back()); });
   }
 }
 

@@ -237,7 +237,6 @@ class Ranch {
 
   void Advance();
   void Changed(bool by_joint_step = false);
-  void TellEnd(std::int32_t farm);
   void Tell(const std::function<void(RanchListener&)>& telling);
   void EpisodeBegan(bool by_joint_step = false);
   RanchView View() const;

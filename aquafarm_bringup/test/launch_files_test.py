@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every launch file parses, documents its arguments and stays on the loopback address."""
+"""Every launch file parses, documents its arguments and stays on the loopback address; every field
+of a message says what it is."""
 import pathlib
 import re
 import sys
@@ -134,5 +135,18 @@ class LaunchFilesTest(unittest.TestCase):
             self.assertNotIn("rviz", [node.type for node in nodes], name)
 
 
+class MessagesTest(unittest.TestCase):
+
+    def test_every_field_says_what_it_is(self):
+        folder = pathlib.Path(rospkg.RosPack().get_path("aquafarm_msgs"))
+        files = sorted([*folder.glob("msg/*.msg"), *folder.glob("srv/*.srv")])
+        self.assertGreater(len(files), 30)
+        for path in files:
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+                field, _, comment = line.partition("#")
+                if field.strip() not in ("", "---") and "=" not in field:  # constants have names
+                    self.assertTrue(comment.strip(), f"{path.name}:{number}: {line}")
+
+
 if __name__ == "__main__":
-    rostest.rosrun(PACKAGE, "launch_files", LaunchFilesTest, sys.argv)
+    rostest.rosrun(PACKAGE, "launch_files", "launch_files_test", sys.argv)

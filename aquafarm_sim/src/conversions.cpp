@@ -209,7 +209,7 @@ aquafarm_msgs::DeviceState ToMsg(const aquafarm::Farm& farm, std::int32_t id) {
   return message;
 }
 
-void ToMsg(const aquafarm::Disaster& disaster, std::int32_t id,
+void ToMsg(const aquafarm::ObservableDisaster& disaster, std::int32_t id,
            aquafarm_msgs::DisasterState& message) {
   const auto rings = static_cast<std::ptrdiff_t>(disaster.rings);
   message.id = id;

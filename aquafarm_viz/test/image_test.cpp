@@ -206,10 +206,60 @@ TEST(Image, ShowsIslandAndPorts) {
   }
 }
 
-TEST(Image, WritesLegendAndLines) {
+TEST(Image, ShowsRocksWhereTheyAre) {
   const auto spec = test::MakeSpec();
-  auto state = test::MakeState();
-  const auto before = DrawFarm(spec, state, kSize);
+  ASSERT_FALSE(spec.rocks.empty());
+  auto bare = spec;
+  bare.rocks.clear();
+  cv::Mat difference;
+  cv::absdiff(MapOf(DrawFarm(spec, Empty(), kSize)), MapOf(DrawFarm(bare, Empty(), kSize)),
+              difference);
+  const MapView view = PlaceMap(25, 25, kSize).view;
+  for (const auto& rock : spec.rocks) {
+    const cv::Rect around(cv::Point(view.ToPixel(rock.cell.x, rock.cell.y)) - cv::Point(8, 8),
+                          cv::Size(17, 17));
+    EXPECT_GT(cv::norm(difference(around & cv::Rect({0, 0}, difference.size()))), 100.0)
+        << rock.cell.x << ", " << rock.cell.y;
+  }
+}
+
+TEST(Image, PointsADisastersArrowWhereItIsHeading) {
+  const auto spec = test::MakeSpec();
+  auto state = Empty();
+  state.disasters.push_back(test::MakeDisaster(0, 12.0F, 12.0F));
+  state.disasters.front().speed = 0.0F;
+  const auto still = MapOf(DrawFarm(spec, state, kSize));
+  const cv::Point2d centre = PlaceMap(25, 25, kSize).view.ToPixel(12.0, 12.0);
+  state.disasters.front().speed = 0.5F;
+  const auto ahead = [&](int heading_deg) {
+    state.disasters.front().heading_deg = heading_deg;
+    return MiddleOfDifference(still, MapOf(DrawFarm(spec, state, kSize))) - centre;
+  };
+  EXPECT_LT(ahead(0).y, -5.0);   // north is up
+  EXPECT_GT(ahead(90).x, 5.0);   // east
+  EXPECT_GT(ahead(180).y, 5.0);  // south
+  EXPECT_LT(ahead(270).x, -5.0);
+}
+
+TEST(Image, WritesEpisodeStepAndReturn) {
+  const auto spec = test::MakeSpec();
+  const auto top = [&](const aquafarm_msgs::FarmState& state) {
+    return cv::Mat(DrawFarm(spec, state, kSize), cv::Rect(0, 0, 640, 46)).clone();
+  };
+  const auto state = test::MakeState();
+  const cv::Mat before = top(state);
+  EXPECT_EQ(cv::norm(before, top(state)), 0.0);
+  for (const char* what : {"episode", "step", "return"}) {
+    auto other = state;
+    if (what[0] == 'e') other.episode += 7;
+    if (what[0] == 's') other.step += 7;
+    if (what[0] == 'r') other.joint_return += 77.0F;
+    EXPECT_GT(cv::norm(before, top(other)), 100.0) << what;
+  }
+}
+
+TEST(Image, WritesLegendAndLines) {
+  const auto before = DrawFarm(test::MakeSpec(), test::MakeState(), kSize);
   const auto variety = [](const cv::Mat& part) {
     cv::Scalar mean;
     cv::Scalar deviation;
@@ -220,10 +270,6 @@ TEST(Image, WritesLegendAndLines) {
   EXPECT_GT(variety(before(cv::Rect(490, 50, 150, 200))), 10.0);   // devices, disasters, ships
   EXPECT_GT(variety(before(cv::Rect(490, 450, 150, 140))), 10.0);  // legend, north, scale
   EXPECT_GT(variety(before(cv::Rect(0, 598, 640, 20))), 10.0);     // reward terms
-  ++state.step;
-  EXPECT_GT(cv::norm(before(cv::Rect(0, 0, 640, 46)),
-                     DrawFarm(spec, state, kSize)(cv::Rect(0, 0, 640, 46))),
-            0.0);
 }
 
 TEST(Image, SaysHowTheEpisodeEnded) {

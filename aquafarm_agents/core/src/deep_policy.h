@@ -16,7 +16,6 @@
 #include "aquafarm/agents/checkpoint.h"
 #include "aquafarm/agents/deep_options.h"
 #include "aquafarm/agents/environment.h"
-#include "aquafarm/encoding.h"
 
 namespace aquafarm::agents {
 
@@ -43,7 +42,7 @@ ActionMask Allowed(ActionMask legal, const float* features, const Options& optio
   if (!options.mask_blocked) return allowed;
   auto open = allowed;
   for (int move = 0; move < kMoveCount; ++move) {
-    if (features[Encoder::kFirstBlockedFeature + move] == 0.0F) continue;
+    if (features[kFirstBlockedFeature + move] == 0.0F) continue;
     open = static_cast<ActionMask>(open & ~(1U << static_cast<unsigned>(move)));
   }
   return (open & kMoveMask) != 0 ? open : allowed;

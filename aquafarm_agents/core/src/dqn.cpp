@@ -330,21 +330,19 @@ template <typename Scalar>
 void DqnLearner<Scalar>::Save(Checkpoint& checkpoint) const {
   optimizer_.Save(checkpoint);
   replay_.Save(checkpoint);
-  checkpoint.SetArray("streams", explorer_.positions());
+  explorer_.Save(checkpoint);
   checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
   sampler_.Save(checkpoint);
 }
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> positions;
   std::vector<std::uint64_t> chance;
-  checkpoint.GetArray("streams", EntryCount(spec_), positions);
   checkpoint.GetArray("chance", 1, chance);
   optimizer_.Load(checkpoint);
   replay_.Load(checkpoint);
   sampler_.Load(checkpoint);
-  explorer_.Seek(positions);
+  explorer_.Load(checkpoint);
   chance_.Seek(chance[0]);
 }
 

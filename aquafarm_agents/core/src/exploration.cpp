@@ -133,15 +133,16 @@ std::uint8_t Explorer::Pick(ActionMask allowed, RandomStream& stream) {
   return actions[stream.Below(count)];
 }
 
-std::vector<std::uint64_t> Explorer::positions() const {
+void Explorer::Save(Checkpoint& checkpoint) const {
   std::vector<std::uint64_t> positions;
   positions.reserve(streams_.size());
   for (const RandomStream& stream : streams_) positions.push_back(stream.position());
-  return positions;
+  checkpoint.SetArray("streams", positions);
 }
 
-void Explorer::Seek(const std::vector<std::uint64_t>& positions) {
-  AQUAFARM_CHECK_EQ(positions.size(), streams_.size());
+void Explorer::Load(const Checkpoint& checkpoint) {
+  std::vector<std::uint64_t> positions;
+  checkpoint.GetArray("streams", streams_.size(), positions);
   for (std::size_t i = 0; i < streams_.size(); ++i) streams_[i].Seek(positions[i]);
 }
 

@@ -419,7 +419,7 @@ void MaddpgLearner::Save(Checkpoint& checkpoint) const {
   replay_.Save(checkpoint);
   sampler_.Save(checkpoint);
   checkpoint.SetArray("carry", carry_);
-  checkpoint.SetArray("streams", explorer_.positions());
+  explorer_.Save(checkpoint);
   checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position(), acting_.position(),
                                                            steps_, updates_});
   checkpoint.SetArray("numbers", std::vector<double>{due_, static_cast<double>(loss_)});
@@ -429,13 +429,11 @@ void MaddpgLearner::Load(const Checkpoint& checkpoint) {
   std::vector<float> actors;
   std::vector<float> critic;
   std::vector<float> carry;
-  std::vector<std::uint64_t> positions;
   std::vector<std::uint64_t> chance;
   std::vector<double> numbers;
   checkpoint.GetArray("target.actors", static_cast<std::size_t>(actor_target_.size()), actors);
   checkpoint.GetArray("target.critic", static_cast<std::size_t>(judge_target_.size()), critic);
   checkpoint.GetArray("carry", carry_.size(), carry);
-  checkpoint.GetArray("streams", EntryCount(spec_), positions);
   checkpoint.GetArray("chance", 4, chance);
   checkpoint.GetArray("numbers", 2, numbers);
   actor_.Load(checkpoint);
@@ -445,7 +443,7 @@ void MaddpgLearner::Load(const Checkpoint& checkpoint) {
   actor_target_.FromVector(actors);
   judge_target_.FromVector(critic);
   carry_ = std::move(carry);
-  explorer_.Seek(positions);
+  explorer_.Load(checkpoint);
   chance_.Seek(chance[0]);
   acting_.Seek(chance[1]);
   steps_ = chance[2];

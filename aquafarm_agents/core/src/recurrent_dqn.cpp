@@ -277,22 +277,20 @@ void RecurrentDqnLearner::Save(Checkpoint& checkpoint) const {
   optimizer_.Save(checkpoint);
   replay_.Save(checkpoint);
   sampler_.Save(checkpoint);
-  checkpoint.SetArray("streams", explorer_.positions());
+  explorer_.Save(checkpoint);
   checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
   checkpoint.SetArray("carry", carry_.values());
 }
 
 void RecurrentDqnLearner::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> positions;
   std::vector<std::uint64_t> chance;
   std::vector<float> carry;
-  checkpoint.GetArray("streams", EntryCount(spec_), positions);
   checkpoint.GetArray("chance", 1, chance);
   checkpoint.GetArray("carry", carry_.values().size(), carry);
   optimizer_.Load(checkpoint);
   replay_.Load(checkpoint);
   sampler_.Load(checkpoint);
-  explorer_.Seek(positions);
+  explorer_.Load(checkpoint);
   chance_.Seek(chance[0]);
   carry_.values() = std::move(carry);
 }

@@ -116,7 +116,7 @@ void TabularLearner<Rule>::SavePolicy(Checkpoint& checkpoint) const {
 template <typename Rule>
 void TabularLearner<Rule>::Save(Checkpoint& checkpoint) const {
   SavePolicy(checkpoint);
-  checkpoint.SetArray("streams", explorer_.positions());
+  explorer_.Save(checkpoint);
   checkpoint.SetArray("pending", pending_);
   checkpoint.SetArray("loss", std::vector<float>{loss_});
 }
@@ -125,18 +125,16 @@ template <typename Rule>
 void TabularLearner<Rule>::Load(const Checkpoint& checkpoint) {
   std::vector<float> values;
   std::vector<float> loss;
-  std::vector<std::uint64_t> positions;
   std::vector<std::uint64_t> pending;
   checkpoint.GetArray("table", table_.values.size(), values);
-  checkpoint.GetArray("streams", pending_.size(), positions);
   checkpoint.GetArray("pending", pending_.size(), pending);
   checkpoint.GetArray("loss", 1, loss);
   for (const std::uint64_t offset : pending) {
     if (offset != kNoAction && offset >= values.size())
       throw InputError("checkpoint: section 'pending': out of range");
   }
+  explorer_.Load(checkpoint);
   table_.values = std::move(values);
-  explorer_.Seek(positions);
   pending_ = std::move(pending);
   loss_ = loss[0];
 }

@@ -88,8 +88,10 @@ TEST(Explorer, EachEntryHasAStreamOfItsOwnAndContinuesWhereItWas) {
     other.Choose(kValues, kAllActions, best, 0);  // draws of entry 0 do not touch entry 1
     EXPECT_EQ(other.Choose(kValues, kAllActions, best, 1), of_entry_1[static_cast<std::size_t>(i)]);
   }
+  Checkpoint saved;
+  other.Save(saved);
   Explorer resumed(options, 4, 2);
-  resumed.Seek(other.positions());
+  resumed.Load(saved);
   for (std::size_t i = 17; i < 50; ++i) {
     EXPECT_EQ(resumed.Choose(kValues, kAllActions, best, 1), of_entry_1[i]);
   }

@@ -259,8 +259,8 @@ TEST(DrawWeights, KeepsToPyTorchsLimits) {
 TEST(Allowed, LeavesMovesIntoOpenWaterOrAllWhereThereIsNone) {
   DeepOptions options;
   options.mask_blocked = true;
-  std::vector<float> features(Encoder::kFirstBlockedFeature + kMoveCount, 0.0F);
-  float* const blocked = features.data() + Encoder::kFirstBlockedFeature;
+  std::vector<float> features(kFirstBlockedFeature + kMoveCount, 0.0F);
+  float* const blocked = features.data() + kFirstBlockedFeature;
   const ActionMask legal = kMoveMask | MaskOf(Action::kDropOff);
   EXPECT_EQ(Allowed(legal, features.data(), options), legal);
   blocked[static_cast<int>(Action::kWest)] = 1.0F;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "agents_fixture.h"
+#include "aquafarm/version.h"
 #include "process.h"
 
 namespace aquafarm::agents::test {
@@ -103,6 +104,8 @@ TEST_F(RunTest, LeavesAFolderThatExplainsItself) {
   const auto run = nlohmann::json::parse(ReadFile(options_.run_dir + "/run.json"));
   EXPECT_EQ(run.at("algorithm"), "q_learning");
   EXPECT_EQ(run.at("steps"), 60000);
+  EXPECT_EQ(run.at("seed"), options_.seed);
+  EXPECT_EQ(run.at("version"), kVersion);
   EXPECT_EQ(run.at("scenario_hash"), LoadScenario(options_.run_dir + "/scenario.yaml").hash);
   EXPECT_EQ(statuses_.back().phase, RunPhase::kEnded);
 }

@@ -4,9 +4,10 @@
 set(AQUAFARM_CORE_CMAKE_DIR ${CMAKE_CURRENT_LIST_DIR})
 
 function(aquafarm_set_warnings target)
-  # No contraction of a*b+c into one rounding: the same bits on every machine.
+  # No contraction of a*b+c into one rounding: the same bits on every machine. A function of the
+  # library is never replaced from outside, so its own calls of it may be inlined.
   target_compile_options(${target} PRIVATE
-    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off)
+    -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fno-semantic-interposition)
 endfunction()
 
 # A shared library with C++17, all warnings and no symbol left open.

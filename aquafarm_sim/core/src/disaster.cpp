@@ -57,7 +57,7 @@ std::array<std::array<float, 2>, 360> MakeHeadings() {
   return headings;
 }
 
-void SetMotion(Disaster& disaster) {
+void SetMotion(ObservableDisaster& disaster) {
   const std::array<float, 2> direction = HeadingVector(disaster.heading_deg);
   disaster.dx = direction[0] * disaster.speed;
   disaster.dy = direction[1] * disaster.speed;
@@ -67,7 +67,7 @@ void SetMotion(Disaster& disaster) {
 float Squared(float radius) { return radius > 0.0F ? radius * radius : -1.0F; }
 
 // Every ring of a waypoint or spec.
-void SetRings(Disaster& disaster, const std::vector<float>& radii,
+void SetRings(ObservableDisaster& disaster, const std::vector<float>& radii,
               const std::vector<QuadrantRadii>& quadrants) {
   disaster.by_quadrant = !quadrants.empty();
   for (std::size_t k = 0; k < radii.size(); ++k) {
@@ -80,7 +80,8 @@ void SetRings(Disaster& disaster, const std::vector<float>& radii,
 }
 
 // Grade, and the heading and speed that people and bulletins read, on the leg after a waypoint.
-void EnterLeg(Disaster& disaster, const std::vector<Waypoint>& track, std::size_t waypoint) {
+void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
+              std::size_t waypoint) {
   disaster.waypoint = static_cast<std::int32_t>(waypoint);
   const Waypoint& from = track[waypoint];
   const Waypoint& to = track[std::min(waypoint + 1, track.size() - 1)];
@@ -140,17 +141,18 @@ void Turn(Disaster& disaster, const StreamKey& turn_key, std::int32_t step) {
 
 }  // namespace
 
-void SetRing(Disaster& disaster, std::size_t ring, float radius) {
+void SetRing(ObservableDisaster& disaster, std::size_t ring, float radius) {
   disaster.radius[ring] = radius;
   disaster.radius_squared[ring] = Squared(radius);
 }
 
-void SetRing(Disaster& disaster, std::size_t ring, const QuadrantRadii& radii) {
+void SetRing(ObservableDisaster& disaster, std::size_t ring, const QuadrantRadii& radii) {
   SetRing(disaster, ring, *std::max_element(radii.begin(), radii.end()));
   for (std::size_t q = 0; q < radii.size(); ++q) disaster.quadrant[q][ring] = radii[q];
 }
 
-float RiskByQuadrant(const Disaster& disaster, float west, float south, float distance_squared) {
+float RiskByQuadrant(const ObservableDisaster& disaster, float west, float south,
+                     float distance_squared) {
   const auto& radii = disaster.quadrant[QuadrantOf(west, south)];
   for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
     if (distance_squared <= Squared(radii[k])) return disaster.risk[k];
@@ -158,7 +160,7 @@ float RiskByQuadrant(const Disaster& disaster, float west, float south, float di
   return 0.0F;
 }
 
-void GrowRings(Disaster& disaster, float by) {
+void GrowRings(ObservableDisaster& disaster, float by) {
   if (by == 0.0F) return;
   const auto grown = [by](float radius) { return std::max(0.0F, radius + by); };
   for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
@@ -229,7 +231,8 @@ void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_
   GrowRings(disaster, disaster.radius_growth);
 }
 
-void FollowTrack(Disaster& disaster, const std::vector<Waypoint>& track, std::int32_t step) {
+void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
+                 std::int32_t step) {
   const auto now = static_cast<float>(step);
   auto last = static_cast<std::size_t>(disaster.waypoint);
   while (last + 1 < track.size() && track[last + 1].step <= now) ++last;

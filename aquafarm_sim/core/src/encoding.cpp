@@ -2,34 +2,26 @@
 #include "aquafarm/encoding.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
-#include <limits>
 
 #include "aquafarm/check.h"
 #include "aquafarm/forecast.h"
+#include "risk_runs.h"
 
 namespace aquafarm {
 namespace {
 
-constexpr std::int32_t kSelfFeatures = Encoder::kFirstBlockedFeature;
+constexpr std::int32_t kSelfFeatures = kFirstBlockedFeature;
 constexpr std::int32_t kDeviceFeatures = 5;
 constexpr std::int32_t kPortFeatures = 2;
 constexpr std::int32_t kDisasterFeatures = 7;
 constexpr std::int32_t kShipFeatures = 4;
 constexpr std::int32_t kWayFeatures = 3;
-constexpr std::int32_t kCourseFeatures = 2 * kMoveCount + 1;
-constexpr std::int32_t kCourseSteps = 6;  // as far as a course is looked along
-// Scales: devices' highest paper value, the worst risk of §2.1.
-constexpr float kValueScale = 1.0F / 100.0F;
-constexpr float kRiskScale = 1.0F / 20.0F;
+constexpr std::int32_t kCourseFeatures = kMoveCount + kCourseCount;
+constexpr float kValueScale = 1.0F / 100.0F;  // devices' highest paper value
 
 // The painted planes come first, so that a run past a plane's end stays inside the buffer.
 enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, kCargo, kOthers };
-
-std::uint8_t ToByte(float part) {
-  return static_cast<std::uint8_t>(std::min(std::max(part, 0.0F), 1.0F) * 255.0F + 0.5F);
-}
 
 // A device's digit in a status code: deployed, aboard the ship, or gone.
 std::int32_t Standing(DeviceStatus status, bool aboard_self) {
@@ -42,158 +34,14 @@ std::int32_t IdentityFeatures(const Scenario& scenario) {
   return scenario.AgentCount() > 1 ? scenario.AgentCount() : 0;
 }
 
-// The part of an episode's time that is left.
-float TimeLeft(const View& view) {
+// Steps after which an episode is over at the latest.
+float Horizon(const Scenario& scenario) {
   std::int32_t horizon = 0;
-  for (const DisasterSpec& disaster : view.scenario->disasters) {
+  for (const DisasterSpec& disaster : scenario.disasters) {
     horizon = std::max(horizon, disaster.duration);
   }
-  horizon = horizon == 0 ? view.scenario->step_limit : std::min(horizon, view.scenario->step_limit);
-  return 1.0F - static_cast<float>(view.step) / static_cast<float>(horizon);
-}
-
-// The moves' courses and, last, staying.
-constexpr std::size_t kCourseCount = kMoveCount + 1;
-constexpr std::size_t kCourseCells = kCourseCount * kCourseSteps;
-using CourseFloats = std::array<float, kCourseCells>;
-
-/// Where the courses lead, seen from the ship, and when: all courses' first step, then the second.
-struct CourseTable {
-  CourseFloats x{};
-  CourseFloats y{};
-  CourseFloats steps{};
-};
-
-constexpr CourseTable MakeCourses() {
-  CourseTable table;
-  for (std::size_t i = 0; i < kCourseCells; ++i) {
-    const std::size_t course = i % kCourseCount;
-    const Cell move = course < kMoves.size() ? kMoves[course] : Cell{};
-    const auto steps = static_cast<std::int32_t>(i / kCourseCount + 1);
-    table.x[i] = static_cast<float>(steps * move.x);
-    table.y[i] = static_cast<float>(steps * move.y);
-    table.steps[i] = static_cast<float>(steps);
-  }
-  return table;
-}
-
-constexpr CourseTable kCourses = MakeCourses();
-
-// Worsens the risk of each cell of the courses to that of a disaster that holds its motion; as
-// RiskOf, but a ring for all cells at once, which the compiler makes vectors of.
-void WorsenCourses(const KnownDisaster& known, const CourseFloats& x, const CourseFloats& y,
-                   CourseFloats& risk) {
-  const Disaster& disaster = known.belief;
-  const auto age = static_cast<float>(known.age);
-  CourseFloats west;
-  CourseFloats south;
-  CourseFloats distance_squared;
-  for (std::size_t i = 0; i < kCourseCells; ++i) {
-    const float ahead = age + kCourses.steps[i];
-    west[i] = disaster.x - (x[i] - ahead * disaster.dx);
-    south[i] = disaster.y - (y[i] - ahead * disaster.dy);
-    distance_squared[i] = west[i] * west[i] + south[i] * south[i];
-  }
-  CourseFloats there{};
-  if (disaster.by_quadrant) {
-    for (std::size_t i = 0; i < kCourseCells; ++i) {
-      there[i] = RiskByQuadrant(disaster, west[i], south[i], distance_squared[i]);
-    }
-  } else {
-    // From the outermost: of the rings that hold a cell the innermost counts.
-    for (auto k = static_cast<std::size_t>(disaster.rings); k-- > 0;) {
-      for (std::size_t i = 0; i < kCourseCells; ++i) {
-        there[i] = distance_squared[i] <= disaster.radius_squared[k] ? disaster.risk[k] : there[i];
-      }
-    }
-  }
-  for (std::size_t i = 0; i < kCourseCells; ++i) risk[i] = std::min(risk[i], there[i]);
-}
-
-// The cells [x0, x1) × [y0, y1) that a disaster may reach.
-struct Box {
-  std::int32_t x0, x1, y0, y1;
-};
-
-Box ReachedBox(float cx, float cy, float reach, std::int32_t width, std::int32_t height) {
-  const auto clamp = [](float value, std::int32_t limit) {
-    return static_cast<std::int32_t>(std::min(std::max(value, 0.0F), static_cast<float>(limit)));
-  };
-  return {clamp(cx - reach, width), clamp(cx + reach + 1.0F, width), clamp(cy - reach, height),
-          clamp(cy + reach + 1.0F, height)};
-}
-
-// Columns painted at once. A row's last run may pass its end, and so the plane's, by less than
-// this; cells there get level 0, which leaves them as they are.
-constexpr std::int32_t kRun = 16;
-
-// Runs as vectors of GCC and Clang, which each target below turns into its widest registers.
-using FloatRun = float __attribute__((vector_size(kRun * sizeof(float))));
-using IntRun = std::int32_t __attribute__((vector_size(kRun * sizeof(std::int32_t))));
-using ByteRun = std::uint8_t __attribute__((vector_size(kRun)));
-
-// Paints a disaster's footprint, the worse kept where one lies already: per cell the same float
-// comparisons as RiskOf.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#endif
-void PaintRings(float cx, float cy, const float* ring_squared, const std::int32_t* levels, Box box,
-                std::int32_t width, std::uint8_t* plane) {
-  for (std::int32_t x0 = box.x0; x0 < box.x1; x0 += kRun) {
-    FloatRun dx_squared;
-    for (std::int32_t i = 0; i < kRun; ++i) {
-      const float dx = cx - static_cast<float>(x0 + i);
-      dx_squared[i] = x0 + i < width ? dx * dx : std::numeric_limits<float>::infinity();
-    }
-    for (std::int32_t y = box.y0; y < box.y1; ++y) {
-      const float dy = cy - static_cast<float>(y);
-      const FloatRun distance_squared = dx_squared + dy * dy;
-      IntRun level = {};
-      for (std::int32_t k = kMaxRings; k-- > 0;) {
-        level = distance_squared <= ring_squared[k] ? IntRun{} + levels[k] : level;
-      }
-      const ByteRun painted = __builtin_convertvector(level, ByteRun);
-      std::uint8_t* const row = plane + static_cast<std::ptrdiff_t>(y) * width + x0;
-      ByteRun present;
-      std::memcpy(&present, row, sizeof(present));
-      present = painted > present ? painted : present;
-      std::memcpy(row, &present, sizeof(present));
-    }
-  }
-}
-
-// The same for rings by quadrants, cell by cell.
-void PaintQuadrants(const Disaster& disaster, float cx, float cy, Box box, std::int32_t width,
-                    std::uint8_t* plane) {
-  Disaster there = disaster;
-  there.x = cx;
-  there.y = cy;
-  for (std::int32_t y = box.y0; y < box.y1; ++y) {
-    for (std::int32_t x = box.x0; x < box.x1; ++x) {
-      std::uint8_t& cell = plane[y * width + x];
-      const float risk = RiskOf(there, static_cast<float>(x), static_cast<float>(y));
-      cell = std::max(cell, ToByte(-risk * kRiskScale));
-    }
-  }
-}
-
-// Paints a disaster `ahead` steps along its present heading.
-void PaintDisaster(const Disaster& disaster, float ahead, std::int32_t width, std::int32_t height,
-                   std::uint8_t* plane) {
-  if (!disaster.active() || disaster.rings == 0) return;
-  const float cx = disaster.x + ahead * disaster.dx;
-  const float cy = disaster.y + ahead * disaster.dy;
-  const Box box = ReachedBox(cx, cy, disaster.reach(), width, height);
-  if (box.x0 >= box.x1 || box.y0 >= box.y1) return;
-  if (disaster.by_quadrant) return PaintQuadrants(disaster, cx, cy, box, width, plane);
-  std::array<float, kMaxRings> ring_squared;
-  std::array<std::int32_t, kMaxRings> levels{};
-  ring_squared.fill(-1.0F);
-  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
-    ring_squared[k] = disaster.radius_squared[k];
-    levels[k] = ToByte(-disaster.risk[k] * kRiskScale);
-  }
-  PaintRings(cx, cy, ring_squared.data(), levels.data(), box, width, plane);
+  if (horizon == 0) return static_cast<float>(scenario.step_limit);
+  return static_cast<float>(std::min(horizon, scenario.step_limit));
 }
 
 }  // namespace
@@ -202,6 +50,7 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
   const std::int32_t devices = scenario.devices.Total();
   fetchable_ = scenario.FetchableCount();
   scale_ = 1.0F / static_cast<float>(std::max(scenario.width, scenario.height));
+  horizon_ = Horizon(scenario);
   planes_size_ =
       static_cast<std::size_t>(kPlaneCount) * static_cast<std::size_t>(scenario.CellCount());
   const std::int32_t ports = scenario.PortCount();
@@ -275,45 +124,42 @@ Encoder::TabularState Encoder::Decode(std::uint32_t index) const {
 
 void Encoder::Features(const View& view, float* out) const {
   const Layout& layout = *view.layout;
-  const auto east = [&](Cell cell) { return static_cast<float>(cell.x - view.self.x) * scale_; };
-  const auto north = [&](Cell cell) { return static_cast<float>(cell.y - view.self.y) * scale_; };
-  *out++ = 2.0F * static_cast<float>(view.self.x) * scale_ - 1.0F;
-  *out++ = 2.0F * static_cast<float>(view.self.y) * scale_ - 1.0F;
-  *out++ = TimeLeft(view);
-  *out++ = static_cast<float>(view.capacity - view.aboard) / static_cast<float>(view.capacity);
-  *out++ = KnownRiskAt(view, view.self) * kRiskScale;
-  for (const Cell move : kMoves) {
-    const Cell to{view.self.x + move.x, view.self.y + move.y};
-    const bool off =
-        static_cast<std::uint32_t>(to.x) >= static_cast<std::uint32_t>(scenario_.width) ||
-        static_cast<std::uint32_t>(to.y) >= static_cast<std::uint32_t>(scenario_.height);
-    *out++ = off || (layout.bits(to) & kBlockedBits) != 0 ? 1.0F : 0.0F;
-  }
+  const float scale = scale_;  // a copy: what is written to `out` might else be it
+  const Cell self = view.self;
+  const auto east = [=](Cell cell) { return static_cast<float>(cell.x - self.x) * scale; };
+  const auto north = [=](Cell cell) { return static_cast<float>(cell.y - self.y) * scale; };
+  out[0] = 2.0F * static_cast<float>(self.x) * scale - 1.0F;
+  out[1] = 2.0F * static_cast<float>(self.y) * scale - 1.0F;
+  out[2] = 1.0F - static_cast<float>(view.step) / horizon_;
+  out[3] = static_cast<float>(view.capacity - view.aboard) / static_cast<float>(view.capacity);
+  out[4] = KnownRiskAt(view, self) * kRiskScale;
+  out = Blocked(layout, self, out + kFirstBlockedFeature);
   for (const KnownDevice& device : view.devices) {
-    *out++ = east(device.cell);
-    *out++ = north(device.cell);
-    *out++ = device.status == DeviceStatus::kDeployed ? 1.0F : 0.0F;
-    *out++ = device.aboard_self ? 1.0F : 0.0F;
-    *out++ = device.health * device.value * kValueScale;
+    out[0] = east(device.cell);
+    out[1] = north(device.cell);
+    out[2] = device.status == DeviceStatus::kDeployed ? 1.0F : 0.0F;
+    out[3] = device.aboard_self ? 1.0F : 0.0F;
+    out[4] = device.health * device.value * kValueScale;
+    out += kDeviceFeatures;
   }
   for (const Cell port : layout.ports) {
     *out++ = east(port);
     *out++ = north(port);
   }
-  for (std::size_t id = 0; id < scenario_.disasters.size(); ++id) {
+  for (std::size_t id = 0; id < scenario_.disasters.size(); ++id, out += kDisasterFeatures) {
     const KnownDisaster& known = view.disasters[id];
     if (!known.known || !known.belief.active()) {
-      out = std::fill_n(out, kDisasterFeatures, 0.0F);
+      std::fill_n(out, kDisasterFeatures, 0.0F);
       continue;
     }
-    const Disaster& disaster = known.belief;
-    *out++ = 1.0F;
-    *out++ = (disaster.x - static_cast<float>(view.self.x)) * scale_;
-    *out++ = (disaster.y - static_cast<float>(view.self.y)) * scale_;
-    *out++ = disaster.dx;
-    *out++ = disaster.dy;
-    *out++ = disaster.reach() * scale_;
-    *out++ = known.age == 0 ? 0.0F
+    const ObservableDisaster& disaster = known.belief;
+    out[0] = 1.0F;
+    out[1] = (disaster.x - static_cast<float>(self.x)) * scale;
+    out[2] = (disaster.y - static_cast<float>(self.y)) * scale;
+    out[3] = disaster.dx;
+    out[4] = disaster.dy;
+    out[5] = disaster.reach() * scale;
+    out[6] = known.age == 0 ? 0.0F
                             : static_cast<float>(known.age) /
                                   static_cast<float>(view.scenario->view.bulletin_period);
   }
@@ -332,36 +178,37 @@ void Encoder::Features(const View& view, float* out) const {
   if (scenario_.view.courses) Courses(view, out);
 }
 
+// Which moves lead off the map or onto a rock or an island. @returns where it ended
+float* Encoder::Blocked(const Layout& layout, Cell self, float* out) const {
+  const std::int32_t width = scenario_.width;
+  const std::int32_t height = scenario_.height;
+  const std::uint8_t* const here = layout.cells.data() + LinearIndex(self, width);
+  const auto is_blocked = [=](Cell move) {
+    return (here[LinearIndex(move, width)] & kBlockedBits) != 0;
+  };
+  const bool inside = self.x > 0 && self.x < width - 1 && self.y > 0 && self.y < height - 1;
+  if (inside) {  // the usual case, without a branch per move
+    for (const Cell move : kMoves) *out++ = static_cast<float>(is_blocked(move));
+    return out;
+  }
+  for (const Cell move : kMoves) {
+    const Cell to{self.x + move.x, self.y + move.y};
+    const bool off = to.x < 0 || to.x >= width || to.y < 0 || to.y >= height;
+    *out++ = static_cast<float>(off || is_blocked(move));
+  }
+  return out;
+}
+
 // The risk forecast after one step of each move, and on average over the steps of a course that
 // holds on, or of a ship that stays; the map's edge stops a ship.
 void Encoder::Courses(const View& view, float* out) const {
-  CourseFloats x;
-  CourseFloats y;
-  const auto east = static_cast<float>(scenario_.width - 1);
-  const auto north = static_cast<float>(scenario_.height - 1);
-  const auto self_x = static_cast<float>(view.self.x);
-  const auto self_y = static_cast<float>(view.self.y);
-  for (std::size_t i = 0; i < kCourseCells; ++i) {
-    x[i] = std::min(std::max(self_x + kCourses.x[i], 0.0F), east);
-    y[i] = std::min(std::max(self_y + kCourses.y[i], 0.0F), north);
-  }
-  CourseFloats risk{};
-  if (scenario_.seas && !scenario_.seas->risk.empty()) {
-    for (std::size_t i = 0; i < kCourseCells; ++i) {
-      risk[i] =
-          scenario_.SeaRiskAt({static_cast<std::int32_t>(x[i]), static_cast<std::int32_t>(y[i])});
+  CourseRisks risks(scenario_, view.self);
+  for (const KnownDisaster& known : view.disasters) {
+    if (known.known && known.belief.active()) {
+      risks.Worsen(known.belief, static_cast<float>(known.age));
     }
   }
-  for (const KnownDisaster& known : view.disasters) {
-    if (known.known && known.belief.active()) WorsenCourses(known, x, y, risk);
-  }
-  for (float& one : risk) one *= kRiskScale;
-  out = std::copy_n(risk.data(), kMoveCount, out);
-  for (std::size_t course = 0; course < kCourseCount; ++course) {
-    float sum = 0.0F;
-    for (std::size_t i = course; i < kCourseCells; i += kCourseCount) sum += risk[i];
-    *out++ = sum / static_cast<float>(kCourseSteps);
-  }
+  risks.Write(out, out + kMoveCount);
 }
 
 // The next move and how many are left to every port, and to every device that still waits.
@@ -417,10 +264,10 @@ void Encoder::Planes(const View& view, std::uint8_t* out) const {
     std::memcpy(plane(kForecast), sea_plane_.data(), cells);
   }
   for (const KnownDisaster& known : view.disasters) {
-    if (!known.known) continue;
-    PaintDisaster(known.belief, 0.0F, scenario_.width, scenario_.height, plane(kRisk));
-    PaintDisaster(known.belief, static_cast<float>(known.age + kForecastSteps), scenario_.width,
-                  scenario_.height, plane(kForecast));
+    if (!known.known || !known.belief.active()) continue;
+    const RiskBrush brush(known.belief, scenario_.width, scenario_.height);
+    brush.Paint(0.0F, plane(kRisk));
+    brush.Paint(static_cast<float>(known.age + kForecastSteps), plane(kForecast));
   }
 }
 

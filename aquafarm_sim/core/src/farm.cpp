@@ -357,12 +357,6 @@ float Farm::RiskAt(Cell cell) const {
   return std::min(aquafarm::RiskAt(disasters_, cell), scenario_->SeaRiskAt(cell));
 }
 
-Cell Farm::CellOf(std::int32_t id) const {
-  const Device& device = devices_[static_cast<std::size_t>(id)];
-  if (device.carrier != kNone) return ships_[static_cast<std::size_t>(device.carrier)].cell;
-  return device.cell;
-}
-
 ActionMask Farm::LegalActions(std::int32_t id) const {
   const Ship& ship = ships_[static_cast<std::size_t>(id)];
   if (!ship.in_play) return kMoveMask;

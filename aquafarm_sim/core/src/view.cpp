@@ -36,15 +36,15 @@ void OpenEyes(const Farm& farm, Cell self, std::vector<Cell>& eyes) {
 
 // Rings, risks and grade as they were when the last bulletin was issued: what came after it is not
 // known out of sight.
-void TakeBackToBulletin(const std::vector<Waypoint>& track, Disaster& belief) {
+void TakeBackToBulletin(const std::vector<Waypoint>& track, const Bulletin& told,
+                        ObservableDisaster& belief) {
   if (!track.empty()) {
     belief.waypoint = 0;
     FollowTrack(belief, track, 0);
-    FollowTrack(belief, track, belief.bulletin.step);
+    FollowTrack(belief, track, told.step);
     return;
   }
   if (belief.radius_growth == 0.0F) return;
-  const Bulletin& told = belief.bulletin;
   for (std::size_t k = 0; k < static_cast<std::size_t>(belief.rings); ++k) {
     if (belief.by_quadrant) {
       SetRing(belief, k,
@@ -79,7 +79,7 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full, const std::vec
   if (known.visible || !known.known) return;
   const Bulletin& bulletin = disaster.bulletin;
   known.age = farm.step() - bulletin.step;
-  TakeBackToBulletin(*farm.tracks()[id], known.belief);
+  TakeBackToBulletin(*farm.tracks()[id], bulletin, known.belief);
   known.belief.x = bulletin.x;
   known.belief.y = bulletin.y;
   known.belief.speed = bulletin.speed;
@@ -138,16 +138,6 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     ObserveDisaster(farm, id, full, view.eyes, view.disasters[id]);
     if (view.disasters[id].known) TellForecast(farm, id, view.disasters[id]);
   }
-}
-
-float KnownRiskAt(const View& view, Cell cell) {
-  float worst = view.scenario->SeaRiskAt(cell);
-  for (const KnownDisaster& known : view.disasters) {
-    if (!known.known) continue;
-    worst = std::min(worst,
-                     RiskOf(known.belief, static_cast<float>(cell.x), static_cast<float>(cell.y)));
-  }
-  return worst;
 }
 
 }  // namespace aquafarm

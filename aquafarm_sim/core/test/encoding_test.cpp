@@ -222,7 +222,7 @@ TEST(Features, HaveTheBlockedMovesWhereTheyAreSaidToBe) {
     const Scenario scenario = CrowdedScenario(ships, 0);
     const std::vector<std::string> names = Encoder(scenario).feature_names();
     for (int move = 0; move < kMoveCount; ++move) {
-      EXPECT_EQ(names[static_cast<std::size_t>(Encoder::kFirstBlockedFeature + move)],
+      EXPECT_EQ(names[static_cast<std::size_t>(kFirstBlockedFeature + move)],
                 "blocked." + std::string(ToString(static_cast<Action>(move))));
     }
   }
@@ -347,7 +347,7 @@ std::vector<std::uint8_t> SlowPlanes(const View& view) {
         }
         for (const KnownDisaster& known : view.disasters) {
           if (plane > 1 || !known.known) continue;
-          Disaster disaster = known.belief;
+          ObservableDisaster disaster = known.belief;
           const float ahead = static_cast<float>(known.age) + 10.0F;
           if (plane == 1) {
             disaster.x += ahead * disaster.dx;

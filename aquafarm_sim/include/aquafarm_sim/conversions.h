@@ -43,7 +43,7 @@ aquafarm_msgs::RewardTerms ToMsg(const aquafarm::RewardTerms& terms);
 /// Health and place as they are, not as someone knows them.
 aquafarm_msgs::DeviceState ToMsg(const aquafarm::Farm& farm, std::int32_t device);
 /// As it is: known, visible and of age 0.
-void ToMsg(const aquafarm::Disaster& disaster, std::int32_t id,
+void ToMsg(const aquafarm::ObservableDisaster& disaster, std::int32_t id,
            aquafarm_msgs::DisasterState& message);
 /// The whole state.
 void ToMsg(const aquafarm::Farm& farm, const MessageContext& context,

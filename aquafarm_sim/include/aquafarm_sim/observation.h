@@ -21,7 +21,7 @@ inline aquafarm::KnownDisaster FromMsg(const aquafarm_msgs::DisasterState& messa
   known.known = message.known != 0;
   known.visible = message.visible != 0;
   known.age = message.age;
-  aquafarm::Disaster& belief = known.belief;
+  aquafarm::ObservableDisaster& belief = known.belief;
   const std::size_t rings = std::min(
       {message.radii.size(), message.risks.size(), static_cast<std::size_t>(aquafarm::kMaxRings)});
   belief.kind = static_cast<aquafarm::DisasterKind>(message.kind);

@@ -41,8 +41,8 @@ struct Bulletin {
   std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< likewise
 };
 
-/// One disaster in play: everything that may change in an episode, as plain data.
-struct Disaster {
+/// Of one disaster in play what an agent may get to know, as plain data.
+struct ObservableDisaster {
   DisasterKind kind{};
   Border border{};
   std::int32_t grade{};
@@ -61,19 +61,24 @@ struct Disaster {
   float margin{};                ///< by which the map is enlarged: the largest radius at the start
   std::int32_t steps_left{};     ///< 0: over, no risk any more
   std::int32_t waypoint{kNone};  ///< index of the last waypoint passed; kNone: no track
-  std::array<std::uint32_t, 4> draws{};  ///< of the present four steps
   bool by_quadrant{};  ///< rings are no circles: the radii below hold, and radius is the largest
   std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< NE, SE, SW, NW, ring by ring
-  Bulletin bulletin;
 
   bool active() const { return steps_left > 0; }
+  /// Largest radius, or 0 when it has no ring.
+  float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
+};
+
+/// All of it: everything that may change in an episode.
+struct Disaster : ObservableDisaster {
+  std::array<std::uint32_t, 4> draws{};  ///< of the present four steps
+  Bulletin bulletin;
+
   /// Its rings are those that the bulletin tells of.
   void TellRings() {
     bulletin.radius = radius;
     bulletin.quadrant = quadrant;
   }
-  /// Largest radius, or 0 when it has no ring.
-  float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
 };
 
 /// A disaster's waypoints; shared, never changed in play.
@@ -89,14 +94,15 @@ void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_
                   std::int32_t step, std::int32_t width, std::int32_t height);
 
 /// Puts a tracked disaster where its track says it is at `step`.
-void FollowTrack(Disaster& disaster, const std::vector<Waypoint>& track, std::int32_t step);
+void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
+                 std::int32_t step);
 
 /// Sets a ring to a circle; radius 0: the ring is absent, so that a track may gain and lose rings.
-void SetRing(Disaster& disaster, std::size_t ring, float radius);
+void SetRing(ObservableDisaster& disaster, std::size_t ring, float radius);
 /// Sets a ring by quadrants.
-void SetRing(Disaster& disaster, std::size_t ring, const QuadrantRadii& radii);
+void SetRing(ObservableDisaster& disaster, std::size_t ring, const QuadrantRadii& radii);
 /// Widens every ring by `by` cells, to no less than nothing.
-void GrowRings(Disaster& disaster, float by);
+void GrowRings(ObservableDisaster& disaster, float by);
 
 /// Index of the quadrant, NE, SE, SW, NW, in which a point lies seen from a centre.
 /// @param west how far the point is west of the centre @param south likewise
@@ -108,10 +114,11 @@ constexpr std::size_t QuadrantOf(float west, float south) {
 }
 
 /// Risk of rings that are no circles, at a point so far to the west and south of it.
-float RiskByQuadrant(const Disaster& disaster, float west, float south, float distance_squared);
+float RiskByQuadrant(const ObservableDisaster& disaster, float west, float south,
+                     float distance_squared);
 
 /// Risk of one disaster at a point [cells]; 0 outside or when it is over, else negative.
-inline float RiskOf(const Disaster& disaster, float x, float y) {
+inline float RiskOf(const ObservableDisaster& disaster, float x, float y) {
   const float dx = disaster.x - x;
   const float dy = disaster.y - y;
   const float distance_squared = dx * dx + dy * dy;

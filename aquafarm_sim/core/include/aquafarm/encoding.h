@@ -53,8 +53,6 @@ class Encoder {
   /// The inverse of Index. @param index [0, state_count())
   TabularState Decode(std::uint32_t index) const;
 
-  /// Where the eight features blocked.<move> begin.
-  inline static constexpr std::int32_t kFirstBlockedFeature = 5;
   /// Writes the feature vector. @param out [feature_count()]
   void Features(const View& view, float* out) const;
   /// Writes the planes. @param out [plane_count(), H, W] row-major from the south; 255 stands for 1
@@ -64,6 +62,7 @@ class Encoder {
   float* Ways(const View& view, float* out) const;  // returns where it ended
   void AddWayNames(std::vector<std::string>& names) const;
   void Courses(const View& view, float* out) const;
+  float* Blocked(const Layout& layout, Cell self, float* out) const;
   std::uint32_t IndexOf(std::int32_t code, Cell cell) const;
 
   const Scenario& scenario_;
@@ -74,6 +73,7 @@ class Encoder {
   std::int32_t fetchable_{};  // devices that are not self-propelled
   std::size_t planes_size_{};
   float scale_{};                        // 1 / longer side
+  float horizon_{};                      // steps of the longest episode
   std::vector<std::uint8_t> sea_plane_;  // risk of the sea itself; empty: none
 };
 

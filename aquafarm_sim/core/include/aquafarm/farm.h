@@ -106,7 +106,11 @@ class Farm {
   float RiskAt(Cell cell) const;
 
   /// Where a device is now: its own cell, or its carrier's.
-  Cell CellOf(std::int32_t device) const;
+  Cell CellOf(std::int32_t device) const {
+    const Device& one = devices_[static_cast<std::size_t>(device)];
+    if (one.carrier != kNone) return ships_[static_cast<std::size_t>(one.carrier)].cell;
+    return one.cell;
+  }
 
   /// Which actions would not be ILLEGAL for a ship now. All moves for one out of play.
   ActionMask LegalActions(std::int32_t ship) const;

@@ -51,9 +51,13 @@ inline constexpr std::array<Cell, kMoveCount> kMoves{
 /// Legal-action mask: bit a is set when action a would not be ILLEGAL.
 using ActionMask = std::uint16_t;
 inline constexpr ActionMask kMoveMask = (1U << kMoveCount) - 1;
+
 constexpr ActionMask MaskOf(Action action) {
   return static_cast<ActionMask>(1U << static_cast<unsigned>(action));
 }
+
+/// Where in an agent's feature vector the eight blocked.<move> begin; encoding.h has the others.
+inline constexpr std::int32_t kFirstBlockedFeature = 5;
 
 /// What became of a ship's action in the last step.
 enum class Outcome : std::uint8_t {

@@ -31,10 +31,10 @@ struct KnownDevice {
 };
 
 struct KnownDisaster {
-  bool known{};        ///< neither seen nor in a bulletin so far: all else is meaningless
-  bool visible{};      ///< seen now; else from the last bulletin
-  std::int32_t age{};  ///< steps since it was known so; 0 when visible
-  Disaster belief;     ///< the disaster as far as known; its centre is not dead-reckoned
+  bool known{};               ///< neither seen nor in a bulletin so far: all else is meaningless
+  bool visible{};             ///< seen now; else from the last bulletin
+  std::int32_t age{};         ///< steps since it was known so; 0 when visible
+  ObservableDisaster belief;  ///< as far as known; its centre is not dead-reckoned
 };
 
 /// One ship's view; its memory is reused from step to step.
@@ -58,6 +58,14 @@ struct View {
 void Observe(const Farm& farm, std::int32_t ship, View& view);
 
 /// Worst risk that the view knows of at a cell.
-float KnownRiskAt(const View& view, Cell cell);
+inline float KnownRiskAt(const View& view, Cell cell) {
+  float worst = view.scenario->SeaRiskAt(cell);
+  for (const KnownDisaster& known : view.disasters) {
+    if (!known.known) continue;
+    const float risk = RiskOf(known.belief, static_cast<float>(cell.x), static_cast<float>(cell.y));
+    worst = risk < worst ? risk : worst;
+  }
+  return worst;
+}
 
 }  // namespace aquafarm

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "aquafarm/agents/checkpoint.h"
 #include "aquafarm/agents/schedule.h"
 #include "aquafarm/rng.h"
 #include "aquafarm/types.h"
@@ -78,7 +79,7 @@ inline Best BestOf(const float* values, ActionMask allowed) {
 std::array<double, kActionCount> BoltzmannProbabilities(const float* values, ActionMask allowed,
                                                         double temperature);
 
-/// Chooses actions; its positions in the streams are plain numbers, so it is saved and resumed.
+/// Chooses actions; saved and loaded it goes on bit for bit.
 class Explorer {
  public:
   /// @param entries farms × agents; entry i draws from stream i of (seed, exploration)
@@ -102,9 +103,9 @@ class Explorer {
     return Pick(allowed, stream);
   }
 
-  std::vector<std::uint64_t> positions() const;
-  /// @param positions as many as there are entries
-  void Seek(const std::vector<std::uint64_t>& positions);
+  void Save(Checkpoint& checkpoint) const;
+  /// @throws InputError when it is not of as many entries
+  void Load(const Checkpoint& checkpoint);
 
  private:
   std::uint8_t ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t entry);

@@ -95,6 +95,7 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   ReadWhole(reader, "n_step", 1, 100, options.n_step);
   ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
   ReadNumber(reader, "average_rate", 0.0, 1.0, options.average_rate);
+  ReadNumber(reader, "action_gap", 0.0, 0.99, options.action_gap);
   options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
   options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
   if (options.mask_blocked && options.network == NetworkKind::kCnn) {

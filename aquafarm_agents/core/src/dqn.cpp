@@ -92,12 +92,13 @@ struct Batch {
   std::vector<Scalar> from;
   std::vector<Scalar> to;
   std::vector<std::int64_t> actions;
-  std::vector<float> present;      // [R] 1: in play, 0: done before
-  std::vector<float> rewards;      // [B]
-  std::vector<float> discounts;    // [R] of the value at `to`
-  std::vector<float> forbidden;    // [R, kActionCount] by MarkForbidden, of the next actions
-  std::vector<float> weights;      // [B]
-  std::vector<std::size_t> drawn;  // [B] row of the replay
+  std::vector<float> present;        // [R] 1: in play, 0: done before
+  std::vector<float> rewards;        // [B]
+  std::vector<float> discounts;      // [R] of the value at `to`
+  std::vector<float> forbidden;      // [R, kActionCount] by MarkForbidden, of the next actions
+  std::vector<float> forbidden_now;  // likewise, of those among which the action was chosen
+  std::vector<float> weights;        // [B]
+  std::vector<std::size_t> drawn;    // [B] row of the replay
 
   Batch(std::size_t size, std::size_t rows, std::size_t observation_size)
       : from(rows * observation_size),
@@ -107,6 +108,7 @@ struct Batch {
         rewards(size),
         discounts(rows),
         forbidden(rows * kActionCount),
+        forbidden_now(rows * kActionCount),
         weights(size, 1.0F / static_cast<float>(size)),
         drawn(size) {}
 };
@@ -149,7 +151,7 @@ class DqnLearner final : public Learner {
   void DrawJoint(std::size_t i, const Moment& moment);
   void Fill(std::size_t k, std::size_t from, std::size_t to, float discount);
   torch::Tensor SumOfGroups(const torch::Tensor& values) const;
-  torch::Tensor Targets();
+  torch::Tensor Targets(const torch::Tensor& actions);
   void Reprioritise(const torch::Tensor& errors);
 
   const EnvironmentSpec spec_;
@@ -276,6 +278,9 @@ void DqnLearner<Scalar>::Fill(std::size_t k, std::size_t from, std::size_t to, f
   batch_.discounts[k] = discount;
   MarkForbidden(Allowed(replay_.legal(to), replay_.observation(to), options_),
                 batch_.forbidden.data() + k * kActionCount);
+  if (options_.action_gap == 0.0) return;
+  MarkForbidden(Allowed(replay_.legal(from), replay_.observation(from), options_),
+                batch_.forbidden_now.data() + k * kActionCount);
 }
 
 // [R] → [B]: value decomposition adds up the values of a team (Sunehag et al. 2018).
@@ -287,7 +292,7 @@ torch::Tensor DqnLearner<Scalar>::SumOfGroups(const torch::Tensor& values) const
 }
 
 template <typename Scalar>
-torch::Tensor DqnLearner<Scalar>::Targets() {
+torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& actions) {
   const torch::NoGradGuard no_grad;
   const auto count = static_cast<std::int64_t>(rows());
   const torch::Tensor to = ToInput(batch_.to.data(), rows());
@@ -299,8 +304,14 @@ torch::Tensor DqnLearner<Scalar>::Targets() {
   } else {
     next = next.add_(forbidden).amax(1);
   }
-  return ToDevice(batch_.rewards, {static_cast<std::int64_t>(size())}) +
-         SumOfGroups(ToDevice(batch_.discounts, {count}) * next);
+  torch::Tensor values = ToDevice(batch_.discounts, {count}) * next;
+  if (options_.action_gap > 0.0) {
+    const torch::Tensor now = target_->Forward(ToInput(batch_.from.data(), rows()))
+                                  .add_(ToDevice(batch_.forbidden_now, {count, kActionCount}));
+    const torch::Tensor gap = now.amax(1) - now.gather(1, actions).squeeze(1);
+    values -= options_.action_gap * gap * ToDevice(batch_.present, {count});
+  }
+  return ToDevice(batch_.rewards, {static_cast<std::int64_t>(size())}) + SumOfGroups(values);
 }
 
 template <typename Scalar>
@@ -309,8 +320,8 @@ void DqnLearner<Scalar>::Update() {
   const BatchOrigin origin{seed_, chance_.position()};
   Draw();
   const auto count = static_cast<std::int64_t>(rows());
-  const torch::Tensor targets = Targets();
   const torch::Tensor actions = ToDevice(batch_.actions, {count, 1});
+  const torch::Tensor targets = Targets(actions);
   torch::Tensor predicted =
       online_->Forward(ToInput(batch_.from.data(), rows())).gather(1, actions).squeeze(1);
   if (options_.joint) predicted = SumOfGroups(predicted * ToDevice(batch_.present, {count}));

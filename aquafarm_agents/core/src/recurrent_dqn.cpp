@@ -242,24 +242,29 @@ void RecurrentDqnLearner::Update() {
   const std::int64_t steps = options_.sequence;
   const torch::Tensor observations =
       ToDevice(batch_.observations, {steps + 1, count, spec_.feature_count});
+  const torch::Tensor actions = ToDevice(batch_.actions, {steps, count, 1});
   RecurrentNetwork::State state = WarmState(*online_);
   const torch::Tensor values = online_->Forward(observations, state);
   torch::Tensor targets;
   {
     const torch::NoGradGuard no_grad;
     RecurrentNetwork::State target_state = WarmState(*target_);
-    torch::Tensor next = target_->Forward(observations, target_state);
+    const torch::Tensor told = target_->Forward(observations, target_state);
     const torch::Tensor forbidden = ToDevice(batch_.forbidden, {steps + 1, count, kActionCount});
-    next =
+    torch::Tensor next =
         options_.double_q
-            ? next.gather(2, (values.detach() + forbidden).argmax(2, /*keepdim=*/true)).squeeze(2)
-            : (next + forbidden).amax(2);
+            ? told.gather(2, (values.detach() + forbidden).argmax(2, /*keepdim=*/true)).squeeze(2)
+            : (told + forbidden).amax(2);
     next = next.gather(0, ToDevice(batch_.next, {steps, count}));
     targets = ToDevice(batch_.rewards, {steps, count}) +
               ToDevice(batch_.discounts, {steps, count}) * next;
+    if (options_.action_gap > 0.0) {
+      const torch::Tensor now = told.narrow(0, 0, steps);
+      const torch::Tensor best = (now + forbidden.narrow(0, 0, steps)).amax(2);
+      targets -= options_.action_gap * (best - now.gather(2, actions).squeeze(2));
+    }
   }
-  const torch::Tensor predicted =
-      values.narrow(0, 0, steps).gather(2, ToDevice(batch_.actions, {steps, count, 1})).squeeze(2);
+  const torch::Tensor predicted = values.narrow(0, 0, steps).gather(2, actions).squeeze(2);
   optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {steps, count}), origin);
   if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
 }

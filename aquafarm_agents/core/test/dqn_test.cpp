@@ -9,6 +9,8 @@
 #include "aquafarm/agents/deep_options.h"
 #include "aquafarm/agents/evaluation.h"
 #include "aquafarm/agents/trainer.h"
+#include "networks.h"
+#include "value_optimizer.h"
 
 namespace aquafarm::agents::test {
 namespace {
@@ -58,7 +60,7 @@ TEST(Dqn, SolvesATinyFarm) { ExpectSolves("dqn", kSmall, 12000); }
 TEST(Dqn, SolvesItWithEachSwitchTurnedRound) {
   for (const std::string change :
        {"double_q=false", "dueling=true", "n_step=3", "priority=0", "loss=mse", "target_rate=0.01",
-        "average_rate=0.02", "exploration=boltzmann"}) {
+        "average_rate=0.02", "action_gap=0.5", "exploration=boltzmann"}) {
     EXPECT_NE(Resolved(kSmall + change, false), Resolved(kSmall, false)) << change;
     ExpectSolves("dqn", kSmall + change, 20000);
   }
@@ -86,11 +88,13 @@ TEST(Dqn, SolvesItFromThePlanes) {
 
 TEST(RecurrentDqn, SolvesATinyFarm) { ExpectSolves("lstm_dqn", kSmallRecurrent, 20000); }
 
-TEST(RecurrentDqn, SolvesItByLongerSumsWithoutPriorityAndByAnAverage) {
+TEST(RecurrentDqn, SolvesItByLongerSumsWithoutPriorityByAnAverageAndWithAGap) {
   for (const std::string change : {"n_step=3", "priority=0", "average_rate=0.02"}) {
     EXPECT_NE(Resolved(kSmallRecurrent + change, true), Resolved(kSmallRecurrent, true)) << change;
     ExpectSolves("lstm_dqn", kSmallRecurrent + change, 20000);
   }
+  // Errors are set apart as well, so it takes longer.
+  ExpectSolves("lstm_dqn", kSmallRecurrent + std::string("action_gap=0.5"), 40000);
 }
 
 TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
@@ -98,6 +102,35 @@ TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
                "hidden=24 batch=64 start=500 replay=5000 target_period=50 steps_per_update=4 "
                "replayed=paper_tuple learning_rate=linear:0.003:0.0001:1",
                24000);
+}
+
+// How much the best action is worth above the others, on average where an episode begins.
+float MeanGap(const std::string& options) {
+  const Algorithm& entry = FindAlgorithm("dqn");
+  LocalEnvironment environment(TinyFarm(), {8, entry.encodings(options), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  TrainerOptions trainer;
+  trainer.algorithm = "dqn";
+  trainer.steps = 20000;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  std::string resolved;
+  const DeepOptions parsed = DeepOptions::Parse(options, false, resolved);
+  Checkpoint saved;
+  learner->SavePolicy(saved);
+  const auto network = MakeNetwork(environment.spec(), parsed, 0);
+  FlatParameters(*network, torch::kCPU).FromVector(ActingWeights(saved));
+  const torch::NoGradGuard no_grad;
+  std::vector<float> seen = environment.Reset(1).features;
+  const torch::Tensor values =
+      network->Forward(torch::from_blob(seen.data(), {8, environment.spec().feature_count}));
+  const torch::Tensor best = std::get<0>(values.topk(2, 1));
+  return (best.select(1, 0) - best.select(1, 1)).mean().item<float>();
+}
+
+TEST(Dqn, ActionGapSetsTheBestActionApart) {
+  const float plain = MeanGap(kSmall);
+  EXPECT_GT(plain, 0.0F);
+  EXPECT_GT(MeanGap(kSmall + std::string("action_gap=0.5")), 1.4F * plain);  // twice, if exact
 }
 
 struct Crashes {
@@ -162,7 +195,8 @@ TEST(Dqn, PaperModeTurnsEverySwitchOff) {
 
 TEST(Dqn, WrongOptionsAreAnsweredWithWhatIsAllowed) {
   for (const auto& [options, words] :
-       {std::pair{"doubel_q=true", "options: got 'doubel_q', expected one of: average_rate, batch"},
+       {std::pair{"doubel_q=true",
+                  "options: got 'doubel_q', expected one of: action_gap, average_rate"},
         std::pair{"network=rnn", "network: got 'rnn', expected one of: mlp, cnn"},
         std::pair{"network=cnn mask_blocked=true", "mask_blocked: got true, expected false"},
         std::pair{"batch=0", "batch: got 0, expected [1, 65536]"},

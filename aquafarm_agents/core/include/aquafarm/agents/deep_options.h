@@ -50,6 +50,10 @@ struct DeepOptions {
   /// Share of the newest weights in a moving average, which then acts instead of them (Polyak and
   /// Juditsky 1992; the plain mean until there are 1 / share of them); 0: off
   double average_rate{0.0};
+  /// α of advantage learning (Baird 1999; Bellemare et al. 2016): of what an action is worth less
+  /// than the best this share is taken off its target, so that errors of the network less often
+  /// make it the best; 0: off
+  double action_gap{0.0};
   bool mask_illegal{true};   ///< never try, nor bootstrap on, actions that would be ILLEGAL
   bool mask_blocked{false};  ///< nor moves onto a charted rock, an island or off the map
 

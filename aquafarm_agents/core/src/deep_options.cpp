@@ -96,11 +96,16 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
   ReadNumber(reader, "average_rate", 0.0, 1.0, options.average_rate);
   ReadNumber(reader, "action_gap", 0.0, 0.99, options.action_gap);
+  ReadNumber(reader, "repetition_penalty", 0.0, 1e6, options.repetition_penalty);
   options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
   options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
   if (options.mask_blocked && options.network == NetworkKind::kCnn) {
     throw InputError(
         "mask_blocked: got true, expected false with network=cnn, which sees no features");
+  }
+  if (options.repetition_penalty > 0.0 && options.network == NetworkKind::kCnn) {
+    throw InputError("repetition_penalty: got " + FormatNumber(options.repetition_penalty) +
+                     ", expected 0 with network=cnn, which sees no features");
   }
   ReadNumber(reader, "priority", 0.0, 2.0, options.priority);
   ReadNumber(reader, "importance", 0.0, 1.0, options.importance);

@@ -12,6 +12,7 @@
 #include "aquafarm/check.h"
 #include "deep_policy.h"
 #include "moment_sampler.h"
+#include "repetitions.h"
 #include "row_network.h"
 #include "value_optimizer.h"
 
@@ -151,7 +152,7 @@ class DqnLearner final : public Learner {
   void DrawJoint(std::size_t i, const Moment& moment);
   void Fill(std::size_t k, std::size_t from, std::size_t to, float discount);
   torch::Tensor SumOfGroups(const torch::Tensor& values) const;
-  torch::Tensor Targets(const torch::Tensor& actions);
+  torch::Tensor Targets(const torch::Tensor& from, const torch::Tensor& actions);
   void Reprioritise(const torch::Tensor& errors);
 
   const EnvironmentSpec spec_;
@@ -166,6 +167,7 @@ class DqnLearner final : public Learner {
   std::shared_ptr<QNetwork> acting_;  // online_ itself, unless it acts by an average
   ValueOptimizer optimizer_;
   Explorer explorer_;
+  Repetitions repetitions_;
   RandomStream chance_;
   Replay<Scalar> replay_;
   MomentSampler<Scalar> sampler_;
@@ -189,6 +191,7 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       acting_(options.average_rate > 0.0 ? MakeNetwork(spec, options, seed) : online_),
       optimizer_(options, *online_, *target_, *acting_, device_),
       explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
+      repetitions_(spec, options.repetition_penalty * options.reward_scale),
       chance_({seed, 0, Purpose::kLearner, 1}),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents,
                observation_size_, 0}),
@@ -211,6 +214,7 @@ void DqnLearner<Scalar>::Step(const Results& results, double progress,
 template <typename Scalar>
 void DqnLearner<Scalar>::Choose(const Results& results, std::vector<std::uint8_t>& actions) {
   explorer_.SetProgress(progress_);
+  repetitions_.Begin(results);
   actions.resize(results.legal.size());
   const torch::InferenceMode inference;
   const torch::Tensor values =
@@ -219,7 +223,9 @@ void DqnLearner<Scalar>::Choose(const Results& results, std::vector<std::uint8_t
   const Scalar* seen = Sight<Scalar>::Of(results);
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += observation_size_) {
     const ActionMask allowed = Allowed(results.legal[i], seen, options_);
-    actions[i] = explorer_.Choose(row, allowed, BestOf(row, allowed), i);
+    const float* const worth = repetitions_.Discourage(row, seen, i);
+    actions[i] = explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
+    repetitions_.Remember(actions[i], i);
   }
 }
 
@@ -292,7 +298,7 @@ torch::Tensor DqnLearner<Scalar>::SumOfGroups(const torch::Tensor& values) const
 }
 
 template <typename Scalar>
-torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& actions) {
+torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& from, const torch::Tensor& actions) {
   const torch::NoGradGuard no_grad;
   const auto count = static_cast<std::int64_t>(rows());
   const torch::Tensor to = ToInput(batch_.to.data(), rows());
@@ -306,8 +312,8 @@ torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& actions) {
   }
   torch::Tensor values = ToDevice(batch_.discounts, {count}) * next;
   if (options_.action_gap > 0.0) {
-    const torch::Tensor now = target_->Forward(ToInput(batch_.from.data(), rows()))
-                                  .add_(ToDevice(batch_.forbidden_now, {count, kActionCount}));
+    const torch::Tensor now =
+        target_->Forward(from).add_(ToDevice(batch_.forbidden_now, {count, kActionCount}));
     const torch::Tensor gap = now.amax(1) - now.gather(1, actions).squeeze(1);
     values -= options_.action_gap * gap * ToDevice(batch_.present, {count});
   }
@@ -321,9 +327,9 @@ void DqnLearner<Scalar>::Update() {
   Draw();
   const auto count = static_cast<std::int64_t>(rows());
   const torch::Tensor actions = ToDevice(batch_.actions, {count, 1});
-  const torch::Tensor targets = Targets(actions);
-  torch::Tensor predicted =
-      online_->Forward(ToInput(batch_.from.data(), rows())).gather(1, actions).squeeze(1);
+  const torch::Tensor from = ToInput(batch_.from.data(), rows());
+  const torch::Tensor targets = Targets(from, actions);
+  torch::Tensor predicted = online_->Forward(from).gather(1, actions).squeeze(1);
   if (options_.joint) predicted = SumOfGroups(predicted * ToDevice(batch_.present, {count}));
   optimizer_.Update(predicted, targets,
                     ToDevice(batch_.weights, {static_cast<std::int64_t>(size())}), origin);
@@ -342,6 +348,7 @@ void DqnLearner<Scalar>::Save(Checkpoint& checkpoint) const {
   optimizer_.Save(checkpoint);
   replay_.Save(checkpoint);
   explorer_.Save(checkpoint);
+  repetitions_.Save(checkpoint);
   checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
   sampler_.Save(checkpoint);
 }
@@ -354,6 +361,7 @@ void DqnLearner<Scalar>::Load(const Checkpoint& checkpoint) {
   replay_.Load(checkpoint);
   sampler_.Load(checkpoint);
   explorer_.Load(checkpoint);
+  repetitions_.Load(checkpoint);
   chance_.Seek(chance[0]);
 }
 

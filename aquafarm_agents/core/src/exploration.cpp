@@ -97,11 +97,10 @@ std::array<double, kActionCount> BoltzmannProbabilities(const float* values, Act
 
 Explorer::Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries,
                    double value_scale)
-    : kind_(options.kind), schedule_(options.level), value_scale_(value_scale) {
-  streams_.reserve(entries);
-  for (std::size_t i = 0; i < entries; ++i) {
-    streams_.emplace_back(StreamKey{seed, 0, Purpose::kExploration, static_cast<std::uint32_t>(i)});
-  }
+    : kind_(options.kind),
+      schedule_(options.level),
+      value_scale_(value_scale),
+      streams_(seed, entries) {
   SetProgress(0.0);
 }
 
@@ -131,19 +130,6 @@ std::uint8_t Explorer::Pick(ActionMask allowed, RandomStream& stream) {
     if (((allowed >> a) & 1U) != 0) actions[count++] = a;
   }
   return actions[stream.Below(count)];
-}
-
-void Explorer::Save(Checkpoint& checkpoint) const {
-  std::vector<std::uint64_t> positions;
-  positions.reserve(streams_.size());
-  for (const RandomStream& stream : streams_) positions.push_back(stream.position());
-  checkpoint.SetArray("streams", positions);
-}
-
-void Explorer::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> positions;
-  checkpoint.GetArray("streams", streams_.size(), positions);
-  for (std::size_t i = 0; i < streams_.size(); ++i) streams_[i].Seek(positions[i]);
 }
 
 }  // namespace aquafarm::agents

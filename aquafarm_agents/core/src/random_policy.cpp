@@ -8,10 +8,7 @@
 namespace aquafarm::agents {
 
 void RandomPolicy::Begin(std::uint64_t seed, std::int32_t farms) {
-  streams_.clear();
-  for (std::int32_t i = 0; i < farms * agents_; ++i) {
-    streams_.emplace_back(StreamKey{seed, 0, Purpose::kExploration, static_cast<std::uint32_t>(i)});
-  }
+  streams_ = EntryStreams(seed, static_cast<std::size_t>(farms * agents_));
 }
 
 void RandomPolicy::Act(const Results&, std::vector<std::uint8_t>& actions) {
@@ -21,21 +18,9 @@ void RandomPolicy::Act(const Results&, std::vector<std::uint8_t>& actions) {
   }
 }
 
-std::vector<std::uint64_t> RandomPolicy::positions() const {
-  std::vector<std::uint64_t> positions;
-  for (const RandomStream& stream : streams_) positions.push_back(stream.position());
-  return positions;
-}
-
-void RandomPolicy::Seek(const std::vector<std::uint64_t>& positions) {
-  for (std::size_t i = 0; i < streams_.size(); ++i) streams_[i].Seek(positions[i]);
-}
-
 RandomLearner::RandomLearner(const EnvironmentSpec& spec, std::uint64_t seed,
                              const std::string& options)
-    : agents_(spec.agents),
-      entries_(static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents)),
-      policy_(spec.agents) {
+    : agents_(spec.agents), policy_(spec.agents) {
   OptionReader(options).Finish();
   policy_.Begin(seed, spec.farms);
 }
@@ -50,14 +35,8 @@ std::unique_ptr<Policy> RandomLearner::GreedyPolicy() const {
   return std::make_unique<RandomPolicy>(agents_);
 }
 
-void RandomLearner::Save(Checkpoint& checkpoint) const {
-  checkpoint.SetArray("streams", policy_.positions());
-}
+void RandomLearner::Save(Checkpoint& checkpoint) const { policy_.streams().Save(checkpoint); }
 
-void RandomLearner::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> positions;
-  checkpoint.GetArray("streams", entries_, positions);
-  policy_.Seek(positions);
-}
+void RandomLearner::Load(const Checkpoint& checkpoint) { policy_.streams().Load(checkpoint); }
 
 }  // namespace aquafarm::agents

@@ -8,6 +8,7 @@
 #include "aquafarm/check.h"
 #include "deep_policy.h"
 #include "moment_sampler.h"
+#include "repetitions.h"
 #include "sequence_batch.h"
 #include "value_optimizer.h"
 
@@ -158,6 +159,7 @@ class RecurrentDqnLearner final : public Learner {
   std::shared_ptr<RecurrentNetwork> acting_;  // online_ itself, unless it acts by an average
   ValueOptimizer optimizer_;
   Explorer explorer_;
+  Repetitions repetitions_;
   RandomStream chance_;
   Carry carry_;
   Replay<float> replay_;
@@ -178,6 +180,7 @@ RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint6
       acting_(options.average_rate > 0.0 ? MakeRecurrent(spec, options, seed) : online_),
       optimizer_(options, *online_, *target_, *acting_, device_),
       explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
+      repetitions_(spec, options.repetition_penalty * options.reward_scale),
       chance_({seed, 0, Purpose::kLearner, 1}),
       carry_(EntryCount(spec), options.hidden),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
@@ -195,6 +198,7 @@ void RecurrentDqnLearner::Step(const Results& results, double progress,
   while (optimizer_.TakeDue()) Update();
 
   explorer_.SetProgress(progress);
+  repetitions_.Begin(results);
   actions.resize(results.legal.size());
   const torch::NoGradGuard no_grad;
   const torch::Tensor values = StepNetwork(*acting_, results, spec_.feature_count, carry_, device_);
@@ -202,7 +206,9 @@ void RecurrentDqnLearner::Step(const Results& results, double progress,
   const float* seen = results.features.data();
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features()) {
     const ActionMask allowed = Allowed(results.legal[i], seen, options_);
-    actions[i] = explorer_.Choose(row, allowed, BestOf(row, allowed), i);
+    const float* const worth = repetitions_.Discourage(row, seen, i);
+    actions[i] = explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
+    repetitions_.Remember(actions[i], i);
   }
   replay_.SetActions(actions);
 }
@@ -283,6 +289,7 @@ void RecurrentDqnLearner::Save(Checkpoint& checkpoint) const {
   replay_.Save(checkpoint);
   sampler_.Save(checkpoint);
   explorer_.Save(checkpoint);
+  repetitions_.Save(checkpoint);
   checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
   checkpoint.SetArray("carry", carry_.values());
 }
@@ -296,6 +303,7 @@ void RecurrentDqnLearner::Load(const Checkpoint& checkpoint) {
   replay_.Load(checkpoint);
   sampler_.Load(checkpoint);
   explorer_.Load(checkpoint);
+  repetitions_.Load(checkpoint);
   chance_.Seek(chance[0]);
   carry_.values() = std::move(carry);
 }

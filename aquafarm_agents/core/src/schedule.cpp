@@ -38,6 +38,8 @@ std::string_view ToString(ScheduleKind value) {
       return "linear";
     case ScheduleKind::kExponential:
       return "exponential";
+    case ScheduleKind::kHarmonic:
+      return "harmonic";
   }
   return "?";
 }
@@ -47,6 +49,7 @@ double Schedule::At(double progress) const {
   if (progress >= share) return end;
   const double done = std::max(0.0, progress) / share;
   if (kind == ScheduleKind::kLinear) return start + (end - start) * done;
+  if (kind == ScheduleKind::kHarmonic) return start / (1.0 + (start / end - 1.0) * done);
   return start * std::pow(end / start, done);
 }
 
@@ -61,12 +64,16 @@ Schedule ParseSchedule(const std::string& text, const std::string& what, double 
   if (parts.size() == 2 && parts[0] == ToString(ScheduleKind::kConstant)) {
     return ParseSchedule(parts[1], what, min, max);
   }
-  const bool linear = parts[0] == ToString(ScheduleKind::kLinear);
-  if (parts.size() != 4 || (!linear && parts[0] != ToString(ScheduleKind::kExponential))) {
-    throw InputError(what + ": got '" + text +
-                     "', expected a number, linear:start:end:share or exponential:start:end:share");
+  for (int i = 1; i < kScheduleKindCount; ++i) {
+    if (parts[0] == ToString(static_cast<ScheduleKind>(i))) {
+      schedule.kind = static_cast<ScheduleKind>(i);
+    }
   }
-  schedule.kind = linear ? ScheduleKind::kLinear : ScheduleKind::kExponential;
+  if (parts.size() != 4 || schedule.kind == ScheduleKind::kConstant) {
+    throw InputError(what + ": got '" + text +
+                     "', expected a number or kind:start:end:share, where kind is linear, "
+                     "exponential or harmonic");
+  }
   schedule.start = ParseNumber(parts[1], what);
   schedule.end = ParseNumber(parts[2], what);
   schedule.share = ParseNumber(parts[3], what);
@@ -75,9 +82,9 @@ Schedule ParseSchedule(const std::string& text, const std::string& what, double 
   if (schedule.share <= 0.0 || schedule.share > 1.0) {
     throw InputError(what + ": share: got " + parts[3] + ", expected (0, 1]");
   }
-  if (!linear && (schedule.start <= 0.0 || schedule.end <= 0.0)) {
-    throw InputError(what + ": got '" + text +
-                     "', expected start and end above 0 when exponential");
+  if (schedule.kind != ScheduleKind::kLinear && (schedule.start <= 0.0 || schedule.end <= 0.0)) {
+    throw InputError(what + ": got '" + text + "', expected start and end above 0 when " +
+                     parts[0]);
   }
   return schedule;
 }

@@ -87,7 +87,7 @@ TEST(Algorithms, EachContinuesBitForBit) {
   }
   for (const char* name : {"dqn", "lstm_dqn"}) {
     const Algorithm& algorithm = FindAlgorithm(name);
-    ExpectContinues(algorithm, Lively(algorithm) + " average_rate=0.02");
+    ExpectContinues(algorithm, Lively(algorithm) + " average_rate=0.02 repetition_penalty=2");
   }
 }
 

@@ -60,7 +60,7 @@ TEST(Dqn, SolvesATinyFarm) { ExpectSolves("dqn", kSmall, 12000); }
 TEST(Dqn, SolvesItWithEachSwitchTurnedRound) {
   for (const std::string change :
        {"double_q=false", "dueling=true", "n_step=3", "priority=0", "loss=mse", "target_rate=0.01",
-        "average_rate=0.02", "action_gap=0.5", "exploration=boltzmann"}) {
+        "average_rate=0.02", "action_gap=0.5", "repetition_penalty=0.5", "exploration=boltzmann"}) {
     EXPECT_NE(Resolved(kSmall + change, false), Resolved(kSmall, false)) << change;
     ExpectSolves("dqn", kSmall + change, 20000);
   }
@@ -88,8 +88,10 @@ TEST(Dqn, SolvesItFromThePlanes) {
 
 TEST(RecurrentDqn, SolvesATinyFarm) { ExpectSolves("lstm_dqn", kSmallRecurrent, 20000); }
 
-TEST(RecurrentDqn, SolvesItByLongerSumsWithoutPriorityByAnAverageAndWithAGap) {
-  for (const std::string change : {"n_step=3", "priority=0", "average_rate=0.02"}) {
+TEST(RecurrentDqn, SolvesItWithEachSwitchTurnedRound) {
+  for (const std::string change :
+       {"double_q=false", "dueling=true", "n_step=3", "priority=0", "loss=mse", "target_rate=0.01",
+        "average_rate=0.02", "repetition_penalty=0.5", "exploration=boltzmann"}) {
     EXPECT_NE(Resolved(kSmallRecurrent + change, true), Resolved(kSmallRecurrent, true)) << change;
     ExpectSolves("lstm_dqn", kSmallRecurrent + change, 20000);
   }
@@ -185,6 +187,9 @@ TEST(Dqn, PaperModeTurnsEverySwitchOff) {
   EXPECT_FALSE(paper.dueling);
   EXPECT_EQ(paper.n_step, 1);
   EXPECT_EQ(paper.priority, 0.0);
+  EXPECT_EQ(paper.average_rate, 0.0);
+  EXPECT_EQ(paper.action_gap, 0.0);
+  EXPECT_EQ(paper.repetition_penalty, 0.0);
   EXPECT_EQ(paper.reward_scale, 1.0);
   EXPECT_FALSE(paper.mask_illegal);
   EXPECT_FALSE(paper.mask_blocked);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "agents_fixture.h"
+#include "aquafarm/agents/checkpoint.h"
 
 namespace aquafarm::agents::test {
 namespace {

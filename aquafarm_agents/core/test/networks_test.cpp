@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
 #include "aquafarm/check.h"
@@ -198,6 +201,85 @@ TEST(RecurrentNetwork, GradientsAreDifferences) {
     RecurrentNetwork::State state{empty, empty};
     return network.Forward(input, state).square().sum();
   });
+}
+
+// As `wave` of references/networks.py.
+torch::Tensor Wave(std::vector<std::int64_t> shape, double step) {
+  torch::Tensor tensor = torch::empty(shape, torch::kDouble);
+  for (std::int64_t i = 0; i < tensor.numel(); ++i) {
+    tensor.data_ptr<double>()[i] = 0.4 * std::sin(1.0 + step * static_cast<double>(i));
+  }
+  return tensor;
+}
+
+// Their gradients as one vector, the weights having been made a wave.
+template <typename Loss>
+torch::Tensor GradientAtAWave(torch::nn::Module& network, Loss loss) {
+  network.to(torch::kDouble);
+  std::int64_t size = 0;
+  for (const torch::Tensor& one : network.parameters()) size += one.numel();
+  const torch::Tensor wave = Wave({size}, 0.7);
+  std::int64_t begin = 0;
+  for (torch::Tensor& one : network.parameters()) {
+    const torch::NoGradGuard no_grad;
+    one.copy_(wave.narrow(0, begin, one.numel()).view(one.sizes()));
+    begin += one.numel();
+  }
+  loss().backward();
+  std::vector<torch::Tensor> gradients;
+  for (const torch::Tensor& one : network.parameters()) gradients.push_back(one.grad().flatten());
+  return torch::cat(gradients);
+}
+
+TEST(Networks, HaveTheValuesAndGradientsOfTheStoredReference) {
+  std::ifstream file(std::string(AQUAFARM_CORE_DIR) + "/test/references/networks.json");
+  const nlohmann::json stored = nlohmann::json::parse(file);
+  const auto features = stored.at("features").get<std::int64_t>();
+  const auto hidden = stored.at("hidden").get<std::int64_t>();
+  const auto steps = stored.at("steps").get<std::int64_t>();
+  const auto batch = stored.at("batch").get<std::int64_t>();
+  const auto stride = stored.at("stride").get<std::int64_t>();
+  for (const nlohmann::json& reference : stored.at("references")) {
+    const auto name = reference.at("network").get<std::string>();
+    const bool dueling = reference.at("dueling").get<bool>();
+    SCOPED_TRACE(name + (dueling ? ", dueling" : ""));
+    torch::Tensor values;
+    torch::Tensor gradient;
+    if (name == "mlp") {
+      EnvironmentSpec spec;
+      spec.feature_count = static_cast<std::int32_t>(features);
+      DeepOptions options;
+      options.hidden = static_cast<std::int32_t>(hidden);
+      options.dueling = dueling;
+      const auto network = MakeNetwork(spec, options, 3);
+      gradient = GradientAtAWave(*network, [&] {
+        values = network->Forward(Wave({batch, features}, 0.9));
+        return values.square().sum();
+      });
+    } else {
+      ASSERT_EQ(name, "lstm");
+      RecurrentNetwork network(features, hidden, dueling);
+      gradient = GradientAtAWave(network, [&] {
+        const torch::Tensor empty = torch::zeros({1, batch, hidden}, torch::kDouble);
+        RecurrentNetwork::State state{empty, empty};
+        values = network.Forward(Wave({steps, batch, features}, 0.9), state);
+        return values.square().sum();
+      });
+    }
+    ASSERT_EQ(gradient.numel(), reference.at("weights").get<std::int64_t>());
+    EXPECT_NEAR(values.square().sum().item<double>(), reference.at("loss").get<double>(), 1e-10);
+    const torch::Tensor last = values.detach().reshape({-1, kActionCount})[-1];
+    for (std::int64_t a = 0; a < kActionCount; ++a) {
+      EXPECT_NEAR(last[a].item<double>(),
+                  reference.at("last_values").at(static_cast<std::size_t>(a)).get<double>(), 1e-12);
+    }
+    std::int64_t at = 0;
+    for (const nlohmann::json& slope : reference.at("gradient")) {
+      EXPECT_NEAR(gradient[at].item<double>(), slope.get<double>(), 1e-10) << "weight " << at;
+      at += stride;
+    }
+    EXPECT_GE(at, gradient.numel()) << "the reference ends early";
+  }
 }
 
 TEST(FlatParameters, GatherTheGradients) {

@@ -28,8 +28,18 @@ TEST(Schedule, ExponentialHalvesInEqualTimes) {
   EXPECT_DOUBLE_EQ(schedule.At(1.0), 2.0);
 }
 
+TEST(Schedule, HarmonicFallsAsOneOverTheTime) {
+  const Schedule schedule = ParseSchedule("harmonic:8:2:0.6", "rate", 0, 10);
+  EXPECT_DOUBLE_EQ(schedule.At(0.0), 8.0);
+  EXPECT_DOUBLE_EQ(schedule.At(0.2), 4.0);  // its inverse grows from 1/8 to 1/2 in equal parts
+  EXPECT_DOUBLE_EQ(schedule.At(0.4), 8.0 / 3.0);
+  EXPECT_DOUBLE_EQ(schedule.At(0.6), 2.0);
+  EXPECT_DOUBLE_EQ(schedule.At(1.0), 2.0);
+}
+
 TEST(Schedule, TextReadsBackToTheSame) {
-  for (const std::string text : {"0.1", "linear:1:0.05:0.5", "exponential:20:0.5:1"}) {
+  for (const std::string text :
+       {"0.1", "linear:1:0.05:0.5", "exponential:20:0.5:1", "harmonic:5e-04:1e-05:1"}) {
     EXPECT_EQ(ToString(ParseSchedule(text, "rate", 0, 100)), text);
   }
   EXPECT_EQ(ToString(ParseSchedule("constant:0.1", "rate", 0, 1)), "0.1");
@@ -47,9 +57,11 @@ TEST(Schedule, RefusalsSayWhatIsAllowed) {
   EXPECT_CONTAINS(refuse("fast"), "rate: got 'fast', expected a number");
   EXPECT_CONTAINS(refuse("2"), "rate: got 2, expected [0, 1]");
   EXPECT_CONTAINS(refuse("nan"), "expected a number");
-  EXPECT_CONTAINS(refuse("linear:1:0"), "expected a number, linear:start:end:share or exponential");
+  EXPECT_CONTAINS(refuse("linear:1:0"), "expected a number or kind:start:end:share");
+  EXPECT_CONTAINS(refuse("constant:1:0:1"), "kind is linear, exponential or harmonic");
   EXPECT_CONTAINS(refuse("linear:1:0:0"), "rate: share: got 0, expected (0, 1]");
-  EXPECT_CONTAINS(refuse("exponential:1:0:1"), "above 0");
+  EXPECT_CONTAINS(refuse("exponential:1:0:1"), "above 0 when exponential");
+  EXPECT_CONTAINS(refuse("harmonic:0:1:1"), "above 0 when harmonic");
 }
 
 TEST(OptionReader, UnknownKeysAreAnsweredWithThoseThereAre) {

@@ -96,15 +96,15 @@ const CourseMoves kCourseMoves = MakeCourseMoves();
 AQUAFARM_WIDEST
 void FollowCourses(Cell from, std::int32_t width, std::int32_t height, std::size_t steps,
                    FloatRun* x, FloatRun* y) {
-  const FloatRun west = {};
-  const FloatRun east = west + static_cast<float>(width - 1);
-  const FloatRun north = west + static_cast<float>(height - 1);
+  const FloatRun least = {};
+  const FloatRun east = least + static_cast<float>(width - 1);
+  const FloatRun north = least + static_cast<float>(height - 1);
   for (std::size_t step = 0; step < steps; ++step) {
     const auto taken = static_cast<float>(step + 1);
     const FloatRun to_x = static_cast<float>(from.x) + taken * kCourseMoves.x;
     const FloatRun to_y = static_cast<float>(from.y) + taken * kCourseMoves.y;
-    x[step] = to_x < west ? west : to_x > east ? east : to_x;
-    y[step] = to_y < west ? west : to_y > north ? north : to_y;
+    x[step] = to_x < least ? least : to_x > east ? east : to_x;
+    y[step] = to_y < least ? least : to_y > north ? north : to_y;
   }
 }
 

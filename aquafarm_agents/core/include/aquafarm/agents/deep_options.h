@@ -54,6 +54,9 @@ struct DeepOptions {
   /// than the best this share is taken off its target, so that errors of the network less often
   /// make it the best; 0: off
   double action_gap{0.0};
+  /// Points that an action counts less, while exploring, for each time that it was taken in the
+  /// same situation (cell, load, devices still out) of this episode; 0: off
+  double repetition_penalty{0.0};
   bool mask_illegal{true};   ///< never try, nor bootstrap on, actions that would be ILLEGAL
   bool mask_blocked{false};  ///< nor moves onto a charted rock, an island or off the map
 

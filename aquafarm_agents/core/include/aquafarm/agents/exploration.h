@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/agents/checkpoint.h"
+#include "aquafarm/agents/entry_streams.h"
 #include "aquafarm/agents/schedule.h"
 #include "aquafarm/rng.h"
 #include "aquafarm/types.h"
@@ -103,9 +103,9 @@ class Explorer {
     return Pick(allowed, stream);
   }
 
-  void Save(Checkpoint& checkpoint) const;
+  void Save(Checkpoint& checkpoint) const { streams_.Save(checkpoint); }
   /// @throws InputError when it is not of as many entries
-  void Load(const Checkpoint& checkpoint);
+  void Load(const Checkpoint& checkpoint) { streams_.Load(checkpoint); }
 
  private:
   std::uint8_t ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t entry);
@@ -116,7 +116,7 @@ class Explorer {
   double value_scale_;
   double level_{};
   float epsilon_{};
-  std::vector<RandomStream> streams_;
+  EntryStreams streams_;
 };
 
 }  // namespace aquafarm::agents

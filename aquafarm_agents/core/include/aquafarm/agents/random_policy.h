@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "aquafarm/agents/entry_streams.h"
 #include "aquafarm/agents/learner.h"
-#include "aquafarm/rng.h"
 
 namespace aquafarm::agents {
 
@@ -16,13 +16,12 @@ class RandomPolicy final : public Policy {
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
 
-  std::vector<std::uint64_t> positions() const;
-  /// @param positions as many as farms × agents
-  void Seek(const std::vector<std::uint64_t>& positions);
+  const EntryStreams& streams() const { return streams_; }
+  EntryStreams& streams() { return streams_; }
 
  private:
   std::int32_t agents_;
-  std::vector<RandomStream> streams_;
+  EntryStreams streams_;
 };
 
 /// RANDOM where a learner is asked for: goes through all the motions and learns nothing.
@@ -41,7 +40,6 @@ class RandomLearner final : public Learner {
 
  private:
   std::int32_t agents_;
-  std::size_t entries_;
   RandomPolicy policy_;
 };
 

@@ -7,6 +7,8 @@
 ///   linear       start \                          over the first `share` of the run
 ///                       \_________ end
 ///   exponential  start · (end/start)^(progress/share), then end
+///   harmonic     start / (1 + (start/end - 1) · progress/share), then end: falls soon, and goes on
+///                falling like 1/t, as Robbins and Monro (1951) ask of a rate that ends all chance
 
 #include <cstdint>
 #include <string>
@@ -14,8 +16,8 @@
 
 namespace aquafarm::agents {
 
-enum class ScheduleKind : std::uint8_t { kConstant, kLinear, kExponential };
-inline constexpr int kScheduleKindCount = 3;
+enum class ScheduleKind : std::uint8_t { kConstant, kLinear, kExponential, kHarmonic };
+inline constexpr int kScheduleKindCount = 4;
 std::string_view ToString(ScheduleKind value);
 
 struct Schedule {
@@ -31,7 +33,7 @@ struct Schedule {
 /// Reads "0.1", "linear:1:0.05:0.5" or "exponential:10:0.5:0.5" (kind:start:end:share).
 /// @param what stands first in messages, such as "learning_rate"
 /// @throws InputError when it is none of these or a number is not in [min, max]; an exponential
-///         one needs start and end above 0
+///         or harmonic one needs start and end above 0
 Schedule ParseSchedule(const std::string& text, const std::string& what, double min, double max);
 
 /// The text that ParseSchedule reads back to the same.

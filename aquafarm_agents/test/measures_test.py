@@ -81,11 +81,12 @@ class MeasuresTest(unittest.TestCase):
 
     def test_settings_are_of_so_many_episodes_however_long_a_training_is(self):
         dqn = next(one for one in CONTESTANTS if one.name == "dqn")
-        for episodes, explored, settled in ((2000, "0.015", "0.2"), (800, "0.0375", "0.5"),
-                                            (10, "1", "1")):
+        for episodes, explored, last_rate in ((2000, "0.05", "1e-05"),
+                                              (800, "0.125", "2.42718e-05"),
+                                              (10, "1", "0.000401606")):
             given = dqn.for_episodes(episodes)
             self.assertTrue(given.exploration.endswith(":" + explored), given.exploration)
-            self.assertTrue(given.options[-1].endswith(":" + settled), given.options)
+            self.assertIn(f"learning_rate=harmonic:0.0005:{last_rate}:1", given.options)
 
     def test_ea_is_equation_16(self):
         # LSTM-DQN's row of Table 1.

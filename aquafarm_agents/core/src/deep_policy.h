@@ -61,6 +61,14 @@ inline void MarkForbidden(ActionMask allowed, float* out) {
   }
 }
 
+/// How much less than the best action that is not forbidden the taken one is worth: what advantage
+/// learning takes a share of off its target. @param values [..., kActionCount]
+/// @param forbidden likewise, by MarkForbidden @param actions [..., 1] @returns [...]
+inline torch::Tensor Shortfall(const torch::Tensor& values, const torch::Tensor& forbidden,
+                               const torch::Tensor& actions) {
+  return (values + forbidden).amax(-1) - values.gather(-1, actions).squeeze(-1);
+}
+
 /// Farms that took a step; the others began an episode.
 inline std::uint64_t FarmSteps(const Results& results) {
   return static_cast<std::uint64_t>(

@@ -312,9 +312,8 @@ torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& from, const torch
   }
   torch::Tensor values = ToDevice(batch_.discounts, {count}) * next;
   if (options_.action_gap > 0.0) {
-    const torch::Tensor now =
-        target_->Forward(from).add_(ToDevice(batch_.forbidden_now, {count, kActionCount}));
-    const torch::Tensor gap = now.amax(1) - now.gather(1, actions).squeeze(1);
+    const torch::Tensor forbidden_now = ToDevice(batch_.forbidden_now, {count, kActionCount});
+    const torch::Tensor gap = Shortfall(target_->Forward(from), forbidden_now, actions);
     values -= options_.action_gap * gap * ToDevice(batch_.present, {count});
   }
   return ToDevice(batch_.rewards, {static_cast<std::int64_t>(size())}) + SumOfGroups(values);

@@ -436,6 +436,7 @@ void MaddpgLearner::Load(const Checkpoint& checkpoint) {
   checkpoint.GetArray("carry", carry_.size(), carry);
   checkpoint.GetArray("chance", 4, chance);
   checkpoint.GetArray("numbers", 2, numbers);
+  explorer_.Load(checkpoint);
   actor_.Load(checkpoint);
   judge_.Load(checkpoint, "critic.");
   replay_.Load(checkpoint);
@@ -443,7 +444,6 @@ void MaddpgLearner::Load(const Checkpoint& checkpoint) {
   actor_target_.FromVector(actors);
   judge_target_.FromVector(critic);
   carry_ = std::move(carry);
-  explorer_.Load(checkpoint);
   chance_.Seek(chance[0]);
   acting_.Seek(chance[1]);
   steps_ = chance[2];

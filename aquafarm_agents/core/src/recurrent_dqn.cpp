@@ -265,9 +265,8 @@ void RecurrentDqnLearner::Update() {
     targets = ToDevice(batch_.rewards, {steps, count}) +
               ToDevice(batch_.discounts, {steps, count}) * next;
     if (options_.action_gap > 0.0) {
-      const torch::Tensor now = told.narrow(0, 0, steps);
-      const torch::Tensor best = (now + forbidden.narrow(0, 0, steps)).amax(2);
-      targets -= options_.action_gap * (best - now.gather(2, actions).squeeze(2));
+      targets -= options_.action_gap *
+                 Shortfall(told.narrow(0, 0, steps), forbidden.narrow(0, 0, steps), actions);
     }
   }
   const torch::Tensor predicted = values.narrow(0, 0, steps).gather(2, actions).squeeze(2);

@@ -3,12 +3,14 @@
 #include "aquafarm/agents/dqn.h"
 
 #include <algorithm>
+#include <array>
 
 #include "agents_fixture.h"
 #include "aquafarm/agents/algorithms.h"
 #include "aquafarm/agents/deep_options.h"
 #include "aquafarm/agents/evaluation.h"
 #include "aquafarm/agents/trainer.h"
+#include "deep_policy.h"
 #include "networks.h"
 #include "value_optimizer.h"
 
@@ -106,33 +108,67 @@ TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
                24000);
 }
 
-// How much the best action is worth above the others, on average where an episode begins.
-float MeanGap(const std::string& options) {
-  const Algorithm& entry = FindAlgorithm("dqn");
-  LocalEnvironment environment(TinyFarm(), {8, entry.encodings(options), false, 1});
+// The tiny farm with its device where one way alone takes no more than two steps.
+std::shared_ptr<const Scenario> OneWayFarm() {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.step_limit = 60;
+  scenario.devices.sites.front().cell = {4, 2};
+  return Share(scenario);
+}
+
+// How much the best legal action is worth above the next where an episode begins.
+float Gap(const std::string& algorithm, const std::string& options, std::uint64_t steps) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(OneWayFarm(), {8, entry.encodings(options), false, 1});
   const auto learner = entry.make(environment.spec(), 1, options);
   TrainerOptions trainer;
-  trainer.algorithm = "dqn";
-  trainer.steps = 20000;
+  trainer.algorithm = algorithm;
+  trainer.steps = steps;
   EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  Checkpoint checkpoint;
+  checkpoint.algorithm = algorithm;
+  checkpoint.options = learner->options();
+  checkpoint.spec = environment.spec();
+  learner->SavePolicy(checkpoint);
+  std::vector<float> weights = ActingWeights(checkpoint);
+  const Results& results = environment.Reset(1);
+  const bool recurrent = algorithm == "lstm_dqn";
   std::string resolved;
-  const DeepOptions parsed = DeepOptions::Parse(options, false, resolved);
-  Checkpoint saved;
-  learner->SavePolicy(saved);
-  const auto network = MakeNetwork(environment.spec(), parsed, 0);
-  FlatParameters(*network, torch::kCPU).FromVector(ActingWeights(saved));
+  const DeepOptions parsed = DeepOptions::Parse(options, recurrent, resolved);
   const torch::NoGradGuard no_grad;
-  std::vector<float> seen = environment.Reset(1).features;
-  const torch::Tensor values =
-      network->Forward(torch::from_blob(seen.data(), {8, environment.spec().feature_count}));
-  const torch::Tensor best = std::get<0>(values.topk(2, 1));
-  return (best.select(1, 0) - best.select(1, 1)).mean().item<float>();
+  const std::int64_t features = environment.spec().feature_count;
+  std::vector<float> seen(results.features.begin(), results.features.begin() + features);
+  const torch::Tensor input = torch::from_blob(seen.data(), {1, features});
+  torch::Tensor values;
+  if (recurrent) {
+    RecurrentNetwork network(features, parsed.hidden, parsed.dueling);
+    FlatParameters(network, torch::kCPU).FromVector(weights);
+    const torch::Tensor empty = torch::zeros({1, 1, parsed.hidden});
+    RecurrentNetwork::State state{empty, empty};
+    values = network.Forward(input.unsqueeze(0), state)[0];
+  } else {
+    const auto network = MakeNetwork(environment.spec(), parsed, 0);
+    FlatParameters(*network, torch::kCPU).FromVector(weights);
+    values = network->Forward(input);
+  }
+  std::array<float, kActionCount> forbidden{};
+  MarkForbidden(Allowed(results.legal[0], true), forbidden.data());
+  const torch::Tensor best =
+      std::get<0>((values + torch::from_blob(forbidden.data(), {1, kActionCount})).topk(2, 1));
+  return (best[0][0] - best[0][1]).item<float>();
 }
 
 TEST(Dqn, ActionGapSetsTheBestActionApart) {
-  const float plain = MeanGap(kSmall);
-  EXPECT_GT(plain, 0.0F);
-  EXPECT_GT(MeanGap(kSmall + std::string("action_gap=0.5")), 1.4F * plain);  // twice, if exact
+  const float plain = Gap("dqn", kSmall, 40000);
+  EXPECT_GT(plain, 0.05F) << "a step of -1, times 0.05, and what comes later by one";
+  EXPECT_GT(Gap("dqn", kSmall + std::string("action_gap=0.5"), 40000), 1.4F * plain)
+      << "twice, if exact";
+}
+
+TEST(RecurrentDqn, ActionGapSetsTheBestActionApart) {
+  const float plain = Gap("lstm_dqn", kSmallRecurrent, 20000);
+  EXPECT_GT(plain, 0.02F);
+  EXPECT_GT(Gap("lstm_dqn", kSmallRecurrent + std::string("action_gap=0.5"), 40000), 1.4F * plain);
 }
 
 struct Crashes {

@@ -65,6 +65,7 @@ TEST(TwoShips, AreLedHomeByLearnersOfValues) {
   EXPECT_GE(SuccessAfter("dqn", kSmall, 24000, TwoShips()), 0.98);
   EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, TwoShips()), 0.98);
   EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("vdn", std::string(kSmall) + " action_gap=0.5", 40000, TwoShips()), 0.98);
 }
 
 TEST(TwoShips, AreLedHomeByLearnersOfValuesThatRemember) {

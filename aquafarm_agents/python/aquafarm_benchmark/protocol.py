@@ -6,8 +6,8 @@ import typing
 
 @dataclasses.dataclass(frozen=True)
 class Contestant:
-    """Someone who takes part. {explored} and {settled} in its settings are shares of the training
-    that _EXPLORED and _SETTLED episodes are."""
+    """Who takes part. Its settings may name {explored}, the share of the training in which networks
+    explore, and {last_rate}, their learning rate in the end."""
     name: str  # of the algorithm, as --algorithm and policy take it
     label: str  # for tables and figures
     colour: str
@@ -20,11 +20,11 @@ class Contestant:
 
     def for_episodes(self, episodes):
         """The same with the settings of a training of so many episodes."""
-        shares = {"explored": f"{min(1.0, _EXPLORED / episodes):.6g}",
-                  "settled": f"{min(1.0, _SETTLED / episodes):.6g}"}
+        numbers = {"explored": f"{min(1.0, _EXPLORED / episodes):.6g}",
+                   "last_rate": f"{_FIRST_RATE / (1.0 + _SLOWING * episodes):.6g}"}
         return dataclasses.replace(
-            self, exploration=self.exploration.format(**shares),
-            options=tuple(option.format(**shares) for option in self.options))
+            self, exploration=self.exploration.format(**numbers),
+            options=tuple(option.format(**numbers) for option in self.options))
 
 
 # Of a training, as §4.2 counts episodes: one after the other. With many farms at a time the first
@@ -32,12 +32,15 @@ class Contestant:
 FARMS = 1
 
 # Trainings run side by side, a core each, hence device=cpu. Why these numbers:
-# docs/decisions/settling_early.md. Networks have seen enough of chance after some thirty long
-# episodes, tables after a thousand; what is left of chance is a choice among moves that are worth
-# about the same: the temperature is a point of reward.
-_EXPLORED = 30
-_COOLING = "boltzmann:linear:20:1:{explored}"
-_SETTLED = 400  # from here on a network only refines what it has learnt
+# docs/decisions/settling_early.md. Settings are by episodes, so that a shorter or longer benchmark
+# has the same beginning.
+_EXPLORED = 100  # episodes until the temperature is a point of reward
+_COOLING = "boltzmann:harmonic:20:1:{explored}"
+_FIRST_RATE = 5e-4
+_SLOWING = 49 / 2000  # an episode; the rate is that of the first over 1 + this times the episodes
+_NETWORK = ("device=cpu", "mask_blocked=true", "target_period=25", "average_rate=0.002",
+            "replay=300000", "action_gap=0.5", "repetition_penalty=10",
+            f"learning_rate=harmonic:{_FIRST_RATE}:{{last_rate}}:1")
 
 CONTESTANTS = (
     Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, repeats=False),
@@ -46,11 +49,9 @@ CONTESTANTS = (
     Contestant("sarsa", "SARSA", "#17becf", cost=0.02,
                exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
     Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING,
-               options=("device=cpu", "steps_per_update=1", "mask_blocked=true",
-                        "learning_rate=linear:5e-4:3e-5:{settled}")),
+               options=_NETWORK + ("steps_per_update=1",)),
     Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
-               options=("device=cpu", "hidden=64", "mask_blocked=true",
-                        "learning_rate=linear:5e-4:5e-5:{settled}")),
+               options=_NETWORK + ("hidden=64", "batch=64")),
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )

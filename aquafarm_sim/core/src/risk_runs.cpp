@@ -81,7 +81,7 @@ struct CourseMoves {
   FloatRun y{};
 };
 
-constexpr CourseMoves MakeCourseMoves() {
+CourseMoves MakeCourseMoves() {
   CourseMoves moves;
   for (std::size_t i = 0; i < kMoves.size(); ++i) {
     moves.x[i] = static_cast<float>(kMoves[i].x);
@@ -174,8 +174,11 @@ CourseRisks::CourseRisks(const Scenario& scenario, Cell self) {
 }
 
 void CourseRisks::Worsen(const ObservableDisaster& disaster, float age) {
-  const auto worsen = disaster.by_quadrant ? WorsenByQuadrants : WorsenByRings;
-  worsen(disaster, age, kSteps, x_.data(), y_.data(), risk_.data());
+  if (disaster.by_quadrant) {
+    WorsenByQuadrants(disaster, age, kSteps, x_.data(), y_.data(), risk_.data());
+  } else {
+    WorsenByRings(disaster, age, kSteps, x_.data(), y_.data(), risk_.data());
+  }
 }
 
 void CourseRisks::Write(float* next, float* courses) const {

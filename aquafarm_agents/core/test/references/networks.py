@@ -6,10 +6,8 @@ The networks are written out once more, in double, from their equations: layers,
 dueling head (2016) and an LSTM with forget gates (Gers et al. 2000) in PyTorch's order of gates,
 i, f, g, o. Each slope is taken by a complex step (Squire and Trapp 1998), which knows nothing of
 back-propagation and is exact to the last digits.
-
-    python3 networks.py          writes the file anew
-    python3 networks.py --check  says whether it is the one there is
 """
+import argparse
 import json
 import pathlib
 import sys
@@ -126,8 +124,12 @@ def is_same(one, other):
 
 
 def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true",
+                        help="write nothing; fail unless it is the file that there is")
+    arguments = parser.parse_args()
     made = references()
-    if sys.argv[1:] == ["--check"]:
+    if arguments.check:
         if is_same(made, json.loads(FILE.read_text(encoding="utf-8"))):
             return
         sys.exit(f"{FILE}: got other numbers than networks.py makes; run it without --check")

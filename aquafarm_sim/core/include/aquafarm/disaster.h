@@ -41,7 +41,7 @@ struct Bulletin {
   std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< likewise
 };
 
-/// Of one disaster in play what an agent may get to know, as plain data.
+/// Of one disaster in play what a view copies, as plain data.
 struct ObservableDisaster {
   DisasterKind kind{};
   Border border{};

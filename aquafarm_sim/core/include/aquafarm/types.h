@@ -56,7 +56,8 @@ constexpr ActionMask MaskOf(Action action) {
   return static_cast<ActionMask>(1U << static_cast<unsigned>(action));
 }
 
-/// Where in an agent's feature vector the eight blocked.<move> begin; encoding.h has the others.
+/// Where in an agent's feature vector the eight blocked.<move> begin; Encoder::feature_names has
+/// all.
 inline constexpr std::int32_t kFirstBlockedFeature = 5;
 
 /// What became of a ship's action in the last step.

@@ -2,9 +2,9 @@
 #include "repetitions.h"
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 
+#include "aquafarm/hash.h"
 #include "deep_policy.h"
 
 namespace aquafarm::agents {
@@ -35,16 +35,11 @@ Repetitions::Repetitions(const EnvironmentSpec& spec, double penalty)
   done_.resize(turn_.size() * kRemembered);
 }
 
-// A mix of bits, above those of an action.
+// A hash, above the bits of an action.
 std::uint64_t Repetitions::SituationOf(const float* features) const {
-  std::uint64_t situation = 0;
-  for (const std::size_t feature : telling_) {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, features + feature, sizeof bits);
-    situation = (situation ^ bits) * 0x9E3779B97F4A7C15U;
-    situation ^= situation >> 32U;
-  }
-  return situation << kActionBits;
+  Hasher situation;
+  for (const std::size_t feature : telling_) situation.Add(features[feature], 0.0F);
+  return situation.value() << kActionBits;
 }
 
 void Repetitions::Begin(const Results& results) {

@@ -216,19 +216,13 @@ torch::Tensor Wave(std::vector<std::int64_t> shape, double step) {
 template <typename Loss>
 torch::Tensor GradientAtAWave(torch::nn::Module& network, Loss loss) {
   network.to(torch::kDouble);
-  std::int64_t size = 0;
-  for (const torch::Tensor& one : network.parameters()) size += one.numel();
-  const torch::Tensor wave = Wave({size}, 0.7);
-  std::int64_t begin = 0;
-  for (torch::Tensor& one : network.parameters()) {
+  FlatParameters parameters(network, torch::kCPU);
+  {
     const torch::NoGradGuard no_grad;
-    one.copy_(wave.narrow(0, begin, one.numel()).view(one.sizes()));
-    begin += one.numel();
+    parameters.values().copy_(Wave({parameters.size()}, 0.7));
   }
   loss().backward();
-  std::vector<torch::Tensor> gradients;
-  for (const torch::Tensor& one : network.parameters()) gradients.push_back(one.grad().flatten());
-  return torch::cat(gradients);
+  return parameters.values().grad();
 }
 
 TEST(Networks, HaveTheValuesAndGradientsOfTheStoredReference) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_agents/bag_policy.h"
+#include "aquafarm_agents/bag/bag_policy.h"
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -19,13 +19,13 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/agents/local_environment.h"
-#include "aquafarm/agents/storage.h"
-#include "aquafarm/check.h"
-#include "aquafarm/farm.h"
-#include "aquafarm/farm_batch.h"
-#include "aquafarm/scenario_yaml.h"
-#include "aquafarm/version.h"
+#include "aquafarm/agents/base/storage.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/version.h"
+#include "aquafarm/farm/farm.h"
+#include "aquafarm/observation/farm_batch.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 
 namespace aquafarm_agents {
 namespace {

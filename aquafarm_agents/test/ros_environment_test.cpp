@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Farms behind ROS services are those of this process, bit for bit.
-#include "aquafarm_agents/ros_environment.h"
+#include "aquafarm_agents/link/ros_environment.h"
 
 #include <aquafarm_msgs/DropOff.h>
 #include <aquafarm_msgs/Move.h>

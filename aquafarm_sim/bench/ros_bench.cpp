@@ -26,7 +26,7 @@
 #include <thread>
 #include <vector>
 
-#include "aquafarm/rng.h"
+#include "aquafarm/base/rng.h"
 #include "aquafarm_sim/names.h"
 
 namespace {

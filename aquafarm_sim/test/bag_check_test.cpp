@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What verify_bag finds in bags that were changed.
-#include "aquafarm_sim/bag_check.h"
+#include "aquafarm_sim/bags/bag_check.h"
 
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -22,11 +22,11 @@
 #include <new>
 #include <sstream>
 
-#include "aquafarm/check.h"
-#include "aquafarm/rng.h"
-#include "aquafarm/scenario_yaml.h"
-#include "aquafarm_sim/episode_recorder.h"
-#include "aquafarm_sim/read_bag.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/rng.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_sim/bags/episode_recorder.h"
+#include "aquafarm_sim/bags/read_bag.h"
 #include "episode_bag_fixture.h"
 
 namespace aquafarm_sim::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_sim/bulletin_folder.h"
+#include "aquafarm_sim/node/bulletin_folder.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -7,7 +7,7 @@
 #include <chrono>
 #include <fstream>
 
-#include "aquafarm/check.h"
+#include "aquafarm/base/check.h"
 
 namespace aquafarm_sim {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bags written chunk by chunk hold what rosbag's own writer puts into them.
-#include "aquafarm_sim/chunked_bag.h"
+#include "aquafarm_sim/bags/chunked_bag.h"
 
 #include <diagnostic_msgs/KeyValue.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 #include <system_error>
 #include <tuple>
 
-#include "aquafarm_sim/bag_structure.h"
+#include "aquafarm_sim/bags/bag_structure.h"
 
 namespace aquafarm_sim::test {
 namespace {

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <limits>
 
-#include "aquafarm/check.h"
-#include "aquafarm/forecast.h"
-#include "aquafarm/hazard_disaster.h"
-#include "aquafarm/hazard_file.h"
-#include "aquafarm_sim/conversions.h"
-#include "aquafarm_sim/observation.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/farm/forecast.h"
+#include "aquafarm/storms/reader.h"
+#include "aquafarm/storms/to_disaster.h"
+#include "aquafarm_sim/convert/conversions.h"
+#include "aquafarm_sim/convert/observation.h"
 #include "ranch_fixture.h"
 
 namespace aquafarm_sim {

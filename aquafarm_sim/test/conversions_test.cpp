@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_sim/conversions.h"
+#include "aquafarm_sim/convert/conversions.h"
 
 #include <aquafarm_msgs/Outcome.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 #include <cmath>
 #include <limits>
 
-#include "aquafarm/check.h"
-#include "aquafarm/scenario_yaml.h"
-#include "aquafarm/version.h"
-#include "aquafarm_sim/observation.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/version.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_sim/convert/observation.h"
 #include "tiny_farms.h"
 
 namespace aquafarm_sim {

@@ -17,11 +17,11 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/check.h"
-#include "aquafarm/rng.h"
-#include "aquafarm/scenario_yaml.h"
-#include "aquafarm_sim/bag_check.h"
-#include "aquafarm_sim/episode_recorder.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/rng.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_sim/bags/bag_check.h"
+#include "aquafarm_sim/bags/episode_recorder.h"
 #include "ranch_fixture.h"
 
 namespace aquafarm_sim::test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm_sim/ranch.h"
+#include "aquafarm_sim/server/farm_server.h"
 #include "tiny_farms.h"
 
 namespace aquafarm_sim::test {

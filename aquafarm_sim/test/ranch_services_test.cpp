@@ -6,7 +6,7 @@
 #include <functional>
 #include <limits>
 
-#include "aquafarm/rng.h"
+#include "aquafarm/base/rng.h"
 #include "ranch_fixture.h"
 
 namespace aquafarm_sim {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Commands of single ships: exactly once, in time, together.
-#include "aquafarm_sim/ranch.h"
-
 #include <gtest/gtest.h>
 
 #include <future>
 #include <thread>
 
+#include "aquafarm_sim/server/farm_server.h"
 #include "ranch_fixture.h"
 
 namespace aquafarm_sim {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_sim/sim_params.h"
+#include "aquafarm_sim/node/sim_params.h"
 
 #include <gtest/gtest.h>
 
-#include "aquafarm/check.h"
+#include "aquafarm/base/check.h"
 
 namespace aquafarm_sim {
 namespace {

@@ -4,9 +4,9 @@
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "aquafarm_viz/image.h"
-#include "aquafarm_viz/markers.h"
-#include "aquafarm_viz/values.h"
+#include "aquafarm_viz/draw/image.h"
+#include "aquafarm_viz/markers/markers.h"
+#include "aquafarm_viz/scene/values.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

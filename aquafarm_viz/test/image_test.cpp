@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_viz/image.h"
+#include "aquafarm_viz/draw/image.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <stdexcept>
 
-#include "aquafarm_viz/palette.h"
+#include "aquafarm_viz/base/palette.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

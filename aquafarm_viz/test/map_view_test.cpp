@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_viz/map_view.h"
+#include "aquafarm_viz/draw/map_view.h"
 
 #include <gtest/gtest.h>
 
-#include "aquafarm_viz/image.h"
+#include "aquafarm_viz/draw/image.h"
 
 namespace aquafarm_viz {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_viz/markers.h"
+#include "aquafarm_viz/markers/markers.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "aquafarm_viz/checks.h"
-#include "aquafarm_viz/palette.h"
+#include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/base/palette.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

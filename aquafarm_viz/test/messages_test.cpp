@@ -4,8 +4,8 @@
 #include <boost/make_shared.hpp>
 #include <limits>
 
-#include "aquafarm_viz/checks.h"
-#include "aquafarm_viz/pairing.h"
+#include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/scene/pairing.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

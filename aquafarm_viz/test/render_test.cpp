@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/version.h"
+#include "aquafarm/base/version.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_viz/replay.h"
+#include "aquafarm_viz/replay/replay.h"
 
 #include <gtest/gtest.h>
 #include <std_msgs/Header.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm_viz/wake.h"
+#include "aquafarm_viz/scene/trail.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

@@ -4,9 +4,9 @@
 
 #include <stdexcept>
 
-#include "aquafarm_viz/checks.h"
-#include "aquafarm_viz/image.h"
-#include "aquafarm_viz/markers.h"
+#include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/draw/image.h"
+#include "aquafarm_viz/markers/markers.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_viz/text.h"
+#include "aquafarm_viz/base/text.h"
 
 #include <gtest/gtest.h>
 

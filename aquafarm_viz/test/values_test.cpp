@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_viz/values.h"
+#include "aquafarm_viz/scene/values.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "../src/image_parts.h"
-#include "aquafarm_viz/image.h"
+#include "aquafarm_viz/draw/image.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "aquafarm_viz/wake.h"
-
 #include <gtest/gtest.h>
 
+#include "aquafarm_viz/scene/trail.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

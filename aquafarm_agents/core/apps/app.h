@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/agents/options.h"
-#include "aquafarm/check.h"
-#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/agents/base/options.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 
 namespace aquafarm::agents {
 

@@ -4,14 +4,14 @@
 #include <cstdio>
 
 #include "app.h"
-#include "aquafarm/agents/dqn.h"
-#include "aquafarm/agents/evaluation.h"
-#include "aquafarm/agents/exit_code.h"
-#include "aquafarm/agents/local_environment.h"
-#include "aquafarm/agents/played_values.h"
-#include "aquafarm/agents/route.h"
-#include "aquafarm/agents/saved_policy.h"
-#include "aquafarm/agents/team_bound.h"
+#include "aquafarm/agents/base/exit_code.h"
+#include "aquafarm/agents/dqn/dqn.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/evaluation/rollout_values.h"
+#include "aquafarm/agents/evaluation/route.h"
+#include "aquafarm/agents/planning/team_bound.h"
+#include "aquafarm/agents/training/saved_policy.h"
 
 namespace aquafarm::agents {
 namespace {

@@ -5,9 +5,9 @@
 #include <cstdio>
 
 #include "app.h"
-#include "aquafarm/agents/algorithms.h"
-#include "aquafarm/agents/local_environment.h"
-#include "aquafarm/agents/run.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/training/algorithms.h"
+#include "aquafarm/agents/training/run.h"
 
 namespace aquafarm::agents {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/agents/algorithms.h"
-#include "aquafarm/agents/local_environment.h"
-#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/training/algorithms.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 #include "metric_reporter.h"
 
 namespace aquafarm::agents {

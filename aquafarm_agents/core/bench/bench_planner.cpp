@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "aquafarm/agents/planner.h"
-#include "aquafarm/farm.h"
-#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/agents/planning/planner.h"
+#include "aquafarm/farm/farm.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 #include "metric_reporter.h"
 
 namespace aquafarm::agents {

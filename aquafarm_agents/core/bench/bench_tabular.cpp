@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/agents/algorithms.h"
-#include "aquafarm/agents/evaluation.h"
-#include "aquafarm/agents/local_environment.h"
-#include "aquafarm/agents/trainer.h"
-#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/training/algorithms.h"
+#include "aquafarm/agents/training/trainer.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 #include "metric_reporter.h"
 
 namespace aquafarm::agents {

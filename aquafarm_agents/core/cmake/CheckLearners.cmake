@@ -2,9 +2,9 @@
 # cmake -DCORE_DIR=… -P CheckLearners.cmake: refuses #include lines that reach the farm, but in those
 # whose work it is. All that learners may take from its library are plain types, chance and checks.
 set(sees_the_farm
-  "/(best_moves|local_environment|planner[a-z_]*|played_values|route|team_[a-z]+|water_distance)\\.(h|cpp)$")
-set(plain_headers "aquafarm/(check|hash|rng|types|version)\\.h")
-file(GLOB files ${CORE_DIR}/src/*.h ${CORE_DIR}/src/*.cpp ${CORE_DIR}/include/aquafarm/agents/*.h)
+  "/(evaluation/(greedy_actions|rollout_values|route)|environment/local_environment|planning/[a-z_]+)\\.(h|cpp)$")
+set(plain_headers "aquafarm/(base/(check|hash|rng|version)|grid/(action|cell))\\.h")
+file(GLOB_RECURSE files ${CORE_DIR}/src/*.h ${CORE_DIR}/src/*.cpp ${CORE_DIR}/include/aquafarm/agents/*.h)
 set(checked 0)
 foreach(file IN LISTS files)
   if(file MATCHES "${sees_the_farm}" OR file MATCHES "/algorithms\\.cpp$")
@@ -15,7 +15,7 @@ foreach(file IN LISTS files)
   foreach(line IN LISTS included)
     string(REGEX MATCH "[<\"]([^>\"]*)[>\"]" header "${line}")
     set(header ${CMAKE_MATCH_1})
-    if((header MATCHES "^aquafarm/[a-z_]+\\.h$" AND NOT header MATCHES "${plain_headers}")
+    if((header MATCHES "^aquafarm/[a-z_/]+\\.h$" AND NOT header MATCHES "^aquafarm/agents/" AND NOT header MATCHES "${plain_headers}")
        OR "/${header}" MATCHES "${sees_the_farm}")
       message(FATAL_ERROR "${file}: a learner sees only an Environment, got: ${line}")
     endif()

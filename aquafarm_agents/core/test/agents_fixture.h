@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 
-#include "aquafarm/agents/local_environment.h"
-#include "aquafarm/check.h"
-#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 #include "tiny_farms.h"
 
 namespace aquafarm::agents::test {

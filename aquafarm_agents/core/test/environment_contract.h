@@ -10,9 +10,9 @@
 #include <map>
 #include <vector>
 
-#include "aquafarm/agents/environment.h"
-#include "aquafarm/check.h"
-#include "aquafarm/rng.h"
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/rng.h"
 
 namespace aquafarm::agents::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "buffers.h"
 
-#include "aquafarm/check.h"
+#include "aquafarm/base/check.h"
 
 namespace aquafarm::python {
 namespace py = pybind11;

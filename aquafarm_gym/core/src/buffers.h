@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "aquafarm/farm_batch.h"
+#include "aquafarm/observation/farm_batch.h"
 
 namespace aquafarm::python {
 

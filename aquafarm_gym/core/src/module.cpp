@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "aquafarm/check.h"
-#include "aquafarm/farm_batch.h"
-#include "aquafarm/scenario_yaml.h"
-#include "aquafarm/version.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/version.h"
+#include "aquafarm/observation/farm_batch.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 #include "buffers.h"
 
 namespace aquafarm::python {

@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "aquafarm/check.h"
-#include "aquafarm/encoding.h"
-#include "aquafarm/map_file.h"
-#include "aquafarm/ranch_builder.h"
-#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/charts/map_file.h"
+#include "aquafarm/observation/encoder.h"
+#include "aquafarm/ranch/ranch_builder.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 
 namespace aquafarm {
 namespace {

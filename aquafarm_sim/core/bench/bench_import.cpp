@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <string>
 
-#include "aquafarm/hazard_file.h"
-#include "aquafarm/sea_field.h"
+#include "aquafarm/sea/sea_field.h"
+#include "aquafarm/storms/reader.h"
 #include "metric_reporter.h"
 #include "write_sea.h"
 

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/farm_batch.h"
-#include "aquafarm/scenario_yaml.h"
+#include "aquafarm/grid/action.h"
+#include "aquafarm/observation/farm_batch.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 #include "metric_reporter.h"
 
 namespace aquafarm {

@@ -28,9 +28,11 @@ function(aquafarm_check_no_ros target)
   add_dependencies(${target} ${target}_no_ros)
 endfunction()
 
-# test/<name>.cpp as a ctest, or as a catkin test where catkin has set one up.
-function(aquafarm_add_core_test name)
-  add_executable(${name} test/${name}.cpp)
+# test/<folder>/<name>.cpp as a ctest, or as a catkin test where catkin has set one up.
+function(aquafarm_add_core_test path)
+  get_filename_component(name ${path} NAME)
+  add_executable(${name} test/${path}.cpp)
+  target_include_directories(${name} PRIVATE test)
   target_link_libraries(${name} PRIVATE ${ARGN} GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE
     AQUAFARM_CORE_DIR="${CMAKE_CURRENT_SOURCE_DIR}")

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <string>
 
-#include "aquafarm/ascii_grid.h"
-#include "aquafarm/check.h"
-#include "aquafarm/coast.h"
-#include "map_image.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/charts/ascii_grid.h"
+#include "aquafarm/charts/coast.h"
+#include "charts/map_image.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace aquafarm;

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <string>
 
-#include "aquafarm/check.h"
-#include "aquafarm/hazard_disaster.h"
-#include "aquafarm/hazard_file.h"
-#include "aquafarm/notice_file.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/storms/notices.h"
+#include "aquafarm/storms/reader.h"
+#include "aquafarm/storms/to_disaster.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace aquafarm;

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "aquafarm/check.h"
-#include "map_yaml.h"
+#include "aquafarm/base/check.h"
+#include "charts/map_yaml.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace aquafarm;

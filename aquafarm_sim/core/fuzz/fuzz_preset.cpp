@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "aquafarm/check.h"
-#include "aquafarm/disaster_preset.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/storms/presets.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace aquafarm;

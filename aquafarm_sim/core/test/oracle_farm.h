@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "aquafarm/farm.h"
+#include "aquafarm/farm/farm.h"
 
 namespace aquafarm::test {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/check.h"
-#include "aquafarm/ranch_builder.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/ranch/ranch_builder.h"
 
 namespace aquafarm {
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "aquafarm/farm.h"
+#include "aquafarm/farm/farm.h"
 
 namespace aquafarm::test {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/check.h"
+#include "aquafarm/base/check.h"
 
 namespace aquafarm_sim {
 

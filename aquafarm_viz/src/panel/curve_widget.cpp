@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "aquafarm_viz/text.h"
+#include "aquafarm_viz/base/text.h"
 
 namespace aquafarm_viz {
 namespace {

@@ -4,7 +4,7 @@
 #include <QWidget>
 #include <vector>
 
-#include "aquafarm_viz/ranch_model.h"
+#include "aquafarm_viz/scene/ranch_model.h"
 
 namespace aquafarm_viz {
 

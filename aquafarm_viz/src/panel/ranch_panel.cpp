@@ -12,10 +12,10 @@
 #include <pluginlib/class_list_macros.hpp>
 #include <string>
 
-#include "aquafarm_viz/facts.h"
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/names.h"
-#include "aquafarm_viz/palette.h"
-#include "aquafarm_viz/text.h"
+#include "aquafarm_viz/scene/labels.h"
 
 namespace aquafarm_viz {
 namespace {

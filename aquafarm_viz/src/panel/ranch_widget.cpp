@@ -8,7 +8,7 @@
 #include <climits>
 #include <utility>
 
-#include "aquafarm_viz/palette.h"
+#include "aquafarm_viz/base/palette.h"
 
 namespace aquafarm_viz {
 namespace {

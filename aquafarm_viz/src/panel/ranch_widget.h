@@ -11,7 +11,7 @@
 #include <functional>
 #include <string>
 
-#include "aquafarm_viz/ranch_model.h"
+#include "aquafarm_viz/scene/ranch_model.h"
 #include "curve_widget.h"
 
 class QBoxLayout;

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/learning/learner.h"
+
+namespace aquafarm::agents {
+
+/// Column names of one EpisodeResult in CSV files.
+inline constexpr const char* kEpisodeColumns =
+    "farm,seed,episode,steps,return,delivered,devices,delivered_health,crashes,collisions,"
+    "steps_in_disaster,reason,success";
+
+/// Appends an episode in the order of kEpisodeColumns; numbers read back to the same bits.
+void AppendEpisode(const EpisodeResult& result, std::string& text);
+
+/// metrics.csv: a line an episode, `number,total_steps,<kEpisodeColumns>,exploration,
+/// learning_rate,loss`. It holds no wall time, so that a resumed run gives the same bytes.
+class MetricsFile {
+ public:
+  /// Starts the file anew. @throws StorageError
+  explicit MetricsFile(std::string path);
+  /// Continues it at `size` bytes; what was written after them is cut off.
+  /// @throws InputError when it is shorter; StorageError
+  MetricsFile(std::string path, std::uint64_t size);
+  ~MetricsFile();
+  MetricsFile(const MetricsFile&) = delete;
+  MetricsFile& operator=(const MetricsFile&) = delete;
+
+  void Append(std::uint64_t number, std::uint64_t total_steps, const EpisodeResult& result,
+              const LearnerStatus& status);
+  /// Hands all lines to the operating system. @throws StorageError
+  void Flush();
+  /// Flushes and syncs to the disk. @throws StorageError
+  void Sync();
+  /// Bytes so far, flushed or not.
+  std::uint64_t size() const { return flushed_ + buffer_.size(); }
+
+ private:
+  std::string path_;
+  int file_{-1};
+  std::uint64_t flushed_{};
+  std::string buffer_;
+};
+
+}  // namespace aquafarm::agents

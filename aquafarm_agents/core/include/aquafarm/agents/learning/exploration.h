@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// How a learner that knows action values tries others (Fig. 7).
+///
+///   ε-greedy (Eq. 7)   with probability ε any action, else the best known
+///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. T counts in units of
+///                      reward. The paper prints no temperature, which is T = 1 here
+///   curiosity            either of them, paid besides for what could not be foreseen; curiosity.h
+///
+/// ε and T follow a Schedule. Every agent of every farm draws from a stream of its own.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/base/schedule.h"
+#include "aquafarm/agents/learning/agent_rng.h"
+#include "aquafarm/base/rng.h"
+#include "aquafarm/grid/action.h"
+
+namespace aquafarm::agents {
+
+/// Every action of the learners' action space.
+inline constexpr ActionMask kAllActions = (1U << kActionCount) - 1;
+
+enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann };
+inline constexpr int kExplorationKindCount = 2;
+std::string_view ToString(ExplorationKind value);
+
+struct ExplorationOptions {
+  ExplorationKind kind{ExplorationKind::kEpsilonGreedy};
+  Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε, or the temperature
+  /// Mean reward that curiosity pays for a step [reward]; 0: not curious.
+  Schedule curiosity{ScheduleKind::kConstant, 0.0};
+  bool is_curious() const {
+    const bool changes = curiosity.kind != ScheduleKind::kConstant;
+    return curiosity.start > 0.0 || (changes && curiosity.end > 0.0);
+  }
+};
+
+/// Reads "epsilon_greedy" or "boltzmann", alone or with a schedule: "epsilon_greedy:0.1",
+/// "boltzmann:exponential:10:0.5:0.5". "icm" before them and a plus makes it curious, alone or with
+/// a schedule of its weight: "icm+epsilon_greedy:0.1", "icm:linear:2:0:0.5+boltzmann".
+/// @throws InputError with what is allowed
+ExplorationOptions ParseExploration(const std::string& text);
+std::string ToString(const ExplorationOptions& options);
+
+/// The best action and its value; the lowest number among equals.
+struct Best {
+  std::uint8_t action{};
+  float value{};
+};
+
+/// @param values [kActionCount]
+/// @param allowed at least one bit of kAllActions
+inline Best BestOf(const float* values, ActionMask allowed) {
+  Best best{0, -std::numeric_limits<float>::infinity()};
+  if (allowed == kAllActions) {  // the usual case, without a branch per action
+    best.value = values[0];
+    for (std::uint8_t a = 1; a < kActionCount; ++a) {
+      const bool better = values[a] > best.value;
+      best.action = better ? a : best.action;
+      best.value = better ? values[a] : best.value;
+    }
+    return best;
+  }
+  for (std::uint8_t a = 0; a < kActionCount; ++a) {
+    const bool better = ((allowed >> a) & 1U) != 0 && values[a] > best.value;
+    best.action = better ? a : best.action;
+    best.value = better ? values[a] : best.value;
+  }
+  return best;
+}
+
+/// Eq. 8, numerically safe for any finite values and temperature > 0; 0 for what is not allowed.
+std::array<double, kActionCount> BoltzmannProbabilities(const float* values, ActionMask allowed,
+                                                        double temperature);
+
+/// Chooses actions; saved and loaded it goes on bit for bit.
+class Explorer {
+ public:
+  /// @param entries farms × agents; entry i draws from stream i of (seed, exploration)
+  /// @param value_scale what a reward of 1 is among the values that Choose is given
+  Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries,
+           double value_scale = 1.0);
+
+  /// @param progress of the run, [0, 1]
+  void SetProgress(double progress);
+  /// ε or temperature in force.
+  double level() const { return level_; }
+
+  /// @param values [kActionCount]
+  /// @param best of the same values and mask
+  std::uint8_t Choose(const float* values, ActionMask allowed, const Best& best,
+                      std::size_t entry) {
+    if (kind_ == ExplorationKind::kBoltzmann) return ChooseBoltzmann(values, allowed, entry);
+    RandomStream& stream = streams_[entry];
+    if (stream.Unit() >= epsilon_) return best.action;
+    if (allowed == kAllActions) return static_cast<std::uint8_t>(stream.Below(kActionCount));
+    return Pick(allowed, stream);
+  }
+
+  void Save(Checkpoint& checkpoint) const { streams_.Save(checkpoint); }
+  /// @throws InputError when it is not of as many entries
+  void Load(const Checkpoint& checkpoint) { streams_.Load(checkpoint); }
+
+ private:
+  std::uint8_t ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t entry);
+  static std::uint8_t Pick(ActionMask allowed, RandomStream& stream);
+
+  ExplorationKind kind_;
+  Schedule schedule_;
+  double value_scale_;
+  double level_{};
+  float epsilon_{};
+  EntryStreams streams_;
+};
+
+}  // namespace aquafarm::agents

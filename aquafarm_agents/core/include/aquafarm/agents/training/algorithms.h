@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/learning/learner.h"
+
+namespace aquafarm::agents {
+
+/// A learner that can be asked for by name.
+struct Algorithm {
+  const char* name;
+  const char* summary;          ///< one line for people
+  bool learns;                  ///< false: its name alone stands for a policy
+  std::uint64_t default_steps;  ///< of training without a limit; see DefaultSteps
+  /// EncodingBits that it reads with these options. @throws InputError when an option is wrong
+  std::uint8_t (*encodings)(const std::string& options);
+  /// Null: there is nothing to train.
+  std::unique_ptr<Learner> (*make)(const EnvironmentSpec& spec, std::uint64_t seed,
+                                   const std::string& options);
+  /// Makes what it learnt play on farms of `spec`. @throws InputError when it does not fit
+  std::unique_ptr<Policy> (*make_policy)(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
+};
+
+/// All of them, in the order in which they are listed.
+const std::vector<Algorithm>& Algorithms();
+
+/// @throws InputError "algorithm: got 'dqm', expected one of: random, q_learning, sarsa"
+const Algorithm& FindAlgorithm(const std::string& name);
+
+/// Steps of a training without a limit: the algorithm's own number, or eight for each state of a
+/// table where that is more. (Measured for Q-learning, docs/data.md; SARSA is given the same.)
+std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
+                           const std::string& options);
+
+/// The name that leaves the choice to ChooseAlgorithm.
+inline constexpr const char* kAutoAlgorithm = "auto";
+
+struct Choice {
+  std::string algorithm;
+  std::string reason;  ///< one line for people
+};
+
+/// Chooses by kind and number of those who decide (Fig. 6).
+Choice ChooseAlgorithm(const EnvironmentSpec& spec);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// What readers of learner options share: words of a closed set and whole numbers.
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "aquafarm/agents/base/options.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+
+/// Reads one of `words`, which stand in the order of Kind.
+/// @throws InputError "loss: got 'l1', expected one of: huber, mse"
+template <typename Kind, std::size_t size>
+Kind ReadWord(OptionReader& reader, const std::string& key, Kind otherwise,
+              const std::array<std::string_view, size>& words) {
+  const std::string text =
+      reader.Text(key, std::string(words[static_cast<std::size_t>(otherwise)]));
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (text == words[i]) return static_cast<Kind>(i);
+    names.emplace_back(words[i]);
+  }
+  throw InputError(key + ": got '" + text + "', expected one of: " + Join(names));
+}
+
+/// @throws InputError "batch: got 2.5, expected a whole number"
+template <typename Whole>
+void ReadWhole(OptionReader& reader, const std::string& key, double min, double max, Whole& value) {
+  const double got = reader.Number(key, static_cast<double>(value), min, max);
+  value = static_cast<Whole>(got);
+  if (static_cast<double>(value) == got) return;
+  throw InputError(key + ": got " + FormatNumber(got) + ", expected a whole number");
+}
+
+inline void ReadNumber(OptionReader& reader, const std::string& key, double min, double max,
+                       double& value) {
+  value = reader.Number(key, value, min, max);
+}
+
+/// auto, cpu or cuda. @throws InputError
+inline std::string ReadDevice(OptionReader& reader) {
+  constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
+  enum class Device : std::uint8_t { kAuto, kCpu, kCuda };
+  const auto device = ReadWord(reader, "device", Device::kAuto, kDevices);
+  return std::string(kDevices[static_cast<std::size_t>(device)]);
+}
+
+}  // namespace aquafarm::agents

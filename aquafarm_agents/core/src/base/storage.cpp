@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/base/storage.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+// The new name itself must be on the disk before an older file may go.
+bool SyncFolderOf(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const int handle =
+      open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle < 0) return false;
+  const bool synced = fsync(handle) == 0 || errno == EINVAL;  // not every file system can
+  close(handle);
+  return synced;
+}
+
+bool WriteAll(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string ErrnoText(const std::string& path, const std::string& what) {
+  return path + ": " + what + ": " + std::strerror(errno);
+}
+
+void WriteFileAtomically(const std::string& path, std::string_view bytes) {
+  const std::string beside = path + ".tmp";
+  const int file = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) throw StorageError(ErrnoText(path, "cannot be written"));
+  bool good = WriteAll(file, bytes) && fsync(file) == 0;
+  int error = errno;
+  if (close(file) != 0 && good) {
+    good = false;
+    error = errno;
+  }
+  if (good && (std::rename(beside.c_str(), path.c_str()) != 0 || !SyncFolderOf(path))) {
+    good = false;
+    error = errno;
+  }
+  if (good) return;
+  unlink(beside.c_str());
+  errno = error;
+  throw StorageError(ErrnoText(path, "cannot be written"));
+}
+
+std::string ReadFile(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError(path + ": is a folder, expected a file");
+  }
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(ErrnoText(path, "cannot be read"));
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (file.bad()) throw InputError(ErrnoText(path, "cannot be read"));
+  return text.str();
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/curiosity/curiosity.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "curiosity/curiosity_module.h"
+#include "networks/deep_policy.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr float kMeanShare = 0.01F;  // of a step in the mean error of late
+constexpr float kMostPay = 5.0F;     // in mean pays, so that a shock cannot drown the farm's reward
+
+class CuriousLearner final : public Learner {
+ public:
+  CuriousLearner(std::unique_ptr<Learner> learner, const EnvironmentSpec& spec, std::uint64_t seed,
+                 const Schedule& weight)
+      : learner_(std::move(learner)),
+        features_(static_cast<std::size_t>(spec.feature_count)),
+        agents_(static_cast<std::size_t>(spec.agents)),
+        weight_(weight),
+        module_(spec.feature_count, seed) {}
+
+  std::uint8_t encodings() const override { return learner_->encodings() | kFeaturesBit; }
+  std::string options() const override { return learner_->options(); }
+  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  LearnerStatus status() const override { return learner_->status(); }
+  std::unique_ptr<Policy> GreedyPolicy() const override { return learner_->GreedyPolicy(); }
+  void SavePolicy(Checkpoint& checkpoint) const override { learner_->SavePolicy(checkpoint); }
+  void Save(Checkpoint& checkpoint) const override;
+  void Load(const Checkpoint& checkpoint) override;
+
+ private:
+  void Pay(const Results& results, float weight);
+
+  std::unique_ptr<Learner> learner_;
+  const std::size_t features_;
+  const std::size_t agents_;
+  const Schedule weight_;
+  CuriosityModule module_;
+  Results paid_;                           // what the learner is shown
+  std::vector<float> seen_;                // [N, S, F] at the last step; empty: none
+  std::vector<std::uint8_t> taken_;        // [N, S] there
+  std::vector<std::uint8_t> was_in_play_;  // [N, S] there
+  float mean_error_{};                     // of late; 0: none yet
+  std::uint64_t steps_{};                  // of all farms
+  // Scratch: the transitions of this step.
+  std::vector<float> from_;
+  std::vector<float> to_;
+  std::vector<std::int64_t> actions_;
+  std::vector<std::size_t> entries_;
+  std::vector<float> errors_;
+};
+
+void CuriousLearner::Step(const Results& results, double progress,
+                          std::vector<std::uint8_t>& actions) {
+  const auto weight = static_cast<float>(weight_.At(progress));
+  steps_ += FarmSteps(results);
+  if (weight > 0.0F && !seen_.empty()) {
+    Pay(results, weight);
+    learner_->Step(paid_, progress, actions);
+  } else {
+    learner_->Step(results, progress, actions);
+  }
+  seen_ = results.features;
+  taken_ = actions;
+  was_in_play_ = results.in_play;
+}
+
+void CuriousLearner::Pay(const Results& results, float weight) {
+  from_.clear();
+  to_.clear();
+  actions_.clear();
+  entries_.clear();
+  for (std::size_t entry = 0; entry < taken_.size(); ++entry) {
+    if (results.started[entry / agents_] != 0 || was_in_play_[entry] == 0) continue;
+    const auto begin = static_cast<std::ptrdiff_t>(entry * features_);
+    const auto end = begin + static_cast<std::ptrdiff_t>(features_);
+    from_.insert(from_.end(), seen_.begin() + begin, seen_.begin() + end);
+    to_.insert(to_.end(), results.features.begin() + begin, results.features.begin() + end);
+    actions_.push_back(taken_[entry]);
+    entries_.push_back(entry);
+  }
+  paid_ = results;
+  if (entries_.empty()) return;
+  module_.Step(from_, to_, actions_, steps_, errors_);
+  float sum = 0.0F;
+  for (const float error : errors_) sum += error;
+  const float mean = sum / static_cast<float>(errors_.size());
+  mean_error_ = mean_error_ == 0.0F ? mean : mean_error_ + kMeanShare * (mean - mean_error_);
+  if (!(mean_error_ > 0.0F)) return;
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    paid_.rewards[entries_[i]] += weight * std::min(errors_[i] / mean_error_, kMostPay);
+  }
+}
+
+void CuriousLearner::Save(Checkpoint& checkpoint) const {
+  learner_->Save(checkpoint);
+  module_.Save(checkpoint);
+  checkpoint.SetArray("curiosity.seen", seen_);
+  checkpoint.SetArray("curiosity.taken", taken_);
+  checkpoint.SetArray("curiosity.in_play", was_in_play_);
+  checkpoint.SetArray("curiosity.mean", std::vector<float>{mean_error_});
+  checkpoint.SetArray("curiosity.steps", std::vector<std::uint64_t>{steps_});
+}
+
+void CuriousLearner::Load(const Checkpoint& checkpoint) {
+  std::vector<float> seen;
+  std::vector<std::uint8_t> taken;
+  std::vector<std::uint8_t> in_play;
+  std::vector<float> mean;
+  std::vector<std::uint64_t> steps{0};
+  checkpoint.GetArray("curiosity.taken", checkpoint.Section("curiosity.taken").size(), taken);
+  checkpoint.GetArray("curiosity.seen", taken.size() * features_, seen);
+  checkpoint.GetArray("curiosity.in_play", taken.size(), in_play);
+  checkpoint.GetArray("curiosity.mean", 1, mean);
+  // Trainings from before it was saved go on too.
+  if (checkpoint.Has("curiosity.steps")) checkpoint.GetArray("curiosity.steps", 1, steps);
+  learner_->Load(checkpoint);
+  module_.Load(checkpoint);
+  seen_ = std::move(seen);
+  taken_ = std::move(taken);
+  was_in_play_ = std::move(in_play);
+  mean_error_ = mean[0];
+  steps_ = steps[0];
+}
+
+}  // namespace
+
+std::unique_ptr<Learner> WithCuriosity(std::unique_ptr<Learner> learner,
+                                       const EnvironmentSpec& spec, std::uint64_t seed,
+                                       const ExplorationOptions& exploration) {
+  return std::make_unique<CuriousLearner>(std::move(learner), spec, seed, exploration.curiosity);
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/dqn/dqn.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "aquafarm/agents/learning/replay.h"
+#include "aquafarm/base/check.h"
+#include "dqn/repetition_penalty.h"
+#include "networks/deep_policy.h"
+#include "networks/replay_sampler.h"
+#include "networks/row_network.h"
+#include "networks/value_optimizer.h"
+
+namespace aquafarm::agents {
+namespace {
+
+std::uint8_t EncodingOf(NetworkKind network) {
+  return network == NetworkKind::kCnn ? kPlanesBit : kFeaturesBit;
+}
+
+/// Plays the best action of a network.
+template <typename Scalar>
+class GreedyDqnPolicy final : public Policy {
+ public:
+  GreedyDqnPolicy(const EnvironmentSpec& spec, const DeepOptions& options,
+                  const std::vector<float>& weights)
+      : device_(FindDevice(options.device)),
+        shape_(Sight<Scalar>::Shape(spec)),
+        size_(ElementCount(shape_)),
+        options_(options),
+        network_(MakeNetwork(spec, options, 0)),
+        parameters_(*network_, device_) {
+    parameters_.FromVector(weights);
+    if (options.network == NetworkKind::kMlp && device_.is_cpu()) {
+      row_network_.emplace(size_, options, weights);
+    }
+  }
+  std::uint8_t encodings() const override { return EncodingOf(options_.network); }
+  void Begin(std::uint64_t, std::int32_t) override {}
+  /// An agent who is done gets action 0 and value 0; the network sees the rows from the first to
+  /// the last who is in play.
+  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+    const auto is_in_play = [](std::uint8_t flag) { return flag != 0; };
+    const auto& flags = results.in_play;
+    const auto first = static_cast<std::size_t>(
+        std::find_if(flags.begin(), flags.end(), is_in_play) - flags.begin());
+    const auto end = static_cast<std::size_t>(
+        flags.rend() - std::find_if(flags.rbegin(), flags.rend(), is_in_play));
+    actions.assign(results.legal.size(), 0);
+    values_.assign(results.legal.size(), 0.0F);
+    if (first >= end) return;
+    const Scalar* seen = Sight<Scalar>::Of(results) + first * size_;
+    const float* row = Values(seen, end - first);
+    for (std::size_t i = first; i < end; ++i, row += kActionCount, seen += size_) {
+      if (flags[i] == 0) continue;
+      const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
+      actions[i] = best.action;
+      values_[i] = best.value;
+    }
+  }
+
+ private:
+  /// @returns [count, kActionCount], until the next call
+  const float* Values(const Scalar* seen, std::size_t count) {
+    if constexpr (std::is_same_v<Scalar, float>) {
+      if (count == 1 && row_network_) return row_network_->Forward(seen);
+    }
+    const torch::InferenceMode inference;
+    computed_ =
+        network_->Forward(Sight<Scalar>::ToInput(seen, WithCount(count, shape_), device_)).cpu();
+    return computed_.template data_ptr<float>();
+  }
+
+  torch::Device device_;
+  std::vector<std::int64_t> shape_;
+  std::size_t size_;  // of one observation
+  DeepOptions options_;
+  std::shared_ptr<QNetwork> network_;
+  FlatParameters parameters_;
+  torch::Tensor computed_;
+  std::optional<RowNetwork> row_network_;  // of features on the CPU
+};
+
+/// A minibatch of B samples on its way from the replay to the network; a sample is one agent's
+/// transition, or those of all agents of a farm: R rows in all.
+template <typename Scalar>
+struct Batch {
+  std::vector<Scalar> from;
+  std::vector<Scalar> to;
+  std::vector<std::int64_t> actions;
+  std::vector<float> present;        // [R] 1: in play, 0: done before
+  std::vector<float> rewards;        // [B]
+  std::vector<float> discounts;      // [R] of the value at `to`
+  std::vector<float> forbidden;      // [R, kActionCount] by MarkForbidden, of the next actions
+  std::vector<float> forbidden_now;  // likewise, of those among which the action was chosen
+  std::vector<float> weights;        // [B]
+  std::vector<std::size_t> drawn;    // [B] row of the replay
+
+  Batch(std::size_t size, std::size_t rows, std::size_t observation_size)
+      : from(rows * observation_size),
+        to(rows * observation_size),
+        actions(rows),
+        present(rows, 1.0F),
+        rewards(size),
+        discounts(rows),
+        forbidden(rows * kActionCount),
+        forbidden_now(rows * kActionCount),
+        weights(size, 1.0F / static_cast<float>(size)),
+        drawn(size) {}
+};
+
+template <typename Scalar>
+class DqnLearner final : public Learner {
+ public:
+  DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
+             std::string resolved);
+
+  std::uint8_t encodings() const override { return EncodingOf(options_.network); }
+  std::string options() const override { return resolved_; }
+  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
+  std::unique_ptr<Policy> GreedyPolicy() const override {
+    return std::make_unique<GreedyDqnPolicy<Scalar>>(spec_, options_,
+                                                     optimizer_.acting().ToVector());
+  }
+  void SavePolicy(Checkpoint& checkpoint) const override {
+    checkpoint.SetArray("weights", optimizer_.acting().ToVector());
+  }
+  void Save(Checkpoint& checkpoint) const override;
+  void Load(const Checkpoint& checkpoint) override;
+
+ private:
+  std::size_t size() const { return static_cast<std::size_t>(options_.batch); }
+  std::size_t group() const { return options_.joint ? static_cast<std::size_t>(spec_.agents) : 1; }
+  std::size_t rows() const { return size() * group(); }
+  torch::Tensor ToInput(const Scalar* rows, std::size_t count) const {
+    return Sight<Scalar>::ToInput(rows, WithCount(count, shape_), device_);
+  }
+  template <typename T>
+  torch::Tensor ToDevice(std::vector<T>& values, std::vector<std::int64_t> shape) const {
+    return torch::from_blob(values.data(), shape, torch::CppTypeToScalarType<T>::value).to(device_);
+  }
+  void Choose(const Results& results, std::vector<std::uint8_t>& actions);
+  void Update();
+  void Draw();
+  void DrawAlone(std::size_t i, const Moment& moment);
+  void DrawJoint(std::size_t i, const Moment& moment);
+  void Fill(std::size_t k, std::size_t from, std::size_t to, float discount);
+  torch::Tensor SumOfGroups(const torch::Tensor& values) const;
+  torch::Tensor Targets(const torch::Tensor& from, const torch::Tensor& actions);
+  void Reprioritise(const torch::Tensor& errors);
+
+  const EnvironmentSpec spec_;
+  const std::uint64_t seed_;
+  const DeepOptions options_;
+  const std::string resolved_;
+  const torch::Device device_;
+  const std::vector<std::int64_t> shape_;
+  const std::size_t observation_size_;
+  std::shared_ptr<QNetwork> online_;
+  std::shared_ptr<QNetwork> target_;
+  std::shared_ptr<QNetwork> acting_;  // online_ itself, unless it acts by an average
+  ValueOptimizer optimizer_;
+  Explorer explorer_;
+  Repetitions repetitions_;
+  RandomStream chance_;
+  Replay<Scalar> replay_;
+  MomentSampler<Scalar> sampler_;
+  double progress_{};
+  Batch<Scalar> batch_;
+  std::vector<float> team_rewards_;  // scratch, [agents]
+};
+
+template <typename Scalar>
+DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                               const DeepOptions& options, std::string resolved)
+    : spec_(spec),
+      seed_(seed),
+      options_(options),
+      resolved_(std::move(resolved)),
+      device_(FindDevice(options.device)),
+      shape_(Sight<Scalar>::Shape(spec)),
+      observation_size_(ElementCount(shape_)),
+      online_(MakeNetwork(spec, options, seed)),
+      target_(MakeNetwork(spec, options, seed)),
+      acting_(options.average_rate > 0.0 ? MakeNetwork(spec, options, seed) : online_),
+      optimizer_(options, *online_, *target_, *acting_, device_),
+      explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
+      repetitions_(spec, options.repetition_penalty * options.reward_scale),
+      chance_({seed, 0, Purpose::kLearner, 1}),
+      replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents,
+               observation_size_, 0}),
+      sampler_(replay_, options, static_cast<std::size_t>(options.n_step), group()),
+      batch_(size(), rows(), observation_size_),
+      team_rewards_(static_cast<std::size_t>(spec.agents)) {}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Step(const Results& results, double progress,
+                              std::vector<std::uint8_t>& actions) {
+  progress_ = progress;
+  replay_.Add(results, Sight<Scalar>::Of(results));
+  sampler_.Remember();
+  optimizer_.Count(FarmSteps(results), progress);
+  while (optimizer_.TakeDue()) Update();
+  Choose(results, actions);
+  replay_.SetActions(actions);
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Choose(const Results& results, std::vector<std::uint8_t>& actions) {
+  explorer_.SetProgress(progress_);
+  repetitions_.Begin(results);
+  actions.resize(results.legal.size());
+  const torch::InferenceMode inference;
+  const torch::Tensor values =
+      acting_->Forward(ToInput(Sight<Scalar>::Of(results), actions.size())).cpu();
+  const float* row = values.template data_ptr<float>();
+  const Scalar* seen = Sight<Scalar>::Of(results);
+  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += observation_size_) {
+    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
+    const float* const worth = repetitions_.Discourage(row, seen, i);
+    actions[i] = explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
+    repetitions_.Remember(actions[i], i);
+  }
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Draw() {
+  for (std::size_t i = 0; i < size(); ++i) {
+    const Moment moment = sampler_.Draw(chance_, i);
+    batch_.drawn[i] = replay_.Row(moment.age, moment.entry);
+    if (options_.joint) {
+      DrawJoint(i, moment);
+    } else {
+      DrawAlone(i, moment);
+    }
+  }
+  const std::vector<float>& weights = sampler_.Weigh(progress_);
+  for (std::size_t i = 0; i < size(); ++i) {
+    batch_.weights[i] = weights[i] / static_cast<float>(size());
+  }
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::DrawAlone(std::size_t i, const Moment& moment) {
+  const Transition one =
+      replay_.At(moment.age, moment.entry, static_cast<std::size_t>(options_.n_step),
+                 static_cast<float>(options_.discount));
+  batch_.rewards[i] = one.reward * static_cast<float>(options_.reward_scale);
+  Fill(i, one.from, one.to, one.discount);
+}
+
+// An agent that is done adds nothing to the team's value, before or after.
+template <typename Scalar>
+void DqnLearner<Scalar>::DrawJoint(std::size_t i, const Moment& moment) {
+  const std::size_t first = moment.entry;
+  const JointTransition all =
+      replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
+                      static_cast<float>(options_.discount), team_rewards_.data());
+  const float sum = std::accumulate(team_rewards_.begin(), team_rewards_.end(), 0.0F);
+  // A shared reward is the team's already, to each of them.
+  const float reward = spec_.team_reward ? sum / static_cast<float>(group()) : sum;
+  batch_.rewards[i] = reward * static_cast<float>(options_.reward_scale);
+  const std::size_t from = replay_.Row(moment.age, first);
+  for (std::size_t agent = 0; agent < group(); ++agent) {
+    const std::size_t k = i * group() + agent;
+    const bool is_done = IsTerminated(replay_.reason(all.to + agent));
+    batch_.present[k] = replay_.reason(from + agent) == EndReason::kNone ? 1.0F : 0.0F;
+    Fill(k, from + agent, all.to + agent, is_done ? 0.0F : all.discount);
+  }
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Fill(std::size_t k, std::size_t from, std::size_t to, float discount) {
+  std::copy_n(replay_.observation(from), observation_size_,
+              batch_.from.data() + k * observation_size_);
+  std::copy_n(replay_.observation(to), observation_size_, batch_.to.data() + k * observation_size_);
+  batch_.actions[k] = replay_.action(from);
+  batch_.discounts[k] = discount;
+  MarkForbidden(Allowed(replay_.legal(to), replay_.observation(to), options_),
+                batch_.forbidden.data() + k * kActionCount);
+  if (options_.action_gap == 0.0) return;
+  MarkForbidden(Allowed(replay_.legal(from), replay_.observation(from), options_),
+                batch_.forbidden_now.data() + k * kActionCount);
+}
+
+// [R] → [B]: value decomposition adds up the values of a team (Sunehag et al. 2018).
+template <typename Scalar>
+torch::Tensor DqnLearner<Scalar>::SumOfGroups(const torch::Tensor& values) const {
+  if (!options_.joint) return values;
+  return values.view({static_cast<std::int64_t>(size()), static_cast<std::int64_t>(group())})
+      .sum(1);
+}
+
+template <typename Scalar>
+torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& from, const torch::Tensor& actions) {
+  const torch::NoGradGuard no_grad;
+  const auto count = static_cast<std::int64_t>(rows());
+  const torch::Tensor to = ToInput(batch_.to.data(), rows());
+  const torch::Tensor forbidden = ToDevice(batch_.forbidden, {count, kActionCount});
+  torch::Tensor next = target_->Forward(to);
+  if (options_.double_q) {
+    const torch::Tensor best = online_->Forward(to).add_(forbidden).argmax(1, /*keepdim=*/true);
+    next = next.gather(1, best).squeeze(1);
+  } else {
+    next = next.add_(forbidden).amax(1);
+  }
+  torch::Tensor values = ToDevice(batch_.discounts, {count}) * next;
+  if (options_.action_gap > 0.0) {
+    const torch::Tensor forbidden_now = ToDevice(batch_.forbidden_now, {count, kActionCount});
+    const torch::Tensor gap = Shortfall(target_->Forward(from), forbidden_now, actions);
+    values -= options_.action_gap * gap * ToDevice(batch_.present, {count});
+  }
+  return ToDevice(batch_.rewards, {static_cast<std::int64_t>(size())}) + SumOfGroups(values);
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Update() {
+  if (!sampler_.IsReady()) return;
+  const BatchOrigin origin{seed_, chance_.position()};
+  Draw();
+  const auto count = static_cast<std::int64_t>(rows());
+  const torch::Tensor actions = ToDevice(batch_.actions, {count, 1});
+  const torch::Tensor from = ToInput(batch_.from.data(), rows());
+  const torch::Tensor targets = Targets(from, actions);
+  torch::Tensor predicted = online_->Forward(from).gather(1, actions).squeeze(1);
+  if (options_.joint) predicted = SumOfGroups(predicted * ToDevice(batch_.present, {count}));
+  optimizer_.Update(predicted, targets,
+                    ToDevice(batch_.weights, {static_cast<std::int64_t>(size())}), origin);
+  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Reprioritise(const torch::Tensor& errors) {
+  const torch::Tensor values = errors.cpu();
+  const float* error = values.template data_ptr<float>();
+  for (std::size_t i = 0; i < size(); ++i) sampler_.SetError(batch_.drawn[i], error[i]);
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Save(Checkpoint& checkpoint) const {
+  optimizer_.Save(checkpoint);
+  replay_.Save(checkpoint);
+  explorer_.Save(checkpoint);
+  repetitions_.Save(checkpoint);
+  checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
+  sampler_.Save(checkpoint);
+}
+
+template <typename Scalar>
+void DqnLearner<Scalar>::Load(const Checkpoint& checkpoint) {
+  std::vector<std::uint64_t> chance;
+  checkpoint.GetArray("chance", 1, chance);
+  optimizer_.Load(checkpoint);
+  replay_.Load(checkpoint);
+  sampler_.Load(checkpoint);
+  explorer_.Load(checkpoint);
+  repetitions_.Load(checkpoint);
+  chance_.Seek(chance[0]);
+}
+
+DeepOptions Parse(const std::string& text, std::string& resolved) {
+  return DeepOptions::Parse(text, /*recurrent=*/false, resolved);
+}
+
+std::unique_ptr<Learner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                                     const std::string& text, bool joint) {
+  std::string resolved;
+  DeepOptions options = Parse(text, resolved);
+  options.joint = joint;
+  PrepareTorch(options.threads);
+  if (options.network == NetworkKind::kCnn) {
+    return std::make_unique<DqnLearner<std::uint8_t>>(spec, seed, options, resolved);
+  }
+  return std::make_unique<DqnLearner<float>>(spec, seed, options, resolved);
+}
+
+}  // namespace
+
+std::uint8_t DqnEncodings(const std::string& options) {
+  std::string resolved;
+  return EncodingOf(Parse(options, resolved).network);
+}
+
+std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
+                                 const std::string& text) {
+  return MakeLearner(spec, seed, text, /*joint=*/false);
+}
+
+std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed,
+                                 const std::string& text) {
+  return MakeLearner(spec, seed, text, /*joint=*/true);
+}
+
+std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {
+  std::string resolved;
+  DeepOptions options = Parse(checkpoint.options, resolved);
+  options.device = PlayingDevice(options.device);
+  PrepareTorch(options.threads);
+  CheckFits(checkpoint, spec, options.network);
+  const std::vector<float> weights = ActingWeights(checkpoint);
+  if (options.network == NetworkKind::kCnn) {
+    return std::make_unique<GreedyDqnPolicy<std::uint8_t>>(spec, options, weights);
+  }
+  return std::make_unique<GreedyDqnPolicy<float>>(spec, options, weights);
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "aquafarm/agents/dqn/dqn.h"
+#include "aquafarm/agents/learning/replay.h"
+#include "aquafarm/base/check.h"
+#include "dqn/repetition_penalty.h"
+#include "networks/deep_policy.h"
+#include "networks/replay_sampler.h"
+#include "networks/sequence_batch.h"
+#include "networks/value_optimizer.h"
+
+namespace aquafarm::agents {
+namespace {
+
+std::shared_ptr<RecurrentNetwork> MakeRecurrent(const EnvironmentSpec& spec,
+                                                const DeepOptions& options, std::uint64_t seed) {
+  auto network =
+      std::make_shared<RecurrentNetwork>(spec.feature_count, options.hidden, options.dueling);
+  DrawWeights(*network, seed, 0);
+  return network;
+}
+
+/// What every agent carries from step to step: h and c, [entries, 2, hidden], zero when an episode
+/// begins.
+class Carry {
+ public:
+  Carry(std::size_t entries, std::int64_t hidden)
+      : hidden_(hidden), values_(entries * 2 * static_cast<std::size_t>(hidden)) {}
+
+  std::size_t size_of_one() const { return 2 * static_cast<std::size_t>(hidden_); }
+  std::vector<float>& values() { return values_; }
+  const std::vector<float>& values() const { return values_; }
+
+  void ClearStarted(const Results& results, std::int32_t agents) {
+    const std::size_t of_farm = static_cast<std::size_t>(agents) * size_of_one();
+    for (std::size_t farm = 0; farm < results.started.size(); ++farm) {
+      if (results.started[farm] == 0) continue;
+      const auto begin = values_.begin() + static_cast<std::ptrdiff_t>(farm * of_farm);
+      std::fill_n(begin, of_farm, 0.0F);
+    }
+  }
+
+  RecurrentNetwork::State ToState(torch::Device device) {
+    return StateOf(values_.data(), static_cast<std::int64_t>(values_.size() / size_of_one()),
+                   hidden_, device);
+  }
+  void Take(const RecurrentNetwork::State& state) {
+    const torch::Tensor both =
+        torch::stack({state.first.squeeze(0), state.second.squeeze(0)}, 1).cpu();
+    std::copy_n(both.data_ptr<float>(), values_.size(), values_.data());
+  }
+
+  /// h and c of rows [count, 2, hidden].
+  static RecurrentNetwork::State StateOf(float* rows, std::int64_t count, std::int64_t hidden,
+                                         torch::Device device) {
+    const torch::Tensor both = torch::from_blob(rows, {count, 2, hidden}).to(device);
+    return {both.select(1, 0).unsqueeze(0).contiguous(),
+            both.select(1, 1).unsqueeze(0).contiguous()};
+  }
+
+ private:
+  std::int64_t hidden_;
+  std::vector<float> values_;
+};
+
+/// One step of all agents: values [entries, kActionCount], the carry moved on.
+torch::Tensor StepNetwork(RecurrentNetwork& network, const Results& results, std::int64_t features,
+                          Carry& carry, torch::Device device) {
+  const auto entries = static_cast<std::int64_t>(results.legal.size());
+  RecurrentNetwork::State state = carry.ToState(device);
+  const torch::Tensor values = network.Forward(
+      Sight<float>::ToInput(results.features.data(), {1, entries, features}, device), state);
+  carry.Take(state);
+  return values.squeeze(0).cpu().contiguous();
+}
+
+class RecurrentPolicy final : public Policy {
+ public:
+  RecurrentPolicy(const EnvironmentSpec& spec, const DeepOptions& options,
+                  const std::vector<float>& weights)
+      : device_(FindDevice(options.device)),
+        agents_(spec.agents),
+        features_(spec.feature_count),
+        options_(options),
+        network_(MakeRecurrent(spec, options, 0)),
+        parameters_(*network_, device_),
+        carry_(0, options.hidden) {
+    parameters_.FromVector(weights);
+  }
+  std::uint8_t encodings() const override { return kFeaturesBit; }
+  void Begin(std::uint64_t, std::int32_t farms) override {
+    carry_ =
+        Carry(static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_), options_.hidden);
+  }
+  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+    const torch::NoGradGuard no_grad;
+    carry_.ClearStarted(results, agents_);
+    const torch::Tensor values = StepNetwork(*network_, results, features_, carry_, device_);
+    actions.resize(results.legal.size());
+    values_.resize(actions.size());
+    const float* row = values.data_ptr<float>();
+    const float* seen = results.features.data();
+    for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features_) {
+      const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
+      actions[i] = best.action;
+      values_[i] = best.value;
+    }
+  }
+
+ private:
+  torch::Device device_;
+  std::int32_t agents_;
+  std::int64_t features_;
+  DeepOptions options_;
+  std::shared_ptr<RecurrentNetwork> network_;
+  FlatParameters parameters_;
+  Carry carry_;
+};
+
+class RecurrentDqnLearner final : public Learner {
+ public:
+  RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
+                      std::string resolved);
+
+  std::uint8_t encodings() const override { return kFeaturesBit; }
+  std::string options() const override { return resolved_; }
+  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
+  std::unique_ptr<Policy> GreedyPolicy() const override {
+    return std::make_unique<RecurrentPolicy>(spec_, options_, optimizer_.acting().ToVector());
+  }
+  void SavePolicy(Checkpoint& checkpoint) const override {
+    checkpoint.SetArray("weights", optimizer_.acting().ToVector());
+  }
+  void Save(Checkpoint& checkpoint) const override;
+  void Load(const Checkpoint& checkpoint) override;
+
+ private:
+  std::size_t features() const { return static_cast<std::size_t>(spec_.feature_count); }
+  template <typename T>
+  torch::Tensor ToDevice(std::vector<T>& values, std::vector<std::int64_t> shape) const {
+    return torch::from_blob(values.data(), shape, torch::CppTypeToScalarType<T>::value).to(device_);
+  }
+  void Update();
+  void Draw();
+  RecurrentNetwork::State WarmState(RecurrentNetwork& network);
+  void Reprioritise(const torch::Tensor& errors);
+
+  const EnvironmentSpec spec_;
+  const std::uint64_t seed_;
+  const DeepOptions options_;
+  const std::string resolved_;
+  const torch::Device device_;
+  std::shared_ptr<RecurrentNetwork> online_;
+  std::shared_ptr<RecurrentNetwork> target_;
+  std::shared_ptr<RecurrentNetwork> acting_;  // online_ itself, unless it acts by an average
+  ValueOptimizer optimizer_;
+  Explorer explorer_;
+  Repetitions repetitions_;
+  RandomStream chance_;
+  Carry carry_;
+  Replay<float> replay_;
+  MomentSampler<float> sampler_;
+  double progress_{};
+  SequenceBatch batch_;
+};
+
+RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                                         const DeepOptions& options, std::string resolved)
+    : spec_(spec),
+      seed_(seed),
+      options_(options),
+      resolved_(std::move(resolved)),
+      device_(FindDevice(options.device)),
+      online_(MakeRecurrent(spec, options, seed)),
+      target_(MakeRecurrent(spec, options, seed)),
+      acting_(options.average_rate > 0.0 ? MakeRecurrent(spec, options, seed) : online_),
+      optimizer_(options, *online_, *target_, *acting_, device_),
+      explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
+      repetitions_(spec, options.repetition_penalty * options.reward_scale),
+      chance_({seed, 0, Purpose::kLearner, 1}),
+      carry_(EntryCount(spec), options.hidden),
+      replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
+               carry_.size_of_one()}),
+      sampler_(replay_, options, 1),
+      batch_(options, features(), carry_.size_of_one()) {}
+
+void RecurrentDqnLearner::Step(const Results& results, double progress,
+                               std::vector<std::uint8_t>& actions) {
+  carry_.ClearStarted(results, spec_.agents);
+  progress_ = progress;
+  replay_.Add(results, results.features.data(), carry_.values().data());
+  sampler_.Remember();
+  optimizer_.Count(FarmSteps(results), progress);
+  while (optimizer_.TakeDue()) Update();
+
+  explorer_.SetProgress(progress);
+  repetitions_.Begin(results);
+  actions.resize(results.legal.size());
+  const torch::NoGradGuard no_grad;
+  const torch::Tensor values = StepNetwork(*acting_, results, spec_.feature_count, carry_, device_);
+  const float* row = values.data_ptr<float>();
+  const float* seen = results.features.data();
+  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features()) {
+    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
+    const float* const worth = repetitions_.Discourage(row, seen, i);
+    actions[i] = explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
+    repetitions_.Remember(actions[i], i);
+  }
+  replay_.SetActions(actions);
+}
+
+void RecurrentDqnLearner::Draw() {
+  for (std::size_t b = 0; b < batch_.size(); ++b) {
+    batch_.Fill(b, replay_, sampler_.Draw(chance_, b), options_);
+  }
+  const std::vector<float>& importance = sampler_.Weigh(progress_);
+  float sum = 0.0F;
+  for (std::size_t i = 0; i < batch_.weights.size(); ++i) {
+    sum += batch_.weights[i];
+    batch_.weights[i] *= importance[i % batch_.size()];
+  }
+  for (float& weight : batch_.weights) weight /= sum;
+}
+
+RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network) {
+  const torch::NoGradGuard no_grad;
+  const auto count = static_cast<std::int64_t>(batch_.size());
+  RecurrentNetwork::State state =
+      Carry::StateOf(batch_.carry.data(), count, options_.hidden, device_);
+  if (options_.burn_in == 0) return state;
+  const RecurrentNetwork::State stored = state;
+  network.WarmUp(ToDevice(batch_.warm_up, {options_.burn_in, count, spec_.feature_count}), state);
+  const torch::Tensor warms_up = ToDevice(batch_.warms_up, {1, count, 1}) > 0.0F;
+  return {torch::where(warms_up, state.first, stored.first),
+          torch::where(warms_up, state.second, stored.second)};
+}
+
+void RecurrentDqnLearner::Update() {
+  const auto longest = static_cast<std::size_t>(options_.burn_in + options_.sequence);
+  if (replay_.size() < 2 + longest || !sampler_.IsReady()) return;
+  const BatchOrigin origin{seed_, chance_.position()};
+  Draw();
+  const auto count = static_cast<std::int64_t>(batch_.size());
+  const std::int64_t steps = options_.sequence;
+  const torch::Tensor observations =
+      ToDevice(batch_.observations, {steps + 1, count, spec_.feature_count});
+  const torch::Tensor actions = ToDevice(batch_.actions, {steps, count, 1});
+  RecurrentNetwork::State state = WarmState(*online_);
+  const torch::Tensor values = online_->Forward(observations, state);
+  torch::Tensor targets;
+  {
+    const torch::NoGradGuard no_grad;
+    RecurrentNetwork::State target_state = WarmState(*target_);
+    const torch::Tensor told = target_->Forward(observations, target_state);
+    const torch::Tensor forbidden = ToDevice(batch_.forbidden, {steps + 1, count, kActionCount});
+    torch::Tensor next =
+        options_.double_q
+            ? told.gather(2, (values.detach() + forbidden).argmax(2, /*keepdim=*/true)).squeeze(2)
+            : (told + forbidden).amax(2);
+    next = next.gather(0, ToDevice(batch_.next, {steps, count}));
+    targets = ToDevice(batch_.rewards, {steps, count}) +
+              ToDevice(batch_.discounts, {steps, count}) * next;
+    if (options_.action_gap > 0.0) {
+      targets -= options_.action_gap *
+                 Shortfall(told.narrow(0, 0, steps), forbidden.narrow(0, 0, steps), actions);
+    }
+  }
+  const torch::Tensor predicted = values.narrow(0, 0, steps).gather(2, actions).squeeze(2);
+  optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {steps, count}), origin);
+  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
+}
+
+// Each step of a run by its own error. (R2D2 has one priority a sequence, which is fixed there.)
+void RecurrentDqnLearner::Reprioritise(const torch::Tensor& errors) {
+  const torch::Tensor values = errors.cpu().contiguous();
+  const float* const error = values.data_ptr<float>();
+  for (std::size_t i = 0; i < batch_.rows.size(); ++i) {
+    if (batch_.weights[i] > 0.0F) sampler_.SetError(batch_.rows[i], error[i]);
+  }
+}
+
+void RecurrentDqnLearner::Save(Checkpoint& checkpoint) const {
+  optimizer_.Save(checkpoint);
+  replay_.Save(checkpoint);
+  sampler_.Save(checkpoint);
+  explorer_.Save(checkpoint);
+  repetitions_.Save(checkpoint);
+  checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
+  checkpoint.SetArray("carry", carry_.values());
+}
+
+void RecurrentDqnLearner::Load(const Checkpoint& checkpoint) {
+  std::vector<std::uint64_t> chance;
+  std::vector<float> carry;
+  checkpoint.GetArray("chance", 1, chance);
+  checkpoint.GetArray("carry", carry_.values().size(), carry);
+  optimizer_.Load(checkpoint);
+  replay_.Load(checkpoint);
+  sampler_.Load(checkpoint);
+  explorer_.Load(checkpoint);
+  repetitions_.Load(checkpoint);
+  chance_.Seek(chance[0]);
+  carry_.values() = std::move(carry);
+}
+
+DeepOptions Parse(const std::string& text, std::string& resolved) {
+  return DeepOptions::Parse(text, /*recurrent=*/true, resolved);
+}
+
+}  // namespace
+
+std::uint8_t RecurrentDqnEncodings(const std::string& options) {
+  std::string resolved;
+  Parse(options, resolved);
+  return kFeaturesBit;
+}
+
+std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint64_t seed,
+                                          const std::string& text) {
+  std::string resolved;
+  const DeepOptions options = Parse(text, resolved);
+  PrepareTorch(options.threads);
+  return std::make_unique<RecurrentDqnLearner>(spec, seed, options, resolved);
+}
+
+std::unique_ptr<Policy> MakeRecurrentDqnPolicy(const Checkpoint& checkpoint,
+                                               const EnvironmentSpec& spec) {
+  std::string resolved;
+  DeepOptions options = Parse(checkpoint.options, resolved);
+  options.device = PlayingDevice(options.device);
+  PrepareTorch(options.threads);
+  CheckFits(checkpoint, spec, NetworkKind::kMlp);
+  return std::make_unique<RecurrentPolicy>(spec, options, ActingWeights(checkpoint));
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "dqn/repetition_penalty.h"
+
+#include <algorithm>
+#include <string>
+
+#include "aquafarm/base/hash.h"
+#include "networks/deep_policy.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr unsigned kActionBits = 4;
+static_assert(kActionCount < 1 << kActionBits);
+
+bool EndsWith(const std::string& name, const std::string& end) {
+  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
+// Names as Encoder::feature_names gives them.
+bool TellsSituations(const std::string& name) {
+  if (name == "self.x" || name == "self.y" || name == "free_capacity") return true;
+  return name.rfind("device", 0) == 0 && (EndsWith(name, ".deployed") || EndsWith(name, ".aboard"));
+}
+
+}  // namespace
+
+Repetitions::Repetitions(const EnvironmentSpec& spec, double penalty)
+    : agents_(static_cast<std::size_t>(spec.agents)), penalty_(static_cast<float>(penalty)) {
+  if (penalty == 0.0) return;
+  for (std::size_t i = 0; i < spec.feature_names.size(); ++i) {
+    if (TellsSituations(spec.feature_names[i])) telling_.push_back(i);
+  }
+  turn_.resize(EntryCount(spec));
+  done_.resize(turn_.size() * kRemembered);
+}
+
+// A hash, above the bits of an action.
+std::uint64_t Repetitions::SituationOf(const float* features) const {
+  Hasher situation;
+  for (const std::size_t feature : telling_) situation.Add(features[feature], 0.0F);
+  return situation.value() << kActionBits;
+}
+
+void Repetitions::Begin(const Results& results) {
+  for (std::size_t entry = 0; entry < turn_.size(); ++entry) {
+    if (results.started[entry / agents_] != 0) turn_[entry] = 0;
+  }
+}
+
+const float* Repetitions::Discourage(const float* values, const float* features,
+                                     std::size_t entry) {
+  if (turn_.empty()) return values;
+  situation_ = SituationOf(features);
+  std::copy_n(values, kActionCount, values_.begin());
+  const std::uint64_t* const done = done_.data() + entry * kRemembered;
+  const std::size_t count = std::min<std::size_t>(turn_[entry], kRemembered);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint64_t action = done[i] ^ situation_;
+    if (action < kActionCount) values_[action] -= penalty_;
+  }
+  return values_.data();
+}
+
+void Repetitions::Remember(std::uint8_t action, std::size_t entry) {
+  if (turn_.empty()) return;
+  done_[entry * kRemembered + turn_[entry]++ % kRemembered] = situation_ | action;
+}
+
+void Repetitions::Save(Checkpoint& checkpoint) const {
+  if (turn_.empty()) return;
+  checkpoint.SetArray("repetitions", done_);
+  checkpoint.SetArray("repetition_turns", turn_);
+}
+
+void Repetitions::Load(const Checkpoint& checkpoint) {
+  if (turn_.empty()) return;
+  checkpoint.GetArray("repetitions", done_.size(), done_);
+  checkpoint.GetArray("repetition_turns", turn_.size(), turn_);
+}
+
+}  // namespace aquafarm::agents

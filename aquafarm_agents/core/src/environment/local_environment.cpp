@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/environment/local_environment.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/version.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+
+namespace aquafarm::agents {
+
+EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
+  EpisodeResult result;
+  result.farm = farm;
+  result.seed = record.seed;
+  result.episode = record.episode;
+  result.steps = record.steps;
+  result.episode_return = record.episode_return;
+  result.delivered = record.delivered;
+  result.devices = record.devices;
+  if (record.delivered > 0) {
+    result.delivered_health = record.delivered_health / static_cast<float>(record.delivered);
+  }
+  result.crashes = record.crashes;
+  result.collisions = record.collisions;
+  result.steps_in_disaster = record.steps_in_disaster;
+  result.reason = record.reason;
+  return result;
+}
+
+void AddUpTerms(const std::vector<float>& terms, std::vector<float>& rewards) {
+  AQUAFARM_CHECK_EQ(terms.size(), rewards.size() * kRewardTermCount);
+  for (std::size_t entry = 0; entry < rewards.size(); ++entry) {
+    // In their order, as RewardTerms::Total adds them.
+    const auto own = terms.begin() + static_cast<std::ptrdiff_t>(entry * kRewardTermCount);
+    rewards[entry] = std::accumulate(own, own + kRewardTermCount, 0.0F);
+  }
+}
+
+EnvironmentSpec MakeSpec(const Scenario& scenario, const Encoder& encoder, std::int32_t farms) {
+  EnvironmentSpec spec;
+  spec.scenario_name = scenario.name;
+  spec.scenario_yaml = ToYaml(scenario);
+  spec.scenario_hash = scenario.hash;
+  spec.version = kVersion;
+  spec.farms = farms;
+  spec.agents = scenario.AgentCount();
+  spec.team_reward = scenario.rewards.sharing == RewardSharing::kTeam;
+  spec.state_count = encoder.state_count();
+  spec.feature_count = encoder.feature_count();
+  spec.feature_names = encoder.feature_names();
+  spec.plane_count = encoder.plane_count();
+  spec.height = scenario.height;
+  spec.width = scenario.width;
+  spec.step_limit = scenario.step_limit;
+  return spec;
+}
+
+LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
+                                   const EnvironmentOptions& options)
+    : batch_(std::move(scenario), options.farms, options.threads),
+      spec_(MakeSpec(batch_.scenario(), batch_.encoder(), options.farms)) {
+  if ((options.encodings & kIndexBit) != 0 && spec_.state_count == 0) {
+    throw InputError(
+        "scenario " + spec_.scenario_name +
+        ": too many states for a table, expected a learner with a network, as auto chooses");
+  }
+  const auto farms = static_cast<std::size_t>(spec_.farms);
+  const std::size_t entries = farms * static_cast<std::size_t>(spec_.agents);
+  results_.rewards.resize(entries);
+  results_.outcomes.resize(entries);
+  results_.legal.resize(entries);
+  results_.in_play.resize(entries);
+  results_.reasons.resize(farms);
+  results_.started.resize(farms);
+  results_.finished.reserve(farms);
+  if (options.hashes) results_.hashes.resize(farms);
+  if ((options.encodings & kIndexBit) != 0) results_.index.resize(entries);
+  if ((options.encodings & kFeaturesBit) != 0) {
+    results_.features.resize(entries * static_cast<std::size_t>(spec_.feature_count));
+  }
+  if ((options.encodings & kPlanesBit) != 0) {
+    results_.planes.resize(entries * batch_.encoder().planes_size());
+  }
+  if ((options.encodings & kOwnRewardsBit) != 0 && spec_.team_reward) {
+    spec_.team_reward = false;
+    terms_.resize(entries * kRewardTermCount);
+  }
+  with_states_ = (options.encodings & kStatesBit) != 0;
+  output_ = Output();
+}
+
+BatchOutput LocalEnvironment::Output() {
+  const auto data_or_null = [](auto& values) { return values.empty() ? nullptr : values.data(); };
+  BatchOutput output;
+  output.rewards = results_.rewards.data();
+  output.terms = data_or_null(terms_);
+  output.outcomes = results_.outcomes.data();
+  output.legal = results_.legal.data();
+  output.in_play = results_.in_play.data();
+  output.reasons = results_.reasons.data();
+  output.started = results_.started.data();
+  output.hashes = data_or_null(results_.hashes);
+  output.index = data_or_null(results_.index);
+  output.features = data_or_null(results_.features);
+  output.planes = data_or_null(results_.planes);
+  return output;
+}
+
+const Results& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
+  batch_.Reset(seed, first_episode, output_);
+  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
+  if (with_states_) results_.states = batch_.Save();
+  results_.finished.clear();
+  return results_;
+}
+
+const Results& LocalEnvironment::Step(const std::vector<std::uint8_t>& actions) {
+  AQUAFARM_CHECK_EQ(actions.size(), results_.rewards.size());
+  AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), kActionCount);
+  batch_.Step(actions.data(), output_);
+  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
+  if (with_states_) results_.states = batch_.Save();
+  CollectFinished();
+  return results_;
+}
+
+// A farm that is over starts its next episode in the next step, so a reason is always a new one.
+void LocalEnvironment::CollectFinished() {
+  results_.finished.clear();
+  for (std::int32_t i = 0; i < spec_.farms; ++i) {
+    if (results_.reasons[static_cast<std::size_t>(i)] == 0) continue;
+    results_.finished.push_back(ToResult(batch_.farm(i).record(), i));
+  }
+}
+
+std::string LocalEnvironment::Save() { return batch_.Save(); }
+
+const Results& LocalEnvironment::Load(const std::string& bytes) {
+  batch_.Load(bytes);
+  batch_.Write(output_);
+  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
+  if (with_states_) results_.states = bytes;
+  results_.finished.clear();
+  return results_;
+}
+
+}  // namespace aquafarm::agents

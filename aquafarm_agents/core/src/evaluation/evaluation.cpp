@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/evaluation/evaluation.h"
+
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "aquafarm/agents/base/storage.h"
+#include "aquafarm/agents/evaluation/metrics.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr std::chrono::seconds kProgressPeriod{5};
+
+void Summarise(Evaluation& evaluation) {
+  const auto count = static_cast<double>(evaluation.episodes.size());
+  double steps = 0.0;
+  double returns = 0.0;
+  double delivering = 0.0;
+  for (const EpisodeResult& result : evaluation.episodes) {
+    returns += static_cast<double>(result.episode_return);
+    steps += result.steps;
+    evaluation.success_rate += result.Success() ? 1.0 : 0.0;
+    evaluation.mean_crashes += result.crashes;
+    evaluation.mean_steps_in_disaster += result.steps_in_disaster;
+    evaluation.mean_delivered_health += static_cast<double>(result.delivered_health);
+    delivering += result.delivered > 0 ? 1.0 : 0.0;
+  }
+  if (count == 0.0) return;
+  evaluation.mean_return = returns / count;
+  evaluation.mean_steps = steps / count;
+  evaluation.return_per_step = steps > 0.0 ? returns / steps : 0.0;
+  evaluation.success_rate /= count;
+  evaluation.mean_crashes /= count;
+  evaluation.mean_steps_in_disaster /= count;
+  if (delivering > 0.0) evaluation.mean_delivered_health /= delivering;
+}
+
+nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& context) {
+  nlohmann::json json = {{"policy", context.policy},
+                         {"algorithm", context.algorithm},
+                         {"training_steps", context.training_steps},
+                         {"scenario", context.scenario_name},
+                         {"scenario_hash", context.scenario_hash},
+                         {"version", context.version},
+                         {"farms", context.farms},
+                         {"seed", evaluation.seed & ~kEvaluationSeedBit},
+                         {"farm_seed", evaluation.seed},
+                         {"episodes", evaluation.episodes.size()},
+                         {"complete", evaluation.complete},
+                         {"return_per_episode", evaluation.mean_return},
+                         {"return_per_step", evaluation.return_per_step},
+                         {"success_rate", evaluation.success_rate},
+                         {"steps_per_episode", evaluation.mean_steps},
+                         {"delivered_health", evaluation.mean_delivered_health},
+                         {"crashes_per_episode", evaluation.mean_crashes},
+                         {"steps_in_disaster_per_episode", evaluation.mean_steps_in_disaster},
+                         {"wall_s", evaluation.wall_s}};
+  if (evaluation.mean_bound) json["upper_bound_per_episode"] = *evaluation.mean_bound;
+  return json;
+}
+
+}  // namespace
+
+Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
+                    std::int32_t episodes, const std::atomic<bool>* stop,
+                    const std::function<void(std::size_t over)>& on_progress) {
+  AQUAFARM_CHECK_GE(episodes, 1);
+  const auto start = std::chrono::steady_clock::now();
+  auto told = start;
+  const auto count = static_cast<std::size_t>(episodes);
+  Evaluation evaluation;
+  evaluation.seed = EvaluationSeed(seed);
+  std::vector<EpisodeResult> results(count);
+  std::vector<std::uint8_t> is_over(count);
+  std::size_t over = 0;
+  policy.Begin(evaluation.seed, environment.spec().farms);
+  std::vector<std::uint8_t> actions;
+  const Results* now = &environment.Reset(evaluation.seed);
+  while (over < count && (stop == nullptr || !*stop)) {
+    policy.Act(*now, actions);
+    now = &environment.Step(actions);
+    for (const EpisodeResult& result : now->finished) {
+      if (result.episode >= count || is_over[result.episode] != 0) continue;
+      results[result.episode] = result;
+      is_over[result.episode] = 1;
+      ++over;
+    }
+    const auto present = std::chrono::steady_clock::now();
+    if (on_progress && present - told >= kProgressPeriod) {
+      told = present;
+      on_progress(over);
+    }
+    if (environment.TakeRestarted()) {  // fresh farms; what is over stays so
+      policy.Begin(evaluation.seed, environment.spec().farms);
+      now = &environment.Reset(evaluation.seed);
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_over[i] != 0) evaluation.episodes.push_back(results[i]);
+  }
+  evaluation.complete = over == count;
+  Summarise(evaluation);
+  evaluation.wall_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return evaluation;
+}
+
+void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
+                     const EvaluationContext& context) {
+  std::string rows = std::string(kEpisodeColumns) + "\n";
+  for (const EpisodeResult& result : evaluation.episodes) {
+    AppendEpisode(result, rows);
+    rows += '\n';
+  }
+  WriteFileAtomically(prefix + ".csv", rows);
+  WriteFileAtomically(prefix + ".json", ToJson(evaluation, context).dump(2) + "\n");
+}
+
+std::string Describe(const Evaluation& evaluation) {
+  char text[200];
+  std::snprintf(text, sizeof(text),
+                "success %.1f %%, return %.1f per episode, %.2f per step, %.1f steps "
+                "(%zu episodes)",
+                100.0 * evaluation.success_rate, evaluation.mean_return, evaluation.return_per_step,
+                evaluation.mean_steps, evaluation.episodes.size());
+  return text;
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/evaluation/rollout_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "aquafarm/agents/base/storage.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kCellsAtOnce = 64;
+
+bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop; }
+
+// A copy of the farm with ship 0 in each cell where it can be, and those cells.
+class Starts {
+ public:
+  Starts(const std::shared_ptr<const Scenario>& scenario, const Farm& farm)
+      : width_(farm.scenario().width), state_(farm.Save()) {
+    Farm moved(scenario);
+    moved.Load(state_);
+    for (std::int32_t i = 0; i < farm.scenario().CellCount(); ++i) {
+      try {
+        moved.PlaceShip(0, {i % width_, i / width_});
+        cells_.push_back(i);
+      } catch (const InputError&) {  // blocked or taken
+      }
+    }
+  }
+  const std::vector<std::int32_t>& cells() const { return cells_; }
+  void Put(std::size_t start, Farm& farm) const {
+    farm.Load(state_);
+    farm.PlaceShip(0, {cells_[start] % width_, cells_[start] / width_});
+  }
+
+ private:
+  std::int32_t width_;
+  std::string state_;
+  std::vector<std::int32_t> cells_;
+};
+
+// Plays farms to the end of the episode that they are in. @returns its return, by farm
+std::vector<double> PlayOut(LocalEnvironment& environment, const std::string& farms, Policy& policy,
+                            std::uint64_t seed, const std::atomic<bool>* stop) {
+  const std::int32_t count = environment.spec().farms;
+  std::vector<double> returns(static_cast<std::size_t>(count));
+  std::vector<bool> over(returns.size());
+  std::int32_t left = count;
+  policy.Begin(seed, count);
+  const Results* results = &environment.Load(farms);
+  std::vector<std::uint8_t> actions;
+  while (left > 0 && !IsStopped(stop)) {
+    policy.Act(*results, actions);
+    results = &environment.Step(actions);
+    for (const EpisodeResult& ended : results->finished) {
+      const auto farm = static_cast<std::size_t>(ended.farm);
+      if (over[farm]) continue;  // it has begun another episode meanwhile
+      over[farm] = true;
+      returns[farm] = static_cast<double>(ended.episode_return);
+      --left;
+    }
+  }
+  return returns;
+}
+
+json Rows(const std::vector<json>& values, std::int32_t width) {
+  json rows = json::array();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (i % static_cast<std::size_t>(width) == 0) rows.push_back(json::array());
+    rows.back().push_back(values[i]);
+  }
+  return rows;
+}
+
+template <typename T>
+json ToRows(const std::vector<T>& values, std::int32_t width) {
+  std::vector<json> entries;
+  for (const T value : values) {
+    entries.push_back(std::isnan(value) ? json(nullptr) : json(value));
+  }
+  return Rows(entries, width);
+}
+
+}  // namespace
+
+PlayedValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
+                        const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
+                        std::int32_t episodes, const std::atomic<bool>* stop) {
+  if (scenario->CellCount() > kMaxCells) {
+    throw InputError("values: got a farm of " + std::to_string(scenario->CellCount()) +
+                     " cells, expected at most " + std::to_string(kMaxCells));
+  }
+  if (episodes > 1 && scenario->layout != LayoutMode::kFixed) {
+    throw InputError(
+        "values: got a layout drawn per_episode, expected a fixed one to average over " +
+        std::to_string(episodes) + " episodes");
+  }
+  const auto cells = static_cast<std::size_t>(scenario->CellCount());
+  PlayedValues values{scenario->width, scenario->height, EvaluationSeed(seed),
+                      episode,         episodes,         {}};
+  values.value.assign(cells, 0.0);
+  Farm farm(scenario);
+  for (std::int32_t k = 0; k < episodes && !IsStopped(stop); ++k) {
+    farm.Reset(values.seed, episode + static_cast<std::uint64_t>(k));
+    const Starts starts(scenario, farm);
+    std::vector<double> here(cells, std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t first = 0; first < starts.cells().size(); first += kCellsAtOnce) {
+      const std::size_t count = std::min(kCellsAtOnce, starts.cells().size() - first);
+      FarmBatch farms(scenario, static_cast<std::int32_t>(count));
+      for (std::size_t i = 0; i < count; ++i) {
+        starts.Put(first + i, farms.farm(static_cast<std::int32_t>(i)));
+      }
+      LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
+      const std::unique_ptr<Policy> policy = make_policy(environment.spec());
+      const auto returns = PlayOut(environment, farms.Save(), *policy, values.seed, stop);
+      for (std::size_t i = 0; i < count; ++i) {
+        here[static_cast<std::size_t>(starts.cells()[first + i])] = returns[i];
+      }
+    }
+    for (std::size_t i = 0; i < cells; ++i) values.value[i] += here[i] / episodes;
+  }
+  return values;
+}
+
+void WriteValues(const std::string& path, const PlayedValues& values, const std::string& policy,
+                 const Scenario& scenario) {
+  json layers = json::array();
+  if (scenario.seas) {
+    for (const SeaLayer& layer : scenario.seas->layers) {
+      layers.push_back({{"name", layer.name},
+                        {"units", layer.units},
+                        {"values", ToRows(layer.values, values.width)}});
+    }
+  }
+  const json text{{"scenario", scenario.name},
+                  {"scenario_hash", scenario.hash},
+                  {"policy", policy},
+                  {"cell_size_m", scenario.cell_size_m},
+                  {"farm_seed", values.seed},
+                  {"episode", values.episode},
+                  {"episodes", values.episodes},
+                  {"what", "undiscounted return of the episode when ship 0 starts in the cell"},
+                  {"values", ToRows(values.value, values.width)},
+                  {"seas", layers}};
+  WriteFileAtomically(path, text.dump() + "\n");
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/learning/checkpoint.h"
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/hash.h"
+#include "aquafarm/base/version.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr char kMagic[8] = {'a', 'q', 'u', 'a', 'C', 'K', 'P', 'T'};
+
+struct Header {
+  char magic[8];
+  std::uint32_t format;
+  std::uint32_t zero;
+  std::uint64_t index_bytes;
+  std::uint64_t section_bytes;
+  std::uint64_t checksum;
+};
+static_assert(sizeof(Header) == 40);
+
+std::string Hex(std::uint64_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
+nlohmann::json ToIndex(const Checkpoint& c) {
+  nlohmann::json sections = nlohmann::json::array();
+  for (const auto& [name, bytes] : c.sections) sections.push_back({name, bytes.size()});
+  return {{"kind", c.kind},
+          {"algorithm", c.algorithm},
+          {"options", c.options},
+          {"version", c.version},
+          {"seed", c.seed},
+          {"steps", c.steps},
+          {"episodes", c.episodes},
+          {"scenario_name", c.spec.scenario_name},
+          {"scenario_hash", c.spec.scenario_hash},
+          {"farms", c.spec.farms},
+          {"agents", c.spec.agents},
+          {"team_reward", c.spec.team_reward},
+          {"state_count", c.spec.state_count},
+          {"feature_count", c.spec.feature_count},
+          {"feature_names", c.spec.feature_names},
+          {"plane_count", c.spec.plane_count},
+          {"height", c.spec.height},
+          {"width", c.spec.width},
+          {"step_limit", c.spec.step_limit},
+          {"sections", sections}};
+}
+
+Checkpoint FromIndex(const nlohmann::json& index) {
+  Checkpoint c;
+  index.at("kind").get_to(c.kind);
+  index.at("algorithm").get_to(c.algorithm);
+  index.at("options").get_to(c.options);
+  index.at("version").get_to(c.version);
+  index.at("seed").get_to(c.seed);
+  index.at("steps").get_to(c.steps);
+  index.at("episodes").get_to(c.episodes);
+  index.at("scenario_name").get_to(c.spec.scenario_name);
+  index.at("scenario_hash").get_to(c.spec.scenario_hash);
+  index.at("farms").get_to(c.spec.farms);
+  index.at("agents").get_to(c.spec.agents);
+  index.at("team_reward").get_to(c.spec.team_reward);
+  index.at("state_count").get_to(c.spec.state_count);
+  index.at("feature_count").get_to(c.spec.feature_count);
+  index.at("feature_names").get_to(c.spec.feature_names);
+  index.at("plane_count").get_to(c.spec.plane_count);
+  index.at("height").get_to(c.spec.height);
+  index.at("width").get_to(c.spec.width);
+  index.at("step_limit").get_to(c.spec.step_limit);
+  c.spec.version = c.version;
+  return c;
+}
+
+void ReadSections(const nlohmann::json& index, std::string_view bytes, Checkpoint& checkpoint) {
+  for (const nlohmann::json& section : index.at("sections")) {
+    const auto size = section.at(1).get<std::size_t>();
+    if (size > bytes.size()) throw InputError("damaged: sections are longer than the file");
+    checkpoint.sections[section.at(0).get<std::string>()] = bytes.substr(0, size);
+    bytes.remove_prefix(size);
+  }
+}
+
+Checkpoint Parse(std::string_view bytes) {
+  Header header{};
+  if (bytes.size() < sizeof(header)) {
+    throw InputError("no checkpoint, or cut short: got " + std::to_string(bytes.size()) +
+                     " bytes, expected at least " + std::to_string(sizeof(header)));
+  }
+  std::memcpy(&header, bytes.data(), sizeof(header));
+  if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0) {
+    throw InputError("no checkpoint: it does not begin with 'aquaCKPT'");
+  }
+  if (header.format != kCheckpointFormat) {
+    throw InputError("of format " + std::to_string(header.format) + ", expected " +
+                     std::to_string(kCheckpointFormat));
+  }
+  bytes.remove_prefix(sizeof(header));
+  const bool fits = header.index_bytes <= bytes.size() &&
+                    header.section_bytes == bytes.size() - header.index_bytes;
+  if (!fits) {
+    throw InputError("cut short or too long: got " + std::to_string(bytes.size()) +
+                     " bytes after the header, expected " +
+                     std::to_string(header.index_bytes + header.section_bytes));
+  }
+  if (HashBytes(bytes) != header.checksum || header.zero != 0) {
+    throw InputError("damaged: the checksum is " + Hex(HashBytes(bytes)) + ", expected " +
+                     Hex(header.checksum));
+  }
+  const auto index = nlohmann::json::from_cbor(bytes.substr(0, header.index_bytes));
+  Checkpoint checkpoint = FromIndex(index);
+  ReadSections(index, bytes.substr(header.index_bytes), checkpoint);
+  return checkpoint;
+}
+
+}  // namespace
+
+const std::string& Checkpoint::Section(const std::string& name) const {
+  const auto found = sections.find(name);
+  if (found == sections.end()) {
+    throw InputError("checkpoint: has no section '" + name + "' (it is of kind " + kind + ")");
+  }
+  return found->second;
+}
+
+void Checkpoint::CheckSize(const std::string& name, std::size_t got, std::size_t expected) {
+  if (got == expected) return;
+  throw InputError("checkpoint: section '" + name + "': got " + std::to_string(got) +
+                   " bytes, expected " + std::to_string(expected));
+}
+
+void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint) {
+  std::string body;
+  nlohmann::json::to_cbor(ToIndex(checkpoint), body);
+  Header header{};
+  std::memcpy(header.magic, kMagic, sizeof(kMagic));
+  header.format = kCheckpointFormat;
+  header.index_bytes = body.size();
+  for (const auto& [name, bytes] : checkpoint.sections) body += bytes;
+  header.section_bytes = body.size() - header.index_bytes;
+  header.checksum = HashBytes(body);
+  std::string file(reinterpret_cast<const char*>(&header), sizeof(header));
+  file += body;
+  WriteFileAtomically(path, file);
+}
+
+Checkpoint ReadCheckpoint(const std::string& path) {
+  const std::string bytes = ReadFile(path);
+  try {
+    return Parse(bytes);
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(path + ": damaged: " + error.what());
+  }
+}
+
+void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
+                    const std::string& algorithm, const std::string& options, std::uint64_t seed,
+                    const EnvironmentSpec& spec) {
+  const auto refuse = [&](const std::string& what, const std::string& got,
+                          const std::string& expected) {
+    throw InputError(path + ": cannot be continued: " + what + ": it has " + got + ", asked for " +
+                     expected);
+  };
+  const auto compare = [&](const std::string& what, const auto& got, const auto& expected) {
+    if (got != expected) refuse(what, std::to_string(got), std::to_string(expected));
+  };
+  if (checkpoint.kind != Checkpoint::kTraining) {
+    refuse("kind", checkpoint.kind, Checkpoint::kTraining);
+  }
+  if (checkpoint.version != spec.version) refuse("version", checkpoint.version, spec.version);
+  if (checkpoint.algorithm != algorithm) refuse("algorithm", checkpoint.algorithm, algorithm);
+  if (checkpoint.spec.scenario_hash != spec.scenario_hash) {
+    refuse("scenario",
+           checkpoint.spec.scenario_name + " (hash " + Hex(checkpoint.spec.scenario_hash) + ")",
+           spec.scenario_name + " (hash " + Hex(spec.scenario_hash) + ")");
+  }
+  if (checkpoint.options != options) refuse("options", checkpoint.options, options);
+  compare("seed", checkpoint.seed, seed);
+  compare("farms", checkpoint.spec.farms, spec.farms);
+  compare("agents", checkpoint.spec.agents, spec.agents);
+  const auto credit = [](bool team) { return team ? "shared" : "own"; };
+  if (checkpoint.spec.team_reward != spec.team_reward) {
+    refuse("credit", credit(checkpoint.spec.team_reward), credit(spec.team_reward));
+  }
+}
+
+}  // namespace aquafarm::agents

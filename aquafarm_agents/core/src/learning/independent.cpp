@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/learning/independent.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+EnvironmentSpec SpecOfOne(EnvironmentSpec spec) {
+  spec.agents = 1;
+  return spec;
+}
+
+// Keys of chance that no run of a neighbouring seed has.
+std::uint64_t SeedOf(std::uint64_t seed, std::size_t agent) {
+  return seed ^ (static_cast<std::uint64_t>(agent) << 48U);
+}
+
+std::string PrefixOf(std::size_t agent) { return "agent" + std::to_string(agent) + "/"; }
+
+void Join(const Checkpoint& part, std::size_t agent, Checkpoint& whole) {
+  for (const auto& [name, bytes] : part.sections) whole.sections[PrefixOf(agent) + name] = bytes;
+}
+
+Checkpoint PartOf(const Checkpoint& whole, std::size_t agent) {
+  Checkpoint part = whole;
+  part.spec = SpecOfOne(whole.spec);
+  part.sections.clear();
+  const std::string prefix = PrefixOf(agent);
+  for (const auto& [name, bytes] : whole.sections) {
+    if (name.compare(0, prefix.size(), prefix) == 0) {
+      part.sections[name.substr(prefix.size())] = bytes;
+    }
+  }
+  return part;
+}
+
+/// The share of one agent in what happened on all farms; its memory is reused.
+class Share {
+ public:
+  /// @param agents of one farm
+  const Results& Of(const Results& all, std::size_t agent, std::size_t agents) {
+    Take(all.rewards, agent, agents, all, share_.rewards);
+    Take(all.outcomes, agent, agents, all, share_.outcomes);
+    Take(all.legal, agent, agents, all, share_.legal);
+    Take(all.in_play, agent, agents, all, share_.in_play);
+    Take(all.index, agent, agents, all, share_.index);
+    Take(all.features, agent, agents, all, share_.features);
+    Take(all.planes, agent, agents, all, share_.planes);
+    share_.reasons = all.reasons;
+    share_.started = all.started;
+    return share_;
+  }
+
+ private:
+  // [N, S, size] → [N, size]
+  template <typename T>
+  static void Take(const std::vector<T>& from, std::size_t agent, std::size_t agents,
+                   const Results& all, std::vector<T>& to) {
+    const std::size_t farms = all.reasons.size();
+    const std::size_t size = from.size() / (farms * agents);
+    to.resize(farms * size);
+    for (std::size_t farm = 0; farm < farms; ++farm) {
+      std::copy_n(from.data() + (farm * agents + agent) * size, size, to.data() + farm * size);
+    }
+  }
+
+  Results share_;
+};
+
+template <typename T>
+void Spread(const std::vector<T>& own, std::size_t agent, std::size_t agents, std::vector<T>& all) {
+  all.resize(own.size() * agents);
+  for (std::size_t farm = 0; farm < own.size(); ++farm) {
+    all[farm * agents + agent] = own[farm];
+  }
+}
+
+class IndependentPolicy final : public Policy {
+ public:
+  explicit IndependentPolicy(std::vector<std::unique_ptr<Policy>> policies)
+      : policies_(std::move(policies)) {}
+  std::uint8_t encodings() const override { return policies_[0]->encodings(); }
+  void Begin(std::uint64_t seed, std::int32_t farms) override {
+    for (std::size_t i = 0; i < policies_.size(); ++i) policies_[i]->Begin(SeedOf(seed, i), farms);
+  }
+  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+    for (std::size_t i = 0; i < policies_.size(); ++i) {
+      policies_[i]->Act(share_.Of(results, i, policies_.size()), own_);
+      Spread(own_, i, policies_.size(), actions);
+      Spread(policies_[i]->values(), i, policies_.size(), values_);
+    }
+  }
+
+ private:
+  std::vector<std::unique_ptr<Policy>> policies_;
+  Share share_;
+  std::vector<std::uint8_t> own_;
+};
+
+class IndependentLearner final : public Learner {
+ public:
+  IndependentLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                     const MakeAgentLearner& make) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(spec.agents); ++i) {
+      learners_.push_back(make(SpecOfOne(spec), SeedOf(seed, i)));
+    }
+  }
+  std::uint8_t encodings() const override { return learners_[0]->encodings(); }
+  std::string options() const override { return learners_[0]->options(); }
+  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override {
+    for (std::size_t i = 0; i < learners_.size(); ++i) {
+      learners_[i]->Step(share_.Of(results, i, learners_.size()), progress, own_);
+      Spread(own_, i, learners_.size(), actions);
+    }
+  }
+  LearnerStatus status() const override {
+    LearnerStatus mean = learners_[0]->status();
+    mean.loss = 0.0F;
+    for (const auto& learner : learners_) {
+      mean.loss += learner->status().loss / static_cast<float>(learners_.size());
+    }
+    return mean;
+  }
+  std::unique_ptr<Policy> GreedyPolicy() const override {
+    std::vector<std::unique_ptr<Policy>> policies;
+    for (const auto& learner : learners_) policies.push_back(learner->GreedyPolicy());
+    return std::make_unique<IndependentPolicy>(std::move(policies));
+  }
+  void SavePolicy(Checkpoint& checkpoint) const override {
+    for (std::size_t i = 0; i < learners_.size(); ++i) {
+      Checkpoint part;
+      learners_[i]->SavePolicy(part);
+      Join(part, i, checkpoint);
+    }
+  }
+  void Save(Checkpoint& checkpoint) const override {
+    for (std::size_t i = 0; i < learners_.size(); ++i) {
+      Checkpoint part;
+      learners_[i]->Save(part);
+      Join(part, i, checkpoint);
+    }
+  }
+  void Load(const Checkpoint& checkpoint) override {
+    for (std::size_t i = 0; i < learners_.size(); ++i) learners_[i]->Load(PartOf(checkpoint, i));
+  }
+
+ private:
+  std::vector<std::unique_ptr<Learner>> learners_;
+  Share share_;
+  std::vector<std::uint8_t> own_;
+};
+
+}  // namespace
+
+std::unique_ptr<Learner> MakeIndependent(const EnvironmentSpec& spec, std::uint64_t seed,
+                                         const MakeAgentLearner& make) {
+  return std::make_unique<IndependentLearner>(spec, seed, make);
+}
+
+std::unique_ptr<Policy> MakeIndependentPolicy(const Checkpoint& checkpoint,
+                                              const EnvironmentSpec& spec,
+                                              const MakeAgentPolicy& make) {
+  const std::int32_t own = checkpoint.spec.agents;
+  if (own != spec.agents) {
+    throw InputError("policy: " + checkpoint.algorithm + " of scenario " +
+                     checkpoint.spec.scenario_name + " does not fit scenario " +
+                     spec.scenario_name + ": agents: it knows " + std::to_string(own) +
+                     ", the farm has " + std::to_string(spec.agents));
+  }
+  std::vector<std::unique_ptr<Policy>> policies;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(spec.agents); ++i) {
+    policies.push_back(make(PartOf(checkpoint, i), SpecOfOne(spec)));
+  }
+  return std::make_unique<IndependentPolicy>(std::move(policies));
+}
+
+}  // namespace aquafarm::agents

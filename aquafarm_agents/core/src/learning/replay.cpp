@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/learning/replay.h"
+
+#include <algorithm>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+
+SumTree::SumTree(std::size_t leaves) : leaves_(1) {
+  while (leaves_ < leaves) leaves_ *= 2;
+  nodes_.assign(2 * leaves_, 0.0F);
+}
+
+void SumTree::Set(std::size_t leaf, float priority) {
+  std::size_t node = leaves_ + leaf;
+  nodes_[node] = priority;
+  // Sums are made anew, not adjusted, so that rounding does not pile up.
+  for (node /= 2; node >= 1; node /= 2) nodes_[node] = nodes_[2 * node] + nodes_[2 * node + 1];
+}
+
+std::size_t SumTree::Find(float mass) const {
+  std::size_t node = 1;
+  while (node < leaves_) {
+    node *= 2;
+    if (mass >= nodes_[node] && nodes_[node + 1] > 0.0F) mass -= nodes_[node++];
+  }
+  return node - leaves_;
+}
+
+template <typename Scalar>
+Replay<Scalar>::Replay(const ReplayOptions& options)
+    : options_(options), moments_(std::max<std::size_t>(2, options.capacity / options.entries)) {
+  const std::size_t all = rows();
+  observations_.resize(all * options_.observation_size);
+  carry_.resize(all * options_.carry_size);
+  rewards_.resize(all);
+  legal_.resize(all);
+  actions_.resize(all);
+  reasons_.resize(all);
+  started_.resize(all);
+}
+
+template <typename Scalar>
+void Replay<Scalar>::Add(const Results& results, const Scalar* observations, const float* carry) {
+  if (size_ == moments_) {
+    oldest_ = (oldest_ + 1) % moments_;
+  } else {
+    ++size_;
+  }
+  const std::size_t row = Row(size_ - 1, 0);
+  const std::size_t entries = options_.entries;
+  std::copy_n(observations, entries * options_.observation_size,
+              observations_.data() + row * options_.observation_size);
+  if (options_.carry_size > 0) {
+    std::copy_n(carry, entries * options_.carry_size, carry_.data() + row * options_.carry_size);
+  }
+  std::copy_n(results.rewards.data(), entries, rewards_.data() + row);
+  std::copy_n(results.legal.data(), entries, legal_.data() + row);
+  for (std::size_t i = 0; i < entries; ++i) {
+    const std::size_t farm = i / static_cast<std::size_t>(options_.agents);
+    // An agent out of play is done, whatever its farm still does.
+    constexpr auto kDone = static_cast<std::uint8_t>(EndReason::kAllRetrieved);
+    reasons_[row + i] = results.in_play[i] != 0 ? results.reasons[farm] : kDone;
+    started_[row + i] = results.started[farm];
+  }
+}
+
+template <typename Scalar>
+void Replay<Scalar>::SetActions(const std::vector<std::uint8_t>& actions) {
+  AQUAFARM_CHECK_EQ(actions.size(), options_.entries);
+  std::copy(actions.begin(), actions.end(), actions_.data() + Row(size_ - 1, 0));
+}
+
+template <typename Scalar>
+Transition Replay<Scalar>::At(std::size_t age, std::size_t entry, std::size_t steps,
+                              float discount) const {
+  Transition transition;
+  transition.from = Row(age, entry);
+  transition.action = actions_[transition.from];
+  transition.discount = 1.0F;
+  for (std::size_t k = 1; k <= steps; ++k) {
+    const std::size_t row = Row(age + k, entry);
+    if (k > 1 && started(row)) break;  // the episode was lost; its last known moment is the end
+    transition.reward += transition.discount * rewards_[row];
+    transition.discount *= discount;
+    transition.to = row;
+    const EndReason reason = this->reason(row);
+    if (IsTerminated(reason)) transition.discount = 0.0F;
+    if (reason != EndReason::kNone) break;
+  }
+  return transition;
+}
+
+template <typename Scalar>
+JointTransition Replay<Scalar>::JointAt(std::size_t age, std::size_t first, std::size_t steps,
+                                        float discount, float* rewards) const {
+  const auto agents = static_cast<std::size_t>(options_.agents);
+  JointTransition transition;
+  transition.discount = 1.0F;
+  std::fill_n(rewards, agents, 0.0F);
+  for (std::size_t k = 1; k <= steps; ++k) {
+    const std::size_t row = Row(age + k, first);
+    if (k > 1 && started(row)) break;
+    bool goes_on = false;
+    for (std::size_t agent = 0; agent < agents; ++agent) {
+      rewards[agent] += transition.discount * rewards_[row + agent];
+      goes_on = goes_on || reason(row + agent) == EndReason::kNone;
+    }
+    transition.discount *= discount;
+    transition.to = row;
+    if (!goes_on) break;
+  }
+  return transition;
+}
+
+template <typename Scalar>
+std::size_t Replay<Scalar>::bytes() const {
+  const auto of = [](const auto& values) { return values.size() * sizeof(values[0]); };
+  return of(observations_) + of(carry_) + of(rewards_) + of(legal_) + of(actions_) + of(reasons_) +
+         of(started_);
+}
+
+template <typename Scalar>
+void Replay<Scalar>::Save(Checkpoint& checkpoint) const {
+  checkpoint.SetArray("replay.place", std::vector<std::uint64_t>{oldest_, size_});
+  checkpoint.SetArray("replay.observations", observations_);
+  checkpoint.SetArray("replay.carry", carry_);
+  checkpoint.SetArray("replay.rewards", rewards_);
+  checkpoint.SetArray("replay.legal", legal_);
+  checkpoint.SetArray("replay.actions", actions_);
+  checkpoint.SetArray("replay.reasons", reasons_);
+  checkpoint.SetArray("replay.started", started_);
+}
+
+template <typename Scalar>
+void Replay<Scalar>::Load(const Checkpoint& checkpoint) {
+  std::vector<std::uint64_t> place;
+  checkpoint.GetArray("replay.place", 2, place);
+  if (place[0] >= moments_ || place[1] > moments_) {
+    throw InputError("checkpoint: section 'replay.place': out of range");
+  }
+  checkpoint.GetArray("replay.observations", observations_.size(), observations_);
+  checkpoint.GetArray("replay.carry", carry_.size(), carry_);
+  checkpoint.GetArray("replay.rewards", rewards_.size(), rewards_);
+  checkpoint.GetArray("replay.legal", legal_.size(), legal_);
+  checkpoint.GetArray("replay.actions", actions_.size(), actions_);
+  checkpoint.GetArray("replay.reasons", reasons_.size(), reasons_);
+  checkpoint.GetArray("replay.started", started_.size(), started_);
+  oldest_ = place[0];
+  size_ = place[1];
+}
+
+template class Replay<float>;
+template class Replay<std::uint8_t>;
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/learning/tabular.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "aquafarm/agents/base/options.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+// Stands for the last action of an agent that is out of play.
+constexpr auto kNoAction = std::numeric_limits<std::uint64_t>::max();
+constexpr float kLossShare = 0.01F;  // of one step in the moving average of the loss
+
+std::size_t Entries(const EnvironmentSpec& spec) {
+  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
+}
+
+}  // namespace
+
+QTable::QTable(const EnvironmentSpec& spec, float initial_value)
+    : agents(spec.agents), states(spec.state_count) {
+  const std::uint64_t bytes =
+      static_cast<std::uint64_t>(agents) * states * kActionCount * sizeof(float);
+  if (states == 0 || bytes > kMaxBytes) {
+    throw InputError("scenario " + spec.scenario_name +
+                     ": too many states for a table (devices, cells or agents), expected a learner "
+                     "with a network, as auto chooses");
+  }
+  values.assign(bytes / sizeof(float), initial_value);
+}
+
+TabularOptions TabularOptions::Parse(const std::string& text, std::string& resolved) {
+  OptionReader reader(text);
+  TabularOptions options;
+  options.learning_rate = reader.GetSchedule("learning_rate", options.learning_rate, 0.0, 1.0);
+  options.discount = reader.Number("discount", options.discount, 0.0, 1.0);
+  options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)));
+  reader.Resolve("exploration", ToString(options.exploration));
+  options.initial_value = reader.Number("initial_value", options.initial_value, -1e6, 1e6);
+  options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
+  reader.Finish();
+  resolved = reader.Resolved();
+  return options;
+}
+
+template <typename Rule>
+TabularLearner<Rule>::TabularLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                                     const std::string& options)
+    : options_(TabularOptions::Parse(options, resolved_)),
+      farms_(spec.farms),
+      table_(spec, static_cast<float>(options_.initial_value)),
+      explorer_(options_.exploration, seed, Entries(spec)),
+      pending_(Entries(spec)),
+      loss_(std::nanf("")) {}
+
+template <typename Rule>
+void TabularLearner<Rule>::Step(const Results& results, double progress,
+                                std::vector<std::uint8_t>& actions) {
+  explorer_.SetProgress(progress);
+  learning_rate_ = static_cast<float>(options_.learning_rate.At(progress));
+  actions.resize(pending_.size());
+  const float rate = learning_rate_;
+  const auto discount = static_cast<float>(options_.discount);
+  float* const values = table_.values.data();
+  float error_sum = 0.0F;
+  std::int32_t learnt = 0;
+  std::size_t entry = 0;
+  for (std::int32_t farm = 0; farm < farms_; ++farm) {
+    const auto f = static_cast<std::size_t>(farm);
+    const bool is_transition = results.started[f] == 0;
+    for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++entry) {
+      const ActionMask allowed = options_.mask_illegal
+                                     ? static_cast<ActionMask>(results.legal[entry] & kAllActions)
+                                     : kAllActions;
+      const std::size_t row = table_.Row(agent, results.index[entry]);
+      const Best best = BestOf(values + row, allowed);
+      const std::uint8_t action = explorer_.Choose(values + row, allowed, best, entry);
+      if (is_transition && pending_[entry] != kNoAction) {
+        const bool goes_on = !results.IsDone(entry, f);
+        const float next = goes_on ? Rule::NextValue(best.value, values[row + action]) : 0.0F;
+        float& value = values[pending_[entry]];
+        const float error = results.rewards[entry] + discount * next - value;
+        value += rate * error;
+        error_sum += error * error;
+        ++learnt;
+      }
+      pending_[entry] = results.in_play[entry] != 0 ? row + action : kNoAction;
+      actions[entry] = action;
+    }
+  }
+  if (learnt == 0) return;
+  const float loss = error_sum / static_cast<float>(learnt);
+  loss_ = std::isnan(loss_) ? loss : loss_ + kLossShare * (loss - loss_);
+}
+
+template <typename Rule>
+LearnerStatus TabularLearner<Rule>::status() const {
+  return {loss_, static_cast<float>(explorer_.level()), learning_rate_};
+}
+
+template <typename Rule>
+std::unique_ptr<Policy> TabularLearner<Rule>::GreedyPolicy() const {
+  return std::make_unique<GreedyTabularPolicy>(table_, options_.mask_illegal);
+}
+
+template <typename Rule>
+void TabularLearner<Rule>::SavePolicy(Checkpoint& checkpoint) const {
+  checkpoint.SetArray("table", table_.values);
+  checkpoint.sections["mask_illegal"] = options_.mask_illegal ? "1" : "0";
+}
+
+template <typename Rule>
+void TabularLearner<Rule>::Save(Checkpoint& checkpoint) const {
+  SavePolicy(checkpoint);
+  explorer_.Save(checkpoint);
+  checkpoint.SetArray("pending", pending_);
+  checkpoint.SetArray("loss", std::vector<float>{loss_});
+}
+
+template <typename Rule>
+void TabularLearner<Rule>::Load(const Checkpoint& checkpoint) {
+  std::vector<float> values;
+  std::vector<float> loss;
+  std::vector<std::uint64_t> pending;
+  checkpoint.GetArray("table", table_.values.size(), values);
+  checkpoint.GetArray("pending", pending_.size(), pending);
+  checkpoint.GetArray("loss", 1, loss);
+  for (const std::uint64_t offset : pending) {
+    if (offset != kNoAction && offset >= values.size())
+      throw InputError("checkpoint: section 'pending': out of range");
+  }
+  explorer_.Load(checkpoint);
+  table_.values = std::move(values);
+  pending_ = std::move(pending);
+  loss_ = loss[0];
+}
+
+template class TabularLearner<QLearningRule>;
+template class TabularLearner<SarsaRule>;
+
+void GreedyTabularPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+  actions.resize(results.index.size());
+  values_.resize(actions.size());
+  std::size_t entry = 0;
+  while (entry < actions.size()) {
+    for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++entry) {
+      const ActionMask allowed =
+          mask_illegal_ ? static_cast<ActionMask>(results.legal[entry] & kAllActions) : kAllActions;
+      const float* row = table_.values.data() + table_.Row(agent, results.index[entry]);
+      const Best best = BestOf(row, allowed);
+      actions[entry] = best.action;
+      values_[entry] = best.value;
+    }
+  }
+}
+
+std::unique_ptr<Policy> MakeTabularPolicy(const Checkpoint& checkpoint,
+                                          const EnvironmentSpec& spec) {
+  const EnvironmentSpec& own = checkpoint.spec;
+  const auto compare = [&](const std::string& what, auto got, auto expected) {
+    if (got == expected) return;
+    throw InputError("policy: " + checkpoint.algorithm + " of scenario " + own.scenario_name +
+                     " does not fit scenario " + spec.scenario_name + ": " + what + ": it knows " +
+                     std::to_string(got) + ", the farm has " + std::to_string(expected));
+  };
+  compare("width", own.width, spec.width);
+  compare("height", own.height, spec.height);
+  compare("agents", own.agents, spec.agents);
+  compare("tabular states", own.state_count, spec.state_count);
+  QTable table(spec, 0.0F);
+  checkpoint.GetArray("table", table.values.size(), table.values);
+  return std::make_unique<GreedyTabularPolicy>(std::move(table),
+                                               checkpoint.Section("mask_illegal") == "1");
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,483 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/maddpg/maddpg.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "aquafarm/agents/learning/replay.h"
+#include "aquafarm/base/check.h"
+#include "maddpg/maddpg_networks.h"
+#include "maddpg/maddpg_policy.h"
+#include "networks/deep_policy.h"
+#include "networks/flat_adam.h"
+#include "networks/replay_sampler.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr float kErrorShare = 0.01F;  // of a new mean square error in the moving average
+constexpr std::uint32_t kActorStream = 0;
+constexpr std::uint32_t kBatchStream = 1;
+constexpr std::uint32_t kCriticStream = 2;
+constexpr std::uint32_t kActingStream = 3;
+
+float Sum(const std::vector<float>& numbers) {
+  return std::accumulate(numbers.begin(), numbers.end(), 0.0F);
+}
+
+float Gumbel(RandomStream& chance) {
+  // Away from 0 and 1, whose logarithms are no numbers.
+  const float unit = 0.999998F * chance.Unit() + 1e-6F;
+  return -std::log(-std::log(unit));
+}
+
+void MarkOne(std::uint8_t action, float mark, float* out) {
+  std::fill_n(out, kActionCount, 0.0F);
+  out[action] = mark;
+}
+
+/// What the actors saw up to one moment of each of B farms: T steps, the last of them that moment.
+struct Window {
+  std::vector<float> observations;  // [T, B, S, F]
+  std::vector<float> keeps;         // [T, B, S]
+  std::vector<float> carry;         // [B, S, carry_size] before the first step
+  std::vector<float> forbidden;     // [B, S, kActionCount] by MarkForbidden, at the last
+  std::vector<float> present;       // [B, S] 1: in play at the last
+};
+
+class MaddpgLearner final : public Learner {
+ public:
+  MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed, const MaddpgOptions& options,
+                std::string resolved);
+
+  std::uint8_t encodings() const override { return kFeaturesBit; }
+  std::string options() const override { return resolved_; }
+  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  LearnerStatus status() const override {
+    return {loss_, static_cast<float>(explorer_.level()),
+            static_cast<float>(options_.actor_rate.At(progress_))};
+  }
+  std::unique_ptr<Policy> GreedyPolicy() const override {
+    return MakeActorsPolicy(spec_, options_, actor_.parameters().ToVector());
+  }
+  void SavePolicy(Checkpoint& checkpoint) const override {
+    checkpoint.SetArray("weights", actor_.parameters().ToVector());
+  }
+  void Save(Checkpoint& checkpoint) const override;
+  void Load(const Checkpoint& checkpoint) override;
+
+ private:
+  std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
+  std::size_t agents() const { return static_cast<std::size_t>(spec_.agents); }
+  std::size_t features() const { return static_cast<std::size_t>(spec_.feature_count); }
+  std::size_t window() const { return static_cast<std::size_t>(options_.window); }
+  std::size_t carry_size() const { return static_cast<std::size_t>(actors_.carry_size()); }
+  torch::Tensor ToDevice(std::vector<float>& numbers, std::vector<std::int64_t> shape) const {
+    return torch::from_blob(numbers.data(), shape, torch::kFloat).to(device_);
+  }
+  Window MakeWindow() const;
+  void Choose(const Results& results, std::vector<std::uint8_t>& actions);
+  void Update();
+  Moment DrawMoment(std::size_t i);
+  void Draw();
+  void Reprioritise(const torch::Tensor& errors);
+  void Fill(std::size_t i, std::size_t age, std::size_t first, Window& to);
+  torch::Tensor Observations(Window& window) const;
+  torch::Tensor Logits(ActorTeam& actors, Window& window);
+  torch::Tensor GumbelNoise();
+  torch::Tensor UpdateCritic(const torch::Tensor& observations);
+  void UpdateActors(const torch::Tensor& observations, std::uint64_t position);
+  void Check(bool is_finite, const char* what, std::uint64_t position) const;
+  static void Follow(FlatParameters& target, const FlatParameters& online, double rate);
+
+  const EnvironmentSpec spec_;
+  const std::uint64_t seed_;
+  const MaddpgOptions options_;
+  const std::string resolved_;
+  const torch::Device device_;
+  ActorTeam actors_;
+  ActorTeam target_actors_;
+  JointCritic critic_;
+  JointCritic target_critic_;
+  FlatAdam actor_;
+  FlatAdam judge_;
+  FlatParameters actor_target_;
+  FlatParameters judge_target_;
+  Explorer explorer_;
+  RandomStream chance_;  // of batches and their noise
+  RandomStream acting_;  // of what is tried
+  std::vector<float> carry_;
+  Replay<float> replay_;
+  MomentSampler<float> sampler_;
+  double progress_{};
+  double due_{};
+  std::uint64_t steps_{};
+  std::uint64_t updates_{};
+  float loss_;
+
+  // The minibatch of B moments.
+  Window from_;
+  Window to_;
+  std::vector<Moment> drawn_;         // [B]
+  std::vector<float> taken_;          // [B, S, kActionCount] one-hot; 0 for an agent that is done
+  std::vector<float> judged_;         // the same, but action 0 for an agent that is done
+  std::vector<float> rewards_;        // [B, S]
+  std::vector<float> discounts_;      // [B, S]
+  std::vector<float> weights_;        // [B, S] 0: an agent that was done before
+  std::vector<float> noise_;          // [B, S, kActionCount]
+  std::vector<float> agent_rewards_;  // scratch, [S]
+};
+
+DeepOptions SamplingOf(const MaddpgOptions& options) {
+  DeepOptions sampling;
+  sampling.priority = options.priority;
+  sampling.importance = options.importance;
+  sampling.batch = options.batch;
+  return sampling;
+}
+
+MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                             const MaddpgOptions& options, std::string resolved)
+    : spec_(spec),
+      seed_(seed),
+      options_(options),
+      resolved_(std::move(resolved)),
+      device_(FindDevice(options.device)),
+      actors_(spec, options),
+      target_actors_(spec, options),
+      critic_(spec, options.hidden),
+      target_critic_(spec, options.hidden),
+      actor_((DrawWeights(actors_, seed, kActorStream), actors_), device_),
+      judge_((DrawWeights(critic_, seed, kCriticStream), critic_), device_),
+      actor_target_(target_actors_, device_),
+      judge_target_(target_critic_, device_),
+      explorer_(options.exploration, seed, EntryCount(spec)),
+      chance_({seed, 0, Purpose::kLearner, kBatchStream}),
+      acting_({seed, 0, Purpose::kLearner, kActingStream}),
+      carry_(EntryCount(spec) * carry_size()),
+      replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
+               carry_size()}),
+      sampler_(replay_, SamplingOf(options), static_cast<std::size_t>(options.n_step), agents()),
+      loss_(std::nanf("")),
+      from_(MakeWindow()),
+      to_(MakeWindow()),
+      drawn_(batch()),
+      taken_(batch() * agents() * kActionCount),
+      judged_(batch() * agents() * kActionCount),
+      rewards_(batch() * agents()),
+      discounts_(batch() * agents()),
+      weights_(batch() * agents()),
+      noise_(batch() * agents() * kActionCount),
+      agent_rewards_(agents()) {
+  Follow(actor_target_, actor_.parameters(), 1.0);
+  Follow(judge_target_, judge_.parameters(), 1.0);
+}
+
+Window MaddpgLearner::MakeWindow() const {
+  Window made;
+  const std::size_t rows = batch() * agents();
+  made.observations.resize(window() * rows * features());
+  made.keeps.resize(window() * rows);
+  made.carry.resize(rows * carry_size());
+  made.forbidden.resize(rows * kActionCount);
+  made.present.resize(rows);
+  return made;
+}
+
+void MaddpgLearner::Step(const Results& results, double progress,
+                         std::vector<std::uint8_t>& actions) {
+  progress_ = progress;
+  ClearStarted(results, agents() * carry_size(), carry_);
+  replay_.Add(results, results.features.data(), carry_.data());
+  sampler_.Remember();
+  const std::uint64_t steps = FarmSteps(results);
+  steps_ += steps;
+  if (steps_ > options_.start) due_ += static_cast<double>(steps) / options_.steps_per_update;
+  for (; due_ >= 1.0; due_ -= 1.0) Update();
+  Choose(results, actions);
+  replay_.SetActions(actions);
+}
+
+// The best of logits with Gumbel noise is a draw from their softmax.
+void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& actions) {
+  const torch::NoGradGuard no_grad;
+  explorer_.SetProgress(progress_);
+  actions.resize(results.legal.size());
+  const torch::Tensor logits = StepActors(actors_, results, spec_, carry_, device_);
+  float* row = logits.data_ptr<float>();
+  const float* seen = results.features.data();
+  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
+    for (std::size_t a = 0; a < kActionCount; ++a) row[a] += Gumbel(acting_);
+    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
+    seen += spec_.feature_count;
+    actions[i] = explorer_.Choose(row, allowed, BestOf(row, allowed), i);
+  }
+}
+
+// A moment with a whole window before it, or its episode's start. The oldest moments of the replay
+// may have neither: the first one of the same farm that has stands for them.
+Moment MaddpgLearner::DrawMoment(std::size_t i) {
+  const Moment drawn = sampler_.Draw(chance_, i);
+  for (std::size_t back = 0; back <= drawn.age; ++back) {
+    if (back + 1 == window()) return drawn;
+    if (replay_.started(replay_.Row(drawn.age - back, drawn.entry))) return drawn;
+  }
+  const auto steps = static_cast<std::size_t>(options_.n_step);
+  for (std::size_t age = window() - 1; age + steps < replay_.size(); ++age) {
+    if (replay_.BeginsForAny(age, drawn.entry, steps)) return {age, drawn.entry};
+  }
+  return drawn;
+}
+
+void MaddpgLearner::Draw() {
+  const auto scale = static_cast<float>(options_.reward_scale);
+  for (std::size_t i = 0; i < batch(); ++i) {
+    const Moment moment = DrawMoment(i);
+    const std::size_t first = moment.entry;
+    drawn_[i] = moment;
+    const JointTransition all =
+        replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
+                        static_cast<float>(options_.discount), agent_rewards_.data());
+    Fill(i, moment.age, first, from_);
+    Fill(i, replay_.Age(all.to), first, to_);
+    const std::size_t row = replay_.Row(moment.age, first);
+    bool all_done = true;
+    for (std::size_t agent = 0; agent < agents(); ++agent) {
+      const std::size_t k = i * agents() + agent;
+      const bool present = from_.present[k] > 0.0F;
+      const std::uint8_t action = present ? replay_.action(row + agent) : std::uint8_t{0};
+      MarkOne(action, 1.0F, judged_.data() + k * kActionCount);
+      MarkOne(action, from_.present[k], taken_.data() + k * kActionCount);
+      all_done = all_done && IsTerminated(replay_.reason(all.to + agent));
+    }
+    for (std::size_t agent = 0; agent < agents(); ++agent) {
+      const std::size_t k = i * agents() + agent;
+      // A shared reward comes in as long as anybody is at work.
+      const bool is_done =
+          spec_.team_reward ? all_done : IsTerminated(replay_.reason(all.to + agent));
+      rewards_[k] = agent_rewards_[agent] * scale;
+      discounts_[k] = is_done ? 0.0F : all.discount;
+      // So the values of agents that are done, on which others' targets rest, are learnt too.
+      weights_[k] = spec_.team_reward ? 1.0F : from_.present[k];
+    }
+  }
+  const std::vector<float>& importance = sampler_.Weigh(progress_);
+  for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] *= importance[k / agents()];
+}
+
+// A moment is as surprising as those who learn from it found it in the mean. @param errors [B, S]
+void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
+  const torch::Tensor learnt = ToDevice(weights_, {options_.batch, spec_.agents}) > 0.0F;
+  const torch::Tensor means =
+      ((errors * learnt).sum(1) / learnt.sum(1).clamp_min(1)).cpu().contiguous();
+  const float* error = means.data_ptr<float>();
+  for (std::size_t i = 0; i < batch(); ++i) {
+    sampler_.SetError(replay_.Row(drawn_[i].age, drawn_[i].entry), error[i]);
+  }
+}
+
+// Near an episode's start the window is filled up with its first moment, after which the memory is
+// emptied.
+void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Window& to) {
+  std::size_t back = 0;
+  while (back + 1 < window() && back < age && !replay_.started(replay_.Row(age - back, first))) {
+    ++back;
+  }
+  const std::size_t rows = batch() * agents();
+  for (std::size_t t = 0; t < window(); ++t) {
+    const std::size_t ago = std::min(window() - 1 - t, back);
+    const std::size_t row = replay_.Row(age - ago, first);
+    const bool keeps = window() - 1 - t <= back && !replay_.started(row);
+    std::copy_n(replay_.observation(row), agents() * features(),
+                to.observations.data() + (t * rows + i * agents()) * features());
+    std::fill_n(to.keeps.data() + t * rows + i * agents(), agents(), keeps ? 1.0F : 0.0F);
+  }
+  std::copy_n(replay_.carry(replay_.Row(age - back, first)), agents() * carry_size(),
+              to.carry.data() + i * agents() * carry_size());
+  const std::size_t row = replay_.Row(age, first);
+  for (std::size_t agent = 0; agent < agents(); ++agent) {
+    const std::size_t k = i * agents() + agent;
+    to.present[k] = IsTerminated(replay_.reason(row + agent)) ? 0.0F : 1.0F;
+    MarkForbidden(Allowed(replay_.legal(row + agent), replay_.observation(row + agent), options_),
+                  to.forbidden.data() + k * kActionCount);
+  }
+}
+
+torch::Tensor MaddpgLearner::Observations(Window& window_of) const {
+  return ToDevice(window_of.observations,
+                  {options_.window, options_.batch, spec_.agents, spec_.feature_count});
+}
+
+torch::Tensor MaddpgLearner::Logits(ActorTeam& actors, Window& window_of) {
+  torch::Tensor carry;
+  if (carry_size() > 0) {
+    carry = ToDevice(window_of.carry, {options_.batch, spec_.agents, actors.carry_size()});
+  }
+  return actors.Forward(Observations(window_of),
+                        ToDevice(window_of.keeps, {options_.window, options_.batch, spec_.agents}),
+                        carry);
+}
+
+torch::Tensor MaddpgLearner::GumbelNoise() {
+  for (float& number : noise_) number = Gumbel(chance_);
+  return ToDevice(noise_, {options_.batch, spec_.agents, kActionCount}).clone();
+}
+
+void MaddpgLearner::Update() {
+  if (replay_.size() < window() + static_cast<std::size_t>(options_.n_step) + 2 ||
+      !sampler_.IsReady()) {
+    return;
+  }
+  const std::uint64_t position = chance_.position();
+  Draw();
+  const torch::Tensor observations = Observations(from_)[options_.window - 1];
+  const torch::Tensor loss = UpdateCritic(observations);
+  Check(std::isfinite(loss.item<float>()), "loss of the critic", position);
+  Check(judge_.Step(loss, options_.critic_rate.At(progress_), options_.gradient_limit),
+        "gradient of the critic's loss", position);
+  UpdateActors(observations, position);
+  Follow(actor_target_, actor_.parameters(), options_.target_rate);
+  Follow(judge_target_, judge_.parameters(), options_.target_rate);
+  ++updates_;
+}
+
+torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
+  const std::vector<std::int64_t> each{options_.batch, spec_.agents};
+  const std::vector<std::int64_t> joint{options_.batch, spec_.agents, kActionCount};
+  torch::Tensor targets;
+  {
+    const torch::NoGradGuard no_grad;
+    const torch::Tensor forbidden = ToDevice(to_.forbidden, joint);
+    const torch::Tensor logits = Logits(target_actors_, to_) + forbidden;
+    const torch::Tensor present = ToDevice(to_.present, each);
+    const torch::Tensor best = logits.argmax(2) * present.to(torch::kLong);  // 0 for those done
+    const torch::Tensor chosen = torch::one_hot(best, kActionCount).to(torch::kFloat);
+    const torch::Tensor values = target_critic_.Forward(Observations(to_)[options_.window - 1],
+                                                        chosen * present.unsqueeze(2));
+    torch::Tensor next = (values * chosen).sum(2);
+    // Of an agent that is done, action 0 alone is ever fitted: it stands for none.
+    if (options_.best_response) {
+      next = torch::where(present > 0.0F, (values + forbidden).amax(2), next);
+    }
+    targets = ToDevice(rewards_, each) + ToDevice(discounts_, each) * next;
+  }
+  const torch::Tensor taken = ToDevice(taken_, joint);
+  const torch::Tensor predicted =
+      (critic_.Forward(observations, taken) * ToDevice(judged_, joint)).sum(2);
+  const torch::Tensor weights = ToDevice(weights_, each) / std::max(1.0F, Sum(weights_));
+  const double scale = options_.reward_scale * options_.reward_scale;
+  const auto error = static_cast<float>(
+      ((predicted.detach() - targets).square() * weights).sum().item<double>() / scale);
+  loss_ = std::isnan(loss_) ? error : loss_ + kErrorShare * (error - loss_);
+  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
+  return (torch::smooth_l1_loss(predicted, targets, at::Reduction::None) * weights).sum();
+}
+
+// The critic is linear in an agent's own action, so its slope there is its value of each action.
+void MaddpgLearner::UpdateActors(const torch::Tensor& observations, std::uint64_t position) {
+  const std::vector<std::int64_t> joint{options_.batch, spec_.agents, kActionCount};
+  torch::Tensor slope;
+  {
+    const torch::NoGradGuard no_grad;
+    slope = critic_.Forward(observations, ToDevice(taken_, joint));
+  }
+  const torch::Tensor logits = Logits(actors_, from_);
+  const torch::Tensor allowed = logits + ToDevice(from_.forbidden, joint);
+  const torch::Tensor soft = ((allowed + GumbelNoise()) / options_.temperature).softmax(2);
+  const torch::Tensor hard = torch::one_hot(soft.argmax(2), kActionCount).to(torch::kFloat);
+  const torch::Tensor action = hard + soft - soft.detach();
+  const torch::Tensor weights =
+      ToDevice(from_.present, {options_.batch, spec_.agents}) / std::max(1.0F, Sum(from_.present));
+  const torch::Tensor loss =
+      -((action * slope).sum(2) * weights).sum() + options_.logit_penalty * logits.square().mean();
+  Check(std::isfinite(loss.item<float>()), "loss of the actors", position);
+  Check(actor_.Step(loss, options_.actor_rate.At(progress_), options_.gradient_limit),
+        "gradient of the actors' loss", position);
+}
+
+void MaddpgLearner::Check(bool is_finite, const char* what, std::uint64_t position) const {
+  if (is_finite) return;
+  throw LearnerFailed(std::string(what) + ": is not finite at update " +
+                      std::to_string(updates_ + 1) + ", after " + std::to_string(steps_) +
+                      " farm steps, on the batch drawn from seed " + std::to_string(seed_) +
+                      " at position " + std::to_string(position) +
+                      "; expected a number: try a smaller actor_rate, critic_rate or reward_scale");
+}
+
+void MaddpgLearner::Follow(FlatParameters& target, const FlatParameters& online, double rate) {
+  const torch::NoGradGuard no_grad;
+  target.values().lerp_(online.values(), rate);
+}
+
+void MaddpgLearner::Save(Checkpoint& checkpoint) const {
+  actor_.Save(checkpoint);
+  judge_.Save(checkpoint, "critic.");
+  checkpoint.SetArray("target.actors", actor_target_.ToVector());
+  checkpoint.SetArray("target.critic", judge_target_.ToVector());
+  replay_.Save(checkpoint);
+  sampler_.Save(checkpoint);
+  checkpoint.SetArray("carry", carry_);
+  explorer_.Save(checkpoint);
+  checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position(), acting_.position(),
+                                                           steps_, updates_});
+  checkpoint.SetArray("numbers", std::vector<double>{due_, static_cast<double>(loss_)});
+}
+
+void MaddpgLearner::Load(const Checkpoint& checkpoint) {
+  std::vector<float> actors;
+  std::vector<float> critic;
+  std::vector<float> carry;
+  std::vector<std::uint64_t> chance;
+  std::vector<double> numbers;
+  checkpoint.GetArray("target.actors", static_cast<std::size_t>(actor_target_.size()), actors);
+  checkpoint.GetArray("target.critic", static_cast<std::size_t>(judge_target_.size()), critic);
+  checkpoint.GetArray("carry", carry_.size(), carry);
+  checkpoint.GetArray("chance", 4, chance);
+  checkpoint.GetArray("numbers", 2, numbers);
+  explorer_.Load(checkpoint);
+  actor_.Load(checkpoint);
+  judge_.Load(checkpoint, "critic.");
+  replay_.Load(checkpoint);
+  sampler_.Load(checkpoint);
+  actor_target_.FromVector(actors);
+  judge_target_.FromVector(critic);
+  carry_ = std::move(carry);
+  chance_.Seek(chance[0]);
+  acting_.Seek(chance[1]);
+  steps_ = chance[2];
+  updates_ = chance[3];
+  due_ = numbers[0];
+  loss_ = static_cast<float>(numbers[1]);
+}
+
+}  // namespace
+
+std::uint8_t MaddpgEncodings(const std::string& options) {
+  std::string resolved;
+  MaddpgOptions::Parse(options, resolved);
+  return kFeaturesBit;
+}
+
+std::unique_ptr<Learner> MakeMaddpg(const EnvironmentSpec& spec, std::uint64_t seed,
+                                    const std::string& text) {
+  std::string resolved;
+  const MaddpgOptions options = MaddpgOptions::Parse(text, resolved);
+  PrepareTorch(options.threads);
+  return std::make_unique<MaddpgLearner>(spec, seed, options, resolved);
+}
+
+std::unique_ptr<Policy> MakeMaddpgPolicy(const Checkpoint& checkpoint,
+                                         const EnvironmentSpec& spec) {
+  std::string resolved;
+  MaddpgOptions options = MaddpgOptions::Parse(checkpoint.options, resolved);
+  options.device = PlayingDevice(options.device);
+  PrepareTorch(options.threads);
+  CheckFits(checkpoint, spec, NetworkKind::kMlp);
+  std::vector<float> weights;
+  checkpoint.GetArray("weights", checkpoint.Section("weights").size() / sizeof(float), weights);
+  return MakeActorsPolicy(spec, options, weights);
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/networks/deep_options.h"
+
+#include <array>
+
+#include "base/option_words.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr std::array<std::string_view, kNetworkKindCount> kNetworks{"mlp", "cnn"};
+constexpr std::array<std::string_view, kLossKindCount> kLosses{"huber", "mse"};
+
+DeepOptions Tuned(bool recurrent) {
+  DeepOptions options;
+  if (!recurrent) return options;
+  options.hidden = 128;
+  options.batch = 32;
+  options.target_period = 100;
+  return options;
+}
+
+// §3.4.3 and Algorithm 2 print no more than this; numbers they leave open are the tuned ones.
+DeepOptions Paper(bool recurrent) {
+  DeepOptions options = Tuned(recurrent);
+  options.loss = LossKind::kMse;
+  options.gradient_limit = 0.0;
+  options.double_q = false;
+  options.n_step = 1;
+  options.priority = 0.0;
+  options.reward_scale = 1.0;
+  options.mask_illegal = false;
+  return options;
+}
+
+// Algorithm 2 as printed replays single tuples, each with its own stored (h, c).
+enum class Replayed : std::uint8_t { kSequences, kPaperTuple };
+constexpr std::array<std::string_view, 2> kReplayed{"sequences", "paper_tuple"};
+
+void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
+  const Replayed replayed = ReadWord(
+      reader, "replayed", is_paper ? Replayed::kPaperTuple : Replayed::kSequences, kReplayed);
+  const bool is_tuple = replayed == Replayed::kPaperTuple;
+  if (is_tuple) {
+    options.sequence = 1;
+    options.burn_in = 0;
+  }
+  ReadWhole(reader, "sequence", 1, 1000, options.sequence);
+  ReadWhole(reader, "burn_in", 0, 1000, options.burn_in);
+  if (is_tuple && (options.sequence != 1 || options.burn_in != 0)) {
+    throw InputError("replayed: got paper_tuple with sequence=" + std::to_string(options.sequence) +
+                     " burn_in=" + std::to_string(options.burn_in) +
+                     ", expected 1 and 0, or replayed=sequences");
+  }
+  // A return ends where its sequence does.
+  if (options.n_step > options.sequence) {
+    throw InputError("n_step: got " + std::to_string(options.n_step) +
+                     ", expected at most sequence, which is " + std::to_string(options.sequence));
+  }
+  // Beyond it, steps near an episode's beginning would never be learnt from.
+  if (options.burn_in > 0 && options.burn_in >= options.sequence) {
+    throw InputError("burn_in: got " + std::to_string(options.burn_in) +
+                     ", expected less than sequence, which is " + std::to_string(options.sequence));
+  }
+}
+
+}  // namespace
+
+std::string_view ToString(NetworkKind value) { return kNetworks[static_cast<std::size_t>(value)]; }
+std::string_view ToString(LossKind value) { return kLosses[static_cast<std::size_t>(value)]; }
+
+DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::string& resolved) {
+  OptionReader reader(text);
+  constexpr std::array<std::string_view, 2> kPresets{"tuned", "paper"};
+  enum class Preset : std::uint8_t { kTuned, kPaper };
+  const Preset preset = ReadWord(reader, "preset", Preset::kTuned, kPresets);
+  DeepOptions options = preset == Preset::kPaper ? Paper(recurrent) : Tuned(recurrent);
+  if (!recurrent) options.network = ReadWord(reader, "network", options.network, kNetworks);
+  ReadWhole(reader, "hidden", 1, 4096, options.hidden);
+  options.learning_rate = reader.GetSchedule("learning_rate", options.learning_rate, 0.0, 1.0);
+  ReadNumber(reader, "discount", 0.0, 1.0, options.discount);
+  options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)));
+  reader.Resolve("exploration", ToString(options.exploration));
+  ReadWhole(reader, "batch", 1, 65536, options.batch);
+  options.steps_per_update =
+      reader.GetSchedule("steps_per_update", options.steps_per_update, 0.01, 1e6);
+  ReadWhole(reader, "start", 0, 1e9, options.start);
+  ReadWhole(reader, "replay", 100, 1e9, options.replay);
+  ReadWhole(reader, "target_period", 1, 1e9, options.target_period);
+  ReadNumber(reader, "target_rate", 0.0, 1.0, options.target_rate);
+  options.loss = ReadWord(reader, "loss", options.loss, kLosses);
+  ReadNumber(reader, "gradient_limit", 0.0, 1e9, options.gradient_limit);
+  options.double_q = reader.Flag("double_q", options.double_q);
+  options.dueling = reader.Flag("dueling", options.dueling);
+  ReadWhole(reader, "n_step", 1, 100, options.n_step);
+  ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
+  ReadNumber(reader, "average_rate", 0.0, 1.0, options.average_rate);
+  ReadNumber(reader, "action_gap", 0.0, 0.99, options.action_gap);
+  ReadNumber(reader, "repetition_penalty", 0.0, 1e6, options.repetition_penalty);
+  options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
+  options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
+  if (options.mask_blocked && options.network == NetworkKind::kCnn) {
+    throw InputError(
+        "mask_blocked: got true, expected false with network=cnn, which sees no features");
+  }
+  if (options.repetition_penalty > 0.0 && options.network == NetworkKind::kCnn) {
+    throw InputError("repetition_penalty: got " + FormatNumber(options.repetition_penalty) +
+                     ", expected 0 with network=cnn, which sees no features");
+  }
+  ReadNumber(reader, "priority", 0.0, 2.0, options.priority);
+  ReadNumber(reader, "importance", 0.0, 1.0, options.importance);
+  if (recurrent) ReadSequences(reader, preset == Preset::kPaper, options);
+  options.device = ReadDevice(reader);
+  ReadWhole(reader, "threads", 1, 256, options.threads);
+  reader.Finish();
+  resolved = reader.Resolved();
+  return options;
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// What the deep learners and their policies do alike around a network: read observations, and
+/// compare a saved network with the farms it shall play on.
+
+#include <torch/torch.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/learning/checkpoint.h"
+#include "aquafarm/agents/networks/deep_options.h"
+
+namespace aquafarm::agents {
+
+/// Where a saved policy plays: what learnt on CUDA need not find it again.
+inline std::string PlayingDevice(const std::string& trained_on) {
+  return trained_on == "cuda" ? "auto" : trained_on;
+}
+
+inline std::size_t EntryCount(const EnvironmentSpec& spec) {
+  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
+}
+
+/// What learners may do now: all actions, or the legal ones.
+inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
+  return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
+}
+
+/// The same, and where mask_blocked is set, of the moves only those into open water; all of them
+/// for a ship that has none around it. @param features of the ship, a row of Results::features
+/// @tparam Options DeepOptions or MaddpgOptions
+template <typename Options>
+ActionMask Allowed(ActionMask legal, const float* features, const Options& options) {
+  const ActionMask allowed = Allowed(legal, options.mask_illegal);
+  if (!options.mask_blocked) return allowed;
+  auto open = allowed;
+  for (int move = 0; move < kMoveCount; ++move) {
+    if (features[kFirstBlockedFeature + move] == 0.0F) continue;
+    open = static_cast<ActionMask>(open & ~(1U << static_cast<unsigned>(move)));
+  }
+  return (open & kMoveMask) != 0 ? open : allowed;
+}
+
+/// Planes have no such features, and DeepOptions refuses mask_blocked with them.
+inline ActionMask Allowed(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
+  return Allowed(legal, options.mask_illegal);
+}
+
+/// Marks what must not be chosen: 0, or a number far below any value, and finite, so that nothing
+/// becomes NaN. @param out [kActionCount]
+inline void MarkForbidden(ActionMask allowed, float* out) {
+  for (std::size_t a = 0; a < kActionCount; ++a) {
+    out[a] = ((allowed >> a) & 1U) != 0 ? 0.0F : -1e9F;
+  }
+}
+
+/// How much less than the best action that is not forbidden the taken one is worth: what advantage
+/// learning takes a share of off its target. @param values [..., kActionCount]
+/// @param forbidden likewise, by MarkForbidden @param actions [..., 1] @returns [...]
+inline torch::Tensor Shortfall(const torch::Tensor& values, const torch::Tensor& forbidden,
+                               const torch::Tensor& actions) {
+  return (values + forbidden).amax(-1) - values.gather(-1, actions).squeeze(-1);
+}
+
+/// Farms that took a step; the others began an episode.
+inline std::uint64_t FarmSteps(const Results& results) {
+  return static_cast<std::uint64_t>(
+      std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
+}
+
+/// How the network sees: float features, or bytes of planes (255 stands for 1).
+template <typename Scalar>
+struct Sight;
+
+template <>
+struct Sight<float> {
+  static std::vector<std::int64_t> Shape(const EnvironmentSpec& spec) {
+    return {spec.feature_count};
+  }
+  static const float* Of(const Results& results) { return results.features.data(); }
+  static torch::Tensor ToInput(const float* rows, std::vector<std::int64_t> shape,
+                               torch::Device device) {
+    return torch::from_blob(const_cast<float*>(rows), shape, torch::kFloat).to(device);
+  }
+};
+
+template <>
+struct Sight<std::uint8_t> {
+  static std::vector<std::int64_t> Shape(const EnvironmentSpec& spec) {
+    return {spec.plane_count, spec.height, spec.width};
+  }
+  static const std::uint8_t* Of(const Results& results) { return results.planes.data(); }
+  static torch::Tensor ToInput(const std::uint8_t* rows, std::vector<std::int64_t> shape,
+                               torch::Device device) {
+    return torch::from_blob(const_cast<std::uint8_t*>(rows), shape, torch::kByte)
+        .to(device)
+        .to(torch::kFloat)
+        .div_(255.0F);
+  }
+};
+
+/// Numbers of one observation.
+inline std::size_t ElementCount(const std::vector<std::int64_t>& shape) {
+  return static_cast<std::size_t>(
+      std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>()));
+}
+
+/// {count, rest…}
+inline std::vector<std::int64_t> WithCount(std::size_t count, std::vector<std::int64_t> rest) {
+  rest.insert(rest.begin(), static_cast<std::int64_t>(count));
+  return rest;
+}
+
+/// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
+void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "networks/flat_adam.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace aquafarm::agents {
+
+FlatAdam::FlatAdam(torch::nn::Module& module, torch::Device device)
+    : parameters_(module, device), adam_({parameters_.values()}, torch::optim::AdamOptions(1e-3)) {
+  State();
+}
+
+bool FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double gradient_limit) {
+  torch::Tensor gradient = parameters_.values().grad();
+  gradient.zero_();
+  loss.backward();
+  const double norm = gradient.norm().item<double>();
+  if (!std::isfinite(norm)) return false;
+  if (gradient_limit > 0.0 && norm > gradient_limit) gradient.mul_(gradient_limit / norm);
+  static_cast<torch::optim::AdamOptions&>(adam_.param_groups()[0].options()).lr(learning_rate);
+  adam_.step();
+  return true;
+}
+
+// Made by the library at its first step; made here before, so that it can be saved and loaded at
+// any time.
+torch::optim::AdamParamState& FlatAdam::State() {
+  auto& states = adam_.state();
+#if TORCH_VERSION_MAJOR >= 2
+  void* const key = parameters_.values().unsafeGetTensorImpl();
+#else
+  const std::string key = c10::guts::to_string(parameters_.values().unsafeGetTensorImpl());
+#endif
+  auto& state = states[key];
+  if (!state) {
+    auto fresh = std::make_unique<torch::optim::AdamParamState>();
+    fresh->step(0);
+    fresh->exp_avg(torch::zeros_like(parameters_.values(), torch::requires_grad(false)));
+    fresh->exp_avg_sq(torch::zeros_like(parameters_.values(), torch::requires_grad(false)));
+    state = std::move(fresh);
+  }
+  return static_cast<torch::optim::AdamParamState&>(*state);
+}
+
+void FlatAdam::Save(Checkpoint& checkpoint, const std::string& prefix) const {
+  auto& state = const_cast<FlatAdam*>(this)->State();
+  const auto to_vector = [](const torch::Tensor& tensor) {
+    const torch::Tensor values = tensor.detach().cpu();
+    return std::vector<float>(values.data_ptr<float>(), values.data_ptr<float>() + values.numel());
+  };
+  checkpoint.SetArray(prefix + "weights", parameters_.ToVector());
+  checkpoint.SetArray(prefix + "adam.mean", to_vector(state.exp_avg()));
+  checkpoint.SetArray(prefix + "adam.square", to_vector(state.exp_avg_sq()));
+  checkpoint.SetArray(prefix + "adam", std::vector<std::int64_t>{state.step()});
+}
+
+void FlatAdam::Load(const Checkpoint& checkpoint, const std::string& prefix) {
+  const auto size = static_cast<std::size_t>(parameters_.size());
+  std::vector<float> weights;
+  std::vector<float> mean;
+  std::vector<float> square;
+  std::vector<std::int64_t> step;
+  checkpoint.GetArray(prefix + "weights", size, weights);
+  checkpoint.GetArray(prefix + "adam.mean", size, mean);
+  checkpoint.GetArray(prefix + "adam.square", size, square);
+  checkpoint.GetArray(prefix + "adam", 1, step);
+  parameters_.FromVector(weights);
+  auto& state = State();
+  const auto shape = static_cast<std::int64_t>(size);
+  state.exp_avg().copy_(torch::from_blob(mean.data(), {shape}));
+  state.exp_avg_sq().copy_(torch::from_blob(square.data(), {shape}));
+  state.step(step[0]);
+}
+
+}  // namespace aquafarm::agents

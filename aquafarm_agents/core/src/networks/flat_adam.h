@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <torch/torch.h>
+
+#include <string>
+
+#include "aquafarm/agents/learning/checkpoint.h"
+#include "networks/networks.h"
+
+namespace aquafarm::agents {
+
+/// Adam (Kingma and Ba 2015) on all parameters of a module, as one tensor; it can be saved and
+/// loaded at any time, also before its first step.
+class FlatAdam {
+ public:
+  /// Moves the module's parameters to the device.
+  FlatAdam(torch::nn::Module& module, torch::Device device);
+
+  /// Takes one step down the gradient of `loss`.
+  /// @param gradient_limit largest norm of the gradient; 0: none
+  /// @returns false when the gradient is not finite; the parameters are then as they were
+  [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double gradient_limit);
+
+  FlatParameters& parameters() { return parameters_; }
+  const FlatParameters& parameters() const { return parameters_; }
+
+  /// Adds sections `<prefix>weights`, `<prefix>adam.mean`, `<prefix>adam.square`, `<prefix>adam`.
+  void Save(Checkpoint& checkpoint, const std::string& prefix = "") const;
+  /// @throws InputError when they are missing or do not fit; it is then as it was
+  void Load(const Checkpoint& checkpoint, const std::string& prefix = "");
+
+ private:
+  torch::optim::AdamParamState& State();
+
+  FlatParameters parameters_;
+  torch::optim::Adam adam_;
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "networks/networks.h"
+
+#include <ATen/Context.h>
+#include <ATen/Parallel.h>
+#include <dlfcn.h>
+
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "aquafarm/agents/dqn/dqn.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/rng.h"
+
+namespace aquafarm::agents {
+namespace {
+
+namespace nn = torch::nn;
+
+class MlpNetwork final : public QNetwork {
+ public:
+  MlpNetwork(std::int64_t features, std::int64_t hidden, bool dueling)
+      : first_(register_module("first", nn::Linear(features, hidden))),
+        second_(register_module("second", nn::Linear(hidden, hidden))),
+        head_(register_module("head", Head(hidden, dueling))) {}
+  torch::Tensor Forward(const torch::Tensor& input) override {
+    return head_(second_(first_(input).relu_()).relu_());
+  }
+
+ private:
+  nn::Linear first_;
+  nn::Linear second_;
+  Head head_;
+};
+
+// Two convolutions of 3 × 3, the second with stride 2, and a hidden layer.
+class CnnNetwork final : public QNetwork {
+ public:
+  CnnNetwork(std::int64_t planes, std::int64_t height, std::int64_t width, std::int64_t hidden,
+             bool dueling)
+      : first_(register_module("first",
+                               nn::Conv2d(nn::Conv2dOptions(planes, kChannels, 3).padding(1)))),
+        second_(register_module(
+            "second", nn::Conv2d(nn::Conv2dOptions(kChannels, kChannels, 3).stride(2).padding(1)))),
+        hidden_(register_module(
+            "hidden", nn::Linear(kChannels * ((height + 1) / 2) * ((width + 1) / 2), hidden))),
+        head_(register_module("head", Head(hidden, dueling))) {}
+  torch::Tensor Forward(const torch::Tensor& input) override {
+    const torch::Tensor seen = second_(first_(input).relu_()).relu_();
+    return head_(hidden_(seen.flatten(1)).relu_());
+  }
+
+ private:
+  static constexpr std::int64_t kChannels = 16;
+  nn::Conv2d first_;
+  nn::Conv2d second_;
+  nn::Linear hidden_;
+  Head head_;
+};
+
+std::string torch_warning;
+std::string network_libraries;
+
+// Whether the BLAS in force is OpenBLAS, MKL or the like; the reference BLAS has no such symbol.
+bool HasFastBlas() {
+  for (const char* symbol :
+       {"openblas_get_config", "mkl_get_version", "bli_info_get_version_str", "ATL_buildinfo"}) {
+    if (dlsym(RTLD_DEFAULT, symbol) != nullptr) return true;
+  }
+  return at::globalContext().hasMKL();
+}
+
+}  // namespace
+
+torch::Device FindDevice(const std::string& name) {
+  if (name == "cpu") return torch::kCPU;
+  const bool has_cuda = torch::cuda::is_available();
+  if (name == "cuda" && !has_cuda) {
+    throw InputError("device: got cuda, but this machine or this libtorch has none; expected cpu");
+  }
+  return has_cuda ? torch::kCUDA : torch::kCPU;
+}
+
+void PrepareTorch(std::int32_t threads) {
+  at::set_num_threads(threads);
+  // Debian's OpenBLAS has threads of its own, whose waiting costs more than they win here.
+  using SetThreads = void (*)(int);
+  const auto set_threads =
+      reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
+  if (set_threads != nullptr) set_threads(threads);
+  static std::once_flag looked;
+  std::call_once(looked, [] {
+    network_libraries = "libtorch " TORCH_VERSION;
+    using Config = const char* (*)();
+    const auto openblas = reinterpret_cast<Config>(dlsym(RTLD_DEFAULT, "openblas_get_config"));
+    if (openblas != nullptr) network_libraries += std::string(", ") + openblas();
+    if (HasFastBlas()) return;
+    network_libraries += ", reference BLAS";
+    torch_warning =
+        "libblas.so.3 is the reference BLAS, some ten times slower than OpenBLAS; install "
+        "libopenblas0-pthread";
+  });
+}
+
+std::string TakeTorchWarning() { return std::exchange(torch_warning, {}); }
+std::string NetworkLibraries() { return network_libraries; }
+
+HeadImpl::HeadImpl(std::int64_t inputs, bool dueling)
+    : advantage_(register_module("advantage", nn::Linear(inputs, kActionCount))) {
+  if (dueling) value_ = register_module("value", nn::Linear(inputs, 1));
+}
+
+torch::Tensor HeadImpl::forward(const torch::Tensor& input) {
+  const torch::Tensor advantage = advantage_(input);
+  if (!value_) return advantage;
+  return value_(input) + advantage - advantage.mean(-1, /*keepdim=*/true);
+}
+
+std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOptions& options,
+                                      std::uint64_t seed) {
+  std::shared_ptr<QNetwork> network;
+  if (options.network == NetworkKind::kCnn) {
+    network = std::make_shared<CnnNetwork>(spec.plane_count, spec.height, spec.width,
+                                           options.hidden, options.dueling);
+  } else {
+    network = std::make_shared<MlpNetwork>(spec.feature_count, options.hidden, options.dueling);
+  }
+  DrawWeights(*network, seed, 0);
+  return network;
+}
+
+RecurrentNetwork::RecurrentNetwork(std::int64_t features, std::int64_t hidden, bool dueling)
+    : input_(register_module("input", nn::Linear(features, hidden))),
+      lstm_(register_module("lstm", nn::LSTM(hidden, hidden))),
+      second_(register_module("second", nn::Linear(2 * hidden, 2 * hidden))),
+      head_(register_module("head", Head(2 * hidden, dueling))) {}
+
+torch::Tensor RecurrentNetwork::Forward(const torch::Tensor& input, State& state) {
+  const torch::Tensor seen = input_(input).relu_();
+  auto [output, after] = lstm_(seen, std::make_tuple(state.first, state.second));
+  std::tie(state.first, state.second) = after;
+  return head_(second_(torch::cat({output, seen}, -1)).relu_());
+}
+
+void RecurrentNetwork::WarmUp(const torch::Tensor& input, State& state) {
+  const auto after =
+      std::get<1>(lstm_(input_(input).relu_(), std::make_tuple(state.first, state.second)));
+  std::tie(state.first, state.second) = after;
+}
+
+FlatParameters::FlatParameters(nn::Module& module, torch::Device device) {
+  const torch::NoGradGuard no_grad;
+  std::vector<torch::Tensor> flat;
+  for (const torch::Tensor& one : module.parameters()) flat.push_back(one.detach().flatten());
+  values_ = torch::cat(flat).to(device);
+  values_.set_requires_grad(true);
+  values_.mutable_grad() = torch::zeros_like(values_);
+  std::int64_t begin = 0;
+  for (torch::Tensor& one : module.parameters()) {
+    const std::int64_t size = one.numel();
+    one.set_data(values_.detach().narrow(0, begin, size).view(one.sizes()));
+    one.mutable_grad() = values_.grad().narrow(0, begin, size).view(one.sizes());
+    begin += size;
+  }
+}
+
+std::vector<float> FlatParameters::ToVector() const {
+  const torch::Tensor values = values_.detach().cpu();
+  return {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()};
+}
+
+void FlatParameters::FromVector(const std::vector<float>& values) {
+  if (static_cast<std::int64_t>(values.size()) != size()) {
+    throw InputError("weights: got " + std::to_string(values.size()) + " numbers, expected " +
+                     std::to_string(size()) + ": another network");
+  }
+  const torch::NoGradGuard no_grad;
+  values_.copy_(torch::from_blob(const_cast<float*>(values.data()), {size()}));
+}
+
+void DrawWeights(nn::Module& module, std::uint64_t seed, std::uint32_t stream) {
+  const torch::NoGradGuard no_grad;
+  RandomStream chance({seed, 0, Purpose::kLearner, stream});
+  std::int64_t fan_in = 1;
+  for (auto& item : module.named_parameters()) {
+    torch::Tensor& weights = item.value();
+    // A bias follows its weights and shares their fan-in; an LSTM's is its hidden size, which its
+    // recurrent weights, of that width, come to as well.
+    if (weights.dim() > 1) fan_in = weights.numel() / weights.size(0);
+    const float limit = 1.0F / std::sqrt(static_cast<float>(fan_in));
+    float* const values = weights.data_ptr<float>();
+    for (std::int64_t i = 0; i < weights.numel(); ++i) values[i] = chance.Uniform(-limit, limit);
+  }
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Action-value networks on libtorch (1.13 to 2.x). Included by few files: torch.h takes long to
+/// compile.
+
+#include <torch/torch.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/networks/deep_options.h"
+
+namespace aquafarm::agents {
+
+/// The device that a name stands for. @throws InputError when it is cuda and there is none
+torch::Device FindDevice(const std::string& name);
+
+/// Sets the library's threads. A slow BLAS is noted for TakeTorchWarning.
+void PrepareTorch(std::int32_t threads);
+
+/// Q(s, ·) from features: hidden - ReLU - hidden - ReLU - head.
+/// The head is one layer, or V + A − mean A when dueling.
+class HeadImpl : public torch::nn::Module {
+ public:
+  HeadImpl(std::int64_t inputs, bool dueling);
+  torch::Tensor forward(const torch::Tensor& input);  ///< [..., inputs] → [..., kActionCount]
+
+ private:
+  torch::nn::Linear advantage_{nullptr};
+  torch::nn::Linear value_{nullptr};
+};
+TORCH_MODULE(Head);
+
+class QNetwork : public torch::nn::Module {
+ public:
+  /// [B, F] or [B, P, H, W], floats → [B, kActionCount]
+  virtual torch::Tensor Forward(const torch::Tensor& input) = 0;
+};
+
+/// A network for farms of `spec`, with PyTorch's own initial weights drawn from (seed, kLearner).
+std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOptions& options,
+                                      std::uint64_t seed);
+
+/// What is seen passes the memory and goes round it as well, which learns several times as fast:
+///
+///   Linear - ReLU --+-- LSTM --+-- Linear - ReLU - head
+///                   +----------+
+class RecurrentNetwork : public torch::nn::Module {
+ public:
+  RecurrentNetwork(std::int64_t features, std::int64_t hidden, bool dueling);
+
+  using State = std::pair<torch::Tensor, torch::Tensor>;  ///< h, c, each [1, B, hidden]
+  /// @param input [T, B, F]
+  /// @param state before the first step; becomes that after the last
+  /// @returns [T, B, kActionCount]
+  torch::Tensor Forward(const torch::Tensor& input, State& state);
+  /// Steps the state alone.
+  void WarmUp(const torch::Tensor& input, State& state);
+
+ private:
+  torch::nn::Linear input_{nullptr};
+  torch::nn::LSTM lstm_{nullptr};
+  torch::nn::Linear second_{nullptr};
+  Head head_{nullptr};
+};
+
+/// All parameters of a module as one tensor (and so their gradients), for optimisers, copies and
+/// files: each of these is then one operation.
+class FlatParameters {
+ public:
+  /// Moves the module's parameters to the device and into one tensor; the module goes on using
+  /// them.
+  FlatParameters(torch::nn::Module& module, torch::Device device);
+
+  /// A leaf with a gradient; [size]
+  torch::Tensor& values() { return values_; }
+  const torch::Tensor& values() const { return values_; }
+  std::int64_t size() const { return values_.numel(); }
+
+  std::vector<float> ToVector() const;
+  /// @throws InputError unless there are size() values
+  void FromVector(const std::vector<float>& values);
+
+ private:
+  torch::Tensor values_;
+};
+
+/// Draws initial weights as PyTorch does, uniform in ±1/√fan_in, but from (seed, kLearner): the
+/// same on every version of the library.
+void DrawWeights(torch::nn::Module& module, std::uint64_t seed, std::uint32_t stream);
+
+}  // namespace aquafarm::agents

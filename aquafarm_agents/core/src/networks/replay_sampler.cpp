@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "networks/replay_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr float kSmallestPriority = 1e-4F;
+
+}  // namespace
+
+template <typename Scalar>
+MomentSampler<Scalar>::MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options,
+                                     std::size_t steps, std::size_t group)
+    : replay_(replay),
+      priority_(options.priority),
+      importance_(options.importance),
+      steps_(steps),
+      group_(group),
+      beginnings_(replay.rows()),
+      weights_(static_cast<std::size_t>(options.batch), 1.0F) {
+  if (priority_ > 0.0) priorities_ = std::make_unique<SumTree>(replay.rows());
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::Remember() {
+  for (std::size_t entry = 0; entry < replay_.entries(); entry += group_) {
+    Mark(replay_.Row(replay_.size() - 1, entry), false);  // whatever was there is gone
+    if (replay_.size() <= steps_) continue;
+    const std::size_t age = replay_.size() - 1 - steps_;
+    Mark(replay_.Row(age, entry), Begins(age, entry));
+  }
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::Mark(std::size_t row, bool begins) {
+  beginning_count_ += (begins ? 1U : 0U) - beginnings_[row];
+  beginnings_[row] = begins ? 1 : 0;
+  if (priorities_) priorities_->Set(row, begins ? largest_priority_ : 0.0F);
+}
+
+template <typename Scalar>
+bool MomentSampler<Scalar>::IsReady() const {
+  return beginning_count_ > 0 && (!priorities_ || priorities_->Total() > 0.0F);
+}
+
+template <typename Scalar>
+Moment MomentSampler<Scalar>::Draw(RandomStream& chance, std::size_t i) {
+  if (priorities_) {
+    const float total = priorities_->Total();
+    const float part =
+        (static_cast<float>(i) + chance.Unit()) / static_cast<float>(weights_.size());
+    const std::size_t row = priorities_->Find(part * total);
+    weights_[i] = priorities_->Get(row) / total;
+    return {replay_.Age(row), row % replay_.entries()};
+  }
+  const auto moments = static_cast<std::uint32_t>(replay_.size() - steps_);
+  for (;;) {  // most moments begin a transition, and IsReady has seen one
+    const std::size_t age = chance.Below(moments);
+    const std::size_t entry =
+        group_ * chance.Below(static_cast<std::uint32_t>(replay_.entries() / group_));
+    if (Begins(age, entry)) return {age, entry};
+  }
+}
+
+template <typename Scalar>
+const std::vector<float>& MomentSampler<Scalar>::Weigh(double progress) {
+  if (!priorities_) return weights_;
+  const double exponent = importance_ + (1.0 - importance_) * progress;
+  float largest = 0.0F;
+  for (float& weight : weights_) {
+    weight = static_cast<float>(std::pow(static_cast<double>(weight), -exponent));
+    largest = std::max(largest, weight);
+  }
+  for (float& weight : weights_) weight /= largest;
+  return weights_;
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::SetError(std::size_t row, float error) {
+  if (!priorities_) return;
+  const float priority = std::pow(error + kSmallestPriority, static_cast<float>(priority_));
+  largest_priority_ = std::max(largest_priority_, priority);
+  priorities_->Set(row, priority);
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::Save(Checkpoint& checkpoint) const {
+  if (!priorities_) return;
+  std::vector<float> priorities;
+  for (std::size_t row = 0; row < replay_.rows(); ++row) {
+    priorities.push_back(priorities_->Get(row));
+  }
+  priorities.push_back(largest_priority_);
+  checkpoint.SetArray("priorities", priorities);
+}
+
+template <typename Scalar>
+void MomentSampler<Scalar>::Load(const Checkpoint& checkpoint) {
+  std::fill(beginnings_.begin(), beginnings_.end(), std::uint8_t{0});
+  beginning_count_ = 0;
+  for (std::size_t age = 0; age < replay_.size(); ++age) {
+    for (std::size_t entry = 0; entry < replay_.entries(); entry += group_) {
+      Mark(replay_.Row(age, entry), Begins(age, entry));
+    }
+  }
+  if (!priorities_) return;
+  std::vector<float> priorities;
+  checkpoint.GetArray("priorities", replay_.rows() + 1, priorities);
+  for (std::size_t row = 0; row < replay_.rows(); ++row) priorities_->Set(row, priorities[row]);
+  largest_priority_ = priorities.back();
+}
+
+template class MomentSampler<float>;
+template class MomentSampler<std::uint8_t>;
+
+}  // namespace aquafarm::agents

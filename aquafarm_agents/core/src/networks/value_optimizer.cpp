@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "networks/value_optimizer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr float kErrorShare = 0.01F;  // of a new mean square error in the moving average
+constexpr std::uint64_t kUpdatesPerLook = 8;
+constexpr const char* kAverage = "average_weights";
+
+}  // namespace
+
+std::vector<float> ActingWeights(const Checkpoint& checkpoint) {
+  const char* const name = checkpoint.Has(kAverage) ? kAverage : "weights";
+  std::vector<float> weights;
+  checkpoint.GetArray(name, checkpoint.Section(name).size() / sizeof(float), weights);
+  return weights;
+}
+
+ValueOptimizer::ValueOptimizer(const DeepOptions& options, torch::nn::Module& online,
+                               torch::nn::Module& target, torch::nn::Module& acting,
+                               torch::Device device)
+    : options_(options), online_(online, device), target_(target, device), loss_(std::nanf("")) {
+  const torch::NoGradGuard no_grad;
+  if (options.average_rate > 0.0) average_.emplace(acting, device);
+  for (FlatParameters* const copy : {&target_, average_ ? &*average_ : &target_}) {
+    copy->values().copy_(this->online().values());
+    copy->values().set_requires_grad(false);
+  }
+}
+
+void ValueOptimizer::Count(std::uint64_t farm_steps, double progress) {
+  steps_ += farm_steps;
+  if (steps_ > options_.start)
+    due_ += static_cast<double>(farm_steps) / options_.steps_per_update.At(progress);
+  learning_rate_ = options_.learning_rate.At(progress);
+}
+
+bool ValueOptimizer::TakeDue() {
+  if (due_ < 1.0) return false;
+  due_ -= 1.0;
+  return true;
+}
+
+void ValueOptimizer::Update(const torch::Tensor& predicted, const torch::Tensor& targets,
+                            const torch::Tensor& weights, const BatchOrigin& origin) {
+  const torch::Tensor each = options_.loss == LossKind::kMse
+                                 ? torch::mse_loss(predicted, targets, at::Reduction::None)
+                                 : torch::smooth_l1_loss(predicted, targets, at::Reduction::None);
+  const torch::Tensor loss = (each * weights).sum();
+  const float value = loss.item<float>();
+  if (!std::isfinite(value)) Fail("loss: got " + std::to_string(value), origin);
+  if (updates_ % kUpdatesPerLook == 0) Measure(predicted, targets, weights);
+  if (!online_.Step(loss, learning_rate_, options_.gradient_limit)) {
+    Fail("gradient: is not finite, of a loss of " + std::to_string(value), origin);
+  }
+  ++updates_;
+  const torch::NoGradGuard no_grad;
+  if (average_) {  // of all weights alike, until those of late count for more
+    const double share = std::max(options_.average_rate, 1.0 / static_cast<double>(updates_));
+    average_->values().lerp_(online().values(), share);
+  }
+  if (options_.target_rate > 0.0) {
+    target_.values().lerp_(online().values(), options_.target_rate);
+  } else if (updates_ % options_.target_period == 0) {
+    target_.values().copy_(online().values());
+  }
+}
+
+void ValueOptimizer::Fail(const std::string& what, const BatchOrigin& origin) const {
+  throw LearnerFailed(what + " at update " + std::to_string(updates_ + 1) + ", after " +
+                      std::to_string(steps_) + " farm steps, on the batch drawn from seed " +
+                      std::to_string(origin.seed) + " at position " +
+                      std::to_string(origin.position) +
+                      "; expected a number: try a smaller learning_rate or reward_scale");
+}
+
+void ValueOptimizer::Measure(const torch::Tensor& predicted, const torch::Tensor& targets,
+                             const torch::Tensor& weights) {
+  const torch::NoGradGuard no_grad;
+  const torch::Tensor mean = ((predicted - targets).square_() * weights).sum() / weights.sum();
+  const double scale = options_.reward_scale * options_.reward_scale;
+  const auto value = static_cast<float>(mean.item<double>() / scale);
+  loss_ = std::isnan(loss_) ? value : loss_ + kErrorShare * (value - loss_);
+}
+
+LearnerStatus ValueOptimizer::status(double exploration) const {
+  return {loss_, static_cast<float>(exploration), static_cast<float>(learning_rate_)};
+}
+
+void ValueOptimizer::Save(Checkpoint& checkpoint) const {
+  online_.Save(checkpoint);
+  checkpoint.SetArray("target_weights", target_.ToVector());
+  if (average_) checkpoint.SetArray(kAverage, average_->ToVector());
+  checkpoint.SetArray(
+      "optimizer.numbers",
+      std::vector<double>{due_, static_cast<double>(steps_), static_cast<double>(updates_),
+                          learning_rate_, static_cast<double>(loss_)});
+}
+
+void ValueOptimizer::Load(const Checkpoint& checkpoint) {
+  std::vector<float> target;
+  std::vector<float> average;
+  std::vector<double> numbers;
+  checkpoint.GetArray("target_weights", static_cast<std::size_t>(target_.size()), target);
+  if (average_) {
+    checkpoint.GetArray(kAverage, static_cast<std::size_t>(target_.size()), average);
+  }
+  checkpoint.GetArray("optimizer.numbers", 5, numbers);
+  online_.Load(checkpoint);
+  target_.FromVector(target);
+  if (average_) average_->FromVector(average);
+  due_ = numbers[0];
+  steps_ = static_cast<std::uint64_t>(numbers[1]);
+  updates_ = static_cast<std::uint64_t>(numbers[2]);
+  learning_rate_ = numbers[3];
+  loss_ = static_cast<float>(numbers[4]);
+}
+
+}  // namespace aquafarm::agents

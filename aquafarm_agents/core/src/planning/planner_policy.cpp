@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/planning/planner_policy.h"
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+
+namespace aquafarm::agents {
+PlannerPolicy::PlannerPolicy(const EnvironmentSpec& spec, Foresight foresight)
+    : scenario_(
+          std::make_shared<const Scenario>(ParseScenario(spec.scenario_yaml, spec.scenario_name))),
+      foresight_(foresight),
+      planner_(*scenario_) {}
+
+void PlannerPolicy::Begin(std::uint64_t, std::int32_t farms) {
+  farms_ = std::make_unique<FarmBatch>(scenario_, farms);
+  courses_.assign(static_cast<std::size_t>(farms), {});
+}
+
+void PlannerPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+  farms_->Load(results.states);
+  actions.resize(courses_.size());
+  for (std::size_t i = 0; i < courses_.size(); ++i) {
+    const Farm& farm = farms_->farm(static_cast<std::int32_t>(i));
+    actions[i] = farm.over() ? 0 : Follow(farm, courses_[i]);
+  }
+}
+
+std::uint8_t PlannerPolicy::Follow(const Farm& farm, Course& course) {
+  const bool is_on_course = foresight_ == Foresight::kClairvoyant &&
+                            course.next < course.plan.actions.size() &&
+                            course.seed == farm.seed() && course.episode == farm.episode() &&
+                            course.step == farm.step() && course.cell == farm.ships()[0].cell;
+  if (!is_on_course) {
+    course.plan = planner_.Solve(farm, foresight_);
+    course.next = 0;
+    course.seed = farm.seed();
+    course.episode = farm.episode();
+  }
+  if (course.plan.actions.empty()) return 0;
+  const std::uint8_t action = course.plan.actions[course.next++];
+  course.step = farm.step() + 1;
+  Cell cell = farm.ships()[0].cell;
+  if (action < kMoveCount) cell = {cell.x + kMoves[action].x, cell.y + kMoves[action].y};
+  course.cell = cell;
+  return action;
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The search of a plan: forward in time, the best return so far per state, pruned by the bound.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "planning/planner_solver.h"
+
+namespace aquafarm::agents {
+
+std::size_t Planner::Solver::With(std::size_t set, std::size_t device, Fate fate) const {
+  const std::uint32_t bits =
+      (sets_[set] & ~(3U << (2 * device))) | (static_cast<std::uint32_t>(fate) << (2 * device));
+  const std::int32_t found = set_of_bits_[bits];
+  return found == kNone ? sets_.size() : static_cast<std::size_t>(found);
+}
+
+std::size_t Planner::Solver::Delivered(std::size_t set) const {
+  for (std::size_t d = 0; d < devices_; ++d) {
+    const Fate fate = FateOf(set, d);
+    if (fate == kForValue || fate == kForNothing) set = With(set, d, kGone);
+  }
+  return set;
+}
+
+void Planner::Solver::Prepare(const Farm& farm) {
+  ListOptions(farm);
+  for (std::size_t d = 0; d < task_->devices.size(); ++d) {
+    const Device& device = farm.devices()[static_cast<std::size_t>(task_->devices[d])];
+    site_[d] = LinearIndex(device.cell, scenario_.width);
+    value_[d] = device.value;
+    health_[d] = device.health;
+  }
+  SolveBound();
+  best_ = kNever;
+  best_layer_ = 0;
+}
+
+// Value lost when what is aboard for its value loses `share` of its health.
+double Planner::Solver::Loss(std::size_t set, float share) const {
+  double loss = 0.0;
+  for (std::size_t d = 0; d < devices_ && share > 0.0F; ++d) {
+    if (FateOf(set, d) == kForValue) {
+      loss += static_cast<double>(share) * static_cast<double>(value_[d]);
+    }
+  }
+  return loss;
+}
+
+void Planner::Solver::Reach(std::int32_t step, std::uint32_t state, double value,
+                            std::uint32_t parent, std::uint8_t action) {
+  if (value + bound_[state] <= best_ + kTolerance) return;
+  Open& open = open_[state];
+  const auto mark = static_cast<std::uint32_t>(step) + 1;
+  std::vector<Node>& layer = layers_.back();
+  if (open.mark != mark) {
+    open = {value, static_cast<std::uint32_t>(layer.size()), mark};
+    layer.push_back({state, parent, action});
+    next_values_.push_back(value);
+  } else if (value > open.reached) {
+    open.reached = value;
+    layer[open.layer_index] = {state, parent, action};
+    next_values_[open.layer_index] = value;
+  }
+}
+
+void Planner::Solver::Complete(std::uint32_t parent, std::uint8_t action, double value) {
+  if (value <= best_ + kTolerance) return;
+  best_ = value;
+  best_layer_ = layers_.size() - 1;
+  best_parent_ = parent;
+  best_action_ = action;
+}
+
+void Planner::Solver::Expand(std::int32_t step, std::size_t index) {
+  const Node node = layers_[layers_.size() - 2][index];
+  const double so_far = values_[index];
+  if (so_far + bound_[node.state] <= best_ + kTolerance) return;
+  const std::size_t set = node.state / cells_;
+  const std::size_t cell = node.state % cells_;
+  const auto parent = static_cast<std::uint32_t>(index);
+  const float exposure = scenario_.damage.exposure_damage;
+  const auto state = [this](std::size_t of_set, std::size_t at) {
+    return static_cast<std::uint32_t>(of_set * cells_ + at);
+  };
+  for (const Option& option : options_[cell]) {
+    const auto to = static_cast<std::size_t>(option.to);
+    const float risk = risk_.data()[to];
+    double reward = static_cast<double>(option.reward) + static_cast<double>(risk);
+    if (option.reward == 0.0F && risk == 0.0F)
+      reward += static_cast<double>(scenario_.rewards.step);
+    const float crash = crash_hurts_ ? option.damage : 0.0F;
+    reward -= Loss(set, crash) + Loss(set, -exposure * risk);
+    if (!IsInTheWay(step, to)) {
+      Reach(step, state(set, to), so_far + reward, parent, option.action);
+    }
+  }
+  if (IsInTheWay(step, cell)) return;
+  const float risk = risk_.data()[cell];
+  // The farm picks up the lowest id of those that wait in a cell.
+  for (std::size_t d = 0; d < devices_; ++d) {
+    if (site_[d] != static_cast<std::int32_t>(cell) || FateOf(set, d) != kWaiting) continue;
+    for (const Fate fate : {kForValue, kForNothing}) {
+      const std::size_t next = With(set, d, fate);
+      if (next == sets_.size()) continue;
+      double reward = static_cast<double>(scenario_.rewards.pickup) + static_cast<double>(risk) -
+                      Loss(next, -exposure * risk);
+      if (fate == kForValue) {
+        reward += static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
+      }
+      Reach(step, state(next, cell), so_far + reward, parent,
+            static_cast<std::uint8_t>(Action::kPickup));
+    }
+    break;
+  }
+  const std::size_t unloaded = Delivered(set);
+  const Cell at{static_cast<std::int32_t>(cell) % scenario_.width,
+                static_cast<std::int32_t>(cell) / scenario_.width};
+  if (unloaded == set || (layout_->bits(at) & kPortBit) == 0) return;
+  const double value =
+      so_far + static_cast<double>(scenario_.rewards.drop_off) + static_cast<double>(risk);
+  constexpr auto kDropOff = static_cast<std::uint8_t>(Action::kDropOff);
+  if (unloaded == all_gone_) {
+    Complete(parent, kDropOff, value);
+  } else {
+    Reach(step, state(unloaded, cell), value, parent, kDropOff);
+  }
+}
+
+// Ports block nobody.
+bool Planner::Solver::IsInTheWay(std::int32_t step, std::size_t cell) const {
+  if (task_->others == nullptr) return false;
+  const auto index = static_cast<std::int32_t>(cell);
+  const Cell at{index % scenario_.width, index / scenario_.width};
+  if ((layout_->bits(at) & kPortBit) != 0) return false;
+  return task_->others->IsTaken(task_->ship, step, index);
+}
+
+Plan Planner::Solver::Solve(const Farm& farm, Foresight foresight, const Task& task) {
+  AQUAFARM_CHECK_LE(task.devices.size(), devices_);
+  if (farm.over()) return {};
+  task_ = &task;
+  Prepare(farm);
+  // A narrow search first: what it finds prunes the exact one.
+  Search(farm, foresight, kBeam);
+  Plan narrow = Trace();
+  if (best_ != kNever) best_ -= kSlack;
+  best_layer_ = 0;
+  Search(farm, foresight, state_count());
+  return best_layer_ == 0 ? narrow : Trace();
+}
+
+void Planner::Solver::Search(const Farm& farm, Foresight foresight, std::size_t widest) {
+  FollowDisasters(farm, foresight);
+  for (std::size_t d = 0; d < task_->devices.size(); ++d) {
+    health_[d] = farm.devices()[static_cast<std::size_t>(task_->devices[d])].health;
+  }
+  std::fill(open_.begin(), open_.end(), Open{});
+  layers_.clear();
+  std::int32_t step = farm.step();
+  ReachStart(farm);
+  std::int32_t last = LastStep(step);
+  if (task_->until > 0) last = std::min(last, task_->until);
+  while (step < last && !layers_.back().empty()) {
+    ++step;
+    AdvanceDisasters(farm, step);
+    Narrow(widest);
+    values_.swap(next_values_);
+    next_values_.clear();
+    layers_.emplace_back();
+    const std::size_t count = layers_[layers_.size() - 2].size();
+    for (std::size_t index = 0; index < count; ++index) Expand(step, index);
+    WearDown();
+  }
+  if (step == last) EndOfTime();
+}
+
+std::int32_t Planner::Solver::LastStep(std::int32_t step) const {
+  std::int32_t longest = 0;
+  for (const Disaster& disaster : disasters_) longest = std::max(longest, disaster.steps_left);
+  return disasters_.empty() ? scenario_.step_limit : std::min(scenario_.step_limit, step + longest);
+}
+
+// What is aboard already may be delivered for its value or for nothing.
+void Planner::Solver::ReachStart(const Farm& farm) {
+  layers_.emplace_back();
+  next_values_.clear();
+  const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
+  const auto cell = static_cast<std::size_t>(LinearIndex(ship.cell, scenario_.width));
+  std::vector<std::pair<std::size_t, double>> starts{{0, 0.0}};
+  for (std::size_t d = 0; d < devices_; ++d) {
+    if (d >= task_->devices.size()) {  // a slot that this task does not need
+      for (auto& start : starts) start.first = With(start.first, d, kGone);
+      continue;
+    }
+    const std::int32_t id = task_->devices[d];
+    const Device& device = farm.devices()[static_cast<std::size_t>(id)];
+    // A ship that is a device has itself aboard.
+    if (device.status == DeviceStatus::kDeployed && id != ship.own_device) continue;
+    const std::size_t count = starts.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [set, held] = starts[i];
+      if (device.status == DeviceStatus::kDelivered) {
+        starts[i] = {With(set, d, kGone), held};
+        continue;
+      }
+      const double worth = static_cast<double>(device.value) * static_cast<double>(device.health);
+      starts.emplace_back(With(set, d, kForNothing), held);
+      starts[i] = {With(set, d, kForValue), held + worth};
+    }
+  }
+  for (const auto& [set, held] : starts) {
+    Reach(farm.step(), static_cast<std::uint32_t>(set * cells_ + cell), held, 0, 0);
+  }
+}
+
+// Keeps the most promising states of the layer just reached.
+void Planner::Solver::Narrow(std::size_t widest) {
+  std::vector<Node>& layer = layers_.back();
+  if (layer.size() <= widest) return;
+  std::vector<std::size_t> order(layer.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto promise = [&](std::size_t i) { return next_values_[i] + bound_[layer[i].state]; };
+  std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(widest), order.end(),
+                   [&](std::size_t i, std::size_t k) {
+                     return promise(i) != promise(k) ? promise(i) > promise(k) : i < k;
+                   });
+  std::vector<Node> kept(widest);
+  std::vector<double> kept_values(widest);
+  for (std::size_t i = 0; i < widest; ++i) {
+    kept[i] = layer[order[i]];
+    kept_values[i] = next_values_[order[i]];
+  }
+  layer = std::move(kept);
+  next_values_ = std::move(kept_values);
+}
+
+// Time is over: what is aboard for its value was promised and not delivered.
+void Planner::Solver::EndOfTime() {
+  for (std::size_t index = 0; index < layers_.back().size(); ++index) {
+    const Node& node = layers_.back()[index];
+    bool broken = false;
+    for (std::size_t d = 0; d < task_->devices.size(); ++d) {
+      broken = broken || FateOf(node.state / cells_, d) == kForValue;
+    }
+    if (!broken) Complete(node.parent, node.action, next_values_[index]);
+  }
+}
+
+Plan Planner::Solver::Trace() const {
+  Plan plan;
+  if (best_layer_ == 0) return plan;  // nothing was completed
+  plan.expected_return = best_;
+  std::uint32_t parent = best_parent_;
+  plan.actions.push_back(best_action_);
+  for (std::size_t layer = best_layer_ - 1; layer > 0; --layer) {
+    const Node& node = layers_[layer][parent];
+    plan.actions.push_back(node.action);
+    parent = node.parent;
+  }
+  std::reverse(plan.actions.begin(), plan.actions.end());
+  return plan;
+}
+
+}  // namespace aquafarm::agents

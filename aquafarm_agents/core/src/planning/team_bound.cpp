@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/planning/team_bound.h"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aquafarm/base/check.h"
+#include "planning/water_distance.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr double kNever = -std::numeric_limits<double>::infinity();
+
+/// The best trip for one device, found forward in time.
+class Trip {
+ public:
+  Trip(const Farm& farm, std::size_t id, const std::vector<std::int32_t>& to_port)
+      : scenario_(farm.scenario()),
+        layout_(farm.layout()),
+        device_(farm.devices()[id]),
+        to_port_(to_port),
+        site_(Index(device_.cell)),
+        health_(device_.health),
+        empty_(to_port.size(), kNever),
+        laden_(to_port.size(), kNever),
+        bare_(to_port.size(), kNever),
+        next_(to_port.size()) {
+    shares_way_ = scenario_.ships.capacity > 1 && !device_.self_propelled;
+    move_ = shares_way_ ? 0.0 : static_cast<double>(scenario_.rewards.step);
+    if (device_.self_propelled) {
+      laden_[site_] = worth();
+      bare_[site_] = 0.0;
+    }
+  }
+
+  /// Goes on by a step. @param risk [H, W] in it
+  void Step(const Grid<float>& risk) {
+    StartTrips();
+    PickUpAndDropOff(risk);
+    const double exposure = static_cast<double>(scenario_.damage.exposure_damage);
+    Spread(risk, 0.0, empty_);
+    Spread(risk, exposure * static_cast<double>(device_.value), laden_);
+    Spread(risk, 0.0, bare_);
+    laden_[site_] = std::max(laden_[site_], picked_up_for_value_);
+    bare_[site_] = std::max(bare_[site_], picked_up_bare_);
+    if (!device_.self_propelled) {
+      health_ = std::max(0.0F, health_ + scenario_.damage.exposure_damage * risk.data()[site_]);
+    }
+  }
+
+  double best() const { return best_; }
+
+  /// Whether no trip can beat the best any more, were there no disaster from now on.
+  bool IsOver() const {
+    // In a risk that is milder than a step, ships pay it instead.
+    const double move = shares_way_ ? 0.0 : std::max(move_, kMildestRisk);
+    double most = kNever;
+    for (std::size_t cell = 0; cell < laden_.size(); ++cell) {
+      const double held = std::max(laden_[cell], bare_[cell]);
+      most = std::max(most, held + drop_off() + move * to_port_[cell]);
+    }
+    if (!device_.self_propelled) {
+      const double pickup = static_cast<double>(scenario_.rewards.pickup);
+      most = std::max(most, pickup + worth() + drop_off() + 2.0 * move * to_port_[site_]);
+    }
+    return most <= best_;
+  }
+
+ private:
+  std::size_t Index(Cell cell) const {
+    return static_cast<std::size_t>(LinearIndex(cell, scenario_.width));
+  }
+  double worth() const { return static_cast<double>(health_) * static_cast<double>(device_.value); }
+  double drop_off() const { return static_cast<double>(scenario_.rewards.drop_off); }
+
+  void StartTrips() {
+    if (device_.self_propelled) return;
+    for (const Cell port : layout_.ports) empty_[Index(port)] = std::max(empty_[Index(port)], 0.0);
+  }
+
+  void PickUpAndDropOff(const Grid<float>& risk) {
+    for (const Cell port : layout_.ports) {
+      const auto here = static_cast<double>(risk(port.y, port.x));
+      const double held = std::max(laden_[Index(port)], bare_[Index(port)]);
+      best_ = std::max(best_, held + drop_off() + Risk(here));
+    }
+    picked_up_for_value_ = picked_up_bare_ = kNever;
+    if (device_.self_propelled || empty_[site_] == kNever) return;
+    const auto here = static_cast<double>(risk.data()[site_]);
+    const double wear =
+        static_cast<double>(scenario_.damage.exposure_damage * device_.value) * here;
+    picked_up_bare_ = empty_[site_] + static_cast<double>(scenario_.rewards.pickup) + Risk(here);
+    picked_up_for_value_ = picked_up_bare_ + worth() + wear;
+    best_ = std::max(best_, picked_up_bare_);  // and never brought home
+  }
+
+  // One move, or one step of staying, from every cell; a cell is worth its best way to it.
+  void Spread(const Grid<float>& risk, double value_per_risk, std::vector<double>& values) {
+    std::fill(next_.begin(), next_.end(), kNever);
+    for (std::int32_t y = 0; y < scenario_.height; ++y) {
+      for (std::int32_t x = 0; x < scenario_.width; ++x) {
+        const double value = values[Index({x, y})];
+        if (value == kNever) continue;
+        Raise({x, y}, value);
+        for (const Cell by : kMoves) {
+          const Cell to{x + by.x, y + by.y};
+          const bool on_map =
+              to.x >= 0 && to.y >= 0 && to.x < scenario_.width && to.y < scenario_.height;
+          if (on_map && (layout_.bits(to) & kBlockedBits) == 0) Raise(to, value);
+        }
+      }
+    }
+    for (std::size_t cell = 0; cell < next_.size(); ++cell) {
+      if (next_[cell] == kNever) continue;
+      const auto here = static_cast<double>(risk.data()[cell]);
+      next_[cell] += here < 0.0 ? Risk(here) + here * value_per_risk : move_;
+    }
+    values.swap(next_);
+  }
+  // What a ship pays for a risk; one that has others aboard as well pays it once for all.
+  double Risk(double here) const { return shares_way_ ? 0.0 : here; }
+  void Raise(Cell cell, double value) {
+    double& known = next_[Index(cell)];
+    known = std::max(known, value);
+  }
+
+  const Scenario& scenario_;
+  const Layout& layout_;
+  const Device device_;
+  const std::vector<std::int32_t>& to_port_;
+  std::size_t site_;
+  float health_;
+  bool shares_way_{};
+  double move_{};
+  double best_{0.0};           // not to fetch it at all
+  std::vector<double> empty_;  // best return so far, by cell: on the way to the device
+  std::vector<double> laden_;  // the same with it, its worth paid in, wear paid as it comes
+  std::vector<double> bare_;   // the same with it, for nothing: wear takes no more than its worth
+  std::vector<double> next_;
+  double picked_up_for_value_{kNever};  // in this step
+  double picked_up_bare_{kNever};
+};
+
+}  // namespace
+
+double TeamBound(const Farm& farm) {
+  const Scenario& scenario = farm.scenario();
+  const RewardSpec& rewards = scenario.rewards;
+  for (const auto& [name, value] : {std::pair{"step", rewards.step},
+                                    {"illegal", rewards.illegal},
+                                    {"collision", rewards.collision}}) {
+    if (value <= 0.0F) continue;
+    throw InputError("bound: rewards." + std::string(name) +
+                     ": got more than 0, expected at most 0");
+  }
+  AQUAFARM_CHECK_EQ(farm.step(), 0);
+  const std::vector<std::int32_t> to_port = WaterDistance(farm.layout(), farm.layout().ports);
+  std::vector<Trip> trips;
+  for (std::size_t id = 0; id < farm.devices().size(); ++id) trips.emplace_back(farm, id, to_port);
+  std::vector<Disaster> disasters = farm.disasters();
+  Grid<float> risk(scenario.height, scenario.width);
+  bool over = false;
+  for (std::int32_t step = 1; step <= scenario.step_limit && !over; ++step) {
+    for (std::size_t id = 0; id < disasters.size(); ++id) {
+      const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
+                          static_cast<std::uint32_t>(id)};
+      MoveDisaster(disasters[id], farm.tracks()[id], key, step, scenario.width, scenario.height);
+    }
+    FillRisk(farm.scenario(), disasters, risk);
+    over = !disasters.empty() &&
+           std::none_of(disasters.begin(), disasters.end(),
+                        [](const Disaster& disaster) { return disaster.active(); });
+    bool goes_on = false;
+    for (Trip& trip : trips) {
+      if (trip.IsOver()) continue;
+      trip.Step(risk);
+      goes_on = true;
+    }
+    over = over || !goes_on;
+  }
+  double bound = 0.0;
+  for (const Trip& trip : trips) bound += trip.best();
+  return bound;
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/planning/team_planner.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "planning/water_distance.h"
+
+namespace aquafarm::agents {
+namespace {
+
+// Steps for which a ship with nothing to do plans to keep out of harm's way.
+constexpr std::int32_t kIdleSteps = 30;
+// What the sum of all work weighs beside the time of the last ship to be done.
+constexpr double kWorkWeight = 1e-3;
+
+// Devices that one ship may be given at most: its even share and two more.
+std::int32_t Slots(const Scenario& scenario) {
+  const std::int32_t devices = scenario.devices.Total();
+  const std::int32_t ships = std::max(1, scenario.ships.count);
+  return std::max(1, std::min(devices, (devices + ships - 1) / ships + 2));
+}
+
+/// How long ships would take for their shares, in quiet water.
+class Work {
+ public:
+  explicit Work(const Farm& farm) : farm_(farm), capacity_(farm.scenario().ships.capacity) {
+    const auto from = [&](const std::vector<Cell>& sources) {
+      return WaterDistance(farm.layout(), sources);
+    };
+    port_ = from(farm.layout().ports);
+    for (const Device& device : farm.devices()) device_.push_back(from({device.cell}));
+  }
+
+  /// A ship's time for devices that still wait: trips from and to their nearest ports, but for the
+  /// first, which begins where the ship is.
+  double Time(std::int32_t ship, const std::vector<std::int32_t>& share) const {
+    const Ship& one = farm_.ships()[static_cast<std::size_t>(ship)];
+    const std::size_t here = Index(one.cell);
+    double time = one.aboard > 0 ? port_[here] + 1.0 : 0.0;
+    double best_start = -static_cast<double>(kUnreachable);
+    for (const std::int32_t id : share) {
+      const auto& distance = device_[static_cast<std::size_t>(id)];
+      const double to_port = ToPort(id);
+      time += (2.0 * to_port + 2.0) / capacity_;
+      if (one.aboard == 0) best_start = std::max(best_start, to_port - distance[here]);
+    }
+    return share.empty() || one.aboard > 0 ? time : time - best_start;
+  }
+  double ToPort(std::int32_t device) const {
+    return port_[Index(farm_.devices()[static_cast<std::size_t>(device)].cell)];
+  }
+
+ private:
+  std::size_t Index(Cell cell) const {
+    return static_cast<std::size_t>(LinearIndex(cell, farm_.scenario().width));
+  }
+
+  const Farm& farm_;
+  double capacity_;
+  std::vector<std::int32_t> port_;                 // to the nearest port
+  std::vector<std::vector<std::int32_t>> device_;  // to each device
+};
+
+using Shares = std::vector<std::vector<std::int32_t>>;
+
+double Cost(const Work& work, const Shares& shares) {
+  double last = 0.0;
+  double sum = 0.0;
+  for (std::size_t ship = 0; ship < shares.size(); ++ship) {
+    const double time = work.Time(static_cast<std::int32_t>(ship), shares[ship]);
+    last = std::max(last, time);
+    sum += time;
+  }
+  return last + kWorkWeight * sum;
+}
+
+/// Moves and swaps devices between ships while that is better.
+class LocalSearch {
+ public:
+  /// @param room devices that each ship may be given
+  LocalSearch(const Work& work, const std::vector<std::size_t>& room, Shares& shares)
+      : work_(work), room_(room), shares_(shares), cost_(Cost(work, shares)) {}
+  void Run() {
+    while (Improve()) {
+    }
+  }
+
+ private:
+  bool Improve() {
+    for (std::size_t a = 0; a < shares_.size(); ++a) {
+      for (std::size_t i = 0; i < shares_[a].size(); ++i) {
+        for (std::size_t b = 0; b < shares_.size(); ++b) {
+          if (b != a && (TryMove(a, i, b) || TrySwaps(a, i, b))) return true;
+        }
+      }
+    }
+    return false;
+  }
+  bool TryMove(std::size_t a, std::size_t i, std::size_t b) {
+    if (shares_[b].size() >= room_[b]) return false;
+    Shares changed = shares_;
+    changed[b].push_back(changed[a][i]);
+    changed[a].erase(changed[a].begin() + static_cast<std::ptrdiff_t>(i));
+    return TakeIfBetter(changed);
+  }
+  bool TrySwaps(std::size_t a, std::size_t i, std::size_t b) {
+    for (std::size_t k = 0; k < shares_[b].size(); ++k) {
+      Shares changed = shares_;
+      std::swap(changed[a][i], changed[b][k]);
+      if (TakeIfBetter(changed)) return true;
+    }
+    return false;
+  }
+  bool TakeIfBetter(Shares& changed) {
+    const double cost = Cost(work_, changed);
+    if (cost >= cost_ - 1e-9) return false;
+    cost_ = cost;
+    shares_ = std::move(changed);
+    return true;
+  }
+
+  const Work& work_;
+  const std::vector<std::size_t>& room_;
+  Shares& shares_;
+  double cost_;
+};
+
+}  // namespace
+
+class TeamPlanner::Impl {
+ public:
+  Impl(const Scenario& scenario, Foresight foresight)
+      : scenario_(scenario), foresight_(foresight), planner_(scenario, Slots(scenario)) {}
+
+  void Act(const Farm& farm, Course& course, std::uint8_t* actions) {
+    if (!IsOnCourse(farm, course)) MakeCourse(farm, course);
+    const auto at = static_cast<std::size_t>(farm.step() - course.start);
+    for (std::size_t id = 0; id < course.actions.size(); ++id) {
+      actions[id] = at < course.actions[id].size() ? course.actions[id][at] : 0;
+    }
+  }
+
+  Shares Assign(const Farm& farm) const {
+    const Work work(farm);
+    const auto slots = static_cast<std::size_t>(Slots(scenario_));
+    Shares shares(static_cast<std::size_t>(scenario_.ships.count));
+    // Ships may have more aboard than they would be given: whoever drove them before gave it.
+    std::vector<std::size_t> room(shares.size());
+    for (std::size_t ship = 0; ship < shares.size(); ++ship) {
+      const auto aboard = static_cast<std::size_t>(farm.ships()[ship].aboard);
+      room[ship] = slots - std::min(slots, aboard);
+    }
+    std::vector<std::int32_t> waiting;
+    for (std::size_t id = 0; id < farm.devices().size(); ++id) {
+      const Device& device = farm.devices()[id];
+      const bool is_fetched = device.status == DeviceStatus::kDeployed && !device.self_propelled;
+      if (is_fetched) waiting.push_back(static_cast<std::int32_t>(id));
+    }
+    // The longest trips first, each to whom it delays the least.
+    std::stable_sort(waiting.begin(), waiting.end(), [&work](std::int32_t a, std::int32_t b) {
+      return work.ToPort(a) > work.ToPort(b);
+    });
+    for (const std::int32_t device : waiting) Give(work, device, room, shares);
+    LocalSearch(work, room, shares).Run();
+    for (std::size_t id = 0; id < farm.devices().size(); ++id) {
+      const Device& device = farm.devices()[id];
+      if (device.carrier == kNone) continue;
+      auto& share = shares[static_cast<std::size_t>(device.carrier)];
+      // The rest of a larger load is landed with it, or planned for afterwards.
+      if (share.size() < slots) share.push_back(static_cast<std::int32_t>(id));
+    }
+    for (std::size_t id = shares.size(); id < farm.ships().size(); ++id) {
+      const Ship& ship = farm.ships()[id];
+      shares.push_back(ship.in_play ? std::vector{ship.own_device} : std::vector<std::int32_t>{});
+    }
+    return shares;
+  }
+
+ private:
+  static void Give(const Work& work, std::int32_t device, const std::vector<std::size_t>& room,
+                   Shares& shares) {
+    std::size_t best = shares.size();
+    double best_cost = 0.0;
+    for (std::size_t ship = 0; ship < shares.size(); ++ship) {
+      if (shares[ship].size() >= room[ship]) continue;
+      shares[ship].push_back(device);
+      const double cost = Cost(work, shares);
+      shares[ship].pop_back();
+      if (best != shares.size() && cost >= best_cost) continue;
+      best = ship;
+      best_cost = cost;
+    }
+    if (best != shares.size()) shares[best].push_back(device);
+  }
+
+  bool IsOnCourse(const Farm& farm, Course& course) const {
+    if (course.actions.empty() || course.seed != farm.seed() || course.episode != farm.episode() ||
+        farm.step() < course.start) {
+      return false;
+    }
+    const auto at = static_cast<std::size_t>(farm.step() - course.start);
+    for (std::size_t id = 0; id < farm.ships().size(); ++id) {
+      const Ship& ship = farm.ships()[id];
+      if (!ship.in_play) continue;
+      if (at >= course.actions[id].size()) return false;
+      if (course.path[id][at] != LinearIndex(ship.cell, scenario_.width)) return false;
+    }
+    return AreAsForeseen(farm, course);
+  }
+
+  // A bulletin, or a turn that the forecast did not know of, changes everything.
+  bool AreAsForeseen(const Farm& farm, Course& course) const {
+    if (farm.disasters().size() != course.disasters.size()) return false;
+    for (; course.foreseen < farm.step(); ++course.foreseen) {
+      for (std::size_t id = 0; id < course.disasters.size(); ++id) {
+        const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
+                            static_cast<std::uint32_t>(id)};
+        MoveDisaster(course.disasters[id], course.tracks[id], key, course.foreseen + 1,
+                     scenario_.width, scenario_.height);
+      }
+    }
+    for (std::size_t id = 0; id < course.disasters.size(); ++id) {
+      const Disaster& real = farm.disasters()[id];
+      const Disaster& foreseen = course.disasters[id];
+      const bool alike = real.x == foreseen.x && real.y == foreseen.y && real.dx == foreseen.dx &&
+                         real.dy == foreseen.dy && real.radius == foreseen.radius &&
+                         real.quadrant == foreseen.quadrant && real.risk == foreseen.risk &&
+                         real.steps_left == foreseen.steps_left;
+      if (!alike) return false;
+    }
+    return true;
+  }
+
+  void MakeCourse(const Farm& farm, Course& course) {
+    const Shares shares = Assign(farm);
+    const std::size_t agents = farm.ships().size();
+    course.seed = farm.seed();
+    course.episode = farm.episode();
+    course.start = farm.step();
+    course.actions.assign(agents, {});
+    course.path.assign(agents, {});
+    course.disasters = farm.disasters();
+    course.foreseen = farm.step();
+    course.tracks = Foresee(farm, foresight_, course.disasters);
+    reserved_.Clear();
+    for (std::size_t id = 0; id < agents; ++id) {
+      const Ship& ship = farm.ships()[id];
+      if (!ship.in_play) continue;
+      reserved_.Add(static_cast<std::int32_t>(id), farm.step(),
+                    {LinearIndex(ship.cell, scenario_.width)});
+    }
+    for (const bool idle : {false, true}) {  // those with nothing to do give way
+      for (std::size_t id = 0; id < agents; ++id) {
+        if (!farm.ships()[id].in_play || shares[id].empty() != idle) continue;
+        PlanOne(farm, static_cast<std::int32_t>(id), shares[id], course);
+      }
+    }
+  }
+
+  void PlanOne(const Farm& farm, std::int32_t id, const std::vector<std::int32_t>& share,
+               Course& course) {
+    Task task;
+    task.ship = id;
+    task.devices = share;
+    task.until = share.empty() ? farm.step() + kIdleSteps : 0;
+    task.others = &reserved_;
+    auto& actions = course.actions[static_cast<std::size_t>(id)];
+    auto& path = course.path[static_cast<std::size_t>(id)];
+    actions = planner_.Solve(farm, foresight_, task).actions;
+    // Hemmed in: any move, and think again.
+    if (actions.empty()) actions = {static_cast<std::uint8_t>(farm.step() % kMoveCount)};
+    Cell cell = farm.ships()[static_cast<std::size_t>(id)].cell;
+    path.push_back(LinearIndex(cell, scenario_.width));
+    for (const std::uint8_t action : actions) {
+      cell = After(farm.layout(), cell, action);
+      path.push_back(LinearIndex(cell, scenario_.width));
+    }
+    reserved_.Add(id, farm.step(), path);
+  }
+
+  Cell After(const Layout& layout, Cell cell, std::uint8_t action) const {
+    if (action >= kMoveCount) return cell;
+    const Cell to{cell.x + kMoves[action].x, cell.y + kMoves[action].y};
+    const bool on_map = to.x >= 0 && to.y >= 0 && to.x < scenario_.width && to.y < scenario_.height;
+    return on_map && (layout.bits(to) & kBlockedBits) == 0 ? to : cell;
+  }
+
+  const Scenario& scenario_;
+  Foresight foresight_;
+  Planner planner_;
+  Reservations reserved_;
+};
+
+TeamPlanner::TeamPlanner(const Scenario& scenario, Foresight foresight)
+    : impl_(std::make_unique<Impl>(scenario, foresight)) {}
+TeamPlanner::~TeamPlanner() = default;
+TeamPlanner::TeamPlanner(TeamPlanner&&) noexcept = default;
+
+void TeamPlanner::Act(const Farm& farm, Course& course, std::uint8_t* actions) {
+  impl_->Act(farm, course, actions);
+}
+
+std::vector<std::vector<std::int32_t>> TeamPlanner::Assign(const Farm& farm) const {
+  return impl_->Assign(farm);
+}
+
+TeamPlannerPolicy::TeamPlannerPolicy(const EnvironmentSpec& spec, Foresight foresight)
+    : scenario_(
+          std::make_shared<const Scenario>(ParseScenario(spec.scenario_yaml, spec.scenario_name))),
+      planner_(*scenario_, foresight) {}
+
+void TeamPlannerPolicy::Begin(std::uint64_t, std::int32_t farms) {
+  farms_ = std::make_unique<FarmBatch>(scenario_, farms);
+  courses_.assign(static_cast<std::size_t>(farms), {});
+}
+
+void TeamPlannerPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+  farms_->Load(results.states);
+  const auto agents = static_cast<std::size_t>(farms_->agents());
+  actions.assign(courses_.size() * agents, 0);
+  for (std::size_t i = 0; i < courses_.size(); ++i) {
+    const Farm& farm = farms_->farm(static_cast<std::int32_t>(i));
+    if (!farm.over()) planner_.Act(farm, courses_[i], actions.data() + i * agents);
+  }
+}
+
+}  // namespace aquafarm::agents

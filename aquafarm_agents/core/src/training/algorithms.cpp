@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/training/algorithms.h"
+
+#include <algorithm>
+
+#include "aquafarm/agents/base/options.h"
+#include "aquafarm/agents/curiosity/curiosity.h"
+#include "aquafarm/agents/dqn/dqn.h"
+#include "aquafarm/agents/learning/independent.h"
+#include "aquafarm/agents/learning/random_policy.h"
+#include "aquafarm/agents/learning/tabular.h"
+#include "aquafarm/agents/maddpg/maddpg.h"
+#include "aquafarm/agents/planning/planner_policy.h"
+#include "aquafarm/agents/planning/team_planner.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "networks/networks.h"
+
+namespace aquafarm::agents {
+namespace {
+
+template <typename T>
+std::unique_ptr<Learner> Make(const EnvironmentSpec& spec, std::uint64_t seed,
+                              const std::string& options) {
+  return std::make_unique<T>(spec, seed, options);
+}
+
+template <Foresight foresight>
+std::unique_ptr<Policy> MakePlannerPolicy(const Checkpoint&, const EnvironmentSpec& spec) {
+  if (spec.agents > 1) return std::make_unique<TeamPlannerPolicy>(spec, foresight);
+  return std::make_unique<PlannerPolicy>(spec, foresight);
+}
+
+std::unique_ptr<Policy> MakeRandomPolicy(const Checkpoint&, const EnvironmentSpec& spec) {
+  return std::make_unique<RandomPolicy>(spec.agents);
+}
+
+template <std::uint8_t bits>
+std::uint8_t WithoutOptions(const std::string& options) {
+  OptionReader(options).Finish();
+  return bits;
+}
+
+std::uint8_t Tabular(const std::string& options) {
+  std::string resolved;
+  TabularOptions::Parse(options, resolved);
+  return kIndexBit;
+}
+
+using Encodings = std::uint8_t (*)(const std::string&);
+using MakeLearner = std::unique_ptr<Learner> (*)(const EnvironmentSpec&, std::uint64_t,
+                                                 const std::string&);
+
+// The exploration that learner options ask for, whatever else they say.
+ExplorationOptions ExplorationOf(const std::string& options) {
+  return ParseExploration(OptionReader(options).Text("exploration", "epsilon_greedy"));
+}
+
+template <Encodings encodings>
+std::uint8_t WithCuriosityToo(const std::string& options) {
+  const std::uint8_t bits = encodings(options);
+  return ExplorationOf(options).is_curious() ? bits | kFeaturesBit : bits;
+}
+
+template <MakeLearner make>
+std::unique_ptr<Learner> MakeExplorer(const EnvironmentSpec& spec, std::uint64_t seed,
+                                      const std::string& options) {
+  const ExplorationOptions exploration = ExplorationOf(options);
+  if (!exploration.is_curious()) return make(spec, seed, options);
+  PrepareTorch(1);  // a deep learner sets its own number of threads
+  return WithCuriosity(make(spec, seed, options), spec, seed, exploration);
+}
+
+template <MakeLearner make>
+std::unique_ptr<Learner> MakeEach(const EnvironmentSpec& spec, std::uint64_t seed,
+                                  const std::string& options) {
+  return MakeIndependent(spec, seed,
+                         [&options](const EnvironmentSpec& one, std::uint64_t own_seed) {
+                           return make(one, own_seed, options);
+                         });
+}
+
+using MakeSavedPolicy = std::unique_ptr<Policy> (*)(const Checkpoint&, const EnvironmentSpec&);
+
+template <MakeSavedPolicy make>
+std::unique_ptr<Policy> MakeEachPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {
+  return MakeIndependentPolicy(checkpoint, spec, make);
+}
+
+// "one rescue ship decides", "4 self-propelled devices decide"
+std::string DescribeDeciders(const EnvironmentSpec& spec) {
+  const Scenario scenario = ParseScenario(spec.scenario_yaml, spec.scenario_name);
+  const auto ships = scenario.ships.count;
+  const auto devices = spec.agents - ships;
+  const auto count = [](std::int32_t n, const std::string& one) {
+    return n == 1 ? "one " + one : std::to_string(n) + " " + one + "s";
+  };
+  std::string text = ships > 0 ? count(ships, "rescue ship") : "";
+  if (devices > 0) text += (text.empty() ? "" : " and ") + count(devices, "self-propelled device");
+  return text + (spec.agents == 1 ? " decides" : " decide");
+}
+
+}  // namespace
+
+const std::vector<Algorithm>& Algorithms() {
+  static const std::vector<Algorithm> algorithms{
+      {"random", "any action at any time; the yardstick (§4)", false, 100000, WithoutOptions<0>,
+       Make<RandomLearner>, MakeRandomPolicy},
+      {"q_learning", "tabular Q-learning (Eq. 12)", true, 4000000, WithCuriosityToo<Tabular>,
+       MakeExplorer<Make<TabularLearner<QLearningRule>>>, MakeTabularPolicy},
+      {"sarsa", "tabular SARSA (Eq. 14)", true, 8000000, WithCuriosityToo<Tabular>,
+       MakeExplorer<Make<TabularLearner<SarsaRule>>>, MakeTabularPolicy},
+      {"dqn", "deep Q-network on features or planes (Eq. 15)", true, 200000,
+       WithCuriosityToo<DqnEncodings>, MakeExplorer<MakeDqn>, MakeDqnPolicy},
+      {"lstm_dqn", "deep Q-network with a memory (Algorithm 2)", true, 150000,
+       WithCuriosityToo<RecurrentDqnEncodings>, MakeExplorer<MakeRecurrentDqn>,
+       MakeRecurrentDqnPolicy},
+      {"independent_dqn", "a DQN for each agent", true, 400000, WithCuriosityToo<DqnEncodings>,
+       MakeEach<MakeExplorer<MakeDqn>>, MakeEachPolicy<MakeDqnPolicy>},
+      {"independent_lstm_dqn", "an LSTM-DQN for each agent", true, 400000,
+       WithCuriosityToo<RecurrentDqnEncodings>, MakeEach<MakeExplorer<MakeRecurrentDqn>>,
+       MakeEachPolicy<MakeRecurrentDqnPolicy>},
+      {"vdn", "value decomposition: one DQN plays all agents, their values add up", true, 400000,
+       WithCuriosityToo<DqnEncodings>, MakeExplorer<MakeVdn>, MakeDqnPolicy},
+      {"maddpg", "an actor for each agent, a critic that sees all of them (§3.3)", true, 800000,
+       WithCuriosityToo<MaddpgEncodings>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
+      {"planner",
+       "plans on the forecast that disasters hold their heading; several agents cooperate", false,
+       0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kHeadingHolds>},
+      {"clairvoyant", "plans with the disasters' true future: for one ship the best there can be",
+       false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kClairvoyant>},
+  };
+  return algorithms;
+}
+
+const Algorithm& FindAlgorithm(const std::string& name) {
+  std::vector<std::string> names;
+  for (const Algorithm& algorithm : Algorithms()) {
+    if (name == algorithm.name) return algorithm;
+    names.emplace_back(algorithm.name);
+  }
+  throw InputError("algorithm: got '" + name + "', expected one of: " + Join(names));
+}
+
+std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
+                           const std::string& options) {
+  if ((algorithm.encodings(options) & kIndexBit) == 0) return algorithm.default_steps;
+  // Measured on a ranch of 17.9 million states (docs/data.md): half as many do not suffice.
+  constexpr std::uint64_t kStepsPerState = 8;
+  constexpr std::uint64_t kMillion = 1'000'000;
+  const std::uint64_t enough = (kStepsPerState * spec.state_count / kMillion + 1) * kMillion;
+  return std::max(algorithm.default_steps, enough);
+}
+
+Choice ChooseAlgorithm(const EnvironmentSpec& spec) {
+  if (spec.agents == 1) {
+    return {"lstm_dqn", DescribeDeciders(spec) + ", so a single-agent learner"};
+  }
+  if (!spec.team_reward) {
+    return {"independent_dqn",
+            DescribeDeciders(spec) + ", each for its own reward, so independent learners"};
+  }
+  return {"vdn", DescribeDeciders(spec) + " for a shared reward, so a multi-agent learner"};
+}
+
+}  // namespace aquafarm::agents

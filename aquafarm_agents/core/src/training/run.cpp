@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/training/run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "aquafarm/agents/base/options.h"
+#include "aquafarm/agents/dqn/dqn.h"
+#include "aquafarm/agents/learning/random_policy.h"
+#include "aquafarm/agents/training/algorithms.h"
+#include "aquafarm/agents/training/saved_policy.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+std::string LearnerOptionsOf(const RunOptions& options) {
+  if (options.exploration.empty()) return options.options;
+  return options.options + " exploration=" + options.exploration;
+}
+
+std::string Count(std::uint64_t value) {
+  std::string text = std::to_string(value);
+  for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, ",");
+  return text;
+}
+
+std::string Duration(double seconds) {
+  char text[32];
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole >= 3600) {
+    std::snprintf(text, sizeof(text), "%ld h %02ld min", whole / 3600, whole / 60 % 60);
+  } else if (whole >= 60) {
+    std::snprintf(text, sizeof(text), "%ld min %02ld s", whole / 60, whole % 60);
+  } else {
+    std::snprintf(text, sizeof(text), "%.1f s", seconds);
+  }
+  return text;
+}
+
+/// One training; its members are what the steps of Train share.
+class Run {
+ public:
+  Run(RunOptions options, const std::function<void(const RunStatus&)>& on_status,
+      const std::atomic<bool>* stop)
+      : options_(std::move(options)), on_status_(on_status), stop_(stop) {
+    report_.status.algorithm = options_.algorithm;
+  }
+
+  void All(const MakeEnvironment& make_environment);
+  void Fail(ExitCode code, const std::string& message) {
+    report_.code = code;
+    report_.status.message = message;
+  }
+  RunReport End();
+
+ private:
+  void Tell(RunPhase phase, const std::string& message = "") {
+    report_.status.phase = phase;
+    report_.status.message = message;
+    if (on_status_) on_status_(report_.status);
+  }
+  bool Stopped() const { return stop_ != nullptr && *stop_; }
+  void Choose(const MakeEnvironment& make_environment);
+  void TakeOverLimits(const RunFolder& folder);
+  bool Resume(Trainer& trainer, const RunFolder& folder);
+  void Describe(const EnvironmentSpec& spec, const Learner& learner, const RunFolder& folder) const;
+  void Train(Environment& environment, Learner& learner, RunFolder& folder);
+  void SavePolicy(const Environment& environment, const Learner& learner, const RunFolder& folder);
+  void Evaluate(Environment& environment, const Learner& learner, const RunFolder& folder);
+  void Summarise();
+
+  RunOptions options_;
+  const std::function<void(const RunStatus&)>& on_status_;
+  const std::atomic<bool>* stop_;
+  RunReport report_;
+};
+
+void Run::All(const MakeEnvironment& make_environment) {
+  CheckRunOptions(options_);
+  if (options_.algorithm == kAutoAlgorithm) Choose(make_environment);
+  const Algorithm& algorithm = FindAlgorithm(options_.algorithm);
+  RunFolder folder(options_.run_dir, options_.resume);
+  if (options_.resume) TakeOverLimits(folder);
+  const std::unique_ptr<Environment> environment = make_environment(
+      static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
+                                (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0)));
+  report_.farms = environment->spec().farms;
+  if (options_.episodes == 0 && options_.steps == 0) {
+    options_.steps = DefaultSteps(algorithm, environment->spec(), LearnerOptionsOf(options_));
+    if (options_.steps > algorithm.default_steps) {
+      Tell(RunPhase::kStarting, "a table of " + std::to_string(environment->spec().state_count) +
+                                    " states is trained for " + std::to_string(options_.steps) +
+                                    " steps; a network may need fewer: algorithm dqn");
+    }
+  }
+  const std::unique_ptr<Learner> learner =
+      algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
+  const std::string warning = TakeTorchWarning();
+  if (!warning.empty()) Tell(RunPhase::kStarting, warning);
+  Train(*environment, *learner, folder);
+  if (report_.code != ExitCode::kOk) return;
+  SavePolicy(*environment, *learner, folder);
+  if (options_.evaluation_episodes > 0) Evaluate(*environment, *learner, folder);
+  if (report_.code == ExitCode::kOk) report_.status.message.clear();
+}
+
+// Fig. 6. The farms must be asked who decides before it is known which encodings are read.
+void Run::Choose(const MakeEnvironment& make_environment) {
+  const Choice choice = ChooseAlgorithm(make_environment(0)->spec());
+  options_.algorithm = report_.status.algorithm = choice.algorithm;
+  Tell(RunPhase::kStarting, "auto: " + choice.reason + ": " + choice.algorithm);
+  CheckRunOptions(options_);
+}
+
+// A resumed run goes on to its old limits unless it is given others.
+void Run::TakeOverLimits(const RunFolder& folder) {
+  if (options_.episodes != 0 || options_.steps != 0) return;
+  const std::string path = folder.path() + "/run.json";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return;
+  try {
+    const auto run = nlohmann::json::parse(ReadFile(path));
+    run.at("episodes").get_to(options_.episodes);
+    run.at("steps").get_to(options_.steps);
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(path + ": damaged: " + error.what());
+  }
+}
+
+// The newest checkpoint; when that is damaged, the one before it.
+bool Run::Resume(Trainer& trainer, const RunFolder& folder) {
+  std::string first_damage;
+  for (const std::string& path : folder.Checkpoints()) {
+    Checkpoint checkpoint;
+    try {
+      checkpoint = ReadCheckpoint(path);
+    } catch (const InputError& error) {
+      if (first_damage.empty()) first_damage = error.what();
+      continue;
+    }
+    if (!first_damage.empty()) Tell(RunPhase::kStarting, first_damage + "; taking an older one");
+    trainer.Resume(checkpoint, path);
+    Tell(RunPhase::kStarting, "resuming from " + path);
+    return true;
+  }
+  if (!first_damage.empty()) throw InputError(first_damage);
+  return false;
+}
+
+void Run::Describe(const EnvironmentSpec& spec, const Learner& learner,
+                   const RunFolder& folder) const {
+  folder.Write("scenario.yaml", spec.scenario_yaml);
+  const nlohmann::json run{{"algorithm", options_.algorithm},
+                           {"options", learner.options()},
+                           {"credit", options_.credit},
+                           {"seed", options_.seed},
+                           {"episodes", options_.episodes},
+                           {"steps", options_.steps},
+                           {"farms", spec.farms},
+                           {"scenario", spec.scenario_name},
+                           {"scenario_hash", spec.scenario_hash},
+                           {"version", spec.version},
+                           {"libraries", NetworkLibraries()},
+                           {"arguments", options_.arguments}};
+  folder.Write("run.json", run.dump(2) + "\n");
+}
+
+void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
+  TrainerOptions options;
+  options.algorithm = options_.algorithm;
+  options.seed = options_.seed;
+  options.episodes = options_.episodes;
+  options.steps = options_.steps;
+  options.checkpoint_period_s = options_.checkpoint_period_s;
+  options.progress_period_s = options_.progress_period_s;
+  Trainer trainer(environment, learner, options, &folder);
+  if (options_.resume && !Resume(trainer, folder)) {
+    Tell(RunPhase::kStarting, folder.path() + ": holds no checkpoint yet; starting anew");
+  }
+  if (trainer.Done() >= 1.0) {
+    Tell(RunPhase::kStarting, "the run has reached its limit; give steps or episodes beyond it");
+  }
+  Describe(environment.spec(), learner, folder);
+  const TrainingEnd end = trainer.Run(stop_, [&](const TrainingProgress& progress) {
+    report_.status.progress = progress;
+    report_.status.learner = &learner;
+    Tell(RunPhase::kTraining, trainer.TakeNotice());
+    report_.status.learner = nullptr;
+  });
+  switch (end) {
+    case TrainingEnd::kDone:
+      return;
+    case TrainingEnd::kInterrupted:
+      return Fail(ExitCode::kInterrupted, "interrupted; saved in " + folder.path());
+    case TrainingEnd::kLost:
+      return Fail(ExitCode::kLost, trainer.message() + "; saved in " + folder.path());
+    case TrainingEnd::kDiverged:
+      return Fail(ExitCode::kDiverged, trainer.message() + "; the last good checkpoint is " +
+                                           folder.NewestCheckpoint().value_or("none"));
+    case TrainingEnd::kStorage:
+      return Fail(ExitCode::kStorage, trainer.message() + "; the last good checkpoint is " +
+                                          folder.NewestCheckpoint().value_or("none"));
+  }
+}
+
+void Run::SavePolicy(const Environment& environment, const Learner& learner,
+                     const RunFolder& folder) {
+  Checkpoint policy;
+  policy.kind = Checkpoint::kPolicy;
+  policy.algorithm = options_.algorithm;
+  policy.options = learner.options();
+  policy.spec = environment.spec();
+  policy.version = policy.spec.version;
+  policy.seed = options_.seed;
+  policy.steps = report_.status.progress.steps;
+  policy.episodes = report_.status.progress.episodes;
+  learner.SavePolicy(policy);
+  WriteCheckpoint(folder.policy_path(), policy);
+  report_.policy_path = folder.policy_path();
+}
+
+void Run::Evaluate(Environment& environment, const Learner& learner, const RunFolder& folder) {
+  Tell(RunPhase::kEvaluating, "evaluating on episodes never trained on");
+  EvaluationContext context;
+  context.policy = report_.policy_path;
+  context.algorithm = options_.algorithm;
+  context.training_steps = report_.status.progress.steps;
+  context.scenario_name = environment.spec().scenario_name;
+  context.scenario_hash = environment.spec().scenario_hash;
+  context.version = environment.spec().version;
+  context.farms = environment.spec().farms;
+  const std::unique_ptr<Policy> greedy = learner.GreedyPolicy();
+  report_.status.evaluation =
+      agents::Evaluate(environment, *greedy, options_.seed, options_.evaluation_episodes, stop_,
+                       [&](std::size_t over) {
+                         Tell(RunPhase::kEvaluating,
+                              Count(over) + " of " + std::to_string(options_.evaluation_episodes) +
+                                  " episodes played");
+                       });
+  report_.status.has_evaluation = true;
+  WriteEvaluation(folder.path() + "/evaluation", report_.status.evaluation, context);
+  if (options_.random_episodes > 0) {
+    context.policy = context.algorithm = "random";
+    context.training_steps = 0;
+    RandomPolicy random(environment.spec().agents);
+    report_.random =
+        agents::Evaluate(environment, random, options_.seed, options_.random_episodes, stop_);
+    WriteEvaluation(folder.path() + "/evaluation_random", report_.random, context);
+  }
+  if (Stopped()) Fail(ExitCode::kInterrupted, "interrupted in the evaluation; the policy is saved");
+}
+
+void Run::Summarise() {
+  const TrainingProgress& progress = report_.status.progress;
+  std::string& text = report_.summary;
+  if (progress.steps > 0) {
+    text += "trained    " + options_.algorithm + ", " + Count(progress.steps) + " steps, " +
+            Count(progress.episodes) + " episodes in " + Duration(progress.elapsed_s) + "\n";
+  }
+  if (progress.episodes > 0) {
+    char line[120];
+    std::snprintf(line, sizeof(line),
+                  "last %d   return %.1f, success %.1f %% (exploring); best mean return %.1f\n",
+                  TrainingProgress::kWindow, static_cast<double>(progress.mean_return),
+                  100.0 * static_cast<double>(progress.success_rate),
+                  static_cast<double>(progress.best_mean_return));
+    text += line;
+  }
+  if (report_.status.has_evaluation) {
+    text += "greedy     " + agents::Describe(report_.status.evaluation) + "\n";
+  }
+  if (!report_.random.episodes.empty()) {
+    text += "RANDOM     " + agents::Describe(report_.random) + "\n";
+  }
+  if (!report_.policy_path.empty()) text += "policy     " + report_.policy_path + "\n";
+  if (!report_.status.message.empty()) text += report_.status.message + "\n";
+}
+
+RunReport Run::End() {
+  Summarise();
+  report_.status.phase = RunPhase::kEnded;
+  if (on_status_) on_status_(report_.status);
+  return report_;
+}
+
+void CheckAlgorithm(const RunOptions& options) {
+  const Algorithm& algorithm = FindAlgorithm(options.algorithm);
+  if (algorithm.make == nullptr) {
+    throw InputError(options.algorithm +
+                     std::string(": there is nothing to train; let it play: "
+                                 "evaluate policy:=") +
+                     options.algorithm);
+  }
+  algorithm.encodings(LearnerOptionsOf(options));  // refuses wrong ones
+}
+
+}  // namespace
+
+void CheckRunOptions(const RunOptions& options) {
+  if (options.algorithm != kAutoAlgorithm) CheckAlgorithm(options);
+  if (std::find(kCredits.begin(), kCredits.end(), options.credit) == kCredits.end()) {
+    throw InputError("credit: got '" + options.credit + "', expected one of: own, shared");
+  }
+  if ((options.seed & kEvaluationSeedBit) != 0) {
+    throw InputError("seed: got " + std::to_string(options.seed) + ", expected less than 2^63");
+  }
+  const auto check = [](const char* what, double got, double min) {
+    if (got >= min) return;  // false for NaN
+    throw InputError(std::string(what) + ": got " + FormatNumber(got) + ", expected at least " +
+                     FormatNumber(min));
+  };
+  check("checkpoint_period_s", options.checkpoint_period_s, 0.0);
+  check("progress_period_s", options.progress_period_s, 0.0);
+  check("evaluation_episodes", options.evaluation_episodes, 0.0);
+  check("random_episodes", options.random_episodes, 0.0);
+}
+
+RunReport Train(const RunOptions& options, const MakeEnvironment& make_environment,
+                const std::function<void(const RunStatus&)>& on_status,
+                const std::atomic<bool>* stop) {
+  Run run(options, on_status, stop);
+  try {
+    run.All(make_environment);
+  } catch (const InputError& error) {
+    run.Fail(ExitCode::kBadInput, error.what());
+  } catch (const StorageError& error) {
+    run.Fail(ExitCode::kStorage, error.what());
+  } catch (const EnvironmentLost& error) {
+    const bool stopped = stop != nullptr && *stop;
+    run.Fail(stopped ? ExitCode::kInterrupted : ExitCode::kLost, error.what());
+  } catch (const std::exception& error) {
+    run.Fail(ExitCode::kInternal, std::string("internal error: ") + error.what());
+  }
+  return run.End();
+}
+
+std::string DescribeProgress(const TrainingProgress& progress) {
+  const auto of = [](std::uint64_t done, std::uint64_t limit) {
+    return limit == 0 ? Count(done) : Count(done) + " / " + Count(limit);
+  };
+  std::string text = "steps " + of(progress.steps, progress.step_limit) + "  episodes " +
+                     of(progress.episodes, progress.episode_limit);
+  char rest[80];
+  if (progress.episodes > 0) {
+    std::snprintf(rest, sizeof(rest), "  return %.1f  success %.2f",
+                  static_cast<double>(progress.mean_return),
+                  static_cast<double>(progress.success_rate));
+    text += rest;
+  }
+  std::snprintf(rest, sizeof(rest), "  exploration %.3g  %s steps/s",
+                static_cast<double>(progress.learner.exploration),
+                Count(static_cast<std::uint64_t>(progress.steps_per_second)).c_str());
+  text += rest;
+  if (progress.time_left_s >= 0.0) text += "  left " + Duration(progress.time_left_s);
+  return text;
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/training/saved_policy.h"
+
+#include <filesystem>
+
+#include "aquafarm/agents/training/algorithms.h"
+#include "aquafarm/agents/training/run_folder.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+
+SavedPolicy FindPolicy(const std::string& where) {
+  SavedPolicy saved;
+  saved.path = where;
+  for (const Algorithm& algorithm : Algorithms()) {
+    if (algorithm.learns || where != algorithm.name) continue;
+    saved.checkpoint.algorithm = where;
+    saved.encodings = algorithm.encodings("");
+    return saved;
+  }
+  std::error_code ignored;
+  if (std::filesystem::is_directory(where, ignored)) {
+    saved.path = where + "/policy.ckpt";
+    if (!std::filesystem::exists(saved.path, ignored)) {
+      const auto newest = RunFolder::NewestCheckpoint(where);
+      if (!newest) {
+        throw InputError(where +
+                         ": holds neither policy.ckpt nor a checkpoint; expected a run "
+                         "folder, a checkpoint file, random, planner or clairvoyant");
+      }
+      saved.path = *newest;
+    }
+  }
+  saved.checkpoint = ReadCheckpoint(saved.path);
+  saved.encodings = FindAlgorithm(saved.checkpoint.algorithm).encodings(saved.checkpoint.options);
+  return saved;
+}
+
+std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSpec& spec) {
+  const std::string& version = saved.checkpoint.version;  // of those that do not learn: none
+  if (!version.empty() && version != spec.version) {
+    throw InputError(saved.path + ": was trained by aquafarm " + version + ", expected " +
+                     spec.version +
+                     ", whose farms it is to play on: train it again, or play it "
+                     "with the version it knows");
+  }
+  try {
+    return FindAlgorithm(saved.checkpoint.algorithm).make_policy(saved.checkpoint, spec);
+  } catch (const InputError& error) {
+    throw InputError(saved.path + ": " + error.what());
+  }
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/training/trainer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+double Seconds(std::chrono::steady_clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+constexpr std::uint32_t kStepsPerLookAtTheClock = 16;
+
+}  // namespace
+
+Trainer::Trainer(Environment& environment, Learner& learner, const TrainerOptions& options,
+                 RunFolder* folder)
+    : environment_(environment), learner_(learner), options_(options), folder_(folder) {
+  if (options_.episodes == 0 && options_.steps == 0) {
+    throw InputError("steps, episodes: got 0 for both, expected a limit");
+  }
+  if ((options_.seed & kEvaluationSeedBit) != 0) {
+    throw InputError("seed: got " + std::to_string(options_.seed) +
+                     ", expected less than 2^63; those above are for evaluation");
+  }
+  progress_.episode_limit = options_.episodes;
+  progress_.step_limit = options_.steps;
+  Summarise();
+}
+
+Trainer::~Trainer() = default;
+
+double Trainer::Done() const {
+  const auto share = [](std::uint64_t done, std::uint64_t limit) {
+    return limit == 0 ? 0.0 : static_cast<double>(done) / static_cast<double>(limit);
+  };
+  return std::min(1.0, std::max(share(progress_.steps, options_.steps),
+                                share(progress_.episodes, options_.episodes)));
+}
+
+bool Trainer::IsDone() const { return Done() >= 1.0; }
+
+void Trainer::Resume(const Checkpoint& checkpoint, const std::string& path) {
+  CheckContinues(checkpoint, path, options_.algorithm, learner_.options(), options_.seed,
+                 environment_.spec());
+  try {
+    const auto state = nlohmann::json::from_cbor(checkpoint.Section("trainer"));
+    learner_.Load(checkpoint);
+    checkpoint.GetArray("returns", returns_.size(), returns_);
+    checkpoint.GetArray("successes", successes_.size(), successes_);
+    progress_.steps = checkpoint.steps;
+    progress_.episodes = checkpoint.episodes;
+    progress_.best_mean_return = state.at("best_mean_return").is_null()
+                                     ? std::nanf("")
+                                     : state.at("best_mean_return").get<float>();
+    state.at("next_episode").get_to(next_episode_);
+    if (folder_ != nullptr) {
+      metrics_ = std::make_unique<MetricsFile>(folder_->metrics_path(),
+                                               state.at("metrics_bytes").get<std::uint64_t>());
+    }
+    // Without them the farms were lost when it was saved.
+    if (checkpoint.Has("environment")) {
+      results_ = &environment_.Load(checkpoint.Section("environment"));
+    }
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(path + ": damaged: " + error.what());
+  }
+  Summarise();
+}
+
+TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_progress) {
+  TrainingEnd end = TrainingEnd::kDone;
+  try {
+    Train(stop, on_progress);
+    if (!IsDone()) end = TrainingEnd::kInterrupted;
+    Save(true);  // flushes the metrics as well
+  } catch (const EnvironmentLost& error) {
+    message_ = error.what();
+    end = TrainingEnd::kLost;
+  } catch (const StorageError& error) {
+    message_ = error.what();
+    end = TrainingEnd::kStorage;
+  } catch (const LearnerFailed& error) {
+    message_ = error.what();
+    end = TrainingEnd::kDiverged;
+  } catch (const InputError& error) {  // the farms came back as others
+    message_ = error.what();
+    end = TrainingEnd::kLost;
+  }
+  try {
+    if (end == TrainingEnd::kLost) Save(false);
+  } catch (const StorageError& error) {
+    message_ += std::string("; ") + error.what();
+  }
+  // Ctrl-C stops the farms as well when both run in one launch.
+  if (end == TrainingEnd::kLost && stop != nullptr && *stop) end = TrainingEnd::kInterrupted;
+  Report(on_progress);
+  return end;
+}
+
+void Trainer::Begin() {
+  if (folder_ != nullptr && !metrics_) {
+    metrics_ = std::make_unique<MetricsFile>(folder_->metrics_path());
+  }
+  if (results_ == nullptr) {
+    results_ = &environment_.Reset(options_.seed, next_episode_);
+    next_episode_ += static_cast<std::uint64_t>(environment_.spec().farms);
+  }
+  start_ = reported_ = saved_ = Clock::now();
+  reported_steps_ = progress_.steps;
+  done_at_start_ = Done();
+}
+
+void Trainer::Train(const std::atomic<bool>* stop, const OnProgress& on_progress) {
+  Begin();
+  Report(on_progress);
+  std::uint32_t calls = 0;
+  while (!IsDone() && (stop == nullptr || !*stop)) {
+    learner_.Step(*results_, Done(), actions_);
+    results_ = &environment_.Step(actions_);
+    Count(*results_);
+    if (++calls % kStepsPerLookAtTheClock != 0) continue;
+    const auto now = Clock::now();
+    if (Seconds(now - reported_) >= options_.progress_period_s) {
+      if (metrics_) metrics_->Flush();
+      Report(on_progress);
+    }
+    if (Seconds(now - saved_) >= options_.checkpoint_period_s) Save(true);
+  }
+}
+
+void Trainer::Count(const Results& results) {
+  std::uint32_t started = 0;
+  for (const std::uint8_t flag : results.started) started += flag;
+  progress_.steps += results.started.size() - started;
+  for (const EpisodeResult& result : results.finished) CountEpisode(result);
+  if (environment_.TakeRestarted()) {
+    ++progress_.restarts;
+    next_episode_ += static_cast<std::uint64_t>(environment_.spec().farms);
+    notice_ = "the farms were lost and came back; training goes on with fresh episodes";
+  }
+}
+
+void Trainer::CountEpisode(const EpisodeResult& result) {
+  const std::size_t slot = progress_.episodes % returns_.size();
+  returns_[slot] = result.episode_return;
+  successes_[slot] = result.Success() ? 1 : 0;
+  ++progress_.episodes;
+  const auto farms = static_cast<std::uint64_t>(environment_.spec().farms);
+  next_episode_ = std::max(next_episode_, result.episode + farms + 1);  // its farm's next
+  progress_.last_return = result.episode_return;
+  if (progress_.episodes >= returns_.size()) {
+    float sum = 0.0F;
+    for (const float one : returns_) sum += one;
+    const float mean = sum / static_cast<float>(returns_.size());
+    if (!(mean <= progress_.best_mean_return)) progress_.best_mean_return = mean;
+  }
+  if (metrics_) metrics_->Append(progress_.episodes, progress_.steps, result, learner_.status());
+}
+
+void Trainer::Summarise() {
+  const std::size_t count = std::min<std::uint64_t>(progress_.episodes, returns_.size());
+  if (count == 0) {
+    progress_.last_return = progress_.mean_return = std::nanf("");
+    progress_.best_mean_return = progress_.success_rate = std::nanf("");
+  } else {
+    float sum = 0.0F;
+    float successes = 0.0F;
+    for (std::size_t i = 0; i < count; ++i) {
+      sum += returns_[i];
+      successes += static_cast<float>(successes_[i]);
+    }
+    progress_.last_return = returns_[(progress_.episodes - 1) % returns_.size()];
+    progress_.mean_return = sum / static_cast<float>(count);
+    progress_.success_rate = successes / static_cast<float>(count);
+  }
+  progress_.learner = learner_.status();
+}
+
+void Trainer::Report(const OnProgress& on_progress) {
+  Summarise();
+  const auto now = Clock::now();
+  const double period = Seconds(now - reported_);
+  progress_.elapsed_s = Seconds(now - start_);
+  if (period > 0.1) {
+    progress_.steps_per_second = static_cast<double>(progress_.steps - reported_steps_) / period;
+    reported_steps_ = progress_.steps;
+    reported_ = now;
+  }
+  const double done = Done() - done_at_start_;
+  progress_.time_left_s = done > 0.0 ? progress_.elapsed_s / done * (1.0 - Done()) : -1.0;
+  if (on_progress) on_progress(progress_);
+}
+
+void Trainer::Save(bool with_environment) {
+  saved_ = Clock::now();
+  if (folder_ == nullptr) return;
+  Checkpoint checkpoint;
+  checkpoint.kind = Checkpoint::kTraining;
+  checkpoint.algorithm = options_.algorithm;
+  checkpoint.options = learner_.options();
+  checkpoint.spec = environment_.spec();
+  checkpoint.version = checkpoint.spec.version;
+  checkpoint.seed = options_.seed;
+  checkpoint.steps = progress_.steps;
+  checkpoint.episodes = progress_.episodes;
+  learner_.Save(checkpoint);
+  if (with_environment) checkpoint.sections["environment"] = environment_.Save();
+  metrics_->Sync();
+  const nlohmann::json state{
+      {"next_episode", next_episode_},
+      {"metrics_bytes", metrics_->size()},
+      {"best_mean_return", std::isnan(progress_.best_mean_return)
+                               ? nlohmann::json()
+                               : nlohmann::json(progress_.best_mean_return)}};
+  nlohmann::json::to_cbor(state, checkpoint.sections["trainer"]);
+  checkpoint.SetArray("returns", returns_);
+  checkpoint.SetArray("successes", successes_);
+  folder_->SaveCheckpoint(checkpoint);
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// DQN and LSTM-DQN learn tiny farms, each switch on its own, and continue bit for bit.
+#include "aquafarm/agents/dqn/dqn.h"
+
+#include <algorithm>
+#include <array>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/networks/deep_options.h"
+#include "aquafarm/agents/training/algorithms.h"
+#include "aquafarm/agents/training/trainer.h"
+#include "networks/deep_policy.h"
+#include "networks/networks.h"
+#include "networks/value_optimizer.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+constexpr const char* kSmall =
+    "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
+    "learning_rate=linear:0.002:0.0001:1 ";
+constexpr const char* kSmallRecurrent =
+    "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=8 "
+    "burn_in=4 learning_rate=linear:0.003:0.0001:1 ";
+
+/// Success of a greedy policy on seeds never trained on, before and after training.
+struct Progress {
+  double before{};
+  double after{};
+};
+
+Progress Learn(const std::string& algorithm, const std::string& options, std::uint64_t steps,
+               std::shared_ptr<const Scenario> scenario = TinyFarm()) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(std::move(scenario), {8, entry.encodings(options), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  Progress progress;
+  progress.before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
+  TrainerOptions trainer;
+  trainer.algorithm = algorithm;
+  trainer.steps = steps;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  progress.after = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
+  return progress;
+}
+
+void ExpectSolves(const std::string& algorithm, const std::string& options, std::uint64_t steps) {
+  const Progress progress = Learn(algorithm, options, steps);
+  EXPECT_LT(progress.before, 0.5) << options;
+  EXPECT_GE(progress.after, 0.98) << options;
+}
+
+std::string Resolved(const std::string& options, bool recurrent) {
+  std::string resolved;
+  DeepOptions::Parse(options, recurrent, resolved);
+  return resolved;
+}
+
+TEST(Dqn, SolvesATinyFarm) { ExpectSolves("dqn", kSmall, 12000); }
+
+TEST(Dqn, SolvesItWithEachSwitchTurnedRound) {
+  for (const std::string change :
+       {"double_q=false", "dueling=true", "n_step=3", "priority=0", "loss=mse", "target_rate=0.01",
+        "average_rate=0.02", "action_gap=0.5", "repetition_penalty=0.5", "exploration=boltzmann"}) {
+    EXPECT_NE(Resolved(kSmall + change, false), Resolved(kSmall, false)) << change;
+    ExpectSolves("dqn", kSmall + change, 20000);
+  }
+  // Illegal actions have to be unlearnt first, and tried for longer.
+  ExpectSolves(
+      "dqn",
+      kSmall + std::string("mask_illegal=false exploration=epsilon_greedy:linear:1:0.05:0.5"),
+      40000);
+}
+
+TEST(Curiosity, GoesWithEveryLearnerOfValues) {
+  const std::string curious = "exploration=icm+epsilon_greedy:0.1";
+  ExpectSolves("q_learning", curious, 60000);
+  ExpectSolves("sarsa", curious, 60000);
+  ExpectSolves("dqn", kSmall + curious, 20000);
+  ExpectSolves("lstm_dqn", kSmallRecurrent + curious, 20000);
+}
+
+TEST(Dqn, SolvesItFromThePlanes) {
+  ExpectSolves("dqn",
+               "network=cnn hidden=16 batch=32 start=500 replay=5000 target_period=50 "
+               "learning_rate=linear:0.002:0.0001:1",
+               12000);
+}
+
+TEST(RecurrentDqn, SolvesATinyFarm) { ExpectSolves("lstm_dqn", kSmallRecurrent, 20000); }
+
+TEST(RecurrentDqn, SolvesItWithEachSwitchTurnedRound) {
+  for (const std::string change :
+       {"double_q=false", "dueling=true", "n_step=3", "priority=0", "loss=mse", "target_rate=0.01",
+        "average_rate=0.02", "repetition_penalty=0.5", "exploration=boltzmann"}) {
+    EXPECT_NE(Resolved(kSmallRecurrent + change, true), Resolved(kSmallRecurrent, true)) << change;
+    ExpectSolves("lstm_dqn", kSmallRecurrent + change, 20000);
+  }
+  // Errors are set apart as well, so it takes longer.
+  ExpectSolves("lstm_dqn", kSmallRecurrent + std::string("action_gap=0.5"), 40000);
+}
+
+TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
+  ExpectSolves("lstm_dqn",
+               "hidden=24 batch=64 start=500 replay=5000 target_period=50 steps_per_update=4 "
+               "replayed=paper_tuple learning_rate=linear:0.003:0.0001:1",
+               24000);
+}
+
+// The tiny farm with its device where one way alone takes no more than two steps.
+std::shared_ptr<const Scenario> OneWayFarm() {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.step_limit = 60;
+  scenario.devices.sites.front().cell = {4, 2};
+  return Share(scenario);
+}
+
+// How much the best legal action is worth above the next where an episode begins.
+float Gap(const std::string& algorithm, const std::string& options, std::uint64_t steps) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(OneWayFarm(), {8, entry.encodings(options), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  TrainerOptions trainer;
+  trainer.algorithm = algorithm;
+  trainer.steps = steps;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  Checkpoint checkpoint;
+  checkpoint.algorithm = algorithm;
+  checkpoint.options = learner->options();
+  checkpoint.spec = environment.spec();
+  learner->SavePolicy(checkpoint);
+  std::vector<float> weights = ActingWeights(checkpoint);
+  const Results& results = environment.Reset(1);
+  const bool recurrent = algorithm == "lstm_dqn";
+  std::string resolved;
+  const DeepOptions parsed = DeepOptions::Parse(options, recurrent, resolved);
+  const torch::NoGradGuard no_grad;
+  const std::int64_t features = environment.spec().feature_count;
+  std::vector<float> seen(results.features.begin(), results.features.begin() + features);
+  const torch::Tensor input = torch::from_blob(seen.data(), {1, features});
+  torch::Tensor values;
+  if (recurrent) {
+    RecurrentNetwork network(features, parsed.hidden, parsed.dueling);
+    FlatParameters(network, torch::kCPU).FromVector(weights);
+    const torch::Tensor empty = torch::zeros({1, 1, parsed.hidden});
+    RecurrentNetwork::State state{empty, empty};
+    values = network.Forward(input.unsqueeze(0), state)[0];
+  } else {
+    const auto network = MakeNetwork(environment.spec(), parsed, 0);
+    FlatParameters(*network, torch::kCPU).FromVector(weights);
+    values = network->Forward(input);
+  }
+  std::array<float, kActionCount> forbidden{};
+  MarkForbidden(Allowed(results.legal[0], true), forbidden.data());
+  const torch::Tensor best =
+      std::get<0>((values + torch::from_blob(forbidden.data(), {1, kActionCount})).topk(2, 1));
+  return (best[0][0] - best[0][1]).item<float>();
+}
+
+TEST(Dqn, ActionGapSetsTheBestActionApart) {
+  const float plain = Gap("dqn", kSmall, 40000);
+  EXPECT_GT(plain, 0.05F) << "a step of -1, times 0.05, and what comes later by one";
+  EXPECT_GT(Gap("dqn", kSmall + std::string("action_gap=0.5"), 40000), 1.4F * plain)
+      << "twice, if exact";
+}
+
+TEST(RecurrentDqn, ActionGapSetsTheBestActionApart) {
+  const float plain = Gap("lstm_dqn", kSmallRecurrent, 20000);
+  EXPECT_GT(plain, 0.02F);
+  EXPECT_GT(Gap("lstm_dqn", kSmallRecurrent + std::string("action_gap=0.5"), 40000), 1.4F * plain);
+}
+
+struct Crashes {
+  int exploring{};
+  int greedy{};
+};
+
+/// Crashes in `steps` steps of a learner that knows nothing, and in as many of its greedy policy.
+Crashes CrashesIn(const std::string& algorithm, const std::string& options, int steps) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(TinyFarm(), {4, entry.encodings(options), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  const auto policy = learner->GreedyPolicy();
+  policy->Begin(1, 4);
+  std::vector<std::uint8_t> actions;
+  const auto count = [&](const auto& act) {
+    int crashes = 0;
+    const Results* results = &environment.Reset(1, 0);
+    for (int step = 0; step < steps; ++step) {
+      act(*results);
+      results = &environment.Step(actions);
+      for (const EpisodeResult& ended : results->finished) crashes += ended.crashes;
+    }
+    return crashes;
+  };
+  return {count([&](const Results& results) { learner->Step(results, 0.0, actions); }),
+          count([&](const Results& results) { policy->Act(results, actions); })};
+}
+
+TEST(Dqn, MaskBlockedKeepsShipsOffRocksIslandsAndTheMapsEdge) {
+  int greedy = 0;
+  for (const auto& [algorithm, small] :
+       {std::pair{"dqn", kSmall}, std::pair{"lstm_dqn", kSmallRecurrent}, std::pair{"vdn", kSmall},
+        std::pair{"independent_dqn", kSmall},
+        std::pair{"maddpg", "hidden=16 batch=8 start=100000 replay=1000 "}}) {
+    const std::string options = small + std::string("exploration=epsilon_greedy:1 ");
+    const Crashes freely = CrashesIn(algorithm, options + "mask_blocked=false", 300);
+    EXPECT_GT(freely.exploring, 50) << algorithm;
+    greedy += freely.greedy;
+    const Crashes masked = CrashesIn(algorithm, options + "mask_blocked=true", 300);
+    EXPECT_EQ(masked.exploring, 0) << algorithm;
+    EXPECT_EQ(masked.greedy, 0) << algorithm;
+  }
+  EXPECT_GT(greedy, 50) << "those without the mask, who know nothing";
+  ExpectSolves("dqn", kSmall + std::string("mask_blocked=true"), 12000);
+}
+
+TEST(Dqn, PaperModeTurnsEverySwitchOff) {
+  std::string resolved;
+  const DeepOptions paper = DeepOptions::Parse("preset=paper", false, resolved);
+  EXPECT_FALSE(paper.double_q);
+  EXPECT_FALSE(paper.dueling);
+  EXPECT_EQ(paper.n_step, 1);
+  EXPECT_EQ(paper.priority, 0.0);
+  EXPECT_EQ(paper.average_rate, 0.0);
+  EXPECT_EQ(paper.action_gap, 0.0);
+  EXPECT_EQ(paper.repetition_penalty, 0.0);
+  EXPECT_EQ(paper.reward_scale, 1.0);
+  EXPECT_FALSE(paper.mask_illegal);
+  EXPECT_FALSE(paper.mask_blocked);
+  EXPECT_EQ(paper.loss, LossKind::kMse);
+  EXPECT_TRUE(DeepOptions::Parse("preset=paper double_q=true", false, resolved).double_q);
+  EXPECT_CONTAINS(resolved, "preset=paper");
+}
+
+TEST(Dqn, WrongOptionsAreAnsweredWithWhatIsAllowed) {
+  for (const auto& [options, words] :
+       {std::pair{"doubel_q=true",
+                  "options: got 'doubel_q', expected one of: action_gap, average_rate"},
+        std::pair{"network=rnn", "network: got 'rnn', expected one of: mlp, cnn"},
+        std::pair{"network=cnn mask_blocked=true", "mask_blocked: got true, expected false"},
+        std::pair{"batch=0", "batch: got 0, expected [1, 65536]"},
+        std::pair{"batch=2.5", "batch: got 2.5, expected a whole number"},
+        std::pair{"loss=l1", "loss: got 'l1', expected one of: huber, mse"},
+        std::pair{"sequence=8", "options: got 'sequence'"},
+        std::pair{"device=gpu", "device: got 'gpu', expected one of: auto, cpu, cuda"}}) {
+    EXPECT_CONTAINS(MessageOf<InputError>([o = options] { DqnEncodings(o); }), words);
+  }
+}
+
+TEST(RecurrentDqn, WarmsUpForLessThanItLearnsFrom) {
+  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("sequence=4 burn_in=4"); }),
+                  "burn_in: got 4, expected less than sequence, which is 4");
+  RecurrentDqnEncodings("sequence=1 burn_in=0");
+}
+
+TEST(RecurrentDqn, ReplaysThePapersTuplesByName) {
+  for (const std::string name : {"preset=paper", "replayed=paper_tuple"}) {
+    const std::string resolved = Resolved(name, true);
+    EXPECT_CONTAINS(resolved, "replayed=paper_tuple");
+    EXPECT_CONTAINS(resolved, "sequence=1 ");
+    EXPECT_CONTAINS(resolved, "burn_in=0 ");
+  }
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=paper_tuple sequence=8"); }),
+      "paper_tuple with sequence=8 burn_in=0, expected 1 and 0, or replayed=sequences");
+  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=tuples"); }),
+                  "replayed: got 'tuples', expected one of: sequences, paper_tuple");
+}
+
+TEST(RecurrentDqn, SumsRewardsOverNoMoreStepsThanItLearnsFrom) {
+  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("sequence=4 n_step=5"); }),
+                  "n_step: got 5, expected at most sequence, which is 4");
+  RecurrentDqnEncodings("sequence=4 n_step=4");
+}
+
+TEST(Dqn, ALossThatIsNoNumberEndsTheTraining) {
+  const std::string options = "hidden=8 batch=8 start=10 replay=500";
+  LocalEnvironment environment(TinyFarm(), {8, kFeaturesBit, false, 1});
+  const auto learner = MakeDqn(environment.spec(), 1, options);
+  Checkpoint checkpoint;
+  learner->Save(checkpoint);
+  std::string& weights = checkpoint.sections["weights"];
+  std::fill_n(weights.begin() + 40, 4, '\xff');  // a NaN
+  learner->Load(checkpoint);
+  TrainerOptions trainer_options;
+  trainer_options.algorithm = "dqn";
+  trainer_options.steps = 200000;
+  Trainer trainer(environment, *learner, trainer_options);
+  EXPECT_EQ(trainer.Run(), TrainingEnd::kDiverged);
+  EXPECT_CONTAINS(trainer.message(), "loss: got ");
+  EXPECT_CONTAINS(trainer.message(), "farm steps, on the batch drawn from seed 1 at position ");
+}
+
+TEST(DeepPolicies, ThatDoNotFitAreRefusedWithWhatDiffers) {
+  for (const char* algorithm : {"dqn", "lstm_dqn"}) {
+    LocalEnvironment environment(TinyFarm(), {1, kFeaturesBit, false, 1});
+    const Algorithm& entry = FindAlgorithm(algorithm);
+    const auto learner = entry.make(environment.spec(), 1, "hidden=8");
+    Checkpoint checkpoint;
+    checkpoint.algorithm = algorithm;
+    checkpoint.options = learner->options();
+    checkpoint.spec = environment.spec();
+    learner->SavePolicy(checkpoint);
+    EXPECT_NE(entry.make_policy(checkpoint, environment.spec()), nullptr);
+    EnvironmentSpec other = environment.spec();
+    other.feature_names[2] = "tide";
+    EXPECT_CONTAINS(MessageOf<InputError>([&] { entry.make_policy(checkpoint, other); }),
+                    "does not fit scenario tiny: feature 2: it knows " +
+                        environment.spec().feature_names[2] + ", the farm has tide");
+    other.feature_count += 3;
+    EXPECT_CONTAINS(MessageOf<InputError>([&] { entry.make_policy(checkpoint, other); }),
+                    "does not fit scenario tiny: features: it knows " +
+                        std::to_string(other.feature_count - 3));
+    checkpoint.sections["weights"].resize(40);
+    EXPECT_THROW(entry.make_policy(checkpoint, environment.spec()), InputError);
+  }
+}
+
+// Actions of a policy in `count` episodes from `first` on.
+std::vector<std::vector<std::uint8_t>> ActionsIn(Environment& environment, Policy& policy,
+                                                 std::uint64_t first, std::size_t count) {
+  policy.Begin(1, 1);
+  std::vector<std::vector<std::uint8_t>> episodes(1);
+  std::vector<std::uint8_t> actions;
+  const Results* results = &environment.Reset(3, first);
+  while (true) {
+    policy.Act(*results, actions);
+    if (results->reasons[0] == 0) episodes.back().push_back(actions[0]);
+    results = &environment.Step(actions);
+    if (results->finished.empty()) continue;
+    if (episodes.size() == count) return episodes;
+    episodes.emplace_back();
+  }
+}
+
+TEST(RecurrentDqn, ForgetsAtAnEpisodesStart) {
+  LocalEnvironment environment(TinyFarm(), {1, kFeaturesBit, false, 1});
+  const auto learner = MakeRecurrentDqn(environment.spec(), 1, "hidden=16");
+  Checkpoint checkpoint;
+  checkpoint.algorithm = "lstm_dqn";
+  checkpoint.options = learner->options();
+  checkpoint.spec = environment.spec();
+  learner->SavePolicy(checkpoint);
+  std::string& bytes = checkpoint.sections["weights"];
+  std::vector<float> weights(bytes.size() / sizeof(float));
+  checkpoint.GetArray("weights", weights.size(), weights);
+  for (float& weight : weights) weight *= 4.0F;  // so that what it remembers matters
+  checkpoint.SetArray("weights", weights);
+  const auto policy = FindAlgorithm("lstm_dqn").make_policy(checkpoint, environment.spec());
+  const auto in_a_row = ActionsIn(environment, *policy, 0, 6);
+  for (std::uint64_t episode = 0; episode < 6; ++episode) {
+    EXPECT_EQ(in_a_row[episode], ActionsIn(environment, *policy, episode, 1)[0])
+        << "episode " << episode;
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

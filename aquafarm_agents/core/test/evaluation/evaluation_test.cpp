@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/evaluation/evaluation.h"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/base/storage.h"
+#include "aquafarm/agents/learning/random_policy.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+/// North until the device, back south with it: solves the tiny farm in six steps.
+class Scripted final : public Policy {
+ public:
+  std::uint8_t encodings() const override { return 0; }
+  void Begin(std::uint64_t, std::int32_t farms) override {
+    step_.assign(static_cast<std::size_t>(farms), 0);
+  }
+  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+    constexpr std::array<std::uint8_t, 6> kPlan{0, 0, 8, 1, 1, 9};
+    actions.assign(step_.size(), 0);
+    for (std::size_t i = 0; i < step_.size(); ++i) {
+      if (results.started[i] != 0) step_[i] = 0;
+      actions[i] = kPlan[step_[i]++ % kPlan.size()];
+    }
+  }
+
+ private:
+  std::vector<std::size_t> step_;
+};
+
+TEST(Evaluate, PlaysSeedsThatNoTrainingHas) {
+  EXPECT_NE(EvaluationSeed(5), 5U);
+  EXPECT_EQ(EvaluationSeed(5) & kEvaluationSeedBit, kEvaluationSeedBit);
+  LocalEnvironment environment(TinyFarm(), {2, 0, false, 1});
+  Scripted policy;
+  const Evaluation evaluation = Evaluate(environment, policy, 5, 3);
+  for (const EpisodeResult& result : evaluation.episodes) {
+    EXPECT_EQ(result.seed, EvaluationSeed(5));
+  }
+}
+
+TEST(Evaluate, MeasuresWhatHappened) {
+  LocalEnvironment environment(TinyFarm(), {3, 0, false, 1});
+  Scripted policy;
+  const Evaluation evaluation = Evaluate(environment, policy, 1, 10);
+  EXPECT_TRUE(evaluation.complete);
+  ASSERT_EQ(evaluation.episodes.size(), 10U);
+  EXPECT_EQ(evaluation.success_rate, 1.0);
+  EXPECT_EQ(evaluation.mean_steps, 6.0);
+  // Four steps at −1, pickup 20, drop-off 20 and the device's 80.
+  EXPECT_NEAR(evaluation.mean_return, 116.0, 1e-4);
+  EXPECT_NEAR(evaluation.return_per_step, 116.0 / 6.0, 1e-4);
+  EXPECT_EQ(evaluation.mean_delivered_health, 1.0);
+}
+
+TEST(Evaluate, DoesNotDependOnTheNumberOfFarms) {
+  const auto farm = Share(aquafarm::test::CrowdedScenario(2));
+  std::vector<float> returns[2];
+  for (const std::int32_t farms : {1, 7}) {
+    LocalEnvironment environment(farm, {farms, 0, false, 1});
+    class North final : public Policy {
+     public:
+      std::uint8_t encodings() const override { return 0; }
+      void Begin(std::uint64_t, std::int32_t) override {}
+      void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+        actions.assign(results.rewards.size(), 5);
+      }
+    } policy;
+    for (const EpisodeResult& result : Evaluate(environment, policy, 1, 9).episodes) {
+      returns[farms == 1 ? 0 : 1].push_back(result.episode_return);
+    }
+  }
+  EXPECT_EQ(returns[0], returns[1]);
+}
+
+TEST(Evaluate, StopsWhenAsked) {
+  LocalEnvironment environment(TinyFarm(), {1, 0, false, 1});
+  RandomPolicy policy(1);
+  const std::atomic<bool> stop{true};
+  EXPECT_FALSE(Evaluate(environment, policy, 1, 10, &stop).complete);
+}
+
+using EvaluationFiles = FolderTest;
+
+TEST_F(EvaluationFiles, HoldWhatIsNeededToDoItAgain) {
+  LocalEnvironment environment(TinyFarm(), {2, 0, false, 1});
+  Scripted policy;
+  const Evaluation evaluation = Evaluate(environment, policy, 4, 5);
+  WriteEvaluation(folder_ + "/e", evaluation, {"p.ckpt", "scripted", 9, "tiny", 77, "0.1.0", 2});
+  const auto json = nlohmann::json::parse(ReadFile(folder_ + "/e.json"));
+  EXPECT_EQ(json.at("seed"), 4);
+  EXPECT_EQ(json.at("episodes"), 5);
+  EXPECT_EQ(json.at("scenario_hash"), 77);
+  EXPECT_EQ(json.at("success_rate"), 1.0);
+  std::ifstream csv(folder_ + "/e.csv");
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_CONTAINS(line, "farm,seed,episode,steps,return");
+  int rows = 0;
+  while (std::getline(csv, line)) {
+    EXPECT_CONTAINS(line, ",all_retrieved,1");
+    ++rows;
+  }
+  EXPECT_EQ(rows, 5);
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

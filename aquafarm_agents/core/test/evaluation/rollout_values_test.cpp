@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/evaluation/rollout_values.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/base/storage.h"
+#include "aquafarm/agents/planning/planner_policy.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+std::unique_ptr<Policy> Plan(const EnvironmentSpec& spec) {
+  return std::make_unique<PlannerPolicy>(spec, Foresight::kClairvoyant);
+}
+
+PlayedValues OfPlanner(const std::shared_ptr<const Scenario>& scenario, std::int32_t episodes = 1) {
+  return PlayValues(scenario, kStatesBit, Plan, 3, 0, episodes);
+}
+
+// The device at (2, 2) has value 80, the port is at (2, 0).
+TEST(PlayedValues, AreWhatTheEpisodePaysFromEachCell) {
+  const PlayedValues values = OfPlanner(TinyFarm());
+  ASSERT_EQ(values.value.size(), 25U);
+  const auto at = [&](int x, int y) { return values.value[static_cast<std::size_t>(5 * y + x)]; };
+  EXPECT_EQ(at(2, 2), 20.0 - 2.0 + 20.0 + 80.0) << "pick up, two steps, drop off";
+  EXPECT_EQ(at(2, 0), 118.0 - 2.0);
+  EXPECT_EQ(at(4, 4), 118.0 - 3.0) << "around the rock at (3, 3)";
+  EXPECT_TRUE(std::isnan(at(0, 0))) << "an island";
+  EXPECT_TRUE(std::isnan(at(3, 3))) << "a rock";
+}
+
+TEST(PlayedValues, AreTheMeanOfEpisodes) {
+  EXPECT_EQ(OfPlanner(TinyFarm(), 3).value[12], OfPlanner(TinyFarm()).value[12]);
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.layout = LayoutMode::kPerEpisode;
+  EXPECT_EQ(MessageOf<InputError>([&] { OfPlanner(Share(scenario), 2); }),
+            "values: got a layout drawn per_episode, expected a fixed one to average over 2 "
+            "episodes");
+}
+
+using ValuesFile = FolderTest;
+
+TEST_F(ValuesFile, HasTheSeaBesideThem) {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.step_limit = 60;
+  SeaLayer warmth{"warmth", "degC", std::vector<float>(25, 21.5F)};
+  warmth.values[24] = std::nanf("");
+  scenario.seas = SeaSpec{{warmth}, {}, {}};
+  const auto shared = Share(scenario);
+  const std::string path = folder_ + "/values.json";
+  WriteValues(path, OfPlanner(shared), "clairvoyant", *shared);
+  const auto text = nlohmann::json::parse(ReadFile(path));
+  EXPECT_EQ(text.at("scenario_hash").get<std::uint64_t>(), shared->hash);
+  EXPECT_EQ(text.at("values").size(), 5U);
+  EXPECT_TRUE(text.at("values")[0][0].is_null());
+  EXPECT_EQ(text.at("values")[2][2], 118.0);
+  EXPECT_EQ(text.at("seas")[0].at("units"), "degC");
+  EXPECT_EQ(text.at("seas")[0].at("values")[0][0], 21.5);
+  EXPECT_TRUE(text.at("seas")[0].at("values")[4][4].is_null());
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/learning/checkpoint.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/learning/tabular.h"
+#include "aquafarm/agents/training/saved_policy.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+Checkpoint Example() {
+  Checkpoint checkpoint;
+  checkpoint.kind = Checkpoint::kTraining;
+  checkpoint.algorithm = "q_learning";
+  checkpoint.options = "discount=0.97";
+  checkpoint.version = "0.1.0";
+  checkpoint.seed = 7;
+  checkpoint.steps = 1ULL << 40U;
+  checkpoint.episodes = 12;
+  checkpoint.spec.scenario_name = "tiny";
+  checkpoint.spec.scenario_hash = 0xfedcba9876543210ULL;
+  checkpoint.spec.farms = 3;
+  checkpoint.spec.agents = 2;
+  checkpoint.spec.state_count = 5;
+  checkpoint.sections["empty"] = "";
+  checkpoint.SetArray("table", std::vector<float>{1.5F, -0.0F, 3e38F});
+  return checkpoint;
+}
+
+using CheckpointFile = FolderTest;
+
+TEST_F(CheckpointFile, ReadsBackToTheSame) {
+  const std::string path = folder_ + "/a.ckpt";
+  WriteCheckpoint(path, Example());
+  const Checkpoint read = ReadCheckpoint(path);
+  EXPECT_EQ(read.sections, Example().sections);
+  EXPECT_EQ(read.steps, 1ULL << 40U);
+  EXPECT_EQ(read.spec.scenario_hash, 0xfedcba9876543210ULL);
+  EXPECT_EQ(read.options, "discount=0.97");
+  EXPECT_EQ(read.spec.agents, 2);
+  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+}
+
+TEST_F(CheckpointFile, EveryCutIsRefused) {
+  const std::string path = folder_ + "/a.ckpt";
+  WriteCheckpoint(path, Example());
+  const std::string bytes = ReadFile(path);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    WriteFileAtomically(path, bytes.substr(0, size));
+    EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "cut short");
+  }
+  WriteFileAtomically(path, bytes + "x");
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "too long");
+}
+
+TEST_F(CheckpointFile, EveryFlippedByteIsRefused) {
+  const std::string path = folder_ + "/a.ckpt";
+  WriteCheckpoint(path, Example());
+  const std::string bytes = ReadFile(path);
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::string damaged = bytes;
+    damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
+    WriteFileAtomically(path, damaged);
+    EXPECT_NE(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "") << "byte " << i;
+  }
+}
+
+TEST_F(CheckpointFile, RefusalsSayWhatTheFileIs) {
+  const std::string path = folder_ + "/a.ckpt";
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }),
+                  path + ": cannot be read: No such file");
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(folder_); }), "is a folder");
+  WriteFileAtomically(path, std::string(100, 'x'));
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }),
+                  "does not begin with 'aquaCKPT'");
+  WriteCheckpoint(path, Example());
+  std::string bytes = ReadFile(path);
+  bytes[8] = 9;
+  WriteFileAtomically(path, bytes);
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "of format 9, expected 2");
+}
+
+TEST_F(CheckpointFile, MissingAndWrongSectionsAreNamed) {
+  const Checkpoint checkpoint = Example();
+  std::vector<float> values;
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { checkpoint.Section("streams"); }), "'streams'");
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { checkpoint.GetArray("table", 4, values); }),
+                  "section 'table': got 12 bytes, expected 16");
+}
+
+TEST_F(CheckpointFile, AnUnwritablePlaceIsSaid) {
+  EXPECT_CONTAINS(
+      MessageOf<StorageError>([&] { WriteCheckpoint(folder_ + "/no/a.ckpt", Example()); }),
+      "cannot be written: No such file or directory");
+}
+
+// A file size limit stands for a full disk.
+TEST_F(CheckpointFile, AFullDiskKeepsTheLastGoodOne) {
+  const std::string path = folder_ + "/a.ckpt";
+  WriteCheckpoint(path, Example());
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{10000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  Checkpoint large = Example();
+  large.sections["table"] = std::string(100000, 'x');
+  const std::string message = MessageOf<StorageError>([&] { WriteCheckpoint(path, large); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_CONTAINS(message, path + ": cannot be written: File too large");
+  EXPECT_EQ(ReadCheckpoint(path).sections, Example().sections);
+  EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
+}
+
+TEST(CheckContinues, SaysWhatDiffers) {
+  const Checkpoint checkpoint = Example();
+  EnvironmentSpec spec = checkpoint.spec;
+  spec.version = "0.1.0";
+  const auto refuse = [&](const std::string& algorithm, const std::string& options,
+                          std::uint64_t seed, const EnvironmentSpec& now) {
+    return MessageOf<InputError>(
+        [&] { CheckContinues(checkpoint, "a.ckpt", algorithm, options, seed, now); });
+  };
+  EXPECT_EQ(refuse("q_learning", "discount=0.97", 7, spec), "");
+  EXPECT_CONTAINS(refuse("sarsa", "discount=0.97", 7, spec),
+                  "a.ckpt: cannot be continued: algorithm: it has q_learning, asked for sarsa");
+  EXPECT_CONTAINS(refuse("q_learning", "discount=0.9", 7, spec),
+                  "options: it has discount=0.97, asked for discount=0.9");
+  EXPECT_CONTAINS(refuse("q_learning", "discount=0.97", 8, spec), "seed: it has 7, asked for 8");
+  EnvironmentSpec other = spec;
+  other.scenario_name = "red_tide";
+  other.scenario_hash = 1;
+  EXPECT_CONTAINS(refuse("q_learning", "discount=0.97", 7, other),
+                  "scenario: it has tiny (hash fedcba9876543210), asked for red_tide (hash "
+                  "0000000000000001)");
+  other = spec;
+  other.version = "0.2.0";
+  EXPECT_CONTAINS(refuse("q_learning", "discount=0.97", 7, other),
+                  "version: it has 0.1.0, asked for 0.2.0");
+  other = spec;
+  other.farms = 4;
+  EXPECT_CONTAINS(refuse("q_learning", "discount=0.97", 7, other), "farms: it has 3, asked for 4");
+}
+
+using SavedPolicyFile = FolderTest;
+
+TEST_F(SavedPolicyFile, PlaysLikeTheLearnerThatSavedIt) {
+  LocalEnvironment environment(TinyFarm(), {2, kIndexBit, false, 1});
+  TabularLearner<SarsaRule> learner(environment.spec(), 1, "");
+  std::vector<std::uint8_t> actions;
+  const Results* results = &environment.Reset(1);
+  for (int i = 0; i < 500; ++i) {
+    learner.Step(*results, 0.5, actions);
+    results = &environment.Step(actions);
+  }
+  Checkpoint checkpoint = Example();
+  checkpoint.kind = Checkpoint::kPolicy;
+  checkpoint.algorithm = "sarsa";
+  checkpoint.spec = environment.spec();
+  checkpoint.version = checkpoint.spec.version;
+  learner.SavePolicy(checkpoint);
+  WriteCheckpoint(folder_ + "/policy.ckpt", checkpoint);
+  const SavedPolicy saved = FindPolicy(folder_);
+  EXPECT_EQ(saved.encodings, kIndexBit);
+  const auto policy = MakePolicy(saved, environment.spec());
+  std::vector<std::uint8_t> expected;
+  learner.GreedyPolicy()->Act(*results, expected);
+  policy->Act(*results, actions);
+  EXPECT_EQ(actions, expected);
+
+  EnvironmentSpec other = environment.spec();
+  other.width = 30;
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { MakePolicy(saved, other); }),
+                  "does not fit scenario tiny: width: it knows 5, the farm has 30");
+  SavedPolicy old = saved;
+  old.checkpoint.version = "0.0.1";
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([&] { MakePolicy(old, environment.spec()); }),
+      "policy.ckpt: was trained by aquafarm 0.0.1, expected " + environment.spec().version);
+}
+
+TEST_F(SavedPolicyFile, AFolderWithoutAPolicyIsRefused) {
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { FindPolicy(folder_); }),
+                  "holds neither policy.ckpt nor a checkpoint");
+  EXPECT_EQ(FindPolicy("random").checkpoint.algorithm, "random");
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Learners of several agents: each solves a tiny farm of two ships, agents that are done learn no
+// more, and what is saved goes on bit for bit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/learning/replay.h"
+#include "aquafarm/agents/learning/tabular.h"
+#include "aquafarm/agents/training/algorithms.h"
+#include "aquafarm/agents/training/trainer.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+constexpr const char* kSmall =
+    "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
+    "learning_rate=linear:0.002:0.0001:1";
+
+constexpr const char* kSmallRecurrent =
+    "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=4 "
+    "burn_in=2 learning_rate=linear:0.003:0.0001:1";
+
+/// Two ships at two ports, two devices, one reward.
+Scenario TwoShips() {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.ships.count = 2;
+  scenario.ports.cells = {{2, 0}, {2, 1}};
+  scenario.devices.sites = {{{2, 3}, DeviceKind::kMonitoring, 60.0F, false},
+                            {{4, 2}, DeviceKind::kMonitoring, 80.0F, false}};
+  scenario.rewards.sharing = RewardSharing::kTeam;
+  scenario.step_limit = 60;
+  return scenario;
+}
+
+/// Two devices that drive themselves, and a ship that fetches a third.
+Scenario SmartDevices() {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.devices.sites.push_back({{4, 1}, DeviceKind::kMonitoring, 70.0F, true});
+  scenario.devices.sites.push_back({{1, 3}, DeviceKind::kMonitoring, 60.0F, true});
+  scenario.step_limit = 60;
+  return scenario;
+}
+
+double SuccessAfter(const std::string& algorithm, const std::string& options, std::uint64_t steps,
+                    const Scenario& scenario, std::uint8_t credit = kOwnRewardsBit) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(
+      Share(scenario), {8, static_cast<std::uint8_t>(entry.encodings(options) | credit), false, 1});
+  const auto learner = entry.make(environment.spec(), 1, options);
+  const double before = Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
+  EXPECT_LT(before, 0.5) << algorithm;
+  TrainerOptions trainer;
+  trainer.algorithm = algorithm;
+  trainer.steps = steps;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  return Evaluate(environment, *learner->GreedyPolicy(), 1, 50).success_rate;
+}
+
+TEST(TwoShips, AreLedHomeByLearnersOfValues) {
+  EXPECT_GE(SuccessAfter("q_learning", "", 200000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("dqn", kSmall, 24000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("vdn", std::string(kSmall) + " action_gap=0.5", 40000, TwoShips()), 0.98);
+}
+
+TEST(TwoShips, AreLedHomeByLearnersOfValuesThatRemember) {
+  for (const char* algorithm : {"lstm_dqn", "independent_lstm_dqn"}) {
+    EXPECT_GE(SuccessAfter(algorithm, kSmallRecurrent, 24000, TwoShips()), 0.98) << algorithm;
+  }
+}
+
+// The settings that ship but for size and longer exploration: a run is too short for a tenth of it.
+const std::string kActors =
+    "start=500 replay=20000 exploration=epsilon_greedy:linear:1:0.05:0.5 hidden=";
+
+TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips()), 0.98);
+}
+
+TEST(TwoShips, AreLedHomeByActorsWhoAreToldTheTeamsRewardAlone) {
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips(), /*credit=*/0), 0.98);
+}
+
+TEST(TwoShips, AreLedHomeByActorsThatRemember) {
+  EXPECT_GE(
+      SuccessAfter("maddpg", kActors + "32 recurrent=true window=3 batch=32", 32000, TwoShips()),
+      0.98);
+}
+
+// As Lowe et al. print it, but for the critic, which is one network for all: targets by the own
+// target actor, moments drawn alike, an actor's network each.
+TEST(TwoShips, AreLedHomeByActorsAsPrinted) {
+  constexpr const char* kPrinted =
+      "hidden=32 start=500 replay=20000 actor_rate=0.001 logit_penalty=0.01 best_response=false "
+      "priority=0 shared=false mask_blocked=false exploration=epsilon_greedy:linear:1:0.05:0.5";
+  EXPECT_GE(SuccessAfter("maddpg", kPrinted, 40000, TwoShips()), 0.98);
+}
+
+// A replay that is full of one episode has moments without a window before them.
+TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
+  Scenario scenario = TwoShips();
+  scenario.step_limit = 5000;
+  const std::string options =
+      "recurrent=true window=8 hidden=8 batch=32 start=50 replay=100 steps_per_update=2 "
+      "shared=false";
+  LocalEnvironment environment(Share(scenario), {2, kFeaturesBit, false, 1});
+  const auto learner = FindAlgorithm("maddpg").make(environment.spec(), 1, options);
+  TrainerOptions trainer;
+  trainer.algorithm = "maddpg";
+  trainer.steps = 600;
+  EXPECT_EQ(Trainer(environment, *learner, trainer).Run(), TrainingEnd::kDone);
+  EXPECT_TRUE(std::isfinite(learner->status().loss));
+}
+
+TEST(Maddpg, AnActorsLossThatIsNoNumberNamesTheBatchItWasDrawnFor) {
+  const std::string options = "hidden=8 batch=8 start=10 replay=500 steps_per_update=2";
+  LocalEnvironment environment(Share(TwoShips()), {2, kFeaturesBit, false, 1});
+  const auto learner = FindAlgorithm("maddpg").make(environment.spec(), 1, options);
+  Checkpoint checkpoint;
+  learner->Save(checkpoint);
+  std::fill_n(checkpoint.sections["weights"].begin() + 40, 4, '\xff');  // a NaN
+  learner->Load(checkpoint);
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint64_t> chance;
+  const Results* results = &environment.Reset(1);
+  std::string message;
+  for (int i = 0; i < 100 && message.empty(); ++i) {
+    Checkpoint before;
+    learner->Save(before);
+    before.GetArray("chance", 4, chance);
+    message = MessageOf<LearnerFailed>([&] { learner->Step(*results, 0.1, actions); });
+    results = &environment.Step(actions);
+  }
+  EXPECT_CONTAINS(message, "loss of the actors: is not finite at update 1, after ");
+  EXPECT_CONTAINS(message, "farm steps, on the batch drawn from seed 1 at position " +
+                               std::to_string(chance[0]) + ";");
+}
+
+TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {
+  EXPECT_GE(SuccessAfter("q_learning", "", 200000, SmartDevices()), 0.98);
+  EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, SmartDevices()), 0.98);
+  EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, SmartDevices()), 0.98);
+}
+
+// Those that are home early are done; what the others are worth must not rest on them.
+TEST(SmartDevices, AreLedHomeByActorsWithOwnRewardsOrTheTeams) {
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, SmartDevices()), 0.98);
+  Scenario team = SmartDevices();
+  team.rewards.sharing = RewardSharing::kTeam;
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, team, /*credit=*/0), 0.98);
+}
+
+TEST(DoneAgents, LearnNothingMoreFromATable) {
+  EnvironmentSpec spec;
+  spec.farms = 1;
+  spec.agents = 2;
+  spec.state_count = 3;
+  TabularLearner<QLearningRule> learner(
+      spec, 1, "learning_rate=0.5 discount=0.9 exploration=epsilon_greedy:0");
+  Results results;
+  results.legal = {kAllActions, kAllActions};
+  results.reasons = {0};
+  std::vector<std::uint8_t> actions;
+  const auto tell = [&](bool started, std::uint8_t in_play, float reward) {
+    results.started = {started ? std::uint8_t{1} : std::uint8_t{0}};
+    results.index = {0, 1};
+    results.in_play = {1, in_play};
+    results.rewards = {0.0F, reward};
+    learner.Step(results, 0.0, actions);
+  };
+  tell(true, 1, 0.0F);
+  tell(false, 0, 10.0F);  // the second agent delivers itself
+  const std::vector<float> once = learner.table().values;
+  EXPECT_EQ(once[3 * kActionCount + kActionCount], 5.0F) << "no bootstrap past its end";
+  tell(false, 0, 99.0F);
+  tell(false, 0, 99.0F);
+  EXPECT_EQ(learner.table().values, once);
+}
+
+TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
+  Replay<float> replay({100, 2, 2, 1, 0});
+  Results results;
+  results.legal = {kAllActions, kAllActions};
+  const float observations[] = {0.0F, 0.0F};
+  for (int t = 0; t < 6; ++t) {
+    results.rewards = {1.0F, 2.0F};
+    results.reasons = {0};
+    results.started = {t == 0 ? std::uint8_t{1} : std::uint8_t{0}};
+    results.in_play = {1, t < 2 ? std::uint8_t{1} : std::uint8_t{0}};
+    replay.Add(results, observations);
+    replay.SetActions({0, 0});
+  }
+  EXPECT_TRUE(replay.Begins(1, 1, 2));
+  EXPECT_FALSE(replay.Begins(2, 1, 2));
+  EXPECT_TRUE(replay.Begins(2, 0, 2));
+  const Transition last = replay.At(0, 1, 3, 0.5F);
+  EXPECT_FLOAT_EQ(last.reward, 2.0F + 0.5F * 2.0F);
+  EXPECT_EQ(last.discount, 0.0F);
+  // For the team it goes on.
+  float rewards[2];
+  const JointTransition all = replay.JointAt(0, 0, 3, 0.5F, rewards);
+  EXPECT_FLOAT_EQ(rewards[0], 1.0F * 1.75F);
+  EXPECT_FLOAT_EQ(rewards[1], 2.0F * 1.75F);
+  EXPECT_FLOAT_EQ(all.discount, 0.125F);
+  EXPECT_EQ(all.to, replay.Row(3, 0));
+}
+
+class Saved : public testing::TestWithParam<std::string> {};
+
+Checkpoint PolicyOf(const Learner& learner, const std::string& algorithm,
+                    const EnvironmentSpec& spec) {
+  Checkpoint checkpoint;
+  checkpoint.algorithm = algorithm;
+  checkpoint.options = learner.options();
+  checkpoint.spec = spec;
+  learner.SavePolicy(checkpoint);
+  return checkpoint;
+}
+
+TEST_P(Saved, LearnersOfSeveralAgentsGoOnBitForBit) {
+  const std::string options = "hidden=8 batch=8 start=50 replay=500";
+  const Algorithm& entry = FindAlgorithm(GetParam());
+  LocalEnvironment environment(Share(SmartDevices()), {2, entry.encodings(options), false, 1});
+  const auto one = entry.make(environment.spec(), 1, options);
+  const auto other = entry.make(environment.spec(), 1, options);
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint8_t> again;
+  const Results* now = &environment.Reset(1);
+  for (int i = 0; i < 200; ++i) {
+    one->Step(*now, 0.1, actions);
+    now = &environment.Step(actions);
+  }
+  Checkpoint checkpoint;
+  one->Save(checkpoint);
+  other->Load(checkpoint);
+  for (int i = 0; i < 100; ++i) {
+    one->Step(*now, 0.2, actions);
+    other->Step(*now, 0.2, again);
+    ASSERT_EQ(actions, again) << "step " << i;
+    now = &environment.Step(actions);
+  }
+  Checkpoint a;
+  Checkpoint b;
+  one->SavePolicy(a);
+  other->SavePolicy(b);
+  EXPECT_TRUE(a.sections == b.sections);
+}
+
+TEST_P(Saved, PoliciesForTwoShipsAreRefusedByAFarmWithFour) {
+  const Algorithm& entry = FindAlgorithm(GetParam());
+  Scenario scenario = TwoShips();
+  scenario.name = "two";
+  LocalEnvironment two(Share(scenario), {1, kFeaturesBit, false, 1});
+  const auto learner = entry.make(two.spec(), 1, "hidden=8");
+  const Checkpoint checkpoint = PolicyOf(*learner, GetParam(), two.spec());
+  EXPECT_NE(entry.make_policy(checkpoint, two.spec()), nullptr);
+  scenario.name = "four";
+  scenario.ships.count = 4;
+  LocalEnvironment four(Share(scenario), {1, kFeaturesBit, false, 1});
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([&] { entry.make_policy(checkpoint, four.spec()); }),
+      GetParam() +
+          " of scenario two does not fit scenario four: agents: it knows 2, the farm has 4");
+}
+
+void ExpectTheOwnShareIsEnough(const std::string& algorithm, const std::string& options) {
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});
+  const EnvironmentSpec& spec = environment.spec();
+  const auto learner = entry.make(spec, 1, options);
+  const Checkpoint checkpoint = PolicyOf(*learner, algorithm, spec);
+  const auto both = entry.make_policy(checkpoint, spec);
+  const auto own = entry.make_policy(checkpoint, spec);
+  both->Begin(1, 1);
+  own->Begin(1, 1);
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint8_t> own_actions;
+  const Results* all = &environment.Reset(1, 0);
+  for (int step = 0; step < 20; ++step) {
+    Results share = *all;
+    share.in_play[0] = 0;
+    std::fill_n(share.features.begin(), spec.feature_count, 0.0F);
+    both->Act(*all, actions);
+    own->Act(share, own_actions);
+    ASSERT_EQ(own_actions[1], actions[1]) << options << ' ' << step;
+    ASSERT_EQ(own->values().size(), both->values().size());
+    if (!own->values().empty()) {
+      EXPECT_NEAR(own->values()[1], both->values()[1], 1e-4F) << options << ' ' << step;
+    }
+    actions[0] = static_cast<std::uint8_t>(step % kMoveCount);
+    all = &environment.Step(actions);
+  }
+}
+
+// As the node of a ship does, which knows its own share alone.
+TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
+  ExpectTheOwnShareIsEnough(GetParam(), "hidden=8");
+  if (GetParam() != "maddpg") return;
+  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 shared=false");
+  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 recurrent=true");
+  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 shared=false recurrent=true");
+}
+
+// The weights are the same on every device. On a machine with CUDA this shows less.
+TEST_P(Saved, PoliciesTrainedOnCudaPlayWhereThereIsNone) {
+  const Algorithm& entry = FindAlgorithm(GetParam());
+  LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});
+  const auto learner = entry.make(environment.spec(), 1, "hidden=8 device=cpu");
+  Checkpoint checkpoint = PolicyOf(*learner, GetParam(), environment.spec());
+  const std::string cpu = "device=cpu";
+  const std::size_t at = checkpoint.options.find(cpu);
+  ASSERT_NE(at, std::string::npos) << checkpoint.options;
+  checkpoint.options.replace(at, cpu.size(), "device=cuda");
+  const auto policy = entry.make_policy(checkpoint, environment.spec());
+  const auto own = learner->GreedyPolicy();
+  policy->Begin(1, 1);
+  own->Begin(1, 1);
+  std::vector<std::uint8_t> actions;
+  std::vector<std::uint8_t> own_actions;
+  const Results* results = &environment.Reset(1, 0);
+  for (int step = 0; step < 20; ++step) {
+    policy->Act(*results, actions);
+    own->Act(*results, own_actions);
+    ASSERT_EQ(actions, own_actions) << step;
+    results = &environment.Step(actions);
+  }
+}
+
+TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
+  Scenario scenario = TwoShips();
+  scenario.ships.count = 3;
+  LocalEnvironment environment(Share(scenario), {1, kFeaturesBit, false, 1});
+  const auto learner = FindAlgorithm("dqn").make(environment.spec(), 1, "hidden=8");
+  const Checkpoint checkpoint = PolicyOf(*learner, "dqn", environment.spec());
+  const auto policy = FindAlgorithm("dqn").make_policy(checkpoint, environment.spec());
+  Results results = environment.Reset(1, 0);
+  std::vector<std::uint8_t> actions;
+  policy->Act(results, actions);
+  const std::vector<float> values = policy->values();
+  for (std::size_t done = 0; done < 3; ++done) {
+    results.in_play = {1, 1, 1};
+    results.in_play[done] = 0;
+    policy->Act(results, actions);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(policy->values()[i], i == done ? 0.0F : values[i], 1e-4F) << done << ' ' << i;
+    }
+    EXPECT_EQ(actions[done], 0) << done;
+  }
+  for (std::size_t left = 0; left < 3; ++left) {
+    results.in_play = {0, 0, 0};
+    results.in_play[left] = 1;
+    policy->Act(results, actions);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(policy->values()[i], i == left ? values[i] : 0.0F, 1e-4F) << left << ' ' << i;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Saved,
+                         testing::Values("dqn", "lstm_dqn", "independent_dqn",
+                                         "independent_lstm_dqn", "vdn", "maddpg"),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace aquafarm::agents::test

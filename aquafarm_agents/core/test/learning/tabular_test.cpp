@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/learning/tabular.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/training/trainer.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+/// A chain of three states, told by hand.
+struct Chain {
+  EnvironmentSpec spec;
+  Results results;
+  std::vector<std::uint8_t> actions;
+
+  Chain() {
+    spec.farms = spec.agents = 1;
+    spec.state_count = 3;
+    results.rewards = {0.0F};
+    results.legal = {kAllActions};
+    results.reasons = {0};
+    results.started = {1};
+    results.in_play = {1};
+    results.index = {0};
+  }
+  template <typename L>
+  std::uint8_t Tell(L& learner, std::uint32_t state, float reward,
+                    EndReason reason = EndReason::kNone) {
+    results.index[0] = state;
+    results.rewards[0] = reward;
+    results.reasons[0] = static_cast<std::uint8_t>(reason);
+    learner.Step(results, 0.0, actions);
+    results.started[0] = 0;
+    return actions[0];
+  }
+};
+
+constexpr const char* kByHand = "learning_rate=0.5 discount=0.9 exploration=epsilon_greedy:0";
+
+TEST(QLearning, UpdatesByEquation12) {
+  Chain chain;
+  TabularLearner<QLearningRule> learner(chain.spec, 1, kByHand);
+  EXPECT_EQ(chain.Tell(learner, 0, 0.0F), 0);
+  EXPECT_EQ(chain.Tell(learner, 1, 2.0F), 0);
+  EXPECT_FLOAT_EQ(learner.table().values[0], 1.0F);  // 0 + 0.5 (2 + 0.9 · 0 − 0)
+  chain.Tell(learner, 0, 3.0F);
+  EXPECT_FLOAT_EQ(learner.table().values[10], 1.95F);  // 0.5 (3 + 0.9 · 1)
+}
+
+template <typename L>
+float ValueAfterEnd(EndReason reason) {
+  Chain chain;
+  L learner(chain.spec, 1, std::string(kByHand) + " initial_value=10");
+  chain.Tell(learner, 0, 0.0F);
+  chain.Tell(learner, 2, 4.0F, reason);
+  return learner.table().values[0];
+}
+
+TEST(Tabular, TerminationStopsBootstrappingAndTruncationDoesNot) {
+  using Q = TabularLearner<QLearningRule>;
+  using S = TabularLearner<SarsaRule>;
+  EXPECT_FLOAT_EQ(ValueAfterEnd<Q>(EndReason::kAllRetrieved), 7.0F);  // 10 + 0.5 (4 − 10)
+  EXPECT_FLOAT_EQ(ValueAfterEnd<Q>(EndReason::kDisasterEnded), 7.0F);
+  EXPECT_FLOAT_EQ(ValueAfterEnd<Q>(EndReason::kStepLimit), 11.5F);  // 10 + 0.5 (4 + 9 − 10)
+  EXPECT_FLOAT_EQ(ValueAfterEnd<S>(EndReason::kAllRetrieved), 7.0F);
+  EXPECT_FLOAT_EQ(ValueAfterEnd<S>(EndReason::kStepLimit), 11.5F);
+}
+
+TEST(Tabular, TheStartOfAnEpisodeIsNoTransition) {
+  Chain chain;
+  TabularLearner<QLearningRule> learner(chain.spec, 1, kByHand);
+  chain.Tell(learner, 0, 0.0F);
+  chain.Tell(learner, 1, 5.0F, EndReason::kAllRetrieved);
+  const std::vector<float> before = learner.table().values;
+  chain.results.started[0] = 1;
+  chain.Tell(learner, 2, 0.0F);
+  EXPECT_EQ(learner.table().values, before);
+}
+
+/// Eq. 12 and 14 as they are printed, entry by entry.
+struct Oracle {
+  std::vector<float> q;
+  float alpha;
+  float gamma;
+  bool sarsa;
+
+  void Learn(std::size_t row, std::uint8_t action, float reward, bool terminated,
+             std::size_t next_row, std::uint8_t next_action) {
+    float next = 0.0F;
+    if (!terminated) {
+      next = q[next_row + next_action];
+      for (std::size_t a = 0; a < kActionCount && !sarsa; ++a)
+        next = std::max(next, q[next_row + a]);
+    }
+    q[row + action] += alpha * (reward + gamma * next - q[row + action]);
+  }
+};
+
+template <typename L>
+void ExpectLikeOracle(bool sarsa) {
+  LocalEnvironment environment(Share(aquafarm::test::CrowdedScenario(2)), {3, kIndexBit, false, 1});
+  const EnvironmentSpec& spec = environment.spec();
+  L learner(spec, 9, "learning_rate=0.25 discount=0.75 exploration=epsilon_greedy:0.5");
+  Oracle oracle{std::vector<float>(learner.table().values.size()), 0.25F, 0.75F, sarsa};
+  std::vector<std::uint8_t> actions;
+  Results results = environment.Reset(3);
+  learner.Step(results, 0.0, actions);
+  for (int step = 0; step < 2000; ++step) {
+    const std::vector<std::uint8_t> taken = actions;
+    const Results before = results;
+    results = environment.Step(actions);
+    learner.Step(results, 0.0, actions);
+    std::size_t k = 0;
+    for (std::size_t farm = 0; farm < 3; ++farm) {
+      const bool terminated = IsTerminated(static_cast<EndReason>(results.reasons[farm]));
+      for (std::int32_t agent = 0; agent < spec.agents; ++agent, ++k) {
+        if (results.started[farm] != 0 || before.in_play[k] == 0) continue;
+        oracle.Learn(learner.table().Row(agent, before.index[k]), taken[k], results.rewards[k],
+                     terminated || results.in_play[k] == 0,
+                     learner.table().Row(agent, results.index[k]), actions[k]);
+      }
+    }
+    ASSERT_EQ(learner.table().values == oracle.q, true) << "step " << step;
+  }
+}
+
+TEST(QLearning, IsTheSlowOracleBitForBit) {
+  ExpectLikeOracle<TabularLearner<QLearningRule>>(false);
+}
+TEST(Sarsa, IsTheSlowOracleBitForBit) { ExpectLikeOracle<TabularLearner<SarsaRule>>(true); }
+
+template <typename L>
+void ExpectLearnsTinyFarm(const std::string& options) {
+  const auto farm = TinyFarm();
+  LocalEnvironment environment(farm, {4, kIndexBit, false, 1});
+  L learner(environment.spec(), 2, options);
+  EXPECT_EQ(Evaluate(environment, *learner.GreedyPolicy(), 1, 20).success_rate, 0.0);
+  TrainerOptions training;
+  training.steps = 60000;
+  training.seed = 2;
+  EXPECT_EQ(Trainer(environment, learner, training).Run(), TrainingEnd::kDone);
+  const Evaluation after = Evaluate(environment, *learner.GreedyPolicy(), 1, 20);
+  EXPECT_EQ(after.success_rate, 1.0);
+  EXPECT_EQ(after.mean_steps, 6.0);  // two north, pickup, two south, drop-off
+}
+
+TEST(QLearning, GoesFromFailingToSolvingATinyFarm) {
+  ExpectLearnsTinyFarm<TabularLearner<QLearningRule>>("");
+}
+TEST(Sarsa, GoesFromFailingToSolvingATinyFarm) {
+  ExpectLearnsTinyFarm<TabularLearner<SarsaRule>>("");
+}
+TEST(QLearning, LearnsWithBoltzmannExploration) {
+  ExpectLearnsTinyFarm<TabularLearner<QLearningRule>>("exploration=boltzmann");
+}
+TEST(Sarsa, LearnsWithLegalActionsOnly) {
+  ExpectLearnsTinyFarm<TabularLearner<SarsaRule>>("mask_illegal=true");
+}
+
+TEST(QLearning, SolvesPaper) {
+  LocalEnvironment environment(Paper(), {64, kIndexBit, false, 1});
+  TabularLearner<QLearningRule> learner(environment.spec(), 1, "");
+  TrainerOptions training;
+  training.steps = 2000000;
+  EXPECT_EQ(Trainer(environment, learner, training).Run(), TrainingEnd::kDone);
+  const Evaluation after = Evaluate(environment, *learner.GreedyPolicy(), 1, 1000);
+  EXPECT_EQ(after.success_rate, 1.0);
+  EXPECT_GT(after.return_per_step, 3.0);
+}
+
+TEST(Tabular, IllegalActionsAreNeverTriedWhenMasked) {
+  LocalEnvironment environment(TinyFarm(), {4, kIndexBit, false, 1});
+  TabularLearner<QLearningRule> learner(environment.spec(), 1,
+                                        "mask_illegal=true exploration=epsilon_greedy:1");
+  std::vector<std::uint8_t> actions;
+  const Results* results = &environment.Reset(1);
+  for (int i = 0; i < 2000; ++i) {
+    learner.Step(*results, 0.0, actions);
+    results = &environment.Step(actions);
+    for (const std::uint8_t outcome : results->outcomes) {
+      EXPECT_NE(outcome, static_cast<std::uint8_t>(Outcome::kIllegalPickup));
+      EXPECT_NE(outcome, static_cast<std::uint8_t>(Outcome::kIllegalDropOff));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

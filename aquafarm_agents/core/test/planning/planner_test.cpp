@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/planning/planner.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/planning/team_bound.h"
+#include "aquafarm/agents/training/saved_policy.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/farm/forecast.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+
+namespace aquafarm::agents {
+namespace {
+
+// 4 × 3 cells, an island, a rock, a port, two devices; everything that costs, costs.
+Scenario TinyScenario(std::int32_t duration, float exposure, std::int32_t capacity) {
+  Scenario scenario;
+  scenario.name = "tiny";
+  scenario.width = 4;
+  scenario.height = 3;
+  scenario.islands = {{{0, 0}, 1, 1}};
+  scenario.rocks.cells = {{2, 1}};
+  scenario.rocks.reward = {-2.0F, -1.0F};
+  scenario.ports.cells = {{1, 0}};
+  scenario.ships.capacity = capacity;
+  scenario.devices.placement = DevicePlacement::kExplicit;
+  scenario.devices.sites = {{{3, 0}, DeviceKind::kMonitoring, 60.0F, false},
+                            {{1, 2}, DeviceKind::kMonitoring, 9.0F, false}};
+  scenario.damage.exposure_damage = exposure;
+  scenario.damage.crash_probability = 0.5F;
+  DisasterSpec storm;
+  storm.radii = {0.8F, 1.7F};
+  storm.risks = {-20.0F, -5.0F};
+  storm.turn_probability = 0.4F;
+  storm.duration = duration;
+  scenario.disasters = {storm};
+  ValidateScenario(scenario);
+  return scenario;
+}
+
+// The best return of all action sequences, by playing every one: states that agree in all that
+// decides the future are played once.
+double BruteForce(const Farm& farm, std::map<std::string, double>& seen) {
+  if (farm.over()) return 0.0;
+  // Hash() tells apart how a state was reached (the return so far), so name the state by hand.
+  const Ship& ship = farm.ships()[0];
+  std::string name = std::to_string(farm.step()) + ' ' + std::to_string(ship.cell.x) + ' ' +
+                     std::to_string(ship.cell.y);
+  for (const Device& device : farm.devices()) {
+    name +=
+        ' ' + std::to_string(static_cast<int>(device.status)) + ' ' + std::to_string(device.health);
+  }
+  const auto found = seen.find(name);
+  if (found != seen.end()) return found->second;
+  const std::string saved = farm.Save();
+  double best = -1e9;
+  for (std::uint8_t action = 0; action < kActionCount; ++action) {
+    Farm next(std::make_shared<const Scenario>(farm.scenario()), farm.shared_layout());
+    next.Load(saved);
+    next.Step(&action);
+    best = std::max(best, static_cast<double>(next.ships()[0].reward) + BruteForce(next, seen));
+  }
+  seen[name] = best;
+  return best;
+}
+
+// Plays a plan and returns what it came to.
+double Play(Farm& farm, const Plan& plan) {
+  const float before = farm.ships()[0].episode_return;
+  for (const std::uint8_t action : plan.actions) {
+    if (!farm.over()) farm.Step(&action);
+  }
+  return static_cast<double>(farm.ships()[0].episode_return - before);
+}
+
+TEST(Clairvoyant, EqualsBruteForceOnTinyFarms) {
+  for (const std::int32_t duration : {3, 7, 11}) {
+    for (const float exposure : {0.0F, 0.02F, 0.1F}) {
+      for (std::uint64_t episode = 0; episode < 3; ++episode) {
+        const std::int32_t capacity = episode == 2 ? 2 : 1;
+        const auto scenario =
+            std::make_shared<const Scenario>(TinyScenario(duration, exposure, capacity));
+        Farm farm(scenario);
+        farm.Reset(5, episode);
+        std::map<std::string, double> seen;
+        const double expected = BruteForce(farm, seen);
+        Planner planner(*scenario);
+        const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+        const std::string where = "duration " + std::to_string(duration) + " exposure " +
+                                  std::to_string(exposure) + " episode " + std::to_string(episode);
+        EXPECT_NEAR(plan.expected_return, expected, 1e-3) << where;
+        EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << where;
+      }
+    }
+  }
+}
+
+// The plan of each episode, and the bound of a team, against brute force.
+void ExpectBruteForce(const Scenario& valid, std::uint64_t episodes) {
+  ValidateScenario(valid);
+  const auto scenario = std::make_shared<const Scenario>(valid);
+  Farm farm(scenario);
+  Planner planner(*scenario);
+  for (std::uint64_t episode = 0; episode < episodes; ++episode) {
+    farm.Reset(5, episode);
+    std::map<std::string, double> seen;
+    const double expected = BruteForce(farm, seen);
+    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    EXPECT_NEAR(plan.expected_return, expected, 1e-3) << "episode " << episode;
+    EXPECT_GE(TeamBound(farm), expected - 1e-3) << "episode " << episode;
+    EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << "episode " << episode;
+  }
+}
+
+TEST(Clairvoyant, EqualsBruteForceWithQuadrantsAndARiskySea) {
+  Scenario lopsided = TinyScenario(9, 0.02F, 1);
+  DisasterSpec& storm = lopsided.disasters[0];
+  storm.quadrants = {{0.8F, 0.0F, 0.5F, 0.8F}, {3.0F, 0.5F, 1.7F, 1.0F}};
+  storm.radii = {0.8F, 3.0F};
+  lopsided.seas = SeaSpec{{}, std::vector<float>(12, 0.0F), {}};
+  lopsided.seas->risk[9] = -6.0F;  // where a device waits, at (1, 2)
+  lopsided.seas->risk[5] = -15.0F;
+  ExpectBruteForce(lopsided, 6);
+}
+
+// A risk is paid instead of a step, so where it is the milder of the two, ships go through it.
+TEST(Clairvoyant, EqualsBruteForceWhereAStepCostsMoreThanARisk) {
+  for (const float step : {-10.0F, -19.0F}) {
+    SCOPED_TRACE(step);
+    Scenario dear = TinyScenario(9, 0.0F, 1);
+    dear.rewards.step = step;
+    dear.seas = SeaSpec{{}, std::vector<float>(12, -5.0F), {}};
+    ExpectBruteForce(dear, 4);
+  }
+}
+
+TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {
+  Scenario tracked = TinyScenario(40, 0.0F, 1);
+  DisasterSpec& storm = tracked.disasters[0];
+  storm.track = {{0, -8, 1, 3, storm.radii, storm.risks, {}},
+                 {20, 2, 1, 3, storm.radii, storm.risks, {}},
+                 {40, 2, 9, 3, storm.radii, storm.risks, {}}};
+  tracked.step_duration_s = 3600.0;
+  tracked.view.forecast_error_km = {5.0F, 9.0F, 14.0F};
+  const auto place = [](const Scenario& scenario, Foresight foresight) {
+    Farm farm(std::make_shared<const Scenario>(scenario));
+    farm.Reset(5, 1);
+    std::vector<Disaster> disasters = farm.disasters();
+    const std::vector<Track> tracks = Foresee(farm, foresight, disasters);
+    for (std::int32_t step = 1; step <= 30; ++step) {
+      MoveDisaster(disasters[0], tracks[0], {}, step, 4, 3);
+    }
+    return std::array<float, 2>{disasters[0].x, disasters[0].y};
+  };
+  EXPECT_EQ(place(tracked, Foresight::kClairvoyant), (std::array<float, 2>{2.0F, 5.0F}));
+  Farm farm(std::make_shared<const Scenario>(tracked));
+  farm.Reset(5, 1);
+  const auto forecast = ForecastAt(farm, 0, 0, 30);
+  const auto told = place(tracked, Foresight::kHeadingHolds);
+  EXPECT_NEAR(told[0], forecast[0], 1e-3F);
+  EXPECT_NEAR(told[1], forecast[1], 1e-3F);
+  EXPECT_NE(told, (std::array<float, 2>{2.0F, 5.0F}));
+  tracked.view.forecast_error_km.clear();
+  const auto straight = place(tracked, Foresight::kHeadingHolds);
+  EXPECT_NEAR(straight[0], 7.0F, 1e-3F) << "on as it moves now";
+  EXPECT_NEAR(straight[1], 1.0F, 1e-3F);
+  tracked.disasters[0].forecasts = {{0.0F, {{20.0F, 9.0F, 8.0F}}}};
+  const auto said = place(tracked, Foresight::kHeadingHolds);
+  EXPECT_EQ(said, (std::array<float, 2>{9.0F, 8.0F})) << "as the authority said";
+  EXPECT_EQ(place(tracked, Foresight::kClairvoyant), (std::array<float, 2>{2.0F, 5.0F}));
+}
+
+TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {
+  const auto scenario = std::make_shared<const Scenario>(TinyScenario(9, 0.02F, 1));
+  Planner planner(*scenario);
+  Farm farm(scenario);
+  farm.Reset(1, 0);
+  double last = 1e9;
+  while (!farm.over()) {
+    std::map<std::string, double> seen;
+    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    EXPECT_NEAR(plan.expected_return, BruteForce(farm, seen), 1e-3) << "step " << farm.step();
+    // Following the plan, what is still to come is what was promised.
+    if (last < 1e8) {
+      EXPECT_NEAR(plan.expected_return, last, 1e-3);
+    }
+    farm.Step(&plan.actions.at(0));
+    last = plan.expected_return - static_cast<double>(farm.ships()[0].reward);
+  }
+  EXPECT_NEAR(last, 0.0, 1e-3);
+}
+
+TEST(Clairvoyant, BringsEverythingHomeOnThePapersFarm) {
+  const auto scenario =
+      std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));
+  Planner planner(*scenario);
+  Farm farm(scenario);
+  for (std::uint64_t episode = 0; episode < 20; ++episode) {
+    farm.Reset(7, episode);
+    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    EXPECT_NEAR(Play(farm, plan), plan.expected_return, 1e-2);
+    EXPECT_EQ(farm.reason(), EndReason::kAllRetrieved);
+  }
+}
+
+TEST(RecedingHorizon, IsNeverBetterThanClairvoyant) {
+  const auto scenario =
+      std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));
+  Planner planner(*scenario);
+  Farm farm(scenario);
+  double optimum = 0.0;
+  double achieved = 0.0;
+  for (std::uint64_t episode = 0; episode < 5; ++episode) {
+    farm.Reset(11, episode);
+    const double best = planner.Solve(farm, Foresight::kClairvoyant).expected_return;
+    while (!farm.over()) {
+      const Plan plan = planner.Solve(farm, Foresight::kHeadingHolds);
+      farm.Step(&plan.actions.at(0));
+    }
+    EXPECT_LE(static_cast<double>(farm.ships()[0].episode_return), best + 1e-2);
+    optimum += best;
+    achieved += static_cast<double>(farm.ships()[0].episode_return);
+  }
+  EXPECT_GT(achieved, 0.8 * optimum);
+}
+
+TEST(Planner, SaysWhatItCannotPlanFor) {
+  Scenario many;
+  many.devices.count = 30;
+  EXPECT_THROW(Planner{many}, InputError);
+}
+
+// What policies of the two kinds come to on the same episodes.
+class PlannerPolicies : public ::testing::Test {
+ protected:
+  static Evaluation Evaluate(const std::string& policy, std::int32_t farms) {
+    LocalEnvironment environment(test::Share(TinyScenario(40, 0.02F, 1)),
+                                 {farms, kStatesBit, false, 1});
+    const SavedPolicy saved = FindPolicy(policy);
+    return agents::Evaluate(environment, *MakePolicy(saved, environment.spec()), 3, 60);
+  }
+};
+
+TEST_F(PlannerPolicies, TheFutureIsWorthKnowing) {
+  const Evaluation clairvoyant = Evaluate("clairvoyant", 4);
+  const Evaluation planner = Evaluate("planner", 4);
+  double gained = 0.0;
+  for (std::size_t i = 0; i < clairvoyant.episodes.size(); ++i) {
+    const auto best = static_cast<double>(clairvoyant.episodes[i].episode_return);
+    const auto good = static_cast<double>(planner.episodes[i].episode_return);
+    EXPECT_GE(best, good - 1e-3) << "episode " << i;
+    gained += best - good;
+  }
+  EXPECT_GT(gained, 0.0);
+  EXPECT_GT(planner.mean_return, 0.0);
+}
+
+TEST_F(PlannerPolicies, TheNumberOfFarmsChangesNothing) {
+  for (const char* policy : {"planner", "clairvoyant"}) {
+    EXPECT_EQ(Evaluate(policy, 1).mean_return, Evaluate(policy, 7).mean_return) << policy;
+  }
+}
+
+TEST_F(PlannerPolicies, EarnWhatTheClairvoyantPlanPromises) {
+  const Evaluation evaluation = Evaluate("clairvoyant", 1);
+  const auto scenario = test::Share(TinyScenario(40, 0.02F, 1));
+  Planner planner(*scenario);
+  for (const EpisodeResult& result : evaluation.episodes) {
+    Farm farm(scenario);
+    farm.Reset(result.seed, result.episode);
+    EXPECT_NEAR(planner.Solve(farm, Foresight::kClairvoyant).expected_return,
+                static_cast<double>(result.episode_return), 1e-3)
+        << "episode " << result.episode;
+  }
+}
+
+TEST_F(PlannerPolicies, PlanForTheTeamOnAFarmOfTwoShips) {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.ships.count = 2;
+  scenario.step_limit = 60;
+  for (const char* name : {"planner", "clairvoyant"}) {
+    LocalEnvironment environment(test::Share(scenario), {4, kStatesBit, false, 1});
+    const auto policy = MakePolicy(FindPolicy(name), environment.spec());
+    const Evaluation evaluation = agents::Evaluate(environment, *policy, 3, 20);
+    EXPECT_EQ(evaluation.success_rate, 1.0);
+    EXPECT_EQ(evaluation.mean_steps, 6.0);  // two north, pickup, two south, drop-off
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents

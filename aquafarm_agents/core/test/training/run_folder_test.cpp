@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/training/run_folder.h"
+
+#include <sys/wait.h>
+
+#include <filesystem>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/evaluation/metrics.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+using RunFolderTest = FolderTest;
+
+TEST_F(RunFolderTest, InUseByAnotherIsRefused) {
+  const RunFolder mine(folder_ + "/run", false);
+  EXPECT_CONTAINS(MessageOf<StorageError>([&] { RunFolder(folder_ + "/run", true); }),
+                  "is in use by another training (process " + std::to_string(getpid()) + ")");
+}
+
+TEST_F(RunFolderTest, IsFreeAgainWhenItsProcessHasDied) {
+  const pid_t child = fork();
+  if (child == 0) {
+    new RunFolder(folder_ + "/run", false);
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  EXPECT_NO_THROW(RunFolder(folder_ + "/run", false));
+}
+
+TEST_F(RunFolderTest, HoldingARunIsRefusedUnlessResumed) {
+  { RunFolder(folder_ + "/run", false).Write("run.json", "{}"); }
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { RunFolder(folder_ + "/run", false); }),
+                  "holds a run already; resume it or name another folder");
+  EXPECT_NO_THROW(RunFolder(folder_ + "/run", true));
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { RunFolder(folder_ + "/other", true); }),
+                  "/other: holds no run to resume");
+}
+
+TEST_F(RunFolderTest, WhereNothingCanBeWrittenIsRefusedAtOnce) {
+  WriteFileAtomically(folder_ + "/file", "x");
+  EXPECT_CONTAINS(MessageOf<StorageError>([&] { RunFolder(folder_ + "/file/run", false); }),
+                  "/file/run: cannot be made: Not a directory");
+  EXPECT_THROW(RunFolder("/proc/aquafarm", false), StorageError);
+  EXPECT_THROW(RunFolder("", false), InputError);
+}
+
+TEST_F(RunFolderTest, KeepsTheLastTwoCheckpoints) {
+  const RunFolder run(folder_ + "/run", false);
+  EXPECT_FALSE(run.NewestCheckpoint());
+  Checkpoint checkpoint;
+  for (const std::uint64_t steps : {5U, 50U, 1000U}) {
+    checkpoint.steps = steps;
+    run.SaveCheckpoint(checkpoint);
+  }
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(run.path() + "/checkpoints")) {
+    count += entry.is_regular_file() ? 1 : 0;
+  }
+  EXPECT_EQ(count, 2);
+  EXPECT_EQ(ReadCheckpoint(*run.NewestCheckpoint()).steps, 1000U);
+}
+
+using MetricsFileTest = FolderTest;
+
+TEST_F(MetricsFileTest, ContinuesWhereTheCheckpointWas) {
+  const std::string path = folder_ + "/metrics.csv";
+  EpisodeResult result;
+  result.reason = EndReason::kStepLimit;
+  result.episode_return = 0.1F;
+  std::uint64_t size = 0;
+  {
+    MetricsFile metrics(path);
+    metrics.Append(1, 10, result, {0.5F, 0.25F, 0.125F});
+    size = metrics.size();
+    metrics.Append(2, 20, result, {});
+    metrics.Sync();
+    EXPECT_EQ(std::filesystem::file_size(path), metrics.size());
+  }
+  const std::string whole = ReadFile(path);
+  EXPECT_CONTAINS(whole, "\n1,10,0,0,0,0,0.1,0,0,0,0,0,0,step_limit,0,0.25,0.125,0.5\n");
+  {
+    MetricsFile metrics(path, size);
+    metrics.Append(2, 20, result, {});
+    metrics.Sync();
+  }
+  EXPECT_EQ(ReadFile(path), whole);
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { MetricsFile(path, 100000); }),
+                  "expected at least the 100000 that the checkpoint counts");
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/training/run.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "agents_fixture.h"
+#include "aquafarm/base/version.h"
+#include "process.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+class RunTest : public FolderTest {
+ protected:
+  RunTest() {
+    options_.run_dir = folder_ + "/run";
+    options_.steps = 60000;
+    options_.evaluation_episodes = 50;
+    options_.random_episodes = 10;
+  }
+  RunReport Train(const MakeEnvironment& make) {
+    return agents::Train(
+        options_, make, [this](const RunStatus& status) { statuses_.push_back(status); }, nullptr);
+  }
+  RunReport Train() {
+    return Train([](std::uint8_t encodings) {
+      return std::make_unique<LocalEnvironment>(TinyFarm(),
+                                                EnvironmentOptions{4, encodings, false, 1});
+    });
+  }
+  RunOptions options_;
+  std::vector<RunStatus> statuses_;
+};
+
+/// A farm that is gone for good after some steps.
+class LostEnvironment final : public Environment {
+ public:
+  explicit LostEnvironment(int steps)
+      : steps_(steps), farms_(TinyFarm(), {2, kIndexBit, false, 1}) {}
+  const EnvironmentSpec& spec() const override { return farms_.spec(); }
+  const Results& Reset(std::uint64_t seed, std::uint64_t first) override {
+    return farms_.Reset(seed, first);
+  }
+  const Results& Step(const std::vector<std::uint8_t>& actions) override {
+    Check();
+    --steps_;
+    return farms_.Step(actions);
+  }
+  std::string Save() override {
+    Check();
+    return farms_.Save();
+  }
+  const Results& Load(const std::string& bytes) override { return farms_.Load(bytes); }
+
+ private:
+  void Check() const {
+    if (steps_ <= 0) throw EnvironmentLost("sim node: gone");
+  }
+  int steps_;
+  LocalEnvironment farms_;
+};
+
+TEST_F(RunTest, AgentsLearnFromTheirOwnPartUnlessToldOtherwise) {
+  Scenario team = aquafarm::test::TinyScenario();
+  team.ships.count = 2;
+  team.ports.cells = {{2, 0}, {2, 1}};
+  team.rewards.sharing = RewardSharing::kTeam;
+  options_.steps = 500;
+  options_.evaluation_episodes = options_.random_episodes = 0;
+  std::vector<int> asked;
+  const MakeEnvironment make = [&](std::uint8_t encodings) {
+    asked.push_back(encodings & kOwnRewardsBit);
+    return std::make_unique<LocalEnvironment>(Share(team),
+                                              EnvironmentOptions{4, encodings, false, 1});
+  };
+  ASSERT_EQ(Train(make).code, ExitCode::kOk);
+  EXPECT_CONTAINS(ReadFile(options_.run_dir + "/run.json"), "\"credit\": \"own\"");
+  options_.resume = true;
+  options_.credit = "shared";
+  const RunReport other = Train(make);
+  EXPECT_EQ(other.code, ExitCode::kBadInput);
+  EXPECT_CONTAINS(other.status.message, "credit: it has own, asked for shared");
+  EXPECT_EQ(asked, (std::vector<int>{kOwnRewardsBit, 0}));
+  options_.credit = "mine";
+  EXPECT_CONTAINS(Train(make).status.message, "credit: got 'mine', expected one of: own, shared");
+}
+
+TEST_F(RunTest, LeavesAFolderThatExplainsItself) {
+  const RunReport report = Train();
+  ASSERT_EQ(report.code, ExitCode::kOk) << report.status.message;
+  EXPECT_EQ(report.status.evaluation.success_rate, 1.0);
+  EXPECT_GT(report.status.evaluation.mean_return, report.random.mean_return + 50.0);
+  EXPECT_CONTAINS(report.summary, "greedy     success 100.0 %");
+  EXPECT_CONTAINS(report.summary, "RANDOM     success");
+  EXPECT_CONTAINS(report.summary, "policy     " + report.policy_path);
+  for (const char* name : {"scenario.yaml", "run.json", "metrics.csv", "policy.ckpt",
+                           "evaluation.csv", "evaluation.json", "evaluation_random.json"}) {
+    EXPECT_TRUE(std::filesystem::exists(options_.run_dir + "/" + name)) << name;
+  }
+  const auto run = nlohmann::json::parse(ReadFile(options_.run_dir + "/run.json"));
+  EXPECT_EQ(run.at("algorithm"), "q_learning");
+  EXPECT_EQ(run.at("steps"), 60000);
+  EXPECT_EQ(run.at("seed"), options_.seed);
+  EXPECT_EQ(run.at("version"), kVersion);
+  EXPECT_EQ(run.at("scenario_hash"), LoadScenario(options_.run_dir + "/scenario.yaml").hash);
+  EXPECT_EQ(statuses_.back().phase, RunPhase::kEnded);
+}
+
+TEST_F(RunTest, AnUnknownAlgorithmEndsAtOnceWithTheList) {
+  options_.algorithm = "dqm";
+  const RunReport report = Train();
+  EXPECT_EQ(report.code, ExitCode::kBadInput);
+  EXPECT_CONTAINS(report.summary, "expected one of: random, q_learning, sarsa");
+  EXPECT_FALSE(std::filesystem::exists(options_.run_dir));
+}
+
+TEST_F(RunTest, BadOptionsEndBeforeAnythingIsMade) {
+  options_.exploration = "boltzmann:0";
+  EXPECT_EQ(Train().code, ExitCode::kBadInput);
+  options_.exploration = "";
+  options_.options = "alpha=0.1";
+  EXPECT_CONTAINS(Train().summary,
+                  "got 'alpha', expected one of: discount, exploration, "
+                  "initial_value, learning_rate, mask_illegal");
+  EXPECT_FALSE(std::filesystem::exists(options_.run_dir));
+}
+
+TEST_F(RunTest, LostFarmsAreSaidAndTheLearnerIsSaved) {
+  const auto lose_after = [](int steps) {
+    return [steps](std::uint8_t) { return std::make_unique<LostEnvironment>(steps); };
+  };
+  const RunReport report = Train(lose_after(500));
+  EXPECT_EQ(report.code, ExitCode::kLost);
+  EXPECT_CONTAINS(report.summary, "sim node: gone; saved in " + options_.run_dir);
+  const Checkpoint saved = ReadCheckpoint(*RunFolder::NewestCheckpoint(options_.run_dir));
+  EXPECT_GT(saved.steps, 900U);
+  EXPECT_FALSE(saved.Has("environment"));
+
+  options_.resume = true;  // with fresh episodes
+  options_.steps = 2000;
+  const RunReport resumed = Train(lose_after(1000000));
+  EXPECT_EQ(resumed.code, ExitCode::kOk) << resumed.summary;
+  EXPECT_GE(resumed.status.progress.steps, 2000U);
+}
+
+TEST_F(RunTest, AFullDiskEndsItAndKeepsTheLastGoodCheckpoint) {
+  options_.checkpoint_period_s = 0.0;
+  options_.progress_period_s = 0.0;
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit small{50000, before.rlim_max};  // the metrics grow beyond it
+  setrlimit(RLIMIT_FSIZE, &small);
+  const RunReport report = Train();
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_EQ(report.code, ExitCode::kStorage);
+  EXPECT_CONTAINS(report.summary, "cannot be written: File too large; the last good checkpoint is");
+  EXPECT_GT(ReadCheckpoint(*RunFolder::NewestCheckpoint(options_.run_dir)).steps, 0U);
+}
+
+class Programs : public FolderTest {
+ protected:
+  int Run(std::vector<std::string> command) {
+    Process process(std::move(command), folder_ + "/out.txt");
+    const int code = process.Wait();
+    output_ = ReadFile(folder_ + "/out.txt");
+    return code;
+  }
+  std::string output_;
+};
+
+TEST_F(Programs, ExplainThemselves) {
+  EXPECT_EQ(Run({AQUAFARM_TRAIN, "--help"}), 0);
+  EXPECT_CONTAINS(output_, "q_learning");
+  EXPECT_CONTAINS(output_, "exit codes");
+  EXPECT_EQ(Run({AQUAFARM_EVALUATE, "--help"}), 0);
+}
+
+TEST_F(Programs, RefuseWhatTheyDoNotKnow) {
+  const std::string run = folder_ + "/run";
+  EXPECT_EQ(Run({AQUAFARM_TRAIN, "nowhere", "-d", run}), 2);
+  EXPECT_CONTAINS(output_, "scenario: got 'nowhere', expected a file or one of: four_squads");
+  EXPECT_EQ(Run({AQUAFARM_TRAIN, "paper", "-d", run, "-a", "dqm"}), 2);
+  EXPECT_EQ(Run({AQUAFARM_TRAIN, "paper", "-d", run, "--farms", "0"}), 2);
+  EXPECT_EQ(Run({AQUAFARM_TRAIN, "--no-such-option"}), 2);
+  EXPECT_EQ(Run({AQUAFARM_EVALUATE, folder_}), 2);
+  EXPECT_CONTAINS(output_, "holds neither policy.ckpt nor a checkpoint");
+}
+
+TEST_F(Programs, NameTheLastGoodCheckpointOfATrainingThatDivergedAndPlayIt) {
+  std::vector<std::string> command{AQUAFARM_TRAIN, "paper", "-d", folder_ + "/run", "-a", "dqn"};
+  command.insert(command.end(), {"-f", "4", "-n", "100000", "--checkpoint-period", "0"});
+  // Weights that grow by 1 an update, until gradients of such rewards are beyond any float.
+  for (const char* option :
+       {"learning_rate=1", "reward_scale=1e9", "gradient_limit=0", "loss=mse", "discount=1",
+        "target_period=1", "priority=0", "hidden=128", "batch=8", "start=500", "replay=1000"}) {
+    command.insert(command.end(), {"-o", option});
+  }
+  ASSERT_EQ(Run(command), static_cast<int>(ExitCode::kDiverged)) << output_;
+  EXPECT_CONTAINS(output_, "farm steps, on the batch drawn from seed 1 at position ");
+  const std::string words = "; the last good checkpoint is ";
+  const std::size_t at = output_.find(words);
+  ASSERT_NE(at, std::string::npos) << output_;
+  const std::size_t begin = at + words.size();
+  const std::string path = output_.substr(begin, output_.find('\n', begin) - begin);
+  EXPECT_GT(ReadCheckpoint(path).steps, 0U);
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/run/policy.ckpt"));
+  EXPECT_EQ(Run({AQUAFARM_EVALUATE, path, "-e", "2"}), 0) << output_;
+  EXPECT_CONTAINS(output_, "dqn on paper: success ");
+}
+
+TEST_F(Programs, TrainAndEvaluateOnTheShippedFarm) {
+  const std::string run = folder_ + "/run";
+  ASSERT_EQ(Run({AQUAFARM_TRAIN, "paper", "-d", run, "-n", "2000000", "--evaluate", "100"}), 0)
+      << output_;
+  EXPECT_CONTAINS(output_, "greedy     success 100.0 %");
+  ASSERT_EQ(Run({AQUAFARM_EVALUATE, run, "-e", "200", "-w", folder_ + "/e"}), 0) << output_;
+  EXPECT_CONTAINS(output_, "q_learning on paper: success 100.0 %");
+  EXPECT_TRUE(std::filesystem::exists(folder_ + "/e.csv"));
+  EXPECT_EQ(Run({AQUAFARM_EVALUATE, run, "two_squads"}), 2);
+  EXPECT_CONTAINS(output_, "does not fit scenario two_squads");
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_agents/drive/agent_driver.h"
+
+#include <aquafarm_msgs/DropOff.h>
+#include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/GetState.h>
+#include <aquafarm_msgs/Move.h>
+#include <aquafarm_msgs/Outcome.h>
+#include <aquafarm_msgs/Pickup.h>
+#include <aquafarm_msgs/Reset.h>
+#include <ros/callback_queue.h>
+#include <ros/console.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_agents/link/service_link.h"
+#include "aquafarm_agents/link/ship_claim.h"
+#include "aquafarm_agents/link/slow_warning.h"
+#include "aquafarm_sim/convert/observation.h"
+#include "aquafarm_sim/names.h"
+
+namespace aquafarm_agents {
+namespace {
+
+namespace names = aquafarm_sim::names;
+using namespace aquafarm::agents;  // NOLINT: this file speaks of nothing else
+using aquafarm::Action;
+using aquafarm::InputError;
+using aquafarm_msgs::FarmState;
+using aquafarm_msgs::Outcome;
+
+// Without an observation for so long, the last one is acted on again.
+constexpr double kSilence_s = 2.0;
+constexpr std::uint32_t kQueue = 10;
+
+}  // namespace
+
+class AgentDriver::Impl {
+ public:
+  Impl(const ros::NodeHandle& node, std::uint8_t encodings, AgentDriverOptions options)
+      : options_(options),
+        encodings_(encodings),
+        node_(node),
+        get_(node, options.wait_limit_s, options.stop),
+        reset_(node, options.wait_limit_s, options.stop) {
+    aquafarm_msgs::GetState get;
+    get.request.with_spec = true;
+    get_.Call(names::kGetState, get);
+    if (!get.response.ok) throw EnvironmentLost("sim node: get_state: " + get.response.message);
+    const aquafarm_msgs::FarmSpec& spec = get.response.spec;
+    scenario_ = std::make_shared<const aquafarm::Scenario>(
+        aquafarm::ParseScenario(spec.scenario_yaml, spec.scenario_name));
+    if (options_.ship < 0 || options_.ship >= spec.agents) {
+      throw InputError("~ship: got " + std::to_string(options_.ship) +
+                       ", expected -1 for all, or [0, " + std::to_string(spec.agents - 1) + "]");
+    }
+    farm_ = std::make_unique<aquafarm::Farm>(scenario_);
+    encoder_ = std::make_unique<aquafarm::Encoder>(*scenario_);
+    spec_ = MakeSpec(*scenario_, *encoder_, 1);
+    if ((encodings_ & kIndexBit) != 0 && spec_.state_count == 0) {
+      throw InputError("policy: scenario " + spec_.scenario_name + " has too many states for it");
+    }
+    SizeResults();
+    const double limit_s = CommandLimit_s(get.response.barrier_timeout_s);
+    for (auto* link : {&move_, &pickup_, &drop_off_}) {
+      link->emplace(node_, options_.wait_limit_s, options_.stop, limit_s);
+    }
+  }
+
+  const EnvironmentSpec& spec() const { return spec_; }
+
+  std::vector<bool> Drive(Policy& policy, std::uint64_t seed, std::int32_t episodes) {
+    std::vector<bool> ended;
+    Board();
+    policy.Begin(seed, 1);
+    while (!Stopped() && (episodes == 0 || ended.size() < static_cast<std::size_t>(episodes))) {
+      const FarmState::ConstPtr now = WaitForObservation();
+      for (const FarmState::ConstPtr& over : std::exchange(over_, {})) {
+        const bool success = over->reason == FarmState::ALL_RETRIEVED;
+        ROS_INFO("episode %llu: %s, return %.1f", static_cast<unsigned long long>(over->episode),
+                 success ? "all retrieved" : "over", static_cast<double>(over->joint_return));
+        if (acted_in_ == std::pair(over->seed, over->episode)) ended.push_back(success);
+        // Whoever is late must not reset what the others have begun meanwhile.
+        const bool is_now = newest_->seed == over->seed && newest_->episode == over->episode;
+        if (is_now) StartNext(*over);
+      }
+      if (!now || now->reason != FarmState::NONE) continue;
+      if (!now->ships[static_cast<std::size_t>(options_.ship)].active) continue;
+      if (now != acted_on_) {  // else its command is given again, and no memory moves on
+        Look(*now);
+        policy.Act(results_, actions_);
+        acted_on_ = now;
+      }
+      Send(*now, actions_[static_cast<std::size_t>(options_.ship)]);
+    }
+    return ended;
+  }
+
+ private:
+  bool Stopped() const { return !ros::ok() || (options_.stop != nullptr && *options_.stop); }
+
+  void SizeResults() {
+    const auto agents = static_cast<std::size_t>(spec_.agents);
+    results_.rewards.resize(agents);
+    results_.outcomes.resize(agents);
+    results_.legal.assign(agents, aquafarm::kMoveMask);
+    results_.in_play.assign(agents, 0);
+    results_.in_play[static_cast<std::size_t>(options_.ship)] = 1;
+    results_.reasons.resize(1);
+    results_.started.assign(1, 1);
+    if ((encodings_ & kIndexBit) != 0) results_.index.resize(agents);
+    if ((encodings_ & kFeaturesBit) != 0) {
+      results_.features.resize(agents * static_cast<std::size_t>(spec_.feature_count));
+    }
+    if ((encodings_ & kPlanesBit) != 0) results_.planes.resize(agents * encoder_->planes_size());
+  }
+
+  void Board() {
+    claim_.emplace(node_, options_.ship, options_.wait_limit_s, options_.stop);
+    node_.setCallbackQueue(&queue_);
+    observation_ = node_.subscribe<FarmState>(
+        names::Observation(options_.ship), kQueue,
+        [this](const FarmState::ConstPtr& message) { Take(message); }, ros::VoidConstPtr(),
+        ros::TransportHints().tcpNoDelay());
+  }
+
+  // Another ship's agent may have begun the next episode before this one looks.
+  void Take(const FarmState::ConstPtr& message) {
+    newest_ = message;
+    if (message->reason == FarmState::NONE) {
+      over_seen_.reset();  // the same episode may be played, and end, again
+      return;
+    }
+    if (over_seen_ && *over_seen_ == std::pair(message->seed, message->episode)) return;
+    over_seen_ = {message->seed, message->episode};
+    over_.push_back(message);
+  }
+
+  // Newer than what has been acted on; null when there is none yet.
+  FarmState::ConstPtr WaitForObservation() {
+    const ros::WallTime start = ros::WallTime::now();
+    while (!Stopped()) {
+      queue_.callAvailable(ros::WallDuration(0.05));
+      claim_->RenewWhenDue();
+      if (newest_ && (again_ || newest_ != seen_)) {
+        seen_ = newest_;
+        again_ = false;
+        return newest_;
+      }
+      if ((ros::WallTime::now() - start).toSec() < kSilence_s) continue;
+      again_ = true;  // perhaps a command was lost; one too many is answered STALE
+      return nullptr;
+    }
+    return nullptr;
+  }
+
+  // The chart of an episode follows from its seed; all else is what the observation tells.
+  void Look(const FarmState& message) {
+    if (farm_->seed() != message.seed || farm_->episode() != message.episode) {
+      farm_->Reset(message.seed, message.episode);
+      results_.started[0] = 1;
+    }
+    if (message.step == 0) results_.started[0] = 1;  // also of the same episode, begun again
+    const auto ship = static_cast<std::size_t>(options_.ship);
+    aquafarm_sim::FromMsg(message, *scenario_, farm_->layout(), view_);
+    results_.legal[ship] = message.ships[ship].legal_actions;
+    results_.rewards[ship] = message.ships[ship].reward;
+    if (!results_.index.empty()) results_.index[ship] = encoder_->Index(view_);
+    if (!results_.features.empty()) {
+      encoder_->Features(
+          view_, results_.features.data() + ship * static_cast<std::size_t>(spec_.feature_count));
+    }
+    if (!results_.planes.empty()) {
+      encoder_->Planes(view_, results_.planes.data() + ship * encoder_->planes_size());
+    }
+  }
+
+  // Paced farms start their next episode by themselves.
+  void StartNext(const FarmState& over) {
+    results_.started[0] = 1;
+    if (over.pace == FarmState::PACED) return;
+    aquafarm_msgs::Reset reset;
+    reset.request.only_if_over = true;
+    reset_.Call(names::kReset, reset);
+    if (!reset.response.ok) throw EnvironmentLost("sim node: reset: " + reset.response.message);
+  }
+
+  void Send(const FarmState& now, std::uint8_t action) {
+    results_.started[0] = 0;
+    acted_in_ = {now.seed, now.episode};
+    if (action < aquafarm::kMoveCount) {
+      aquafarm_msgs::Move move;
+      move.request.direction = action;
+      Command(now, names::Move(options_.ship), *move_, move);
+    } else if (action == static_cast<std::uint8_t>(Action::kPickup)) {
+      aquafarm_msgs::Pickup pickup;
+      Command(now, names::Pickup(options_.ship), *pickup_, pickup);
+    } else {
+      aquafarm_msgs::DropOff drop_off;
+      Command(now, names::DropOff(options_.ship), *drop_off_, drop_off);
+    }
+  }
+
+  template <typename Service>
+  void Command(const FarmState& now, const std::string& name, ServiceLink& link, Service& service) {
+    service.request.episode = now.episode;
+    service.request.step = now.step;
+    service.request.token = ++token_;  // a repeat after a lost connection moves nothing twice
+    link.Call(name, service);
+    const auto& result = service.response.result;
+    switch (result.code) {
+      case Outcome::STALE:  // late, or overtaken: the next observation says where the farm is
+      case Outcome::EPISODE_OVER:
+      case Outcome::SUPERSEDED:
+        return;
+      case Outcome::TIMEOUT:
+      case Outcome::PAUSED:
+        again_ = true;  // the command was dropped
+        warning_.Say("ship " + std::to_string(options_.ship) + ": " + result.message);
+        ros::WallDuration(0.1).sleep();
+        return;
+      case Outcome::CLAIMED:
+        throw InputError("~ship: " + result.message);
+      default:
+        if (!result.ok) throw EnvironmentLost("sim node: command refused: " + result.message);
+    }
+  }
+
+  const AgentDriverOptions options_;
+  const std::uint8_t encodings_;
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_;
+  ServiceLink get_;
+  ServiceLink reset_;
+  std::optional<ServiceLink> move_;
+  std::optional<ServiceLink> pickup_;
+  std::optional<ServiceLink> drop_off_;
+  std::optional<ShipClaim> claim_;
+  SlowWarning warning_;
+  std::shared_ptr<const aquafarm::Scenario> scenario_;
+  std::unique_ptr<aquafarm::Farm> farm_;  // for its layout alone
+  std::unique_ptr<aquafarm::Encoder> encoder_;
+  EnvironmentSpec spec_;
+  aquafarm::View view_;
+  Results results_;  // of one farm, of which only this ship's share is filled
+  std::vector<std::uint8_t> actions_;
+  FarmState::ConstPtr newest_;
+  std::vector<FarmState::ConstPtr> over_;  // the last of each episode that is not dealt with yet
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> over_seen_;  // seed and episode
+  FarmState::ConstPtr acted_on_;  // what the present actions were chosen from
+  FarmState::ConstPtr seen_;      // what was handed out last
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> acted_in_;  // seed and episode
+  bool again_{};
+  std::uint64_t token_{ros::WallTime::now().toNSec()};
+  ros::Subscriber observation_;
+};
+
+AgentDriver::AgentDriver(const ros::NodeHandle& node, std::uint8_t encodings,
+                         AgentDriverOptions options)
+    : impl_(std::make_unique<Impl>(node, encodings, options)) {}
+
+AgentDriver::~AgentDriver() = default;
+
+const EnvironmentSpec& AgentDriver::spec() const { return impl_->spec(); }
+
+std::vector<bool> AgentDriver::Drive(Policy& policy, std::uint64_t seed, std::int32_t episodes) {
+  return impl_->Drive(policy, seed, episodes);
+}
+
+}  // namespace aquafarm_agents

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_agents/link/call_limit.h"
+
+namespace aquafarm_agents {
+namespace {
+
+// Coarse, so that arming costs a fast call next to nothing.
+constexpr std::chrono::milliseconds kLook{200};
+
+}  // namespace
+
+CallLimit::CallLimit(double limit_s) : limit_(limit_s), watcher_([this] { Watch(); }) {}
+
+CallLimit::~CallLimit() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ends_ = true;
+  }
+  ended_.notify_all();
+  watcher_.join();
+}
+
+void CallLimit::Arm(ros::ServiceClient& client) {
+  const auto now = Clock::now();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  armed_ = &client;
+  since_ = now;
+}
+
+void CallLimit::Disarm() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  armed_ = nullptr;
+}
+
+void CallLimit::Watch() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!ended_.wait_for(lock, kLook, [this] { return ends_; })) {
+    if (armed_ == nullptr || Clock::now() - since_ < limit_) continue;
+    armed_->shutdown();  // drops the connection, which ends the call
+    armed_ = nullptr;
+  }
+}
+
+}  // namespace aquafarm_agents

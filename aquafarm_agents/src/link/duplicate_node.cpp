@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_agents/link/duplicate_node.h"
+
+#include <netdb.h>
+#include <poll.h>
+#include <ros/master.h>
+#include <ros/network.h>
+#include <ros/this_node.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm_agents {
+namespace {
+
+constexpr int kLimit_ms = 2000;  // for a host that does not say whether anybody listens
+
+bool Completes(int connection) {
+  pollfd wanted{connection, POLLOUT, 0};
+  int ready = 0;
+  do {
+    ready = poll(&wanted, 1, kLimit_ms);
+  } while (ready < 0 && errno == EINTR);
+  int fault = 0;
+  socklen_t size = sizeof(fault);
+  return ready == 1 && getsockopt(connection, SOL_SOCKET, SO_ERROR, &fault, &size) == 0 &&
+         fault == 0;
+}
+
+bool Connects(const addrinfo& address) {
+  const int connection = socket(
+      address.ai_family, address.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, address.ai_protocol);
+  if (connection < 0) return false;
+  const bool connected = connect(connection, address.ai_addr, address.ai_addrlen) == 0 ||
+                         (errno == EINPROGRESS && Completes(connection));
+  close(connection);
+  return connected;
+}
+
+/// False also when a host has said nothing until the limit.
+bool IsListenedOn(const std::string& host, std::uint32_t port) {
+  addrinfo wanted{};
+  wanted.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found) != 0) return false;
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(found, &freeaddrinfo);
+  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
+    if (Connects(*one)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void RefuseTwin() {
+  const std::string& name = ros::this_node::getName();
+  XmlRpc::XmlRpcValue request;
+  XmlRpc::XmlRpcValue response;
+  XmlRpc::XmlRpcValue payload;
+  request[0] = name;
+  request[1] = name;
+  // Fails also where no master answers, which whoever needs it says better.
+  if (!ros::master::execute("lookupNode", request, response, payload, /*wait_for_master=*/false)) {
+    return;
+  }
+  if (payload.getType() != XmlRpc::XmlRpcValue::TypeString) return;
+  const std::string uri = payload;
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(uri, host, port) || !IsListenedOn(host, port)) return;
+  throw aquafarm::InputError("node " + name + " runs already, at " + uri +
+                             ": expected one node of a name; end it first, or take another name");
+}
+
+}  // namespace aquafarm_agents

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_agents/link/ros_environment.h"
+
+#include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/Outcome.h>
+#include <ros/init.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/observation/encoder.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_sim/names.h"
+
+namespace aquafarm_agents {
+namespace {
+
+namespace names = aquafarm_sim::names;
+using aquafarm::InputError;
+using aquafarm::agents::EnvironmentLost;
+using aquafarm::agents::EnvironmentSpec;
+using aquafarm::agents::EpisodeResult;
+using aquafarm::agents::Results;
+using aquafarm_msgs::Outcome;
+using aquafarm_msgs::StepResult;
+
+static_assert(int{StepResult::INDEX} == int{aquafarm::agents::kIndexBit});
+static_assert(int{StepResult::FEATURES} == int{aquafarm::agents::kFeaturesBit});
+static_assert(int{StepResult::PLANES} == int{aquafarm::agents::kPlanesBit});
+
+constexpr double kRetryPeriod_s = 0.1;
+// Without an episode that ends: another trains on the same farms.
+constexpr int kMostRestarts = 20;
+// Those that the sim node knows as well.
+constexpr int kFarmEncodings =
+    aquafarm::agents::kIndexBit | aquafarm::agents::kFeaturesBit | aquafarm::agents::kPlanesBit;
+
+EnvironmentSpec FromMsg(const aquafarm_msgs::FarmSpec& message) {
+  EnvironmentSpec spec;
+  spec.scenario_name = message.scenario_name;
+  spec.scenario_yaml = message.scenario_yaml;
+  spec.scenario_hash = message.scenario_hash;
+  spec.version = message.version;
+  spec.farms = message.farms;
+  spec.agents = message.agents;
+  spec.team_reward = message.rewards.team;
+  spec.state_count = message.state_count;
+  spec.feature_count = message.feature_count;
+  const aquafarm::Scenario scenario =
+      aquafarm::ParseScenario(message.scenario_yaml, message.scenario_name);
+  spec.feature_names = aquafarm::Encoder(scenario).feature_names();
+  spec.plane_count = message.plane_count;
+  spec.height = message.height;
+  spec.width = message.width;
+  spec.step_limit = message.step_limit;
+  return spec;
+}
+
+EpisodeResult FromMsg(const aquafarm_msgs::EpisodeSummary& message) {
+  EpisodeResult result;
+  result.farm = message.farm;
+  result.seed = message.seed;
+  result.episode = message.episode;
+  result.steps = message.steps;
+  result.episode_return = message.episode_return;
+  result.delivered = message.delivered;
+  result.devices = message.devices;
+  result.delivered_health = message.delivered_health;
+  result.crashes = message.crashes;
+  result.collisions = message.collisions;
+  result.steps_in_disaster = message.steps_in_disaster;
+  result.reason = static_cast<aquafarm::EndReason>(message.reason);
+  return result;
+}
+
+std::string Seconds(double seconds) {
+  return std::to_string(static_cast<long>(seconds + 0.5)) + " s";
+}
+
+}  // namespace
+
+RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOptions options)
+    : node_(node),
+      options_(std::move(options)),
+      encodings_(static_cast<std::uint8_t>((options_.encodings & kFarmEncodings) |
+                                           (options_.hashes ? int{StepResult::HASHES} : 0))),
+      limit_(options_.call_limit_s),
+      // Numbers of an earlier client of the same farms must not come again.
+      sequence_(ros::WallTime::now().toNSec()) {
+  aquafarm_msgs::GetState::Response now = GetState(0, true);
+  if (now.state.pace == aquafarm_msgs::FarmState::PACED) {
+    throw InputError(
+        "sim node: runs paced, expected pace lockstep; call set_pace or use Step's "
+        "per-ship services");
+  }
+  spec_ = FromMsg(now.spec);
+  if (options_.farms > 0) spec_.farms = options_.farms;
+  own_rewards_ = (options_.encodings & aquafarm::agents::kOwnRewardsBit) != 0 && spec_.team_reward;
+  if (own_rewards_) {
+    spec_.team_reward = false;
+    encodings_ |= StepResult::TERMS;
+  }
+  if ((options_.encodings & aquafarm::agents::kIndexBit) != 0 && spec_.state_count == 0) {
+    throw InputError(
+        "scenario " + spec_.scenario_name +
+        ": too many states for a table, expected a learner with a network, as auto chooses");
+  }
+  if (now.spec.farms != spec_.farms) Reset(now.state.seed);
+}
+
+const Results& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
+  aquafarm_msgs::Reset reset;
+  reset.request.has_seed = true;
+  reset.request.seed = seed;
+  reset.request.has_episode = true;
+  reset.request.episode = first_episode;
+  reset.request.farms = spec_.farms;
+  reset.request.encodings = encodings_;
+  reset.request.sequence = ++sequence_;
+  reset.request.with_spec = true;
+  CallOrThrow(reset_client_, names::kReset, reset);
+  if (!reset.response.ok) throw InputError("sim node: reset refused: " + reset.response.message);
+  if (reset.response.spec.scenario_hash != spec_.scenario_hash) {
+    throw InputError("sim node: plays scenario " + reset.response.spec.scenario_name +
+                     " now, expected " + spec_.scenario_name + " as before");
+  }
+  seed_ = seed;
+  next_episode_ = first_episode + static_cast<std::uint64_t>(spec_.farms);
+  Take(reset.response.result);
+  return results_;
+}
+
+const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
+  AQUAFARM_CHECK_EQ(actions.size(),
+                    static_cast<std::size_t>(spec_.farms) * static_cast<std::size_t>(spec_.agents));
+  AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), aquafarm::kActionCount);
+  step_.request.actions.assign(actions.begin(), actions.end());
+  step_.request.encodings = encodings_;
+  step_.request.sequence = ++sequence_;
+  step_.request.turn = turn_;
+  double waited_s = 0.0;
+  ros::WallTime lost_since;
+  for (;;) {
+    const bool answered = Try(step_client_, names::kStep, step_);
+    if (answered && step_.response.ok) break;
+    const int code = answered ? int{step_.response.code} : int{Outcome::SHUTTING_DOWN};
+    if (code == Outcome::STALE) {
+      Restart(step_.response.message);
+      return results_;
+    }
+    if (code == Outcome::SHUTTING_DOWN) {
+      WaitForReturn(lost_since);
+    } else if (code == Outcome::PAUSED || code == Outcome::WRONG_PACE || code == Outcome::CLAIMED) {
+      lost_since = {};
+      WaitToGoOn(step_.response.message, waited_s);
+    } else {
+      throw EnvironmentLost("sim node: step refused: " + step_.response.message);
+    }
+  }
+  Take(step_.response.result);
+  if (!results_.finished.empty()) restarts_ = 0;
+  for (const EpisodeResult& ended : results_.finished) {  // its farm goes on N episodes later
+    next_episode_ =
+        std::max(next_episode_, ended.episode + static_cast<std::uint64_t>(spec_.farms) + 1);
+  }
+  return results_;
+}
+
+// The state comes by a call of its own: planners take longer than that at any step.
+void RosEnvironment::Take(StepResult& result) {
+  if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) results_.states = Save();
+  turn_ = result.turn;
+  results_.rewards.swap(result.rewards);
+  if (own_rewards_) aquafarm::agents::AddUpTerms(result.terms, results_.rewards);
+  results_.outcomes.swap(result.outcomes);
+  results_.legal.swap(result.legal);
+  results_.in_play.swap(result.in_play);
+  results_.reasons.swap(result.reasons);
+  results_.started.swap(result.started);
+  results_.hashes.swap(result.hashes);
+  results_.index.swap(result.index);
+  results_.features.swap(result.features);
+  results_.planes.swap(result.planes);
+  results_.finished.clear();
+  for (const auto& summary : result.finished) results_.finished.push_back(FromMsg(summary));
+}
+
+std::string RosEnvironment::Save() {
+  aquafarm_msgs::SaveState save;
+  CallOrThrow(save_client_, names::kSaveState, save);
+  if (!save.response.ok) throw EnvironmentLost("sim node: save refused: " + save.response.message);
+  return {save.response.data.begin(), save.response.data.end()};
+}
+
+const Results& RosEnvironment::Load(const std::string& bytes) {
+  aquafarm_msgs::LoadState load;
+  load.request.data.assign(bytes.begin(), bytes.end());
+  load.request.encodings = encodings_;
+  CallOrThrow(load_client_, names::kLoadState, load);
+  if (!load.response.ok) throw InputError("sim node: load refused: " + load.response.message);
+  ReadProgress();
+  Take(load.response.result);
+  results_.finished.clear();
+  return results_;
+}
+
+bool RosEnvironment::TakeRestarted() { return std::exchange(restarted_, false); }
+
+void RosEnvironment::ReadProgress() {
+  for (std::int32_t farm = spec_.farms - 1; farm >= 0; --farm) {
+    const auto state = GetState(farm, false).state;
+    seed_ = state.seed;
+    next_episode_ = std::max(next_episode_, state.episode + 1);
+  }
+}
+
+aquafarm_msgs::GetState::Response RosEnvironment::GetState(std::int32_t farm, bool with_spec) {
+  aquafarm_msgs::GetState get;
+  get.request.farm = farm;
+  get.request.with_spec = with_spec;
+  CallOrThrow(get_client_, names::kGetState, get);
+  if (!get.response.ok) throw EnvironmentLost("sim node: get_state: " + get.response.message);
+  return get.response;
+}
+
+void RosEnvironment::Restart(const std::string& why) {
+  if (++restarts_ > kMostRestarts) {
+    throw EnvironmentLost("sim node: its farms are taken away again and again: " + why);
+  }
+  Notice("the farms are not as they were left (" + why +
+         "); going on with fresh episodes from number " + std::to_string(next_episode_));
+  Reset(seed_, next_episode_);
+  restarted_ = true;
+}
+
+void RosEnvironment::WaitForReturn(ros::WallTime& lost_since) {
+  if (lost_since.isZero()) {
+    lost_since = ros::WallTime::now();
+    Notice("the sim node is gone; waiting up to " + Seconds(options_.wait_limit_s) +
+           " for its return");
+  }
+  const double waited_s = (ros::WallTime::now() - lost_since).toSec();
+  if (Stopped() || waited_s >= options_.wait_limit_s) {
+    throw EnvironmentLost("sim node: no answer from service " + node_.resolveName(names::kStep) +
+                          " for " + Seconds(waited_s));
+  }
+  Sleep();
+}
+
+void RosEnvironment::WaitToGoOn(const std::string& why, double& waited_s) {
+  if (waited_s == 0.0) {
+    Notice("waiting up to " + Seconds(options_.pause_limit_s) + " for the sim node: " + why);
+  }
+  if (Stopped() || waited_s >= options_.pause_limit_s) {
+    throw EnvironmentLost("sim node: " + why + "; waited " + Seconds(waited_s));
+  }
+  Sleep();
+  waited_s += kRetryPeriod_s;
+}
+
+template <typename Service>
+bool RosEnvironment::Try(ros::ServiceClient& client, const std::string& name, Service& service) {
+  if (!client.isValid()) client = node_.serviceClient<Service>(name, true);
+  return client.isValid() && limit_.Call(client, service);
+}
+
+template <typename Service>
+void RosEnvironment::CallOrThrow(ros::ServiceClient& client, const std::string& name,
+                                 Service& service) {
+  const ros::WallTime start = ros::WallTime::now();
+  bool told = false;
+  while (!Try(client, name, service)) {
+    const double waited_s = (ros::WallTime::now() - start).toSec();
+    if (!told && waited_s >= 1.0) {
+      Notice("no answer from service " + node_.resolveName(name) + "; waiting up to " +
+             Seconds(options_.wait_limit_s) + " for the sim node");
+      told = true;
+    }
+    if (Stopped() || waited_s >= options_.wait_limit_s) {
+      throw EnvironmentLost("sim node: no answer from service " + node_.resolveName(name) +
+                            " for " + Seconds(waited_s));
+    }
+    Sleep();
+  }
+}
+
+bool RosEnvironment::Stopped() const {
+  return !ros::ok() || (options_.stop != nullptr && *options_.stop);
+}
+
+void RosEnvironment::Notice(const std::string& text) const {
+  if (options_.on_notice) options_.on_notice(text);
+}
+
+void RosEnvironment::Sleep() const { ros::WallDuration(kRetryPeriod_s).sleep(); }
+
+}  // namespace aquafarm_agents

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <aquafarm_msgs/TrainingStatus.h>
+#include <ros/console.h>
+#include <ros/node_handle.h>
+#include <ros/param.h>
+
+#include <climits>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "aquafarm/agents/training/run.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm_agents/link/ros_environment.h"
+#include "aquafarm_agents/nodes/node.h"
+#include "aquafarm_agents/nodes/signals.h"
+#include "aquafarm_agents/values/values_publisher.h"
+#include "aquafarm_sim/names.h"
+#include "aquafarm_sim/params.h"
+
+namespace aquafarm_agents {
+namespace {
+
+namespace agents = aquafarm::agents;
+using agents::ExitCode;
+using agents::RunPhase;
+using aquafarm_msgs::TrainingStatus;
+
+constexpr double kPrintPeriod_s = 5.0;
+
+struct TrainParams {
+  agents::RunOptions run;
+  RosEnvironmentOptions environment;
+  double values_period_s{2.0};
+};
+
+TrainParams ReadTrainParams(const ros::NodeHandle& node) {
+  TrainParams params;
+  aquafarm_sim::Params reader(node);
+  int episodes = 0;
+  int seed = 1;
+  double steps = 0.0;  // a parameter holds no whole number beyond 31 bits
+  reader.Text("algorithm", params.run.algorithm);
+  reader.Text("exploration", params.run.exploration);
+  reader.Text("options", params.run.options);
+  reader.Text("credit", params.run.credit);
+  reader.Int("episodes", 0, INT_MAX, episodes);
+  reader.Number("steps", 0.0, 1e15, steps);
+  reader.Int("seed", 0, INT_MAX, seed);
+  reader.Int("farms", 0, 4096, params.environment.farms);
+  reader.Text("run_dir", params.run.run_dir);
+  reader.Flag("resume", params.run.resume);
+  reader.Number("checkpoint_period_s", 0.0, 86400.0, params.run.checkpoint_period_s);
+  reader.Int("evaluation_episodes", 0, 10000000, params.run.evaluation_episodes);
+  reader.Int("random_episodes", 0, 10000000, params.run.random_episodes);
+  reader.Number("sim_timeout_s", 0.0, 86400.0, params.environment.wait_limit_s);
+  reader.Number("call_limit_s", 0.1, 86400.0, params.environment.call_limit_s);
+  reader.Number("values_period_s", 0.0, 86400.0, params.values_period_s);
+  reader.RefuseOthers();
+  params.run.episodes = static_cast<std::uint64_t>(episodes);
+  params.run.steps = static_cast<std::uint64_t>(steps);
+  params.run.seed = static_cast<std::uint64_t>(seed);
+  params.run.arguments = reader.given();
+  if (params.run.run_dir.empty()) params.run.run_dir = agents::NewRunFolder();
+  return params;
+}
+
+std::uint8_t PhaseOf(RunPhase phase, ExitCode code) {
+  switch (phase) {
+    case RunPhase::kStarting:
+      return TrainingStatus::STARTING;
+    case RunPhase::kTraining:
+      return TrainingStatus::TRAINING;
+    case RunPhase::kEvaluating:
+      return TrainingStatus::EVALUATING;
+    case RunPhase::kEnded:
+      break;
+  }
+  if (code == ExitCode::kOk) return TrainingStatus::DONE;
+  return code == ExitCode::kInterrupted ? TrainingStatus::INTERRUPTED : TrainingStatus::FAILED;
+}
+
+TrainingStatus ToMsg(const agents::RunStatus& status, const agents::RunOptions& options,
+                     ExitCode code) {
+  const agents::TrainingProgress& progress = status.progress;
+  TrainingStatus message;
+  message.header.stamp = ros::Time::now();
+  message.phase = PhaseOf(status.phase, code);
+  message.algorithm = status.algorithm;
+  message.run_dir = options.run_dir;
+  message.message = status.message;
+  message.episode = progress.episodes;
+  message.episodes = progress.episode_limit;
+  message.steps = progress.steps;
+  message.last_return = progress.last_return;
+  message.mean_return = progress.mean_return;
+  message.best_mean_return = progress.best_mean_return;
+  message.success_rate = progress.success_rate;
+  message.evaluation_return = message.evaluation_success = std::nanf("");
+  if (status.has_evaluation) {
+    message.evaluation_return = static_cast<float>(status.evaluation.mean_return);
+    message.evaluation_success = static_cast<float>(status.evaluation.success_rate);
+  }
+  message.loss = progress.learner.loss;
+  message.exploration = progress.learner.exploration;
+  message.learning_rate = progress.learner.learning_rate;
+  message.steps_per_second = static_cast<float>(progress.steps_per_second);
+  message.elapsed_s = progress.elapsed_s;
+  message.time_left_s = progress.time_left_s;
+  return message;
+}
+
+/// Tells people: on a topic each time, on the console now and then.
+class Herald {
+ public:
+  Herald(ros::NodeHandle& node, agents::RunOptions options)
+      : options_(std::move(options)),
+        publisher_(node.advertise<TrainingStatus>(aquafarm_sim::names::kTraining, 10, true)) {}
+
+  void Tell(const agents::RunStatus& status) {
+    last_ = status;
+    Publish(ToMsg(status, options_, ExitCode::kOk));
+    if (!status.message.empty()) ROS_INFO("%s", status.message.c_str());
+    const ros::WallTime now = ros::WallTime::now();
+    const bool due = printed_.isZero() || (now - printed_).toSec() >= kPrintPeriod_s;
+    if (status.phase != RunPhase::kTraining || !due) return;
+    printed_ = now;
+    ROS_INFO("%s", agents::DescribeProgress(status.progress).c_str());
+  }
+
+  void Warn(const std::string& text) {
+    ROS_WARN("%s", text.c_str());
+    TrainingStatus message = ToMsg(last_, options_, ExitCode::kOk);
+    message.phase = TrainingStatus::WAITING;
+    message.message = text;
+    Publish(message);
+  }
+
+  void End(const agents::RunReport& report) {
+    Publish(ToMsg(report.status, options_, report.code));
+    ros::WallDuration(0.2).sleep();  // lets the last status leave before the node does
+  }
+
+ private:
+  void Publish(const TrainingStatus& message) { publisher_.publish(message); }
+
+  const agents::RunOptions options_;
+  ros::Publisher publisher_;
+  agents::RunStatus last_;
+  ros::WallTime printed_;
+};
+
+agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {
+  Herald herald(node, params.run);
+  ValuesPublisher values(node, params.values_period_s);
+  params.environment.stop = &stop_requested;
+  params.environment.on_notice = [&herald](const std::string& text) { herald.Warn(text); };
+  agents::RunReport report = agents::Train(
+      params.run,
+      [&](std::uint8_t encodings) {
+        params.environment.encodings = encodings;
+        return std::make_unique<RosEnvironment>(node, params.environment);
+      },
+      [&herald, &values](const agents::RunStatus& status) {
+        if (status.phase != RunPhase::kEnded) herald.Tell(status);
+        if (status.learner == nullptr) return;
+        values.Refresh([&status] { return status.learner->GreedyPolicy(); });
+      },
+      &stop_requested);
+  herald.End(report);
+  return report;
+}
+
+int End(ExitCode code, const std::string& summary) {
+  std::fprintf(code == ExitCode::kOk ? stdout : stderr, "%s", summary.c_str());
+  std::fflush(stdout);
+  return static_cast<int>(code);
+}
+
+/// name:=value as a shell takes it.
+std::string Argument(const std::string& name, const std::string& value) {
+  const bool is_plain = value.find_first_of(" '") == std::string::npos;
+  return ' ' + name + ":=" + (is_plain ? value : '"' + value + '"');
+}
+
+/// What train.launch needs to be told so that the run may be gone on with; farms 0: unknown.
+std::string Arguments(const agents::RunReport& report, const agents::RunOptions& run) {
+  const agents::RunOptions defaults;
+  std::string text = Argument("scenario", run.run_dir + "/scenario.yaml");
+  const auto add = [&text](const std::string& name, const std::string& value, bool differs) {
+    if (differs) text += Argument(name, value);
+  };
+  const std::string& algorithm = report.status.algorithm;
+  add("algorithm", algorithm, algorithm != defaults.algorithm);
+  add("options", run.options, run.options != defaults.options);
+  add("exploration", run.exploration, run.exploration != defaults.exploration);
+  add("credit", run.credit, run.credit != defaults.credit);
+  add("seed", std::to_string(run.seed), run.seed != defaults.seed);
+  add("farms", std::to_string(report.farms), report.farms != 0);
+  return text;
+}
+
+/// What people may want to do next.
+std::string Next(const agents::RunReport& report, const agents::RunOptions& run) {
+  const char* const script = std::getenv("AQUAFARM_LAUNCHER");
+  const auto launch = [script](const std::string& name) {
+    return script != nullptr ? std::string(script) + " " + name
+                             : "roslaunch aquafarm_bringup " + name + ".launch";
+  };
+  if (report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost) {
+    if (report.farms == 0) return "";  // it never began
+    // The script takes from the run folder what it is not told; roslaunch cannot.
+    return "go on      " + launch("train") + (script != nullptr ? "" : Arguments(report, run)) +
+           " resume:=true" + Argument("run_dir", run.run_dir) + "\n";
+  }
+  if (report.code != ExitCode::kOk) return "";
+  return "watch it   " + launch("sim") + Argument("scenario", run.run_dir + "/scenario.yaml") +
+         Argument("policy", run.run_dir) + "\n";
+}
+
+}  // namespace
+
+int RunTrainNode() {
+  try {
+    ros::NodeHandle node;
+    const TrainParams params = ReadTrainParams(ros::NodeHandle("~"));
+    const agents::RunReport report = Train(node, params);
+    return End(report.code, report.summary + Next(report, params.run));
+  } catch (const aquafarm::InputError& error) {
+    return End(ExitCode::kBadInput, std::string("train_node: ") + error.what() + "\n");
+  } catch (const std::exception& error) {
+    return End(ExitCode::kInternal, std::string("train_node: ") + error.what() + "\n");
+  }
+}
+
+}  // namespace aquafarm_agents

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Watches a folder for bulletins and tells the ranch of each: a storm's track, forecast and rings
+// go through set_disaster as they are, and the ranch makes a disaster of them.
+#include <aquafarm_msgs/SetDisaster.h>
+#include <ros/ros.h>
+
+#include <chrono>
+#include <future>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/storms/reader.h"
+#include "aquafarm_sim/convert/conversions.h"
+#include "aquafarm_sim/names.h"
+#include "aquafarm_sim/node/bulletin_folder.h"
+#include "aquafarm_sim/params.h"
+
+namespace aquafarm_sim {
+namespace {
+
+constexpr double kLookPeriod_s = 0.05;
+constexpr std::chrono::seconds kEndLimit{2};  // from the shutdown of a connection to its call's end
+
+/// The ranch is away or hangs: the file is sent again.
+class NoAnswer : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A call with what its thread needs, which may outlive the wait for it.
+struct Call {
+  ros::ServiceClient client;
+  aquafarm_msgs::SetDisaster message;
+  std::promise<bool> answered;
+};
+
+struct BulletinParams {
+  std::string folder;
+  std::string storm;          // empty: the file's only one
+  double period_s{1.0};       // between looks at the folder
+  double call_limit_s{10.0};  // until a ranch that does not answer counts as away
+  int id{0};                  // of the disaster that the bulletins replace
+};
+
+BulletinParams ReadParams() {
+  BulletinParams params;
+  Params reader{ros::NodeHandle("~")};
+  reader.Text("folder", params.folder);
+  reader.Text("storm", params.storm);
+  reader.Number("period_s", 0.05, 3600.0, params.period_s);
+  reader.Number("call_limit_s", 0.1, 600.0, params.call_limit_s);
+  reader.Int("id", 0, 63, params.id);
+  reader.RefuseOthers();
+  if (params.folder.empty()) {
+    throw aquafarm::InputError("~folder: missing, expected the folder of the bulletins");
+  }
+  BulletinFolder(params.folder).New();  // refuses a folder that is not there
+  return params;
+}
+
+class BulletinNode {
+ public:
+  explicit BulletinNode(const BulletinParams& params) : params_(params), folder_(params.folder) {}
+
+  /// Sends what is new in the folder.
+  void Look() {
+    try {
+      for (const std::string& path : folder_.New()) {
+        TrySend(path);
+        folder_.Mark(path);
+        fault_.clear();
+      }
+    } catch (const std::exception& error) {  // the folder or the ranch may come back
+      // Once, however often it is tried; a throttle would go by /clock, which may stand still.
+      if (fault_ != error.what()) ROS_ERROR("%s", error.what());
+      fault_ = error.what();
+    }
+  }
+
+ private:
+  void TrySend(const std::string& path) {
+    try {
+      Send(path);
+    } catch (const NoAnswer&) {
+      throw;
+    } catch (const std::exception& error) {
+      ROS_ERROR("%s", error.what());
+    }
+  }
+
+  void Send(const std::string& path) {
+    const aquafarm::HazardFile file = aquafarm::LoadHazardFile(path);
+    for (const std::string& warning : file.warnings) ROS_WARN("%s", warning.c_str());
+    const aquafarm::HazardTrack& storm = params_.storm.empty() && file.tracks.size() == 1
+                                             ? file.tracks[0]
+                                             : aquafarm::FindTrack(file, params_.storm);
+    const std::string name = storm.name.empty() ? storm.id : storm.name;
+    if (storm.fixes.front().time < 0) {
+      throw aquafarm::InputError(path + ": " + name + ": got positions of before 1970, expected " +
+                                 "later ones: a ROS time begins there");
+    }
+    const auto call = std::make_shared<Call>();
+    call->message.request.farm = -1;
+    call->message.request.id = params_.id;
+    call->message.request.storm = ToMsg(storm);
+    // Only a persistent client has a connection that shutdown() can drop.
+    call->client = node_.serviceClient<aquafarm_msgs::SetDisaster>(names::kSetDisaster, true);
+    std::future<bool> answer = call->answered.get_future();
+    std::thread([call] { call->answered.set_value(call->client.call(call->message)); }).detach();
+    const std::chrono::duration<double> limit(params_.call_limit_s);
+    if (answer.wait_for(limit) != std::future_status::ready) {
+      call->client.shutdown();
+      answer.wait_for(kEndLimit);
+    }
+    if (answer.wait_for(std::chrono::seconds(0)) != std::future_status::ready || !answer.get()) {
+      throw NoAnswer(path + ": the ranch did not answer; it is sent again");
+    }
+    const auto& response = call->message.response;
+    if (!response.ok) throw aquafarm::InputError(path + ": refused: " + response.message);
+    ROS_INFO("%s: %s is now disaster %d", path.c_str(), name.c_str(), params_.id);
+  }
+
+  const BulletinParams params_;
+  BulletinFolder folder_;
+  std::string fault_;  // said last
+  ros::NodeHandle node_;
+};
+
+int Run() {
+  try {
+    const ros::NodeHandle lives;  // ROS's console is gone for good once the last handle is
+    const BulletinParams params = ReadParams();
+    BulletinNode node(params);
+    ros::WallTime next = ros::WallTime::now();
+    while (ros::ok()) {
+      ros::spinOnce();
+      if (ros::WallTime::now() >= next) {
+        node.Look();
+        next = ros::WallTime::now() + ros::WallDuration(params.period_s);
+      }
+      ros::WallDuration(kLookPeriod_s).sleep();
+    }
+    return 0;
+  } catch (const aquafarm::InputError& error) {
+    std::fprintf(stderr, "bulletin_node: %s\n", error.what());
+    return 2;
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm_sim
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "bulletins");
+  return aquafarm_sim::Run();
+}

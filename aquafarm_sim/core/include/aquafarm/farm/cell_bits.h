@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace aquafarm {
+
+/// Bits of a chart cell; 0 is open water.
+enum CellBits : std::uint8_t {
+  kIslandBit = 1,
+  kRockBit = 2,
+  kPortBit = 4,        ///< water
+  kDeviceSiteBit = 8,  ///< water; a device is, or was at the start, deployed here
+};
+inline constexpr std::uint8_t kBlockedBits = kIslandBit | kRockBit;
+
+}  // namespace aquafarm

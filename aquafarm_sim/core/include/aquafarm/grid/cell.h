@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Axes and units of the farm, and the cells of its grid.
+///
+///        y (north)
+///        ^        (0, H-1) . . . (W-1, H-1)
+///        |           .               .        linear index = y * W + x
+///        |         (0, 0)  . . . (W-1, 0)     as nav_msgs/OccupancyGrid; images are flipped
+///        +------> x (east)
+///
+/// Lengths are cells, times are steps unless a name says otherwise. (§2.4, Eq. 1)
+
+#include <cstdint>
+
+namespace aquafarm {
+
+/// A grid cell; its centre has the integer coordinates (x, y).
+struct Cell {
+  std::int32_t x{};
+  std::int32_t y{};
+  friend constexpr bool operator==(Cell a, Cell b) { return a.x == b.x && a.y == b.y; }
+  friend constexpr bool operator!=(Cell a, Cell b) { return !(a == b); }
+};
+
+}  // namespace aquafarm

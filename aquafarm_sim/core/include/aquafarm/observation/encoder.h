@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// A view as numbers: a tabular index, a feature vector, or H × W planes.
+///
+/// Tabular index: status_rank · W·H + cell, over the ship's own cell and the status of every
+/// device that can be fetched, each deployed, aboard this ship, or gone (delivered or aboard
+/// another ship). With capacity C only sets with at most C aboard are counted: for C = 1 and D
+/// devices 2^D + D·2^(D−1) sets. The disaster is not part of it, as in the paper, whose
+/// |S| = 25·25·2³·4 is 20,000 (printed: 128,000) and |O| = 25·25·2³ is 5,000 (printed: 32,000).
+///
+/// Features and planes: feature_names() and plane_names() state the exact order.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aquafarm/grid/action.h"
+#include "aquafarm/observation/view.h"
+
+namespace aquafarm {
+
+/// Writes views of one scenario as numbers; const and without memory of the last view.
+class Encoder {
+ public:
+  /// @param scenario must outlive the encoder
+  explicit Encoder(const Scenario& scenario);
+
+  /// Number of tabular states, or 0 when they are more than kMaxStates.
+  std::uint32_t state_count() const { return state_count_; }
+  inline static constexpr std::uint64_t kMaxStates = 1ULL << 28U;
+  /// Length of a ship's feature vector.
+  std::int32_t feature_count() const { return feature_count_; }
+  /// Planes of a ship, each [H, W].
+  std::int32_t plane_count() const { return kPlaneCount; }
+  /// Bytes of all planes of one ship: plane_count · H · W.
+  std::size_t planes_size() const { return planes_size_; }
+  /// What each feature is, in order, [feature_count()].
+  std::vector<std::string> feature_names() const;
+  /// What each plane is, in order, [plane_count()].
+  static std::vector<std::string> plane_names();
+  inline static constexpr std::int32_t kPlaneCount = 8;
+
+  /// In [0, state_count()), which must not be 0. The same in full and partial view: chart, places
+  /// and status are known.
+  std::uint32_t Index(const Farm& farm, std::int32_t ship) const;
+  std::uint32_t Index(const View& view) const;
+  /// A tabular state: the ship's cell and the status of each device that can be fetched, back from
+  /// an index.
+  struct TabularState {
+    Cell cell{};
+    std::vector<DeviceStatus> status;  ///< kDelivered stands for gone
+  };
+  /// The inverse of Index. @param index [0, state_count())
+  TabularState Decode(std::uint32_t index) const;
+
+  /// Writes the feature vector. @param out [feature_count()]
+  void Features(const View& view, float* out) const;
+  /// Writes the planes. @param out [plane_count(), H, W] row-major from the south; 255 stands for 1
+  void Planes(const View& view, std::uint8_t* out) const;
+
+ private:
+  float* Ways(const View& view, float* out) const;  // returns where it ended
+  void AddWayNames(std::vector<std::string>& names) const;
+  void Courses(const View& view, float* out) const;
+  float* Blocked(const Layout& layout, Cell self, float* out) const;
+  std::uint32_t IndexOf(std::int32_t code, Cell cell) const;
+
+  const Scenario& scenario_;
+  std::vector<std::int32_t> status_rank_;  // by base-3 code; kNone: more aboard than capacity
+  std::vector<std::int32_t> status_code_;  // by rank
+  std::uint32_t state_count_{};
+  std::int32_t feature_count_{};
+  std::int32_t fetchable_{};  // devices that are not self-propelled
+  std::size_t planes_size_{};
+  float scale_{};                        // 1 / longer side
+  float horizon_{};                      // steps of the longest episode
+  std::vector<std::uint8_t> sea_plane_;  // risk of the sea itself; empty: none
+};
+
+}  // namespace aquafarm

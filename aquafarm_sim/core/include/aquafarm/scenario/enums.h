@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The closed sets of a scenario: kinds of devices and disasters, and modes.
+
+#include <cstdint>
+#include <string_view>
+
+namespace aquafarm {
+
+/// The four kinds of breeding equipment of Fig. 1.
+enum class DeviceKind : std::uint8_t {
+  kTemporaryBreeding,
+  kMonitoring,
+  kBreedingRelease,
+  kDeepWaterBreeding
+};
+inline constexpr int kDeviceKindCount = 4;
+
+enum class DeviceStatus : std::uint8_t { kDeployed, kAboard, kDelivered };
+inline constexpr int kDeviceStatusCount = 3;
+
+enum class DisasterKind : std::uint8_t {
+  kTyphoon,
+  kStormSurge,
+  kWave,
+  kRedTide,
+  kOilSpill,
+  kChemicalSpill
+};
+inline constexpr int kDisasterKindCount = 6;
+
+/// Names as scenario files have them, such as "deep_water_breeding" or "red_tide".
+std::string_view ToString(DeviceKind value);
+std::string_view ToString(DeviceStatus value);
+std::string_view ToString(DisasterKind value);
+
+enum class LayoutMode : std::uint8_t { kFixed, kPerEpisode };
+enum class DevicePlacement : std::uint8_t { kUniform, kLinear, kRandom, kExplicit };
+enum class Border : std::uint8_t { kReflect, kWrap, kLeave };
+enum class ViewMode : std::uint8_t { kFull, kPartial };
+enum class RewardSharing : std::uint8_t { kIndividual, kTeam };
+std::string_view ToString(LayoutMode value);
+std::string_view ToString(DevicePlacement value);
+std::string_view ToString(Border value);
+std::string_view ToString(ViewMode value);
+std::string_view ToString(RewardSharing value);
+
+}  // namespace aquafarm

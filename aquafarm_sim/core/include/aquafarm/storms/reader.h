@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Reads published tracks; docs/data.md says what each format holds and what is lost on the way.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "aquafarm/storms/track.h"
+
+namespace aquafarm {
+
+/// What a file of tracks holds.
+struct HazardFile {
+  HazardFormat format{};
+  std::vector<HazardTrack> tracks;    ///< at least one, in the order of the file
+  std::vector<std::string> warnings;  ///< repairs made: "file:line: what was done"
+};
+
+/// The format of a text by its content; none: it is no file of tracks. CMA and JMA files start
+/// with the same word and are told apart by the first point.
+std::optional<HazardFormat> DetectHazardFormat(const std::string& text);
+
+/// Reads a file of tracks in whichever format it is.
+/// @throws InputError "CH2021BST.txt:12: latitude: got 950, expected [-900, 900]"
+HazardFile LoadHazardFile(const std::string& path);
+
+/// The same for text; `origin_name` stands for the file in messages.
+HazardFile ParseHazardFile(const std::string& text, const std::string& origin_name);
+
+/// The one track that a word names: an id, or a name in any case.
+/// @throws InputError naming what there is when none or more than one fits
+const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm);
+
+}  // namespace aquafarm

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm {
+
+/// Refuses bytes that nest deeper than any state does; the parser would recurse as deep as they
+/// say.
+class CborDepth final : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return ++depth_ <= kDeepest; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return depth_-- > 0; }
+  bool start_array(std::size_t) override { return ++depth_ <= kDeepest; }
+  bool end_array() override { return depth_-- > 0; }
+  bool parse_error(std::size_t, const std::string&,
+                   const nlohmann::detail::exception& error) override {
+    throw InputError(std::string("state: damaged bytes: ") + error.what());
+  }
+
+ private:
+  static constexpr int kDeepest = 16;
+  int depth_{};
+};
+
+/// @throws InputError on anything that is no CBOR, and on bytes nested without reason
+inline nlohmann::json ParseCbor(const std::string& bytes) {
+  CborDepth depth;
+  if (!nlohmann::json::sax_parse(bytes, &depth, nlohmann::json::input_format_t::cbor)) {
+    throw InputError("state: damaged bytes: nested too deeply");
+  }
+  return nlohmann::json::from_cbor(bytes);
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::internal {
+
+/// Bad input at a key, such as "disasters[0].grade"; the reader of files puts the line before it.
+class FieldError : public InputError {
+ public:
+  FieldError(std::string field_path, const std::string& text)
+      : InputError(field_path.empty() ? text : field_path + ": " + text),
+        path(std::move(field_path)) {}
+  const std::string path;
+};
+
+inline std::string Join(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
+inline std::string At(const std::string& path, std::size_t index) {
+  return path + "[" + std::to_string(index) + "]";
+}
+
+}  // namespace aquafarm::internal

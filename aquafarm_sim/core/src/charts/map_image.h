@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "aquafarm/grid/grid.h"
+
+namespace aquafarm::internal {
+
+/// A picture in grey, row 0 at the top.
+struct MapImage {
+  Grid<std::uint8_t> grey;   ///< mean of the colours
+  Grid<std::uint8_t> alpha;  ///< empty where every pixel is opaque
+};
+
+/// Largest side of a picture [pixels].
+inline constexpr std::int32_t kMaxMapSide = 16384;
+
+/// Reads PGM (P2, P5), PNG and BMP by content. What a header claims is checked before memory is
+/// taken. @throws InputError "chart.pgm: got 12 bytes of pixels, expected 65536 x 65536 …"
+MapImage ParseMapImage(const std::string& bytes, const std::string& origin_name);
+
+}  // namespace aquafarm::internal

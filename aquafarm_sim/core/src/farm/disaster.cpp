@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/farm/disaster.h"
+
+#include <algorithm>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/grid/action.h"
+
+namespace aquafarm {
+namespace {
+
+// Taylor series on [0, 45] degrees, where nine terms are exact to double precision: only + and *,
+// so the same bits on every machine, which libm does not promise.
+struct SineCosine {
+  double sine{};
+  double cosine{};
+};
+
+SineCosine OfFirstOctant(int degrees) {
+  const double x = degrees * (3.14159265358979323846 / 180.0);
+  double sine = 0.0;
+  double cosine = 0.0;
+  double term = 1.0;
+  for (int power = 0; power < 18; ++power) {
+    const double sign = (power / 2) % 2 == 0 ? 1.0 : -1.0;
+    (power % 2 == 0 ? cosine : sine) += sign * term;
+    term = term * x / (power + 1);
+  }
+  return {sine, cosine};
+}
+
+std::array<std::array<float, 2>, 360> MakeHeadings() {
+  std::array<std::array<float, 2>, 360> headings{};
+  for (int degrees = 0; degrees < 360; ++degrees) {
+    const int quadrant = degrees / 90;
+    const int within = degrees % 90;
+    SineCosine value = OfFirstOctant(within <= 45 ? within : 90 - within);
+    if (within > 45) std::swap(value.sine, value.cosine);
+    const auto sine = static_cast<float>(value.sine);
+    const auto cosine = static_cast<float>(value.cosine);
+    // East is the sine, north the cosine of a compass bearing.
+    constexpr float kZero = 0.0F;  // keeps -0 out of the table
+    switch (quadrant) {
+      case 0:
+        headings[static_cast<std::size_t>(degrees)] = {sine, cosine};
+        break;
+      case 1:
+        headings[static_cast<std::size_t>(degrees)] = {cosine, kZero - sine};
+        break;
+      case 2:
+        headings[static_cast<std::size_t>(degrees)] = {kZero - sine, kZero - cosine};
+        break;
+      default:
+        headings[static_cast<std::size_t>(degrees)] = {kZero - cosine, sine};
+        break;
+    }
+  }
+  return headings;
+}
+
+void SetMotion(ObservableDisaster& disaster) {
+  const std::array<float, 2> direction = HeadingVector(disaster.heading_deg);
+  disaster.dx = direction[0] * disaster.speed;
+  disaster.dy = direction[1] * disaster.speed;
+}
+
+// A ring of radius 0 is absent: no distance squared is at most -1.
+float Squared(float radius) { return radius > 0.0F ? radius * radius : -1.0F; }
+
+// Every ring of a waypoint or spec.
+void SetRings(ObservableDisaster& disaster, const std::vector<float>& radii,
+              const std::vector<QuadrantRadii>& quadrants) {
+  disaster.by_quadrant = !quadrants.empty();
+  for (std::size_t k = 0; k < radii.size(); ++k) {
+    if (disaster.by_quadrant) {
+      SetRing(disaster, k, quadrants[k]);
+    } else {
+      SetRing(disaster, k, radii[k]);
+    }
+  }
+}
+
+// Grade, and the heading and speed that people and bulletins read, on the leg after a waypoint.
+void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
+              std::size_t waypoint) {
+  disaster.waypoint = static_cast<std::int32_t>(waypoint);
+  const Waypoint& from = track[waypoint];
+  const Waypoint& to = track[std::min(waypoint + 1, track.size() - 1)];
+  disaster.grade = from.grade;
+  const float span = to.step - from.step;
+  disaster.dx = span > 0.0F ? (to.x - from.x) / span : 0.0F;
+  disaster.dy = span > 0.0F ? (to.y - from.y) / span : 0.0F;
+  disaster.speed = 0.0F;
+  for (std::int32_t heading = 0; heading < 360; ++heading) {
+    const std::array<float, 2> direction = HeadingVector(heading);
+    const float along = direction[0] * disaster.dx + direction[1] * disaster.dy;
+    if (along <= disaster.speed) continue;
+    disaster.speed = along;
+    disaster.heading_deg = heading;
+  }
+}
+
+// Position and heading after meeting one border of [low, high]; mirrors like a ball at a wall.
+void Bounce(float& position, float low, float high, std::int32_t mirror, Disaster& disaster) {
+  const bool below = position < low;
+  if (!below && position <= high) return;
+  position = below ? low + (low - position) : high - (position - high);
+  position = std::min(std::max(position, low), high);
+  disaster.heading_deg = (mirror - disaster.heading_deg + 720) % 360;
+  SetMotion(disaster);
+}
+
+float Wrapped(float position, float low, float high) {
+  if (position < low) return std::min(position + (high - low), high);
+  if (position > high) return std::max(position - (high - low), low);
+  return position;
+}
+
+void MeetBorder(Disaster& disaster, std::int32_t width, std::int32_t height) {
+  if (disaster.border == Border::kLeave) return;
+  const float low = -0.5F - disaster.margin;
+  const float high_x = static_cast<float>(width) - 0.5F + disaster.margin;
+  const float high_y = static_cast<float>(height) - 0.5F + disaster.margin;
+  if (disaster.border == Border::kWrap) {
+    disaster.x = Wrapped(disaster.x, low, high_x);
+    disaster.y = Wrapped(disaster.y, low, high_y);
+    return;
+  }
+  Bounce(disaster.x, low, high_x, 360, disaster);
+  Bounce(disaster.y, low, high_y, 180, disaster);
+}
+
+void Turn(Disaster& disaster, const StreamKey& turn_key, std::int32_t step) {
+  if (disaster.turn_threshold == 0) return;
+  const auto count = static_cast<std::uint32_t>(step);
+  if (count % 4 == 0 || count == 1) disaster.draws = Draw(turn_key, count / 4);
+  const std::uint32_t draw = disaster.draws[count % 4];
+  if ((draw >> 1U) >= disaster.turn_threshold) return;
+  disaster.heading_deg = (disaster.heading_deg + ((draw & 1U) != 0 ? 45 : 315)) % 360;
+  SetMotion(disaster);
+}
+
+}  // namespace
+
+void SetRing(ObservableDisaster& disaster, std::size_t ring, float radius) {
+  disaster.radius[ring] = radius;
+  disaster.radius_squared[ring] = Squared(radius);
+}
+
+void SetRing(ObservableDisaster& disaster, std::size_t ring, const QuadrantRadii& radii) {
+  SetRing(disaster, ring, *std::max_element(radii.begin(), radii.end()));
+  for (std::size_t q = 0; q < radii.size(); ++q) disaster.quadrant[q][ring] = radii[q];
+}
+
+float RiskByQuadrant(const ObservableDisaster& disaster, float west, float south,
+                     float distance_squared) {
+  const auto& radii = disaster.quadrant[QuadrantOf(west, south)];
+  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
+    if (distance_squared <= Squared(radii[k])) return disaster.risk[k];
+  }
+  return 0.0F;
+}
+
+void GrowRings(ObservableDisaster& disaster, float by) {
+  if (by == 0.0F) return;
+  const auto grown = [by](float radius) { return std::max(0.0F, radius + by); };
+  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
+    if (disaster.by_quadrant) {
+      QuadrantRadii radii{};
+      for (std::size_t q = 0; q < radii.size(); ++q) {
+        const float radius = disaster.quadrant[q][k];
+        radii[q] = radius > 0.0F ? grown(radius) : 0.0F;  // what is not there stays away
+      }
+      SetRing(disaster, k, radii);
+    } else {
+      SetRing(disaster, k, grown(disaster.radius[k]));
+    }
+  }
+}
+
+std::array<float, 2> HeadingVector(std::int32_t heading_deg) {
+  static const std::array<std::array<float, 2>, 360> kHeadings = MakeHeadings();
+  AQUAFARM_CHECK_GE(heading_deg, 0);
+  AQUAFARM_CHECK_LT(heading_deg, 360);
+  return kHeadings[static_cast<std::size_t>(heading_deg)];
+}
+
+Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t seed,
+                       std::uint64_t episode, std::int32_t width, std::int32_t height) {
+  Disaster disaster;
+  disaster.kind = spec.kind;
+  disaster.border = spec.border;
+  disaster.grade = spec.grade;
+  disaster.rings = static_cast<std::int32_t>(spec.radii.size());
+  SetRings(disaster, spec.radii, spec.quadrants);
+  std::copy(spec.risks.begin(), spec.risks.end(), disaster.risk.begin());
+  disaster.speed = spec.speed;
+  disaster.turn_threshold =
+      static_cast<std::uint32_t>(static_cast<double>(spec.turn_probability) * 2147483648.0);
+  disaster.radius_growth = spec.radius_growth;
+  disaster.margin = disaster.reach();
+  disaster.steps_left = spec.duration;
+  RandomStream chance({seed, episode, Purpose::kDisasterSpawn, static_cast<std::uint32_t>(id)});
+  const float margin = disaster.margin;
+  // Drawn in any case, so that fixing one number of a spec leaves the other draws as they were.
+  const float x = chance.Uniform(-0.5F - margin, static_cast<float>(width) - 0.5F + margin);
+  const float y = chance.Uniform(-0.5F - margin, static_cast<float>(height) - 0.5F + margin);
+  const auto heading = static_cast<std::int32_t>(chance.Below(360));
+  disaster.x = spec.start ? (*spec.start)[0] : x;
+  disaster.y = spec.start ? (*spec.start)[1] : y;
+  disaster.heading_deg = spec.heading_deg.value_or(heading);
+  SetMotion(disaster);
+  if (!spec.track.empty()) {
+    disaster.waypoint = 0;
+    FollowTrack(disaster, spec.track, 0);
+  }
+  return disaster;
+}
+
+void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_key,
+                  std::int32_t step, std::int32_t width, std::int32_t height) {
+  if (!disaster.active()) return;
+  --disaster.steps_left;
+  if (disaster.waypoint != kNone) {
+    FollowTrack(disaster, *track, step);
+    return;
+  }
+  Turn(disaster, turn_key, step);
+  disaster.x += disaster.dx;
+  disaster.y += disaster.dy;
+  MeetBorder(disaster, width, height);
+  GrowRings(disaster, disaster.radius_growth);
+}
+
+void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
+                 std::int32_t step) {
+  const auto now = static_cast<float>(step);
+  auto last = static_cast<std::size_t>(disaster.waypoint);
+  while (last + 1 < track.size() && track[last + 1].step <= now) ++last;
+  if (static_cast<std::int32_t>(last) != disaster.waypoint || step == 0) {
+    EnterLeg(disaster, track, last);
+  }
+  const Waypoint& from = track[last];
+  const Waypoint& to = track[std::min(last + 1, track.size() - 1)];
+  const float span = to.step - from.step;
+  const float part = span > 0.0F ? std::min(std::max((now - from.step) / span, 0.0F), 1.0F) : 0.0F;
+  const auto between = [part](float a, float b) { return a + (b - a) * part; };
+  disaster.x = between(from.x, to.x);
+  disaster.y = between(from.y, to.y);
+  disaster.by_quadrant = !from.quadrants.empty();
+  for (std::size_t k = 0; k < from.radii.size(); ++k) {
+    disaster.risk[k] = between(from.risks[k], to.risks[k]);
+    if (!disaster.by_quadrant) {
+      SetRing(disaster, k, between(from.radii[k], to.radii[k]));
+      continue;
+    }
+    QuadrantRadii radii{};
+    for (std::size_t q = 0; q < radii.size(); ++q) {
+      radii[q] = between(from.quadrants[k][q], to.quadrants[k][q]);
+    }
+    SetRing(disaster, k, radii);
+  }
+}
+
+void FillRisk(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk) {
+  for (std::int32_t y = 0; y < risk.rows(); ++y) {
+    for (std::int32_t x = 0; x < risk.cols(); ++x) {
+      risk(y, x) = std::min(RiskAt(disasters, {x, y}), scenario.SeaRiskAt({x, y}));
+    }
+  }
+}
+
+}  // namespace aquafarm

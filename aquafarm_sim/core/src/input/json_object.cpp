@@ -1,0 +1,359 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "input/json_object.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "scenario/domains.h"
+
+namespace aquafarm::internal {
+namespace {
+
+using Json = nlohmann::json;
+
+std::int32_t LineAt(const std::string& text, std::size_t offset) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
+  return static_cast<std::int32_t>(1 + std::count(text.begin(), end, '\n'));
+}
+
+// As null, blank or "null".
+bool SaysNothing(const Json& value) {
+  if (!value.is_string()) return value.is_null();
+  const std::string& text = value.get_ref<const std::string&>();
+  return Trim(text).empty() || text == "null";
+}
+
+// Gives a text to the parser and remembers how far it has read.
+class ReadingIterator {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+  ReadingIterator(const char* at, const char** read) : at_(at), read_(read) {}
+  reference operator*() const { return *at_; }
+  ReadingIterator& operator++() {
+    *read_ = ++at_;
+    return *this;
+  }
+  ReadingIterator operator++(int) {
+    const ReadingIterator before = *this;
+    ++*this;
+    return before;
+  }
+  friend bool operator==(const ReadingIterator& a, const ReadingIterator& b) {
+    return a.at_ == b.at_;
+  }
+  friend bool operator!=(const ReadingIterator& a, const ReadingIterator& b) { return !(a == b); }
+
+ private:
+  const char* at_;
+  const char** read_;
+};
+
+// Walks to a path and stops there; remembers where the last of its parents began.
+class PathFinder : public nlohmann::json_sax<Json> {
+ public:
+  PathFinder(const std::string& wanted, const char* const& read) : wanted_(wanted), read_(read) {}
+  /// Behind the path's value, or behind the beginning of its nearest parent where it has none.
+  const char* found() const { return found_; }
+  bool null() override { return Value(); }
+  bool boolean(bool) override { return Value(); }
+  bool number_integer(number_integer_t) override { return Value(); }
+  bool number_unsigned(number_unsigned_t) override { return Value(); }
+  bool number_float(number_float_t, const string_t&) override { return Value(); }
+  bool string(string_t&) override { return Value(); }
+  bool binary(binary_t&) override { return Value(); }
+  bool start_object(std::size_t) override { return Open(false); }
+  bool start_array(std::size_t) override { return Open(true); }
+  bool end_object() override { return Close(); }
+  bool end_array() override { return Close(); }
+  bool key(string_t& key) override {
+    levels_.back().key = key;
+    return true;
+  }
+  bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
+    return false;
+  }
+
+ private:
+  struct Level {
+    bool array{};
+    std::size_t index{};
+    std::string key;
+    std::string path;
+  };
+  std::string Path() const {
+    if (levels_.empty()) return "";
+    const Level& level = levels_.back();
+    return level.array ? internal::At(level.path, level.index) : Join(level.path, level.key);
+  }
+  // Whether it is the path's. A parent's is noted on the way; a later one lies deeper.
+  bool IsWanted(const std::string& path) {
+    const bool holds = wanted_.compare(0, path.size(), path) == 0;
+    const bool ends = path.empty() || path.size() == wanted_.size() ||
+                      (holds && (wanted_[path.size()] == '.' || wanted_[path.size()] == '['));
+    if (holds && ends) found_ = read_;
+    return path == wanted_;
+  }
+  bool Value() {
+    if (IsWanted(Path())) return false;
+    if (!levels_.empty()) ++levels_.back().index;
+    return true;
+  }
+  bool Open(bool array) {
+    const std::string path = Path();
+    if (IsWanted(path)) return false;
+    levels_.push_back({array, 0, "", path});
+    return true;
+  }
+  bool Close() {
+    levels_.pop_back();
+    if (!levels_.empty()) ++levels_.back().index;
+    return true;
+  }
+  const std::string& wanted_;
+  const char* const& read_;
+  const char* found_{};
+  std::vector<Level> levels_;
+};
+
+// Refuses what is nested more deeply than any bulletin or chart.
+void CheckDepth(const std::string& text, HazardPlace& place) {
+  constexpr int kMostDepth = 64;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && (c == '[' || c == '{')) {
+      if (++depth <= kMostDepth) continue;
+      place.path.clear();
+      place.line = LineAt(text, i);
+      place.Refuse("got JSON nested more deeply than " + std::to_string(kMostDepth) +
+                   " levels, expected a bulletin or a chart");
+    } else if (!quoted && (c == ']' || c == '}')) {
+      --depth;
+    }
+  }
+}
+
+std::string Shown(const Json* value) {
+  if (value == nullptr) return "nothing";
+  if (value->is_object()) return "an object";
+  if (value->is_array()) return "a list";
+  if (value->is_string()) return Quoted(value->get_ref<const std::string&>());
+  return value->dump();
+}
+
+std::string InRange(double min, double max) {
+  return "a number in [" + Format(min) + ", " + Format(max) + "]";
+}
+
+// Where the blanks and comments of JavaScript at the beginning end.
+std::size_t EndOfComments(const std::string& text) {
+  std::size_t at = text.find_first_not_of(" \t\r\n");
+  while (at != std::string::npos && text[at] == '/') {
+    const bool block = text.compare(at, 2, "/*") == 0;
+    if (!block && text.compare(at, 2, "//") != 0) return at;
+    const std::size_t end = block ? text.find("*/", at + 2) : text.find('\n', at);
+    at = end == std::string::npos ? end : text.find_first_not_of(" \t\r\n", end + (block ? 2 : 0));
+  }
+  return std::min(at, text.size());
+}
+
+}  // namespace
+
+bool IsAssignment(std::string_view text) {
+  for (const std::string_view word : {"let ", "var ", "const "}) {
+    if (text.substr(0, word.size()) == word) return text.find('=') != std::string_view::npos;
+  }
+  return false;
+}
+
+std::string CleanJson(const std::string& text) {
+  std::string clean = text;
+  const auto blank = [&clean](std::size_t first, std::size_t end) {
+    std::fill(clean.begin() + static_cast<std::ptrdiff_t>(first),
+              clean.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+  };
+  if (clean.compare(0, 3, "\xEF\xBB\xBF") == 0) blank(0, 3);
+  const std::size_t script = EndOfComments(clean);
+  const std::string_view rest = std::string_view(clean).substr(script);
+  const bool assigned = IsAssignment(rest.substr(0, rest.find('\n')));
+  const std::size_t value = assigned ? clean.find('=', script) + 1 : script;
+  std::replace_if(
+      clean.begin(), clean.begin() + static_cast<std::ptrdiff_t>(value),
+      [](char c) { return c != '\n'; }, ' ');
+  const std::size_t last = clean.find_last_not_of(" \t\r\n");
+  if (assigned && last != std::string::npos && clean[last] == ';') blank(last, last + 1);
+  const std::size_t fence = clean.find_first_not_of(" \t\r\n");
+  if (fence == std::string::npos || clean.compare(fence, 3, "```") != 0) return clean;
+  blank(fence, std::min(clean.find('\n', fence), clean.size()));
+  const std::size_t end = clean.rfind("```");
+  if (end != std::string::npos) blank(end, std::min(clean.find('\n', end), clean.size()));
+  return clean;
+}
+
+Json ParseJson(const std::string& text, HazardPlace& place) {
+  CheckDepth(text, place);
+  const char* read = text.data();
+  const char* const end = text.data() + text.size();
+  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  const auto check = [&](int, Json::parse_event_t event, const Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event != Json::parse_event_t::key) return true;
+    const std::string& key = parsed.get_ref<const std::string&>();
+    if (keys.back().insert(key).second) return true;
+    place.path.clear();
+    place.line = LineAt(text, static_cast<std::size_t>(read - text.data()));
+    place.Refuse("got the key " + Quoted(key) + " twice in an object, expected it once");
+  };
+  try {
+    return Json::parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), check);
+  } catch (const Json::parse_error& error) {
+    place.path.clear();
+    place.line = LineAt(text, error.byte == 0 ? 0 : error.byte - 1);
+    const std::string what = error.what();
+    const std::size_t reason = what.find("; ");  // after the library's own words for the place
+    place.Refuse("got no valid JSON: " +
+                 (reason == std::string::npos ? what : what.substr(reason + 2)));
+  } catch (const Json::out_of_range& error) {  // a number too large; the library says which
+    const std::string what = error.what();
+    const std::size_t from = what.find('\'') + 1;
+    const std::string number = what.substr(from, what.rfind('\'') - from);
+    place.path.clear();
+    place.line = LineAt(text, std::min(text.find(number), text.size()));
+    place.Refuse("got " + Quoted(number) + ", expected a number that a double can hold");
+  }
+}
+
+bool IsBlank(const Json& value) {
+  if (!value.is_object()) return SaysNothing(value);
+  return std::all_of(value.begin(), value.end(), SaysNothing);
+}
+
+std::int32_t LineOfJson(const std::string& text, const std::string& path) {
+  const char* read = text.data();
+  PathFinder finder(path, read);
+  // A number is known to end only with the character behind it.
+  const char* end = text.data() + text.size();
+  Json::sax_parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), &finder);
+  const char* found = finder.found();
+  return found == nullptr || found == text.data()
+             ? 1
+             : LineAt(text, static_cast<std::size_t>(found - text.data() - 1));
+}
+
+JsonObject::JsonObject(const Json& value, std::string path, HazardPlace& place)
+    : value_(value), path_(std::move(path)), place_(place) {
+  if (value.is_object()) return;
+  place_.RefuseValue(path_, "got " + Shown(&value) + ", expected an object");
+}
+
+const Json* JsonObject::Find(Keys keys) const {
+  for (const char* key : keys) {
+    const auto found = value_.find(key);
+    if (found != value_.end() && !SaysNothing(*found)) return &*found;
+  }
+  return nullptr;
+}
+
+std::string JsonObject::KeyOf(Keys keys) const {
+  for (const char* key : keys) {
+    if (Find({key}) != nullptr) return key;
+  }
+  for (const char* key : keys) {
+    if (value_.contains(key)) return key;
+  }
+  return *keys.begin();
+}
+
+void JsonObject::Refuse(Keys keys, const Json* got, const std::string& expected) const {
+  place_.RefuseValue(Join(path_, KeyOf(keys)), "got " + Shown(got) + ", expected " + expected);
+}
+
+std::optional<double> JsonObject::Number(Keys keys, double min, double max) const {
+  const Json* value = Find(keys);
+  if (value == nullptr) return std::nullopt;
+  std::optional<double> number;
+  if (value->is_number()) number = value->get<double>();
+  if (value->is_string()) number = ParseNumber(value->get_ref<const std::string&>());
+  if (number && *number >= min && *number <= max) return number;
+  Refuse(keys, value, InRange(min, max));
+}
+
+double JsonObject::NeedNumber(Keys keys, double min, double max) const {
+  const std::optional<double> number = Number(keys, min, max);
+  if (number) return *number;
+  Refuse(keys, nullptr, InRange(min, max));
+}
+
+std::string JsonObject::Text(Keys keys) const {
+  const Json* value = Find(keys);
+  if (value == nullptr) return "";
+  if (value->is_number()) return value->dump();
+  if (!value->is_string()) Refuse(keys, value, "a text");
+  return value->get<std::string>();
+}
+
+std::int64_t JsonObject::NeedTime(Keys keys, std::int64_t zone_s) const {
+  const std::optional<std::int64_t> time = ParseDateTime(Text(keys), zone_s);
+  if (!time) Refuse(keys, Find(keys), "a time as 2021-07-25T14:00:00");
+  return *time;
+}
+
+GeoPoint JsonObject::NeedPosition(Keys latitude, Keys longitude) const {
+  return {NeedNumber(latitude, -90.0, 90.0), NormalLongitude(NeedNumber(longitude, -180.0, 360.0))};
+}
+
+const Json* JsonObject::List(Keys keys) const {
+  const Json* value = Find(keys);
+  if (value != nullptr && !value->is_array()) Refuse(keys, value, "a list");
+  return value;
+}
+
+HazardPlace& JsonObject::Here() const {
+  place_.line = 0;
+  place_.path = path_;
+  return place_;
+}
+
+std::array<double, kQuadrantCount> ReadQuadrants(
+    const Json& value, const std::string& path, const std::array<const char*, kQuadrantCount>& keys,
+    std::int32_t wind_kt, const std::array<double, kQuadrantCount>& otherwise, HazardPlace& place) {
+  const JsonObject object(value, path, place);
+  std::array<double, kQuadrantCount> radius_km = otherwise;
+  std::size_t said = 0;
+  for (std::size_t q = 0; q < keys.size(); ++q) {
+    const std::string upper = Upper(keys[q]);
+    const auto one = object.Number({keys[q], upper.c_str()}, 0.0, kMostRadius_km);
+    radius_km[q] = one.value_or(otherwise[q]);
+    said += one ? 1 : 0;
+  }
+  const bool all = *std::max_element(otherwise.begin(), otherwise.end()) > 0.0;
+  const std::string wind = std::to_string(wind_kt) + " kt: ";
+  if (said == 0 && !IsBlank(value)) {
+    place.WarnValue(path, wind + "has none of the quadrants " + keys[0] + ", " + keys[1] + ", " +
+                              keys[2] + " and " + keys[3]);
+  } else if (said > 0 && said < keys.size()) {
+    place.WarnValue(path, wind + "not every quadrant is said; the others are given " +
+                              (all ? "the radius that is said of all" : "0"));
+  }
+  return radius_km;
+}
+
+void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
+                 HazardFix& fix) {
+  const bool given = *std::max_element(radius_km.begin(), radius_km.end()) > 0.0;
+  const bool blows = !fix.wind_mps || *fix.wind_mps >= wind_kt * kMpsPerKnot;
+  if (given || !blows) AddRing({wind_kt, radius_km, false}, fix.rings);
+}
+
+}  // namespace aquafarm::internal

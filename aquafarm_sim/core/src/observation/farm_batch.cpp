@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/observation/farm_batch.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "base/cbor.h"
+
+namespace aquafarm {
+
+FarmBatch::FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms,
+                     std::int32_t threads)
+    : scenario_(std::move(scenario)),
+      encoder_(*scenario_),
+      agents_(scenario_->AgentCount()),
+      threads_(std::max(1, std::min(threads, farms))) {
+  AQUAFARM_CHECK_GE(farms, 1);
+  farms_.reserve(static_cast<std::size_t>(farms));
+  farms_.emplace_back(scenario_);
+  const bool fixed = scenario_->layout == LayoutMode::kFixed;
+  const std::shared_ptr<const Layout> layout = fixed ? farms_[0].shared_layout() : nullptr;
+  for (std::int32_t i = 1; i < farms; ++i) farms_.emplace_back(scenario_, layout);
+  views_.resize(static_cast<std::size_t>(threads_));
+}
+
+void FarmBatch::Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output) {
+  for (std::int32_t i = 0; i < farms(); ++i) {
+    farm(i).Reset(seed, first_episode + static_cast<std::uint64_t>(i));
+    WriteOne(i, 0, true, output);
+  }
+}
+
+void FarmBatch::StartNext(std::int32_t i) {
+  Farm& next = farm(i);
+  next.Reset(next.seed(), next.episode() + static_cast<std::uint64_t>(farms()));
+}
+
+void FarmBatch::Step(const std::uint8_t* actions, const BatchOutput& output) {
+  if (threads_ == 1) {
+    for (std::int32_t i = 0; i < farms(); ++i) StepOne(i, 0, actions, output);
+    return;
+  }
+  std::exception_ptr failure;  // none may leave the parallel region
+#pragma omp parallel for num_threads(threads_) schedule(static)
+  for (std::int32_t i = 0; i < farms(); ++i) {
+    try {
+      StepOne(i, omp_get_thread_num(), actions, output);
+    } catch (...) {
+#pragma omp critical(aquafarm_farm_batch_failure)
+      failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+void FarmBatch::StepOne(std::int32_t i, std::int32_t thread, const std::uint8_t* actions,
+                        const BatchOutput& output) {
+  const bool starts = farm(i).over();
+  if (starts) {
+    StartNext(i);
+  } else {
+    farm(i).Step(actions + static_cast<std::ptrdiff_t>(i) * agents_);
+  }
+  WriteOne(i, thread, starts, output);
+}
+
+void FarmBatch::Write(const BatchOutput& output) {
+  for (std::int32_t i = 0; i < farms(); ++i) WriteOne(i, 0, farm(i).step() == 0, output);
+}
+
+void FarmBatch::WriteOne(std::int32_t i, std::int32_t thread, bool started,
+                         const BatchOutput& output) {
+  const Farm& one = farm(i);
+  const auto n = static_cast<std::size_t>(i);
+  if (output.reasons != nullptr) output.reasons[n] = static_cast<std::uint8_t>(one.record().reason);
+  if (output.started != nullptr) output.started[n] = started ? 1 : 0;
+  if (output.hashes != nullptr) output.hashes[n] = one.Hash();
+  for (std::int32_t id = 0; id < agents_; ++id) {
+    const Ship& ship = one.ships()[static_cast<std::size_t>(id)];
+    const std::size_t k = n * static_cast<std::size_t>(agents_) + static_cast<std::size_t>(id);
+    if (output.rewards != nullptr) output.rewards[k] = ship.reward;
+    if (output.terms != nullptr) {
+      std::memcpy(output.terms + k * kRewardTermCount, &ship.terms, sizeof(ship.terms));
+    }
+    if (output.outcomes != nullptr) output.outcomes[k] = static_cast<std::uint8_t>(ship.outcome);
+    if (output.legal != nullptr) output.legal[k] = one.LegalActions(id);
+    if (output.in_play != nullptr) output.in_play[k] = ship.in_play ? 1 : 0;
+    if (output.index != nullptr) output.index[k] = encoder_.Index(one, id);
+    if (output.features == nullptr && output.planes == nullptr) continue;
+    View& view = views_[static_cast<std::size_t>(thread)];
+    Observe(one, id, view);
+    if (output.features != nullptr) {
+      encoder_.Features(view,
+                        output.features + k * static_cast<std::size_t>(encoder_.feature_count()));
+    }
+    if (output.planes != nullptr) {
+      encoder_.Planes(view, output.planes + k * encoder_.planes_size());
+    }
+  }
+}
+
+std::string FarmBatch::Save() const {
+  nlohmann::json states = nlohmann::json::array();
+  for (const Farm& one : farms_) {
+    const std::string bytes = one.Save();
+    states.push_back(nlohmann::json::binary({bytes.begin(), bytes.end()}));
+  }
+  std::string bytes;
+  nlohmann::json::to_cbor(states, bytes);
+  return bytes;
+}
+
+void FarmBatch::Load(const std::string& bytes) {
+  std::vector<Farm> loaded;
+  try {
+    const nlohmann::json states = ParseCbor(bytes);
+    if (!states.is_array() || states.size() != farms_.size()) {
+      throw InputError("state: got " + std::to_string(states.size()) + " farms, expected " +
+                       std::to_string(farms_.size()));
+    }
+    loaded.reserve(farms_.size());
+    for (std::size_t i = 0; i < farms_.size(); ++i) {
+      const auto& state = states[i].get_binary();
+      const bool fixed = scenario_->layout == LayoutMode::kFixed;
+      loaded.emplace_back(scenario_, fixed ? farms_[0].shared_layout() : nullptr);
+      loaded.back().Load(std::string(state.begin(), state.end()));
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(std::string("state: damaged bytes: ") + error.what());
+  }
+  farms_ = std::move(loaded);
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,505 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/ranch/ranch_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/charts/ascii_grid.h"
+#include "aquafarm/charts/coast.h"
+#include "aquafarm/charts/map_file.h"
+#include "aquafarm/farm/layout.h"
+#include "aquafarm/observation/encoder.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/sea/sea_field.h"
+#include "aquafarm/storms/notices.h"
+#include "aquafarm/storms/presets.h"
+#include "aquafarm/storms/reader.h"
+#include "input/file_type.h"
+#include "input/parse_context.h"
+#include "ranch/ranch_text.h"
+#include "scenario/domains.h"
+
+namespace aquafarm {
+namespace {
+
+using internal::CellText;
+using internal::FileName;
+using internal::Format;
+using internal::FormatTime;
+using internal::OneLine;
+using internal::Short;
+using internal::Text;
+
+// Everything that goes into the text of the file, collected part by part.
+class Builder {
+ public:
+  explicit Builder(const RanchRequest& request) : request_(request) {
+    plan_.width = request.width;
+    plan_.height = request.height;
+    plan_.cell_size_m = request.cell_size_m;
+    CheckSize("size", request.width);
+    CheckSize("size", request.height);
+    internal::Check("cell", request.cell_size_m, internal::Interval<double>{0.01, 1.0e6});
+    internal::Check("sea_level", request.sea_level, internal::Interval<float>{-1.0e5F, 1.0e5F});
+    if (!request.center && (!request.track.empty() || !request.port_places.empty())) {
+      throw InputError("center: got nothing, expected the place of the ranch for its storm");
+    }
+  }
+
+  Ranch Build() {
+    PlaceTerrain();
+    PlacePorts();
+    SetTime();
+    ReadSea();
+    AddPresets();
+    SayNotices();
+    plan_.step_limit = StepLimit();
+    Write();
+    if (IsForNetworks()) Write();
+    if (!request_.value.empty()) ValueDevices();
+    return std::move(ranch_);
+  }
+
+ private:
+  void Write() {
+    ranch_.yaml = internal::WriteRanch(request_, plan_, ranch_.decided);
+    ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
+  }
+
+  // A table of many states takes many steps; a network needs few where it is told the way.
+  bool IsForNetworks() {
+    constexpr std::uint32_t kSoonLearnt = 1'000'000;
+    const std::uint32_t states = Encoder(ranch_.scenario).state_count();
+    if (states > 0 && states <= kSoonLearnt) return false;
+    Scenario told = ranch_.scenario;
+    told.view.waterways = true;
+    try {
+      ValidateScenario(told);
+    } catch (const InputError&) {
+      return false;  // a farm too large for the ways by water
+    }
+    plan_.waterways = true;
+    const std::string many = states == 0 ? "more than 268435456" : std::to_string(states);
+    Say("states: " + many + ", many for a table; features tell networks the way by water");
+    return true;
+  }
+
+  static void CheckSize(const char* what, std::int32_t side) {
+    internal::Check(what, side, internal::Interval<std::int32_t>{2, kMaxSide});
+  }
+  std::int32_t width() const { return plan_.width; }
+  std::int32_t height() const { return plan_.height; }
+  void Say(const std::string& line) { ranch_.decided.push_back(OneLine(line)); }
+  void Keep(const std::vector<std::string>& warnings) {
+    ranch_.warnings.insert(ranch_.warnings.end(), warnings.begin(), warnings.end());
+  }
+
+  void Resize(Eigen::Index rows, Eigen::Index columns, double cell_size_m) {
+    plan_.width = static_cast<std::int32_t>(columns);
+    plan_.height = static_cast<std::int32_t>(rows);
+    CheckSize("chart", width());
+    CheckSize("chart", height());
+    plan_.cell_size_m = cell_size_m;
+  }
+
+  // The origin is the centre of cell (0, 0); the place asked for is the middle of the ranch.
+  GeoFrame Frame() {
+    if (!request_.center) {
+      throw InputError("center: got nothing, expected the place of the ranch on the chart");
+    }
+    const GeoPoint corner = GeoFrame(*request_.center, plan_.cell_size_m)
+                                .ToGeo(-(width() - 1) / 2.0, -(height() - 1) / 2.0);
+    // Rounded as it is written, so that the file and this agree.
+    plan_.origin =
+        GeoPoint{std::stod(Short(corner.latitude, 6)), std::stod(Short(corner.longitude, 6))};
+    return GeoFrame(*plan_.origin, plan_.cell_size_m);
+  }
+
+  // What is said of the land or water of a chart goes behind its name.
+  template <typename Make>
+  auto OfChart(Make make) {
+    try {
+      return make();
+    } catch (const InputError& error) {
+      throw InputError(request_.chart + ": " + error.what());
+    }
+  }
+
+  LandShare ReadChart() {
+    if (request_.chart.empty()) return LandShare::Zero(height(), width());
+    const std::string text = internal::ReadTextFile(request_.chart);
+    const internal::FileLook look = internal::LookAt(text);
+    const bool unknown = look.kind == internal::FileKind::kUnknown;
+    switch (unknown ? internal::KindByName(request_.chart) : look.kind) {
+      case internal::FileKind::kMapYaml: {
+        const MapFile map = LoadMap(request_.chart);
+        Resize(map.occupancy.rows(), map.occupancy.cols(), map.cell_size_m);
+        return OfChart([&map] { return ShareOfLand(map); });
+      }
+      case internal::FileKind::kAsciiGrid: {
+        const AsciiGrid grid = ParseAsciiGrid(text, request_.chart);
+        if (grid.IsGeographic()) {
+          return ShareOfLand(grid, Frame(), width(), height(), request_.sea_level);
+        }
+        Resize(grid.value.rows(), grid.value.cols(), grid.cell_size);
+        return ShareOfLand(grid, request_.sea_level);
+      }
+      case internal::FileKind::kGeoJson: {
+        const Coast coast = ParseCoast(text, request_.chart);
+        Keep(coast.warnings);
+        return ShareOfLand(coast, Frame(), width(), height());
+      }
+      default:
+        throw InputError(request_.chart + ":1: got " + look.words +
+                         ", expected a chart: a coast as GeoJSON, a map of map_server (its YAML) "
+                         "or an ASCII grid of heights");
+    }
+  }
+
+  void PlaceTerrain() {
+    const LandShare share = ReadChart();
+    plan_.terrain = OfChart([&share] { return ToTerrain(share); });
+    if (request_.center) Frame();
+    Say(Text("ranch: %d x %d cells of %s m", width(), height(), Format(plan_.cell_size_m).c_str()) +
+        (request_.center
+             ? Text(", middle %.3f N %.3f E", request_.center->latitude, request_.center->longitude)
+             : std::string()));
+    if (request_.chart.empty()) return;
+    Say(Text("chart: %s: %d island cells, %d rocks, %d of water", FileName(request_.chart).c_str(),
+             static_cast<int>(plan_.terrain.land.cast<int>().sum()),
+             static_cast<int>(plan_.terrain.rocks.size()), plan_.terrain.WaterCells()) +
+        (plan_.terrain.filled > 0
+             ? Text("; %d cells of enclosed water filled", plan_.terrain.filled)
+             : std::string()));
+  }
+
+  void PlacePorts() {
+    std::vector<Cell>& ports = plan_.ports;
+    if (request_.port_places.empty()) {
+      ports = SpreadPorts(plan_.terrain, request_.ports);
+    } else {
+      const GeoFrame frame = Frame();
+      for (const GeoPoint& place : request_.port_places) {
+        const std::array<double, 2> wanted = frame.ToGrid(place);
+        const Cell cell{static_cast<std::int32_t>(std::lround(wanted[0])),
+                        static_cast<std::int32_t>(std::lround(wanted[1]))};
+        ports.push_back(NearestShore(plan_.terrain, cell, ports));
+        Say(Text("port: asked for at (%d, %d), put at the shore at (%d, %d)", cell.x, cell.y,
+                 ports.back().x, ports.back().y));
+      }
+    }
+    if (ports.empty()) Say(Text("ports: no shore, so %d drawn at the edge", request_.ports));
+  }
+
+  // The storm of a track in another file, at the same time.
+  static const HazardTrack& SameStorm(const char* option, const HazardFile& file,
+                                      const HazardTrack& track) {
+    const HazardTrack& same = OfThatName(option, file, track);
+    const std::int64_t first = same.fixes.front().time;
+    const std::int64_t last = same.fixes.back().time;
+    if (first <= track.fixes.back().time && last >= track.fixes.front().time) return same;
+    throw InputError(std::string(option) + ": got " + (same.name.empty() ? same.id : same.name) +
+                     " from " + FormatTime(first) + " to " + FormatTime(last) +
+                     ", expected the storm from " + FormatTime(track.fixes.front().time) + " to " +
+                     FormatTime(track.fixes.back().time));
+  }
+
+  // By id, else by name.
+  static const HazardTrack& OfThatName(const char* option, const HazardFile& file,
+                                       const HazardTrack& track) {
+    const auto letters = [](const std::string& name) {
+      std::string bare = internal::Upper(name);
+      bare.erase(std::remove(bare.begin(), bare.end(), '-'), bare.end());
+      return bare;
+    };
+    const HazardTrack& first = file.tracks.front();
+    const bool unnamed = first.name.empty() || track.name.empty();
+    if (file.tracks.size() == 1 && (unnamed || letters(first.name) == letters(track.name))) {
+      return first;
+    }
+    for (const HazardTrack& other : file.tracks) {
+      if (other.id == track.id) return other;
+    }
+    try {
+      return FindTrack(file, track.name.empty() ? track.id : track.name);
+    } catch (const InputError& error) {
+      throw InputError(std::string(option) + ": " + error.what());
+    }
+  }
+
+  // In the name of a fix of the track's file; JSON has no lines here.
+  [[noreturn]] void Refuse(const HazardFix& fix, const std::string& what) const {
+    throw InputError(request_.track + ":" + (fix.line > 0 ? std::to_string(fix.line) + ":" : "") +
+                     " " + FormatTime(fix.time) + ": " + what);
+  }
+
+  // The scenario's reader says the same of the line that is written here.
+  void CheckReach(const HazardTrack& track) {
+    const GeoFrame frame = Frame();
+    for (const HazardFix& fix : track.fixes) {
+      const bool kept = fix.time >= plan_.storm.waypoints.front().time &&
+                        fix.time <= plan_.storm.waypoints.back().time;
+      if (!kept || frame.Faces(fix.position)) continue;
+      Refuse(fix, Text("got latitude %g, longitude %g, expected a place within 60 degrees of the "
+                       "ranch",
+                       fix.position.latitude, fix.position.longitude));
+    }
+  }
+
+  HazardTrack ReadTrack() {
+    const auto only = [](const HazardFile& file, const std::string& storm) {
+      return storm.empty() && file.tracks.size() == 1 ? file.tracks[0] : FindTrack(file, storm);
+    };
+    const HazardFile file = LoadHazardFile(request_.track);
+    Keep(file.warnings);
+    HazardTrack track = only(file, request_.storm);
+    if (track.fixes.size() == 1) {
+      Refuse(track.fixes[0], "got the only point of " +
+                                 (track.name.empty() ? track.id : track.name) +
+                                 ", expected two or more to know how the storm moves");
+    }
+    std::string radii;
+    if (!request_.radii.empty()) {
+      const HazardFile other = LoadHazardFile(request_.radii);
+      Keep(other.warnings);
+      radii = Text("; radii of %d from %s", BorrowRings(SameStorm("radii", other, track), track),
+                   FileName(request_.radii).c_str());
+    }
+    plan_.storm = ToRings(track, request_.reduction);
+    const bool blank = file.format == HazardFormat::kIbtracs && plan_.storm.estimated > 0;
+    const std::int32_t averaging = track.fixes.front().averaging_min;
+    plan_.storm_text = (track.name.empty() ? track.id : track.name + " (" + track.id + ")") + ", " +
+                       std::string(ToString(file.format)) + " " + FileName(request_.track);
+    Say("storm: " + plan_.storm_text +
+        Text(", %d fixes, winds of %d minutes", static_cast<int>(track.fixes.size()), averaging) +
+        radii +
+        Text("; radii estimated at %d%s, unknown at %d", plan_.storm.estimated,
+             blank ? ", where quadrants are blank" : "", plan_.storm.silent));
+    return track;
+  }
+
+  // When the episode starts and ends, from when the storm is over the ranch.
+  void SetTime() {
+    plan_.step_s = request_.step_s.value_or(
+        std::max(1.0, std::round(plan_.cell_size_m / (request_.speed_kn * kMpsPerKnot))));
+    internal::Check("step", plan_.step_s, internal::Interval<double>{0.001, 1.0e6});
+    plan_.start = request_.start.value_or(0);
+    if (request_.track.empty()) return Say(Text("time: %g s a step; no storm", plan_.step_s));
+    const HazardTrack track = ReadTrack();
+    const double half_diagonal_km =
+        std::hypot(width(), height()) / 2.0 * plan_.cell_size_m / 1000.0;
+    const Passage passage = PassOver(plan_.storm, *request_.center, half_diagonal_km);
+    const std::int32_t widest_kt = plan_.storm.wind_kt.back();
+    const bool reaches = passage.worst_wind_kt > 0;
+    Say(Text("nearest: %.0f km at %s", passage.nearest_km,
+             FormatTime(passage.nearest_time).c_str()));
+    Say(reaches ? Text("%d kt over the ranch for %.1f h, from %s to %s; strongest ring %d kt",
+                       widest_kt, passage.widest_h, FormatTime(passage.first).c_str(),
+                       FormatTime(passage.last).c_str(), passage.worst_wind_kt)
+                : Text("%d kt never come over the ranch", widest_kt));
+    constexpr std::int64_t kHour_s = 3600;
+    const std::int64_t half_day_s = 12 * kHour_s;
+    const auto lead_s = static_cast<std::int64_t>(request_.lead_h * kHour_s);
+    const std::int64_t first = reaches ? passage.first - lead_s : passage.nearest_time - half_day_s;
+    const std::int64_t last = reaches ? passage.last : passage.nearest_time + half_day_s;
+    const auto hour_before = [](std::int64_t time) { return time - ((time % 3600) + 3600) % 3600; };
+    plan_.start =
+        request_.start.value_or(std::max(hour_before(first), plan_.storm.waypoints.front().time));
+    const std::int64_t end =
+        std::min(hour_before(last) + 2 * kHour_s, plan_.storm.waypoints.back().time);
+    if (end <= plan_.start) {
+      throw InputError("start: got " + FormatTime(plan_.start) + ", expected a time before " +
+                       FormatTime(end) + ", when the storm is over");
+    }
+    duration_ = StepsToCover(static_cast<double>(end - plan_.start), plan_.step_s);
+    plan_.storm_steps = duration_;
+    Say(Text("time: %g s a step, from %s, over after %d steps", plan_.step_s,
+             FormatTime(plan_.start).c_str(), duration_));
+    Trim(end);
+    CheckReach(track);
+    ReadForecasts(track, end);
+  }
+
+  // From the newest issued by the start on, of the agency that each bulletin names first.
+  void ReadForecasts(const HazardTrack& track, std::int64_t end) {
+    if (request_.forecasts.empty()) return;
+    const HazardFile file = LoadHazardFile(request_.forecasts);
+    Keep(file.warnings);
+    std::vector<HazardForecast>& kept = plan_.forecasts;
+    for (HazardForecast forecast : SameStorm("forecasts", file, track).forecasts) {
+      auto& fixes = forecast.fixes;
+      fixes.erase(std::remove_if(fixes.begin(), fixes.end(),
+                                 [&](const HazardFix& fix) { return fix.time <= forecast.issued; }),
+                  fixes.end());
+      const bool second = !kept.empty() && kept.back().issued == forecast.issued;
+      if (second || fixes.empty() || forecast.issued >= end) continue;
+      if (forecast.issued <= plan_.start) kept.clear();
+      kept.push_back(std::move(forecast));
+    }
+    const auto ends = [](const HazardForecast& one) { return one.fixes.back().time; };
+    if (!kept.empty() && ends(kept.front()) <= plan_.start) {
+      ranch_.warnings.push_back("forecasts: that of " + FormatTime(kept.front().issued) +
+                                " ends at " + FormatTime(ends(kept.front())) +
+                                ", by the start, and is left out");
+      kept.erase(kept.begin());
+    }
+    if (kept.empty()) {
+      throw InputError("forecasts: got no forecast points of the storm between " +
+                       FormatTime(plan_.start) + " and " + FormatTime(end) + " in " +
+                       FileName(request_.forecasts) + ", expected bulletins with forecast points");
+    }
+    Say(Text("forecasts: %d from %s, the first of ", static_cast<int>(kept.size()),
+             FileName(request_.forecasts).c_str()) +
+        FormatTime(kept.front().issued));
+  }
+
+  // Keeps the waypoints from the last before the start to the first after the end.
+  void Trim(std::int64_t end) {
+    std::vector<StormWaypoint>& all = plan_.storm.waypoints;
+    std::size_t from = 0;
+    while (from + 1 < all.size() && all[from + 1].time <= plan_.start) ++from;
+    std::size_t to = all.size();
+    while (to > from + 1 && all[to - 2].time >= end) --to;
+    all = {all.begin() + static_cast<std::ptrdiff_t>(from),
+           all.begin() + static_cast<std::ptrdiff_t>(to)};
+  }
+
+  // Once all disasters are known.
+  std::int32_t StepLimit() const { return duration_ > 0 ? duration_ + 100 : 5000; }
+
+  // Those that are in force during the episode, or all where it has no time.
+  void SayNotices() {
+    if (request_.notices.empty()) return;
+    const NoticeFile file = LoadNotices(request_.notices);
+    Keep(file.warnings);
+    const bool timed = request_.start || !plan_.storm.waypoints.empty();
+    const std::int64_t end = plan_.start + static_cast<std::int64_t>(StepLimit() * plan_.step_s);
+    int others = 0;
+    for (const Notice& notice : file.notices) {
+      const bool in_force = !timed || (notice.start < end && notice.end > plan_.start);
+      others += in_force ? 0 : 1;
+      if (in_force) Say("notice: " + Describe(notice));
+    }
+    if (others > 0) Say(Text("notices: %d more at other times", others));
+  }
+
+  NamedLayer ReadLayer(const SeaLayerRequest& sea) {
+    const GeoFrame frame = Frame();
+    const std::optional<std::int64_t> time =
+        request_.track.empty() ? request_.start : std::optional<std::int64_t>(plan_.start);
+    SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
+                                  width(), height());
+    NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
+    // Rounded as they are written, so that the rules of the file and of this command agree.
+    layer.layer = layer.layer.unaryExpr([](float value) {
+      return std::isnan(value)
+                 ? value
+                 : std::strtof(Text("%.6g", static_cast<double>(value)).c_str(), nullptr);
+    });
+    const Layer known = layer.layer.isNaN().select(Layer::Zero(height(), width()), layer.layer);
+    const auto cells = static_cast<float>((!layer.layer.isNaN()).count());
+    if (cells == 0.0F) {
+      throw InputError(sea.file + ": " + field.name + ": has no value on this ranch");
+    }
+    Say(sea.name + ": " + field.name + " of " + FileName(sea.file) +
+        (field.time ? " at " + FormatTime(*field.time) : "") +
+        Text(", mean %.4g %s, on %.0f of %d cells", static_cast<double>(known.sum() / cells),
+             field.units.c_str(), static_cast<double>(cells), width() * height()));
+    plan_.sea_units.push_back(std::move(field.units));
+    return layer;
+  }
+
+  void AddPresets() {
+    const bool south = request_.center && request_.center->latitude < 0.0;
+    for (const std::string& text : request_.disasters) {
+      const DisasterSpec disaster =
+          ParseDisasterPreset(text, {plan_.cell_size_m, plan_.step_s, south});
+      plan_.presets.push_back(disaster);
+      Say(Text("disaster: %s: grade %d, radius %.1f cells, %.3g cells a step, %d steps",
+               text.c_str(), disaster.grade, static_cast<double>(disaster.radii.back()),
+               static_cast<double>(disaster.speed), disaster.duration));
+      duration_ = std::max(duration_, disaster.duration);
+    }
+  }
+
+  void ReadSea() {
+    for (const SeaLayerRequest& sea : request_.sea) plan_.layers.push_back(ReadLayer(sea));
+    if (!request_.sea_risk.empty()) {
+      OfSea("sea_risk", request_.sea_risk);
+      Say("risk of the sea: " + request_.sea_risk);
+    }
+    if (request_.value.empty()) return;
+    value_ = OfSea("value", request_.value);
+    Say("values: " + request_.value);
+  }
+
+  // An option's expression at every cell.
+  Layer OfSea(const char* option, const std::string& expression) const {
+    try {
+      return Evaluate(expression, plan_.layers);
+    } catch (const InputError& error) {
+      throw InputError(std::string(option) + ": " + error.what());
+    }
+  }
+
+  // The devices stay where they were drawn, each with the value of its cell.
+  void ValueDevices() {
+    Layout layout;
+    LayoutGenerator(ranch_.scenario).Generate(request_.seed, 0, layout);
+    std::string sites = "  devices:\n    placement: explicit\n    sites:\n";
+    for (const PlacedDevice& device : layout.devices) {
+      const float worth = value_(device.cell.y, device.cell.x);
+      if (!(worth >= 0.0F && worth <= 10000.0F)) {
+        throw InputError("value: got " + Format(worth) + " at the device at " +
+                         CellText(device.cell) + ", expected a number in [0, 10000]");
+      }
+      sites += "      - {cell: " + CellText(device.cell) +
+               ", kind: " + std::string(ToString(device.kind)) + ", value: " + Format(worth) +
+               "}\n";
+    }
+    const std::string line = internal::DevicesLine(request_);
+    ranch_.yaml.replace(ranch_.yaml.find(line), line.size(), sites);
+    ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
+  }
+
+  const RanchRequest& request_;
+  Ranch ranch_;
+  internal::RanchPlan plan_;
+  Layer value_;              // of a device, by cell
+  std::int32_t duration_{};  // of all disasters
+};
+
+}  // namespace
+
+Ranch BuildRanch(const RanchRequest& request) {
+  Ranch ranch = Builder(request).Build();
+  LayoutGenerator generator(ranch.scenario);
+  Layout layout;
+  generator.Generate(0, 0, layout);  // refuses what does not fit on the water there is
+  return ranch;
+}
+
+std::string Sketch(const Scenario& scenario) {
+  LayoutGenerator generator(scenario);
+  Layout layout;
+  generator.Generate(scenario.layout_seed, 0, layout);
+  std::string text;
+  for (std::int32_t y = scenario.height; y-- > 0;) {
+    for (std::int32_t x = 0; x < scenario.width; ++x) {
+      const std::uint8_t bits = layout.bits({x, y});
+      const char mark = (bits & kIslandBit) != 0       ? '#'
+                        : (bits & kRockBit) != 0       ? 'o'
+                        : (bits & kPortBit) != 0       ? 'P'
+                        : (bits & kDeviceSiteBit) != 0 ? 'd'
+                                                       : '.';
+      text += mark;
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace aquafarm

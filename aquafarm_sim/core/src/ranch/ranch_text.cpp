@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ranch/ranch_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "input/parse_context.h"
+#include "scenario/domains.h"
+
+namespace aquafarm::internal {
+namespace {
+
+std::string InQuotes(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : OneLine(text))
+    quoted += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+  return quoted + "\"";
+}
+
+class Writer {
+ public:
+  Writer(const RanchRequest& request, const RanchPlan& plan,
+         const std::vector<std::string>& decided)
+      : request_(request), plan_(plan), decided_(decided) {}
+
+  std::string Write() {
+    Line("# SPDX-License-Identifier: BSD-3-Clause");
+    Line("# Made by `aquafarm scenario`:");
+    for (const std::string& line : decided_) Line("#   " + line);
+    Line("name: " + InQuotes(request_.name));
+    Line("description: " +
+         InQuotes("A ranch" +
+                  (request_.chart.empty() ? "" : " on the chart " + FileName(request_.chart)) +
+                  (request_.track.empty() ? " in calm weather."
+                                          : " while " + plan_.storm_text + " passes.")));
+    Line("grid:");
+    Line(Text("  width: %d\n  height: %d", plan_.width, plan_.height));
+    Line("  cell_size_m: " + Format(plan_.cell_size_m));
+    if (plan_.origin) {
+      Line("  origin: {latitude: " + Format(plan_.origin->latitude) +
+           ", longitude: " + Format(plan_.origin->longitude) + "}");
+    }
+    Line("time: {step_duration_s: " + Format(plan_.step_s) +
+         (plan_.storm.waypoints.empty() && !request_.start
+              ? std::string()
+              : ", start: " + FormatTime(plan_.start)) +
+         Text(", step_limit: %d}", plan_.step_limit));
+    WriteLayout();
+    Line(Text("ships: {count: %d, capacity: 1}", request_.ships));
+    if (!plan_.storm.waypoints.empty() || !plan_.presets.empty()) Line("disasters:");
+    if (!plan_.storm.waypoints.empty()) WriteStorm();
+    for (const DisasterSpec& disaster : plan_.presets) WritePreset(disaster);
+    Line(plan_.waterways ? "view: {mode: full, waterways: true}" : "view: {mode: full}");
+    if (!plan_.layers.empty()) WriteSeas();
+    return std::move(yaml_);
+  }
+
+ private:
+  void Line(const std::string& line) { yaml_ += line + "\n"; }
+
+  // As numbers, so that the file needs no other.
+  void WriteSeas() {
+    Line("seas:\n  layers:");
+    for (std::size_t i = 0; i < plan_.layers.size(); ++i) {
+      Line("    - name: " + plan_.layers[i].name);
+      Line("      units: " + InQuotes(plan_.sea_units[i]));
+      Line("      values: [");
+      const Layer& layer = plan_.layers[i].layer;
+      for (Eigen::Index y = 0; y < layer.rows(); ++y) {
+        std::string row;
+        for (Eigen::Index x = 0; x < layer.cols(); ++x) {
+          const float value = layer(y, x);
+          row += std::isnan(value) ? ".nan, " : Format(value) + ", ";
+        }
+        Line("        " + row);
+      }
+      Line("      ]");
+    }
+    if (!request_.sea_risk.empty()) Line("  risk: " + InQuotes(request_.sea_risk));
+  }
+
+  static std::string CellList(const std::vector<Cell>& cells) {
+    std::string text;
+    for (const Cell cell : cells) text += (text.empty() ? "[" : ", ") + CellText(cell);
+    return text + "]";
+  }
+
+  void WriteLayout() {
+    Line("layout:\n  mode: fixed\n  seed: " + Format(request_.seed));
+    const std::vector<IslandBlock> islands = ToIslands(plan_.terrain.land);
+    if (!islands.empty()) Line("  islands:");
+    for (const IslandBlock& block : islands) {
+      Line(Text("    - {x: %d, y: %d, width: %d, height: %d}", block.south_west.x,
+                block.south_west.y, block.width, block.height));
+    }
+    Line(plan_.terrain.rocks.empty() ? "  rocks: {count: [0, 0]}"
+                                     : "  rocks: {cells: " + CellList(plan_.terrain.rocks) + "}");
+    Line(plan_.ports.empty() ? Text("  ports: {count: %d}", request_.ports)
+                             : "  ports: {cells: " + CellList(plan_.ports) + "}");
+    yaml_ += DevicesLine(request_);
+  }
+
+  static std::string Numbers(const std::vector<float>& values) {
+    std::string text;
+    for (const float value : values) text += (text.empty() ? "[" : ", ") + Format(value);
+    return text + "]";
+  }
+
+  void WritePreset(const DisasterSpec& disaster) {
+    Line("  - kind: " + std::string(ToString(disaster.kind)));
+    Line(Text("    grade: %d\n    radii: ", disaster.grade) + Numbers(disaster.radii) +
+         "\n    risks: " + Numbers(disaster.risks));
+    Line("    speed: " + Format(disaster.speed) +
+         Text("\n    heading_deg: %d", disaster.heading_deg.value_or(0)) +
+         "\n    turn_probability: 0\n    radius_growth: " + Format(disaster.radius_growth));
+    Line("    border: " + std::string(ToString(disaster.border)) +
+         Text("\n    duration: %d", disaster.duration));
+  }
+
+  void WriteStorm() {
+    const GradeRisks& table = DefaultGradeRisks();
+    Line("  - kind: typhoon");
+    std::string rows;
+    for (const std::vector<float>& row : table) {
+      rows += rows.empty() ? "[" : ", ";
+      const std::size_t rings = plan_.storm.wind_kt.size();
+      for (std::size_t k = row.size() - rings; k < row.size(); ++k) {
+        rows += (k == row.size() - rings ? "[" : ", ") + Format(row[k]);
+      }
+      rows += "]";
+    }
+    std::string winds;
+    for (const std::int32_t wind_kt : plan_.storm.wind_kt) {
+      winds += (winds.empty() ? "" : ", ") + std::to_string(wind_kt);
+    }
+    Line("    grade_risks: [" + rows.substr(1) + "]  # grades 1 to 4, rings of " + winds + " kt");
+    Line(Text("    duration: %d\n    track:", plan_.storm_steps));
+    for (const StormWaypoint& waypoint : plan_.storm.waypoints) {
+      std::string radii;
+      for (const double radius : waypoint.radii_km) {
+        radii += (radii.empty() ? "" : ", ") + Short(radius, 1);
+      }
+      std::string quadrants;
+      for (const std::array<double, 4>& ring : waypoint.quadrants_km) {
+        quadrants += (quadrants.empty() ? "[" : ", [") + Short(ring[0], 1);
+        for (std::size_t q = 1; q < ring.size(); ++q) quadrants += ", " + Short(ring[q], 1);
+        quadrants += "]";
+      }
+      Line("      - {time: " + FormatTime(waypoint.time) +
+           ", latitude: " + Short(waypoint.position.latitude, 3) +
+           ", longitude: " + Short(waypoint.position.longitude, 3) +
+           (quadrants.empty() ? ", radii_km: [" + radii : ", quadrants_km: [" + quadrants) + "],");
+      Line(Text("         grade: %d", DisasterGrade(waypoint.grade)) +
+           (waypoint.pressure_hpa ? ", pressure_hpa: " + Short(*waypoint.pressure_hpa, 1) : "") +
+           (waypoint.wind_mps ? ", wind_mps: " + Short(*waypoint.wind_mps, 1) : "") + "}" +
+           (waypoint.estimated ? "  # radii estimated" : ""));
+    }
+    if (!plan_.forecasts.empty()) WriteForecasts();
+  }
+
+  void WriteForecasts() {
+    Line("    forecasts:");
+    for (const HazardForecast& forecast : plan_.forecasts) {
+      Line("      - time: " + FormatTime(forecast.issued) +
+           (forecast.agency.empty() ? "" : "  # " + OneLine(forecast.agency)) +
+           "\n        points:");
+      for (const HazardFix& fix : forecast.fixes) {
+        Line("          - {time: " + FormatTime(fix.time) +
+             ", latitude: " + Short(fix.position.latitude, 3) +
+             ", longitude: " + Short(fix.position.longitude, 3) + "}");
+      }
+    }
+  }
+
+  const RanchRequest& request_;
+  const RanchPlan& plan_;
+  const std::vector<std::string>& decided_;
+  std::string yaml_;
+};
+
+}  // namespace
+
+std::string WriteRanch(const RanchRequest& request, const RanchPlan& plan,
+                       const std::vector<std::string>& decided) {
+  return Writer(request, plan, decided).Write();
+}
+
+std::string DevicesLine(const RanchRequest& request) {
+  return "  devices: {placement: " + std::string(ToString(request.placement)) +
+         Text(", count: %d}\n", request.devices);
+}
+
+std::string CellText(Cell cell) { return Text("[%d, %d]", cell.x, cell.y); }
+
+std::string FileName(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+std::string OneLine(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20U; }, '?');
+  return text;
+}
+
+std::string Short(double value, int digits) {
+  return Format(std::stod(Text("%.*f", digits, value)));
+}
+
+}  // namespace aquafarm::internal

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// What a key of a scenario may hold: a domain is named once, in scenario_keys.h, and serves the
+/// reader, the writer and the check of scenarios made in code.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "aquafarm/scenario/scenario.h"
+#include "base/field_error.h"
+
+namespace aquafarm::internal {
+
+/// Numbers from min to max, both allowed unless `open_min`.
+template <typename T>
+struct Interval {
+  T min{};
+  T max{};
+  bool open_min{false};
+};
+
+/// Text in UTF-8 without control characters but line breaks.
+struct TextOf {
+  std::size_t min_bytes{};
+  std::size_t max_bytes{};
+};
+/// A cell of the largest farm; whether it is on this one is ValidateScenario's question.
+struct AnyCell {};
+struct AnyFlag {};
+/// A finite number, or NaN, which files write as .nan.
+struct NumberOrNone {};
+/// One of an enum's names.
+struct OneOfNames {};
+/// UTC seconds since 1970, as YYYY-MM-DDTHH:MM:SSZ.
+struct UtcTime {};
+
+/// Lists of `min_size` to `max_size` entries.
+template <typename Domain>
+struct ListOf {
+  Domain entry;
+  std::size_t min_size{};
+  std::size_t max_size{};
+};
+
+template <typename Enum>
+inline constexpr std::size_t kNameCount = 0;
+template <>
+inline constexpr std::size_t kNameCount<LayoutMode> = 2;
+template <>
+inline constexpr std::size_t kNameCount<DevicePlacement> = 4;
+template <>
+inline constexpr std::size_t kNameCount<Border> = 3;
+template <>
+inline constexpr std::size_t kNameCount<ViewMode> = 2;
+template <>
+inline constexpr std::size_t kNameCount<RewardSharing> = 2;
+template <>
+inline constexpr std::size_t kNameCount<DeviceKind> = kDeviceKindCount;
+template <>
+inline constexpr std::size_t kNameCount<DisasterKind> = kDisasterKindCount;
+
+/// The shortest decimal text that reads back to the same bits, with a point whatever the locale.
+std::string Format(float value);
+std::string Format(double value);
+std::string Format(std::int32_t value);
+std::string Format(std::uint64_t value);
+/// YYYY-MM-DDTHH:MM:SSZ
+std::string FormatTime(std::int64_t seconds);
+
+/// Readers of whole texts; false when the text is anything else or does not fit the type.
+bool Parse(const std::string& text, float& value);
+bool Parse(const std::string& text, double& value);
+bool Parse(const std::string& text, std::int32_t& value);
+bool Parse(const std::string& text, std::uint64_t& value);
+bool ParseTime(const std::string& text, std::int64_t& seconds);
+/// UTC seconds since 1970 of a date and time; none: there is no such day or hour.
+std::optional<std::int64_t> UtcSeconds(int year, int month, int day, int hour, int minute,
+                                       int second);
+
+template <typename T>
+std::string Describe(const Interval<T>& domain) {
+  return (domain.open_min ? "(" : "[") + Format(domain.min) + ", " + Format(domain.max) + "]";
+}
+
+/// The nearest of some names to a mistyped one, or none.
+std::optional<std::string> Nearest(const std::string& text, const std::vector<std::string>& names);
+/// "a, b, c"
+std::string List(const std::vector<std::string>& names);
+
+template <typename Enum>
+std::vector<std::string> NamesOf() {
+  static_assert(kNameCount<Enum> > 0);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < kNameCount<Enum>; ++i) {
+    names.emplace_back(ToString(static_cast<Enum>(i)));
+  }
+  return names;
+}
+
+// Check: throws FieldError when a value is outside its domain.
+
+template <typename T>
+void Check(const std::string& path, T value, const Interval<T>& domain) {
+  const bool above = domain.open_min ? value > domain.min : value >= domain.min;
+  if (above && value <= domain.max) return;  // false for NaN
+  throw FieldError(path, "got " + Format(value) + ", expected " + Describe(domain));
+}
+
+template <typename T, typename Domain>
+void Check(const std::string& path, const std::optional<T>& value, const Domain& domain) {
+  if (value) Check(path, *value, domain);
+}
+
+template <typename T>
+void Check(const std::string& path, const Range<T>& value, const Interval<T>& domain) {
+  Check(At(path, 0), value.min, domain);
+  Check(At(path, 1), value.max, domain);
+  if (value.min <= value.max) return;
+  throw FieldError(path, "got [" + Format(value.min) + ", " + Format(value.max) +
+                             "], expected the smaller number first");
+}
+
+inline void Check(const std::string& path, const std::array<float, 2>& value,
+                  const Interval<float>& domain) {
+  Check(At(path, 0), value[0], domain);
+  Check(At(path, 1), value[1], domain);
+}
+
+inline void Check(const std::string& path, const QuadrantRadii& value,
+                  const Interval<float>& domain) {
+  for (std::size_t i = 0; i < value.size(); ++i) Check(At(path, i), value[i], domain);
+}
+
+void Check(const std::string& path, float value, NumberOrNone domain);
+
+inline void Check(const std::string& path, Cell cell, AnyCell) {
+  constexpr Interval<std::int32_t> kSide{0, kMaxSide - 1};
+  Check(At(path, 0), cell.x, kSide);
+  Check(At(path, 1), cell.y, kSide);
+}
+
+inline void Check(const std::string&, bool, AnyFlag) {}
+void Check(const std::string& path, std::int64_t seconds, UtcTime domain);
+
+void Check(const std::string& path, const std::string& value, const TextOf& domain);
+
+template <typename Enum>
+std::enable_if_t<std::is_enum_v<Enum>> Check(const std::string& path, Enum value, OneOfNames) {
+  const auto code = static_cast<std::size_t>(value);
+  if (code < kNameCount<Enum>) return;
+  throw FieldError(path, "got code " + std::to_string(code) + ", expected [0, " +
+                             std::to_string(kNameCount<Enum> - 1) + "]");
+}
+
+/// @param sizes fewest and most entries
+inline void CheckSize(const std::string& path, std::size_t size,
+                      const std::array<std::size_t, 2>& sizes) {
+  if (size >= sizes[0] && size <= sizes[1]) return;
+  throw FieldError(path, "got " + std::to_string(size) + " entries, expected [" +
+                             std::to_string(sizes[0]) + ", " + std::to_string(sizes[1]) + "]");
+}
+
+template <typename T, typename Domain>
+void Check(const std::string& path, const std::vector<T>& values, const ListOf<Domain>& domain) {
+  CheckSize(path, values.size(), {domain.min_size, domain.max_size});
+  for (std::size_t i = 0; i < values.size(); ++i) Check(At(path, i), values[i], domain.entry);
+}
+
+}  // namespace aquafarm::internal

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/scenario/scenario_yaml.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "aquafarm/base/hash.h"
+#include "scenario/yaml_reader.h"
+#include "scenario/yaml_writer.h"
+
+namespace aquafarm {
+namespace internal {
+
+void YamlWriter::Line(const char* key, const std::string& value) {
+  text_.append(dash_ ? depth_ - 2 : depth_, ' ');
+  if (dash_) text_ += "- ";
+  dash_ = false;
+  text_ += key;
+  text_ += value.empty() ? ":" : ": " + value;
+  text_ += '\n';
+}
+
+std::string YamlWriter::Value(const std::string& value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    if (c == '"' || c == '\\') text += '\\';
+    if (c == '\n') {
+      text += "\\n";
+    } else {
+      text += c;
+    }
+  }
+  return text + '"';
+}
+
+float ToStep(std::int64_t time, const WorldFrame* frame, const std::string& path) {
+  if (frame == nullptr || !frame->start_time) {
+    throw FieldError(Join(path, "time"), "needs time.start, which is missing");
+  }
+  return static_cast<float>(static_cast<double>(time - *frame->start_time) /
+                            frame->step_duration_s);
+}
+
+void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path,
+             Waypoint& waypoint) {
+  if (frame == nullptr || !frame->grid) {
+    throw FieldError(Join(path, "latitude"), "needs grid.origin, which is missing");
+  }
+  waypoint.step = ToStep(fix.time, frame, path);
+  if (!frame->grid->Faces(fix.point)) {
+    throw FieldError(path,
+                     "got a place on the far side of the globe, expected one within 60 "
+                     "degrees of grid.origin");
+  }
+  const std::array<double, 2> place = frame->grid->ToGrid(fix.point);
+  waypoint.x = static_cast<float>(place[0]);
+  waypoint.y = static_cast<float>(place[1]);
+  const auto cells = [frame](float km) {
+    return static_cast<float>(km * 1000.0 / frame->cell_size_m);
+  };
+  waypoint.radii.clear();
+  for (const float radius : fix.radii_km) waypoint.radii.push_back(cells(radius));
+  for (const QuadrantRadii& ring : fix.quadrants_km) {
+    waypoint.quadrants.push_back({cells(ring[0]), cells(ring[1]), cells(ring[2]), cells(ring[3])});
+  }
+  if (!waypoint.quadrants.empty()) waypoint.radii = Largest(waypoint.quadrants);
+}
+
+}  // namespace internal
+
+namespace {
+
+constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints are under 2 MiB, as are seas
+
+std::string Write(const Scenario& scenario) {
+  internal::YamlWriter writer;
+  internal::WorldFrame unused;
+  internal::VisitScenario(writer, scenario, unused);
+  return writer.text();
+}
+
+}  // namespace
+
+Scenario LoadScenario(const std::string& path) {
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kMaxFileBytes + 1, '\0');
+  if (file) file.read(&text[0], static_cast<std::streamsize>(text.size()));
+  if (!file.eof() && file.fail()) {
+    throw InputError(path +
+                     ": cannot read: " + (errno != 0 ? std::strerror(errno) : "not a plain file"));
+  }
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  return ParseScenario(text, path);
+}
+
+Scenario ParseScenario(const std::string& text, const std::string& origin_name) {
+  if (text.size() > kMaxFileBytes) {
+    throw InputError(origin_name + ": got more than " + std::to_string(kMaxFileBytes) +
+                     " bytes, expected a scenario file");
+  }
+  Scenario scenario;
+  internal::ReadYaml(
+      text, origin_name, "a scenario",
+      [&](internal::YamlReader& reader) {
+        internal::WorldFrame frame;
+        frame.folder = std::filesystem::path(origin_name).parent_path().string();
+        internal::VisitScenario(reader, scenario, frame);
+      },
+      [&scenario] { ValidateScenario(scenario); });
+  scenario.hash = HashScenario(scenario);
+  return scenario;
+}
+
+std::string ToYaml(const Scenario& scenario) { return Write(scenario); }
+
+std::uint64_t HashScenario(const Scenario& scenario) {
+  Scenario rules = scenario;
+  rules.name.clear();
+  rules.description.clear();
+  return HashBytes(Write(rules));
+}
+
+std::int64_t ParseUtc(const std::string& name, const std::string& text) {
+  std::int64_t seconds = 0;
+  if (internal::ParseTime(text, seconds)) return seconds;
+  throw InputError(name + ": got '" + text + "', expected a UTC time as 2021-07-24T12:00:00Z");
+}
+
+}  // namespace aquafarm

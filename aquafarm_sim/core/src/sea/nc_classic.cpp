@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sea/nc_classic.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace aquafarm::internal {
+namespace {
+
+// Bytes of a value by type, from NC_BYTE = 1 to NC_UINT64 = 11.
+constexpr std::array<std::uint64_t, 12> kBytesOfType{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+
+// The words of a header, most significant byte first. Once the file has ended, or a word made no
+// sense, all are 0.
+class HeaderReader {
+ public:
+  explicit HeaderReader(std::istream& file) : file_(file) {
+    file.ignore(3);  // "CDF"
+    version_ = file.get();
+  }
+  bool good() const { return file_.good(); }
+  bool ended() const { return ended_; }
+  std::uint64_t Tag() { return Word(4); }
+  std::uint64_t Count() { return Word(version_ == 5 ? 8 : 4); }
+  std::uint64_t Offset() { return Word(version_ == 1 ? 4 : 8); }
+  /// At most so many as no file of use exceeds.
+  std::uint64_t FewCount() { return AtMost(Count(), std::uint64_t{1} << 16U); }
+  /// Of a list, behind its tag.
+  std::uint64_t ListCount() {
+    Tag();
+    return FewCount();
+  }
+  std::uint64_t BytesOfType() { return kBytesOfType[AtMost(Tag(), kBytesOfType.size() - 1)]; }
+  void SkipName() { Skip(Count()); }
+  void SkipAttributes() {
+    for (std::uint64_t left = ListCount(); left > 0 && good(); --left) {
+      SkipName();
+      const std::uint64_t bytes = BytesOfType();
+      Skip(AtMost(Count(), kMostBytes) * bytes);
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40U;
+
+  std::uint64_t AtMost(std::uint64_t value, std::uint64_t most) {
+    if (value <= most) return value;
+    file_.setstate(std::ios::failbit);
+    return 0;
+  }
+  std::uint64_t Word(int bytes) {
+    std::uint64_t word = 0;
+    for (int i = 0; i < bytes; ++i) {
+      word = word << 8U | static_cast<unsigned char>(file_.get());
+    }
+    ended_ = ended_ || file_.eof();
+    return good() ? word : 0;
+  }
+  // Names and values are filled up to four bytes.
+  void Skip(std::uint64_t bytes) {
+    const std::uint64_t filled = (AtMost(bytes, kMostBytes * 8) + 3) / 4 * 4;
+    if (good()) file_.seekg(static_cast<std::streamoff>(filled), std::ios::cur);
+  }
+  std::istream& file_;
+  int version_{};
+  bool ended_{};
+};
+
+struct Variable {
+  double begin{};
+  double bytes{1.0};  // of a record where it has such
+  bool has_records{};
+};
+
+Variable ReadVariable(HeaderReader& header, const std::vector<double>& dimensions) {
+  Variable variable;
+  header.SkipName();
+  const std::uint64_t rank = header.FewCount();
+  for (std::uint64_t i = 0; i < rank && header.good(); ++i) {
+    const std::uint64_t dimension = header.Count();
+    const double length = dimension < dimensions.size() ? dimensions[dimension] : 0.0;
+    if (i == 0 && length == 0.0) {
+      variable.has_records = true;
+    } else {
+      variable.bytes *= length;
+    }
+  }
+  header.SkipAttributes();
+  variable.bytes *= static_cast<double>(header.BytesOfType());
+  header.Count();  // its size, which a variable of 4 GiB does not fit
+  variable.begin = static_cast<double>(header.Offset());
+  return variable;
+}
+
+}  // namespace
+
+std::optional<double> EndOfClassicValues(std::istream& file) {
+  HeaderReader header(file);
+  const std::uint64_t records = header.Count();
+  std::vector<double> dimensions;
+  for (std::uint64_t left = header.ListCount(); left > 0 && header.good(); --left) {
+    header.SkipName();
+    dimensions.push_back(static_cast<double>(header.Count()));
+  }
+  header.SkipAttributes();
+  std::vector<Variable> variables;
+  for (std::uint64_t left = header.ListCount(); left > 0 && header.good(); --left) {
+    variables.push_back(ReadVariable(header, dimensions));
+  }
+  if (header.ended()) return std::numeric_limits<double>::infinity();
+  if (!header.good()) return std::nullopt;
+  double record_bytes = 0.0;
+  int with_records = 0;
+  for (const Variable& variable : variables) {
+    if (!variable.has_records) continue;
+    ++with_records;
+    record_bytes += std::ceil(variable.bytes / 4.0) * 4.0;
+  }
+  // All ones: written as a stream, as many as there are.
+  const bool streamed = records == 0xFFFFFFFFU || records == ~std::uint64_t{0};
+  double end = 0.0;
+  for (const Variable& variable : variables) {
+    if (variable.has_records && (records == 0 || streamed)) continue;
+    // A lone variable with records has them one behind the other, not filled up.
+    const double apart = with_records == 1 ? variable.bytes : record_bytes;
+    const double before = variable.has_records ? static_cast<double>(records - 1) * apart : 0.0;
+    end = std::max(end, variable.begin + before + variable.bytes);
+  }
+  return end;
+}
+
+}  // namespace aquafarm::internal

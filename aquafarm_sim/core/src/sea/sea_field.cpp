@@ -1,0 +1,459 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/sea/sea_field.h"
+
+#include <muParser.h>
+#include <netcdf.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "aquafarm/base/check.h"
+#include "input/parse_context.h"
+#include "scenario/domains.h"
+#include "sea/nc_file.h"
+
+namespace aquafarm {
+namespace {
+
+using internal::NcFile;
+
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kMostAlong = 1'000'000;    // coordinates of an axis
+constexpr std::size_t kMostValues = 64'000'000;  // of a window
+
+enum class Axis { kTime, kDepth, kLatitude, kLongitude, kOther };
+
+struct Dimension {
+  Axis axis{};
+  std::string name;
+  int coordinate{-1};  // its 1-D variable
+  std::vector<double> at;
+};
+
+int FindVariable(const NcFile& file, const std::string& wanted) {
+  std::vector<std::string> names;
+  for (const int variable : file.Variables()) {
+    names.push_back(file.Name(variable));
+    if (names.back() == wanted || file.Text(variable, "standard_name") == wanted) return variable;
+  }
+  file.Refuse(wanted + ": there is no such variable; there are: " + internal::List(names));
+}
+
+bool IsOneOf(const std::string& text, std::initializer_list<const char*> names) {
+  return std::find(names.begin(), names.end(), text) != names.end();
+}
+
+// "UP", "DOWN" or "".
+std::string Positive(const NcFile& file, int coordinate) {
+  return internal::Upper(file.Text(coordinate, "positive"));
+}
+
+bool IsUpwards(const NcFile& file, int coordinate) {
+  const std::string positive = Positive(file, coordinate);
+  return positive == "UP" || (positive.empty() && IsOneOf(file.Text(coordinate, "standard_name"),
+                                                          {"height", "altitude"}));
+}
+
+// Metres a unit of a vertical axis; a decibar of sea water is nearly one. 0: other units.
+double MetresPer(const std::string& units) {
+  const std::string unit = internal::Upper(internal::Trim(units));
+  if (unit == "KM") return 1000.0;
+  if (unit == "CM") return 0.01;
+  const bool metres =
+      IsOneOf(unit, {"", "M", "METER", "METERS", "METRE", "METRES", "DBAR", "DECIBAR", "DECIBARS"});
+  return metres ? 1.0 : 0.0;
+}
+
+// By what CF says, else by its name.
+Axis AxisOf(const NcFile& file, int coordinate, const std::string& name) {
+  const std::string standard = file.Text(coordinate, "standard_name");
+  const std::string units = file.Text(coordinate, "units");
+  const std::string axis = file.Text(coordinate, "axis");
+  if (standard == "latitude" || axis == "Y" ||
+      IsOneOf(units,
+              {"degrees_north", "degree_north", "degrees_N", "degree_N", "degreesN", "degreeN"}) ||
+      IsOneOf(name, {"lat", "latitude"})) {
+    return Axis::kLatitude;
+  }
+  if (standard == "longitude" || axis == "X" ||
+      IsOneOf(units,
+              {"degrees_east", "degree_east", "degrees_E", "degree_E", "degreesE", "degreeE"}) ||
+      IsOneOf(name, {"lon", "longitude"})) {
+    return Axis::kLongitude;
+  }
+  if (standard == "time" || axis == "T" || units.find(" since ") != std::string::npos) {
+    return Axis::kTime;
+  }
+  const bool pressure = IsOneOf(units, {"dbar", "decibar", "decibars", "bar", "mbar", "millibar",
+                                        "millibars", "hPa", "Pa", "atm"});
+  if (pressure || axis == "Z" || IsOneOf(Positive(file, coordinate), {"UP", "DOWN"}) ||
+      IsOneOf(standard, {"depth", "height", "altitude", "sea_water_pressure"}) ||
+      IsOneOf(name, {"depth", "lev", "zlev", "level"})) {
+    return Axis::kDepth;
+  }
+  return Axis::kOther;
+}
+
+Dimension ReadDimension(const NcFile& file, int dimension, const std::string& variable) {
+  std::array<char, NC_MAX_NAME + 1> name{};
+  std::size_t length = 0;
+  file.Need(nc_inq_dim(file.id(), dimension, name.data(), &length), variable);
+  Dimension found;
+  found.name = name.data();
+  int rank = 0;
+  const bool has_coordinate = nc_inq_varid(file.id(), name.data(), &found.coordinate) == NC_NOERR &&
+                              nc_inq_varndims(file.id(), found.coordinate, &rank) == NC_NOERR &&
+                              rank == 1;
+  if (length == 0 || length > kMostAlong) {
+    file.Refuse(found.name + ": got " + std::to_string(length) + " values, expected [1, " +
+                std::to_string(kMostAlong) + "]");
+  }
+  found.at.resize(length);
+  if (!has_coordinate) {
+    found.axis = Axis::kOther;
+    return found;
+  }
+  int dimension_of_coordinate = -1;
+  file.Need(nc_inq_vardimid(file.id(), found.coordinate, &dimension_of_coordinate), found.name);
+  if (dimension_of_coordinate != dimension)
+    file.Refuse(found.name + ": is along another dimension");
+  file.Need(nc_get_var_double(file.id(), found.coordinate, found.at.data()), found.name);
+  const double scale = file.Number(found.coordinate, "scale_factor").value_or(1.0);
+  const double offset = file.Number(found.coordinate, "add_offset").value_or(0.0);
+  for (double& value : found.at) {
+    value = value * scale + offset;
+    if (!std::isfinite(value)) file.Refuse(found.name + ": got no number, expected a coordinate");
+  }
+  found.axis = AxisOf(file, found.coordinate, found.name);
+  return found;
+}
+
+std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const std::string& name) {
+  int rank = 0;
+  file.Need(nc_inq_varndims(file.id(), variable, &rank), name);
+  std::vector<int> ids(static_cast<std::size_t>(rank));
+  file.Need(nc_inq_vardimid(file.id(), variable, ids.data()), name);
+  std::vector<Dimension> dimensions;
+  for (const int id : ids) dimensions.push_back(ReadDimension(file, id, name));
+  const auto count = [&dimensions](Axis axis) {
+    return std::count_if(dimensions.begin(), dimensions.end(),
+                         [axis](const Dimension& d) { return d.axis == axis; });
+  };
+  if (count(Axis::kLatitude) != 1 || count(Axis::kLongitude) != 1) {
+    file.Refuse(name +
+                ": got no latitude and longitude of one dimension each (a curvilinear grid?"
+                "), expected them along the variable's dimensions");
+  }
+  for (const Dimension& d : dimensions) {
+    const bool along = d.axis == Axis::kLatitude || d.axis == Axis::kLongitude;
+    if (d.axis == Axis::kOther && d.at.size() > 1) {
+      file.Refuse(name + ": dimension " + d.name + " is none of time, depth, latitude, longitude");
+    }
+    if (along && !std::is_sorted(d.at.begin(), d.at.end()) &&
+        !std::is_sorted(d.at.rbegin(), d.at.rend())) {
+      file.Refuse(d.name + ": got coordinates up and down, expected them in order");
+    }
+    const auto again = std::adjacent_find(d.at.begin(), d.at.end());
+    if (along && again != d.at.end()) {
+      file.Refuse(d.name + ": got " + internal::Format(*again) + " twice, expected it once");
+    }
+    if (d.axis != Axis::kLatitude) continue;
+    constexpr double kPole = 90.0 + 1.0e-3;  // packed numbers are rounded
+    for (const double latitude : d.at) {
+      if (std::abs(latitude) <= kPole) continue;
+      file.Refuse(d.name + ": got a latitude of " + internal::Format(latitude) +
+                  ", expected [-90, 90]");
+    }
+  }
+  return dimensions;
+}
+
+std::size_t Nearest(const std::vector<double>& at, double wanted) {
+  const auto nearest = std::min_element(at.begin(), at.end(), [wanted](double a, double b) {
+    return std::abs(a - wanted) < std::abs(b - wanted);
+  });
+  return static_cast<std::size_t>(nearest - at.begin());
+}
+
+// Forms that UDUNITS takes and ISO 8601 does not: "0:0:0", "00:00:00.0", "00:00:00 UTC",
+// "00:00:00 +00:00".
+std::string PlainTime(std::string time) {
+  for (const char* utc : {"UTC", "utc", "Z", "+00:00", "+0:00"}) {
+    const std::string_view ending(utc);
+    if (time.size() <= ending.size() ||
+        time.compare(time.size() - ending.size(), time.npos, utc) != 0)
+      continue;
+    time = internal::Trim(time.substr(0, time.size() - ending.size()));
+    break;
+  }
+  const std::size_t point = time.find('.');
+  if (point != std::string::npos && time.find_first_not_of('0', point + 1) == std::string::npos) {
+    time.resize(point);
+  }
+  for (std::size_t at = time.find(':'); at != time.npos; at = time.find(':', at + 1)) {
+    if (at + 2 == time.size() || (at + 2 < time.size() && time[at + 2] == ':')) {
+      time.insert(at + 1, "0");
+    }
+  }
+  if (time.size() <= 10) return time + " 00:00";
+  return time.find(':') == std::string::npos ? time + ":00" : time;
+}
+
+// "hours since 2000-01-01 00:00:00" as seconds per unit and the UTC of 0.
+std::pair<double, double> TimeUnits(const NcFile& file, const Dimension& time) {
+  const std::string units = file.Text(time.coordinate, "units");
+  const std::size_t since = units.find(" since ");
+  const std::string unit = internal::Upper(units.substr(0, since));
+  const std::string calendar = file.Text(time.coordinate, "calendar");
+  if (!IsOneOf(calendar, {"", "standard", "gregorian", "proleptic_gregorian"})) {
+    file.Refuse(time.name + ": calendar: got " + internal::Quoted(calendar) +
+                ", expected standard, gregorian or proleptic_gregorian");
+  }
+  const std::string day = since == std::string::npos ? "" : PlainTime(units.substr(since + 7));
+  const std::optional<std::int64_t> zero = internal::ParseDateTime(day, 0);
+  const double seconds = IsOneOf(unit, {"SECOND", "SECONDS", "S"})     ? 1.0
+                         : IsOneOf(unit, {"MINUTE", "MINUTES"})        ? 60.0
+                         : IsOneOf(unit, {"HOUR", "HOURS", "H", "HR"}) ? 3600.0
+                         : IsOneOf(unit, {"DAY", "DAYS", "D"})         ? 86400.0
+                                                                       : 0.0;
+  if (!zero || seconds == 0.0) {
+    file.Refuse(time.name + ": units: got " + internal::Quoted(units) +
+                ", expected such as 'hours since 2000-01-01 00:00:00'");
+  }
+  return {seconds, static_cast<double>(*zero)};
+}
+
+// What is read along one dimension.
+struct Span {
+  std::size_t first{};
+  std::size_t count{1};
+};
+
+// The values from one before `low` to one after `high`, all of them where none is in between.
+Span Window(const std::vector<double>& at, double low, double high) {
+  std::size_t first = at.size();
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (at[i] < low || at[i] > high) continue;
+    first = std::min(first, i);
+    last = std::max(last, i);
+  }
+  if (first > last) {  // the ranch is finer than the field: the two values around it
+    first = last = Nearest(at, (low + high) / 2.0);
+  }
+  first = first == 0 ? 0 : first - 1;
+  last = std::min(last + 1, at.size() - 1);
+  return {first, last - first + 1};
+}
+
+// [low, high] of the ranch in degrees.
+struct Extent {
+  double south{90.0}, north{-90.0}, west{1.0e9}, east{-1.0e9};
+};
+
+Extent ExtentOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) {
+  Extent extent;
+  for (const double x : {-0.5, width / 2.0, width - 0.5}) {
+    for (const double y : {-0.5, height / 2.0, height - 0.5}) {
+      const GeoPoint point = frame.ToGeo(x, y);
+      extent.south = std::min(extent.south, point.latitude);
+      extent.north = std::max(extent.north, point.latitude);
+      extent.west = std::min(extent.west, point.longitude);
+      extent.east = std::max(extent.east, point.longitude);
+    }
+  }
+  return extent;
+}
+
+// Turns of the globe that bring the file's longitudes to the ranch's.
+double TurnOf(const std::vector<double>& longitude, double near) {
+  const auto [west, east] = std::minmax_element(longitude.begin(), longitude.end());
+  for (const double turn : {0.0, 360.0, -360.0}) {
+    if (near >= *west + turn - 1.0e-9 && near <= *east + turn + 1.0e-9) return turn;
+  }
+  return 0.0;
+}
+
+void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
+  const double scale = file.Number(variable, "scale_factor").value_or(1.0);
+  const double offset = file.Number(variable, "add_offset").value_or(0.0);
+  // Compared with the numbers as they are stored. A fill value that the type cannot hold fits none.
+  const std::optional<double> own = file.Number(variable, "_FillValue");
+  const std::optional<double> fill = own ? own : file.DefaultFill(variable);
+  const std::optional<double> missing = file.Number(variable, "missing_value");
+  const auto range = file.Pair(variable, "valid_range");
+  const double low = range ? (*range)[0] : file.Number(variable, "valid_min").value_or(-1.0e30);
+  const double high = range ? (*range)[1] : file.Number(variable, "valid_max").value_or(1.0e30);
+  const auto same = [](const std::optional<double>& mark, float value) {
+    return mark && static_cast<float>(*mark) == value;
+  };
+  for (float& value : values) {
+    const bool absent = same(fill, value) || same(missing, value) || !(value >= low) ||
+                        !(value <= high) ||
+                        std::abs(value) > 9.9e35F;  // beyond any field of the sea
+    value = absent ? kNoValue : static_cast<float>(value * scale + offset);
+  }
+}
+
+}  // namespace
+
+SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,
+                      std::int32_t width, std::int32_t height) {
+  const NcFile file(path);
+  const int variable = FindVariable(file, choice.variable);
+  SeaField field;
+  field.name = file.Name(variable);
+  field.units = file.Text(variable, "units");
+  std::vector<Dimension> dimensions = ReadDimensions(file, variable, field.name);
+  const Extent extent = ExtentOf(frame, width, height);
+  std::vector<std::size_t> first(dimensions.size());
+  std::vector<std::size_t> count(dimensions.size());
+  std::size_t along_latitude = 0;
+  std::size_t along_longitude = 0;
+  for (std::size_t i = 0; i < dimensions.size(); ++i) {
+    Dimension& d = dimensions[i];
+    Span span;
+    if (d.axis == Axis::kTime) {
+      const auto [unit_s, zero] = TimeUnits(file, d);
+      for (double& at : d.at) at = at * unit_s + zero;
+      span.first = choice.time ? Nearest(d.at, static_cast<double>(*choice.time)) : 0;
+      field.time = static_cast<std::int64_t>(std::llround(d.at[span.first]));
+    } else if (d.axis == Axis::kDepth) {
+      const std::string units = file.Text(d.coordinate, "units");
+      const double metres = MetresPer(units);
+      if (metres == 0.0 && d.at.size() > 1) {
+        file.Refuse(d.name + ": units: got " + internal::Quoted(units) +
+                    ", expected metres, km, cm or dbar, to find a depth among " +
+                    std::to_string(d.at.size()));
+      }
+      const double down = IsUpwards(file, d.coordinate) ? -metres : metres;
+      for (double& at : d.at) at *= down;
+      span.first = Nearest(d.at, choice.depth_m);
+      if (metres > 0.0) field.depth_m = d.at[span.first];
+    } else if (d.axis == Axis::kLatitude) {
+      along_latitude = i;
+      span = Window(d.at, extent.south, extent.north);
+    } else if (d.axis == Axis::kLongitude) {
+      along_longitude = i;
+      const double turn = TurnOf(d.at, (extent.west + extent.east) / 2.0);
+      for (double& at : d.at) at += turn;
+      span = Window(d.at, extent.west, extent.east);
+    }
+    first[i] = span.first;
+    count[i] = span.count;
+  }
+  const std::size_t rows = count[along_latitude];
+  const std::size_t columns = count[along_longitude];
+  if (rows * columns > kMostValues) file.Refuse(field.name + ": is too fine for this ranch");
+  std::vector<float> values(rows * columns);
+  file.Need(nc_get_vara_float(file.id(), variable, first.data(), count.data(), values.data()),
+            field.name);
+  Unpack(file, variable, values);
+  const auto cut = [&](std::size_t i) {
+    const auto from = dimensions[i].at.begin() + static_cast<std::ptrdiff_t>(first[i]);
+    return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(count[i]));
+  };
+  field.latitude = cut(along_latitude);
+  field.longitude = cut(along_longitude);
+  const bool north_first = field.latitude.front() > field.latitude.back();
+  const bool east_first = field.longitude.front() > field.longitude.back();
+  field.value.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const std::size_t r = north_first ? rows - 1 - row : row;
+      const std::size_t c = east_first ? columns - 1 - column : column;
+      const bool latitude_slow = along_latitude < along_longitude;
+      field.value(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+          values[latitude_slow ? r * columns + c : c * rows + r];
+    }
+  }
+  if (north_first) std::reverse(field.latitude.begin(), field.latitude.end());
+  if (east_first) std::reverse(field.longitude.begin(), field.longitude.end());
+  return field;
+}
+
+namespace {
+
+// Where a coordinate lies between two of the field's; none: half a step outside, or more.
+struct Between {
+  std::array<Eigen::Index, 2> index{};
+  double part{};
+};
+
+std::optional<Between> Locate(const std::vector<double>& at, double wanted) {
+  const double margin =
+      at.size() > 1 ? (at.back() - at.front()) / static_cast<double>(at.size() - 1) / 2.0 : 0.5;
+  if (wanted < at.front() - margin || wanted > at.back() + margin) return std::nullopt;
+  const auto next = std::upper_bound(at.begin(), at.end(), wanted);
+  const auto last = static_cast<Eigen::Index>(at.size()) - 1;
+  const auto i = static_cast<Eigen::Index>(next - at.begin());
+  const Eigen::Index low = std::clamp<Eigen::Index>(i - 1, 0, last);
+  const Eigen::Index high = std::clamp<Eigen::Index>(i, 0, last);
+  const double span = at[static_cast<std::size_t>(high)] - at[static_cast<std::size_t>(low)];
+  const double part = span > 0.0 ? (wanted - at[static_cast<std::size_t>(low)]) / span : 0.0;
+  return Between{{low, high}, std::clamp(part, 0.0, 1.0)};
+}
+
+float ValueAt(const SeaField& field, GeoPoint point) {
+  double longitude = point.longitude;
+  while (longitude < field.longitude.front() - 180.0) longitude += 360.0;
+  while (longitude > field.longitude.back() + 180.0) longitude -= 360.0;
+  const std::optional<Between> row = Locate(field.latitude, point.latitude);
+  const std::optional<Between> column = Locate(field.longitude, longitude);
+  if (!row || !column) return kNoValue;
+  double sum = 0.0;
+  double weights = 0.0;
+  for (std::size_t r = 0; r < 2; ++r) {
+    for (std::size_t c = 0; c < 2; ++c) {
+      const double weight =
+          (r == 0 ? 1.0 - row->part : row->part) * (c == 0 ? 1.0 - column->part : column->part);
+      const float value = field.value(row->index[r], column->index[c]);
+      if (std::isnan(value)) continue;
+      sum += weight * static_cast<double>(value);
+      weights += weight;
+    }
+  }
+  return weights > 0.0 ? static_cast<float>(sum / weights) : kNoValue;
+}
+
+}  // namespace
+
+Layer ToLayer(const SeaField& field, const GeoFrame& frame, std::int32_t width,
+              std::int32_t height) {
+  Layer layer(height, width);
+  for (std::int32_t y = 0; y < height; ++y) {
+    for (std::int32_t x = 0; x < width; ++x) layer(y, x) = ValueAt(field, frame.ToGeo(x, y));
+  }
+  return layer;
+}
+
+Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& layers) {
+  if (layers.empty()) throw InputError("got no layer to evaluate '" + expression + "' on");
+  Layer result(layers[0].layer.rows(), layers[0].layer.cols());
+  std::vector<double> values(layers.size());
+  try {
+    mu::Parser parser;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      AQUAFARM_CHECK_EQ(layers[i].layer.size(), result.size());
+      parser.DefineVar(layers[i].name, &values[i]);
+    }
+    parser.SetExpr(expression);
+    for (Eigen::Index cell = 0; cell < result.size(); ++cell) {
+      bool known = true;
+      for (std::size_t i = 0; i < layers.size(); ++i) {
+        values[i] = static_cast<double>(layers[i].layer.data()[cell]);
+        known = known && !std::isnan(values[i]);
+      }
+      // Also where nothing is known, so that a wrong expression never passes.
+      const double value = parser.Eval();
+      result.data()[cell] = known ? static_cast<float>(value) : kNoValue;
+    }
+  } catch (const mu::Parser::exception_type& error) {
+    throw InputError("got '" + expression + "', expected an expression: " + error.GetMsg());
+  }
+  return result;
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/storms/reader.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "aquafarm/base/check.h"
+#include "base/field_error.h"
+#include "input/file_type.h"
+#include "input/json_object.h"
+#include "scenario/domains.h"
+
+namespace aquafarm {
+namespace {
+
+// The first line from `text` that is not blank; takes it off.
+std::string_view TakeLine(std::string_view& text) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = internal::Trim(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (!line.empty()) return line;
+  }
+  return {};
+}
+
+bool IsDigits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// CMA and JMA: times of ten digits against eight.
+std::optional<HazardFormat> DetectBestTrack(std::string_view text) {
+  const std::vector<std::string_view> words = internal::SplitWords(TakeLine(text));
+  if (words.empty() || !IsDigits(words[0])) return std::nullopt;
+  if (words[0].size() == 8 && words.size() > 1 && words[1] == "002") return HazardFormat::kJma;
+  return HazardFormat::kCma;
+}
+
+bool HasKey(std::string_view text, std::string_view key) {
+  return text.find(key) != std::string_view::npos;
+}
+
+// Gives storms that share an id one each: files of several years put together have such.
+void TellApart(HazardFile& file, internal::HazardPlace& place) {
+  std::map<std::string, int> times;
+  std::set<std::string> seen;
+  for (const HazardTrack& track : file.tracks) {
+    ++times[internal::Upper(track.id)];
+    seen.insert(internal::Upper(track.id));
+  }
+  std::map<std::string, int> last;
+  place.path.clear();
+  for (std::size_t i = 0; i < file.tracks.size(); ++i) {
+    HazardTrack& track = file.tracks[i];
+    const std::string shared = internal::Upper(track.id);
+    const int storms = times[shared];
+    if (storms == 1) continue;
+    std::string id;
+    do {
+      id = track.id + "-" + std::to_string(++last[shared]);
+    } while (!seen.insert(internal::Upper(id)).second);
+    const std::string what = "storm " + track.id + " is there " + std::to_string(storms) +
+                             " times; this one is called " + id;
+    place.line = track.line;
+    if (place.locate) {
+      place.WarnValue(internal::At("", i), what);
+    } else {
+      place.Warn(what);
+    }
+    track.shared_id = track.id;
+    track.id = id;
+  }
+}
+
+}  // namespace
+
+std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
+  std::string_view rest = internal::WithoutMark(text);
+  const std::string_view whole = rest;
+  const std::string_view first = TakeLine(rest);
+  if (first.substr(0, 5) == "66666") return DetectBestTrack(rest);
+  if (first.substr(0, 4) == "SID,") return HazardFormat::kIbtracs;
+  std::vector<std::string_view> fields;
+  internal::SplitFields(first.substr(0, 1000), fields);
+  if (fields.size() > 7 && fields[0].size() == 2 && IsDigits(fields[2])) {
+    return HazardFormat::kAtcf;
+  }
+  const bool json = !first.empty() && std::string_view("[{`/").find(first[0]) != first.npos;
+  if (!json && !internal::IsAssignment(first)) return std::nullopt;
+  if (HasKey(whole, "\"tfbh\"") || HasKey(whole, "\"tfid\"") ||
+      (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
+    return HazardFormat::kBulletin;
+  }
+  if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"") ||
+      (HasKey(whole, "\"forecast\"") && HasKey(whole, "\"fxTime\""))) {
+    return HazardFormat::kWeatherService;
+  }
+  return std::nullopt;
+}
+
+HazardFile ParseHazardFile(const std::string& text, const std::string& origin_name) {
+  HazardFile file;
+  internal::HazardPlace place(origin_name, file.warnings);
+  place.line = 1;
+  const std::string clean = internal::CleanJson(text);
+  std::string_view content = clean;
+  const std::string_view first = TakeLine(content);
+  if (first == "[]") place.Refuse("got an empty list, expected a list of storms");
+  const bool binary = text.find('\0') != std::string::npos;
+  const std::optional<HazardFormat> format = binary ? std::nullopt : DetectHazardFormat(text);
+  if (!format) {
+    place.Refuse("got " + internal::LookAt(text).words +
+                 ", expected tracks of storms: a CMA or JMA best track, an ATCF b-deck, IBTrACS "
+                 "CSV, or JSON of a bulletin or a weather service's track");
+  }
+  file.format = *format;
+  const std::string plain(internal::WithoutMark(text));
+  switch (file.format) {
+    case HazardFormat::kCma:
+      file.tracks = internal::ReadCma(plain, place);
+      break;
+    case HazardFormat::kJma:
+      file.tracks = internal::ReadJma(plain, place);
+      break;
+    case HazardFormat::kAtcf:
+      file.tracks = internal::ReadAtcf(plain, place);
+      break;
+    case HazardFormat::kIbtracs:
+      file.tracks = internal::ReadIbtracs(plain, place);
+      break;
+    case HazardFormat::kBulletin:
+    case HazardFormat::kWeatherService:
+      place.line = 0;
+      place.locate = [&clean](const std::string& path) {
+        return internal::LineOfJson(clean, path);
+      };
+      file.tracks = file.format == HazardFormat::kBulletin
+                        ? internal::ReadBulletin(clean, place)
+                        : internal::ReadWeatherService(clean, place);
+      break;
+  }
+  TellApart(file, place);
+  return file;
+}
+
+HazardFile LoadHazardFile(const std::string& path) {
+  return ParseHazardFile(internal::ReadTextFile(path), path);
+}
+
+const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {
+  const std::string wanted = internal::Upper(storm);
+  std::vector<const HazardTrack*> found;
+  std::vector<const HazardTrack*> named;
+  std::vector<std::string> names;
+  for (const HazardTrack& track : file.tracks) {
+    if (!storm.empty() &&
+        (internal::Upper(track.id) == wanted || internal::Upper(track.shared_id) == wanted)) {
+      found.push_back(&track);
+    } else if (!storm.empty() &&
+               (internal::Upper(track.name) == wanted || track.local_name == storm)) {
+      named.push_back(&track);
+    }
+    names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
+  }
+  constexpr std::size_t kMostNamed = 60;
+  if (names.size() > kMostNamed) {
+    const std::string more = std::to_string(names.size() - kMostNamed) + " more";
+    names.resize(kMostNamed);
+    names.push_back(more);
+  }
+  if (found.empty()) found = named;
+  if (found.size() == 1) return *found[0];
+  std::string where;
+  for (const HazardTrack* track : found) {
+    where += (where.empty() ? "" : ", ") + track->id + " from " +
+             internal::FormatTime(track->fixes.front().time);
+  }
+  throw InputError(
+      "storm: got '" + storm + "', expected " +
+      (found.empty() ? "one of: " + internal::List(names) : "an id, as there are " + where));
+}
+
+}  // namespace aquafarm

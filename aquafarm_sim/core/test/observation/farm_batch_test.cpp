@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/observation/farm_batch.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+#include <numeric>
+
+#include "aquafarm/base/check.h"
+#include "tiny_farms.h"
+
+namespace {
+std::atomic<long> allocations{0};
+std::atomic<std::size_t> allocated_bytes{0};
+}  // namespace
+
+// Counts what the whole program allocates, so that a test can say that stepping does not. Kept out
+// of line: inlined, gcc takes the malloc behind new for a mismatch with free.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  allocated_bytes += size;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  allocated_bytes += size;
+  const auto align = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace aquafarm {
+namespace {
+
+using test::CrowdedScenario;
+
+// Buffers for everything that a batch can write.
+struct Buffers {
+  explicit Buffers(const FarmBatch& batch) {
+    const auto n = static_cast<std::size_t>(batch.farms());
+    const auto k = n * static_cast<std::size_t>(batch.agents());
+    rewards.resize(k);
+    terms.resize(k * kRewardTermCount);
+    outcomes.resize(k);
+    legal.resize(k);
+    in_play.resize(k);
+    reasons.resize(n);
+    started.resize(n);
+    hashes.resize(n);
+    index.resize(k);
+    features.resize(k * static_cast<std::size_t>(batch.encoder().feature_count()));
+    planes.resize(k * batch.encoder().planes_size());
+  }
+  BatchOutput View() {
+    return {rewards.data(), terms.data(),    outcomes.data(), legal.data(),
+            in_play.data(), reasons.data(),  started.data(),  hashes.data(),
+            index.data(),   features.data(), planes.data()};
+  }
+  std::vector<float> rewards, terms, features;
+  std::vector<std::uint8_t> outcomes, in_play, reasons, started, planes;
+  std::vector<ActionMask> legal;
+  std::vector<std::uint64_t> hashes;
+  std::vector<std::uint32_t> index;
+};
+
+std::shared_ptr<const Scenario> Shared(Scenario scenario) {
+  ValidateScenario(scenario);
+  return std::make_shared<const Scenario>(std::move(scenario));
+}
+
+// The n-th joint action of a test, a function of its number alone.
+std::vector<std::uint8_t> Actions(const FarmBatch& batch, std::uint64_t number) {
+  std::vector<std::uint8_t> actions(static_cast<std::size_t>(batch.farms() * batch.agents()));
+  RandomStream chance({99, number, Purpose::kExploration, 0});
+  for (std::uint8_t& action : actions) {
+    action = static_cast<std::uint8_t>(chance.Below(kActionCount));
+  }
+  return actions;
+}
+
+TEST(FarmBatch, EveryFarmIsThatFarmAlone) {
+  const auto scenario = Shared(CrowdedScenario(2));
+  FarmBatch batch(scenario, 5);
+  Buffers buffers(batch);
+  batch.Reset(3, 0, buffers.View());
+  std::vector<Farm> alone;
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    alone.emplace_back(scenario);
+    alone.back().Reset(3, i);
+  }
+  for (std::uint64_t step = 0; step < 700; ++step) {
+    const auto actions = Actions(batch, step);
+    batch.Step(actions.data(), buffers.View());
+    for (std::size_t i = 0; i < 5; ++i) {
+      Farm& farm = alone[i];
+      const bool starts = farm.over();
+      if (starts) {
+        farm.Reset(3, farm.episode() + 5);
+      } else {
+        farm.Step(actions.data() + i * 3);
+      }
+      ASSERT_EQ(buffers.hashes[i], farm.Hash()) << "farm " << i << " step " << step;
+      ASSERT_EQ(buffers.started[i] != 0, starts);
+      ASSERT_EQ(buffers.reasons[i], static_cast<std::uint8_t>(farm.reason()));
+      for (std::size_t ship = 0; ship < 3; ++ship) {
+        ASSERT_EQ(buffers.rewards[i * 3 + ship], farm.ships()[ship].reward);
+        ASSERT_EQ(buffers.legal[i * 3 + ship], farm.LegalActions(static_cast<std::int32_t>(ship)));
+      }
+    }
+  }
+}
+
+TEST(FarmBatch, ThreadsChangeNothing) {
+  const auto scenario = Shared(CrowdedScenario(2));
+  FarmBatch one(scenario, 16, 1);
+  FarmBatch four(scenario, 16, 4);
+  Buffers a(one);
+  Buffers b(four);
+  one.Reset(1, 0, a.View());
+  four.Reset(1, 0, b.View());
+  for (std::uint64_t step = 0; step < 400; ++step) {
+    const auto actions = Actions(one, step);
+    one.Step(actions.data(), a.View());
+    four.Step(actions.data(), b.View());
+    ASSERT_EQ(a.hashes, b.hashes);
+    ASSERT_EQ(a.features, b.features);
+    ASSERT_EQ(a.planes, b.planes);
+  }
+}
+
+TEST(FarmBatch, SaveAndLoadGoOnBitForBit) {
+  const auto scenario = Shared(CrowdedScenario(1));
+  FarmBatch batch(scenario, 4);
+  Buffers buffers(batch);
+  batch.Reset(8, 0, buffers.View());
+  for (std::uint64_t step = 0; step < 130; ++step) {
+    batch.Step(Actions(batch, step).data(), buffers.View());
+  }
+  const std::string bytes = batch.Save();
+  FarmBatch other(scenario, 4);
+  Buffers again(other);
+  other.Load(bytes);
+  other.Write(again.View());
+  EXPECT_EQ(again.hashes, buffers.hashes);
+  EXPECT_EQ(again.features, buffers.features);
+  for (std::uint64_t step = 130; step < 400; ++step) {
+    batch.Step(Actions(batch, step).data(), buffers.View());
+    other.Step(Actions(batch, step).data(), again.View());
+    ASSERT_EQ(again.hashes, buffers.hashes);
+  }
+  FarmBatch fewer(scenario, 3);
+  EXPECT_THROW(fewer.Load(bytes), InputError);
+}
+
+void ExpectNoAllocation(Scenario scenario) {
+  FarmBatch batch(Shared(std::move(scenario)), 3);
+  Buffers buffers(batch);
+  const BatchOutput output = buffers.View();
+  batch.Reset(1, 0, output);
+  std::vector<std::vector<std::uint8_t>> actions;
+  for (std::uint64_t i = 0; i < 64; ++i) actions.push_back(Actions(batch, i));
+  // The first episodes size what is kept.
+  for (std::size_t i = 0; i < 1000; ++i) batch.Step(actions[i % 64].data(), output);
+  const long before = allocations;
+  int episodes = 0;
+  for (std::size_t i = 0; i < 5000; ++i) {
+    batch.Step(actions[i % 64].data(), output);
+    episodes += std::accumulate(buffers.started.begin(), buffers.started.end(), 0);
+  }
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_GT(episodes, 50);
+}
+
+TEST(FarmBatch, NeitherStepsNorEpisodesAllocate) {
+  ExpectNoAllocation(CrowdedScenario(2));
+  Scenario charted = CrowdedScenario(2);
+  charted.view.waterways = charted.view.courses = true;
+  ExpectNoAllocation(charted);
+  charted.view.mode = ViewMode::kPartial;
+  ExpectNoAllocation(charted);
+  Scenario fixed = CrowdedScenario(1, 0);
+  fixed.layout = LayoutMode::kFixed;
+  ExpectNoAllocation(fixed);
+}
+
+TEST(FarmBatch, AFarmsStateIsUnderAKibibyteBesidesItsChart) {
+  Scenario scenario;  // the paper's sizes; all farms share one chart
+  scenario.disasters.resize(1);
+  ValidateScenario(scenario);
+  const auto shared = std::make_shared<const Scenario>(scenario);
+  const auto bytes_of = [&shared](std::int32_t farms) {
+    const std::size_t before = allocated_bytes;
+    FarmBatch batch(shared, farms);
+    batch.Reset(1, 0, {});
+    return allocated_bytes - before;
+  };
+  const std::size_t of_one = bytes_of(1);
+  EXPECT_LT((bytes_of(101) - of_one) / 100, 1024U);
+}
+
+TEST(FarmBatch, SaysWhichAgentsAreDoneUntilTheirNextEpisode) {
+  Scenario scenario = test::TinyScenario();
+  scenario.devices.sites.push_back({{2, 1}, DeviceKind::kBreedingRelease, 90.0F, true});
+  scenario.step_limit = 4;
+  FarmBatch batch(Shared(scenario), 1);
+  Buffers buffers(batch);
+  batch.Reset(1, 0, buffers.View());
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+  const auto step = [&](Action device) {
+    const std::uint8_t actions[] = {test::Act(Action::kHold), test::Act(device)};
+    batch.Step(actions, buffers.View());
+  };
+  step(Action::kSouth);
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+  step(Action::kDropOff);
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 0}));
+  EXPECT_EQ(buffers.rewards[1], 110.0F);
+  step(Action::kNorth);
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 0}));
+  step(Action::kNorth);
+  EXPECT_EQ(buffers.reasons[0], static_cast<std::uint8_t>(EndReason::kStepLimit));
+  step(Action::kNorth);
+  EXPECT_EQ(buffers.started[0], 1);
+  EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+}
+
+}  // namespace
+}  // namespace aquafarm

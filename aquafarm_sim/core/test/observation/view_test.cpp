@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/observation/view.h"
+
+#include <gtest/gtest.h>
+
+#include "tiny_farms.h"
+
+namespace aquafarm {
+namespace {
+
+using test::MakeFarm;
+using test::StepOne;
+using test::StillDisaster;
+using test::TinyScenario;
+
+Scenario PartialScenario() {
+  Scenario scenario = TinyScenario();
+  scenario.width = 30;
+  scenario.height = 30;
+  scenario.view = {ViewMode::kPartial, 3.0F, 10, 0.0F};
+  scenario.damage.exposure_damage = 0.01F;
+  return scenario;
+}
+
+TEST(FullView, KnowsEverything) {
+  Scenario scenario = TinyScenario();
+  scenario.ships.count = 2;
+  scenario.disasters = {StillDisaster(100, 100, {2}, {-5})};
+  Farm farm = MakeFarm(scenario);
+  View view;
+  Observe(farm, 1, view);
+  ASSERT_EQ(view.others.size(), 1U);
+  EXPECT_EQ(view.others[0].id, 0);
+  EXPECT_TRUE(view.others[0].visible);
+  EXPECT_TRUE(view.devices[0].health_known);
+  EXPECT_TRUE(view.disasters[0].visible);
+  EXPECT_EQ(view.disasters[0].belief.x, 100.0F);
+}
+
+TEST(PartialView, SeesADisasterWhenItsEdgeIsInRange) {
+  for (const auto& [x, visible] : {std::pair{7.0F, true}, std::pair{7.5F, false}}) {
+    Scenario scenario = PartialScenario();
+    scenario.view.bulletin_period = 0;
+    scenario.disasters = {StillDisaster(x, 0, {2}, {-5})};  // the ship is at (2, 0)
+    View view;
+    const Farm farm = MakeFarm(scenario);
+    Observe(farm, 0, view);
+    EXPECT_EQ(view.disasters[0].visible, visible) << x;
+    EXPECT_EQ(view.disasters[0].known, visible) << "without bulletins nothing is known unseen";
+  }
+}
+
+TEST(PartialView, TheLastBulletinStandsWithItsAge) {
+  Scenario scenario = PartialScenario();
+  scenario.disasters = {StillDisaster(20, 20, {2}, {-5})};
+  scenario.disasters[0].speed = 0.5F;
+  Farm farm = MakeFarm(scenario);
+  View view;
+  for (int step = 0; step < 25; ++step) {
+    Observe(farm, 0, view);
+    const KnownDisaster& known = view.disasters[0];
+    ASSERT_TRUE(known.known);
+    EXPECT_FALSE(known.visible);
+    EXPECT_EQ(known.age, step % 10);
+    EXPECT_EQ(known.belief.y, 20.0F + 0.5F * static_cast<float>(step - step % 10));
+    EXPECT_EQ(known.belief.heading_deg, 0);
+    StepOne(farm, Action::kHold);
+  }
+}
+
+TEST(PartialView, OutOfSightRingsAreThoseOfTheBulletin) {
+  Scenario scenario = PartialScenario();
+  scenario.view.bulletin_period = 10;
+  DisasterSpec growing = StillDisaster(20, 20, {2}, {-5});
+  growing.radius_growth = 0.25F;
+  DisasterSpec tracked = StillDisaster(20, 20, {1}, {-5});
+  tracked.start.reset();
+  const auto at = [](float step, float radius, float risk, std::int32_t grade) {
+    return Waypoint{step, 20, 20, grade, {radius}, {risk}};
+  };
+  tracked.track = {at(0, 1, -5, 1), at(15, 1, -5, 1), at(16, 3, -20, 4), at(1000, 3, -20, 4)};
+  scenario.disasters = {growing, tracked};
+  Farm farm = MakeFarm(scenario);
+  View view;
+  for (std::int32_t step = 0; step < 35; ++step) {
+    Observe(farm, 0, view);
+    ASSERT_FALSE(view.disasters[0].visible || view.disasters[1].visible);
+    const std::int32_t told = step - step % 10;
+    EXPECT_FLOAT_EQ(view.disasters[0].belief.radius[0], 2.0F + 0.25F * static_cast<float>(told));
+    EXPECT_EQ(view.disasters[1].belief.radius[0], told < 16 ? 1.0F : 3.0F) << "step " << step;
+    EXPECT_EQ(view.disasters[1].belief.risk[0], told < 16 ? -5.0F : -20.0F);
+    EXPECT_EQ(view.disasters[1].belief.grade, told < 16 ? 1 : 4);
+    StepOne(farm, Action::kHold);
+  }
+}
+
+TEST(PartialView, OutOfSightRingsThatShrankToNothingAreStillThoseOfTheBulletin) {
+  Scenario scenario = PartialScenario();
+  scenario.view.bulletin_period = 10;
+  DisasterSpec circle = StillDisaster(20, 20, {3}, {-5});
+  circle.radius_growth = -0.25F;
+  DisasterSpec quarters = circle;
+  quarters.quadrants = {{3.0F, 1.0F, 0.0F, 2.0F}};
+  scenario.disasters = {circle, quarters};
+  Farm farm = MakeFarm(scenario);
+  View view;
+  View again;
+  for (std::int32_t step = 0; step < 35; ++step) {
+    Observe(farm, 0, view);
+    ASSERT_FALSE(view.disasters[0].visible || view.disasters[1].visible);
+    const float shrunk = 0.25F * static_cast<float>(step - step % 10);
+    const auto left = [shrunk](float radius) { return std::max(0.0F, radius - shrunk); };
+    EXPECT_FLOAT_EQ(view.disasters[0].belief.radius[0], left(3.0F)) << "step " << step;
+    for (std::size_t q = 0; q < 4; ++q) {
+      EXPECT_FLOAT_EQ(view.disasters[1].belief.quadrant[q][0], left(quarters.quadrants[0][q]))
+          << "step " << step << ", quadrant " << q;
+    }
+    Farm loaded = MakeFarm(scenario);
+    loaded.Load(farm.Save());
+    Observe(loaded, 0, again);
+    EXPECT_EQ(again.disasters[1].belief.quadrant, view.disasters[1].belief.quadrant);
+    StepOne(farm, Action::kHold);
+  }
+}
+
+TEST(PartialView, BulletinsAreOffByNoMoreThanTheirNoise) {
+  Scenario scenario = PartialScenario();
+  scenario.view.bulletin_period = 1;
+  scenario.view.bulletin_noise = 2.0F;
+  scenario.disasters = {StillDisaster(20, 20, {2}, {-5})};
+  Farm farm = MakeFarm(scenario);
+  View view;
+  float widest = 0.0F;
+  for (int step = 0; step < 200; ++step) {
+    StepOne(farm, Action::kHold);
+    Observe(farm, 0, view);
+    const float off = std::abs(view.disasters[0].belief.x - 20.0F);
+    EXPECT_LE(off, 2.0F);
+    widest = std::max(widest, off);
+  }
+  EXPECT_GT(widest, 1.5F);
+}
+
+TEST(PartialView, HealthIsKnownInRangeOnly) {
+  Scenario scenario = PartialScenario();
+  scenario.devices.sites = {{{2, 3}, DeviceKind::kMonitoring, 80.0F, false},
+                            {{2, 4}, DeviceKind::kMonitoring, 80.0F, false}};
+  scenario.disasters = {StillDisaster(2, 4, {8}, {-10})};
+  Farm farm = MakeFarm(scenario);
+  StepOne(farm, Action::kHold);
+  View view;
+  Observe(farm, 0, view);
+  EXPECT_TRUE(view.devices[0].health_known);
+  EXPECT_FLOAT_EQ(view.devices[0].health, 0.9F);
+  EXPECT_FALSE(view.devices[1].health_known);
+  EXPECT_EQ(view.devices[1].health, 1.0F);
+  EXPECT_EQ(view.devices[1].cell, (Cell{2, 4})) << "its place is on the chart";
+}
+
+TEST(PartialView, OtherShipsAndWhatTheyCarryAreSeenInRangeOnly) {
+  Scenario scenario = PartialScenario();
+  scenario.ships.count = 2;
+  scenario.ports.cells = {{2, 0}, {20, 0}};
+  scenario.devices.sites = {{{20, 1}, DeviceKind::kMonitoring, 80.0F, false}};
+  scenario.islands.push_back({{21, 0}, 2, 1});
+  Farm farm = MakeFarm(scenario);
+  for (std::uint64_t episode = 0; episode < 64; ++episode) {
+    farm.Reset(1, episode);
+    if (farm.ships()[0].cell == Cell{2, 0} && farm.ships()[1].cell == Cell{20, 0}) break;
+  }
+  ASSERT_EQ(farm.ships()[1].cell, (Cell{20, 0}));
+  const std::vector<std::vector<Action>> script{{Action::kHold, Action::kNorth},
+                                                {Action::kHold, Action::kPickup},
+                                                {Action::kHold, Action::kNorth}};
+  for (const auto& actions : script) {
+    const std::uint8_t codes[] = {test::Act(actions[0]), test::Act(actions[1])};
+    farm.Step(codes);
+  }
+  View view;
+  Observe(farm, 0, view);
+  EXPECT_FALSE(view.others[0].visible);
+  EXPECT_EQ(view.devices[0].status, DeviceStatus::kAboard);
+  EXPECT_EQ(view.devices[0].cell, (Cell{20, 1})) << "where it was deployed";
+  Observe(farm, 1, view);
+  EXPECT_EQ(view.devices[0].cell, (Cell{20, 2}));
+  EXPECT_TRUE(view.devices[0].aboard_self);
+}
+
+TEST(PartialView, NetworkedAgentsSeeWithEachOthersSensors) {
+  Scenario scenario = PartialScenario();
+  scenario.devices.sites = {{{2, 3}, DeviceKind::kMonitoring, 80.0F, false},
+                            {{26, 26}, DeviceKind::kMonitoring, 80.0F, true},
+                            {{14, 14}, DeviceKind::kMonitoring, 80.0F, true}};
+  scenario.view.bulletin_period = 0;
+  scenario.disasters = {StillDisaster(27, 27, {2}, {-20})};
+  View view;
+  Observe(MakeFarm(scenario), 0, view);
+  EXPECT_FALSE(view.others[0].visible);
+  EXPECT_FALSE(view.devices[1].health_known);
+  EXPECT_FALSE(view.disasters[0].known);
+  scenario.view.shared_sight = true;
+  Farm farm = MakeFarm(scenario);
+  Observe(farm, 0, view);
+  EXPECT_TRUE(view.others[0].visible);
+  EXPECT_TRUE(view.others[1].visible);
+  EXPECT_TRUE(view.devices[1].health_known);
+  EXPECT_TRUE(view.disasters[0].visible);
+}
+
+TEST(View, KnownRiskIsTheWorstOfWhatIsKnown) {
+  Scenario scenario = PartialScenario();
+  scenario.view.bulletin_period = 0;
+  scenario.disasters = {StillDisaster(4, 0, {2}, {-6}), StillDisaster(25, 25, {2}, {-20})};
+  const Farm farm = MakeFarm(scenario);
+  View view;
+  Observe(farm, 0, view);
+  EXPECT_EQ(KnownRiskAt(view, {2, 0}), -6.0F);
+  EXPECT_EQ(KnownRiskAt(view, {25, 25}), 0.0F) << "nobody has told it";
+}
+
+}  // namespace
+}  // namespace aquafarm

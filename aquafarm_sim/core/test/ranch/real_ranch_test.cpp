@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ranches of files that authorities published; skipped where they are not at hand.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "aquafarm/grid/geo_frame.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "ranch_request.h"
+#include "shared_data.h"
+
+namespace aquafarm {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(RealFiles, MakeARanchOffDongji) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  RanchRequest request;
+  request.chart = (data / "coast" / "zhoushan_330900.json").string();
+  request.center = GeoPoint{30.2, 122.7};
+  request.track = (data / "tracks" / "CH2021BST.txt").string();
+  request.storm = "IN-FA";
+  request.radii = (data / "bulletins" / "202106.json").string();
+  request.devices = 12;
+  request.placement = DevicePlacement::kLinear;
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_TRUE(ranch.warnings.empty());
+  EXPECT_TRUE(Says(ranch.decided, "nearest: 32 km at 2021-07-25T03:30:00Z")) << ranch.yaml;
+  EXPECT_TRUE(Says(ranch.decided, "strongest ring 64 kt"));
+}
+
+TEST(RealFiles, GiveDevicesTheirValueFromTheSea) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  RanchRequest request;
+  request.center = GeoPoint{24.8, 57.9};
+  request.cell_size_m = 2000.0;
+  const std::string file = (data / "ocean" / "HYCOM_ST_GoO_20160428to20160503.nc").string();
+  request.sea = {{"salt", file, "so"}, {"warmth", file, "thetao"}};
+  request.value = "warmth > 26 ? 80 : 40 + salt";
+  const Ranch ranch = BuildRanch(request);
+  EXPECT_TRUE(Says(ranch.decided, "salt: so of HYCOM_ST_GoO_20160428to20160503.nc at 2016-04-28T"));
+  ASSERT_EQ(ranch.scenario.devices.sites.size(), 4U);
+  for (const DeviceSite& site : ranch.scenario.devices.sites) {
+    EXPECT_TRUE(*site.value == 80.0F || (*site.value > 75.0F && *site.value < 79.0F));
+  }
+  request.value = "-salt";
+  EXPECT_NE(Refused(request).find("expected a number in [0, 10000]"), std::string::npos);
+  request.value = "salty";
+  EXPECT_NE(Refused(request).find("expected an expression"), std::string::npos);
+  request.center = GeoPoint{30.0, 122.0};
+  EXPECT_NE(Refused(request).find("has no value on this ranch"), std::string::npos);
+}
+
+// The archive's bulletins were kept without their forecasts; the storm goes on as it did.
+TEST(RealFiles, OfBulletinsHaveNoForecastsToTell) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  RanchRequest request;
+  request.center = GeoPoint{30.2, 122.7};
+  request.track = (data / "tracks" / "CH2021BST.txt").string();
+  request.storm = "IN-FA";
+  request.forecasts = (data / "bulletins" / "202106.json").string();
+  EXPECT_EQ(Refused(request),
+            "forecasts: got no forecast points of the storm between 2021-07-24T11:00:00Z and "
+            "2021-07-26T01:00:00Z in "
+            "202106.json, expected bulletins with forecast points");
+}
+
+// Scenario files that a person may edit; what decides the play is still what the command makes.
+TEST(RealFiles, MakeTheShippedRanches) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  const fs::path shipped = fs::path(AQUAFARM_CORE_DIR).parent_path() / "scenarios";
+  RanchRequest request;
+  request.chart = (data / "coast" / "zhoushan_330900.json").string();
+  request.center = GeoPoint{30.19, 122.70};
+  request.width = 22;
+  request.height = 18;
+  request.cell_size_m = 500.0;
+  request.track = (data / "tracks" / "CH2019BST.txt").string();
+  request.radii = (data / "tracks" / "bst_all_2015-2021.txt").string();
+  request.ports = 3;
+  request.storm = "DANAS";
+  request.devices = 4;
+  request.placement = DevicePlacement::kUniform;
+  EXPECT_EQ(BuildRanch(request).scenario.hash,
+            LoadScenario((shipped / "zhoushan_danas_2019.yaml").string()).hash);
+  request.storm = "MITAG";
+  request.devices = 6;
+  request.placement = DevicePlacement::kLinear;
+  EXPECT_EQ(BuildRanch(request).scenario.hash,
+            LoadScenario((shipped / "zhoushan_mitag_2019.yaml").string()).hash);
+}
+
+// It was written by hand, for its islands are blocks that a person chose; its storm is the
+// command's.
+TEST(RealRanch, ShippedInFaHasTheStormThatTheCommandMakes) {
+  const fs::path data = SharedData();
+  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+  const Scenario shipped = LoadScenario(AQUAFARM_CORE_DIR "/../scenarios/zhoushan_infa_2021.yaml");
+  RanchRequest request;
+  request.center = GeoFrame(*shipped.origin, 1000.0).ToGeo(9.5, 6.5);
+  request.width = 20;
+  request.height = 14;
+  request.cell_size_m = 1000.0;
+  request.step_s = 480.0;
+  request.start = shipped.start_time;
+  request.track = (data / "tracks" / "CH2021BST.txt").string();
+  request.storm = "IN-FA";
+  request.radii = (data / "bulletins" / "202106.json").string();
+  const DisasterSpec made = BuildRanch(request).scenario.disasters[0];
+  int same = 0;
+  for (const Waypoint& by_hand : shipped.disasters[0].track) {
+    for (const Waypoint& by_command : made.track) {
+      if (by_command.step != by_hand.step) continue;
+      EXPECT_NEAR(by_command.x, by_hand.x, 0.02F) << "the origin is rounded";
+      EXPECT_NEAR(by_command.y, by_hand.y, 0.02F);
+      EXPECT_EQ(by_command.grade, by_hand.grade);
+      // After the last bulletin the command estimates a gale ring, the hand wrote none.
+      if (by_hand.radii.back() == 0.0F) continue;
+      EXPECT_EQ(by_command.radii, by_hand.radii) << by_hand.step;
+      ++same;
+    }
+  }
+  EXPECT_EQ(same, 13);
+}
+
+}  // namespace
+}  // namespace aquafarm

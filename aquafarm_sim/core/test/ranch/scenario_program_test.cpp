@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program behind `aquafarm scenario`.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "ranch_request.h"
+#include "write_sea.h"
+
+namespace aquafarm {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Runs the program; gives its exit code and what it wrote.
+std::pair<int, std::string> RunApp(const std::string& arguments) {
+  FILE* pipe = popen((AQUAFARM_SCENARIO_APP " " + arguments + " 2>&1").c_str(), "r");
+  std::string text;
+  std::array<char, 4096> part{};
+  while (fgets(part.data(), part.size(), pipe) != nullptr) text += part.data();
+  return {WEXITSTATUS(pclose(pipe)), text};
+}
+
+TEST(Program, SaysWhatToTrainWith) {
+  const fs::path path = fs::temp_directory_path() / ("many_" + std::to_string(getpid()) + ".yaml");
+  const auto now = [&path](const std::string& arguments) {
+    const std::string text = RunApp("--size 20x20 -o " + path.string() + " " + arguments).second;
+    const std::string made = "now: ./aquafarm train scenario:=" + path.string();
+    const std::size_t at = text.find(made);
+    return at == std::string::npos ? text : text.substr(at + made.size());
+  };
+  EXPECT_EQ(now("--devices 3"), "\n");
+  EXPECT_EQ(now("--devices 14"), "\n");
+  EXPECT_EQ(now("--devices 15"), " algorithm:=dqn options:=steps_per_update=4 steps:=1200000\n");
+  EXPECT_EQ(now("--devices 3 --ships 2"), " algorithm:=auto\n");
+  fs::remove(path);
+}
+
+TEST(Program, MakesAFileAndSaysWhatItDecided) {
+  const fs::path path = fs::temp_directory_path() / ("bay_" + std::to_string(getpid()) + ".yaml");
+  const std::string data = kData.string();
+  const auto [code, text] = RunApp(
+      "--chart " + data + "/coast.json --center 30.03,122.05 --size 24x20 --cell 0.5km --track " +
+      data + "/cma.txt --storm in-fa --devices 6 --layout linear -o " + path.string());
+  EXPECT_EQ(code, 0) << text;
+  EXPECT_NE(text.find("nearest: "), std::string::npos);
+  EXPECT_NE(text.find("now: ./aquafarm train scenario:=" + path.string()), std::string::npos);
+  const Scenario scenario = LoadScenario(path.string());
+  EXPECT_EQ(scenario.name, path.stem().string());
+  EXPECT_EQ(scenario.devices.count, 6);
+  fs::remove(path);
+}
+
+TEST(Program, RefusesWrongArguments) {
+  const std::vector<std::pair<const char*, const char*>> cases{
+      {"--center 30", "center: got '30', expected LATITUDE,LONGITUDE in degrees"},
+      {"--center 95,120", "expected a latitude in [-90, 90] and a longitude in [-180, 180]"},
+      {"--size 25", "size: got '25', expected WIDTHxHEIGHT in cells"},
+      {"--size 1x25", "size: got '1x25', expected whole numbers in [2, 4096]"},
+      {"--cell 20furlongs", "cell: got '20furlongs', expected a length as 200m or 0.2km"},
+      {"--layout explicit", "layout: got 'explicit', expected one of uniform, linear, random"},
+      {"--sea salt:so --value 3", "sea: got 'salt:so', expected NAME=FILE:VARIABLE"},
+      {"--value 3", "value: got no layer to evaluate '3' on"},
+      {"--rings oval --track x",
+       "rings: got 'oval', expected one of equal_area, largest, quadrants"},
+      {"--storm Rai", "--storm requires --track"},
+      {"--radii x", "--radii requires --track"},
+      {"--rings largest", "--rings requires --track"},
+      {"--lead 4", "--lead requires --track"},
+      {"--sea-risk 1", "--sea-risk requires --sea"},
+      {"--sea-level nan", "sea_level: got nan, expected [-100000, 100000]"},
+      {"--start noon", "start: got 'noon', expected a UTC time as 2021-07-24T12:00:00Z"},
+      {"--chart /nowhere.json --center 30,122", "/nowhere.json: cannot read: No such file"},
+      {"--devices 0", "--devices: Value 0 not in range"},
+      {"--frob", "The following argument was not expected: --frob"},
+      {"-o /nowhere/x.yaml", "/nowhere/x.yaml: cannot write"}};
+  for (const auto& [arguments, words] : cases) {
+    const auto [code, text] = RunApp(arguments);
+    EXPECT_EQ(code, 2) << arguments;
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+  }
+}
+
+TEST(Program, RefusesAWrongRuleOfTheSeaByItsOption) {
+  const fs::path path = fs::temp_directory_path() / ("rule." + std::to_string(getpid()) + ".nc");
+  WriteSea(path.string(), "t", {29.0, 31.0}, {121.0, 123.0}, {20.0F, 20.0F, 20.0F, 20.0F});
+  const std::string sea = "--center 30,122 --sea t=" + path.string() + ":t ";
+  EXPECT_EQ(RunApp(sea + "--sea-risk 't > '").second.substr(0, 53),
+            "sea_risk: got 't > ', expected an expression: Unexpec");
+  EXPECT_EQ(RunApp(sea + "--value 't > '").second.substr(0, 50),
+            "value: got 't > ', expected an expression: Unexpec");
+  fs::remove(path);
+}
+
+TEST(Program, RefusesASizeForAChartWithItsOwn) {
+  const fs::path path = fs::temp_directory_path() / ("own." + std::to_string(getpid()) + ".asc");
+  std::ofstream(path) << "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 150\n"
+                         "-1 -1 -1 -1\n-1 5 -1 -1\n-1 -1 -1 -1\n";
+  const std::string chart = "--ports 2 --chart " + path.string();
+  const auto [size_code, size] = RunApp(chart + " --size 9x9");
+  EXPECT_EQ(size_code, 2);
+  EXPECT_EQ(size, "size: got '9x9', expected none, as the chart has its own\n");
+  const auto [cell_code, cell] = RunApp(chart + " --cell 1km");
+  EXPECT_EQ(cell_code, 2);
+  EXPECT_EQ(cell, "cell: got '1km', expected none, as the chart has its own\n");
+  EXPECT_EQ(RunApp(chart).first, 0);
+  fs::remove(path);
+}
+
+}  // namespace
+}  // namespace aquafarm

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tracks in JSON: bulletins, Zhejiang's list, a weather service's answer.
+#include <gtest/gtest.h>
+
+#include "storm_samples.h"
+
+namespace aquafarm {
+namespace {
+
+TEST(Bulletin, IsReadFromTheScriptOfZhejiangsWaterOffice) {
+  const HazardFile file = Load("zhejiang.js");
+  EXPECT_EQ(file.format, HazardFormat::kBulletin);
+  EXPECT_TRUE(file.warnings.empty()) << file.warnings[0];
+  const HazardTrack& storm = file.tracks.at(0);
+  EXPECT_EQ(storm.id, "202106");
+  EXPECT_EQ(storm.name, "In-Fa");
+  EXPECT_TRUE(storm.landfalls.empty()) << "its list names more than landfalls";
+  ASSERT_EQ(storm.fixes.size(), 2U);
+  const HazardFix& fix = storm.fixes[0];
+  EXPECT_EQ(fix.time, 1627171200) << "08:00 in Beijing";
+  EXPECT_EQ(fix.grade, StormGrade::kSevereTyphoon);
+  EXPECT_EQ(fix.wind_mps, 42.0);
+  EXPECT_EQ(fix.speed_kmh, 12.0);
+  EXPECT_EQ(fix.heading_deg, 315.0);
+  ExpectRadii(fix, 34, {300, 200, 190, 250});
+  ExpectRadii(fix, 50, {100, 100, 80, 90});
+  ExpectRadii(storm.fixes[1], 34, {280, 280, 280, 280});
+  ASSERT_EQ(storm.forecasts.size(), 2U);
+  EXPECT_EQ(storm.forecasts[0].agency, "中国");
+  EXPECT_EQ(storm.forecasts[0].fixes.size(), 2U);
+  EXPECT_EQ(storm.forecasts[1].agency, "日本");
+  EXPECT_EQ(storm.forecasts[1].fixes[0].position.latitude, 30.4);
+}
+
+TEST(Bulletin, OfZhejiangIsRefusedWithItsLine) {
+  const auto refused = [](const std::string& from, const std::string& to) {
+    return Refusal(With(Sample("zhejiang.js"), from, to));
+  };
+  EXPECT_EQ(refused("300|200|190|250", "300|200|190"),
+            "x:9: [0].points[0].radius7: got '300|200|190', expected four numbers in [0, 3000] as "
+            "250|220|200|180");
+  EXPECT_EQ(refused("300|200|190|250", "300|-2|190|250|"),
+            "x:9: [0].points[0].radius7: got '300|-2|190|250|', expected four numbers in [0, 3000] "
+            "as 250|220|200|180");
+  EXPECT_EQ(refused("\"30.4\"", "\"95\""),
+            "x:16: [0].points[0].forecast[1].forecastpoints[0].lat: got '95', expected a number in "
+            "[-90, 90]");
+  EXPECT_EQ(refused("radius7\": \"300|200|190|250\"", "r7\": \"300|200|190\""),
+            "x:9: [0].points[0].r7: got '300|200|190', expected four numbers in [0, 3000] as "
+            "250|220|200|180");
+  EXPECT_EQ(refused("radius12\": \"\"", "r12Quad\": {\"ne\": -1}"),
+            "x:9: [0].points[0].r12Quad.ne: got -1, expected a number in [0, 3000]");
+  EXPECT_EQ(refused("\"29.7\"", "\"95\""),
+            "x:7: [0].points[0].lat: got '95', expected a number in [-90, 90]");
+  EXPECT_NE(refused("];", "").find(": got no valid JSON: "), std::string::npos);
+  EXPECT_EQ(refused("let typhoons =", "typhoons").substr(0, 26), "x:3: got no valid JSON: la");
+}
+
+TEST(Bulletin, ReadsBeijingTimeAndQuadrants) {
+  const HazardFile file = Load("bulletin.json");
+  ASSERT_EQ(file.tracks.size(), 2U);
+  const HazardTrack& storm = FindTrack(file, "烟花");
+  EXPECT_EQ(storm.name, "In-Fa");
+  const HazardFix& fix = storm.fixes[0];
+  EXPECT_EQ(fix.time, kInFaNoon - 6 * 3600);
+  EXPECT_EQ(fix.grade, StormGrade::kSevereTyphoon);
+  EXPECT_EQ(fix.wind_mps, 42.0);
+  EXPECT_EQ(fix.heading_deg, 292.5);
+  EXPECT_EQ(fix.speed_kmh, 12.0);
+  EXPECT_FALSE(fix.motion_computed);
+  ExpectRadii(fix, 34, {300, 200, 200, 250});
+  EXPECT_EQ(fix.Ring(50), nullptr) << "0 at 42 m/s: it was not said";
+  EXPECT_EQ(fix.Ring(64), nullptr);
+}
+
+TEST(Bulletin, KnowsBothSpellingsAndWhatIsUnknown) {
+  const HazardFile file = ParseHazardFile(Sample("bulletin.json"), "b.json");
+  const HazardTrack& storm = FindTrack(file, "202106");
+  const HazardFix& bare = storm.fixes[1];
+  EXPECT_EQ(bare.wind_mps, std::nullopt);
+  EXPECT_EQ(bare.pressure_hpa, std::nullopt);
+  EXPECT_EQ(bare.grade, StormGrade::kUnknown);
+  ExpectRadii(bare, 34, {200, 200, 200, 200});
+  EXPECT_EQ(file.warnings, std::vector<std::string>{"b.json:17: [0].points[1].moveDir: '中' is no "
+                                                    "direction known here"});
+  const HazardFix& weak = storm.fixes[2];
+  EXPECT_EQ(weak.grade, StormGrade::kTropicalStorm) << "by its wind";
+  EXPECT_EQ(weak.Ring(34), nullptr) << "18 m/s blow somewhere";
+  ExpectRadii(weak, 50, {0, 0, 0, 0});
+  EXPECT_EQ(file.tracks[1].name, "");
+  EXPECT_EQ(file.tracks[1].local_name, "");
+}
+
+TEST(Bulletin, SaysWhichForecastsHaveNoPoints) {
+  const auto said = [](const std::string& forecasts) {
+    return Warnings(
+        "[{\"tfbh\": \"1\", \"points\": [\n{\"time\": \"2021-07-25T08:00:00\", \"lat\": 30, "
+        "\"lng\": 122,\n\"forecast\": [" +
+        forecasts + "]}]}]");
+  };
+  const std::string point = R"([{"time": "2021-07-25T20:00:00", "lat": 30, "lng": 121}])";
+  const std::string left_out = ": got no points after its issue, the forecast is left out\n";
+  EXPECT_EQ(said(""), "");
+  EXPECT_EQ(said("{\"sets\": \"中国\", \"points\": " + point + "}"), "");
+  for (const std::string none :
+       {R"({"sets": "中国"})", R"({"sets": "中国", "points": []})",
+        R"({"sets": "中国", "points": null})", R"({"sets": "中国", "point": [{"lat": 30}]})",
+        R"({"points": [{"time": "2021-07-25T08:00:00", "lat": 30, "lng": 122}]})"}) {
+    EXPECT_EQ(said(none), "x:3: [0].points[0].forecast[0]" + left_out) << none;
+    EXPECT_EQ(said("{\"points\": " + point + "},\n" + none),
+              "x:4: [0].points[0].forecast[1]" + left_out);
+  }
+}
+
+TEST(Bulletin, LeavesOutWhatAForecastSaysOfBefore) {
+  const std::string late = With(Sample("bulletin.json"), "\"time\": \"2021-07-25T20:00:00\"",
+                                "\"time\": \"2021-07-25T07:00:00\"");
+  EXPECT_NE(Warnings(late).find("x:13: [0].points[0].forecast[0].points[0].time: got "
+                                "2021-07-24T23:00:00Z, before 2021-07-25T00:00:00Z, whose "
+                                "forecast it is; left out\n"),
+            std::string::npos)
+      << Warnings(late);
+}
+
+TEST(Bulletin, RefusesForecastsOfAnotherTime) {
+  const auto refused = [](const std::string& time) {
+    return Refusal(With(Sample("bulletin.json"), "2021-07-26T08:00:00", time));
+  };
+  EXPECT_EQ(refused("2021-08-09T08:00:00"), "was read") << "15 days";
+  EXPECT_EQ(refused("2021-08-09T08:01:00"),
+            "x:15: [0].points[0].forecast[0].points[1].time: got 2021-08-09T00:01:00Z, expected a "
+            "forecast's within 15 days after 2021-07-25T00:00:00Z");
+}
+
+TEST(Bulletin, KeepsForecastsAndLandfallsInOrder) {
+  const HazardTrack storm = FindTrack(Load("bulletin.json"), "In-Fa");
+  ASSERT_EQ(storm.forecasts.size(), 1U);
+  EXPECT_EQ(storm.forecasts[0].agency, "中国");
+  EXPECT_EQ(storm.forecasts[0].issued, storm.fixes[0].time);
+  ASSERT_EQ(storm.forecasts[0].fixes.size(), 2U);
+  EXPECT_EQ(storm.forecasts[0].fixes[1].grade, StormGrade::kTropicalStorm);
+  ASSERT_EQ(storm.landfalls.size(), 2U);
+  EXPECT_EQ(storm.landfalls[0].place, "舟山.普陀");
+  EXPECT_EQ(storm.landfalls[1].time - storm.landfalls[0].time, (21 * 60 + 20) * 60);
+}
+
+TEST(WeatherService, ReadsTextForNumbersInsideAMarkdownFence) {
+  const HazardFile file = ParseHazardFile(Sample("weather_service.json"), "x");
+  EXPECT_EQ(file.warnings,
+            std::vector<std::string>{"x:9: track[0].windRadius64: 64 kt: not every quadrant is "
+                                     "said; the others are given 0"});
+  const HazardTrack& storm = file.tracks.at(0);
+  ASSERT_EQ(storm.fixes.size(), 3U);
+  EXPECT_EQ(storm.fixes[0].grade, StormGrade::kSuperTyphoon);
+  EXPECT_EQ(storm.fixes[0].pressure_hpa, std::nullopt);
+  EXPECT_EQ(storm.fixes[0].heading_deg, 315.0);
+  EXPECT_FALSE(storm.fixes[0].speed_kmh == std::nullopt) << "computed";
+  ExpectRadii(storm.fixes[0], 64, {40, 0, 0, 0});
+  EXPECT_EQ(storm.fixes[2].time, kInFaNoon);
+  ExpectRadii(storm.fixes[2], 34, {300, 200, 200, 250});
+  EXPECT_EQ(storm.fixes[2].Ring(50), nullptr);
+  ExpectRadii(storm.fixes[1], 64, {0, 0, 0, 0});
+  ASSERT_EQ(storm.landfalls.size(), 1U);
+  EXPECT_DOUBLE_EQ(storm.landfalls[0].position.longitude, 122.4);
+}
+
+TEST(WeatherService, MayAnswerWithAForecastAlone) {
+  const std::string answer = R"({"code": "200", "updateTime": "2021-07-27T03:00+00:00",
+    "forecast": [
+    {"fxTime": "2021-07-27T20:00+08:00", "lat": "31.7", "lon": "118.4", "type": "TS",
+     "windSpeed": "18", "moveDir": ""},
+    {"fxTime": "2021-07-28T20:00+08:00", "lat": "95", "lon": "117.2"}]})";
+  EXPECT_EQ(Refusal(answer), "x:5: forecast[1].lat: got '95', expected a number in [-90, 90]");
+  const HazardFile file = ParseHazardFile(With(answer, "\"95\"", "\"33\""), "x");
+  EXPECT_TRUE(file.warnings.empty());
+  EXPECT_EQ(file.tracks.at(0).fixes.size(), 2U);
+}
+
+TEST(WeatherService, SaysWhatItDoesNotRead) {
+  const std::string track = R"("track": [{"time": "2021-07-25T08:00+08:00", "lat": "30",
+    "lon": "122"}])";
+  const std::string forecast = R"("forecast": [{"fxTime": "2021-07-25T14:00+08:00", "lat": "31",
+    "lon": "122"}])";
+  EXPECT_EQ(Warnings("{\"code\": \"200\", \"refer\": {},\n" + track + ",\n" + forecast + "}"),
+            "x:4: forecast: is not read\n");
+  EXPECT_EQ(Warnings("{" + track + ",\n\"alerts\": [{\"id\": 1}], \"gusts\": null}"),
+            "x:3: alerts: is not read\n");
+  for (const char* none : {"null", "\"\"", "[]"}) {
+    const std::string answer = std::string("{\"track\": ") + none + ",\n" + forecast + "}";
+    EXPECT_EQ(Warnings(answer), "") << none;
+    EXPECT_EQ(ParseHazardFile(answer, "x").tracks.at(0).fixes.size(), 1U) << none;
+  }
+}
+
+TEST(Motion, OfZeroWasNotSaid) {
+  const auto speeds = [](const std::string& text) {
+    return ParseHazardFile(text, "x").tracks[0].fixes;
+  };
+  const auto bulletin = speeds(R"([{"tfbh": "1", "points": [
+    {"time": "2021-07-25T08:00:00", "lat": 30, "lng": 122, "move_speed": 0},
+    {"time": "2021-07-25T14:00:00", "lat": 31, "lng": 122, "move_speed": 0},
+    {"time": "2021-07-25T20:00:00", "lat": 31, "lng": 122, "move_speed": 0}]}])");
+  EXPECT_NEAR(bulletin[0].speed_kmh.value_or(-1.0), 110.9 / 6.0, 0.1);
+  EXPECT_EQ(bulletin[1].speed_kmh.value_or(-1.0), 0.0) << "the next is at the same place";
+  const auto service = speeds(R"({"code": "200", "track": [
+    {"time": "2021-07-25T08:00+08:00", "lat": "30", "lon": "122", "moveSpeed": "0",
+     "move360": "360", "windRadius30": null},
+    {"time": "2021-07-25T14:00+08:00", "lat": "31", "lon": "122", "moveSpeed": "9"}]})");
+  EXPECT_NEAR(service[0].speed_kmh.value_or(-1.0), 110.9 / 6.0, 0.1);
+  EXPECT_EQ(service[0].heading_deg.value_or(-1.0), 0.0);
+}
+
+}  // namespace
+}  // namespace aquafarm

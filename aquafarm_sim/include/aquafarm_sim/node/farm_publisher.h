@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// What people and bags see of a ranch: state, observations, risk, tf and clock at a limited wall
+/// rate, or every step when recording; spec, chart and tf_static again at each episode's start.
+/// Stepping only marks that something changed, so that publishing never slows it.
+
+#include <aquafarm_msgs/EpisodeSummary.h>
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "aquafarm_sim/node/sim_params.h"
+#include "aquafarm_sim/server/farm_server.h"
+
+namespace aquafarm_sim {
+
+class RanchPublisher : public RanchListener {
+ public:
+  /// @param ranch must outlive the publisher, which listens to it until it is destroyed
+  RanchPublisher(const ros::NodeHandle& node, const SimParams& params, Ranch& ranch);
+  ~RanchPublisher() override;
+  RanchPublisher(const RanchPublisher&) = delete;
+  RanchPublisher& operator=(const RanchPublisher&) = delete;
+
+  /// Waits until someone subscribes to `episode`, which only recorders do before the first step.
+  /// @returns false when nobody came within the limit
+  bool WaitForRecorder(double limit_s);
+
+  void OnChange(const RanchView& view) override;
+  void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) override;
+
+  /// Episode summaries that were left out because they came faster than they could be sent.
+  std::uint64_t dropped_summaries() const { return dropped_summaries_; }
+
+ private:
+  /// A topic whose last message a new subscriber gets at once, without the latched flag.
+  template <typename Message>
+  struct Topic {
+    ros::Publisher publisher;
+    Message message;
+    bool valid{};  // message was sent
+  };
+
+  template <typename Message>
+  void Advertise(ros::NodeHandle& node, const std::string& name, Topic<Message>& topic);
+  std::uint32_t CountSubscribers() const;
+  void Fill(const RanchView& view);
+  void PublishObservations(const RanchView& view);
+  const aquafarm_msgs::FarmState& ObservationOf(const RanchView& view, std::int32_t ship);
+  void FillEpisode(const RanchView& view);
+  void FillFrames(const RanchView& view);
+  void Send();
+  void SendSeas();
+  void Wake();
+  void Run();
+
+  const SimParams params_;
+  Ranch& ranch_;
+  tf2_ros::TransformBroadcaster frames_;
+  tf2_ros::StaticTransformBroadcaster static_frames_;
+  ros::Publisher clock_;
+  ros::Publisher spec_;
+  ros::Publisher chart_;
+  struct Sea {
+    ros::Publisher grid;
+    ros::Publisher values;
+  };
+  std::vector<Sea> seas_;  // by layer
+  ros::Publisher episode_;
+  Topic<aquafarm_msgs::FarmState> state_;
+  Topic<nav_msgs::OccupancyGrid> risk_;
+
+  std::mutex message_mutex_;  // guards the messages below and those of the topics
+  std::uint64_t published_episode_{};
+  bool episode_is_new_{};
+  std::chrono::steady_clock::time_point next_record_;  // recording goes no faster than bags follow
+  MessageContext context_;
+  aquafarm_msgs::FarmSpec spec_message_;
+  nav_msgs::OccupancyGrid chart_message_;
+  std::vector<aquafarm::Disaster> disasters_;  // to fill the risk grid from, when unlocked
+  std::vector<geometry_msgs::TransformStamped> frame_messages_;
+  std::vector<std::int32_t> bearings_;  // of each ship's last move
+
+  std::mutex observation_mutex_;  // guards what ships see
+  struct Observation {
+    ros::Publisher publisher;
+    aquafarm_msgs::FarmState message;  // its memory is reused
+  };
+  std::vector<Observation> observations_;
+  aquafarm::View view_;  // scratch
+
+  std::mutex queue_mutex_;  // guards the rest; taken last
+  std::condition_variable wake_;
+  std::deque<aquafarm_msgs::EpisodeSummary> summaries_;
+  std::atomic<bool> dirty_{};
+  std::atomic<bool> idle_{};
+  std::atomic<std::uint64_t> dropped_summaries_{};
+  bool ending_{};
+  std::thread thread_;
+};
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The ranch as a ROS node: its services, its topics, its diagnostics. Callbacks convert, call,
+/// convert; what is allowed when is the Ranch's.
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/spinner.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "aquafarm_sim/bags/episode_recorder.h"
+#include "aquafarm_sim/node/farm_publisher.h"
+#include "aquafarm_sim/node/sim_params.h"
+#include "aquafarm_sim/server/farm_server.h"
+
+namespace aquafarm_sim {
+
+class SimNode {
+ public:
+  /// @param node namespace of the topics and services
+  /// @throws InputError on a parameter or scenario that is not allowed
+  SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
+  ~SimNode();
+
+  /// Serves on for a moment when a trainer is at work, until it has saved.
+  void LetClientsSave();
+  SimNode(const SimNode&) = delete;
+  SimNode& operator=(const SimNode&) = delete;
+
+ private:
+  void KeepEpisodes();
+  void AdvertiseFarm();
+  void AdvertiseShip(std::int32_t ship);
+  void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void TellAbsent(const std::vector<std::int32_t>& absent) const;
+
+  const SimParams params_;
+  ros::NodeHandle node_;
+  Ranch ranch_;
+  RanchPublisher publisher_;
+  std::unique_ptr<EpisodeRecorder> recorder_;  // null: no episodes are kept
+  // Commands may wait for other ships; on threads of their own they keep nobody else waiting.
+  ros::CallbackQueue ship_queue_;
+  ros::NodeHandle ship_node_;
+  std::vector<ros::ServiceServer> services_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::WallTimer diagnostics_timer_;
+  ros::WallTime diagnosed_at_;
+  RanchCounters diagnosed_;
+  std::unique_ptr<ros::AsyncSpinner> ship_spinner_;
+  std::thread pacer_;
+};
+
+/// Runs the node until ROS ends it. @return the exit code: 0, or 2 when its input was refused
+int RunSimNode();
+
+}  // namespace aquafarm_sim

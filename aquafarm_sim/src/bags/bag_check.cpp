@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/bags/bag_check.h"
+
+#include <aquafarm_msgs/EpisodeSummary.h>
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/SavedState.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/version.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_sim/bags/bag_ranch.h"
+#include "aquafarm_sim/bags/message_difference.h"
+#include "aquafarm_sim/bags/read_bag.h"
+#include "aquafarm_sim/convert/conversions.h"
+#include "aquafarm_sim/names.h"
+
+namespace aquafarm_sim {
+namespace {
+
+using aquafarm::Farm;
+using aquafarm::InputError;
+using aquafarm_msgs::EpisodeSummary;
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+using aquafarm_msgs::SavedState;
+using nav_msgs::OccupancyGrid;
+
+std::string Number(std::uint64_t value) { return std::to_string(value); }
+
+std::string Missing(std::uint64_t first, std::uint64_t last) {
+  if (first == last) return "step " + Number(first) + " is missing";
+  return "steps " + Number(first) + " to " + Number(last) + " are missing";
+}
+
+/// One episode of a bag, simulated along.
+class Simulation {
+ public:
+  /// @throws InputError when the spec's scenario is none
+  explicit Simulation(const FarmSpec& spec)
+      : scenario_(std::make_shared<const aquafarm::Scenario>(
+            aquafarm::ParseScenario(spec.scenario_yaml, "spec.scenario_yaml"))),
+        farm_(scenario_),
+        spec_stamp_(spec.header.stamp) {
+    farm_.Reset(spec.seed, spec.episode);
+  }
+
+  /// Each answers with the first difference, or nothing.
+  std::string Check(const FarmSpec& spec) const {
+    const aquafarm::Encoder encoder(*scenario_);
+    FarmSpec simulated;
+    ToMsg(farm_, encoder, spec.farms, aquafarm::ToYaml(*scenario_), {}, simulated);
+    simulated.header = spec.header;
+    const std::string difference = FirstDifference(spec, simulated);
+    return difference.empty() ? "" : "spec." + difference;
+  }
+
+  std::string Check(const FarmState& state) {
+    const auto step = static_cast<std::uint64_t>(farm_.step());
+    const std::uint64_t expected = seen_ ? step + 1 : step;
+    if (state.step > expected) return Missing(expected, state.step - 1);
+    if (state.step + 1 < expected) return "steps are out of order";
+    if (state.step > step) {
+      if (const std::string fault = Step(state); !fault.empty()) return fault;
+    }
+    seen_ = begun_ = true;
+    stamp_ = state.header.stamp;
+    MessageContext context;
+    context.paced = state.pace == FarmState::PACED;
+    context.rate_hz = state.rate_hz;
+    context.paused = state.paused != 0;
+    FarmState simulated;
+    ToMsg(farm_, context, simulated);
+    simulated.header = state.header;
+    const std::string difference = FirstDifference(state, simulated);
+    return difference.empty() ? "" : "state." + difference;
+  }
+
+  std::string Check(const EpisodeSummary& summary) const {
+    EpisodeSummary simulated = ToMsg(farm_.record(), summary.farm, {});
+    simulated.header = summary.header;
+    const std::string difference = FirstDifference(summary, simulated);
+    return difference.empty() ? "" : "episode." + difference;
+  }
+
+  /// A grid of the present state; one of another moment is passed over.
+  std::string Check(const OccupancyGrid& grid, bool is_chart) const {
+    OccupancyGrid simulated;
+    if (is_chart) {
+      if (grid.header.stamp != spec_stamp_) return "";
+      simulated = ChartToMsg(farm_, {});
+    } else {
+      if (!seen_ || grid.header.stamp != stamp_) return "";
+      RiskToMsg(farm_.disasters(), *scenario_, {}, simulated);
+    }
+    simulated.header = grid.header;
+    simulated.info.map_load_time = grid.info.map_load_time;
+    const std::string difference = FirstDifference(grid, simulated);
+    if (difference.empty()) return "";
+    return (is_chart ? "chart." : "risk.") + difference;
+  }
+
+  std::string Load(const SavedState& saved) {
+    const auto step = static_cast<std::uint64_t>(farm_.step());
+    if (begun_ && saved.step > step) return Missing(step + 1, saved.step);
+    if (begun_ && saved.step < step) return "steps are out of order";
+    try {
+      Farm loaded(scenario_);
+      loaded.Reset(farm_.seed(), farm_.episode());
+      loaded.Load(std::string(saved.data.begin(), saved.data.end()));
+      if (static_cast<std::uint64_t>(loaded.step()) != saved.step) {
+        return "saved_state.step: got " + Number(saved.step) + ", its data says " +
+               std::to_string(loaded.step());
+      }
+      farm_.Load(std::string(saved.data.begin(), saved.data.end()));
+    } catch (const InputError& error) {
+      return std::string("saved_state.data: ") + error.what();
+    }
+    seen_ = false;  // the state after the change follows
+    begun_ = true;
+    return "";
+  }
+
+  const Farm& farm() const { return farm_; }
+
+ private:
+  std::string Step(const FarmState& state) {
+    if (farm_.over()) return "the episode is over since step " + std::to_string(farm_.step());
+    const std::size_t agents = farm_.ships().size();
+    if (state.ships.size() != agents) {
+      return "state.ships: got " + Number(state.ships.size()) + " entries, simulated " +
+             Number(agents);
+    }
+    std::vector<std::uint8_t> actions;
+    for (const auto& ship : state.ships) {
+      if (ship.action > static_cast<std::uint8_t>(aquafarm::Action::kHold)) {
+        return "state.ships[" + Number(actions.size()) + "].action: got " + Number(ship.action) +
+               ", expected [0, 10]";
+      }
+      actions.push_back(ship.action);
+    }
+    farm_.Step(actions.data());
+    return "";
+  }
+
+  std::shared_ptr<const aquafarm::Scenario> scenario_;
+  Farm farm_;
+  ros::Time spec_stamp_;
+  bool begun_{};     // something of this episode was seen, so the next thing is where it stands
+  bool seen_{};      // the state where the farm stands was compared
+  ros::Time stamp_;  // of that state
+};
+
+/// Seed and episode.
+using Key = std::pair<std::uint64_t, std::uint64_t>;
+
+/// Takes a bag's messages in, in order. Topics come over connections of their own, so a live
+/// recording may hold an episode's first state before its spec and its summary before its end.
+class Checker {
+ public:
+  /// @param path of the bag, for messages
+  Checker(std::map<Key, FarmSpec> specs, std::multimap<Key, EpisodeSummary> summaries,
+          std::string path)
+      : specs_(std::move(specs)), summaries_(std::move(summaries)), path_(std::move(path)) {}
+
+  /// @returns false at the first difference
+  bool Take(const rosbag::MessageInstance& message, bool is_chart) {
+    if (const auto state = Instantiate<FarmState>(message)) {
+      return Enter({state->seed, state->episode}, state->step) &&
+             Compared(state->step, simulation_->Check(*state));
+    }
+    if (const auto saved = Instantiate<SavedState>(message)) {
+      return Enter({saved->seed, saved->episode}, saved->step) &&
+             Compared(saved->step, simulation_->Load(*saved)) && NoteChange(saved->step);
+    }
+    const auto grid = Instantiate<OccupancyGrid>(message);
+    if (!grid || !simulation_) return true;
+    return Compared(Step(), simulation_->Check(*grid, is_chart));
+  }
+
+  /// @returns false at a difference
+  bool EndEpisode() {
+    if (!simulation_) return true;
+    const Farm& farm = simulation_->farm();
+    if (const auto found = summaries_.find(key_); found != summaries_.end()) {
+      const EpisodeSummary summary = found->second;
+      summaries_.erase(found);
+      if (summary.steps > farm.step()) {
+        return Compared(static_cast<std::uint64_t>(summary.steps),
+                        "missing: the bag's states end with step " + std::to_string(farm.step()));
+      }
+      if (!Compared(Step(), simulation_->Check(summary))) return false;
+    } else if (farm.over()) {
+      return Compared(Step(), "the episode is over, but its summary is missing");
+    }
+    char words[160];
+    std::snprintf(words, sizeof(words), "episode %llu of seed %llu: %d steps, return %g, %s",
+                  static_cast<unsigned long long>(farm.episode()),
+                  static_cast<unsigned long long>(farm.seed()), farm.step(),
+                  static_cast<double>(farm.record().episode_return),
+                  farm.over() ? std::string(ToString(farm.reason())).c_str() : "not over");
+    check_.episodes_in_words.emplace_back(words);
+    ++check_.episodes;
+    check_.steps += Step();
+    check_.unfinished += farm.over() ? 0 : 1;
+    simulation_.reset();
+    return true;
+  }
+
+  /// Looks at what no state belongs to. @returns false at a difference
+  bool End() {
+    if (!EndEpisode()) return false;
+    for (const auto& [key, summary] : summaries_) {
+      // Of a ranch of many farms a live recording has all summaries, but the states of one farm.
+      const bool of_other_farm = summary.farm != 0 && specs_.count(key) == 0 && check_.episodes > 0;
+      if (of_other_farm && specs_.begin()->second.farms > 1) continue;
+      check_.difference = "episode " + Number(key.second) + " of seed " + Number(key.first) +
+                          ": a summary that no states belong to";
+      return false;
+    }
+    return true;
+  }
+
+  const BagCheck& check() const { return check_; }
+
+ private:
+  bool NoteChange(std::uint64_t step) {
+    check_.changed_at.push_back(step);
+    return true;
+  }
+
+  std::uint64_t Step() const { return static_cast<std::uint64_t>(simulation_->farm().step()); }
+
+  /// Goes on with an episode, or begins it; a step 0 after others begins it again.
+  bool Enter(const Key& key, std::uint64_t step) {
+    if (simulation_ && key == key_ && (step != 0 || Step() == 0)) return true;
+    if (!EndEpisode()) return false;
+    key_ = key;
+    const auto spec = specs_.find(key);
+    if (spec == specs_.end()) return Compared(step, "the bag holds no spec of this episode");
+    NamingBag(path_, [&] { simulation_.emplace(spec->second); });
+    return Compared(0, simulation_->Check(spec->second));
+  }
+
+  bool Compared(std::uint64_t step, const std::string& difference) {
+    if (difference.empty()) return true;
+    check_.difference =
+        "episode " + Number(key_.second) + " step " + Number(step) + ": " + difference;
+    return false;
+  }
+
+  const std::map<Key, FarmSpec> specs_;
+  std::multimap<Key, EpisodeSummary> summaries_;  // those not yet compared
+  const std::string path_;
+  Key key_;  // of the simulation
+  std::optional<Simulation> simulation_;
+  BagCheck check_;
+};
+
+using Specs = std::map<Key, FarmSpec>;
+using Summaries = std::multimap<Key, EpisodeSummary>;
+
+Summaries ReadSummaries(const rosbag::Bag& bag, const std::string& topic) {
+  Summaries all;
+  for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
+    if (const auto one = Instantiate<EpisodeSummary>(message)) {
+      all.insert({{one->seed, one->episode}, *one});
+    }
+  }
+  return all;
+}
+
+/// @param difference set where a spec says otherwise than one before of the same episode
+Specs ReadSpecs(const rosbag::Bag& bag, const std::string& topic, std::string& difference) {
+  Specs all;
+  for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
+    const auto one = Instantiate<FarmSpec>(message);
+    if (!one) continue;
+    const auto [first, is_new] = all.insert({{one->seed, one->episode}, *one});
+    if (is_new || !difference.empty()) continue;
+    FarmSpec before = first->second;
+    before.header = one->header;
+    if (FirstDifference(*one, before).empty()) continue;
+    difference = "episode " + Number(one->episode) + " of seed " + Number(one->seed) +
+                 ": two specs that differ";
+  }
+  return all;
+}
+
+/// @throws InputError when an episode was recorded by another version
+void CheckVersions(const std::map<Key, FarmSpec>& specs, const std::string& path) {
+  for (const auto& [key, spec] : specs) {
+    if (spec.version == aquafarm::kVersion) continue;
+    throw InputError(path + ": " + RecordedBy(spec.version) + ", this is " + aquafarm::kVersion +
+                     "; use the version that it was recorded by");
+  }
+}
+
+}  // namespace
+
+std::string ChangesInWords(const BagCheck& check) {
+  std::string words;
+  for (const std::uint64_t step : check.changed_at) {
+    words += (words.empty() ? ", changed from outside at step " : ", ") + Number(step);
+  }
+  return words;
+}
+
+BagCheck CheckBag(const std::string& path, const std::string& ns) {
+  return ReadingBag(path, [&] {
+    rosbag::Bag bag;
+    OpenBag<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path);
+    CheckMessages<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path, true);
+    const std::string ranch = FindRanch(bag, path, ns);
+    BagCheck refused;
+    auto specs = ReadSpecs(bag, ranch + names::kSpec, refused.difference);
+    CheckVersions(specs, path);
+    if (!refused.difference.empty()) return refused;
+    Checker checker(std::move(specs), ReadSummaries(bag, ranch + names::kEpisode), path);
+    const std::string chart = ranch + names::kChart;
+    rosbag::View view(bag, rosbag::TopicQuery({ranch + names::kState, ranch + names::kSavedState,
+                                               chart, ranch + names::kRisk}));
+    for (const rosbag::MessageInstance& message : view) {
+      if (!checker.Take(message, message.getTopic() == chart)) return checker.check();
+    }
+    if (!checker.EndEpisode()) return checker.check();
+    if (checker.check().episodes == 0) throw InputError(path + ": no state follows its spec");
+    checker.End();
+    return checker.check();
+  });
+}
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/bags/episode_log.h"
+
+#include <aquafarm_msgs/SavedState.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_sim/bags/chunked_bag.h"
+#include "aquafarm_sim/convert/conversions.h"
+#include "aquafarm_sim/names.h"
+
+namespace aquafarm_sim {
+namespace {
+
+using aquafarm::Farm;
+
+constexpr std::int32_t kRiskPeriod = 10;  // steps
+constexpr std::int32_t kMoment_ns = 1000;
+
+/// The messages of one episode as it is played.
+class Messages {
+ public:
+  Messages(ChunkedBag& bag, const EpisodeTape& tape, const BagFormat& format)
+      : bag_(bag), format_(format) {
+    context_.map_frame = format.map_frame;
+    context_.paced = tape.paced;
+    context_.rate_hz = tape.rate_hz > 0.0 ? tape.rate_hz : format.rate_hz;
+  }
+
+  void Start(const Farm& farm, const aquafarm::Encoder& encoder, const std::string& yaml) {
+    SetTime(0);
+    aquafarm_msgs::FarmSpec spec;
+    ToMsg(farm, encoder, format_.farms, yaml, context_, spec);
+    Write(names::kSpec, spec);
+    Write(names::kChart, ChartToMsg(farm, context_));
+  }
+
+  void Change(const Farm& farm, const std::string& data) {
+    SetTime(farm.step());
+    aquafarm_msgs::SavedState saved;
+    saved.header.stamp = context_.stamp;
+    saved.header.frame_id = context_.map_frame;
+    saved.seed = farm.seed();
+    saved.episode = farm.episode();
+    saved.step = static_cast<std::uint64_t>(farm.step());
+    saved.data.assign(data.begin(), data.end());
+    Write(names::kSavedState, saved);
+  }
+
+  void State(const Farm& farm) {
+    SetTime(farm.step());
+    ToMsg(farm, context_, state_);
+    Write(names::kState, state_);
+    if (farm.step() % kRiskPeriod != 0 && !farm.over()) return;
+    RiskToMsg(farm.disasters(), farm.scenario(), context_, risk_);
+    Write(names::kRisk, risk_);
+  }
+
+  void End(const EpisodeTape& tape) {
+    Write(names::kEpisode, ToMsg(tape.record, tape.farm, context_));
+  }
+
+ private:
+  // A bag knows no time 0, so an episode begins one period after it.
+  void SetTime(std::int32_t step) {
+    const ros::Time stamp(static_cast<double>(step + 1) / context_.rate_hz);
+    if (stamp != context_.stamp) order_ = 0;
+    context_.stamp = stamp;
+  }
+
+  // Readers get messages of one time in any order, so each comes a moment after the one before.
+  template <typename Message>
+  void Write(const char* name, const Message& message) {
+    bag_.Write(format_.ns + name, context_.stamp + ros::Duration(0, kMoment_ns * order_++),
+               message);
+  }
+
+  ChunkedBag& bag_;
+  const BagFormat& format_;
+  MessageContext context_;
+  std::int32_t order_{};  // of the next message among those of this stamp
+  aquafarm_msgs::FarmState state_;
+  nav_msgs::OccupancyGrid risk_;
+};
+
+void Play(Farm& farm, const EpisodeTape& tape, Messages& messages) {
+  auto change = tape.changes.begin();
+  const auto take_changes = [&] {
+    for (; change != tape.changes.end() && change->step == farm.step(); ++change) {
+      farm.Load(change->state);
+      messages.Change(farm, change->state);
+      messages.State(farm);
+    }
+  };
+  if (tape.first_step == 0) {
+    messages.State(farm);
+  } else {
+    farm.Load(tape.changes.front().state);  // so that the first change is of the farm's step
+  }
+  take_changes();
+  const std::size_t agents = farm.ships().size();
+  for (std::size_t i = 0; i + agents <= tape.actions.size() && !farm.over(); i += agents) {
+    farm.Step(tape.actions.data() + i);
+    messages.State(farm);
+    take_changes();
+  }
+  if (farm.record().steps != tape.record.steps ||
+      farm.record().episode_return != tape.record.episode_return ||
+      farm.record().reason != tape.record.reason) {
+    throw TapeError("episode " + std::to_string(tape.episode) +
+                    ": its actions do not give its result again");
+  }
+}
+
+}  // namespace
+
+std::string BagName(const EpisodeTape& tape) {
+  char name[120];
+  std::snprintf(name, sizeof(name), "episode_%08llu_seed_%llu_return_%+.1f.bag",
+                static_cast<unsigned long long>(tape.episode),
+                static_cast<unsigned long long>(tape.seed),
+                static_cast<double>(tape.record.episode_return));
+  return name;
+}
+
+EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario,
+                                   BagFormat format)
+    : format_(std::move(format)),
+      farm_(std::move(scenario)),
+      encoder_(farm_.scenario()),
+      yaml_(aquafarm::ToYaml(farm_.scenario())) {}
+
+void EpisodeBagWriter::Write(const EpisodeTape& tape, const std::string& path) {
+  const std::string active = path + ".active";
+  std::error_code error;
+  try {
+    ChunkedBag bag(active);
+    Messages messages(bag, tape, format_);
+    farm_.Reset(tape.seed, tape.episode);
+    messages.Start(farm_, encoder_, yaml_);
+    Play(farm_, tape, messages);
+    messages.End(tape);
+    bag.Close();
+  } catch (const std::system_error& fault) {
+    std::filesystem::remove(active, error);
+    throw std::runtime_error(active + ": cannot be written: " + fault.code().message());
+  } catch (...) {
+    std::filesystem::remove(active, error);
+    throw;
+  }
+  std::filesystem::rename(active, path, error);
+  if (!error) return;
+  const std::string why = error.message();
+  std::filesystem::remove(active, error);
+  throw std::runtime_error(path + ": cannot be written: " + why);
+}
+
+}  // namespace aquafarm_sim

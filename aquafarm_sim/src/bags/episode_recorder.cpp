@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/bags/episode_recorder.h"
+
+#include <ros/console.h>
+#include <sched.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <exception>
+#include <filesystem>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm_sim {
+namespace {
+
+/// Whoever steps goes before this thread. Not SCHED_IDLE, which starves beside other programs, and
+/// which a user without privileges could not end once the farms have to wait.
+void StepBack() {
+  // As sched_setattr(2) has it; its header cannot stand beside sched.h.
+  struct {
+    std::uint32_t size{48};
+    std::uint32_t policy{SCHED_OTHER};
+    std::uint64_t flags{};
+    std::int32_t nice{19};
+    std::uint32_t priority{};
+    // Linux since 6.6 leaves a thread the processor for its slice, whoever wakes in the meantime,
+    // and since 6.12 lets it ask for a short one.
+    std::uint64_t runtime_ns{100'000};  // of a slice: the least there is
+    std::uint64_t deadline_ns{};
+    std::uint64_t period_ns{};
+  } attributes;
+  static_assert(sizeof(attributes) == 48);
+  if (syscall(SYS_sched_setattr, 0, &attributes, 0U) == 0) return;
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), attributes.nice);  // where it is forbidden
+}
+
+std::string MakeFolder(std::string folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || access(folder.c_str(), W_OK) != 0) {
+    throw aquafarm::InputError("~keep_dir: got '" + folder + "', expected a folder to write to");
+  }
+  return folder;
+}
+
+}  // namespace
+
+Keep ParseKeep(const std::string& text) {
+  using Which = Keep::Which;
+  if (text == "none") return {Which::kNone, 0};
+  if (text == "all") return {Which::kAll, 0};
+  if (text == "best") return {Which::kBest, 0};
+  if (text == "worst") return {Which::kWorst, 0};
+  if (text == "failures") return {Which::kFailures, 0};
+  const std::string every = "every:";
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  if (text.rfind(every, 0) == 0) {
+    const auto read = std::from_chars(text.data() + every.size(), end, number);
+    if (read.ec == std::errc() && read.ptr == end && number > 0) return {Which::kEvery, number};
+  }
+  throw aquafarm::InputError("~keep: got '" + text +
+                             "', expected none, all, every:N, best, worst or failures");
+}
+
+EpisodeRecorder::EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep,
+                                 std::string folder, BagFormat format, RecorderLimits limits)
+    : keep_(keep),
+      folder_(MakeFolder(std::move(folder))),
+      writer_(std::move(scenario), std::move(format)),
+      limits_(limits) {
+  thread_ = std::thread([this] { Run(); });
+}
+
+EpisodeRecorder::~EpisodeRecorder() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void EpisodeRecorder::OnStart(const aquafarm::Farm& farm, std::int32_t number,
+                              const MessageContext& context) {
+  const auto i = static_cast<std::size_t>(number);
+  if (tapes_.size() <= i) tapes_.resize(i + 1);
+  EpisodeTape tape;
+  tape.farm = number;
+  tape.seed = farm.seed();
+  tape.episode = farm.episode();
+  tape.paced = context.paced && number == 0;  // the others know joint steps alone
+  tape.rate_hz = context.rate_hz;
+  tape.first_step = farm.step();
+  if (farm.step() != 0) tape.changes.push_back({farm.step(), farm.Save()});
+  tapes_[i] = std::move(tape);
+}
+
+void EpisodeRecorder::OnStep(const aquafarm::Farm& farm, std::int32_t number,
+                             const std::uint8_t* actions) {
+  EpisodeTape& tape = tapes_[static_cast<std::size_t>(number)];
+  tape.actions.insert(tape.actions.end(), actions, actions + farm.ships().size());
+  if (!farm.over()) return;
+  tape.record = farm.record();
+  if (Wants(tape)) Enqueue(std::move(tape));
+}
+
+void EpisodeRecorder::OnIntervention(const aquafarm::Farm& farm, std::int32_t number) {
+  auto& changes = tapes_[static_cast<std::size_t>(number)].changes;
+  if (changes.empty() || changes.back().step != farm.step()) changes.emplace_back();
+  changes.back() = {farm.step(), farm.Save()};  // what a step begins with counts
+}
+
+bool EpisodeRecorder::Wants(const EpisodeTape& tape) {
+  const float value = tape.record.episode_return;
+  switch (keep_.which) {
+    case Keep::Which::kAll:
+      return true;
+    case Keep::Which::kEvery:
+      return tape.episode % keep_.every == 0;
+    case Keep::Which::kFailures:
+      return !tape.record.Success();
+    case Keep::Which::kBest:
+    case Keep::Which::kWorst:
+      if (extreme_ && !(keep_.which == Keep::Which::kBest ? value > *extreme_ : value < *extreme_))
+        return false;
+      extreme_ = value;
+      return true;
+    case Keep::Which::kNone:
+      break;
+  }
+  return false;
+}
+
+void EpisodeRecorder::Enqueue(EpisodeTape tape) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  if (!fault_.empty()) return;
+  if (keep_.which == Keep::Which::kBest || keep_.which == Keep::Which::kWorst) {
+    for (const EpisodeTape& overtaken : queue_) waiting_bytes_ -= overtaken.actions.size();
+    queue_.clear();
+  }
+  const bool follows = changed_.wait_for(lock, limits_.wait, [this] {
+    return waiting_bytes_ < limits_.waiting_bytes || !fault_.empty();
+  });
+  if (!follows) {
+    fault_ = "the disk does not follow";
+    ROS_ERROR("no more episodes are kept: %s", fault_.c_str());
+  }
+  if (!fault_.empty()) return;
+  waiting_bytes_ += tape.actions.size();
+  queue_.push_back(std::move(tape));
+  changed_.notify_all();
+}
+
+void EpisodeRecorder::Run() {
+  StepBack();
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (true) {
+    changed_.wait(lock, [this] { return ending_ || !queue_.empty(); });
+    if (queue_.empty()) return;
+    const EpisodeTape tape = std::move(queue_.front());
+    queue_.pop_front();
+    lock.unlock();
+    std::string fault;
+    bool written = false;
+    try {
+      Write(tape);
+      written = true;
+    } catch (const TapeError& error) {  // costs this one alone
+      ROS_ERROR("an episode is not kept: %s", error.what());
+    } catch (const std::exception& error) {
+      fault = error.what();
+      ROS_ERROR("no more episodes are kept: %s", error.what());
+    }
+    lock.lock();
+    waiting_bytes_ -= tape.actions.size();
+    kept_ += written ? 1 : 0;
+    if (!fault.empty()) {
+      fault_ = fault;
+      queue_.clear();
+      waiting_bytes_ = 0;
+    }
+    changed_.notify_all();
+  }
+}
+
+void EpisodeRecorder::Write(const EpisodeTape& tape) {
+  const std::string name = BagName(tape);
+  std::string path = folder_ + "/" + name;
+  // One of the same name is another's: of a farm, a load or a run before.
+  for (int i = 2; std::filesystem::exists(path); ++i) {
+    path = folder_ + "/" + name.substr(0, name.size() - 4) + "_" + std::to_string(i) + ".bag";
+  }
+  writer_.Write(tape, path);
+  if (keep_.which != Keep::Which::kBest && keep_.which != Keep::Which::kWorst) return;
+  std::error_code ignored;
+  if (!extreme_path_.empty()) std::filesystem::remove(extreme_path_, ignored);
+  extreme_path_ = path;
+}
+
+std::uint64_t EpisodeRecorder::kept() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return kept_;
+}
+
+std::string EpisodeRecorder::fault() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return fault_;
+}
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_sim/node/farm_publisher.h"
+
+#include <ros/console.h>
+#include <ros/init.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "aquafarm_sim/names.h"
+
+namespace aquafarm_sim {
+namespace {
+
+constexpr std::uint32_t kQueue = 10;
+constexpr std::uint32_t kRecordQueue = 10000;
+// rosbag record keeps 100 messages a topic while it writes a chunk; what comes faster is lost.
+constexpr std::chrono::milliseconds kRecordPeriod{2};
+constexpr std::size_t kMaxSummaries = 1000;
+// A recorder connects to its topics one after the other: it is ready when none came for so long.
+const ros::WallDuration kRecorderGrace(0.5);
+
+}  // namespace
+
+// A late subscriber gets the last message at once; a latched topic would mark it so in bags, where
+// a slice without its start would then show a state that is long past.
+template <typename Message>
+void RanchPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
+                               Topic<Message>& topic) {
+  const ros::SubscriberStatusCallback greet =
+      [this, &topic](const ros::SingleSubscriberPublisher& subscriber) {
+        const std::lock_guard<std::mutex> lock(message_mutex_);
+        if (topic.valid) {
+          subscriber.publish(topic.message);
+        } else {
+          Wake();
+        }
+      };
+  topic.publisher = node.advertise<Message>(name, params_.record ? kRecordQueue : kQueue, greet);
+}
+
+RanchPublisher::RanchPublisher(const ros::NodeHandle& node_handle, const SimParams& params,
+                               Ranch& ranch)
+    : params_(params), ranch_(ranch) {
+  ros::NodeHandle node(node_handle);
+  const std::uint32_t queue = params_.record ? kRecordQueue : kQueue;
+  if (params_.publish_clock) {
+    clock_ = node.advertise<rosgraph_msgs::Clock>(names::kClock, queue, true);
+  }
+  spec_ = node.advertise<aquafarm_msgs::FarmSpec>(names::kSpec, queue, true);
+  chart_ = node.advertise<nav_msgs::OccupancyGrid>(names::kChart, queue, true);
+  if (const auto& seas = ranch_.scenario().seas) {
+    for (const aquafarm::SeaLayer& layer : seas->layers) {
+      seas_.push_back(
+          {node.advertise<nav_msgs::OccupancyGrid>(names::Sea(layer.name), queue, true),
+           node.advertise<std_msgs::Float32MultiArray>(names::SeaValues(layer.name), queue, true)});
+    }
+  }
+  episode_ = node.advertise<aquafarm_msgs::EpisodeSummary>(names::kEpisode, kMaxSummaries);
+  Advertise(node, names::kState, state_);
+  Advertise(node, names::kRisk, risk_);
+  for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
+    // A ship's driver that comes late sees at once where it is.
+    const ros::SubscriberStatusCallback greet =
+        [this, ship](const ros::SingleSubscriberPublisher& subscriber) {
+          ranch_.Inspect([&](const RanchView& view) {
+            const std::lock_guard<std::mutex> lock(observation_mutex_);
+            subscriber.publish(ObservationOf(view, ship));
+          });
+        };
+    observations_.emplace_back();
+    observations_.back().publisher =
+        node.advertise<aquafarm_msgs::FarmState>(names::Observation(ship), queue, greet);
+  }
+  bearings_.assign(static_cast<std::size_t>(ranch_.agents()), 0);
+  ranch_.SetListener(this);
+  thread_ = std::thread([this] { Run(); });
+}
+
+RanchPublisher::~RanchPublisher() {
+  ranch_.SetListener(nullptr);
+  {
+    const std::lock_guard<std::mutex> lock(queue_mutex_);
+    ending_ = true;
+    wake_.notify_all();
+  }
+  thread_.join();
+}
+
+bool RanchPublisher::WaitForRecorder(double limit_s) {
+  const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(limit_s);
+  std::uint32_t connected = 0;
+  ros::WallTime changed_at = ros::WallTime::now();
+  for (;;) {
+    const ros::WallTime now = ros::WallTime::now();
+    const std::uint32_t subscribers = CountSubscribers();
+    if (subscribers != connected) changed_at = now;
+    connected = subscribers;
+    const bool records =
+        episode_.getNumSubscribers() > 0 && state_.publisher.getNumSubscribers() > 0;
+    if (records && now - changed_at >= kRecorderGrace) return true;
+    if (!ros::ok() || now >= end) return false;
+    ros::WallDuration(0.02).sleep();
+  }
+}
+
+std::uint32_t RanchPublisher::CountSubscribers() const {
+  std::uint32_t count = spec_.getNumSubscribers() + chart_.getNumSubscribers() +
+                        episode_.getNumSubscribers() + state_.publisher.getNumSubscribers() +
+                        risk_.publisher.getNumSubscribers();
+  for (const Observation& one : observations_) count += one.publisher.getNumSubscribers();
+  return count;
+}
+
+void RanchPublisher::OnChange(const RanchView& view) {
+  if (!view.joint) PublishObservations(view);
+  if (params_.record) {
+    const std::lock_guard<std::mutex> lock(message_mutex_);
+    std::this_thread::sleep_until(next_record_);
+    next_record_ = std::chrono::steady_clock::now() + kRecordPeriod;
+    Fill(view);
+    Send();
+    return;
+  }
+  Wake();
+}
+
+void RanchPublisher::Wake() {
+  if (dirty_.exchange(true) || !idle_) return;
+  const std::lock_guard<std::mutex> lock(queue_mutex_);
+  wake_.notify_all();
+}
+
+void RanchPublisher::OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) {
+  const std::lock_guard<std::mutex> lock(queue_mutex_);
+  if (summaries_.size() >= kMaxSummaries) {
+    ++dropped_summaries_;
+    return;
+  }
+  summaries_.push_back(summary);
+  if (idle_) wake_.notify_all();
+}
+
+void RanchPublisher::Run() {
+  using Clock = std::chrono::steady_clock;
+  const auto period = std::chrono::duration_cast<Clock::duration>(
+      std::chrono::duration<double>(1.0 / (params_.publish_hz > 0.0 ? params_.publish_hz : 10.0)));
+  std::unique_lock<std::mutex> lock(queue_mutex_);
+  while (!ending_) {
+    idle_ = true;
+    wake_.wait(lock, [this] { return ending_ || dirty_ || !summaries_.empty(); });
+    idle_ = false;
+    std::deque<aquafarm_msgs::EpisodeSummary> summaries;
+    summaries.swap(summaries_);
+    const Clock::time_point next = Clock::now() + period;
+    lock.unlock();
+    if (dirty_.exchange(false) && (params_.publish_hz > 0.0 || params_.record)) {
+      try {
+        ranch_.Inspect([this](const RanchView& view) {
+          const std::lock_guard<std::mutex> message_lock(message_mutex_);
+          Fill(view);
+        });
+        const std::lock_guard<std::mutex> message_lock(message_mutex_);
+        Send();
+      } catch (const std::exception& error) {
+        ROS_ERROR("a state could not be published: %s", error.what());
+      }
+    }
+    for (const aquafarm_msgs::EpisodeSummary& summary : summaries) episode_.publish(summary);
+    lock.lock();
+    wake_.wait_until(lock, next, [this] { return ending_; });
+  }
+}
+
+void RanchPublisher::Fill(const RanchView& view) {
+  const aquafarm::Farm& farm = view.batch.farm(0);
+  context_ = view.context;
+  episode_is_new_ = view.episode_count != published_episode_;
+  if (episode_is_new_) FillEpisode(view);
+  ToMsg(farm, context_, state_.message);
+  if (view.joint) PublishObservations(view);
+  disasters_ = farm.disasters();
+  FillFrames(view);
+}
+
+// Whoever drives a ship by what it sees must see each step; nobody else needs to.
+void RanchPublisher::PublishObservations(const RanchView& view) {
+  const std::lock_guard<std::mutex> lock(observation_mutex_);
+  for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
+    const ros::Publisher& publisher = observations_[static_cast<std::size_t>(ship)].publisher;
+    if (publisher.getNumSubscribers() > 0) publisher.publish(ObservationOf(view, ship));
+  }
+}
+
+const aquafarm_msgs::FarmState& RanchPublisher::ObservationOf(const RanchView& view,
+                                                              std::int32_t ship) {
+  const aquafarm::Farm& farm = view.batch.farm(0);
+  aquafarm_msgs::FarmState& message = observations_[static_cast<std::size_t>(ship)].message;
+  aquafarm::Observe(farm, ship, view_);
+  ToMsg(farm, view_, view.context, message);
+  return message;
+}
+
+void RanchPublisher::FillEpisode(const RanchView& view) {
+  const aquafarm::Farm& farm = view.batch.farm(0);
+  published_episode_ = view.episode_count;
+  ToMsg(farm, view.batch.encoder(), view.batch.farms(), view.yaml, context_, spec_message_);
+  chart_message_ = ChartToMsg(farm, context_);
+  bearings_.assign(bearings_.size(), 0);
+}
+
+void RanchPublisher::FillFrames(const RanchView& view) {
+  const aquafarm::Farm& farm = view.batch.farm(0);
+  const aquafarm::Scenario& scenario = farm.scenario();
+  frame_messages_.clear();
+  for (std::size_t i = 0; i < farm.ships().size(); ++i) {
+    const aquafarm::Ship& ship = farm.ships()[i];
+    bearings_[i] = BearingOf(ship.action, bearings_[i]);
+    frame_messages_.push_back(
+        PoseToMsg(params_.frame_prefix + names::Ship(static_cast<std::int32_t>(i)), ship.cell.x,
+                  ship.cell.y, bearings_[i], scenario, context_));
+  }
+  for (std::size_t i = 0; i < disasters_.size(); ++i) {
+    const aquafarm::Disaster& disaster = disasters_[i];
+    frame_messages_.push_back(
+        PoseToMsg(params_.frame_prefix + names::Disaster(static_cast<std::int32_t>(i)), disaster.x,
+                  disaster.y, disaster.heading_deg, scenario, context_));
+  }
+}
+
+void RanchPublisher::Send() {
+  if (params_.publish_clock) {
+    rosgraph_msgs::Clock clock;
+    clock.clock = context_.stamp;
+    clock_.publish(clock);
+  }
+  const aquafarm::Scenario& scenario = ranch_.scenario();
+  if (episode_is_new_) {
+    spec_.publish(spec_message_);
+    chart_.publish(chart_message_);
+    SendSeas();
+    if (scenario.origin) {
+      static_frames_.sendTransform(EarthToMsg(*scenario.origin, params_.earth_frame, context_));
+    }
+  }
+  state_.publisher.publish(state_.message);
+  state_.valid = true;
+  if (risk_.publisher.getNumSubscribers() > 0) {
+    RiskToMsg(disasters_, scenario, context_, risk_.message);
+    risk_.publisher.publish(risk_.message);
+    risk_.valid = true;
+  } else {
+    risk_.valid = false;
+  }
+  frames_.sendTransform(frame_messages_);
+}
+
+// They stay, but a slice of a bag from an episode's start on shall have them.
+void RanchPublisher::SendSeas() {
+  const aquafarm::Scenario& scenario = ranch_.scenario();
+  for (std::size_t i = 0; i < seas_.size(); ++i) {
+    const aquafarm::SeaLayer& layer = scenario.seas->layers[i];
+    nav_msgs::OccupancyGrid grid;
+    SeaToMsg(layer, scenario, context_, grid);
+    seas_[i].grid.publish(grid);
+    seas_[i].values.publish(SeaToMsg(layer, scenario));
+  }
+}
+
+}  // namespace aquafarm_sim

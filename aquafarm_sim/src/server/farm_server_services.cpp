@@ -1,0 +1,430 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The requests that concern all ships or all farms at once.
+#include <aquafarm_msgs/Outcome.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/storms/to_disaster.h"
+#include "aquafarm_sim/server/farm_server.h"
+
+namespace aquafarm_sim {
+namespace {
+
+using aquafarm_msgs::Outcome;
+using aquafarm_msgs::StepResult;
+
+constexpr std::uint8_t kAllEncodings = StepResult::INDEX | StepResult::FEATURES |
+                                       StepResult::PLANES | StepResult::HASHES | StepResult::TERMS;
+
+std::string OutOfRange(const std::string& name, std::int64_t got, std::int64_t least,
+                       std::int64_t most) {
+  return name + ": got " + std::to_string(got) + ", expected [" + std::to_string(least) + ", " +
+         std::to_string(most) + "]";
+}
+
+/// Whether a storm is told; one of which only a part is said is refused, not passed over.
+bool IsSaid(const aquafarm_msgs::Storm& storm) {
+  return !storm.fixes.empty() || !storm.forecast.empty() || !storm.name.empty();
+}
+
+/// Sizes an array, or empties it when it is not wanted, and says where its entries go.
+template <typename T>
+T* Sized(bool wanted, std::size_t size, std::vector<T>& entries) {
+  entries.resize(wanted ? size : 0);
+  return wanted ? entries.data() : nullptr;
+}
+
+}  // namespace
+
+template <typename Response>
+void Ranch::Answer(std::uint8_t code, const std::string& message, Response& response) {
+  response.ok = code == Outcome::OK;
+  response.code = code;
+  response.message = message;
+  if (!response.ok) ++counters_.refused;
+}
+
+/// Runs a request; what it throws becomes a code. @param bad_input code for an InputError
+template <typename Response, typename Request>
+void Ranch::Guarded(std::uint8_t bad_input, Response& response, Request&& request) {
+  try {
+    request();
+  } catch (const aquafarm::InputError& error) {
+    Answer(bad_input, error.what(), response);
+  } catch (const std::exception& error) {
+    Answer(Outcome::INTERNAL_ERROR, error.what(), response);
+  }
+}
+
+// --- joint steps --------------------------------------------------------------------------------
+
+const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Request& request,
+                                                 const std::string& caller) {
+  const Lock lock(mutex_);
+  if (last_step_.IsRepeated(request.sequence, caller)) return step_answer_;
+  try {
+    if (const auto refusal = Check(request, caller)) {
+      Answer(refusal->code, refusal->message, step_refusal_);
+      return step_refusal_;
+    }
+    last_step_.sequence = 0;  // until the answer is complete
+    joint_step_at_ = Clock::now();
+    Answer(Outcome::OK, "", step_answer_);
+    batch_->Step(request.actions.data(), Prepare(request.encodings, step_answer_.result));
+    DropPending();
+    Complete(request.actions.data(), step_answer_.result);
+    last_step_ = {request.sequence, caller};
+    return step_answer_;
+  } catch (const std::exception& error) {
+    ++turn_;  // some farms may have stepped
+    DropCommands();
+    Answer(Outcome::INTERNAL_ERROR, error.what(), step_refusal_);
+    return step_refusal_;
+  }
+}
+
+std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& request,
+                                           const std::string& caller) {
+  if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is ending"};
+  if (context_.paced) {
+    return Refusal{Outcome::WRONG_PACE, "joint steps need pace lockstep; call set_pace"};
+  }
+  if (context_.paused) return Refusal{Outcome::PAUSED, "the farm is paused"};
+  for (std::int32_t ship = 0; ship < agents_; ++ship) {
+    if (auto refusal = CheckHolder(ship, caller)) return refusal;
+  }
+  // Last: whoever waits until the farms are free again is told once that they have moved.
+  if (request.turn != 0 && request.turn != turn_) {
+    return Refusal{Outcome::STALE, "turn: got " + std::to_string(request.turn) +
+                                       ", the farms are at " + std::to_string(turn_) +
+                                       ": another has moved or reset them, or the node is new"};
+  }
+  const auto expected = static_cast<std::size_t>(batch_->farms()) * slots_.size();
+  if (request.actions.size() != expected) {
+    return Refusal{Outcome::BAD_LENGTH, "actions: got " + std::to_string(request.actions.size()) +
+                                            " entries, expected " + std::to_string(expected) +
+                                            " (" + std::to_string(batch_->farms()) + " farms x " +
+                                            std::to_string(agents_) + " agents)"};
+  }
+  constexpr auto kLast = static_cast<std::uint8_t>(aquafarm::Action::kHold);
+  const std::uint8_t highest = *std::max_element(request.actions.begin(), request.actions.end());
+  if (highest > kLast) {
+    return Refusal{Outcome::BAD_ACTION, OutOfRange("actions", highest, 0, kLast)};
+  }
+  return CheckAnswerSize(batch_->farms(), request.encodings);
+}
+
+std::optional<Ranch::Refusal> Ranch::CheckAnswerSize(std::int32_t farms,
+                                                     std::uint8_t encodings) const {
+  if (encodings > kAllEncodings) {
+    return Refusal{Outcome::BAD_VALUE, OutOfRange("encodings", encodings, 0, kAllEncodings)};
+  }
+  const aquafarm::Encoder& encoder = batch_->encoder();
+  if ((encodings & StepResult::INDEX) != 0 && encoder.state_count() == 0) {
+    return Refusal{Outcome::BAD_VALUE, "encodings: this farm has too many states for INDEX"};
+  }
+  const std::size_t entries = static_cast<std::size_t>(farms) * slots_.size();
+  std::size_t bytes = 0;
+  if ((encodings & StepResult::FEATURES) != 0) {
+    bytes += entries * sizeof(float) * static_cast<std::size_t>(encoder.feature_count());
+  }
+  if ((encodings & StepResult::PLANES) != 0) bytes += entries * encoder.planes_size();
+  if (bytes <= kMaxAnswerBytes) return std::nullopt;
+  return Refusal{Outcome::BAD_VALUE, "encodings: the answer would have " + std::to_string(bytes) +
+                                         " bytes, expected at most " +
+                                         std::to_string(kMaxAnswerBytes) + "; use fewer farms"};
+}
+
+aquafarm::BatchOutput Ranch::Prepare(std::uint8_t encodings, StepResult& result) const {
+  const aquafarm::Encoder& encoder = batch_->encoder();
+  const auto farms = static_cast<std::size_t>(batch_->farms());
+  const std::size_t entries = farms * slots_.size();
+  const auto wants = [encodings](std::uint8_t bit) { return (encodings & bit) != 0; };
+  result.farms = batch_->farms();
+  result.agents = agents_;
+  result.terminated.resize(farms);
+  result.truncated.resize(farms);
+  result.finished.clear();
+  aquafarm::BatchOutput output;
+  output.rewards = Sized(true, entries, result.rewards);
+  output.terms =
+      Sized(wants(StepResult::TERMS), entries * aquafarm::kRewardTermCount, result.terms);
+  output.outcomes = Sized(true, entries, result.outcomes);
+  output.legal = Sized(true, entries, result.legal);
+  output.in_play = Sized(true, entries, result.in_play);
+  output.reasons = Sized(true, farms, result.reasons);
+  output.started = Sized(true, farms, result.started);
+  output.hashes = Sized(wants(StepResult::HASHES), farms, result.hashes);
+  output.index = Sized(wants(StepResult::INDEX), entries, result.index);
+  output.features =
+      Sized(wants(StepResult::FEATURES),
+            entries * static_cast<std::size_t>(encoder.feature_count()), result.features);
+  output.planes = Sized(wants(StepResult::PLANES), entries * encoder.planes_size(), result.planes);
+  return output;
+}
+
+void Ranch::Describe(StepResult& result) const {
+  result.turn = turn_;
+  for (std::size_t i = 0; i < result.reasons.size(); ++i) {
+    const auto reason = static_cast<aquafarm::EndReason>(result.reasons[i]);
+    result.terminated[i] = aquafarm::IsTerminated(reason) ? 1 : 0;
+    result.truncated[i] = aquafarm::IsTruncated(reason) ? 1 : 0;
+  }
+}
+
+void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
+  constexpr bool kByJointStep = true;
+  for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
+    if (result.started[static_cast<std::size_t>(i)] != 0) {
+      recorder_->OnStart(batch_->farm(i), i, context_);
+    } else {
+      recorder_->OnStep(batch_->farm(i), i, actions + std::ptrdiff_t{i} * agents_);
+    }
+  }
+  if (result.started[0] != 0) {
+    EpisodeBegan(kByJointStep);
+  } else {
+    Advance();
+    Changed(kByJointStep);
+  }
+  Describe(result);
+  for (std::size_t i = 0; i < result.reasons.size(); ++i) {
+    counters_.farm_steps += result.started[i] == 0 ? 1 : 0;
+    if (result.reasons[i] == 0) continue;
+    const auto farm = static_cast<std::int32_t>(i);
+    result.finished.push_back(ToMsg(batch_->farm(farm).record(), farm, context_));
+    Tell([&](RanchListener& listener) { listener.OnEpisodeEnd(result.finished.back()); });
+  }
+}
+
+// --- episodes -----------------------------------------------------------------------------------
+
+std::uint64_t Ranch::NextEpisode() const {
+  std::uint64_t latest = 0;
+  for (std::int32_t i = 0; i < batch_->farms(); ++i) {
+    latest = std::max(latest, static_cast<const aquafarm::FarmBatch&>(*batch_).farm(i).episode());
+  }
+  return latest + 1;
+}
+
+void Ranch::Reset(const aquafarm_msgs::Reset::Request& request,
+                  aquafarm_msgs::Reset::Response& response, const std::string& caller) {
+  const Lock lock(mutex_);
+  if (last_reset_.IsRepeated(request.sequence, caller)) {
+    response = reset_answer_;
+    return;
+  }
+  Guarded(Outcome::BAD_VALUE, response, [&] {
+    const bool goes_on = request.only_if_over && !batch_->farm(0).over();
+    const std::int32_t farms = request.farms == 0 || goes_on ? batch_->farms() : request.farms;
+    if (farms < 1 || farms > kMaxFarms) {
+      return Answer(Outcome::BAD_VALUE, OutOfRange("farms", farms, 1, kMaxFarms), response);
+    }
+    if (const auto refusal = CheckAnswerSize(farms, request.encodings)) {
+      return Answer(refusal->code, refusal->message, response);
+    }
+    const aquafarm::Layout& layout = batch_->farm(0).layout();
+    const std::int64_t cells =
+        farms * static_cast<std::int64_t>(layout.cells.size() + layout.ways.size());
+    if (scenario_->layout == aquafarm::LayoutMode::kPerEpisode && cells > kMaxDrawnCells) {
+      return Answer(Outcome::BAD_VALUE,
+                    "farms: " + std::to_string(farms) + " layouts would have " +
+                        std::to_string(cells) + " cells and ways, expected at most " +
+                        std::to_string(kMaxDrawnCells),
+                    response);
+    }
+    const std::uint64_t seed = request.has_seed ? request.seed : batch_->farm(0).seed();
+    const std::uint64_t first = request.has_episode ? request.episode
+                                : request.has_seed  ? 0
+                                                    : NextEpisode();
+    if (!goes_on) StartEpisodes(farms, seed, first);
+    batch_->Write(Prepare(request.encodings, response.result));
+    Describe(response.result);
+    response.seed = batch_->farm(0).seed();
+    response.episode = batch_->farm(0).episode();
+    if (request.with_spec) FillSpec(0, response.spec);
+    Answer(Outcome::OK, "", response);
+  });
+  if (!response.ok) return;
+  last_reset_ = {request.sequence, caller};
+  if (request.sequence != 0) reset_answer_ = response;
+}
+
+// A layout that cannot be drawn must leave the present episodes as they are.
+void Ranch::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first) {
+  if (farms != batch_->farms() || scenario_->layout == aquafarm::LayoutMode::kPerEpisode) {
+    auto fresh = std::make_unique<aquafarm::FarmBatch>(scenario_, farms, options_.threads);
+    fresh->Reset(seed, first, {});
+    batch_ = std::move(fresh);
+  } else {
+    batch_->Reset(seed, first, {});
+  }
+  RecordStarts();
+  ForgetAnswers();
+  EpisodeBegan();
+}
+
+void Ranch::ForgetAnswers() {
+  last_step_.sequence = 0;
+  last_reset_.sequence = 0;
+  DropCommands();
+}
+
+void Ranch::FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const {
+  ToMsg(batch_->farm(farm), batch_->encoder(), batch_->farms(), yaml_, context_, spec);
+}
+
+void Ranch::GetState(const aquafarm_msgs::GetState::Request& request,
+                     aquafarm_msgs::GetState::Response& response) {
+  const Lock lock(mutex_);
+  Guarded(Outcome::BAD_VALUE, response, [&] {
+    if (request.farm < 0 || request.farm >= batch_->farms()) {
+      return Answer(Outcome::UNKNOWN_FARM, OutOfRange("farm", request.farm, 0, batch_->farms() - 1),
+                    response);
+    }
+    const aquafarm::Farm& farm = batch_->farm(request.farm);
+    if (request.observation) {
+      if (request.ship < 0 || request.ship >= agents_) {
+        return Answer(Outcome::UNKNOWN_SHIP, OutOfRange("ship", request.ship, 0, agents_ - 1),
+                      response);
+      }
+      aquafarm::Observe(farm, request.ship, view_);
+      ToMsg(farm, view_, context_, response.state);
+    } else {
+      ToMsg(farm, context_, response.state);
+    }
+    response.barrier_timeout_s = options_.barrier_timeout_s;
+    if (request.with_spec) FillSpec(request.farm, response.spec);
+    Answer(Outcome::OK, "", response);
+  });
+}
+
+void Ranch::SaveState(aquafarm_msgs::SaveState::Response& response) {
+  const Lock lock(mutex_);
+  Guarded(Outcome::BAD_VALUE, response, [&] {
+    const std::string bytes = batch_->Save();
+    response.data.assign(bytes.begin(), bytes.end());
+    ++counters_.saves;
+    response.hash = batch_->farm(0).Hash();
+    Answer(Outcome::OK, "", response);
+  });
+}
+
+void Ranch::LoadState(const aquafarm_msgs::LoadState::Request& request,
+                      aquafarm_msgs::LoadState::Response& response) {
+  const Lock lock(mutex_);
+  Guarded(Outcome::BAD_DATA, response, [&] {
+    if (const auto refusal = CheckAnswerSize(batch_->farms(), request.encodings)) {
+      return Answer(refusal->code, refusal->message, response);
+    }
+    batch_->Load(std::string(request.data.begin(), request.data.end()));
+    RecordStarts();
+    for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
+      recorder_->OnIntervention(batch_->farm(i), i);  // also at step 0 it may be changed
+    }
+    ForgetAnswers();
+    EpisodeBegan();
+    batch_->Write(Prepare(request.encodings, response.result));
+    Describe(response.result);
+    response.hash = batch_->farm(0).Hash();
+    if (request.with_spec) FillSpec(0, response.spec);
+    Answer(Outcome::OK, "", response);
+  });
+}
+
+// --- operating ----------------------------------------------------------------------------------
+
+void Ranch::Pause(const aquafarm_msgs::Pause::Request& request,
+                  aquafarm_msgs::Pause::Response& response) {
+  const Lock lock(mutex_);
+  steps_to_pause_ = request.paused != 0 ? request.steps : 0;
+  context_.paused = request.paused != 0 && request.steps == 0;
+  response.paused = context_.paused;
+  pace_changed_.notify_all();
+  Changed();
+  Answer(Outcome::OK, "", response);
+}
+
+void Ranch::SetPace(const aquafarm_msgs::SetPace::Request& request,
+                    aquafarm_msgs::SetPace::Response& response) {
+  const Lock lock(mutex_);
+  const bool known = request.pace.empty() || request.pace == "lockstep" || request.pace == "paced";
+  const bool rate_fits = std::isfinite(request.rate_hz) && request.rate_hz >= 0.0 &&
+                         request.rate_hz <= kMaxRate_hz &&
+                         (request.rate_hz == 0.0 || request.rate_hz >= kMinRate_hz);
+  if (!known) {
+    Answer(Outcome::BAD_VALUE,
+           "pace: got '" + request.pace.substr(0, 40) + "', expected lockstep or paced", response);
+  } else if (!rate_fits) {
+    Answer(Outcome::BAD_VALUE,
+           "rate_hz: got " + std::to_string(request.rate_hz) + ", expected 0 or [" +
+               std::to_string(kMinRate_hz) + ", " + std::to_string(kMaxRate_hz) + "]",
+           response);
+  } else {
+    if (!request.pace.empty()) context_.paced = request.pace == "paced";
+    if (request.rate_hz > 0.0) context_.rate_hz = request.rate_hz;
+    pace_changed_.notify_all();
+    Changed();
+    Answer(Outcome::OK, "", response);
+  }
+  response.pace = context_.paced ? "paced" : "lockstep";
+  response.rate_hz = context_.rate_hz;
+}
+
+void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
+                        aquafarm_msgs::SetDisaster::Response& response) {
+  const Lock lock(mutex_);
+  Guarded(Outcome::BAD_VALUE, response, [&] {
+    if (request.farm < -1 || request.farm >= batch_->farms()) {
+      return Answer(Outcome::UNKNOWN_FARM,
+                    OutOfRange("farm", request.farm, -1, batch_->farms() - 1), response);
+    }
+    const std::int32_t first = std::max(request.farm, 0);
+    const std::int32_t end = request.farm < 0 ? batch_->farms() : first + 1;
+    for (std::int32_t i = first; i < end; ++i) {
+      const auto count = static_cast<std::int32_t>(batch_->farm(i).disasters().size());
+      const std::int32_t most = std::min(count, aquafarm::Farm::kMaxDisasters - 1);
+      if (request.id < 0 || request.id > most) {
+        return Answer(Outcome::BAD_VALUE, OutOfRange("id", request.id, 0, most), response);
+      }
+    }
+    const bool on_globe = IsSaid(request.storm);
+    const auto step_of = [&](std::int32_t i) { return batch_->farm(i).step(); };
+    std::int32_t earliest = step_of(first);
+    for (std::int32_t i = first; i < end; ++i) earliest = std::min(earliest, step_of(i));
+    // Refused when it is over at the earliest step, so for all.
+    aquafarm::DisasterSpec spec =
+        on_globe ? aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id, earliest)
+                 : FromMsg(request.info);
+    aquafarm::ValidateDisaster(spec);
+    const std::int32_t longest = spec.duration;
+    const auto left = [&](std::int32_t i) {
+      return on_globe ? longest - (step_of(i) - earliest) : longest;
+    };
+    for (std::int32_t i = first; i < end; ++i) {
+      const auto count = static_cast<std::int32_t>(batch_->farm(i).disasters().size());
+      if (request.id == count && !spec.start && spec.track.empty()) {
+        return Answer(Outcome::BAD_VALUE,
+                      "info: disaster " + std::to_string(request.id) + " is new to farm " +
+                          std::to_string(i) + ", expected a start or a track",
+                      response);
+      }
+    }
+    // All that could differ between farms is checked, so what the first accepts, all accept.
+    for (std::int32_t i = first; i < end; ++i) {
+      if (left(i) <= 0) continue;  // a storm that is over there
+      spec.duration = left(i);
+      batch_->farm(i).SetDisaster(request.id, spec);
+      if (recorder_ != nullptr) recorder_->OnIntervention(batch_->farm(i), i);
+    }
+    if (first == 0) Changed();
+    Answer(Outcome::OK, "", response);
+  });
+  response.hash =
+      batch_->farm(request.farm > 0 && request.farm < batch_->farms() ? request.farm : 0).Hash();
+}
+
+}  // namespace aquafarm_sim

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/node/replay_node.h"
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "aquafarm/base/version.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "replay");
+  try {
+    const auto params = aquafarm_viz::ReadReplayParams(ros::NodeHandle("~"));
+    const aquafarm_viz::ReplayNode node(ros::NodeHandle(), params);
+    for (const std::string& note : node.tape().Notes(aquafarm::kVersion)) {
+      std::fprintf(stderr, "replay: %s: %s\n", params.bag.c_str(), note.c_str());
+    }
+    ros::spin();
+  } catch (const std::exception& fault) {
+    std::fprintf(stderr, "replay: %s\n", fault.what());
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Anti-aliased shapes at fractions of a pixel, on 8-bit BGR images.
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "aquafarm_viz/base/palette.h"
+
+namespace aquafarm_viz {
+
+/// How an outline (unit size, y up, bow at north) is placed on an image.
+struct Placing {
+  cv::Point2d at;        ///< pixel of its origin
+  double size_px{1.0};   ///< pixels of a unit
+  double bearing_deg{};  ///< turned clockwise from north
+};
+
+/// The pixel of a point of a placed outline.
+cv::Point2d Place(cv::Point2d point, const Placing& placing);
+
+/// Fills an outline; the outline need not be convex.
+void FillShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Placing& placing,
+               const cv::Scalar& color);
+
+/// Draws the edge of an outline, `thickness` pixels wide.
+void StrokeShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Placing& placing,
+                 const cv::Scalar& color, int thickness);
+
+/// Fills a circle.
+void FillCircle(cv::Mat& image, cv::Point2d centre, double radius_px, const cv::Scalar& color);
+
+/// Draws a circle's edge, `thickness` pixels wide.
+void StrokeCircle(cv::Mat& image, cv::Point2d centre, double radius_px, const cv::Scalar& color,
+                  int thickness);
+
+/// Draws a straight line.
+void DrawLine(cv::Mat& image, cv::Point2d from, cv::Point2d to, const cv::Scalar& color,
+              int thickness);
+
+/// Lays a colour over a part of the image, share 1 hides what was there.
+void Tint(cv::Mat& image, cv::Rect part, const cv::Scalar& color, double share);
+
+}  // namespace aquafarm_viz

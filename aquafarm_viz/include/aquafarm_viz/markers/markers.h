@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The farm as rviz markers in frame `map`, in metres: the centre of cell (x, y) is at
+/// (x, y) * cell_size_m. Markers are flat and low, since rviz's view from above cuts off at 500 m.
+///
+/// Namespaces and ids are stable: a thing keeps its marker for the whole episode, and what is no
+/// longer there is deleted by its own id. Lifetimes are 0.
+///
+///     | namespace                       | id                         |
+///     | sea, island, rocks              | 0                          |
+///     | port, port_letter               | port                       |
+///     | device, health, health_frame    | device                     |
+///     | ship, ship_deck, ship_name      | ship                       |
+///     | ring, ring_edge                 | disaster * kMaxRings + ring |
+///     | heading, disaster, disaster_name | disaster                  |
+///     | status                          | 0                          |
+
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include "aquafarm_viz/scene/trail.h"
+
+namespace aquafarm_viz {
+
+/// The markers of what stands still during an episode. The first one deletes all markers when
+/// `clear`, as at the start of an episode.
+visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec, bool clear);
+
+/// The markers of ships, devices and disasters, and of the line with episode, step and return.
+/// The spec must pass CheckSpec and the state CheckState.
+visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec,
+                                             const aquafarm_msgs::FarmState& state,
+                                             const Wake* wake = nullptr);
+
+}  // namespace aquafarm_viz

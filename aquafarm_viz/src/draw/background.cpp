@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "aquafarm_viz/base/checks.h"
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::FarmSpec;
+
+// Coverage of the islands at the map's pixels, coasts rounded off within their cells.
+cv::Mat1b IslandCoverage(const FarmSpec& spec, const Layout& layout) {
+  cv::Mat1b land(layout.map.size(), std::uint8_t{0});
+  const double cell_px = layout.view.cell_px();
+  for (const auto& cell : spec.islands) {
+    if (!InGrid(spec, cell.x, cell.y)) continue;
+    const cv::Point2d middle = layout.view.ToPixel(cell.x, cell.y) + cv::Point2d(0.5, 0.5);
+    const cv::Point low(cvRound(middle.x - cell_px / 2), cvRound(middle.y - cell_px / 2));
+    const cv::Point high(cvRound(middle.x + cell_px / 2), cvRound(middle.y + cell_px / 2));
+    land(cv::Rect(low, cv::Point(std::max(high.x, low.x + 1), std::max(high.y, low.y + 1))) &
+         cv::Rect({0, 0}, land.size())) = 255;
+  }
+  if (cell_px < 3.0 || spec.islands.empty()) return land;
+  const double sigma = 0.27 * cell_px;
+  // The border is repeated outwards, so that an island at the edge of the farm goes on beyond it.
+  cv::GaussianBlur(land, land, {}, sigma, sigma, cv::BORDER_REPLICATE);
+  const double steepness = std::max(1.0, 1.7 * sigma);
+  land.convertTo(land, -1, steepness, 127.5 * (1.0 - steepness));
+  return land;
+}
+
+// Distance to the nearest pixel that is zero in `away_from`, in cells; far where there is none.
+cv::Mat1f DistanceCells(const cv::Mat1b& away_from, double cell_px) {
+  if (cv::countNonZero(away_from) == away_from.size().area()) {
+    return cv::Mat1f(away_from.size(), 1e6F);
+  }
+  cv::Mat1f distance;
+  cv::distanceTransform(away_from, distance, cv::DIST_L2, cv::DIST_MASK_5);
+  distance *= 1.0 / cell_px;
+  return distance;
+}
+
+cv::Vec3b Pixel(Rgb color) { return {color.b, color.g, color.r}; }
+
+void PaintSeaAndLand(cv::Mat& map, const FarmSpec& spec, const Layout& layout) {
+  const cv::Mat1b land = IslandCoverage(spec, layout);
+  cv::Mat1b reefs(map.size(), std::uint8_t{255});
+  for (const auto& rock : spec.rocks) {
+    if (!InGrid(spec, rock.cell.x, rock.cell.y)) continue;
+    const cv::Point2d middle = layout.view.ToPixel(rock.cell.x, rock.cell.y);
+    reefs(cv::Rect(cvRound(middle.x), cvRound(middle.y), 1, 1) & cv::Rect({0, 0}, reefs.size())) =
+        0;
+  }
+  const double cell_px = layout.view.cell_px();
+  const cv::Mat1f offshore = DistanceCells(255 - land, cell_px);
+  const cv::Mat1f off_reef = DistanceCells(reefs, cell_px);
+  const cv::Mat1f inland = DistanceCells(land, cell_px);
+  for (int row = 0; row < map.rows; ++row) {
+    const Rgb deep = Mix(Rgb{0x24, 0x60, 0x8c}, kSeaDeep, double(row) / std::max(1, map.rows - 1));
+    for (int column = 0; column < map.cols; ++column) {
+      const double shore = std::max(0.75 * std::exp(-0.9 * offshore(row, column)),
+                                    0.40 * std::exp(-1.8 * off_reef(row, column)));
+      Rgb color = Mix(deep, kSeaShallow, shore);
+      if (const double cover = land(row, column) / 255.0; cover > 0.0) {
+        const double depth = inland(row, column);
+        const Rgb ground = depth < 0.45 ? Mix(kSand, kLand, (depth - 0.12) / 0.33)
+                                        : Mix(kLand, kLandHigh, (depth - 0.45) / 2.0);
+        color = Mix(color, ground, cover);
+      }
+      map.at<cv::Vec3b>(row, column) = Pixel(color);
+    }
+  }
+}
+
+void DrawGrid(cv::Mat& map, const Layout& layout) {
+  const MapView& view = layout.view;
+  const int step = view.cell_px() >= 8.0 ? 1 : TickStep(view.cell_px(), 24.0);
+  for (int x = step; x < view.width(); x += step) {
+    const int column = cvRound(view.ToPixel(x - 0.5, 0).x);
+    Tint(map, {column, 0, 1, map.rows}, Bgr(kPaper), 0.08);
+  }
+  for (int y = step; y < view.height(); y += step) {
+    const int row = cvRound(view.ToPixel(0, y - 0.5).y);
+    Tint(map, {0, row, map.cols, 1}, Bgr(kPaper), 0.08);
+  }
+}
+
+void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px) {
+  static const std::vector<cv::Point2f> kBody{{-0.95F, -0.55F}, {-0.6F, 0.25F}, {-0.1F, 0.8F},
+                                              {0.4F, 0.55F},    {0.9F, -0.1F},  {0.8F, -0.6F}};
+  static const std::vector<cv::Point2f> kShade{{-0.1F, 0.8F}, {0.4F, 0.55F},  {0.9F, -0.1F},
+                                               {0.8F, -0.6F}, {0.1F, -0.55F}, {0.15F, 0.1F}};
+  const Placing placing{at, radius_px, 0.0};
+  FillShape(image, kBody, placing, Bgr(kRock));
+  FillShape(image, kShade, placing, Bgr(Mix(kRock, kRockDark, 0.55)));
+  if (radius_px >= 4.0) StrokeShape(image, kBody, placing, Bgr(kRockDark), 1);
+}
+
+void DrawAxes(cv::Mat& image, const Layout& layout, const Fonts& fonts) {
+  const MapView& view = layout.view;
+  const int step = TickStep(view.cell_px(), 34.0 * layout.unit);
+  for (int x = 0; x < view.width(); x += step) {
+    const std::string text = std::to_string(x);
+    const int middle = layout.map.x + cvRound(view.ToPixel(x, 0).x);
+    fonts.small.Draw(image, text,
+                     {middle - fonts.small.Width(text) / 2,
+                      layout.map.y + layout.map.height + layout.Px(4) + fonts.small.cap_height()},
+                     Bgr(kFaint));
+  }
+  for (int y = 0; y < view.height(); y += step) {
+    const std::string text = std::to_string(y);
+    const int middle = layout.map.y + cvRound(view.ToPixel(0, y).y);
+    fonts.small.Draw(image, text,
+                     {layout.map.x - layout.Px(5) - fonts.small.Width(text),
+                      middle + fonts.small.cap_height() / 2},
+                     Bgr(kFaint));
+  }
+}
+
+// A scale bar of a round length that fits into `room_px`.
+void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_m,
+                  const Layout& layout, const Fonts& fonts) {
+  const double px_per_m = layout.view.cell_px() / cell_size_m;
+  double length_m = std::pow(10.0, std::floor(std::log10(room_px / px_per_m)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * length_m * px_per_m <= room_px) {
+      length_m *= factor;
+      break;
+    }
+  }
+  const int length = std::max(2, cvRound(length_m * px_per_m));
+  const int half = length / 2;
+  const int tall = layout.Px(4);
+  const cv::Rect bar(left.x, left.y, length, tall);
+  cv::rectangle(image, bar, Bgr(kWords), cv::FILLED);
+  cv::rectangle(
+      image,
+      cv::Rect(left.x + half, left.y + 1, std::max(1, length - half - 1), std::max(1, tall - 2)),
+      Bgr(kPanel), cv::FILLED);
+  const std::string text = length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
+                                              : Number(length_m, length_m < 1.0 ? 3 : 0) + " m";
+  fonts.small.Draw(image, text, {left.x, left.y - layout.Px(4)}, Bgr(kWords));
+}
+
+void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fonts& fonts) {
+  static const std::vector<cv::Point2f> kWest{{0.0F, 1.0F}, {0.0F, -0.45F}, {-0.55F, -0.85F}};
+  static const std::vector<cv::Point2f> kEast{{0.0F, 1.0F}, {0.55F, -0.85F}, {0.0F, -0.45F}};
+  const Placing placing{at, 11.0 * layout.unit, 0.0};
+  FillShape(image, kWest, placing, Bgr(kWords));
+  FillShape(image, kEast, placing, Bgr(kFaint));
+  fonts.bold.Draw(image, "N", {at.x - fonts.bold.Width("N") / 2, at.y - layout.Px(14)},
+                  Bgr(kWords));
+}
+
+}  // namespace
+
+void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
+  if (layout.panel.empty()) return;
+  const int left = layout.panel.x + layout.Px(10);
+  const int row_px = layout.Px(17);
+  const int bottom = layout.panel.y + layout.panel.height;
+  const int middle = left + layout.Px(7);
+  const int words = left + layout.Px(22);
+  int y = bottom - layout.Px(42) - 5 * row_px;
+
+  DrawRock(image, cv::Point2d(middle, y), 5.5 * layout.unit);
+  fonts.small.Draw(image, "rock", {words, y + fonts.small.cap_height() / 2}, Bgr(kWords));
+  const int second = left + layout.panel.width / 2 - layout.Px(8);
+  FillCircle(image, cv::Point2d(second, y), 5.5 * layout.unit, Bgr(kPort));
+  fonts.small.Draw(image, "port", {second + layout.Px(11), y + fonts.small.cap_height() / 2},
+                   Bgr(kWords));
+  y += row_px;
+
+  const int bar_left = left + layout.panel.width / 2 - layout.Px(15);
+  const cv::Rect health(bar_left, y - layout.Px(2),
+                        layout.panel.x + layout.panel.width - layout.Px(10) - bar_left,
+                        layout.Px(5));
+  for (int i = 0; i < health.width; ++i) {
+    cv::rectangle(image, cv::Rect(health.x + i, health.y, 1, health.height),
+                  Bgr(HealthColor(double(i) / health.width)), cv::FILLED);
+  }
+  fonts.small.Draw(image, "health", {left, y + fonts.small.cap_height() / 2}, Bgr(kWords));
+  y += row_px;
+
+  const cv::Rect scale(left, y - layout.Px(1), layout.panel.width - layout.Px(20), layout.Px(7));
+  for (int i = 0; i < scale.width; ++i) {
+    cv::rectangle(image, cv::Rect(scale.x + i, scale.y, 1, scale.height),
+                  Bgr(SeverityColor(double(i) / scale.width)), cv::FILLED);
+  }
+  y += layout.Px(9) + fonts.small.cap_height();
+  fonts.small.Draw(image, "risk -5", {left, y}, Bgr(kFaint));
+  fonts.small.Draw(image, "-20", {scale.x + scale.width - fonts.small.Width("-20"), y},
+                   Bgr(kFaint));
+
+  const int foot = bottom - layout.Px(18);
+  DrawNorthArrow(image, {left + layout.Px(8), foot - layout.Px(6)}, layout, fonts);
+  DrawScaleBar(image, {left + layout.Px(30), foot}, layout.panel.width - layout.Px(46),
+               spec.cell_size_m, layout, fonts);
+}
+
+cv::Mat DrawBackground(const FarmSpec& spec, const Layout& layout, const Fonts& fonts,
+                       ImageSize size) {
+  cv::Mat image(size.height, size.width, CV_8UC3, Bgr(kPanel));
+  cv::Mat map = image(layout.map);
+  PaintSeaAndLand(map, spec, layout);
+  DrawGrid(map, layout);
+  const double rock_px = std::max(0.42 * layout.view.cell_px(), 1.5);
+  for (const auto& rock : spec.rocks) {
+    if (!InGrid(spec, rock.cell.x, rock.cell.y)) continue;
+    DrawRock(map, layout.view.ToPixel(rock.cell.x, rock.cell.y), rock_px);
+  }
+  if (layout.panel.empty()) return image;
+  cv::rectangle(
+      image,
+      cv::Rect(layout.map.x - 1, layout.map.y - 1, layout.map.width + 2, layout.map.height + 2),
+      Bgr(kRule), 1);
+  DrawAxes(image, layout, fonts);
+  for (const int y : {layout.top.height - 1, layout.bottom.y}) {
+    cv::rectangle(image, cv::Rect(0, y, size.width, 1), Bgr(kRule), cv::FILLED);
+  }
+  cv::rectangle(image, cv::Rect(layout.panel.x, layout.panel.y, 1, layout.panel.height), Bgr(kRule),
+                cv::FILLED);
+  DrawLegend(image, spec, layout, fonts);
+  return image;
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "aquafarm_viz/base/checks.h"
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::DeviceState;
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+using aquafarm_msgs::ShipState;
+
+// `at` is the middle of the bar.
+void DrawHealthBar(cv::Mat& map, cv::Point2d at, double width_px, double health,
+                   const Layout& layout) {
+  const int width = std::max(6, cvRound(width_px));
+  const int height = std::max(3, layout.Px(5));
+  const cv::Rect frame(cvRound(at.x - width / 2.0), cvRound(at.y - height / 2.0), width, height);
+  cv::rectangle(map, frame, Bgr(kInk), cv::FILLED);
+  const double share = std::clamp(health, 0.0, 1.0);
+  const int filled = cvRound((width - 2) * share);
+  if (filled < 1) return;
+  cv::rectangle(map, cv::Rect(frame.x + 1, frame.y + 1, filled, std::max(1, height - 2)),
+                Bgr(HealthColor(share)), cv::FILLED);
+}
+
+const DeviceState* FindDevice(const FarmState& state, std::int32_t id) {
+  if (id < 0) return nullptr;
+  const auto index = static_cast<std::size_t>(id);
+  if (index < state.devices.size() && state.devices[index].id == id) return &state.devices[index];
+  const auto found = std::find_if(state.devices.begin(), state.devices.end(),
+                                  [id](const DeviceState& device) { return device.id == id; });
+  return found == state.devices.end() ? nullptr : &*found;
+}
+
+void DrawPort(cv::Mat& image, cv::Point2d at, std::int32_t id, const Layout& layout,
+              const Fonts& fonts) {
+  const double radius =
+      std::clamp(0.46 * layout.view.cell_px(), 7.5 * layout.unit, 14.0 * layout.unit);
+  FillCircle(image, at, radius, Bgr(kPort));
+  StrokeCircle(image, at, radius, Bgr(kInk), layout.Px(1.5));
+  const std::string letter = PortLetter(id);
+  fonts.bold.Draw(image, letter,
+                  {cvRound(at.x + 0.5 - fonts.bold.Width(letter) / 2.0),
+                   cvRound(at.y + 0.5 + fonts.bold.cap_height() / 2.0)},
+                  Bgr(kInk));
+}
+
+// Things in one cell are set side by side.
+class Crowd {
+ public:
+  cv::Point2d Offset(int x, int y, int of, double radius_px) {
+    const int index = seen_[{x, y}]++;
+    if (of <= 1) return {0.0, 0.0};
+    const double angle = CV_PI * (0.75 + 2.0 * index / of);
+    return {radius_px * std::cos(angle), radius_px * std::sin(angle)};
+  }
+
+ private:
+  std::map<std::pair<int, int>, int> seen_;
+};
+
+std::map<std::pair<int, int>, int> ShipsPerCell(const FarmState& state) {
+  std::map<std::pair<int, int>, int> count;
+  for (const auto& ship : state.ships) {
+    if (ship.visible && ship.active) ++count[{ship.x, ship.y}];
+  }
+  return count;
+}
+
+void DrawRescueShip(cv::Mat& map, const FarmState& state, const ShipState& ship,
+                    const Placing& placing, const Layout& layout, const Fonts& fonts) {
+  static const std::vector<cv::Point2f> kDeck{{-0.22F, 0.42F}, {-0.26F, -0.1F}, {-0.22F, -0.68F},
+                                              {0.22F, -0.68F}, {0.26F, -0.1F},  {0.22F, 0.42F}};
+  StrokeShape(map, HullOutline(), placing, Bgr(kInk), layout.Px(2.4));
+  FillShape(map, HullOutline(), placing, Bgr(kPaper));
+  FillShape(map, kDeck, placing, Bgr(ShipColor(ship.id)));
+  double above = placing.size_px + layout.Px(4);
+  for (std::size_t i = 0; i < ship.aboard.size() && i < 3; ++i) {
+    const DeviceState* cargo = FindDevice(state, ship.aboard[i]);
+    if (cargo == nullptr) continue;
+    const cv::Point2d at = Place({0.0, -0.1 - 0.28 * double(i)}, placing);
+    DrawDeviceSymbol(map, cargo->kind, {at, 0.40 * placing.size_px, 0.0}, 0.0);
+    if (cargo->health_known) {
+      DrawHealthBar(map, placing.at - cv::Point2d(0.0, above), 1.5 * placing.size_px, cargo->health,
+                    layout);
+    }
+    above += layout.Px(5);
+  }
+  if (state.ships.size() < 2) return;
+  const std::string text = std::to_string(ship.id);
+  const cv::Point at(cvRound(placing.at.x + 0.55 * placing.size_px),
+                     cvRound(placing.at.y + placing.size_px));
+  fonts.bold.Draw(map, text, at + cv::Point(1, 1), Bgr(kInk));
+  fonts.bold.Draw(map, text, at, Bgr(kPaper));
+}
+
+void DrawSelfPropelled(cv::Mat& map, const FarmState& state, const ShipState& ship,
+                       const Placing& placing, const Layout& layout) {
+  static const std::vector<cv::Point2f> kBow{{0.0F, 1.25F}, {0.45F, 0.7F}, {-0.45F, 0.7F}};
+  const double radius = layout.device_radius_px();
+  const DeviceState* device = FindDevice(state, ship.own_device);
+  const Placing own{placing.at, radius, placing.bearing_deg};
+  StrokeShape(map, kBow, own, Bgr(kInk), 2);
+  FillShape(map, kBow, own, Bgr(kPaper));
+  DrawDeviceSymbol(map, device == nullptr ? 255 : device->kind, {placing.at, radius, 0.0}, 0.0);
+  if (device == nullptr || !device->health_known) return;
+  DrawHealthBar(map, placing.at - cv::Point2d(0.0, 1.25 * radius + layout.Px(4)), 2.0 * radius,
+                device->health, layout);
+}
+
+}  // namespace
+
+void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Placing& placing, double faded) {
+  const Rgb color = Mix(DeviceColor(kind), kUnknown, faded);
+  const auto& outline = DeviceOutline(kind);
+  const int rim = placing.size_px >= 14.0 ? 2 : 1;
+  StrokeShape(image, outline, placing, Bgr(kInk), rim + 1);
+  FillShape(image, outline, placing, Bgr(color));
+  if (placing.size_px < 7.0) return;
+  // The net pen inside the frame.
+  StrokeShape(image, outline, {placing.at, 0.55 * placing.size_px, placing.bearing_deg},
+              Bgr(Mix(color, kInk, 0.55)), rim);
+}
+
+void DrawWakes(cv::Mat& map, const FarmState& state, const Wake& wake, const Layout& layout) {
+  for (const auto& ship : state.ships) {
+    const ShipWake* way = ship.visible ? wake.Find(ship.id) : nullptr;
+    if (way == nullptr) continue;
+    for (std::size_t i = 1; i < way->places.size(); ++i) {
+      const double age = double(way->places.size() - 1 - i) / Wake::kLength;
+      const Rgb color = Mix(Rgb{0xd8, 0xf1, 0xff}, kSeaDeep, 0.15 + 0.75 * age);
+      DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
+               layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color),
+               layout.Px(age < 0.35 ? 2.0 : 1.0));
+    }
+  }
+}
+
+void DrawRoutes(cv::Mat& map, const FarmState& state, const Wake& route, const Layout& layout) {
+  constexpr Rgb kFirst{0x5c, 0x2d, 0x91};
+  constexpr Rgb kMiddle{0xe6, 0x4a, 0x6b};
+  constexpr Rgb kLast{0xff, 0xe0, 0x66};
+  for (const auto& ship : state.ships) {
+    const ShipWake* way = ship.visible ? route.Find(ship.id) : nullptr;
+    if (way == nullptr) continue;
+    for (std::size_t i = 1; i < way->places.size(); ++i) {
+      if (Wake::IsGap(way->places[i - 1], way->places[i])) continue;
+      const double share = double(i) / double(way->places.size());
+      const Rgb color =
+          share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share) : Mix(kMiddle, kLast, 2.0 * share - 1.0);
+      DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
+               layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color), layout.Px(2.5));
+    }
+  }
+}
+
+void DrawSight(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
+  if (spec.view_mode != FarmSpec::PARTIAL) return;
+  const double radius_px = double(spec.sensor_radius) * layout.view.cell_px();
+  if (!(radius_px > 0.0 && radius_px < map.rows + map.cols)) return;  // NaN, or beyond the map
+  for (const auto& ship : state.ships) {
+    if (!ship.visible || !ship.active || !InGrid(spec, ship.x, ship.y)) continue;
+    StrokeCircle(map, layout.view.ToPixel(ship.x, ship.y), radius_px, Bgr(kPaper), layout.Px(1.5));
+  }
+}
+
+void DrawPorts(cv::Mat& map, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
+  for (const auto& port : spec.ports) {
+    if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
+    DrawPort(map, layout.view.ToPixel(port.cell.x, port.cell.y), port.id, layout, fonts);
+  }
+}
+
+void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
+  const double radius = layout.device_radius_px();
+  std::map<std::pair<int, int>, int> delivered;
+  for (const auto& device : state.devices) {
+    if (!InGrid(spec, device.x, device.y)) continue;
+    cv::Point2d at = layout.view.ToPixel(device.x, device.y);
+    if (device.status == DeviceState::DELIVERED) {
+      // Lined up on the quay beside the port.
+      const int index = delivered[{device.x, device.y}]++;
+      const double step = 9.0 * layout.unit;
+      const double inwards = at.y > map.rows / 2.0 ? -1.0 : 1.0;
+      at += cv::Point2d(step * (index % 4 - 1.0), inwards * step * (1.9 + index / 4));
+      DrawDeviceSymbol(map, device.kind, {at, 4.5 * layout.unit, 0.0}, 0.35);
+    } else if (device.status == DeviceState::DEPLOYED && !device.self_propelled) {
+      DrawDeviceSymbol(map, device.kind, {at, radius, 0.0}, device.health_known ? 0.0 : 0.6);
+      if (!device.health_known) continue;
+      DrawHealthBar(map, at - cv::Point2d(0.0, radius + layout.Px(3)), 2.0 * radius, device.health,
+                    layout);
+    }
+  }
+}
+
+void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Wake* wake,
+               const Layout& layout, const Fonts& fonts) {
+  const auto per_cell = ShipsPerCell(state);
+  Crowd crowd;
+  // From the last to the first, so that the lower ids, which have right of way, lie on top.
+  for (auto ship = state.ships.rbegin(); ship != state.ships.rend(); ++ship) {
+    if (!ship->visible || !ship->active || !InGrid(spec, ship->x, ship->y)) continue;
+    const double radius = layout.ship_radius_px();
+    const cv::Point2d at =
+        layout.view.ToPixel(ship->x, ship->y) +
+        crowd.Offset(ship->x, ship->y, per_cell.at({ship->x, ship->y}), 0.75 * radius);
+    const Placing placing{at, radius, double(ShipBearingDeg(*ship, wake))};
+    if (ship->own_device >= 0) {
+      DrawSelfPropelled(map, state, *ship, placing, layout);
+    } else {
+      DrawRescueShip(map, state, *ship, placing, layout, fonts);
+    }
+  }
+}
+
+}  // namespace aquafarm_viz

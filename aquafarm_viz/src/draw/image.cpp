@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/draw/image.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+
+#include "aquafarm_viz/base/checks.h"
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+
+// Whether two episodes have the same background.
+bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
+  const auto same_cell = [](const auto& c, const auto& d) { return c.x == d.x && c.y == d.y; };
+  return a.width == b.width && a.height == b.height && a.cell_size_m == b.cell_size_m &&
+         std::equal(a.islands.begin(), a.islands.end(), b.islands.begin(), b.islands.end(),
+                    same_cell) &&
+         std::equal(a.rocks.begin(), a.rocks.end(), b.rocks.begin(), b.rocks.end(),
+                    [&](const auto& c, const auto& d) { return same_cell(c.cell, d.cell); }) &&
+         std::equal(a.ports.begin(), a.ports.end(), b.ports.begin(), b.ports.end(),
+                    [&](const auto& c, const auto& d) {
+                      return c.id == d.id && same_cell(c.cell, d.cell);
+                    });
+}
+
+// Whether two maps look the same; bytes are compared, for none is NaN.
+bool SameMap(const Values& a, const Values& b) {
+  return a.width == b.width && a.height == b.height && a.lowest == b.lowest &&
+         a.highest == b.highest && a.actions == b.actions &&
+         std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)) == 0;
+}
+
+}  // namespace
+
+struct FarmPainter::Parts {
+  explicit Parts(ImageSize wanted)
+      : size{std::clamp(wanted.width, kMinImageSide, kMaxImageSide),
+             std::clamp(wanted.height, kMinImageSide, kMaxImageSide)},
+        fonts(MakeLayout(1, 1, size).unit) {}
+
+  ImageSize size;
+  Fonts fonts;
+  Layout layout;
+  FarmSpec drawn;   // what the background shows
+  std::string sea;  // which layer of the sea with it
+  cv::Mat background;
+  std::optional<MoveSigns> moves;  // of the layout; none: not wanted yet
+  Values values;                   // what the next is of
+  cv::Mat valued;                  // the map of the background with V_π; empty: not drawn yet
+  cv::Mat image;
+
+  /// Forgets what is of other values, or of another background.
+  void Follow(const Values* now, bool is_new_background) {
+    const bool is_new = now != nullptr && !SameMap(*now, values);
+    if (is_new) values = *now;
+    if (is_new || is_new_background) valued.release();
+  }
+};
+
+FarmPainter::FarmPainter(ImageSize size) : parts_(std::make_unique<Parts>(size)) {}
+FarmPainter::~FarmPainter() = default;
+FarmPainter::FarmPainter(FarmPainter&&) noexcept = default;
+FarmPainter& FarmPainter::operator=(FarmPainter&&) noexcept = default;
+
+const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
+                                 const Extras& extras) {
+  Parts& p = *parts_;
+  const std::string& sea = extras.layers.sea;
+  const bool same_sea =
+      sea == p.sea && (sea.empty() || spec.scenario_yaml == p.drawn.scenario_yaml);
+  const bool is_new = p.background.empty() || !SameBackground(spec, p.drawn) || !same_sea;
+  if (is_new) {
+    p.background.release();  // until all of it is drawn: a sea may be refused
+    p.layout = MakeLayout(spec.width, spec.height, p.size);
+    p.moves.reset();
+    cv::Mat background = DrawBackground(spec, p.layout, p.fonts, p.size);
+    cv::Mat below = background(p.layout.map);
+    if (!sea.empty()) DrawSea(below, spec, sea, p.layout, p.fonts);
+    p.background = background;
+    p.drawn = spec;
+    p.sea = sea;
+  }
+  p.background.copyTo(p.image);
+  cv::Mat map = p.image(p.layout.map);
+  const Layers& layers = extras.layers;
+  const Values* values = extras.values;
+  if (values != nullptr && (values->width != spec.width || values->height != spec.height)) {
+    values = nullptr;
+  }
+  p.Follow(values, is_new);
+  if (layers.values && values != nullptr) {
+    if (p.valued.empty()) {
+      DrawValues(map, *values);
+      p.valued = map.clone();
+    } else {
+      p.valued.copyTo(map);
+    }
+  }
+  if (layers.wake && extras.wake != nullptr) DrawWakes(map, state, *extras.wake, p.layout);
+  if (layers.risk) ShadeDisasters(map, state, p.layout);
+  if (layers.route && extras.route != nullptr) DrawRoutes(map, state, *extras.route, p.layout);
+  if (layers.sight) DrawSight(map, spec, state, p.layout);
+  if (layers.moves && values != nullptr) {
+    if (!p.moves) p.moves.emplace(p.layout);
+    p.moves->Draw(map, *values);
+  }
+  DrawPorts(map, spec, p.layout, p.fonts);
+  DrawDevices(map, spec, state, p.layout);
+  DrawDisasterSigns(map, spec, state, p.layout, p.fonts);
+  DrawShips(map, spec, state, extras.wake, p.layout, p.fonts);
+  if (extras.choice != nullptr) DrawChoice(map, state, *extras.choice, p.layout, p.fonts);
+  if (layers.values && values != nullptr) DrawValueScale(map, *values, p.layout, p.fonts);
+  DrawWords(p.image, spec, state, extras, p.layout, p.fonts);
+  return p.image;
+}
+
+cv::Mat DrawFarm(const FarmSpec& spec, const FarmState& state, ImageSize size,
+                 const Extras& extras) {
+  if (const auto fault = CheckSpec(spec); !fault.empty()) throw std::invalid_argument(fault);
+  if (const auto fault = CheckState(state); !fault.empty()) throw std::invalid_argument(fault);
+  return FarmPainter(size).Draw(spec, state, extras).clone();
+}
+
+}  // namespace aquafarm_viz

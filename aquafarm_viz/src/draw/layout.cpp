@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+// Design units; a picture of 640 x 640 has one pixel a unit.
+constexpr double kDesignSide = 640.0;
+constexpr double kTop = 46.0;
+constexpr double kBottom = 44.0;
+constexpr double kPanelWidth = 152.0;
+constexpr double kAxisLeft = 26.0;
+constexpr double kAxisBottom = 18.0;
+constexpr double kGap = 10.0;
+constexpr int kSmallest = 300;      // pixels; smaller pictures show the map alone
+constexpr double kWholePixels = 6;  // cells this big get whole pixels and so crisp borders
+
+}  // namespace
+
+int Layout::Px(double units) const { return std::max(1, cvRound(units * unit)); }
+
+double Layout::device_radius_px() const {
+  return std::clamp(0.40 * view.cell_px(), 6.0 * unit, 22.0 * unit);
+}
+
+double Layout::ship_radius_px() const {
+  return std::clamp(0.60 * view.cell_px(), 9.0 * unit, 30.0 * unit);
+}
+
+Layout MakeLayout(int width, int height, ImageSize size) {
+  Layout layout;
+  const int short_side = std::min(size.width, size.height);
+  layout.unit = std::max(short_side / kDesignSide, 0.7);
+  cv::Rect room(0, 0, size.width, size.height);
+  if (short_side >= kSmallest) {
+    layout.top = {0, 0, size.width, layout.Px(kTop)};
+    layout.bottom = {0, size.height - layout.Px(kBottom), size.width, layout.Px(kBottom)};
+    const int panel = layout.Px(kPanelWidth);
+    layout.panel = {size.width - panel, layout.top.height, panel,
+                    layout.bottom.y - layout.top.height};
+    room = {layout.Px(kAxisLeft), layout.top.height + layout.Px(kGap),
+            layout.panel.x - layout.Px(kAxisLeft) - layout.Px(kGap),
+            layout.panel.height - layout.Px(kAxisBottom) - layout.Px(kGap)};
+  }
+  double cell_px = std::min(double(room.width) / width, double(room.height) / height);
+  if (cell_px >= kWholePixels) cell_px = std::floor(cell_px);
+  const cv::Size map(std::clamp(cvRound(cell_px * width), 1, room.width),
+                     std::clamp(cvRound(cell_px * height), 1, room.height));
+  layout.map = {room.x + (room.width - map.width) / 2, room.y + (room.height - map.height) / 2,
+                map.width, map.height};
+  layout.view = MapView(width, height, cell_px);
+  return layout;
+}
+
+MapPlace PlaceMap(int width, int height, ImageSize size) {
+  const auto side = [](int pixels) { return std::clamp(pixels, kMinImageSide, kMaxImageSide); };
+  const Layout layout = MakeLayout(width, height, {side(size.width), side(size.height)});
+  return {layout.map, layout.view};
+}
+
+int TickStep(double cell_px, double least_px) {
+  for (int power = 1;; power *= 10) {
+    for (const int factor : {1, 2, 5}) {
+      if (factor * power * cell_px >= least_px) return factor * power;
+    }
+  }
+}
+
+Fonts::Fonts(double unit)
+    : small(std::max(8, cvRound(11.0 * unit)), FindFontFile(false)),
+      bold(std::max(8, cvRound(11.0 * unit)), FindFontFile(true)),
+      title(std::max(9, cvRound(14.0 * unit)), FindFontFile(true)) {}
+
+}  // namespace aquafarm_viz

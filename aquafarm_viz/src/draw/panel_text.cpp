@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <opencv2/imgproc.hpp>
+
+#include "aquafarm_viz/scene/labels.h"
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::DeviceState;
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+using aquafarm_msgs::ShipState;
+using aquafarm_msgs::TrainingStatus;
+
+std::string WorldTime(const FarmSpec& spec, const FarmState& state) {
+  if (!spec.has_start_time) {
+    const std::uint32_t seconds = state.world_time.sec;
+    return Count(seconds / 3600) + " h " + std::to_string(seconds / 60 % 60) + " min";
+  }
+  const std::time_t seconds = state.world_time.sec;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc);
+  return text.data();
+}
+
+// Writes pieces of text after one another until the room is used up.
+class Line {
+ public:
+  Line(cv::Mat& image, cv::Point start, int right) : image_(image), at_(start), right_(right) {}
+
+  void Put(const Font& font, const std::string& text, Rgb color, int gap_px) {
+    if (at_.x >= right_) return;
+    at_.x += font.Draw(image_, font.Fit(text, right_ - at_.x), at_, Bgr(color)) + gap_px;
+  }
+
+ private:
+  cv::Mat& image_;
+  cv::Point at_;
+  int right_;
+};
+
+void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Layout& layout,
+             const Fonts& fonts) {
+  const int left = layout.Px(10);
+  const int right = layout.top.width - layout.Px(10);
+  const int first = layout.Px(18);
+  const std::string time = WorldTime(spec, state);
+  const int time_left = right - fonts.small.Width(time);
+  fonts.small.Draw(image, time, {time_left, first}, Bgr(kWords));
+  const std::string name = spec.scenario_name.empty() ? "aquafarm" : spec.scenario_name;
+  fonts.title.Draw(image, fonts.title.Fit(name, time_left - left - layout.Px(10)), {left, first},
+                   Bgr(kWords));
+
+  const int gap = layout.Px(14);
+  Line line(image, {left, layout.Px(36)}, right);
+  const auto pair = [&](const std::string& name_of, const std::string& value, Rgb color) {
+    line.Put(fonts.small, name_of, kFaint, layout.Px(5));
+    line.Put(fonts.bold, value, color, gap);
+  };
+  pair("episode", Count(state.episode), kWords);
+  pair("step", Count(state.step) + " / " + Count(std::uint64_t(std::max(0, spec.step_limit))),
+       kWords);
+  pair("return", Number(state.joint_return, 1), state.joint_return < 0.0F ? kBad : kGood);
+  pair("seed", std::to_string(state.seed), kFaint);
+  if (state.observer >= 0) pair("as seen by ship", std::to_string(state.observer), kWords);
+  if (state.paused) line.Put(fonts.bold, "paused", GradeColor(2), gap);
+}
+
+void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout,
+                    const Fonts& fonts) {
+  Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(17)},
+            layout.bottom.width - layout.Px(10));
+  const auto color = [](float value) { return value == 0.0F ? kFaint : value < 0 ? kBad : kGood; };
+  line.Put(fonts.bold, "reward", kWords, layout.Px(5));
+  line.Put(fonts.bold, Signed(state.joint_reward), color(state.joint_reward), layout.Px(16));
+  for (const auto& [name, value] : RewardTermsOf(state)) {
+    line.Put(fonts.small, name, value == 0.0F ? kFaint : kWords, layout.Px(4));
+    if (value == 0.0F) {
+      line.Put(fonts.small, "0", kFaint, layout.Px(11));
+    } else {
+      line.Put(fonts.bold, Signed(value), color(value), layout.Px(11));
+    }
+  }
+}
+
+void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layout& layout,
+                      const Fonts& fonts) {
+  Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(35)},
+            layout.bottom.width - layout.Px(10));
+  const int gap = layout.Px(11);
+  const auto pair = [&](const std::string& name, const std::string& value) {
+    line.Put(fonts.small, name, kFaint, layout.Px(4));
+    line.Put(fonts.small, value, kWords, gap);
+  };
+  line.Put(fonts.bold, training.algorithm, kWords, layout.Px(5));
+  line.Put(fonts.small, PhaseName(training.phase), kFaint, gap);
+  pair("episode",
+       Count(training.episode) + (training.episodes > 0 ? " / " + Count(training.episodes) : ""));
+  pair("mean return", Number(training.mean_return, 1));
+  pair("success", std::isfinite(training.success_rate)
+                      ? Number(100.0 * double(training.success_rate), 0) + " %"
+                      : "-");
+  if (training.steps_per_second > 0.0F) pair("steps/s", Rate(training.steps_per_second));
+  if (const auto left = Duration(training.time_left_s); !left.empty()) pair("left", left);
+}
+
+// Writes the panel's lists from the top down, as far as there is room above the legend.
+class Panel {
+ public:
+  Panel(cv::Mat& image, const Layout& layout, const Fonts& fonts)
+      : image_(image),
+        layout_(layout),
+        fonts_(fonts),
+        left_(layout.panel.x + layout.Px(10)),
+        right_(layout.panel.x + layout.panel.width - layout.Px(8)),
+        y_(layout.panel.y + layout.Px(8)),
+        end_(layout.panel.y + layout.panel.height - layout.Px(140)) {}
+
+  int RowsLeft() const { return std::max(0, (end_ - y_) / RowPx()); }
+  int RowPx() const { return layout_.Px(17); }
+  cv::Point2d SymbolAt() const { return {double(left_ + layout_.Px(7)), y_ + RowPx() / 2.0}; }
+  cv::Mat& image() { return image_; }
+
+  void Heading(const std::string& text, const std::string& right_text) {
+    y_ += layout_.Px(5);
+    Row(left_, text, fonts_.bold, kFaint, right_text, kFaint);
+  }
+
+  void Item(const std::string& text, const std::string& right_text, Rgb right_color) {
+    Row(left_ + layout_.Px(21), text, fonts_.small, kWords, right_text, right_color);
+  }
+
+  void Detail(const std::string& text, const std::string& right_text, Rgb right_color) {
+    Row(left_ + layout_.Px(21), text, fonts_.small, kFaint, right_text, right_color);
+  }
+
+ private:
+  void Row(int left, const std::string& text, const Font& font, Rgb color,
+           const std::string& right_text, Rgb right_color) {
+    const int base = y_ + (RowPx() + fonts_.small.cap_height()) / 2;
+    const int right_from = right_ - fonts_.small.Width(right_text);
+    font.Draw(image_, font.Fit(text, right_from - left - layout_.Px(3)), {left, base}, Bgr(color));
+    fonts_.small.Draw(image_, right_text, {right_from, base}, Bgr(right_color));
+    y_ += RowPx();
+  }
+
+  cv::Mat& image_;
+  const Layout& layout_;
+  const Fonts& fonts_;
+  int left_;
+  int right_;
+  int y_;
+  int end_;
+};
+
+void ListDevices(Panel& panel, const FarmState& state, const Layout& layout) {
+  constexpr std::size_t kKinds = 4;
+  std::array<int, kKinds> total{};
+  std::array<int, kKinds> delivered{};
+  int all_delivered = 0;
+  for (const auto& device : state.devices) {
+    const bool done = device.status == DeviceState::DELIVERED;
+    all_delivered += done ? 1 : 0;
+    if (device.kind >= kKinds) continue;
+    ++total[device.kind];
+    delivered[device.kind] += done ? 1 : 0;
+  }
+  panel.Heading("DEVICES", std::to_string(all_delivered) + " / " +
+                               std::to_string(state.devices.size()) + " safe");
+  for (std::uint8_t kind = 0; kind < kKinds; ++kind) {
+    DrawDeviceSymbol(panel.image(), kind, {panel.SymbolAt(), 6.0 * layout.unit, 0.0},
+                     total[kind] == 0 ? 0.75 : 0.0);
+    panel.Item(DeviceName(kind),
+               std::to_string(delivered[kind]) + " / " + std::to_string(total[kind]), kFaint);
+  }
+}
+
+void ListDisasters(Panel& panel, const FarmState& state, const Layout& layout, int rows) {
+  static constexpr std::array<const char*, 5> kGrades{"", "blue", "yellow", "orange", "red"};
+  int shown = 0;
+  panel.Heading("DISASTERS", "");
+  for (const auto& disaster : state.disasters) {
+    if (!disaster.known || 3 * (shown + 1) > rows) continue;
+    ++shown;
+    const bool over = disaster.steps_left <= 0;
+    FillCircle(panel.image(), panel.SymbolAt(), 5.5 * layout.unit,
+               Bgr(over ? kRule : GradeColor(disaster.grade)));
+    panel.Item(DisasterName(disaster.kind),
+               over                              ? "over"
+               : disaster.grade < kGrades.size() ? kGrades[disaster.grade]
+                                                 : "",
+               over ? kFaint : GradeColor(disaster.grade));
+    panel.Detail(disaster.speed > 0.0F ? CompassPoint(disaster.heading_deg) + ", " +
+                                             Number(disaster.speed, 2) + " a step"
+                                       : "stands still",
+                 "", kFaint);
+    const std::string left = over ? "" : Count(std::uint64_t(disaster.steps_left)) + " steps left";
+    panel.Detail(disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago", "",
+                 kFaint);
+  }
+  if (shown == 0) panel.Detail("none known", "", kFaint);
+}
+
+void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
+  panel.Heading("SHIPS", "");
+  int rows = panel.RowsLeft();
+  std::size_t left_out = 0;
+  for (const auto& ship : state.ships) {
+    if (!ship.visible || rows < 3) {
+      ++left_out;
+      continue;
+    }
+    rows -= 2;
+    if (ship.own_device >= 0) {
+      StrokeCircle(panel.image(), panel.SymbolAt(), 5.0 * layout.unit, Bgr(kPaper), layout.Px(2));
+    } else {
+      const Placing placing{panel.SymbolAt(), 7.5 * layout.unit, 0.0};
+      FillShape(panel.image(), HullOutline(), placing, Bgr(kPaper));
+      FillShape(panel.image(), HullOutline(), {placing.at, 4.5 * layout.unit, 0.0},
+                Bgr(ShipColor(ship.id)));
+    }
+    panel.Item((ship.own_device >= 0 ? "device " + std::to_string(ship.own_device)
+                                     : "ship " + std::to_string(ship.id)),
+               "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")", kFaint);
+    const std::string fault = OutcomeName(ship.outcome);
+    const std::string load = ship.own_device >= 0 ? ""
+                                                  : std::to_string(ship.aboard.size()) + "/" +
+                                                        std::to_string(ship.capacity);
+    panel.Detail(ActionName(ship.action) + (fault.empty() ? "" : ": " + fault), load, kFaint);
+  }
+  if (left_out > 0 && rows > 0) {
+    panel.Detail("and " + std::to_string(left_out) + " more", "", kFaint);
+  }
+}
+
+void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const Fonts& fonts) {
+  if (!state.terminated && !state.truncated) return;
+  static constexpr std::array<const char*, 4> kReasons{"episode over", "all devices retrieved",
+                                                       "the disaster is over", "step limit"};
+  const std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
+  const int width = fonts.title.Width(text) + layout.Px(28);
+  const cv::Rect plate(layout.map.x + (layout.map.width - width) / 2, layout.map.y + layout.Px(12),
+                       width, layout.Px(28));
+  const bool success = state.reason == FarmState::ALL_RETRIEVED;
+  Tint(image, plate, Bgr(success ? Rgb{0x12, 0x6b, 0x3a} : kInk), 0.85);
+  cv::rectangle(image, plate, Bgr(success ? kGood : kFaint), 1);
+  fonts.title.Draw(
+      image, text,
+      {plate.x + layout.Px(14), plate.y + (plate.height + fonts.title.cap_height()) / 2},
+      Bgr(kWords));
+}
+
+}  // namespace
+
+void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Extras& extras,
+               const Layout& layout, const Fonts& fonts) {
+  DrawEnd(image, state, layout, fonts);
+  if (layout.panel.empty()) return;
+  DrawTop(image, spec, state, layout, fonts);
+  DrawRewardLine(image, state, layout, fonts);
+  if (extras.training != nullptr) DrawTrainingLine(image, *extras.training, layout, fonts);
+  Panel panel(image, layout, fonts);
+  ListDevices(panel, state, layout);
+  ListDisasters(panel, state, layout, std::max(3, panel.RowsLeft() - 7));
+  ListShips(panel, state, layout);
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr double kValueShare = 0.62;     // of the colours of V_π over the sea
+constexpr double kLeastArrow_px = 11.0;  // between the middles of two arrows
+
+cv::Mat Colors(const cv::Mat& shares) {
+  cv::Mat colors;
+  cv::applyColorMap(shares, colors, cv::COLORMAP_VIRIDIS);
+  return colors;
+}
+
+void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px,
+               const cv::Scalar& color, int thickness) {
+  const Placing placing{middle, size_px, double(bearing_deg)};
+  const cv::Point2d tip = Place({0.0, 0.40}, placing);
+  DrawLine(map, Place({0.0, -0.36}, placing), tip, color, thickness);
+  DrawLine(map, Place({-0.20, 0.12}, placing), tip, color, thickness);
+  DrawLine(map, Place({0.20, 0.12}, placing), tip, color, thickness);
+}
+
+}  // namespace
+
+void DrawValues(cv::Mat& map, const Values& values) {
+  // A header over the values, which are only read; row 0 is the north then.
+  const cv::Mat from_south(values.height, values.width, CV_32F,
+                           const_cast<float*>(values.values.data()));
+  cv::Mat north_up;
+  cv::flip(from_south, north_up, 0);
+  const cv::Mat known = north_up == north_up;  // not NaN
+  cv::Mat shares(north_up.size(), CV_8U, cv::Scalar(128));
+  if (const double span = double(values.highest) - double(values.lowest); span > 0.0) {
+    // First the difference: scaled, values far from 0 have too few digits.
+    cv::subtract(north_up, cv::Scalar(double(values.lowest)), north_up);
+    north_up.convertTo(shares, CV_8U, 255.0 / span);
+  }
+  cv::Mat large;
+  cv::Mat mask;
+  cv::resize(Colors(shares), large, map.size(), 0, 0, cv::INTER_NEAREST);
+  cv::resize(known, mask, map.size(), 0, 0, cv::INTER_NEAREST);
+  cv::addWeighted(large, kValueShare, map, 1.0 - kValueShare, 0.0, large);
+  large.copyTo(map, mask);
+}
+
+void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, const Fonts& fonts) {
+  if (!(values.highest > values.lowest)) return;
+  const std::string low = "V " + Number(values.lowest, 1);
+  const std::string high =
+      Number(values.highest, 1) + (values.step ? ", step " + Count(*values.step) : "");
+  const int gap = layout.Px(5);
+  const int bar = layout.Px(80);
+  const int width = fonts.small.Width(low) + fonts.small.Width(high) + bar + 4 * gap;
+  const cv::Rect plate(layout.Px(6), map.rows - layout.Px(26), width, layout.Px(20));
+  if ((plate & cv::Rect({0, 0}, map.size())) != plate) return;
+  Tint(map, plate, Bgr(kPanel), 0.85);
+  const int base = plate.y + (plate.height + fonts.small.cap_height()) / 2;
+  int x = plate.x + gap;
+  x += fonts.small.Draw(map, low, {x, base}, Bgr(kWords)) + gap;
+  cv::Mat1b ramp(1, bar);
+  for (int i = 0; i < bar; ++i)
+    ramp(0, i) = static_cast<std::uint8_t>(255 * i / std::max(1, bar - 1));
+  cv::Mat part = map(cv::Rect(x, plate.y + gap, bar, plate.height - 2 * gap));
+  cv::resize(Colors(ramp), part, part.size(), 0, 0, cv::INTER_NEAREST);
+  fonts.small.Draw(map, high, {x + bar + gap, base}, Bgr(kWords));
+}
+
+void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
+              const Layout& layout) {
+  const int thickness = size_px > 40.0 ? 2 : 1;
+  if (const int bearing = MoveBearingDeg(action); bearing >= 0) {
+    DrawArrow(map, at, bearing, size_px, Bgr(kInk), thickness + 2);
+    DrawArrow(map, at, bearing, size_px, Bgr(kPaper), thickness);
+  } else if (action == 8) {
+    FillCircle(map, at, 0.22 * size_px, Bgr(kPaper));
+  } else if (action == 9) {
+    StrokeCircle(map, at, 0.22 * size_px, Bgr(kPaper), layout.Px(1.5));
+  }
+}
+
+MoveSigns::MoveSigns(const Layout& layout)
+    : view_(layout.view),
+      every_(std::max(1, int(std::ceil(kLeastArrow_px * layout.unit / view_.cell_px())))),
+      size_px_(0.8 * every_ * view_.cell_px()) {
+  // Between pixels as the cells' middles are where cells have whole pixels.
+  const int half = cvCeil(0.5 * size_px_) + 3;
+  const cv::Point2d middle = view_.ToPixel(0, view_.height() - 1);
+  phase_ = middle - cv::Point2d(std::floor(middle.x), std::floor(middle.y));
+  for (std::uint8_t action = 0; action < kSigns; ++action) {
+    signs_.emplace_back(cv::Size(2 * half + 1, 2 * half + 1), cv::Point(half, half),
+                        [&](cv::Mat& map) {
+                          DrawMove(map, cv::Point2d(half, half) + phase_, action, size_px_, layout);
+                        });
+  }
+}
+
+void MoveSigns::Draw(cv::Mat& map, const Values& values) const {
+  for (int y = every_ / 2; y < values.height; y += every_) {
+    for (int x = every_ / 2; x < values.width; x += every_) {
+      const std::uint8_t action = values.actions[values.Index(x, y)];
+      if (action >= kSigns) continue;
+      const cv::Point2d at = view_.ToPixel(x, y) - phase_;
+      signs_[action].LayOver(map, {cvRound(at.x), cvRound(at.y)});
+    }
+  }
+}
+
+Overlay::Overlay(cv::Size size, cv::Point middle, const std::function<void(cv::Mat& map)>& draw) {
+  cv::Mat3b on_black(size, cv::Vec3b::all(0));
+  cv::Mat3b on_white(size, cv::Vec3b::all(255));
+  draw(on_black);
+  draw(on_white);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const cv::Vec3b color = on_black(y, x);
+      const int keep = int(on_white(y, x)[1]) - int(color[1]);
+      if (keep < 255) pixels_.push_back({cv::Point(x, y) - middle, color, std::max(0, keep)});
+    }
+  }
+}
+
+void Overlay::LayOver(cv::Mat& map, cv::Point middle) const {
+  const cv::Rect whole({0, 0}, map.size());
+  for (const Pixel& pixel : pixels_) {
+    const cv::Point at = middle + pixel.at;
+    if (!whole.contains(at)) continue;
+    auto& below = map.at<cv::Vec3b>(at);
+    for (int i = 0; i < 3; ++i) {
+      const int sum = int(pixel.color[i]) + (int(below[i]) * pixel.keep + 127) / 255;
+      below[i] = static_cast<std::uint8_t>(std::min(255, sum));
+    }
+  }
+}
+
+void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
+                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout,
+                const Fonts& fonts) {
+  if (!IsOf(choice, state)) return;
+  std::string words = choice.policy + ":";
+  for (const auto& ship : state.ships) {
+    const auto id = static_cast<std::size_t>(ship.id);
+    if (ship.id < 0 || id >= choice.actions.size() || !ship.active) continue;
+    const std::uint8_t action = choice.actions[id];
+    const int bearing = MoveBearingDeg(action);
+    words += ' ';
+    words += bearing >= 0 ? CompassPoint(bearing) : action == 8 ? "pickup" : "drop-off";
+    if (id < choice.values.size()) words += " (V " + Number(choice.values[id], 1) + ")";
+    const cv::Point2d at = layout.view.ToPixel(ship.x, ship.y);
+    const double radius = layout.ship_radius_px();
+    if (bearing < 0) {
+      StrokeCircle(map, at, 1.5 * radius, Bgr(kChoiceColor), layout.Px(2.5));
+      continue;
+    }
+    const Placing placing{at, radius, double(bearing)};
+    DrawArrow(map, Place({0.0, 2.0}, placing), bearing, 2.4 * radius, Bgr(kInk), layout.Px(5));
+    DrawArrow(map, Place({0.0, 2.0}, placing), bearing, 2.4 * radius, Bgr(kChoiceColor),
+              layout.Px(2.5));
+  }
+  const int width = fonts.bold.Width(words) + layout.Px(12);
+  const cv::Rect plate(map.cols - width - layout.Px(6), map.rows - layout.Px(26), width,
+                       layout.Px(20));
+  Tint(map, plate, Bgr(kPanel), 0.85);
+  fonts.bold.Draw(map, words,
+                  {plate.x + layout.Px(6), plate.y + (plate.height + fonts.bold.cap_height()) / 2},
+                  Bgr(kChoiceColor));
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/markers/markers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/base/text.h"
+#include "aquafarm_viz/names.h"
+#include "aquafarm_viz/scene/rings.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::DeviceState;
+using aquafarm_msgs::DisasterState;
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+using aquafarm_msgs::ShipState;
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+constexpr int kCircleCorners = 72;
+
+// Layers from the bottom up, in units of height.
+enum Layer {
+  kSeaLayer = -1,  // below the maps that rviz draws at height 0
+  kLandLayer = 1,
+  kRingLayer,
+  kRockLayer,
+  kPortLayer,
+  kDeviceLayer,
+  kShipLayer,
+  kDeckLayer,
+  kCargoLayer,
+  kBarLayer,
+  kSignLayer,
+  kWordLayer
+};
+
+std_msgs::ColorRGBA Color(Rgb color, double alpha = 1.0) {
+  std_msgs::ColorRGBA result;
+  result.r = static_cast<float>(color.r) / 255.0F;
+  result.g = static_cast<float>(color.g) / 255.0F;
+  result.b = static_cast<float>(color.b) / 255.0F;
+  result.a = static_cast<float>(alpha);
+  return result;
+}
+
+geometry_msgs::Point Point(double x, double y, double z = 0.0) {
+  geometry_msgs::Point point;
+  point.x = x;
+  point.y = y;
+  point.z = z;
+  return point;
+}
+
+// Makes markers of one farm: metres, layers and sizes follow from its spec.
+class Maker {
+ public:
+  Maker(const FarmSpec& spec, const std_msgs::Header& header)
+      : cell_m_(spec.cell_size_m),
+        // On large farms things are drawn larger than a cell, or nobody could see them.
+        thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
+        layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
+        header_(header) {
+    header_.frame_id = names::kMapFrame;
+  }
+
+  double cell_m() const { return cell_m_; }
+  double thing_m() const { return thing_m_; }
+  double layer_m() const { return layer_m_; }
+
+  Marker Make(const char* space, int id, int type, Layer layer, double x, double y) const {
+    Marker marker;
+    marker.header = header_;
+    marker.ns = space;
+    marker.id = id;
+    marker.type = type;
+    marker.action = Marker::ADD;
+    marker.pose.position = Point(x * cell_m_, y * cell_m_, layer * layer_m_);
+    marker.pose.orientation.w = 1.0;
+    marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+    return marker;
+  }
+
+  Marker Delete(const char* space, int id) const {
+    Marker marker;
+    marker.header = header_;
+    marker.ns = space;
+    marker.id = id;
+    marker.action = Marker::DELETE;
+    marker.pose.orientation.w = 1.0;
+    return marker;
+  }
+
+  Marker Text(const char* space, int id, double x, double y, const std::string& text, double size_m,
+              Rgb color) const {
+    Marker marker = Make(space, id, Marker::TEXT_VIEW_FACING, kWordLayer, x, y);
+    marker.text = text;
+    marker.scale.z = size_m;
+    marker.color = Color(color);
+    return marker;
+  }
+
+  // A flat convex shape as a fan of triangles.
+  Marker Shape(const char* space, int id, Layer layer, double x, double y,
+               const std::vector<cv::Point2f>& outline, double size_m, Rgb color) const {
+    Marker marker = Make(space, id, Marker::TRIANGLE_LIST, layer, x, y);
+    marker.color = Color(color);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const cv::Point2f a = outline[i];
+      const cv::Point2f b = outline[(i + 1) % outline.size()];
+      marker.points.push_back(Point(0.0, 0.0));
+      marker.points.push_back(Point(a.x * size_m, a.y * size_m));
+      marker.points.push_back(Point(b.x * size_m, b.y * size_m));
+    }
+    return marker;
+  }
+
+ private:
+  double cell_m_;
+  double thing_m_;
+  double layer_m_;
+  std_msgs::Header header_;
+};
+
+// Bearings turn clockwise from north, yaw turns anticlockwise; `rest_deg` is the yaw at which the
+// shape points north.
+geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
+  const double yaw = (rest_deg - bearing_deg) * CV_PI / 180.0;
+  geometry_msgs::Quaternion turned;
+  turned.z = std::sin(yaw / 2.0);
+  turned.w = std::cos(yaw / 2.0);
+  return turned;
+}
+constexpr double kShapeNorthDeg = 0.0;   // outlines have their bow at north
+constexpr double kArrowNorthDeg = 90.0;  // rviz's arrows point along x
+
+Marker Sea(const Maker& maker, const FarmSpec& spec) {
+  Marker sea = maker.Make("sea", 0, Marker::CUBE, kSeaLayer, (spec.width - 1) / 2.0,
+                          (spec.height - 1) / 2.0);
+  sea.scale.x = spec.width * maker.cell_m();
+  sea.scale.y = spec.height * maker.cell_m();
+  sea.scale.z = 0.5 * maker.layer_m();
+  sea.color = Color(Mix(kSeaDeep, kSeaShallow, 0.25));
+  return sea;
+}
+
+// The same flat shape at many cells, in one marker.
+void AddCell(Marker& marker, const Maker& maker, const aquafarm_msgs::Cell& cell,
+             const std::vector<cv::Point2f>& outline, double size_cells) {
+  const auto corner = [&](cv::Point2f point) {
+    return Point((cell.x + point.x * size_cells) * maker.cell_m(),
+                 (cell.y + point.y * size_cells) * maker.cell_m());
+  };
+  for (std::size_t i = 2; i < outline.size(); ++i) {
+    marker.points.push_back(corner(outline[0]));
+    marker.points.push_back(corner(outline[i - 1]));
+    marker.points.push_back(corner(outline[i]));
+  }
+}
+
+Marker Island(const Maker& maker, const FarmSpec& spec) {
+  static const std::vector<cv::Point2f> kSquare{
+      {-0.5F, -0.5F}, {0.5F, -0.5F}, {0.5F, 0.5F}, {-0.5F, 0.5F}};
+  Marker island = maker.Make("island", 0, Marker::TRIANGLE_LIST, kLandLayer, 0, 0);
+  island.color = Color(kLand);
+  for (const auto& cell : spec.islands) {
+    if (InGrid(spec, cell.x, cell.y)) AddCell(island, maker, cell, kSquare, 1.0);
+  }
+  return island;
+}
+
+Marker Rocks(const Maker& maker, const FarmSpec& spec) {
+  static const std::vector<cv::Point2f> kRockOutline{
+      {-0.95F, -0.55F}, {0.8F, -0.6F}, {0.9F, -0.1F}, {0.4F, 0.55F}, {-0.1F, 0.8F}, {-0.6F, 0.25F}};
+  Marker rocks = maker.Make("rocks", 0, Marker::TRIANGLE_LIST, kRockLayer, 0, 0);
+  rocks.color = Color(kRock);
+  for (const auto& rock : spec.rocks) {
+    if (InGrid(spec, rock.cell.x, rock.cell.y)) {
+      AddCell(rocks, maker, rock.cell, kRockOutline, 0.42);
+    }
+  }
+  return rocks;
+}
+
+void AddPorts(MarkerArray& array, const Maker& maker, const FarmSpec& spec) {
+  for (const auto& port : spec.ports) {
+    if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
+    Marker disc =
+        maker.Make("port", port.id, Marker::CYLINDER, kPortLayer, port.cell.x, port.cell.y);
+    disc.scale.x = disc.scale.y = 0.95 * maker.thing_m();
+    disc.scale.z = 0.5 * maker.layer_m();
+    disc.color = Color(kPort);
+    array.markers.push_back(disc);
+    Marker letter = maker.Text("port_letter", port.id, port.cell.x, port.cell.y,
+                               PortLetter(port.id), 0.8 * maker.thing_m(), kInk);
+    letter.pose.position.z = kDeviceLayer * maker.layer_m();  // below ships in port
+    array.markers.push_back(letter);
+  }
+}
+
+void AddHealth(MarkerArray& array, const Maker& maker, const DeviceState& device, double x,
+               double y, double width_m) {
+  const double height_m = 0.16 * maker.thing_m();
+  Marker frame = maker.Make("health_frame", device.id, Marker::CUBE, kCargoLayer, x, y);
+  frame.scale.x = width_m * 1.08;
+  frame.scale.y = height_m * 1.5;
+  frame.scale.z = 0.5 * maker.layer_m();
+  frame.color = Color(kInk);
+  array.markers.push_back(frame);
+  const double share = std::clamp(static_cast<double>(device.health), 0.0, 1.0);
+  const double full_left = x - width_m / maker.cell_m() * (1.0 - share) / 2.0;
+  Marker bar = maker.Make("health", device.id, Marker::CUBE, kBarLayer, full_left, y);
+  // rviz refuses a scale of 0.
+  bar.scale.x = std::max(share, 1e-3) * width_m;
+  bar.scale.y = height_m;
+  bar.scale.z = 0.5 * maker.layer_m();
+  bar.color = Color(HealthColor(share));
+  array.markers.push_back(bar);
+}
+
+void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+                const FarmState& state) {
+  std::map<std::pair<int, int>, int> delivered;
+  const double thing = maker.thing_m() / maker.cell_m();
+  for (const auto& device : state.devices) {
+    if (!InGrid(spec, device.x, device.y)) {
+      for (const char* space : {"device", "health", "health_frame"}) {
+        array.markers.push_back(maker.Delete(space, device.id));
+      }
+      continue;
+    }
+    double x = device.x;
+    double y = device.y;
+    double size = 0.42;
+    Layer layer = kDeviceLayer;
+    Rgb color = device.health_known ? Mix(kUnknown, DeviceColor(device.kind),
+                                          0.35 + 0.65 * static_cast<double>(device.health))
+                                    : kUnknown;
+    const bool done = device.status == DeviceState::DELIVERED;
+    if (done) {
+      const int index = delivered[{device.x, device.y}]++;
+      x += thing * (0.35 * (index % 4) - 0.5);
+      y -= thing * (0.75 + 0.35 * (index / 4));
+      size = 0.18;
+      color = Mix(DeviceColor(device.kind), kUnknown, 0.35);
+    } else if (device.status == DeviceState::ABOARD) {
+      size = 0.24;
+      layer = kCargoLayer;
+    }
+    array.markers.push_back(maker.Shape("device", device.id, layer, x, y,
+                                        DeviceOutline(device.kind), size * maker.thing_m(), color));
+    if (done || !device.health_known) {
+      array.markers.push_back(maker.Delete("health", device.id));
+      array.markers.push_back(maker.Delete("health_frame", device.id));
+    } else {
+      AddHealth(array, maker, device, x, y + 0.66 * thing, 0.9 * maker.thing_m());
+    }
+  }
+}
+
+void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, const Wake* wake) {
+  static const std::vector<cv::Point2f> kBow{{0.0F, 1.25F}, {-0.5F, 0.6F}, {0.5F, 0.6F}};
+  static const std::vector<cv::Point2f> kDeck{{-0.22F, 0.42F}, {-0.26F, -0.1F}, {-0.22F, -0.68F},
+                                              {0.22F, -0.68F}, {0.26F, -0.1F},  {0.22F, 0.42F}};
+  const auto turned = Turned(ShipBearingDeg(ship, wake), kShapeNorthDeg);
+  const bool own = ship.own_device >= 0;
+  Marker hull = maker.Shape("ship", ship.id, kShipLayer, ship.x, ship.y, own ? kBow : HullOutline(),
+                            (own ? 0.42 : 0.62) * maker.thing_m(), kPaper);
+  hull.pose.orientation = turned;
+  array.markers.push_back(hull);
+  if (own) return;
+  Marker deck = maker.Shape("ship_deck", ship.id, kDeckLayer, ship.x, ship.y, kDeck,
+                            0.62 * maker.thing_m(), ShipColor(ship.id));
+  deck.pose.orientation = turned;
+  array.markers.push_back(deck);
+  const double aside = 0.75 * maker.thing_m() / maker.cell_m();
+  array.markers.push_back(maker.Text("ship_name", ship.id, ship.x + aside, ship.y - aside,
+                                     std::to_string(ship.id), 0.6 * maker.thing_m(), kPaper));
+}
+
+void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const FarmState& state,
+              const Wake* wake) {
+  for (const auto& ship : state.ships) {
+    if (ship.visible && ship.active && InGrid(spec, ship.x, ship.y)) {
+      AddShip(array, maker, ship, wake);
+      continue;
+    }
+    array.markers.push_back(maker.Delete("ship", ship.id));
+    if (ship.own_device >= 0) continue;
+    array.markers.push_back(maker.Delete("ship_deck", ship.id));
+    array.markers.push_back(maker.Delete("ship_name", ship.id));
+  }
+}
+
+geometry_msgs::Point OnCircle(double radius_m, int corner) {
+  const double angle = 2.0 * CV_PI * corner / kCircleCorners;
+  return Point(radius_m * std::cos(angle), radius_m * std::sin(angle));
+}
+
+using QuadrantRadii = std::array<double, 4>;  // NE, SE, SW, NW [m]
+
+QuadrantRadii RingMetres(const Maker& maker, const DisasterState& disaster, std::size_t ring) {
+  QuadrantRadii radii = RingQuadrants(disaster, ring);
+  for (double& radius : radii) radius *= maker.cell_m();
+  return radii;
+}
+
+// Adds the flat band between two rings about the marker's pose.
+void AddBand(Marker& marker, const QuadrantRadii& inner, const QuadrantRadii& outer) {
+  static_assert(kCircleCorners % 4 == 0, "quadrants begin at a corner");
+  constexpr std::array<std::size_t, 4> kAnticlockwiseFromEast{0, 3, 2, 1};
+  marker.points.reserve(6 * kCircleCorners);
+  for (int corner = 0; corner < kCircleCorners; ++corner) {
+    const std::size_t quadrant =
+        kAnticlockwiseFromEast[static_cast<std::size_t>(4 * corner / kCircleCorners)];
+    const double inner_m = inner[quadrant];
+    const double outer_m = outer[quadrant];
+    if (outer_m <= inner_m) continue;
+    const auto a = OnCircle(inner_m, corner);
+    const auto b = OnCircle(outer_m, corner);
+    const auto c = OnCircle(outer_m, corner + 1);
+    const auto d = OnCircle(inner_m, corner + 1);
+    marker.points.insert(marker.points.end(), {a, b, c});
+    if (inner_m > 0.0) marker.points.insert(marker.points.end(), {a, c, d});
+  }
+}
+
+// The band between the next smaller ring and this one, so that shades do not add up.
+Marker RingBand(const Maker& maker, const DisasterState& disaster, int ring) {
+  const auto i = static_cast<std::size_t>(ring);
+  Marker band = maker.Make("ring", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
+                           kRingLayer, disaster.x, disaster.y);
+  const double severity = Severity(disaster.risks[i]);
+  band.color = Color(SeverityColor(severity), 0.30 + 0.25 * severity);
+  AddBand(band, ring == 0 ? QuadrantRadii{} : RingMetres(maker, disaster, i - 1),
+          RingMetres(maker, disaster, i));
+  return band;
+}
+
+// A band and not a line: rviz's lines turn towards the viewer and vanish here and there from above.
+Marker RingEdge(const Maker& maker, const DisasterState& disaster, int ring) {
+  const auto i = static_cast<std::size_t>(ring);
+  Marker edge = maker.Make("ring_edge", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
+                           kRockLayer, disaster.x, disaster.y);
+  edge.color = Color(SeverityColor(Severity(disaster.risks[i])));
+  const QuadrantRadii outer = RingMetres(maker, disaster, i);
+  QuadrantRadii inner = outer;
+  for (double& radius : inner) radius = std::max(0.0, radius - 0.12 * maker.thing_m());
+  AddBand(edge, inner, outer);
+  return edge;
+}
+
+void AddDisasterSigns(MarkerArray& array, const Maker& maker, const DisasterState& disaster) {
+  Marker eye =
+      maker.Make("disaster", disaster.id, Marker::CYLINDER, kSignLayer, disaster.x, disaster.y);
+  eye.scale.x = eye.scale.y = 0.7 * maker.thing_m();
+  eye.scale.z = 0.5 * maker.layer_m();
+  eye.color = Color(GradeColor(disaster.grade));
+  array.markers.push_back(eye);
+  const double below = 0.9 * maker.thing_m() / maker.cell_m();
+  array.markers.push_back(maker.Text("disaster_name", disaster.id, disaster.x, disaster.y - below,
+                                     DisasterName(disaster.kind), 0.6 * maker.thing_m(), kPaper));
+  if (!(disaster.speed > 0.0F)) {
+    array.markers.push_back(maker.Delete("heading", disaster.id));
+    return;
+  }
+  Marker heading =
+      maker.Make("heading", disaster.id, Marker::ARROW, kSignLayer, disaster.x, disaster.y);
+  heading.pose.orientation = Turned(disaster.heading_deg, kArrowNorthDeg);
+  heading.scale.x = 2.4 * maker.thing_m();
+  heading.scale.y = 0.32 * maker.thing_m();
+  heading.scale.z = maker.layer_m();
+  heading.color = Color(kPaper);
+  array.markers.push_back(heading);
+}
+
+void AddDisasters(MarkerArray& array, const Maker& maker, const FarmState& state) {
+  for (const auto& disaster : state.disasters) {
+    const bool drawn = disaster.known && disaster.steps_left > 0;
+    for (int ring = 0; ring < kMaxRings; ++ring) {
+      const auto i = static_cast<std::size_t>(ring);
+      if (drawn && i < disaster.radii.size() && disaster.radii[i] > 0.0F) {
+        array.markers.push_back(RingBand(maker, disaster, ring));
+        array.markers.push_back(RingEdge(maker, disaster, ring));
+        continue;
+      }
+      array.markers.push_back(maker.Delete("ring", disaster.id * kMaxRings + ring));
+      array.markers.push_back(maker.Delete("ring_edge", disaster.id * kMaxRings + ring));
+    }
+    if (drawn) {
+      AddDisasterSigns(array, maker, disaster);
+      continue;
+    }
+    for (const char* space : {"disaster", "disaster_name", "heading"}) {
+      array.markers.push_back(maker.Delete(space, disaster.id));
+    }
+  }
+}
+
+Marker Status(const Maker& maker, const FarmSpec& spec, const FarmState& state) {
+  const std::string text = "episode " + Count(state.episode) + "   step " + Count(state.step) +
+                           "   return " + Number(state.joint_return, 1);
+  const double size_m = 0.035 * std::max(spec.width, spec.height) * maker.cell_m();
+  return maker.Text("status", 0, (spec.width - 1) / 2.0,
+                    spec.height - 0.5 + 0.75 * size_m / maker.cell_m(), text, size_m, kPaper);
+}
+
+}  // namespace
+
+MarkerArray SpecMarkers(const FarmSpec& spec, bool clear) {
+  const Maker maker(spec, spec.header);
+  MarkerArray array;
+  if (clear) {
+    Marker all = maker.Delete("", 0);
+    all.action = Marker::DELETEALL;
+    array.markers.push_back(all);
+  }
+  array.markers.push_back(Sea(maker, spec));
+  // rviz warns about lists without points.
+  for (auto& list : {Island(maker, spec), Rocks(maker, spec)}) {
+    if (!list.points.empty()) array.markers.push_back(list);
+  }
+  AddPorts(array, maker, spec);
+  return array;
+}
+
+MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Wake* wake) {
+  const Maker maker(spec, state.header);
+  MarkerArray array;
+  AddDisasters(array, maker, state);
+  AddDevices(array, maker, spec, state);
+  AddShips(array, maker, spec, state, wake);
+  array.markers.push_back(Status(maker, spec, state));
+  return array;
+}
+
+}  // namespace aquafarm_viz

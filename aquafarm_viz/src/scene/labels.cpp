@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/scene/labels.h"
+
+#include <aquafarm_msgs/Outcome.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/base/text.h"
+
+namespace aquafarm_viz {
+
+std::string ActionName(std::uint8_t action) {
+  if (const int bearing = MoveBearingDeg(action); bearing >= 0) return CompassPoint(bearing);
+  return action == 8 ? "pickup" : action == 9 ? "drop-off" : "hold";
+}
+
+std::string OutcomeName(std::uint8_t outcome) {
+  using aquafarm_msgs::Outcome;
+  switch (outcome) {
+    case Outcome::EDGE:
+      return "edge";
+    case Outcome::CRASH:
+      return "crash";
+    case Outcome::COLLISION:
+      return "collision";
+    case Outcome::ILLEGAL_PICKUP:
+    case Outcome::ILLEGAL_DROP_OFF:
+      return "illegal";
+    case Outcome::OUT_OF_PLAY:
+      return "delivered";
+    default:
+      return "";
+  }
+}
+
+std::string Duration(double seconds) {
+  if (!std::isfinite(seconds) || seconds < 0.0 || seconds > 1e8) return "";
+  const auto whole = static_cast<unsigned>(seconds);
+  std::array<char, 32> text{};
+  if (whole >= 3600) {
+    std::snprintf(text.data(), text.size(), "%u:%02u:%02u", whole / 3600, whole / 60 % 60,
+                  whole % 60);
+  } else {
+    std::snprintf(text.data(), text.size(), "%u:%02u", whole / 60, whole % 60);
+  }
+  return text.data();
+}
+
+std::string Rate(double value) {
+  if (value >= 1e6) return Number(value / 1e6, value < 1e7 ? 2 : 1) + " M";
+  if (value >= 1e3) return Number(value / 1e3, value < 1e4 ? 2 : 1) + " k";
+  return Number(value, 0);
+}
+
+std::string StatusName(std::uint8_t status) {
+  static constexpr std::array<const char*, 3> kNames{"deployed", "aboard", "delivered"};
+  return status < kNames.size() ? kNames[status] : "";
+}
+
+std::string PhaseName(std::uint8_t phase) {
+  static constexpr std::array<const char*, 7> kNames{
+      "starting", "training", "evaluating", "waiting", "done", "interrupted", "failed"};
+  return phase < kNames.size() ? kNames[phase] : "";
+}
+
+std::string Signed(double value) { return (value > 0.0 ? "+" : "") + Number(value, 1); }
+
+std::string MissingSteps(std::uint64_t count) {
+  return std::to_string(count) + (count == 1 ? " step is" : " steps are") +
+         " missing; 'verify' says which";
+}
+
+std::array<std::pair<const char*, float>, 7> RewardTermsOf(const aquafarm_msgs::FarmState& state) {
+  std::array<std::pair<const char*, float>, 7> sums{{{"crash", 0.0F},
+                                                     {"disaster", 0.0F},
+                                                     {"pickup", 0.0F},
+                                                     {"drop-off", 0.0F},
+                                                     {"illegal", 0.0F},
+                                                     {"collision", 0.0F},
+                                                     {"step", 0.0F}}};
+  for (const auto& ship : state.ships) {
+    const auto& terms = ship.terms;
+    const std::array<float, 7> own{terms.crash,   terms.disaster,  terms.pickup, terms.drop_off,
+                                   terms.illegal, terms.collision, terms.step};
+    for (std::size_t i = 0; i < own.size(); ++i) sums[i].second += own[i];
+  }
+  return sums;
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/scene/ranch_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/base/text.h"
+#include "aquafarm_viz/scene/labels.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::TrainingStatus;
+
+std::string Place(int x, int y) { return "(" + std::to_string(x) + ", " + std::to_string(y) + ")"; }
+
+std::string Percent(double share) {
+  return std::isfinite(share) ? Number(100.0 * share, 0) + " %" : "-";
+}
+
+}  // namespace
+
+std::string RanchModel::Take(const aquafarm_msgs::FarmStateConstPtr& state) {
+  return pairing_.AddState(state);
+}
+
+void RanchModel::Take(const aquafarm_msgs::TrainingStatusConstPtr& training) {
+  const bool is_new = training_ == nullptr || training_->run_dir != training->run_dir ||
+                      training->episode < training_->episode;
+  const bool moved = is_new || training->episode > training_->episode;
+  if (is_new) {
+    curve_.clear();
+    every_ = 1;
+    came_ = 0;
+  }
+  training_ = training;
+  if (!moved || !std::isfinite(training->mean_return) || came_++ % every_ != 0) return;
+  curve_.push_back({double(training->episode), double(training->mean_return),
+                    std::isfinite(training->success_rate) ? double(training->success_rate) : 0.0});
+  if (curve_.size() < kMostPoints) return;
+  for (std::size_t i = 0; 2 * i < curve_.size(); ++i) curve_[i] = curve_[2 * i];
+  curve_.resize((curve_.size() + 1) / 2);
+  every_ *= 2;
+}
+
+bool RanchModel::paused() const { return shown().state != nullptr && shown().state->paused; }
+
+std::string RanchModel::Headline() const {
+  if (shown().state == nullptr) return "no ranch yet";
+  const auto& spec = *shown().spec;
+  const auto& state = *shown().state;
+  std::string text = spec.scenario_name + "   episode " + Count(state.episode) + "   step " +
+                     Count(state.step) + " / " +
+                     Count(std::uint64_t(std::max(0, spec.step_limit))) + "   return " +
+                     Number(state.joint_return, 1) + "   seed " + std::to_string(state.seed);
+  if (state.paused) text += "   paused";
+  return text;
+}
+
+std::string RanchModel::RewardLine() const {
+  if (shown().state == nullptr) return "";
+  std::string text = "reward " + Signed(shown().state->joint_reward);
+  const char* between = ":   ";
+  for (const auto& [name, value] : RewardTermsOf(*shown().state)) {
+    if (value == 0.0F) continue;
+    text += between + std::string(name) + " " + Signed(value);
+    between = "   ";
+  }
+  return text;
+}
+
+std::string RanchModel::TrainingLine() const {
+  if (training_ == nullptr) return "";
+  const TrainingStatus& now = *training_;
+  std::string text = now.algorithm + ", " + PhaseName(now.phase) + "   episode " +
+                     Count(now.episode) + (now.episodes > 0 ? " / " + Count(now.episodes) : "") +
+                     "   mean return " + Number(now.mean_return, 1) + "   success " +
+                     Percent(now.success_rate);
+  if (now.steps_per_second > 0.0F) text += "   " + Rate(now.steps_per_second) + " steps/s";
+  if (const auto left = Duration(now.time_left_s); !left.empty()) text += "   left " + left;
+  return text;
+}
+
+const RanchModel::Row& RanchModel::ShipColumns() {
+  static const Row columns{"ship", "cell", "action", "aboard", "reward", "return"};
+  return columns;
+}
+
+const RanchModel::Row& RanchModel::DeviceColumns() {
+  static const Row columns{"device", "kind", "cell", "status", "health", "value"};
+  return columns;
+}
+
+std::vector<RanchModel::Row> RanchModel::Ships() const {
+  std::vector<Row> rows;
+  if (shown().state == nullptr) return rows;
+  for (const auto& ship : shown().state->ships) {
+    std::string aboard;
+    for (const int device : ship.aboard) {
+      aboard += (aboard.empty() ? "" : ", ") + std::to_string(device);
+    }
+    const std::string fault = OutcomeName(ship.outcome);
+    rows.push_back(
+        {ship.own_device >= 0 ? std::to_string(ship.id) + " (device)" : std::to_string(ship.id),
+         ship.visible ? Place(ship.x, ship.y) : "?",
+         ActionName(ship.action) + (fault.empty() ? "" : ": " + fault), aboard,
+         Signed(double(ship.reward)), Number(double(ship.episode_return), 1)});
+  }
+  return rows;
+}
+
+std::vector<RanchModel::Row> RanchModel::Devices() const {
+  std::vector<Row> rows;
+  if (shown().state == nullptr) return rows;
+  for (const auto& device : shown().state->devices) {
+    rows.push_back({std::to_string(device.id), DeviceName(device.kind), Place(device.x, device.y),
+                    StatusName(device.status),
+                    device.health_known ? Percent(double(device.health)) : "?",
+                    Number(double(device.value), 0)});
+  }
+  return rows;
+}
+
+aquafarm_msgs::DisasterInfo RanchModel::MakeDisaster(std::uint8_t kind, std::uint8_t grade,
+                                                     double radius) const {
+  aquafarm_msgs::DisasterInfo info;
+  info.kind = kind;
+  info.grade = grade;
+  // The worst risk follows the grade, -5 (blue) to -20 (red), and falls to -5 outside.
+  const float worst = -5.0F * static_cast<float>(grade);
+  for (const float share : {1.0F / 3.0F, 2.0F / 3.0F, 1.0F}) {
+    info.radii.push_back(static_cast<float>(radius) * share);
+    info.risks.push_back(worst + (-5.0F - worst) * (share - 1.0F / 3.0F) * 1.5F);
+  }
+  info.speed = 0.25F;
+  info.turn_probability = 0.1F;
+  info.duration = 1000;
+  info.has_start = true;
+  if (shown().state == nullptr) return info;
+  info.x = 0.5F * static_cast<float>(shown().spec->width - 1);
+  info.y = 0.5F * static_cast<float>(shown().spec->height - 1);
+  if (shown().state->ships.empty() || !shown().state->ships[0].visible) return info;
+  info.x = static_cast<float>(shown().state->ships[0].x);
+  info.y = static_cast<float>(shown().state->ships[0].y);
+  return info;
+}
+
+std::int32_t RanchModel::NextDisaster() const {
+  return shown().state == nullptr ? 0 : static_cast<std::int32_t>(shown().state->disasters.size());
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/scene/trail.h"
+
+#include <cstdlib>
+
+#include "aquafarm_viz/base/palette.h"
+
+namespace aquafarm_viz {
+
+void Wake::Update(const aquafarm_msgs::FarmState& state) {
+  if (state.seed != seed_ || state.episode != episode_ || state.step < step_) ships_.clear();
+  seed_ = state.seed;
+  episode_ = state.episode;
+  step_ = state.step;
+  for (const auto& ship : state.ships) {
+    if (!ship.visible) {
+      ships_.erase(ship.id);
+      continue;
+    }
+    ShipWake& wake = ships_[ship.id];
+    if (const int bearing = MoveBearingDeg(ship.action); bearing >= 0) wake.bearing_deg = bearing;
+    const cv::Point place(ship.x, ship.y);
+    if (!wake.places.empty()) {
+      const cv::Point last = wake.places.back();
+      if (last == place) continue;
+      if (IsGap(last, place) && length_ < kWhole) wake.places.clear();
+    }
+    wake.places.push_back(place);
+    if (wake.places.size() > length_) wake.places.pop_front();
+  }
+}
+
+bool Wake::IsGap(cv::Point from, cv::Point to) {
+  return std::abs(double(from.x) - to.x) > kMaxJump || std::abs(double(from.y) - to.y) > kMaxJump;
+}
+
+std::size_t ShipWake::UnbrokenFrom() const {
+  std::size_t first = places.empty() ? 0 : places.size() - 1;
+  while (first > 0 && !Wake::IsGap(places[first - 1], places[first])) --first;
+  return first;
+}
+
+const ShipWake* Wake::Find(std::int32_t ship) const {
+  const auto found = ships_.find(ship);
+  return found == ships_.end() ? nullptr : &found->second;
+}
+
+int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Wake* wake) {
+  if (const int bearing = MoveBearingDeg(ship.action); bearing >= 0) return bearing;
+  const ShipWake* known = wake == nullptr ? nullptr : wake->Find(ship.id);
+  return known == nullptr ? 0 : known->bearing_deg;
+}
+
+}  // namespace aquafarm_viz

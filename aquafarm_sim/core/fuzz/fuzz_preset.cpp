@@ -5,6 +5,7 @@
 #include <string>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/scenario/validate.h"
 #include "aquafarm/storms/presets.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "aquafarm/farm/farm.h"
+#include "aquafarm/scenario/validate.h"
 
 namespace aquafarm::test {
 

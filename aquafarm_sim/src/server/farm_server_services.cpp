@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/scenario/validate.h"
 #include "aquafarm/storms/to_disaster.h"
 #include "aquafarm_sim/server/farm_server.h"
 

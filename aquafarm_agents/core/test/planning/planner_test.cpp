@@ -17,6 +17,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/forecast.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/scenario/validate.h"
 
 namespace aquafarm::agents {
 namespace {

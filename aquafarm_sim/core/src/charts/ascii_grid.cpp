@@ -7,9 +7,10 @@
 #include <limits>
 #include <map>
 
+#include "base/files.h"
+#include "base/text.h"
 #include "charts/map_image.h"
 #include "input/parse_context.h"
-#include "scenario/domains.h"
 
 namespace aquafarm {
 namespace {

@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "base/field_error.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "input/json_object.h"
 
 namespace aquafarm {

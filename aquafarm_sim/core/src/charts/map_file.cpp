@@ -9,9 +9,10 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/layout.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "charts/map_image.h"
 #include "charts/map_yaml.h"
-#include "input/parse_context.h"
 #include "scenario/yaml_reader.h"
 
 namespace aquafarm {

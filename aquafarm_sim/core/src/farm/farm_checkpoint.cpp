@@ -11,6 +11,7 @@
 #include "aquafarm/base/version.h"
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/grid/action.h"
+#include "aquafarm/scenario/validate.h"
 #include "base/cbor.h"
 
 namespace aquafarm {

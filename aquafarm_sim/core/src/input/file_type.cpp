@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "aquafarm/input/track_format.h"
+#include "base/text.h"
 #include "input/json_object.h"
 
 namespace aquafarm::internal {

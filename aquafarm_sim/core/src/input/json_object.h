@@ -7,7 +7,12 @@
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
 
+#include "aquafarm/grid/geo_frame.h"
+#include "base/text.h"
 #include "input/parse_context.h"
 
 namespace aquafarm::internal {
@@ -59,20 +64,5 @@ class JsonObject {
   std::string path_;
   HazardPlace& place_;
 };
-
-inline constexpr double kMostRadius_km = 3000.0;
-
-/// The radii of an object by the keys of its quadrants, north-east first and in either case. Those
-/// that it leaves out beside others are as `otherwise`, with a warning.
-std::array<double, kQuadrantCount> ReadQuadrants(
-    const nlohmann::json& value, const std::string& path,
-    const std::array<const char*, kQuadrantCount>& keys, std::int32_t wind_kt,
-    const std::array<double, kQuadrantCount>& otherwise, HazardPlace& place);
-
-/// The ring of a wind from what a bulletin says of its quadrants. Bulletins write 0 and nothing
-/// alike: where the storm itself blows that hard, no radius means that it was not said; where it
-/// does not, that there is none.
-void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
-                 HazardFix& fix);
 
 }  // namespace aquafarm::internal

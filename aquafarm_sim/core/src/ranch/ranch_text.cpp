@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "input/parse_context.h"
-#include "scenario/domains.h"
+#include "base/text.h"
+#include "base/time.h"
 
 namespace aquafarm::internal {
 namespace {

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "aquafarm/charts/chart.h"
-#include "aquafarm/ranch/ranch_builder.h"
+#include "aquafarm/ranch/ranch_request.h"
+#include "aquafarm/sea/expression.h"
 #include "aquafarm/sea/sea_field.h"
 #include "aquafarm/storms/to_disaster.h"
 

@@ -14,6 +14,8 @@
 
 #include "aquafarm/scenario/scenario.h"
 #include "base/field_error.h"
+#include "base/text.h"
+#include "base/time.h"
 
 namespace aquafarm::internal {
 
@@ -51,47 +53,24 @@ struct ListOf {
 template <typename Enum>
 inline constexpr std::size_t kNameCount = 0;
 template <>
-inline constexpr std::size_t kNameCount<LayoutMode> = 2;
+inline constexpr std::size_t kNameCount<LayoutMode> = kLayoutModeCount;
 template <>
-inline constexpr std::size_t kNameCount<DevicePlacement> = 4;
+inline constexpr std::size_t kNameCount<DevicePlacement> = kDevicePlacementCount;
 template <>
-inline constexpr std::size_t kNameCount<Border> = 3;
+inline constexpr std::size_t kNameCount<Border> = kBorderCount;
 template <>
-inline constexpr std::size_t kNameCount<ViewMode> = 2;
+inline constexpr std::size_t kNameCount<ViewMode> = kViewModeCount;
 template <>
-inline constexpr std::size_t kNameCount<RewardSharing> = 2;
+inline constexpr std::size_t kNameCount<RewardSharing> = kRewardSharingCount;
 template <>
 inline constexpr std::size_t kNameCount<DeviceKind> = kDeviceKindCount;
 template <>
 inline constexpr std::size_t kNameCount<DisasterKind> = kDisasterKindCount;
 
-/// The shortest decimal text that reads back to the same bits, with a point whatever the locale.
-std::string Format(float value);
-std::string Format(double value);
-std::string Format(std::int32_t value);
-std::string Format(std::uint64_t value);
-/// YYYY-MM-DDTHH:MM:SSZ
-std::string FormatTime(std::int64_t seconds);
-
-/// Readers of whole texts; false when the text is anything else or does not fit the type.
-bool Parse(const std::string& text, float& value);
-bool Parse(const std::string& text, double& value);
-bool Parse(const std::string& text, std::int32_t& value);
-bool Parse(const std::string& text, std::uint64_t& value);
-bool ParseTime(const std::string& text, std::int64_t& seconds);
-/// UTC seconds since 1970 of a date and time; none: there is no such day or hour.
-std::optional<std::int64_t> UtcSeconds(int year, int month, int day, int hour, int minute,
-                                       int second);
-
 template <typename T>
 std::string Describe(const Interval<T>& domain) {
   return (domain.open_min ? "(" : "[") + Format(domain.min) + ", " + Format(domain.max) + "]";
 }
-
-/// The nearest of some names to a mistyped one, or none.
-std::optional<std::string> Nearest(const std::string& text, const std::vector<std::string>& names);
-/// "a, b, c"
-std::string List(const std::vector<std::string>& names);
 
 template <typename Enum>
 std::vector<std::string> NamesOf() {

@@ -5,7 +5,9 @@
 #include <filesystem>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/sea/expression.h"
 #include "aquafarm/sea/sea_field.h"
+#include "base/text.h"
 #include "scenario/schema.h"
 
 namespace aquafarm::internal {

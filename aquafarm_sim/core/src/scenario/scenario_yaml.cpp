@@ -9,6 +9,8 @@
 #include <sstream>
 
 #include "aquafarm/base/hash.h"
+#include "aquafarm/scenario/validate.h"
+#include "base/time.h"
 #include "scenario/yaml_reader.h"
 #include "scenario/yaml_writer.h"
 

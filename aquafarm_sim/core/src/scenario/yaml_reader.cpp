@@ -7,6 +7,9 @@
 #include <limits>
 #include <sstream>
 
+#include "base/text.h"
+#include "base/time.h"
+
 namespace aquafarm::internal {
 namespace {
 

@@ -8,9 +8,9 @@
 #include <fstream>
 
 #include "aquafarm/base/check.h"
+#include "base/files.h"
+#include "base/text.h"
 #include "input/file_type.h"
-#include "input/parse_context.h"
-#include "scenario/domains.h"
 #include "sea/nc_classic.h"
 
 namespace aquafarm::internal {

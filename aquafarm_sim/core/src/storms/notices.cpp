@@ -6,9 +6,11 @@
 #include <cstdlib>
 
 #include "base/field_error.h"
+#include "base/files.h"
+#include "base/text.h"
+#include "base/time.h"
 #include "input/file_type.h"
 #include "input/json_object.h"
-#include "scenario/domains.h"
 
 namespace aquafarm {
 namespace {

@@ -6,7 +6,8 @@
 #include <map>
 
 #include "aquafarm/base/check.h"
-#include "input/parse_context.h"
+#include "aquafarm/scenario/validate.h"
+#include "base/text.h"
 #include "scenario/domains.h"
 
 namespace aquafarm {

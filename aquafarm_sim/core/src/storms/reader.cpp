@@ -6,40 +6,17 @@
 #include <set>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/input/track_format.h"
 #include "base/field_error.h"
+#include "base/files.h"
+#include "base/text.h"
+#include "base/time.h"
 #include "input/file_type.h"
 #include "input/json_object.h"
-#include "scenario/domains.h"
+#include "storms/formats/formats.h"
 
 namespace aquafarm {
 namespace {
-
-// The first line from `text` that is not blank; takes it off.
-std::string_view TakeLine(std::string_view& text) {
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = internal::Trim(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (!line.empty()) return line;
-  }
-  return {};
-}
-
-bool IsDigits(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-// CMA and JMA: times of ten digits against eight.
-std::optional<HazardFormat> DetectBestTrack(std::string_view text) {
-  const std::vector<std::string_view> words = internal::SplitWords(TakeLine(text));
-  if (words.empty() || !IsDigits(words[0])) return std::nullopt;
-  if (words[0].size() == 8 && words.size() > 1 && words[1] == "002") return HazardFormat::kJma;
-  return HazardFormat::kCma;
-}
-
-bool HasKey(std::string_view text, std::string_view key) {
-  return text.find(key) != std::string_view::npos;
-}
 
 // Gives storms that share an id one each: files of several years put together have such.
 void TellApart(HazardFile& file, internal::HazardPlace& place) {
@@ -75,37 +52,13 @@ void TellApart(HazardFile& file, internal::HazardPlace& place) {
 
 }  // namespace
 
-std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
-  std::string_view rest = internal::WithoutMark(text);
-  const std::string_view whole = rest;
-  const std::string_view first = TakeLine(rest);
-  if (first.substr(0, 5) == "66666") return DetectBestTrack(rest);
-  if (first.substr(0, 4) == "SID,") return HazardFormat::kIbtracs;
-  std::vector<std::string_view> fields;
-  internal::SplitFields(first.substr(0, 1000), fields);
-  if (fields.size() > 7 && fields[0].size() == 2 && IsDigits(fields[2])) {
-    return HazardFormat::kAtcf;
-  }
-  const bool json = !first.empty() && std::string_view("[{`/").find(first[0]) != first.npos;
-  if (!json && !internal::IsAssignment(first)) return std::nullopt;
-  if (HasKey(whole, "\"tfbh\"") || HasKey(whole, "\"tfid\"") ||
-      (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
-    return HazardFormat::kBulletin;
-  }
-  if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"") ||
-      (HasKey(whole, "\"forecast\"") && HasKey(whole, "\"fxTime\""))) {
-    return HazardFormat::kWeatherService;
-  }
-  return std::nullopt;
-}
-
 HazardFile ParseHazardFile(const std::string& text, const std::string& origin_name) {
   HazardFile file;
   internal::HazardPlace place(origin_name, file.warnings);
   place.line = 1;
   const std::string clean = internal::CleanJson(text);
   std::string_view content = clean;
-  const std::string_view first = TakeLine(content);
+  const std::string_view first = internal::TakeLine(content);
   if (first == "[]") place.Refuse("got an empty list, expected a list of storms");
   const bool binary = text.find('\0') != std::string::npos;
   const std::optional<HazardFormat> format = binary ? std::nullopt : DetectHazardFormat(text);

@@ -8,8 +8,9 @@
 
 #include "aquafarm/base/check.h"
 #include "base/name_of.h"
-#include "input/parse_context.h"
-#include "scenario/domains.h"
+#include "base/text.h"
+#include "grid/longitude.h"
+#include "storms/track_text.h"
 
 namespace aquafarm {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/name_of.h"
-#include "input/parse_context.h"
+#include "storms/track_text.h"
 
 namespace aquafarm {
 namespace {
@@ -79,12 +79,6 @@ double RadiusOf(double wind_mps, const HollandProfile& profile) {
 }
 
 }  // namespace
-
-std::string_view ToString(HazardFormat value) {
-  return internal::NameOf(value, std::array<std::string_view, kHazardFormatCount>{
-                                     "CMA best track", "JMA best track", "ATCF b-deck", "IBTrACS",
-                                     "bulletin", "weather service track"});
-}
 
 std::string_view ToString(StormGrade value) {
   return internal::NameOf(value, std::array<std::string_view, kStormGradeCount>{

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/scenario/validate.h"
 #include "tiny_farms.h"
 
 namespace aquafarm {

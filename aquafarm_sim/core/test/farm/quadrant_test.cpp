@@ -9,6 +9,7 @@
 #include "aquafarm/observation/encoder.h"
 #include "aquafarm/observation/farm_batch.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/scenario/validate.h"
 #include "tiny_farms.h"
 
 namespace aquafarm {

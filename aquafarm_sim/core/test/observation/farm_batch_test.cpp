@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/scenario/validate.h"
 #include "tiny_farms.h"
 
 namespace {

@@ -8,6 +8,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/grid/geo_frame.h"
+#include "aquafarm/scenario/validate.h"
 #include "tiny_farms.h"
 
 namespace aquafarm {

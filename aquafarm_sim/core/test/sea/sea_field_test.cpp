@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/sea/expression.h"
 #include "shared_data.h"
 #include "write_sea.h"
 

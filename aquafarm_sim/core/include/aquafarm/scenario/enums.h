@@ -36,10 +36,15 @@ std::string_view ToString(DeviceStatus value);
 std::string_view ToString(DisasterKind value);
 
 enum class LayoutMode : std::uint8_t { kFixed, kPerEpisode };
+inline constexpr int kLayoutModeCount = 2;
 enum class DevicePlacement : std::uint8_t { kUniform, kLinear, kRandom, kExplicit };
+inline constexpr int kDevicePlacementCount = 4;
 enum class Border : std::uint8_t { kReflect, kWrap, kLeave };
+inline constexpr int kBorderCount = 3;
 enum class ViewMode : std::uint8_t { kFull, kPartial };
+inline constexpr int kViewModeCount = 2;
 enum class RewardSharing : std::uint8_t { kIndividual, kTeam };
+inline constexpr int kRewardSharingCount = 2;
 std::string_view ToString(LayoutMode value);
 std::string_view ToString(DevicePlacement value);
 std::string_view ToString(Border value);

@@ -50,15 +50,4 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
 Layer ToLayer(const SeaField& field, const GeoFrame& frame, std::int32_t width,
               std::int32_t height);
 
-/// A named layer for an expression.
-struct NamedLayer {
-  std::string name;  ///< letters, digits and _, not first a digit
-  Layer layer;
-};
-
-/// Evaluates an expression (muParser's: + - * / ^, comparisons, ?:, min, max, exp …) at every
-/// cell, with each layer's value under its name. NaN in gives NaN out.
-/// @throws InputError "got 'sal * ', expected an expression: …"
-Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& layers);
-
 }  // namespace aquafarm

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "aquafarm/input/track_format.h"
 #include "aquafarm/storms/track.h"
 
 namespace aquafarm {
@@ -17,10 +18,6 @@ struct HazardFile {
   std::vector<HazardTrack> tracks;    ///< at least one, in the order of the file
   std::vector<std::string> warnings;  ///< repairs made: "file:line: what was done"
 };
-
-/// The format of a text by its content; none: it is no file of tracks. CMA and JMA files start
-/// with the same word and are told apart by the first point.
-std::optional<HazardFormat> DetectHazardFormat(const std::string& text);
 
 /// Reads a file of tracks in whichever format it is.
 /// @throws InputError "CH2021BST.txt:12: latitude: got 950, expected [-900, 900]"

@@ -22,17 +22,6 @@ namespace aquafarm {
 inline constexpr double kKmPerNauticalMile = 1.852;
 inline constexpr double kMpsPerKnot = 0.514444;
 
-enum class HazardFormat : std::uint8_t {
-  kCma,             ///< CMA best track, CHyyyyBST.txt
-  kJma,             ///< JMA / RSMC Tokyo best track, bst_*.txt
-  kAtcf,            ///< ATCF b-deck, bWPnnyyyy.dat
-  kIbtracs,         ///< IBTrACS v04 CSV
-  kBulletin,        ///< typhoon bulletin, also Zhejiang's (tfbh or tfid, points with radius7…)
-  kWeatherService,  ///< storm-track answer of a weather service (track with windRadius30 …)
-};
-inline constexpr int kHazardFormatCount = 6;
-std::string_view ToString(HazardFormat value);
-
 /// Grades of tropical cyclones by the greatest mean wind near the centre, GB/T 19201-2006.
 enum class StormGrade : std::uint8_t {
   kUnknown,  ///< not said, or weaker than a depression

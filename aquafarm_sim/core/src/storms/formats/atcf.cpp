@@ -6,7 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "input/parse_context.h"
+#include "base/text.h"
+#include "grid/longitude.h"
+#include "storms/formats/formats.h"
+#include "storms/track_text.h"
 
 namespace aquafarm::internal {
 namespace {

@@ -7,8 +7,12 @@
 #include <array>
 
 #include "base/field_error.h"
+#include "base/text.h"
+#include "base/time.h"
 #include "input/json_object.h"
-#include "scenario/domains.h"
+#include "storms/bulletin_rings.h"
+#include "storms/formats/formats.h"
+#include "storms/track_text.h"
 
 namespace aquafarm::internal {
 namespace {

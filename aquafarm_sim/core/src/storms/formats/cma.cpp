@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include "input/parse_context.h"
+#include "base/text.h"
+#include "storms/formats/formats.h"
+#include "storms/track_text.h"
 
 namespace aquafarm::internal {
 namespace {

@@ -4,7 +4,11 @@
 #include <array>
 #include <map>
 
-#include "input/parse_context.h"
+#include "base/text.h"
+#include "base/time.h"
+#include "grid/longitude.h"
+#include "storms/formats/formats.h"
+#include "storms/track_text.h"
 
 namespace aquafarm::internal {
 namespace {

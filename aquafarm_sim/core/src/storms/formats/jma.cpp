@@ -2,7 +2,9 @@
 // JMA / RSMC Tokyo best track: fixed columns. (jma.go.jp, e_format_bst.html)
 #include <cmath>
 
-#include "input/parse_context.h"
+#include "base/text.h"
+#include "storms/formats/formats.h"
+#include "storms/track_text.h"
 
 namespace aquafarm::internal {
 namespace {

@@ -6,7 +6,11 @@
 #include <array>
 
 #include "base/field_error.h"
+#include "base/text.h"
 #include "input/json_object.h"
+#include "storms/bulletin_rings.h"
+#include "storms/formats/formats.h"
+#include "storms/track_text.h"
 
 namespace aquafarm::internal {
 namespace {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/files.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::internal {
+
+void NeedRegularFile(const std::string& path) {
+  std::error_code error;  // that it is not there is said by who reads it
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (error || std::filesystem::is_regular_file(status)) return;
+  throw InputError(path + ": cannot read: is no regular file");
+}
+
+std::string ReadTextFile(const std::string& path) {
+  constexpr std::streamoff kMostBytes = std::streamoff{512} << 20U;
+  NeedRegularFile(path);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
+  if (size > kMostBytes) {
+    throw InputError(path + ": got " + std::to_string(size) + " bytes, expected at most " +
+                     std::to_string(kMostBytes));
+  }
+  std::string text(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
+  file.seekg(0);
+  if (size < 0 || !file.read(text.data(), static_cast<std::streamsize>(text.size()))) {
+    throw InputError(path +
+                     ": cannot read: " + (errno != 0 ? std::strerror(errno) : "ended early"));
+  }
+  return text;
+}
+
+}  // namespace aquafarm::internal

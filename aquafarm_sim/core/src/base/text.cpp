@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <locale>
+#include <numeric>
+#include <sstream>
+
+namespace aquafarm::internal {
+namespace {
+
+template <typename T>
+std::string FormatReal(T value) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  for (int digits = std::numeric_limits<T>::digits10;; ++digits) {
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out.precision(digits);
+    out << value;
+    T back{};
+    if (digits >= std::numeric_limits<T>::max_digits10 || (Parse(out.str(), back) && back == value))
+      return out.str();
+  }
+}
+
+// A stream of the classic locale rounds correctly and knows no nan, inf or other decimal point;
+// hexadecimal it knows.
+template <typename T>
+bool ParseReal(const std::string& text, T& value) {
+  if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return false;
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  T parsed{};
+  if (!(in >> parsed) || in.peek() != std::istringstream::traits_type::eof()) return false;
+  value = parsed;
+  return std::isfinite(parsed);
+}
+
+bool IsWhole(const std::string& text, bool minus) {
+  const std::size_t first = minus && !text.empty() && text[0] == '-' ? 1 : 0;
+  return text.size() > first && text.size() < 22 &&
+         text.find_first_not_of("0123456789", first) == std::string::npos;
+}
+
+std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
+
+template <typename T>
+bool ParseAll(std::string_view text, T& value) {
+  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+  const auto end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  return result.ec == std::errc() && result.ptr == end;
+}
+
+}  // namespace
+
+std::string Format(float value) { return FormatReal(value); }
+
+std::string Format(double value) { return FormatReal(value); }
+
+std::string Format(std::int32_t value) { return std::to_string(value); }
+
+std::string Format(std::uint64_t value) { return std::to_string(value); }
+
+bool Parse(const std::string& text, float& value) { return ParseReal(text, value); }
+
+bool Parse(const std::string& text, double& value) { return ParseReal(text, value); }
+
+bool Parse(const std::string& text, std::int32_t& value) {
+  if (!IsWhole(text, true) || text.size() > 11) return false;
+  const long long parsed = std::stoll(text);
+  if (parsed < std::numeric_limits<std::int32_t>::min() ||
+      parsed > std::numeric_limits<std::int32_t>::max()) {
+    return false;
+  }
+  value = static_cast<std::int32_t>(parsed);
+  return true;
+}
+
+bool Parse(const std::string& text, std::uint64_t& value) {
+  if (!IsWhole(text, false)) return false;
+  std::uint64_t parsed = 0;
+  for (const char c : text) {
+    const auto digit = static_cast<std::uint64_t>(c - '0');
+    if (parsed > (std::numeric_limits<std::uint64_t>::max() - digit) / 10) return false;
+    parsed = parsed * 10 + digit;
+  }
+  value = parsed;
+  return true;
+}
+
+std::optional<std::string> Nearest(const std::string& text, const std::vector<std::string>& names) {
+  std::optional<std::string> best;
+  std::size_t least = std::min<std::size_t>(3, text.size() / 2 + 1);
+  if (text.size() > 100) return best;
+  for (const std::string& name : names) {
+    const std::size_t distance = EditDistance(text, name);
+    if (distance >= least) continue;
+    least = distance;
+    best = name;
+  }
+  return best;
+}
+
+std::string List(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+std::string_view WithoutMark(std::string_view text) {
+  return text.substr(text.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0);
+}
+
+std::string_view Trim(std::string_view text) {
+  while (!text.empty() && IsBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && IsBlank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::vector<std::string_view> SplitWords(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (;;) {
+    text = Trim(text);
+    if (text.empty()) return words;
+    const std::size_t end =
+        static_cast<std::size_t>(std::find_if(text.begin(), text.end(), IsBlank) - text.begin());
+    words.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+}
+
+void SplitFields(std::string_view text, std::vector<std::string_view>& fields) {
+  fields.clear();
+  for (;;) {
+    const std::size_t end = text.find(',');
+    fields.push_back(Trim(text.substr(0, end)));
+    if (end == std::string_view::npos) return;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::string Quoted(std::string_view text) {
+  constexpr std::size_t kMost = 40;
+  std::string quoted = "'";
+  for (const char c : text.substr(0, kMost)) {
+    quoted += static_cast<unsigned char>(c) < 0x20U ? '?' : c;
+  }
+  return quoted + (text.size() > kMost ? "…'" : "'");
+}
+
+std::string Upper(std::string_view text) {
+  std::string upper(text);
+  for (char& c : upper) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  return upper;
+}
+
+std::optional<double> ParseNumber(std::string_view text) {
+  double value = 0.0;
+  if (!ParseAll(Trim(text), value)) return std::nullopt;
+  return value;
+}
+
+std::optional<std::int32_t> ParseWhole(std::string_view text) {
+  std::int32_t value = 0;
+  if (!ParseAll(text, value)) return std::nullopt;
+  return value;
+}
+
+std::string_view TakeLine(std::string_view& text) {
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = Trim(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (!line.empty()) return line;
+  }
+  return {};
+}
+
+}  // namespace aquafarm::internal

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/input/track_format.h"
+
+#include <vector>
+
+#include "base/name_of.h"
+#include "base/text.h"
+#include "input/json_object.h"
+
+namespace aquafarm {
+namespace {
+
+bool IsDigits(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// CMA and JMA: times of ten digits against eight.
+std::optional<HazardFormat> DetectBestTrack(std::string_view text) {
+  const std::vector<std::string_view> words = internal::SplitWords(internal::TakeLine(text));
+  if (words.empty() || !IsDigits(words[0])) return std::nullopt;
+  if (words[0].size() == 8 && words.size() > 1 && words[1] == "002") return HazardFormat::kJma;
+  return HazardFormat::kCma;
+}
+
+bool HasKey(std::string_view text, std::string_view key) {
+  return text.find(key) != std::string_view::npos;
+}
+
+}  // namespace
+
+std::string_view ToString(HazardFormat value) {
+  return internal::NameOf(value, std::array<std::string_view, kHazardFormatCount>{
+                                     "CMA best track", "JMA best track", "ATCF b-deck", "IBTrACS",
+                                     "bulletin", "weather service track"});
+}
+
+std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
+  std::string_view rest = internal::WithoutMark(text);
+  const std::string_view whole = rest;
+  const std::string_view first = internal::TakeLine(rest);
+  if (first.substr(0, 5) == "66666") return DetectBestTrack(rest);
+  if (first.substr(0, 4) == "SID,") return HazardFormat::kIbtracs;
+  std::vector<std::string_view> fields;
+  internal::SplitFields(first.substr(0, 1000), fields);
+  if (fields.size() > 7 && fields[0].size() == 2 && IsDigits(fields[2])) {
+    return HazardFormat::kAtcf;
+  }
+  const bool json = !first.empty() && std::string_view("[{`/").find(first[0]) != first.npos;
+  if (!json && !internal::IsAssignment(first)) return std::nullopt;
+  if (HasKey(whole, "\"tfbh\"") || HasKey(whole, "\"tfid\"") ||
+      (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
+    return HazardFormat::kBulletin;
+  }
+  if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"") ||
+      (HasKey(whole, "\"forecast\"") && HasKey(whole, "\"fxTime\""))) {
+    return HazardFormat::kWeatherService;
+  }
+  return std::nullopt;
+}
+
+}  // namespace aquafarm

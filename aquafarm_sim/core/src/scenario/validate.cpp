@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/scenario/validate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "scenario/schema.h"
+
+namespace aquafarm {
+namespace {
+
+using internal::At;
+using internal::FieldError;
+using internal::Format;
+
+// Free disasters: every ring wider than the one inside it. Waypoints: never narrower, and 0 where a
+// ring is absent at that time.
+void CheckRings(const std::string& path, const std::vector<float>& radii,
+                const std::vector<float>& risks, std::size_t rings, bool waypoint) {
+  const std::string radii_path = internal::Join(path, "radii");
+  if (radii.size() != rings) {
+    throw FieldError(radii_path,
+                     "got " + std::to_string(radii.size()) +
+                         " entries, expected as many as risks: " + std::to_string(rings));
+  }
+  if (risks.size() != rings) {
+    throw FieldError(
+        internal::Join(path, "risks"),
+        "got " + std::to_string(risks.size()) +
+            " entries, expected as many as risks of the disaster: " + std::to_string(rings));
+  }
+  for (std::size_t i = 0; i < rings; ++i) {
+    const float inner = i == 0 ? 0.0F : radii[i - 1];
+    if (!waypoint && radii[i] <= inner) {
+      throw FieldError(At(radii_path, i), "got " + Format(radii[i]) + ", expected more than " +
+                                              (i == 0 ? "0" : At("radii", i - 1) + " = ") +
+                                              (i == 0 ? "" : Format(inner)));
+    }
+    if (radii[i] < inner) {
+      throw FieldError(At(radii_path, i), "got " + Format(radii[i]) + ", expected at least " +
+                                              At("radii", i - 1) + " = " + Format(inner));
+    }
+    if (i > 0 && risks[i] < risks[i - 1]) {
+      throw FieldError(At(internal::Join(path, "risks"), i),
+                       "got " + Format(risks[i]) + ", expected at least " + At("risks", i - 1) +
+                           " = " + Format(risks[i - 1]) + ", the worst first");
+    }
+  }
+}
+
+// Every ring by quadrants where one is, with radii as the largest; a quadrant never wider inside.
+void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& quadrants,
+                    const std::vector<float>& radii, bool expected) {
+  const std::string here = internal::Join(path, "quadrants");
+  if (quadrants.empty() == expected || (expected && quadrants.size() != radii.size())) {
+    throw FieldError(here, "got " + std::to_string(quadrants.size()) +
+                               " rings, expected as many as the disaster has, or none anywhere");
+  }
+  for (std::size_t i = 0; i < quadrants.size(); ++i) {
+    for (std::size_t q = 0; q < quadrants[i].size(); ++q) {
+      if (i == 0 || quadrants[i][q] >= quadrants[i - 1][q]) continue;
+      throw FieldError(At(At(here, i), q), "got " + Format(quadrants[i][q]) +
+                                               ", expected at least that of the ring inside, " +
+                                               Format(quadrants[i - 1][q]));
+    }
+  }
+  if (expected && internal::Largest(quadrants) != radii) {
+    throw FieldError(here, "got radii that are not the largest of each ring's quadrants");
+  }
+}
+
+// Forecasts in order of issue, each of them with points to come, in order of time.
+void CheckForecasts(const std::string& path, const std::vector<IssuedForecast>& forecasts) {
+  const auto check = [](const std::string& here, float step, float last, const std::string& what) {
+    if (step > last) return;
+    throw FieldError(internal::Join(here, "step"),
+                     "got " + Format(step) + ", expected more than that of " + what + Format(last));
+  };
+  for (std::size_t i = 0; i < forecasts.size(); ++i) {
+    const std::string here = At(path, i);
+    if (i > 0) check(here, forecasts[i].step, forecasts[i - 1].step, At("forecasts", i - 1) + ", ");
+    const std::vector<ForecastPoint>& points = forecasts[i].points;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      check(At(internal::Join(here, "points"), k), points[k].step,
+            k == 0 ? forecasts[i].step : points[k - 1].step,
+            k == 0 ? "its issue, " : At("points", k - 1) + ", ");
+    }
+  }
+}
+
+// What the ranges of single keys do not say.
+void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
+  const std::size_t rings = disaster.risks.size();
+  for (std::size_t i = 0; i < disaster.track.size(); ++i) {
+    const Waypoint& waypoint = disaster.track[i];
+    const std::string here = At(internal::Join(path, "track"), i);
+    CheckRings(here, waypoint.radii, waypoint.risks, rings, true);
+    CheckQuadrants(here, waypoint.quadrants, waypoint.radii, !disaster.quadrants.empty());
+    if (i == 0 || waypoint.step > disaster.track[i - 1].step) continue;
+    throw FieldError(internal::Join(here, "step"),
+                     "got " + Format(waypoint.step) + ", expected more than that of " +
+                         At("track", i - 1) + ", " + Format(disaster.track[i - 1].step));
+  }
+  const std::string forecasts = internal::Join(path, "forecasts");
+  if (disaster.track.empty() && !disaster.forecasts.empty()) {
+    throw FieldError(forecasts, "is used only where there is a track");
+  }
+  CheckForecasts(forecasts, disaster.forecasts);
+  CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
+  CheckQuadrants(path, disaster.quadrants, disaster.radii, !disaster.quadrants.empty());
+}
+
+// A layer's name is part of expressions and topics.
+bool IsLayerName(const std::string& name) {
+  const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
+  return !name.empty() && letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
+    return letter(c) || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+void CheckCellCount(const std::string& path, std::size_t values, const Scenario& scenario) {
+  const auto cells = static_cast<std::size_t>(scenario.CellCount());
+  if (values == cells) return;
+  throw FieldError(path, "got " + std::to_string(values) +
+                             " values, expected one a cell: " + std::to_string(cells));
+}
+
+// As they are written: those of a rule are checked where it is read.
+void CheckValues(const char* path, const std::vector<float>& values, const Scenario& scenario,
+                 internal::Interval<float> range) {
+  if (values.empty()) return;
+  CheckCellCount(path, values.size(), scenario);
+  internal::CheckPerCell(path, values, scenario.width, range);
+}
+
+void CheckSeas(const Scenario& scenario) {
+  if (!scenario.seas) return;
+  const SeaSpec& seas = *scenario.seas;
+  std::size_t values = seas.risk.size() + seas.device_value.size();
+  for (std::size_t i = 0; i < seas.layers.size(); ++i) {
+    const SeaLayer& layer = seas.layers[i];
+    const std::string path = At("seas.layers", i);
+    if (!IsLayerName(layer.name)) {
+      throw FieldError(path + ".name",
+                       "got '" + layer.name + "', expected a-z, 0-9 and _, a letter first");
+    }
+    const auto same = [&layer](const SeaLayer& other) { return other.name == layer.name; };
+    if (std::count_if(seas.layers.begin(), seas.layers.end(), same) > 1) {
+      throw FieldError(path + ".name", "got '" + layer.name + "' twice, expected it once");
+    }
+    CheckCellCount(path + ".values", layer.values.size(), scenario);
+    values += layer.values.size();
+  }
+  if (values > internal::kMaxSeaValues) {
+    throw FieldError("seas", "got " + std::to_string(values) + " values, expected at most " +
+                                 std::to_string(internal::kMaxSeaValues));
+  }
+  CheckValues("seas.risk_values", seas.risk, scenario, internal::kRisk);
+  CheckValues("seas.device_values", seas.device_value, scenario, internal::kDeviceValue);
+}
+
+// Marks what stands where and refuses a second thing on a cell.
+class Occupancy {
+ public:
+  enum Thing : std::uint8_t { kNothing, kIsland, kRock, kPort, kDevice };
+
+  explicit Occupancy(const Scenario& scenario)
+      : scenario_(scenario), what_(static_cast<std::size_t>(scenario.CellCount()), kNothing) {}
+
+  void PutIsland(const std::string& path, const IslandBlock& block) {
+    const Cell first = block.south_west;
+    const Cell last{first.x + block.width - 1, first.y + block.height - 1};
+    CheckOnMap(path, first);
+    CheckOnMap(path, last);
+    for (std::int32_t y = first.y; y <= last.y; ++y) {
+      for (std::int32_t x = first.x; x <= last.x; ++x) At({x, y}) = kIsland;
+    }
+  }
+
+  void Put(const std::string& path, Cell cell, Thing what) {
+    CheckOnMap(path, cell);
+    if (At(cell) != kNothing) {
+      constexpr std::array<const char*, 5> kNames{"nothing", "an island", "a rock", "a port",
+                                                  "a device"};
+      throw FieldError(
+          path, "got " + Name(cell) + ", expected a free cell; there is " + kNames[At(cell)]);
+    }
+    At(cell) = what;
+  }
+
+  std::int32_t FreeCells() const {
+    return static_cast<std::int32_t>(std::count(what_.begin(), what_.end(), kNothing));
+  }
+
+ private:
+  static std::string Name(Cell cell) { return "(" + Format(cell.x) + ", " + Format(cell.y) + ")"; }
+  void CheckOnMap(const std::string& path, Cell cell) const {
+    if (cell.x >= 0 && cell.x < scenario_.width && cell.y >= 0 && cell.y < scenario_.height) return;
+    throw FieldError(path, "got " + Name(cell) + ", expected a cell of the map, (0, 0) to " +
+                               Name({scenario_.width - 1, scenario_.height - 1}));
+  }
+  Thing& At(Cell cell) {
+    return what_[static_cast<std::size_t>(cell.y * scenario_.width + cell.x)];
+  }
+
+  const Scenario& scenario_;
+  std::vector<Thing> what_;
+};
+
+void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const char* of_what) {
+  if (wanted > free) {
+    throw FieldError(path, "got " + Format(wanted) + ", expected at most the " + Format(free) +
+                               " free water cells" + of_what);
+  }
+  free -= wanted;
+}
+
+constexpr std::uint64_t kMostWays = 16'777'216;  // 128 MiB a layout
+
+void CheckPlaces(const Scenario& scenario) {
+  constexpr std::int32_t kFewestCells = 4;  // planes are written in runs as long as these
+  if (scenario.CellCount() < kFewestCells) {
+    throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
+                                 Format(kFewestCells));
+  }
+  const std::uint64_t ways =
+      static_cast<std::uint64_t>(scenario.CellCount()) *
+      static_cast<std::uint64_t>(scenario.PortCount() + scenario.FetchableCount());
+  if (scenario.view.waterways && ways > kMostWays) {
+    throw FieldError("view.waterways",
+                     "needs " + Format(ways) +
+                         " ways (cells times ports and devices), expected at most " +
+                         Format(kMostWays));
+  }
+  Occupancy occupancy(scenario);
+  const auto put_all = [&occupancy](const std::string& path, const auto& cells,
+                                    Occupancy::Thing what) {
+    for (std::size_t i = 0; i < cells.size(); ++i) occupancy.Put(At(path, i), cells[i], what);
+  };
+  for (std::size_t i = 0; i < scenario.islands.size(); ++i) {
+    occupancy.PutIsland(At("layout.islands", i), scenario.islands[i]);
+  }
+  put_all("layout.rocks.cells", scenario.rocks.cells, Occupancy::kRock);
+  put_all("layout.ports.cells", scenario.ports.cells, Occupancy::kPort);
+  const DeviceSpec& devices = scenario.devices;
+  const bool chosen = devices.placement == DevicePlacement::kExplicit;
+  for (std::size_t i = 0; chosen && i < devices.sites.size(); ++i) {
+    occupancy.Put(At("layout.devices.sites", i) + ".cell", devices.sites[i].cell,
+                  Occupancy::kDevice);
+  }
+  std::int32_t free = occupancy.FreeCells();
+  const bool drawn_ports = scenario.ports.cells.empty();
+  CheckFits("layout.ports.count", drawn_ports ? scenario.ports.count : 0, free, "");
+  CheckFits("layout.devices.count", chosen ? 0 : devices.count, free, " beside the ports");
+  CheckFits("layout.rocks.count[1]", scenario.rocks.cells.empty() ? scenario.rocks.count.max : 0,
+            free, " beside the ports and devices");
+}
+
+void CheckForecast(const Scenario& scenario) {
+  const std::vector<float>& error_km = scenario.view.forecast_error_km;
+  if (error_km.empty()) return;
+  const std::string path = "view.forecast_error_km";
+  if (error_km.size() != 3) {
+    throw FieldError(path, "got " + std::to_string(error_km.size()) +
+                               " numbers, expected those after 24, 48 and 72 hours");
+  }
+  if (!std::is_sorted(error_km.begin(), error_km.end())) {
+    throw FieldError(path, "got an error that shrinks with time, expected ascending numbers");
+  }
+  if (std::none_of(scenario.disasters.begin(), scenario.disasters.end(),
+                   [](const DisasterSpec& one) { return !one.track.empty(); })) {
+    throw FieldError(path, "is used only where a disaster has a track");
+  }
+  for (std::size_t i = 0; i < scenario.disasters.size(); ++i) {
+    if (scenario.disasters[i].forecasts.empty()) continue;
+    throw FieldError(
+        path, "is used only where no disaster has forecasts, but " + At("disasters", i) + " has");
+  }
+}
+
+void CheckAgents(const Scenario& scenario) {
+  const DeviceSpec& devices = scenario.devices;
+  if (devices.Total() == 0) {
+    throw FieldError("layout.devices.sites", "got 0 entries, expected at least 1");
+  }
+  if (devices.placement != DevicePlacement::kExplicit && devices.self_propelled > devices.count) {
+    throw FieldError("layout.devices.self_propelled",
+                     "got " + Format(devices.self_propelled) +
+                         ", expected at most layout.devices.count = " + Format(devices.count));
+  }
+  const std::int32_t fetched = scenario.FetchableCount();
+  if (scenario.ships.count == 0 && fetched > 0) {
+    throw FieldError("ships.count", "got 0, expected at least 1: " + Format(fetched) +
+                                        " devices do not drive themselves");
+  }
+}
+
+}  // namespace
+
+void ValidateDisaster(const DisasterSpec& disaster) {
+  internal::FieldChecker checker;
+  internal::VisitDisaster(checker, disaster, nullptr);
+  CheckDisaster("", disaster);
+}
+
+void ValidateScenario(const Scenario& scenario) {
+  internal::FieldChecker checker;
+  internal::WorldFrame unused;
+  internal::VisitScenario(checker, scenario, unused);
+  for (std::size_t i = 0; i < scenario.disasters.size(); ++i) {
+    CheckDisaster(At("disasters", i), scenario.disasters[i]);
+  }
+  CheckAgents(scenario);
+  CheckPlaces(scenario);
+  CheckSeas(scenario);
+  CheckForecast(scenario);
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/sea/expression.h"
+
+#include <muParser.h>
+
+#include <cmath>
+#include <limits>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm {
+
+Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& layers) {
+  if (layers.empty()) throw InputError("got no layer to evaluate '" + expression + "' on");
+  Layer result(layers[0].layer.rows(), layers[0].layer.cols());
+  std::vector<double> values(layers.size());
+  try {
+    mu::Parser parser;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      AQUAFARM_CHECK_EQ(layers[i].layer.size(), result.size());
+      parser.DefineVar(layers[i].name, &values[i]);
+    }
+    parser.SetExpr(expression);
+    for (Eigen::Index cell = 0; cell < result.size(); ++cell) {
+      bool known = true;
+      for (std::size_t i = 0; i < layers.size(); ++i) {
+        values[i] = static_cast<double>(layers[i].layer.data()[cell]);
+        known = known && !std::isnan(values[i]);
+      }
+      // Also where nothing is known, so that a wrong expression never passes.
+      const double value = parser.Eval();
+      result.data()[cell] =
+          known ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
+    }
+  } catch (const mu::Parser::exception_type& error) {
+    throw InputError("got '" + expression + "', expected an expression: " + error.GetMsg());
+  }
+  return result;
+}
+
+}  // namespace aquafarm

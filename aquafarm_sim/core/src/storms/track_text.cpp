@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "storms/track_text.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/text.h"
+#include "base/time.h"
+#include "grid/longitude.h"
+
+namespace aquafarm::internal {
+namespace {
+
+// The directions that bulletins use. Of three characters the first two or the last two name the
+// half that the third leans to (北西北 as 北北西); what was measured between fixes agrees.
+constexpr std::pair<std::string_view, double> kDirections[]{
+    {"N", 0.0},          {"NNE", 22.5},       {"NE", 45.0},        {"ENE", 67.5},
+    {"E", 90.0},         {"ESE", 112.5},      {"SE", 135.0},       {"SSE", 157.5},
+    {"S", 180.0},        {"SSW", 202.5},      {"SW", 225.0},       {"WSW", 247.5},
+    {"W", 270.0},        {"WNW", 292.5},      {"NW", 315.0},       {"NNW", 337.5},
+    {"北", 0.0},         {"偏北", 0.0},       {"北东北", 22.5},    {"北北东", 22.5},
+    {"东北北", 22.5},    {"东北偏北", 22.5},  {"北东", 45.0},      {"东北", 45.0},
+    {"东东北", 67.5},    {"东北东", 67.5},    {"东北偏东", 67.5},  {"东", 90.0},
+    {"偏东", 90.0},      {"东东南", 112.5},   {"东南东", 112.5},   {"东南", 135.0},
+    {"南东", 135.0},     {"南东南", 157.5},   {"南南东", 157.5},   {"南", 180.0},
+    {"偏南", 180.0},     {"南西南", 202.5},   {"南南西", 202.5},   {"西南", 225.0},
+    {"南西", 225.0},     {"西西南", 247.5},   {"西南西", 247.5},   {"西", 270.0},
+    {"偏西", 270.0},     {"西西北", 292.5},   {"西北西", 292.5},   {"西北偏西", 292.5},
+    {"西北", 315.0},     {"北西", 315.0},     {"北西北", 337.5},   {"北北西", 337.5},
+    {"西北北", 337.5},   {"西北偏北", 337.5}, {"东南偏东", 112.5}, {"东南偏南", 157.5},
+    {"西南偏南", 202.5}, {"西南偏西", 247.5},
+};
+
+}  // namespace
+
+double ReadLatitudeTenths(std::string_view text, const HazardPlace& place) {
+  return ReadWhole(text, "latitude in tenths of a degree", -900, 900, place) / 10.0;
+}
+
+double ReadLongitudeTenths(std::string_view text, const HazardPlace& place) {
+  return NormalLongitude(ReadWhole(text, "longitude in tenths of a degree", -1800, 3600, place) /
+                         10.0);
+}
+
+void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place) {
+  fix.line = place.line;
+  if (fixes.size() >= kMaxFixes) {
+    place.Refuse("got more than " + std::to_string(kMaxFixes) + " points of one storm");
+  }
+  if (fix.pressure_hpa && *fix.pressure_hpa < kLeastPressure_hpa) {
+    place.Refuse("pressure: got " + Format(*fix.pressure_hpa) +
+                 " hPa, expected [800, 1100], or 0 where it is not known");
+  }
+  if (!fixes.empty() && fix.time == fixes.back().time) {
+    place.Warn("time: " + FormatTime(fix.time) + " is there twice, the second is left out");
+    return;
+  }
+  if (!fixes.empty() && fix.time < fixes.back().time) {
+    place.Refuse("time: got " + FormatTime(fix.time) + ", expected one after " +
+                 FormatTime(fixes.back().time) + " of the point before");
+  }
+  fixes.push_back(std::move(fix));
+}
+
+void FinishTrack(HazardTrack& track, const HazardPlace& place) {
+  if (track.fixes.empty()) place.Refuse("points: got none, expected at least one");
+  constexpr std::int64_t kDay_s = 86400;
+  const std::int64_t days = (track.fixes.back().time - track.fixes.front().time) / kDay_s;
+  if (days > 366) {
+    place.Refuse("points: got " + std::to_string(days) +
+                 " days of one storm, expected at most 366");
+  }
+  ComputeMotion(track.fixes);
+  for (HazardForecast& forecast : track.forecasts) ComputeMotion(forecast.fixes);
+}
+
+std::vector<HazardTrack> ReadBestTracks(std::string_view text, HazardPlace& place,
+                                        BestTrackHeader (*read_header)(std::string_view line,
+                                                                       const HazardPlace& place),
+                                        HazardFix (*read_point)(std::string_view line,
+                                                                const HazardPlace& place)) {
+  std::vector<HazardTrack> tracks;
+  LineReader lines(text, place);
+  std::string_view line;
+  const auto is_header = [](std::string_view of) { return Trim(of).substr(0, 5) == "66666"; };
+  while (lines.Next(line)) {
+    if (Trim(line).empty()) continue;
+    if (!is_header(line)) {
+      place.Refuse("got " + Quoted(SplitWords(line)[0]) +
+                   ", expected a header, 66666 …, as the storm before has all its points");
+    }
+    BestTrackHeader header = read_header(line, place);
+    header.track.line = place.line;
+    const std::string promised = std::to_string(header.points) + " points of the header on line " +
+                                 std::to_string(place.line);
+    for (std::int32_t i = 0; i < header.points; ++i) {
+      if (!lines.Next(line) || is_header(line) || Trim(line).empty()) {
+        place.Refuse("got " + std::to_string(i) + " points, expected the " + promised);
+      }
+      AppendFix(read_point(line, place), header.track.fixes, place);
+    }
+    FinishTrack(header.track, place);
+    tracks.push_back(std::move(header.track));
+  }
+  return tracks;
+}
+
+bool AddRing(WindRing ring, std::vector<WindRing>& rings) {
+  const auto at =
+      std::lower_bound(rings.begin(), rings.end(), ring,
+                       [](const WindRing& a, const WindRing& b) { return a.wind_kt < b.wind_kt; });
+  if (at != rings.end() && at->wind_kt == ring.wind_kt) return false;
+  rings.insert(at, ring);
+  return true;
+}
+
+std::optional<double> ParseDirection(std::string_view text) {
+  text = Trim(text);
+  const std::size_t blank = text.find(' ');  // "ENE 2"
+  const std::string word = Upper(text.substr(0, blank));
+  for (const auto& [name, bearing_deg] : kDirections) {
+    if (name == word) return bearing_deg;
+  }
+  return std::nullopt;
+}
+
+}  // namespace aquafarm::internal

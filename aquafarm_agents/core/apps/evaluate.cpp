@@ -5,11 +5,11 @@
 
 #include "app.h"
 #include "aquafarm/agents/base/exit_code.h"
-#include "aquafarm/agents/dqn/dqn.h"
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
 #include "aquafarm/agents/evaluation/rollout_values.h"
 #include "aquafarm/agents/evaluation/route.h"
+#include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/planning/team_bound.h"
 #include "aquafarm/agents/training/saved_policy.h"
 

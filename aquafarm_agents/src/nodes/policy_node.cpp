@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "aquafarm/agents/base/exit_code.h"
-#include "aquafarm/agents/dqn/dqn.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/training/saved_policy.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm_agents/drive/agent_driver.h"

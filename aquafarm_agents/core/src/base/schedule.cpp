@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "aquafarm/agents/base/options.h"
+#include "aquafarm/agents/base/text.h"
 #include "aquafarm/base/check.h"
 
 namespace aquafarm::agents {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "aquafarm/agents/learning/replay.h"
+#include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/base/check.h"
 #include "dqn/repetition_penalty.h"
 #include "networks/deep_policy.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "aquafarm/agents/learning/replay.h"
+#include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/base/check.h"
 #include "maddpg/maddpg_networks.h"
 #include "maddpg/maddpg_policy.h"

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "networks/networks.h"
 
-#include <ATen/Context.h>
-#include <ATen/Parallel.h>
-#include <dlfcn.h>
-
 #include <cmath>
-#include <mutex>
 #include <utility>
 
-#include "aquafarm/agents/dqn/dqn.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
 
@@ -59,18 +53,6 @@ class CnnNetwork final : public QNetwork {
   Head head_;
 };
 
-std::string torch_warning;
-std::string network_libraries;
-
-// Whether the BLAS in force is OpenBLAS, MKL or the like; the reference BLAS has no such symbol.
-bool HasFastBlas() {
-  for (const char* symbol :
-       {"openblas_get_config", "mkl_get_version", "bli_info_get_version_str", "ATL_buildinfo"}) {
-    if (dlsym(RTLD_DEFAULT, symbol) != nullptr) return true;
-  }
-  return at::globalContext().hasMKL();
-}
-
 }  // namespace
 
 torch::Device FindDevice(const std::string& name) {
@@ -81,30 +63,6 @@ torch::Device FindDevice(const std::string& name) {
   }
   return has_cuda ? torch::kCUDA : torch::kCPU;
 }
-
-void PrepareTorch(std::int32_t threads) {
-  at::set_num_threads(threads);
-  // Debian's OpenBLAS has threads of its own, whose waiting costs more than they win here.
-  using SetThreads = void (*)(int);
-  const auto set_threads =
-      reinterpret_cast<SetThreads>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
-  if (set_threads != nullptr) set_threads(threads);
-  static std::once_flag looked;
-  std::call_once(looked, [] {
-    network_libraries = "libtorch " TORCH_VERSION;
-    using Config = const char* (*)();
-    const auto openblas = reinterpret_cast<Config>(dlsym(RTLD_DEFAULT, "openblas_get_config"));
-    if (openblas != nullptr) network_libraries += std::string(", ") + openblas();
-    if (HasFastBlas()) return;
-    network_libraries += ", reference BLAS";
-    torch_warning =
-        "libblas.so.3 is the reference BLAS, some ten times slower than OpenBLAS; install "
-        "libopenblas0-pthread";
-  });
-}
-
-std::string TakeTorchWarning() { return std::exchange(torch_warning, {}); }
-std::string NetworkLibraries() { return network_libraries; }
 
 HeadImpl::HeadImpl(std::int64_t inputs, bool dueling)
     : advantage_(register_module("advantage", nn::Linear(inputs, kActionCount))) {

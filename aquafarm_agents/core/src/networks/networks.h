@@ -20,9 +20,6 @@ namespace aquafarm::agents {
 /// The device that a name stands for. @throws InputError when it is cuda and there is none
 torch::Device FindDevice(const std::string& name);
 
-/// Sets the library's threads. A slow BLAS is noted for TakeTorchWarning.
-void PrepareTorch(std::int32_t threads);
-
 /// Q(s, ·) from features: hidden - ReLU - hidden - ReLU - head.
 /// The head is one layer, or V + A − mean A when dueling.
 class HeadImpl : public torch::nn::Module {

@@ -9,14 +9,14 @@
 
 namespace aquafarm::agents {
 
-std::size_t Planner::Solver::With(std::size_t set, std::size_t device, Fate fate) const {
+std::size_t PlannerSolver::With(std::size_t set, std::size_t device, Fate fate) const {
   const std::uint32_t bits =
       (sets_[set] & ~(3U << (2 * device))) | (static_cast<std::uint32_t>(fate) << (2 * device));
   const std::int32_t found = set_of_bits_[bits];
   return found == kNone ? sets_.size() : static_cast<std::size_t>(found);
 }
 
-std::size_t Planner::Solver::Delivered(std::size_t set) const {
+std::size_t PlannerSolver::Delivered(std::size_t set) const {
   for (std::size_t d = 0; d < devices_; ++d) {
     const Fate fate = FateOf(set, d);
     if (fate == kForValue || fate == kForNothing) set = With(set, d, kGone);
@@ -24,7 +24,7 @@ std::size_t Planner::Solver::Delivered(std::size_t set) const {
   return set;
 }
 
-void Planner::Solver::Prepare(const Farm& farm) {
+void PlannerSolver::Prepare(const Farm& farm) {
   ListOptions(farm);
   for (std::size_t d = 0; d < task_->devices.size(); ++d) {
     const Device& device = farm.devices()[static_cast<std::size_t>(task_->devices[d])];
@@ -38,7 +38,7 @@ void Planner::Solver::Prepare(const Farm& farm) {
 }
 
 // Value lost when what is aboard for its value loses `share` of its health.
-double Planner::Solver::Loss(std::size_t set, float share) const {
+double PlannerSolver::Loss(std::size_t set, float share) const {
   double loss = 0.0;
   for (std::size_t d = 0; d < devices_ && share > 0.0F; ++d) {
     if (FateOf(set, d) == kForValue) {
@@ -48,8 +48,8 @@ double Planner::Solver::Loss(std::size_t set, float share) const {
   return loss;
 }
 
-void Planner::Solver::Reach(std::int32_t step, std::uint32_t state, double value,
-                            std::uint32_t parent, std::uint8_t action) {
+void PlannerSolver::Reach(std::int32_t step, std::uint32_t state, double value,
+                          std::uint32_t parent, std::uint8_t action) {
   if (value + bound_[state] <= best_ + kTolerance) return;
   Open& open = open_[state];
   const auto mark = static_cast<std::uint32_t>(step) + 1;
@@ -65,7 +65,7 @@ void Planner::Solver::Reach(std::int32_t step, std::uint32_t state, double value
   }
 }
 
-void Planner::Solver::Complete(std::uint32_t parent, std::uint8_t action, double value) {
+void PlannerSolver::Complete(std::uint32_t parent, std::uint8_t action, double value) {
   if (value <= best_ + kTolerance) return;
   best_ = value;
   best_layer_ = layers_.size() - 1;
@@ -73,7 +73,7 @@ void Planner::Solver::Complete(std::uint32_t parent, std::uint8_t action, double
   best_action_ = action;
 }
 
-void Planner::Solver::Expand(std::int32_t step, std::size_t index) {
+void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   const Node node = layers_[layers_.size() - 2][index];
   const double so_far = values_[index];
   if (so_far + bound_[node.state] <= best_ + kTolerance) return;
@@ -129,7 +129,7 @@ void Planner::Solver::Expand(std::int32_t step, std::size_t index) {
 }
 
 // Ports block nobody.
-bool Planner::Solver::IsInTheWay(std::int32_t step, std::size_t cell) const {
+bool PlannerSolver::IsInTheWay(std::int32_t step, std::size_t cell) const {
   if (task_->others == nullptr) return false;
   const auto index = static_cast<std::int32_t>(cell);
   const Cell at{index % scenario_.width, index / scenario_.width};
@@ -137,7 +137,7 @@ bool Planner::Solver::IsInTheWay(std::int32_t step, std::size_t cell) const {
   return task_->others->IsTaken(task_->ship, step, index);
 }
 
-Plan Planner::Solver::Solve(const Farm& farm, Foresight foresight, const Task& task) {
+Plan PlannerSolver::Solve(const Farm& farm, Foresight foresight, const Task& task) {
   AQUAFARM_CHECK_LE(task.devices.size(), devices_);
   if (farm.over()) return {};
   task_ = &task;
@@ -151,7 +151,7 @@ Plan Planner::Solver::Solve(const Farm& farm, Foresight foresight, const Task& t
   return best_layer_ == 0 ? narrow : Trace();
 }
 
-void Planner::Solver::Search(const Farm& farm, Foresight foresight, std::size_t widest) {
+void PlannerSolver::Search(const Farm& farm, Foresight foresight, std::size_t widest) {
   FollowDisasters(farm, foresight);
   for (std::size_t d = 0; d < task_->devices.size(); ++d) {
     health_[d] = farm.devices()[static_cast<std::size_t>(task_->devices[d])].health;
@@ -176,14 +176,14 @@ void Planner::Solver::Search(const Farm& farm, Foresight foresight, std::size_t 
   if (step == last) EndOfTime();
 }
 
-std::int32_t Planner::Solver::LastStep(std::int32_t step) const {
+std::int32_t PlannerSolver::LastStep(std::int32_t step) const {
   std::int32_t longest = 0;
   for (const Disaster& disaster : disasters_) longest = std::max(longest, disaster.steps_left);
   return disasters_.empty() ? scenario_.step_limit : std::min(scenario_.step_limit, step + longest);
 }
 
 // What is aboard already may be delivered for its value or for nothing.
-void Planner::Solver::ReachStart(const Farm& farm) {
+void PlannerSolver::ReachStart(const Farm& farm) {
   layers_.emplace_back();
   next_values_.clear();
   const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
@@ -216,7 +216,7 @@ void Planner::Solver::ReachStart(const Farm& farm) {
 }
 
 // Keeps the most promising states of the layer just reached.
-void Planner::Solver::Narrow(std::size_t widest) {
+void PlannerSolver::Narrow(std::size_t widest) {
   std::vector<Node>& layer = layers_.back();
   if (layer.size() <= widest) return;
   std::vector<std::size_t> order(layer.size());
@@ -237,7 +237,7 @@ void Planner::Solver::Narrow(std::size_t widest) {
 }
 
 // Time is over: what is aboard for its value was promised and not delivered.
-void Planner::Solver::EndOfTime() {
+void PlannerSolver::EndOfTime() {
   for (std::size_t index = 0; index < layers_.back().size(); ++index) {
     const Node& node = layers_.back()[index];
     bool broken = false;
@@ -248,7 +248,7 @@ void Planner::Solver::EndOfTime() {
   }
 }
 
-Plan Planner::Solver::Trace() const {
+Plan PlannerSolver::Trace() const {
   Plan plan;
   if (best_layer_ == 0) return plan;  // nothing was completed
   plan.expected_return = best_;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What Planner keeps to itself: the farm and the task as a graph (planner.cpp) and the search in
-/// it (planner_search.cpp).
+/// What Planner keeps to itself: the farm and the task as a graph (planner_solver.cpp) and the
+/// search in it (planner_search.cpp).
 
 #include <limits>
 #include <vector>
 
-#include "aquafarm/agents/planning/planner.h"
+#include "aquafarm/agents/planning/plan.h"
 
 namespace aquafarm::agents {
 
@@ -31,9 +31,9 @@ struct Option {
   std::uint8_t action{};
 };
 
-class Planner::Solver {
+class PlannerSolver {
  public:
-  Solver(const Scenario& scenario, std::int32_t slots);
+  PlannerSolver(const Scenario& scenario, std::int32_t slots);
   Plan Solve(const Farm& farm, Foresight foresight, const Task& task);
   std::size_t state_count() const { return sets_.size() * cells_; }
 

@@ -10,6 +10,7 @@
 #include "aquafarm/agents/learning/random_policy.h"
 #include "aquafarm/agents/learning/tabular.h"
 #include "aquafarm/agents/maddpg/maddpg.h"
+#include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/planning/planner_policy.h"
 #include "aquafarm/agents/planning/team_planner.h"
 #include "aquafarm/base/check.h"

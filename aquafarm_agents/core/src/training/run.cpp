@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "aquafarm/agents/base/options.h"
-#include "aquafarm/agents/dqn/dqn.h"
 #include "aquafarm/agents/learning/random_policy.h"
+#include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/saved_policy.h"
 #include "aquafarm/base/check.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "aquafarm/agents/base/schedule.h"
+#include "aquafarm/agents/base/text.h"
 
 namespace aquafarm::agents {
 
@@ -40,12 +41,5 @@ class OptionReader {
   std::map<std::string, std::string> given_;
   std::map<std::string, std::string> resolved_;
 };
-
-/// Reads a whole text as a number. @throws InputError "discount: got 'x', expected a number"
-double ParseNumber(const std::string& text, const std::string& what);
-/// The shortest decimal text that reads back to the same number.
-std::string FormatNumber(double value);
-/// "a, b, c"
-std::string Join(const std::vector<std::string>& names);
 
 }  // namespace aquafarm::agents

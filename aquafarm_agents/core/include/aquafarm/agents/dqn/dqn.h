@@ -33,14 +33,6 @@ std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed
 /// @throws InputError when the policy does not fit farms of `spec`, with the reason
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
-/// What there is to warn of about the network library, told once, after a learner or a policy was
-/// made; one line for people, empty: nothing.
-std::string TakeTorchWarning();
-/// The libraries that networks learn with here, such as "libtorch 1.13.1, OpenBLAS 0.3.21 …
-/// SkylakeX": where they or the kernels differ, the last bits of a training do. Empty: no network
-/// was made.
-std::string NetworkLibraries();
-
 // The same of LSTM-DQN.
 std::uint8_t RecurrentDqnEncodings(const std::string& options);
 std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint64_t seed,

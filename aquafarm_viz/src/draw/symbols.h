@@ -12,7 +12,8 @@
 
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/draw/canvas.h"
-#include "aquafarm_viz/draw/image.h"
+#include "aquafarm_viz/draw/image_options.h"
+#include "aquafarm_viz/draw/map_view.h"
 
 namespace aquafarm_viz {
 

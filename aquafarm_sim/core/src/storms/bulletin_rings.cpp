@@ -5,7 +5,6 @@
 
 #include "base/text.h"
 #include "input/json_object.h"
-#include "storms/track_text.h"
 
 namespace aquafarm::internal {
 namespace {

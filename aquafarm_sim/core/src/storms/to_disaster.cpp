@@ -10,7 +10,6 @@
 #include "base/name_of.h"
 #include "base/text.h"
 #include "grid/longitude.h"
-#include "storms/track_text.h"
 
 namespace aquafarm {
 namespace {
@@ -174,7 +173,7 @@ std::int32_t BorrowRings(const HazardTrack& from, HazardTrack& track) {
         ring.radius_km[q] = Between(ring.radius_km[q], later->radius_km[q], part);
       }
       ring.estimated = ring.estimated || later->estimated;
-      internal::AddRing(ring, fix.rings);
+      AddRing(ring, fix.rings);
     }
     given += fix.rings.empty() ? 0 : 1;
   }

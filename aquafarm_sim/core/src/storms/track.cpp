@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/name_of.h"
-#include "storms/track_text.h"
 
 namespace aquafarm {
 namespace {
@@ -127,7 +126,16 @@ bool EstimateRing(HazardFix& fix, std::int32_t wind_kt) {
   ring.radius_km.fill(*fix.wind_mps >= wind_mps ? RadiusOf(wind_mps, HollandProfile(fix)) / 1000.0
                                                 : 0.0);
   ring.estimated = true;
-  return internal::AddRing(ring, fix.rings);
+  return AddRing(ring, fix.rings);
+}
+
+bool AddRing(WindRing ring, std::vector<WindRing>& rings) {
+  const auto at =
+      std::lower_bound(rings.begin(), rings.end(), ring,
+                       [](const WindRing& a, const WindRing& b) { return a.wind_kt < b.wind_kt; });
+  if (at != rings.end() && at->wind_kt == ring.wind_kt) return false;
+  rings.insert(at, ring);
+  return true;
 }
 
 }  // namespace aquafarm

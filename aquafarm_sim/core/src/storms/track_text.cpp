@@ -105,15 +105,6 @@ std::vector<HazardTrack> ReadBestTracks(std::string_view text, HazardPlace& plac
   return tracks;
 }
 
-bool AddRing(WindRing ring, std::vector<WindRing>& rings) {
-  const auto at =
-      std::lower_bound(rings.begin(), rings.end(), ring,
-                       [](const WindRing& a, const WindRing& b) { return a.wind_kt < b.wind_kt; });
-  if (at != rings.end() && at->wind_kt == ring.wind_kt) return false;
-  rings.insert(at, ring);
-  return true;
-}
-
 std::optional<double> ParseDirection(std::string_view text) {
   text = Trim(text);
   const std::size_t blank = text.find(' ');  // "ENE 2"

@@ -32,9 +32,6 @@ void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place)
 /// Ends a track: checks that it has fixes, computes what motion the source does not give.
 void FinishTrack(HazardTrack& track, const HazardPlace& place);
 
-/// Puts a ring in order of wind. @returns false when there is one of this wind already
-bool AddRing(WindRing ring, std::vector<WindRing>& rings);
-
 /// "NE", "ENE", "西北", … as a compass bearing; none: no direction.
 std::optional<double> ParseDirection(std::string_view text);
 

@@ -127,4 +127,7 @@ void ComputeMotion(std::vector<HazardFix>& fixes);
 /// @returns whether it added one; without a wind it cannot
 bool EstimateRing(HazardFix& fix, std::int32_t wind_kt);
 
+/// Puts a ring in order of wind. @returns false when there is one of this wind already
+bool AddRing(WindRing ring, std::vector<WindRing>& rings);
+
 }  // namespace aquafarm

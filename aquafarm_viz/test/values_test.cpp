@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../src/image_parts.h"
 #include "aquafarm_viz/draw/image.h"
+#include "draw/symbols.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {

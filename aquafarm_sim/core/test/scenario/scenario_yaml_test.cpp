@@ -12,9 +12,9 @@
 #include <limits>
 #include <sstream>
 
-#include "../../src/scenario/domains.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
+#include "scenario/domains.h"
 #include "tiny_farms.h"
 
 namespace aquafarm {

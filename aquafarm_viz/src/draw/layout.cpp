@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "aquafarm_viz/draw/image.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {

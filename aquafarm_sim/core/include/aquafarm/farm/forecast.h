@@ -25,7 +25,7 @@
 
 namespace aquafarm {
 
-/// Max lead time of the disaster positions that agents observe [steps].
+/// Lead time, counted from now, of the forecast position that agents observe [steps].
 inline constexpr std::int32_t kForecastSteps = 10;
 
 /// Returns the mean distance between the forecast and the true position [cells]. It is interpolated

@@ -2,7 +2,8 @@
 #pragma once
 
 /// Risk of disasters at many cells at once, for encodings. Uses the same float comparisons as
-/// RiskOf, but processes runs of cells with the vector extensions of GCC and Clang.
+/// RiskOf, but processes runs of cells with the vector extensions of GCC and Clang. § refers to the
+/// paper, see docs/model.md.
 
 #include <algorithm>
 #include <array>

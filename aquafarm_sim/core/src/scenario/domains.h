@@ -19,7 +19,7 @@
 
 namespace aquafarm::internal {
 
-/// Numbers from min to max, both allowed unless `open_min`.
+/// Numbers from min to max, both inclusive; min is exclusive if `open_min`.
 template <typename T>
 struct Interval {
   T min{};

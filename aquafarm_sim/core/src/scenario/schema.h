@@ -35,7 +35,7 @@ inline constexpr Interval<float> kShare{0.0F, 1.0F};
 inline constexpr Interval<float> kRadius{0.0F, kFar};
 inline constexpr Interval<float> kPlace{-kFar, kFar};
 inline constexpr Interval<float> kStep{-static_cast<float>(kMaxSteps), kMaxSteps};
-inline constexpr Interval<float> kRisk{-20.0F, -5.0F};  // §2.1
+inline constexpr Interval<float> kRisk{-20.0F, -5.0F};  // paper §2.1, see docs/model.md
 inline constexpr Interval<float> kPenalty{-1000.0F, 0.0F};
 inline constexpr Interval<float> kReward{-10000.0F, 10000.0F};
 inline constexpr Interval<float> kDeviceValue{0.0F, 10000.0F};

@@ -178,7 +178,7 @@ TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
   for (const Action action : {Action::kNorth, Action::kNorth, Action::kPickup, Action::kWest}) {
     StepOne(farm, action);
   }
-  EXPECT_EQ(Feature(farm, "device0.way_steps"), 0.0F);  // it is aboard
+  EXPECT_EQ(Feature(farm, "device0.way_steps"), 0.0F);  // the device is aboard
   EXPECT_EQ(Feature(farm, "port0.way_east"), 1.0F);
   EXPECT_EQ(Feature(farm, "port0.way_north"), -1.0F);
   EXPECT_FLOAT_EQ(Feature(farm, "port0.way_steps"), 2.0F / 5.0F);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Disasters that move over the farm (§2.1).
+/// Disasters that move over the farm (paper §2.1, see docs/model.md).
 ///
 ///      . . r2 . .        risk at a cell = the risk of the smallest ring whose radius is at least
 ///    .   . r1 .   .      the Euclidean distance from the centre to the cell's centre; 0 outside.

@@ -2,7 +2,8 @@
 #pragma once
 
 /// Positions of ports, rocks, islands and devices, drawn from (Scenario, seed, episode). A
-/// breadth-first search ensures that water connects all devices and ports (§2.4).
+/// breadth-first search ensures that water connects all devices and ports (paper §2.4, see
+/// docs/model.md).
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The actions of a ship, their outcomes, and the reasons why an episode ends.
+/// The actions of a ship, their outcomes, and the reasons why an episode ends. § and Eq. refer to
+/// the paper, see docs/model.md.
 
 #include <array>
 #include <cstdint>

@@ -9,7 +9,8 @@
 ///        |         (0, 0)  . . . (W-1, 0)     as in nav_msgs/OccupancyGrid; images are flipped
 ///        +------> x (east)
 ///
-/// Lengths are in cells and times in steps unless a name contains another unit. (§2.4, Eq. 1)
+/// Lengths are in cells and times in steps unless a name contains another unit. (Paper §2.4 and
+/// Eq. 1, see docs/model.md)
 
 #include <cstdint>
 

@@ -7,7 +7,7 @@
 
 namespace aquafarm {
 
-/// The reward of one ship in one step, by term (§2.5).
+/// The reward of one ship in one step, by term (paper §2.5, see docs/model.md).
 struct RewardTerms {
   float crash{};     ///< the reward of the rock or island hit
   float disaster{};  ///< the risk at the ship's cell after it acted

@@ -49,7 +49,7 @@ class Encoder {
   /// A decoded tabular state: the ship's cell and the status of each fetchable device.
   struct TabularState {
     Cell cell{};
-    std::vector<DeviceStatus> status;  ///< kDelivered stands for gone
+    std::vector<DeviceStatus> status;  ///< kDelivered also represents "aboard another ship"
   };
   /// Inverse of Index. @param index in [0, state_count())
   TabularState Decode(std::uint32_t index) const;

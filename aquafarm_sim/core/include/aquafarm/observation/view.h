@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Observation of a farm by one ship (§2.3). A full view contains everything. A partial view
-/// contains the chart and the cells and status of all devices; it contains health, other ships and
-/// disasters only within sensor_radius. Outside of it, the last bulletin and its age apply.
-/// Networked agents (shared_sight) use the sensors of all agents in play and know their cells.
+/// Observation of a farm by one ship (paper §2.3, see docs/model.md). A full view contains
+/// everything. A partial view contains the chart and the cells and status of all devices; it
+/// contains health, other ships and disasters only within sensor_radius. For disasters outside of
+/// it, the last bulletin and its age apply. Networked agents (shared_sight) use the sensors of all
+/// agents in play and know their cells.
 
 #include <cstdint>
 #include <vector>

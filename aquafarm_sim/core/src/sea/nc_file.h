@@ -32,7 +32,7 @@ class NcFile {
   std::optional<double> Number(int variable, const char* key) const;
   /// Returns an attribute with two numbers; nullopt if absent.
   std::optional<std::array<double, 2>> Pair(int variable, const char* key) const;
-  /// Returns netCDF's default fill value for the variable's type; nullopt for bytes.
+  /// Returns netCDF's default fill value for the variable's type; nullopt if there is none (bytes).
   std::optional<double> DefaultFill(int variable) const;
 
  private:

@@ -17,7 +17,7 @@ struct AsciiGrid {
   double west{};      ///< x of the centre of the south-west cell
   double south{};     ///< y of the centre of the south-west cell
   double cell_size{};
-  /// Returns whether coordinates are in degrees: cells are smaller than 1 and the corner lies within
+  /// Returns whether coordinates are in degrees: cells are smaller than 1 and the corner is within
   /// twice the range of degrees, so that typing errors are detected. If false, they are in metres.
   bool IsGeographic() const;
 };

@@ -3,7 +3,7 @@
 
 /// One episode on one farm (Algorithm 1; rules in docs/model.md). A step, in this order:
 ///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Reward →
-///   Finish. After construction only Reset allocates, and only if SetDisaster or Load set a track.
+///   Finish. Step never allocates, and Reset only after SetDisaster or Load has set a track.
 
 #include <cstdint>
 #include <memory>

@@ -174,8 +174,8 @@ struct SeaSpec {
   /// Risk at each cell independent of disasters, [H, W]: 0, NaN (unknown) or in [-20, -5]; empty
   /// if unset
   std::vector<float> risk;
-  /// Value of a randomly placed device at each cell, [H, W]; NaN: drawn from DeviceSpec::value;
-  /// empty if unset
+  /// Value of a device placed at each cell, unless its site sets one, [H, W]; NaN: drawn from
+  /// DeviceSpec::value; empty if unset
   std::vector<float> device_value;
 };
 

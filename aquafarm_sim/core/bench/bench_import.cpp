@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reading what authorities publish: a year of CMA best tracks, and a field of the sea onto a farm.
+// Reading of published data: one year of CMA best tracks, and a field of the sea on a farm's cells.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -15,7 +15,7 @@
 namespace aquafarm {
 namespace {
 
-// As many storms and points as the busiest years have: 40 of 35.
+// 40 storms of 35 points each, as in the busiest years.
 std::string YearOfCma() {
   constexpr int kStorms = 40;
   constexpr int kPoints = 35;

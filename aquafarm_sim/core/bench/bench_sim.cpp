@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Farm steps a second, one thread, random actions, episodes restarting as they end. Reference for
-// the ratios: the same farm with the tabular index on 25 × 25 cells.
+// Farm steps per second with one thread and random actions; episodes restart as they end. Reference
+// of the ratios: the same farm with the tabular index on 25 × 25 cells.
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -21,14 +21,14 @@ enum class Wanted { kNothing, kIndex, kFeatures, kPlanes };
 
 Scenario Paper() { return LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"); }
 
-// 43 numbers instead of 81.
+// 43 features instead of 81.
 Scenario PaperWithPlainFeatures() {
   Scenario scenario = Paper();
   scenario.view.waterways = scenario.view.courses = false;
   return scenario;
 }
 
-// Steps `kFarms` farms; items are farm steps.
+// Steps `farms` farms; one item is one farm step.
 void StepFarms(benchmark::State& state, Scenario scenario, Wanted wanted,
                std::int32_t farms = kFarms) {
   FarmBatch batch(std::make_shared<const Scenario>(std::move(scenario)), farms);
@@ -45,7 +45,8 @@ void StepFarms(benchmark::State& state, Scenario scenario, Wanted wanted,
   if (wanted == Wanted::kIndex) output.index = index.data();
   if (wanted == Wanted::kFeatures) output.features = features.data();
   if (wanted == Wanted::kPlanes) output.planes = planes.data();
-  // Random actions, drawn beforehand; 257 joint actions, so that farms do not fall into step.
+  // Random actions, drawn in advance. A prime number of joint actions (257) keeps the farms from
+  // synchronizing.
   constexpr std::size_t kDrawn = 257;
   std::vector<std::uint8_t> actions(kDrawn * agents);
   RandomStream chance({1, 0, Purpose::kExploration, 0});
@@ -110,7 +111,7 @@ void PrintMetrics(const bench::MetricReporter& reporter) {
   PrintMetric("farm_steps_tabular_one_farm", rate("OneFarm"), "steps/s");
   PrintMetric("cost_1000x1000_to_25x25", rate("Side/25") / rate("Side/1000"), "ratio");
   PrintMetric("cost_100x100_to_25x25", rate("Side/25") / rate("Side/100"), "ratio");
-  // Cost of one more: flat when it stays below 1.5.
+  // Marginal cost of one more ship or disaster; considered constant below 1.5.
   const auto per_one_more = [&](const std::string& what, double few, double many) {
     const double cost_one = 1.0 / rate(what + "/1");
     const double cost_few = 1.0 / rate(what + "/" + std::to_string(static_cast<int>(few)));

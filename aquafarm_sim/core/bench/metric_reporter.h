@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Google Benchmark's own table, then one line `metric value unit` a figure, so that anyone can
-/// compare: medians over the repetitions of a run.
+/// Prints the table of Google Benchmark, then one line `metric value unit` per metric, so that runs
+/// can be compared. Values are medians over the repetitions of a run.
 
 #include <benchmark/benchmark.h>
 
@@ -13,7 +13,7 @@
 
 namespace aquafarm::bench {
 
-/// Collects the median items per second of each benchmark while it prints the usual table.
+/// Collects the median items per second of each benchmark in addition to the default table.
 class MetricReporter : public benchmark::ConsoleReporter {
  public:
   MetricReporter() : ConsoleReporter(OO_None) {}
@@ -36,15 +36,15 @@ class MetricReporter : public benchmark::ConsoleReporter {
   std::map<std::string, double> median_;
 };
 
-/// Runs all benchmarks as medians of five, unless the caller says otherwise.
-/// @returns false when an argument was not understood
+/// Runs all benchmarks with five repetitions, unless the arguments specify other options.
+/// @returns false if an argument is not recognized
 inline bool RunMedians(int argc, char** argv, MetricReporter& reporter) {
   std::vector<char*> arguments(argv, argv + argc);
   std::string repetitions = "--benchmark_repetitions=5";
   std::string aggregates = "--benchmark_report_aggregates_only=true";
   std::string interleave = "--benchmark_enable_random_interleaving=true";
   std::string time = "--benchmark_min_time=0.2";
-  arguments.insert(arguments.begin() + 1,  // the last of a repeated flag counts
+  arguments.insert(arguments.begin() + 1,  // the last occurrence of a flag takes precedence
                    {repetitions.data(), aggregates.data(), interleave.data(), time.data()});
   int count = static_cast<int>(arguments.size());
   benchmark::Initialize(&count, arguments.data());

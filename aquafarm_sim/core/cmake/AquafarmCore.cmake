@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What the ROS-free cores share: warnings, the library, its tests, and the check that keeps ROS out.
+# Shared by the ROS-free cores: warnings, the library, its tests, and the check for ROS includes.
 
 set(AQUAFARM_CORE_CMAKE_DIR ${CMAKE_CURRENT_LIST_DIR})
 
 function(aquafarm_set_warnings target)
-  # No contraction of a*b+c into one rounding: the same bits on every machine. A function of the
-  # library is never replaced from outside, so its own calls of it may be inlined.
+  # Without contraction of a*b+c to a fused operation, results are bit-identical on every machine.
+  # Functions of the library are never interposed, so calls inside it may be inlined.
   target_compile_options(${target} PRIVATE
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fno-semantic-interposition)
 endfunction()
 
-# A shared library with C++17, all warnings and no symbol left open.
+# Adds a shared library with C++17, all warnings and no undefined symbols.
 function(aquafarm_add_core_library target)
   add_library(${target} SHARED ${ARGN})
   target_compile_features(${target} PUBLIC cxx_std_17)
@@ -28,7 +28,7 @@ function(aquafarm_check_no_ros target)
   add_dependencies(${target} ${target}_no_ros)
 endfunction()
 
-# test/<folder>/<name>.cpp as a ctest, or as a catkin test where catkin has set one up.
+# Adds test/<folder>/<name>.cpp as a ctest test. Its result file is where catkin expects it.
 function(aquafarm_add_core_test path)
   get_filename_component(name ${path} NAME)
   add_executable(${name} test/${path}.cpp)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as a chart: a picture, a coast or a grid of heights, by the first byte.
+// Fuzz target for charts: the first byte selects an image, a coast or a grid of elevations.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } else {
       ShareOfLand(ParseAsciiGrid(bytes, "fuzz"), frame, 6, 4, 0.0F);
     }
-  } catch (const InputError&) {  // a refusal; all else is a find
+  } catch (const InputError&) {  // expected for invalid input; any other failure is a bug
   }
   return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as a file of storm tracks: every format, by its content.
+// Fuzz target for files of storm tracks; the content decides the format.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -14,12 +14,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   try {
     for (const Notice& notice : ParseNotices(bytes, "fuzz").notices) Describe(notice);
-  } catch (const InputError&) {  // a refusal; all else is a find
+  } catch (const InputError&) {  // expected for invalid input; any other failure is a bug
   }
   try {
     const HazardFile file = ParseHazardFile(bytes, "fuzz");
     for (const HazardTrack& track : file.tracks) ToRings(track, RingReduction::kEqualArea);
-  } catch (const InputError&) {  // a refusal; all else is a find
+  } catch (const InputError&) {  // expected for invalid input; any other failure is a bug
   }
   return 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as the YAML file of a map_server map.
+// Fuzz target for the YAML file of a map_server map.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace aquafarm;
   try {
     internal::ParseMapYaml(std::string(reinterpret_cast<const char*>(data), size), "fuzz");
-  } catch (const InputError&) {  // a refusal; all else is a find
+  } catch (const InputError&) {  // expected for invalid input; any other failure is a bug
   }
   return 0;
 }

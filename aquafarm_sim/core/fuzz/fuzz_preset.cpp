@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bytes as a preset of a disaster; what is taken must be one that a farm takes.
+// Fuzz target for presets of a disaster; every accepted preset must be valid in a farm.
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     disaster =
         ParseDisasterPreset(std::string(reinterpret_cast<const char*>(data), size), GridScale{});
-  } catch (const InputError&) {  // a refusal; all else is a find
+  } catch (const InputError&) {  // expected for invalid input; any other failure is a bug
     return 0;
   }
   ValidateDisaster(disaster);

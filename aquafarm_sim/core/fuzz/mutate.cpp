@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for libFuzzer where the compiler is not clang: feeds every sample of a folder to the
-// target, then changed ones, the same each time. A crash, a hang or a stray exception is the find.
+// Replaces libFuzzer if the compiler is not clang: passes every sample of a folder to the target,
+// then mutated samples. The mutations are the same in every run. A crash, a hang or an unexpected
+// exception is a bug.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -27,7 +28,8 @@ std::size_t Below(aquafarm::RandomStream& chance, std::size_t end) {
   return chance.Below(static_cast<std::uint32_t>(end));
 }
 
-// One change: bytes overwritten, taken out, doubled or cut off, or something that readers mind.
+// Applies one mutation: overwrites, removes, duplicates or cuts off bytes, or inserts a token with
+// a meaning for parsers.
 void Mutate(aquafarm::RandomStream& chance, std::string& bytes) {
   static const std::vector<std::string> kMinded{
       "",   "-1", "1e999",        "nan",   "99999999999", "null", "[",    "{",  "\"",
@@ -71,7 +73,7 @@ int main(int argc, char** argv) {
     }
   }
   std::sort(samples.begin(), samples.end());
-  // So that a run takes as long however many samples there are.
+  // Keeps the duration of a run independent of the number of samples.
   const auto changes =
       std::atoi(argv[1]) * 6 / static_cast<int>(std::max<std::size_t>(samples.size(), 1));
   aquafarm::RandomStream chance({1, 0, aquafarm::Purpose::kExploration, 0});

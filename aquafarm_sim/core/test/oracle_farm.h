@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// The rules of the farm once more, written for reading and not for speed: lists are searched,
-// risks are looked up by sorting rings, nothing is kept that can be counted. It takes disasters
-// from the farm under test (their motion has oracles of its own) and checks everything else.
+// Second implementation of the farm's rules, written for clarity instead of speed: it searches
+// lists, finds risks by sorting rings, and stores nothing that can be derived. It uses the
+// disasters of the farm under test, whose motion has separate oracles, and checks everything else.
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ class OracleFarm {
     }
   }
 
-  /// @param after the farm under test after the same step: its disasters are believed
+  /// @param after the farm under test after the same step; its disasters are used as they are
   void Step(const std::vector<Action>& actions, const Farm& after) {
     ++steps;
     for (std::size_t i = 0; i < ships.size(); ++i) ActOne(i, actions[i], after);

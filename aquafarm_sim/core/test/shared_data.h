@@ -6,7 +6,8 @@
 
 namespace aquafarm {
 
-/// Folder of the real files, beside the project; tests skip where it is not.
+/// Folder of the real data files, next to the project. Tests that need it are skipped if it is
+/// missing.
 inline std::filesystem::path SharedData() {
   namespace fs = std::filesystem;
   if (const char* path = std::getenv("AQUAFARM_SHARED_DATA")) return path;

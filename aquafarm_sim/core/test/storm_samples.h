@@ -17,7 +17,7 @@ namespace aquafarm {
 
 const std::filesystem::path kData = std::filesystem::path(AQUAFARM_CORE_DIR) / "test" / "data";
 
-/// The bytes of a file of test/data.
+/// Returns the content of a file in test/data.
 inline std::string Sample(const std::string& name) {
   std::ifstream file(kData / name, std::ios::binary);
   if (!file) throw std::invalid_argument(name);
@@ -26,14 +26,14 @@ inline std::string Sample(const std::string& name) {
 
 inline HazardFile Load(const std::string& name) { return LoadHazardFile((kData / name).string()); }
 
-/// A text with one part replaced; it is an error when the part is not there.
+/// Replaces one part of a text. @throws std::invalid_argument if the part is missing
 inline std::string With(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::invalid_argument(from);
   return text.replace(at, from.size(), to);
 }
 
-/// What a text is refused with as file "x", or "was read".
+/// Returns the error of parsing a text as file "x", or "was read".
 inline std::string Refusal(const std::string& text) {
   try {
     ParseHazardFile(text, "x");
@@ -43,7 +43,7 @@ inline std::string Refusal(const std::string& text) {
   return "was read";
 }
 
-/// What is said of a text that is read as file "x", a line each.
+/// Returns the warnings of parsing a text as file "x", one per line.
 inline std::string Warnings(const std::string& text) {
   std::string all;
   for (const std::string& warning : ParseHazardFile(text, "x").warnings) all += warning + "\n";

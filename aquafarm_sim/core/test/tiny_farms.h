@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Small explicit farms that tests reason about by hand.
+// Small farms for tests with manually computed expectations.
 
 #include <memory>
 #include <vector>
@@ -38,7 +38,7 @@ inline Scenario TinyScenario() {
   return scenario;
 }
 
-/// A disaster that stands still at (x, y).
+/// A disaster at (x, y) that does not move.
 inline DisasterSpec StillDisaster(float x, float y, std::vector<float> radii,
                                   std::vector<float> risks) {
   DisasterSpec disaster;
@@ -51,7 +51,7 @@ inline DisasterSpec StillDisaster(float x, float y, std::vector<float> radii,
   return disaster;
 }
 
-/// A whole random farm with everything in it: rocks, an island, several of each thing.
+/// A random farm with rocks, an island, and several ports, devices and disasters.
 inline Scenario CrowdedScenario(std::int32_t ships, std::int32_t self_propelled = 1) {
   Scenario scenario;
   scenario.name = "crowded";
@@ -88,14 +88,14 @@ inline Farm MakeFarm(Scenario scenario) {
   return Farm(std::make_shared<const Scenario>(std::move(scenario)));
 }
 
-/// Takes one step of a one-ship farm and returns its ship.
+/// Executes one step of a farm with one ship and returns the ship.
 inline const Ship& StepOne(Farm& farm, Action action) {
   const std::uint8_t code = Act(action);
   farm.Step(&code);
   return farm.ships()[0];
 }
 
-/// Lets all ships act at random while the episode lasts.
+/// Executes up to `steps` steps with random actions of all ships, until the episode ends.
 inline void RandomSteps(Farm& farm, int steps, std::uint64_t seed) {
   RandomStream chance({seed, 0, Purpose::kExploration, 1});
   std::vector<std::uint8_t> codes(farm.ships().size());

@@ -9,7 +9,8 @@
 
 namespace aquafarm {
 
-/// Writes a netCDF file of one field along lat and lon. @param kind of file, such as NC_64BIT_DATA
+/// Writes a netCDF file with one field along lat and lon.
+/// @param kind format of the file, such as NC_64BIT_DATA
 inline void WriteSea(const std::string& path, const std::string& name,
                      const std::vector<double>& latitude, const std::vector<double>& longitude,
                      const std::vector<float>& values, int kind = 0) {
@@ -30,7 +31,8 @@ inline void WriteSea(const std::string& path, const std::string& name,
   nc_close(file);
 }
 
-/// A field of 1600 x 1600 values of 17, 10.2 MB, a thousandth of a degree each from 30 N 122 E on.
+/// Writes a field of 1600 x 1600 values of 17 (10.2 MB), 0.001 degrees apart, starting at 30 N
+/// 122 E.
 inline void WriteSeaOfTenMegabytes(const std::string& path) {
   constexpr std::size_t kSide = 1600;
   std::vector<double> latitude(kSide);

@@ -8,8 +8,8 @@
 
 namespace aquafarm {
 
-/// Refuses bytes that nest deeper than any state does; the parser would recurse as deep as they
-/// say.
+/// Rejects bytes that are nested deeper than any saved state. Otherwise the parser would recurse as
+/// deep as the bytes specify.
 class CborDepth final : public nlohmann::json_sax<nlohmann::json> {
  public:
   bool null() override { return true; }
@@ -34,7 +34,7 @@ class CborDepth final : public nlohmann::json_sax<nlohmann::json> {
   int depth_{};
 };
 
-/// @throws InputError on anything that is no CBOR, and on bytes nested without reason
+/// Parses CBOR bytes. @throws InputError if the bytes are not CBOR or are nested too deeply
 inline nlohmann::json ParseCbor(const std::string& bytes) {
   CborDepth depth;
   if (!nlohmann::json::sax_parse(bytes, &depth, nlohmann::json::input_format_t::cbor)) {

@@ -7,7 +7,7 @@
 
 namespace aquafarm::internal {
 
-/// Bad input at a key, such as "disasters[0].grade"; the reader of files puts the line before it.
+/// Invalid input at a key, such as "disasters[0].grade". The file reader adds the line number.
 class FieldError : public InputError {
  public:
   FieldError(std::string field_path, const std::string& text)

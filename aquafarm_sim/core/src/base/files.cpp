@@ -12,7 +12,7 @@
 namespace aquafarm::internal {
 
 void NeedRegularFile(const std::string& path) {
-  std::error_code error;  // that it is not there is said by who reads it
+  std::error_code error;  // the reader of the file reports a missing file
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (error || std::filesystem::is_regular_file(status)) return;
   throw InputError(path + ": cannot read: is no regular file");

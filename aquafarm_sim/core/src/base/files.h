@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Whole files.
+/// Reading of complete files.
 
 #include <string>
 
 namespace aquafarm::internal {
 
-/// Refuses what is there and no regular file: a pipe would be waited for, a device never ends.
+/// Rejects an existing path that is not a regular file: reading a pipe would block, and reading a
+/// device may never end. Accepts a missing path.
 /// @throws InputError "path: cannot read: is no regular file"
 void NeedRegularFile(const std::string& path);
 
-/// A whole regular file. @throws InputError when it cannot be read, or is larger than 512 MiB: all
-/// of IBTrACS is some 300.
+/// Reads a regular file completely. @throws InputError when it cannot be read or is larger than
+/// 512 MiB (the complete IBTrACS file has about 300 MiB)
 std::string ReadTextFile(const std::string& path);
 
 }  // namespace aquafarm::internal

@@ -8,7 +8,7 @@
 
 namespace aquafarm::internal {
 
-/// The name of an enum's value. @throws LogicError for a value that has none
+/// Returns the name of an enum value. @throws LogicError for a value without a name
 template <typename Enum, std::size_t N>
 std::string_view NameOf(Enum value, const std::array<std::string_view, N>& names) {
   const auto i = static_cast<std::size_t>(value);

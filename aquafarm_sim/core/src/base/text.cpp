@@ -27,8 +27,8 @@ std::string FormatReal(T value) {
   }
 }
 
-// A stream of the classic locale rounds correctly and knows no nan, inf or other decimal point;
-// hexadecimal it knows.
+// A stream with the classic locale rounds correctly and rejects nan, inf and other decimal
+// separators. It accepts hexadecimal numbers, which are therefore excluded first.
 template <typename T>
 bool ParseReal(const std::string& text, T& value) {
   if (text.empty() || text.find_first_not_of("0123456789+-.eE") != std::string::npos) return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Numbers and words as text, the same in every locale.
+/// Formatting and parsing of text, independent of the locale.
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace aquafarm::internal {
 
-/// The shortest decimal text that reads back to the same bits, with a point whatever the locale.
+/// Returns the shortest decimal text that parses back to the same bits. The decimal separator is a
+/// point in every locale.
 std::string Format(float value);
 
 std::string Format(double value);
@@ -20,7 +21,8 @@ std::string Format(std::int32_t value);
 
 std::string Format(std::uint64_t value);
 
-/// Readers of whole texts; false when the text is anything else or does not fit the type.
+/// Parses a complete text as a number; returns false if it is not a number or does not fit the
+/// type.
 bool Parse(const std::string& text, float& value);
 
 bool Parse(const std::string& text, double& value);
@@ -29,35 +31,35 @@ bool Parse(const std::string& text, std::int32_t& value);
 
 bool Parse(const std::string& text, std::uint64_t& value);
 
-/// The nearest of some names to a mistyped one, or none.
+/// Returns the name nearest to a mistyped one; nullopt if none is near.
 std::optional<std::string> Nearest(const std::string& text, const std::vector<std::string>& names);
 
-/// "a, b, c"
+/// Joins names as "a, b, c".
 std::string List(const std::vector<std::string>& names);
 
-/// A file's text without the byte order mark that may stand before it.
+/// Returns a file's text without a leading byte order mark.
 std::string_view WithoutMark(std::string_view text);
 
 std::string_view Trim(std::string_view text);
 
 std::vector<std::string_view> SplitWords(std::string_view text);
 
-/// Fields between commas, blanks around them taken off.
+/// Splits a text at commas and trims the fields.
 void SplitFields(std::string_view text, std::vector<std::string_view>& fields);
 
-/// As "'text'", cut when long and without control characters.
+/// Returns "'text'", truncated if long and without control characters.
 std::string Quoted(std::string_view text);
 
 std::string Upper(std::string_view text);
 
-/// A decimal number; none: it is none.
+/// Parses a decimal number; nullopt if `text` is not one.
 std::optional<double> ParseNumber(std::string_view text);
 
 /// Parses a whole number, with or without '+'; nullopt if `text` is not one.
 std::optional<std::int32_t> ParseWhole(std::string_view text);
 
-/// Takes the first line that is not blank off a text and returns it, trimmed; empty at the end of
-/// the text.
+/// Removes the first non-blank line from a text and returns it trimmed; empty at the end of the
+/// text.
 std::string_view TakeLine(std::string_view& text);
 
 }  // namespace aquafarm::internal

@@ -9,7 +9,7 @@
 namespace aquafarm::internal {
 namespace {
 
-// Days since 1970-01-01 of a date of the Gregorian calendar.
+// Returns the days since 1970-01-01 of a date of the Gregorian calendar.
 std::int64_t DaysFromCivil(int year, int month, int day) {
   const std::int64_t y = month <= 2 ? year - 1 : year;
   const std::int64_t era = y / 400;
@@ -26,7 +26,8 @@ int DaysInMonth(int year, int month) {
   return kDays[static_cast<std::size_t>(month - 1)] + (month == 2 && IsLeap(year) ? 1 : 0);
 }
 
-// Takes up to `most` digits off a text; none when there are less than `least`.
+// Removes up to `most` leading digits from a text and returns their value; nullopt if there are
+// fewer than `least`.
 std::optional<int> TakeDigits(std::string_view& text, std::size_t most, std::size_t least = 1) {
   std::size_t count = 0;
   int value = 0;
@@ -44,7 +45,7 @@ bool Take(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-// Seconds of a zone as "Z", "+08:00", "+0800"; `otherwise` where there is none.
+// Parses a zone such as "Z", "+08:00" or "+0800" to seconds; `otherwise` if the text is empty.
 std::optional<std::int64_t> TakeZone(std::string_view text, std::int64_t otherwise) {
   if (text.empty()) return otherwise;
   if (text == "Z") return 0;
@@ -116,7 +117,7 @@ std::optional<std::int64_t> ParseDateTime(std::string_view text, std::int64_t zo
     part[i] = *digits;
     if (i < kAfter.size() && !Take(text, kAfter[i])) {
       if (i < 4) return std::nullopt;
-      break;  // no seconds
+      break;  // the text has no seconds
     }
   }
   const std::optional<std::int64_t> local =

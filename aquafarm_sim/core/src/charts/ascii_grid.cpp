@@ -22,10 +22,10 @@ float LandAt(float value, float sea_level) {
   return std::isnan(value) || value > sea_level ? 1.0F : 0.0F;
 }
 
-// The keys of the header under one name each.
+// Maps the spellings of a header key to one name.
 std::string KeyOf(std::string_view word) {
   const std::string key = internal::Upper(word);
-  // GeoClaw's xlower and ylower are where the first value lies.
+  // GeoClaw's xlower and ylower are the position of the first value.
   if (key == "XLOWER") return "XLLCENTER";
   if (key == "YLOWER") return "YLLCENTER";
   if (key == "XLL") return "XLLCORNER";
@@ -42,7 +42,7 @@ struct Header {
   std::map<std::string, Entry> entries;
 
   bool Has(const std::string& key) const { return entries.count(key) != 0; }
-  /// On the key's line.
+  /// Reports an error on the line of the key.
   [[noreturn]] void Refuse(const std::string& key, const std::string& what,
                            HazardPlace place) const {
     if (Has(key)) place.line = entries.at(key).line;
@@ -55,15 +55,15 @@ struct Header {
     }
     Refuse(key, ", expected a number in [" + Format(min) + ", " + Format(max) + "]", place);
   }
-  /// The centre of the first cell along an axis, by one key or the other.
+  /// Returns the centre of the first cell along an axis, from either key.
   double First(const std::string& center, const std::string& corner, double cell_size,
                const HazardPlace& place) const {
     constexpr double kFar = 1.0e9;
     if (Has(center)) return Get(center, -kFar, kFar, place);
     return Get(corner, -kFar, kFar, place) + cell_size / 2.0;
   }
-  /// The centres of `count` cells from `first` on lie within `most` degrees of 0, but for the half
-  /// cell by which grids with a node on the edge reach over it.
+  /// Checks that the centres of `count` cells starting at `first` lie in [-most, most] degrees. A
+  /// tolerance of half a cell permits grids with a node on the edge of this range.
   void NeedDegrees(const std::string& center, const std::string& corner, double first,
                    Eigen::Index count, double most, const AsciiGrid& grid,
                    const HazardPlace& place) const {
@@ -82,13 +82,13 @@ bool IsWord(std::string_view text) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-// What others write for a value that there is not; no key.
+// Returns whether a word stands for a missing value, as in other programs, and is thus not a key.
 bool IsNoNumber(std::string_view word) {
   const std::string upper = internal::Upper(word);
   return upper == "NAN" || upper == "NULL" || upper == "NA" || upper == "NONE" || upper == "INF";
 }
 
-// True when a line was one of the header.
+// Returns whether a line belongs to the header.
 bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
                     const HazardPlace& place) {
   if (words.size() < 2) return false;
@@ -153,7 +153,7 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
   const double nodata =
       header.Has("NODATA_VALUE") ? header.entries["NODATA_VALUE"].number : -9999.0;
   const auto wanted = static_cast<std::size_t>(columns * rows);
-  if (text.size() / 2 + 1 < wanted) {  // a value has a digit and a blank
+  if (text.size() / 2 + 1 < wanted) {  // a value has at least a digit and a blank
     place.Refuse("got " + std::to_string(text.size()) + " bytes, expected " +
                  std::to_string(columns) + " x " + std::to_string(rows) + " values");
   }

@@ -21,7 +21,7 @@ std::int64_t DistanceSquared(Cell a, Cell b) {
   return dx * dx + dy * dy;
 }
 
-// Paints the body of water around a cell with a number; returns its size.
+// Labels the body of water around a cell with a number; returns its size [cells].
 std::int32_t Paint(const Grid<std::uint8_t>& kind, Cell from, std::int32_t number,
                    Grid<std::int32_t>& body) {
   std::vector<Cell> queue{from};
@@ -39,7 +39,7 @@ std::int32_t Paint(const Grid<std::uint8_t>& kind, Cell from, std::int32_t numbe
   return static_cast<std::int32_t>(queue.size());
 }
 
-// Makes all water land but that of the largest body.
+// Converts all water to land except the largest body of water.
 std::int32_t FillEnclosed(Grid<std::uint8_t>& kind) {
   Grid<std::int32_t> body = Grid<std::int32_t>::Zero(kind.rows(), kind.cols());
   std::int32_t bodies = 0;

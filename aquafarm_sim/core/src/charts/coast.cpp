@@ -19,19 +19,19 @@ using internal::Join;
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostPoints = 20U << 20U;
-constexpr int kMostNested = 16;  // collections in collections
+constexpr int kMostNested = 16;  // nesting depth of collections
 
 double Cross(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c) {
   return (b.longitude - a.longitude) * (c.latitude - a.latitude) -
          (b.latitude - a.latitude) * (c.longitude - a.longitude);
 }
 
-// Whether two lines cross inside of both; touching is no crossing.
+// Returns whether two segments cross in the interior of both; touching does not count.
 bool Cross(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoPoint& d) {
   return Cross(a, b, c) * Cross(a, b, d) < 0.0 && Cross(c, d, a) * Cross(c, d, b) < 0.0;
 }
 
-// Whether two lines that lie on one have more than an end in common.
+// Returns whether two collinear segments share more than an end point.
 bool Doubles(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoPoint& d) {
   if (Cross(a, b, c) != 0.0 || Cross(a, b, d) != 0.0) return false;
   const auto overlap = [&](double GeoPoint::*along) {
@@ -43,10 +43,11 @@ bool Doubles(const GeoPoint& a, const GeoPoint& b, const GeoPoint& c, const GeoP
          std::min(overlap(&GeoPoint::longitude), overlap(&GeoPoint::latitude)) >= 0.0;
 }
 
-constexpr std::size_t kMostComparisons = 50'000'000;  // of a file made to be slow
+constexpr std::size_t kMostComparisons = 50'000'000;  // protects against files designed to be slow
 
-// What is wrong with a ring, or nothing. Compares only lines whose spans of longitude meet, and
-// takes each comparison off those `left` for the file: no sensible coast needs them all.
+// Returns a description of the error in a ring, or "". Compares only segments whose longitude
+// ranges overlap and subtracts each comparison from `left`, the limit per file, which no real coast
+// reaches.
 std::string FaultOf(const CoastRing& ring, std::size_t& left) {
   if (left == 0) return "";
   const std::size_t lines = ring.size() - 1;
@@ -166,14 +167,14 @@ class CoastReader {
   std::size_t comparisons_left_{kMostComparisons};
 };
 
-// A part of the globe; longitudes are relative to `middle`.
+// A geographic bounding box; longitudes are relative to `middle`.
 struct GeoBox {
   double middle{};
   std::array<double, 2> longitude{};
   std::array<double, 2> latitude{};
 };
 
-// The ranch with as much around it, and a degree at least.
+// Returns the box of the ranch with a margin of its own size on each side, at least one degree.
 GeoBox BoxOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) {
   GeoBox box;
   box.middle = frame.ToGeo(width / 2.0, height / 2.0).longitude;
@@ -197,7 +198,8 @@ GeoBox BoxOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) {
   return box;
 }
 
-// The part of a closed ring where sign * (coordinate - limit) >= 0 (Sutherland and Hodgman 1974).
+// Returns the part of a closed ring where sign * (coordinate - limit) >= 0 (Sutherland and Hodgman
+// 1974).
 CoastRing Clip(const CoastRing& ring, double GeoPoint::*coordinate, double limit, double sign) {
   CoastRing kept;
   for (std::size_t i = 0; i + 1 < ring.size(); ++i) {
@@ -217,7 +219,7 @@ CoastRing Clip(const CoastRing& ring, double GeoPoint::*coordinate, double limit
   return kept;
 }
 
-// A ring within a box, its longitudes moved by `shift`.
+// Returns the part of a ring inside a box, after adding `shift` to its longitudes.
 CoastRing Clip(CoastRing ring, double shift, const GeoBox& box) {
   for (GeoPoint& point : ring) point.longitude += shift;
   ring = Clip(ring, &GeoPoint::longitude, box.longitude[0], 1.0);
@@ -230,9 +232,9 @@ CoastRing Clip(CoastRing ring, double shift, const GeoBox& box) {
   return ring;
 }
 
-constexpr int kSamples = 5;  // a side
+constexpr int kSamples = 5;  // per side of a cell
 
-// The x at which the rings of a polygon cross a line of constant y, ascending.
+// Appends the x at which a ring crosses a line of constant y.
 void Crossings(const std::vector<std::array<double, 2>>& points, double y,
                std::vector<double>& crossings) {
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
@@ -243,7 +245,7 @@ void Crossings(const std::vector<std::array<double, 2>>& points, double y,
   }
 }
 
-// Adds the samples of one line between pairs of crossings.
+// Counts the samples of one line that lie between pairs of crossings.
 void AddSpans(const std::vector<double>& crossings, std::int32_t y, Grid<std::uint16_t>& samples) {
   const auto last = static_cast<double>(samples.cols() * kSamples - 1);
   // Sample k of a row lies at (k + 1/2) / kSamples - 1/2.
@@ -296,7 +298,7 @@ LandShare ShareOfLand(const Coast& coast, const GeoFrame& frame, std::int32_t wi
         }
       }
     }
-    if (low > high) continue;  // far away
+    if (low > high) continue;  // the polygon lies outside the box
     const auto first = static_cast<std::int32_t>(std::max(std::floor(low), 0.0));
     const auto last =
         static_cast<std::int32_t>(std::min(std::ceil(high), static_cast<double>(height - 1)));

@@ -58,7 +58,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What map_server makes of a pixel.
+// Converts a pixel to occupancy as map_server does.
 std::int8_t Occupancy(const MapYaml& map, std::uint8_t grey, bool opaque) {
   constexpr std::int8_t kUnknown = -1;
   const int light = map.negate != 0 ? 255 - grey : grey;
@@ -72,7 +72,7 @@ std::int8_t Occupancy(const MapYaml& map, std::uint8_t grey, bool opaque) {
   return static_cast<std::int8_t>(1.0 + 98.0 * (occupied - map.free) / (map.occupied - map.free));
 }
 
-// Beside first, so that no half file stands under its name.
+// Writes to a temporary file first, so that `path` never contains an incomplete file.
 void WriteFile(const std::string& path, const std::string& bytes) {
   const std::string beside = path + ".part";
   std::ofstream file(beside, std::ios::binary | std::ios::trunc);
@@ -143,7 +143,7 @@ MapFile ToMap(const Scenario& scenario) {
   LayoutGenerator(scenario).Generate(scenario.layout_seed, 0, layout);
   MapFile map;
   map.cell_size_m = scenario.cell_size_m;
-  // From the middle of cell (0, 0), the farm's origin, to its corner.
+  // Moves from the centre of cell (0, 0), the origin of the farm, to its corner.
   map.origin = {-scenario.cell_size_m / 2.0, -scenario.cell_size_m / 2.0, 0.0};
   map.occupancy = layout.cells.unaryExpr([](std::uint8_t bits) {
     return static_cast<std::int8_t>((bits & kBlockedBits) != 0 ? 100 : 0);

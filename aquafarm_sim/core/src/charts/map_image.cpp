@@ -17,7 +17,7 @@
 namespace aquafarm::internal {
 namespace {
 
-// Words of a PGM header: numbers between blanks, with comments from # to the line's end.
+// Reads the words of a PGM header: numbers between blanks, with comments from # to the end of line.
 class PgmHeader {
  public:
   PgmHeader(const std::string& bytes, HazardPlace& place) : bytes_(bytes), place_(place) {
@@ -27,10 +27,10 @@ class PgmHeader {
   std::int32_t Next(const char* name, std::int32_t max) {
     return ReadWhole(Word(), name, 1, max, place_);
   }
-  /// A pixel written as text.
+  /// Reads a pixel written as text.
   std::int32_t Pixel(std::int32_t max) { return ReadWhole(Word(), "pixel", 0, max, place_); }
-  /// Goes to the pixels: one blank ends the header, or a line's end of two bytes. A line's end may
-  /// stand behind them too.
+  /// Skips to the pixels. One blank or a line end of two bytes terminates the header. A line end
+  /// after the pixels is accepted.
   void SkipEnd(std::size_t pixels) {
     const std::size_t left = bytes_.size() - std::min(bytes_.size(), at_);
     const bool one_more = left == pixels + 2;
@@ -91,7 +91,7 @@ MapImage ParsePgm(const std::string& bytes, HazardPlace& place) {
   const bool text = bytes[1] == '2';
   const std::size_t depth = white > 255 ? 2 : 1;
   if (!text) header.SkipEnd(columns * rows * depth);
-  // A pixel of text has at least a digit and a blank, but for the last.
+  // In text format each pixel except the last has at least a digit and a blank.
   CheckSize(text ? (bytes.size() - header.at_ + 1) / 2
                  : bytes.size() - std::min(bytes.size(), header.at_),
             columns, rows, text ? 1 : depth, place);
@@ -127,7 +127,7 @@ MapImage ParseWithStb(const std::string& bytes, const HazardPlace& place) {
                  "), expected PGM, PNG or BMP");
   };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse();
-  // A row of PNG or BMP takes at least some bytes even when it is packed.
+  // Even compressed, PNG and BMP need at least one byte per kMostPacking pixels.
   constexpr std::size_t kMostPacking = 2048;
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (width > kMaxMapSide || height > kMaxMapSide || pixels / kMostPacking > bytes.size()) {

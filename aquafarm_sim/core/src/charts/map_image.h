@@ -7,17 +7,18 @@
 
 namespace aquafarm::internal {
 
-/// A picture in grey, row 0 at the top.
+/// A greyscale image, row 0 at the top.
 struct MapImage {
   Grid<std::uint8_t> grey;   ///< mean of the colours
-  Grid<std::uint8_t> alpha;  ///< empty where every pixel is opaque
+  Grid<std::uint8_t> alpha;  ///< empty if every pixel is opaque
 };
 
-/// Largest side of a picture [pixels].
+/// Max width and height of an image [pixels].
 inline constexpr std::int32_t kMaxMapSide = 16384;
 
-/// Reads PGM (P2, P5), PNG and BMP by content. What a header claims is checked before memory is
-/// taken. @throws InputError "chart.pgm: got 12 bytes of pixels, expected 65536 x 65536 …"
+/// Reads PGM (P2, P5), PNG and BMP; the content decides the format. The size in the header is
+/// checked before memory is allocated.
+/// @throws InputError "chart.pgm: got 12 bytes of pixels, expected 65536 x 65536 …"
 MapImage ParseMapImage(const std::string& bytes, const std::string& origin_name);
 
 }  // namespace aquafarm::internal

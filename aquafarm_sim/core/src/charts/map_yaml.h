@@ -8,13 +8,13 @@
 
 namespace aquafarm {
 
-/// How a picture's grey becomes occupancy.
+/// Conversion of an image's grey values to occupancy.
 enum class MapMode : std::uint8_t { kTrinary, kScale, kRaw };
 std::string_view ToString(MapMode value);
 
 namespace internal {
 
-/// What a YAML file of map_server says of its picture.
+/// Content of a YAML file of map_server.
 struct MapYaml {
   std::string image;
   double resolution{};
@@ -25,7 +25,7 @@ struct MapYaml {
   MapMode mode{};
 };
 
-/// @throws InputError "map.yaml:3: origin: …"
+/// Parses a YAML file of map_server. @throws InputError "map.yaml:3: origin: …"
 MapYaml ParseMapYaml(const std::string& text, const std::string& origin_name);
 
 }  // namespace internal

@@ -9,8 +9,8 @@
 namespace aquafarm {
 namespace {
 
-// Taylor series on [0, 45] degrees, where nine terms are exact to double precision: only + and *,
-// so the same bits on every machine, which libm does not promise.
+// Taylor series on [0, 45] degrees, where nine terms are exact to double precision. It uses only
+// + and *, so results are bit-identical on every machine, which libm does not guarantee.
 struct SineCosine {
   double sine{};
   double cosine{};
@@ -38,8 +38,8 @@ std::array<std::array<float, 2>, 360> MakeHeadings() {
     if (within > 45) std::swap(value.sine, value.cosine);
     const auto sine = static_cast<float>(value.sine);
     const auto cosine = static_cast<float>(value.cosine);
-    // East is the sine, north the cosine of a compass bearing.
-    constexpr float kZero = 0.0F;  // keeps -0 out of the table
+    // East is the sine and north the cosine of a compass bearing.
+    constexpr float kZero = 0.0F;  // avoids -0 in the table
     switch (quadrant) {
       case 0:
         headings[static_cast<std::size_t>(degrees)] = {sine, cosine};
@@ -64,10 +64,10 @@ void SetMotion(ObservableDisaster& disaster) {
   disaster.dy = direction[1] * disaster.speed;
 }
 
-// A ring of radius 0 is absent: no distance squared is at most -1.
+// A ring of radius 0 is absent and gets -1, which is below every squared distance.
 float Squared(float radius) { return radius > 0.0F ? radius * radius : -1.0F; }
 
-// Every ring of a waypoint or spec.
+// Sets all rings of a waypoint or spec.
 void SetRings(ObservableDisaster& disaster, const std::vector<float>& radii,
               const std::vector<QuadrantRadii>& quadrants) {
   disaster.by_quadrant = !quadrants.empty();
@@ -80,7 +80,8 @@ void SetRings(ObservableDisaster& disaster, const std::vector<float>& radii,
   }
 }
 
-// Grade, and the heading and speed that people and bulletins read, on the leg after a waypoint.
+// Sets the grade, and the heading and speed for displays and bulletins, on the leg after a
+// waypoint.
 void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
               std::size_t waypoint) {
   disaster.waypoint = static_cast<std::int32_t>(waypoint);
@@ -100,7 +101,7 @@ void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
   }
 }
 
-// Position and heading after meeting one border of [low, high]; mirrors like a ball at a wall.
+// Reflects position and heading at the borders of [low, high].
 void Bounce(float& position, float low, float high, std::int32_t mirror, Disaster& disaster) {
   const bool below = position < low;
   if (!below && position <= high) return;
@@ -169,7 +170,7 @@ void GrowRings(ObservableDisaster& disaster, float by) {
       QuadrantRadii radii{};
       for (std::size_t q = 0; q < radii.size(); ++q) {
         const float radius = disaster.quadrant[q][k];
-        radii[q] = radius > 0.0F ? grown(radius) : 0.0F;  // what is not there stays away
+        radii[q] = radius > 0.0F ? grown(radius) : 0.0F;  // an absent quadrant stays absent
       }
       SetRing(disaster, k, radii);
     } else {
@@ -202,7 +203,7 @@ Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t 
   disaster.steps_left = spec.duration;
   RandomStream chance({seed, episode, Purpose::kDisasterSpawn, static_cast<std::uint32_t>(id)});
   const float margin = disaster.margin;
-  // Drawn in any case, so that fixing one number of a spec leaves the other draws as they were.
+  // Always drawn, so that setting one field of a spec does not change the other draws.
   const float x = chance.Uniform(-0.5F - margin, static_cast<float>(width) - 0.5F + margin);
   const float y = chance.Uniform(-0.5F - margin, static_cast<float>(height) - 0.5F + margin);
   const auto heading = static_cast<std::int32_t>(chance.Below(360));

@@ -13,7 +13,8 @@ namespace {
 
 float Clamped(float health) { return health > 0.0F ? health : 0.0F; }
 
-// Whether a ship's action brought a reward of its own, whatever its size.
+// Returns whether a ship's action triggered a reward term other than the step reward, even if the
+// term is 0.
 bool TriggersReward(const Ship& ship) {
   switch (ship.outcome) {
     case Outcome::kOk:
@@ -53,7 +54,7 @@ Farm::Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layou
 void Farm::ResetTracks() {
   tracks_.clear();
   for (const DisasterSpec& spec : scenario_->disasters) {
-    // An alias: the scenario owns the waypoints and outlives the farm.
+    // Aliasing pointer: the scenario owns the waypoints, and the pointer keeps the scenario alive.
     tracks_.emplace_back(scenario_, &spec.track);
   }
   tracks_changed_ = false;
@@ -175,7 +176,7 @@ void Farm::Act(std::int32_t id, Action action) {
   }
 }
 
-// A moving ship is never where it wants to go, so its own entry needs no exception.
+// A moving ship is never on its destination cell, so its own entry needs no special case.
 bool Farm::Occupied(std::int32_t index) const {
   std::int32_t found = 0;
   for (const std::int32_t other : ship_index_) found += other == index ? 1 : 0;
@@ -231,7 +232,8 @@ void Farm::Move(Ship& ship, std::int32_t id, Action action) {
   if (ship.own_device != kNone) devices_[static_cast<std::size_t>(ship.own_device)].cell = to;
 }
 
-// A crashing ship does nothing else in its step, so the loss may be taken before the damage phase.
+// A crashing ship does nothing else in its step, so the loss can be applied before the damage
+// phase.
 void Farm::CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits) {
   if (ship.aboard == 0 && ship.own_device == kNone) return;
   const float probability = scenario_->damage.crash_probability;
@@ -308,7 +310,7 @@ void Farm::DropOff(Ship& ship, std::int32_t id) {
   ship.terms.drop_off = scenario_->rewards.drop_off + worth;
 }
 
-// Devices take the risk at the cell they are in now, aboard or on their own.
+// Devices are exposed to the risk at their current cell, aboard a ship or not.
 void Farm::Damage() {
   const float exposure = scenario_->damage.exposure_damage;
   if (exposure == 0.0F) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An episode in progress as a hash and as bytes, and disasters that arrive while it runs.
+// Hashing, saving and loading of an episode in progress, and disasters that arrive during it.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -26,7 +26,7 @@ std::int32_t Int(Enum value) {
   return static_cast<std::int32_t>(value);
 }
 
-// Whether its rings may have been others when the last bulletin was issued.
+// Returns whether the rings may have changed since the last bulletin was issued.
 bool TellsRings(const Disaster& disaster) {
   return disaster.radius_growth != 0.0F && disaster.bulletin.step != kNone;
 }
@@ -315,7 +315,7 @@ std::uint64_t Farm::Hash() const {
     hasher.Add(device.carrier, Int(device.status));
   }
   for (const Disaster& disaster : disasters_) HashDisaster(disaster, hasher);
-  if (tracks_changed_) HashTracks(tracks_, hasher);  // else they are the scenario's
+  if (tracks_changed_) HashTracks(tracks_, hasher);  // else they are those of the scenario
   return hasher.value();
 }
 
@@ -347,7 +347,8 @@ std::string Farm::Save() const {
 }
 
 void Farm::Load(const std::string& bytes) {
-  // Built aside and moved in only when everything fits and hashes to what was saved.
+  // The state is loaded into a separate farm, which replaces this one only if all parts are
+  // consistent and the hash equals the saved hash.
   Farm loaded(scenario_, own_layout_ == nullptr ? layout_ : nullptr);
   try {
     const json sealed = ParseCbor(bytes);
@@ -406,7 +407,7 @@ void Farm::Load(const std::string& bytes) {
   *this = std::move(loaded);
 }
 
-// The hash vouches for honest bytes; forged ones must still not reach outside the arrays.
+// The hash detects damaged bytes. Forged bytes must not cause out-of-bounds access either.
 void Farm::CheckConsistent() const {
   const auto on_map = [this](Cell cell) {
     return cell.x >= 0 && cell.x < scenario_->width && cell.y >= 0 && cell.y < scenario_->height;
@@ -443,7 +444,7 @@ void Farm::CheckConsistent() const {
   if (!fits) throw InputError("state: its parts do not fit together");
 }
 
-// One that is the scenario's own stays so, and with it the forecasts of it.
+// Keeps the scenario's own track if the tracks are equal, so that its forecasts stay available.
 Track Farm::Owned(std::size_t id, std::vector<Waypoint> track) const {
   const auto& specs = scenario_->disasters;
   if (id < specs.size() && IsSame(specs[id].track, track)) return {scenario_, &specs[id].track};
@@ -479,11 +480,11 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
       disaster.y = present.y;
     }
     disaster.bulletin = present.bulletin;
-    disaster.TellRings();  // how it changed in size is not known of another
+    disaster.TellRings();  // ring sizes of the replaced disaster do not apply to the new one
     disasters_[k] = disaster;
     tracks_[k] = std::move(track);
   }
-  // Turning draws come in blocks of four steps; the present block is not drawn yet.
+  // Turn draws come in blocks of four steps; the current block is not drawn yet.
   Disaster& placed = disasters_[k];
   placed.draws =
       Draw({record_.seed, record_.episode, Purpose::kDisasterTurn, static_cast<std::uint32_t>(id)},

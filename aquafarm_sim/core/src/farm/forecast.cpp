@@ -12,7 +12,8 @@ const std::vector<Waypoint>& TrackOf(const Farm& farm, std::int32_t disaster) {
   return *farm.tracks()[static_cast<std::size_t>(disaster)];
 }
 
-// What an authority forecast last of a disaster that still is the scenario's, if it is not run out.
+// Returns the newest issued forecast of a disaster that still follows the scenario's track; nullptr
+// if there is none or if it has expired.
 const IssuedForecast* NewestSaid(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
   const std::vector<DisasterSpec>& specs = farm.scenario().disasters;
   const auto id = static_cast<std::size_t>(disaster);
@@ -26,7 +27,7 @@ const IssuedForecast* NewestSaid(const Farm& farm, std::int32_t disaster, std::i
   return &*(next - 1);
 }
 
-// The index of the first point after a step, or the number of points.
+// Returns the index of the first point after a step, or the number of points.
 template <typename Points>
 std::size_t After(float step, const Points& points) {
   const auto next = std::upper_bound(points.begin(), points.end(), step,
@@ -34,7 +35,8 @@ std::size_t After(float step, const Points& points) {
   return static_cast<std::size_t>(next - points.begin());
 }
 
-// The truth at a step: before its first waypoint it waits there, after the last it stays there.
+// Returns the true state at a step. Before the first waypoint the disaster is at the first one,
+// after the last waypoint at the last one.
 Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
   const std::size_t next = After(step, track);
   Waypoint now = track[next == 0 ? 0 : next - 1];
@@ -56,8 +58,8 @@ Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
   return now;
 }
 
-// One forecast: the truth where it is past; where it is to come, what was said or else the truth
-// displaced.
+// One forecast. Until the step of issue it equals the true track. After it, it is the issued
+// forecast or, without one, the displaced true track.
 class Forecast {
  public:
   Forecast(const Farm& farm, std::int32_t disaster, std::int32_t issued)
@@ -69,7 +71,7 @@ class Forecast {
     if (said_ == nullptr) error_ = ForecastErrorVector(farm.seed(), farm.episode(), disaster);
   }
 
-  /// Steps at which it bends or the truth does, from its issue on.
+  /// Returns the steps from its issue on at which the forecast or the true track changes direction.
   std::vector<float> Steps() const {
     std::vector<float> steps{issued_};
     for (std::size_t i = After(issued_, track_); i < track_.size(); ++i) {
@@ -117,13 +119,14 @@ class Forecast {
 
   const Scenario& scenario_;
   const std::vector<Waypoint>& track_;
-  const IssuedForecast* said_;  // null: the truth displaced
+  const IssuedForecast* said_;  // null: uses the displaced true track
   float issued_;
-  std::size_t first_;  // of the points to come
+  std::size_t first_;  // index of the first future point
   std::array<float, 2> error_{};
 };
 
-// The sum of four draws of [0, 1), less its mean: near to normal, and the same bits everywhere.
+// Returns the sum of four draws from [0, 1) minus its mean. It is approximately normal and
+// bit-identical on every machine.
 float NearlyNormal(const std::array<std::uint32_t, 4>& draws) {
   return ToUnit(draws[0]) + ToUnit(draws[1]) + ToUnit(draws[2]) + ToUnit(draws[3]) - 2.0F;
 }
@@ -143,7 +146,7 @@ float MeanForecastError(const Scenario& scenario, float lead) {
 
 std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episode,
                                          std::int32_t disaster) {
-  // 1 / mean length of two such sums; measured by a test.
+  // 1 / mean length of a vector of two such sums; verified by a test.
   constexpr float kScale = 1.3697F;
   const StreamKey key{seed, episode, Purpose::kForecast, static_cast<std::uint32_t>(disaster)};
   return {kScale * NearlyNormal(Draw(key, 0)), kScale * NearlyNormal(Draw(key, 1))};

@@ -12,7 +12,7 @@ namespace aquafarm {
 namespace {
 
 constexpr std::uint32_t kMaxTries = 100;
-// Drawing rocks leaves the draws of ports and devices as they are.
+// Separate streams: the draws of rocks do not affect those of ports and devices.
 enum Part : std::uint32_t { kPortPart, kDevicePart, kRockPart, kPartCount };
 static_assert(kMaxTries * kPartCount < (1U << 24U), "RandomStream streams");
 
@@ -21,13 +21,13 @@ constexpr const char* kRocksKey = "layout.rocks.count";
 constexpr const char* kRockCellsKey = "layout.rocks.cells";
 constexpr const char* kPortsKey = "layout.ports.count";
 constexpr const char* kDevicesKey = "layout.devices.count";
-constexpr std::int32_t kLongestRow = 8;  // devices
+constexpr std::int32_t kLongestRow = 8;  // [devices]
 
 std::uint8_t ObstacleLevel(float reward) {
   return static_cast<std::uint8_t>(255.0F * std::min(1.0F, -reward / 20.0F) + 0.5F);
 }
 
-// Smallest n with n * n >= value.
+// Returns the smallest n with n * n >= value.
 std::int32_t CeilSqrt(std::int64_t value) {
   std::int32_t root = 0;
   while (static_cast<std::int64_t>(root) * root < value) ++root;
@@ -36,7 +36,8 @@ std::int32_t CeilSqrt(std::int64_t value) {
 
 std::int32_t CeilDiv(std::int32_t a, std::int32_t b) { return (a + b - 1) / b; }
 
-// The middle of part i of `parts` equal parts of a side, off by up to a quarter part.
+// Returns the middle of part i of `parts` equal parts of a side, with a random offset of up to a
+// quarter of a part.
 std::int32_t NearMiddle(RandomStream& chance, std::int32_t i, std::int32_t parts,
                         std::int32_t side) {
   const std::int32_t middle = (2 * i + 1) * side / (2 * parts);
@@ -135,7 +136,7 @@ void LayoutGenerator::PlaceIslands(Layout& layout) const {
   }
 }
 
-// Rocks without their rewards, which DrawRocks gives them.
+// Places rocks without their rewards; DrawRocks assigns them.
 void LayoutGenerator::PlaceExplicit(Layout& layout) const {
   for (const Cell cell : scenario_.ports.cells) AddPort(cell, layout);
   for (const Cell cell : scenario_.rocks.cells) layout.cells(cell.y, cell.x) |= kRockBit;
@@ -219,7 +220,7 @@ bool LayoutGenerator::DrawRocks(RandomStream& chance, Layout& layout) {
 
 void LayoutGenerator::Spread(RandomStream& chance, Layout& layout) {
   const std::int32_t count = scenario_.devices.count;
-  // Parts about as wide as high: rows² = count · height / width.
+  // Parts are approximately square: rows² = count · height / width.
   const std::int32_t rows = std::min({count, scenario_.height,
                                       std::max(1, CeilSqrt(static_cast<std::int64_t>(count) *
                                                            scenario_.height / scenario_.width))});
@@ -298,7 +299,7 @@ Cell LayoutGenerator::NearestFree(const Layout& layout, Cell wanted) const {
     for (std::int32_t dy = -ring; dy <= ring; ++dy) {
       const std::int32_t y = wanted.y + dy;
       if (y < 0 || y >= scenario_.height) continue;
-      // The whole row at the top and bottom of the ring, else its two ends.
+      // At the top and bottom of the ring the complete row, elsewhere only its two ends.
       const std::int32_t stride = dy == -ring || dy == ring ? 1 : 2 * ring;
       for (std::int32_t dx = -ring; dx <= ring; dx += stride) {
         const std::int32_t x = wanted.x + dx;

@@ -23,7 +23,7 @@ bool HasLine(std::string_view text, const std::string& start) {
   return Starts(text, start) || Has(text, "\n" + start);
 }
 
-// The beginning of JSON, which may have a bracket alone on its first line.
+// Returns the beginning of a JSON text on one line, because its first line may be only a bracket.
 std::string OnOneLine(const std::string& text, std::size_t begin) {
   constexpr std::size_t kEnough = 200;
   std::string part = text.substr(begin, kEnough);
@@ -45,7 +45,7 @@ FileLook LookAtJson(const std::string& text) {
   return {};
 }
 
-// By the first bytes, which formats of bytes begin with.
+// Detects binary formats from their first bytes.
 FileLook LookAtBytes(const std::string& text) {
   if (Starts(text, "CDF") || Starts(text, "\x89HDF")) return {FileKind::kNetcdf, "a netCDF file"};
   if (Starts(text, "\x89PNG")) return {FileKind::kPicture, "a PNG picture"};

@@ -8,7 +8,7 @@ namespace aquafarm::internal {
 
 enum class FileKind : std::uint8_t {
   kUnknown,
-  kTracks,   ///< of storms, in any format
+  kTracks,   ///< storm tracks in any format
   kNotices,  ///< warnings or anchorage forecasts
   kGeoJson,
   kAsciiGrid,
@@ -17,16 +17,18 @@ enum class FileKind : std::uint8_t {
   kNetcdf,
 };
 
-/// What a file seems to be by its content.
+/// Type of a file, detected from its content.
 struct FileLook {
   FileKind kind{};
-  std::string words;  ///< "a netCDF file", "tracks of storms (CMA best track)", "'first line…'"
+  std::string words;  ///< description: "a netCDF file", "tracks of storms (CMA best track)", or
+                      ///< the quoted first line
 };
 
+/// Detects the type of a file from its content.
 FileLook LookAt(const std::string& text);
 
-/// The kind of chart that a name's ending promises, for a content that does not tell: its reader
-/// then says what is wrong with it.
+/// Returns the kind of chart that the extension of a file name indicates. Used if the content is
+/// not recognized, so that the reader of that kind reports the error.
 FileKind KindByName(const std::string& path);
 
 }  // namespace aquafarm::internal

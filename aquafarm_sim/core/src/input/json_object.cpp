@@ -20,14 +20,14 @@ std::int32_t LineAt(const std::string& text, std::size_t offset) {
   return static_cast<std::int32_t>(1 + std::count(text.begin(), end, '\n'));
 }
 
-// As null, blank or "null".
+// Returns whether a value is null, blank or "null".
 bool SaysNothing(const Json& value) {
   if (!value.is_string()) return value.is_null();
   const std::string& text = value.get_ref<const std::string&>();
   return Trim(text).empty() || text == "null";
 }
 
-// Gives a text to the parser and remembers how far it has read.
+// Iterator that passes a text to the parser and records the position that it has reached.
 class ReadingIterator {
  public:
   using iterator_category = std::input_iterator_tag;
@@ -56,11 +56,12 @@ class ReadingIterator {
   const char** read_;
 };
 
-// Walks to a path and stops there; remembers where the last of its parents began.
+// Parses until the value of a path and stops there. Records where its nearest parent begins.
 class PathFinder : public nlohmann::json_sax<Json> {
  public:
   PathFinder(const std::string& wanted, const char* const& read) : wanted_(wanted), read_(read) {}
-  /// Behind the path's value, or behind the beginning of its nearest parent where it has none.
+  /// Position after the value of the path, or after the beginning of its nearest parent if the path
+  /// has no value.
   const char* found() const { return found_; }
   bool null() override { return Value(); }
   bool boolean(bool) override { return Value(); }
@@ -93,7 +94,8 @@ class PathFinder : public nlohmann::json_sax<Json> {
     const Level& level = levels_.back();
     return level.array ? internal::At(level.path, level.index) : Join(level.path, level.key);
   }
-  // Whether it is the path's. A parent's is noted on the way; a later one lies deeper.
+  // Returns whether `path` is the wanted path. Records the position of each of its parents; later
+  // ones are deeper.
   bool IsWanted(const std::string& path) {
     const bool holds = wanted_.compare(0, path.size(), path) == 0;
     const bool ends = path.empty() || path.size() == wanted_.size() ||
@@ -123,7 +125,7 @@ class PathFinder : public nlohmann::json_sax<Json> {
   std::vector<Level> levels_;
 };
 
-// Refuses what is nested more deeply than any bulletin or chart.
+// Rejects JSON that is nested deeper than any bulletin or chart.
 void CheckDepth(const std::string& text, HazardPlace& place) {
   constexpr int kMostDepth = 64;
   int depth = 0;
@@ -158,7 +160,7 @@ std::string InRange(double min, double max) {
   return "a number in [" + Format(min) + ", " + Format(max) + "]";
 }
 
-// Where the blanks and comments of JavaScript at the beginning end.
+// Returns the end of leading blanks and JavaScript comments.
 std::size_t EndOfComments(const std::string& text) {
   std::size_t at = text.find_first_not_of(" \t\r\n");
   while (at != std::string::npos && text[at] == '/') {
@@ -207,7 +209,7 @@ Json ParseJson(const std::string& text, HazardPlace& place) {
   CheckDepth(text, place);
   const char* read = text.data();
   const char* const end = text.data() + text.size();
-  std::vector<std::set<std::string>> keys;  // of the objects that are open
+  std::vector<std::set<std::string>> keys;  // keys of the enclosing objects
   const auto check = [&](int, Json::parse_event_t event, const Json& parsed) {
     if (event == Json::parse_event_t::object_start) keys.emplace_back();
     if (event == Json::parse_event_t::object_end) keys.pop_back();
@@ -224,10 +226,10 @@ Json ParseJson(const std::string& text, HazardPlace& place) {
     place.path.clear();
     place.line = LineAt(text, error.byte == 0 ? 0 : error.byte - 1);
     const std::string what = error.what();
-    const std::size_t reason = what.find("; ");  // after the library's own words for the place
+    const std::size_t reason = what.find("; ");  // follows the position as given by the library
     place.Refuse("got no valid JSON: " +
                  (reason == std::string::npos ? what : what.substr(reason + 2)));
-  } catch (const Json::out_of_range& error) {  // a number too large; the library says which
+  } catch (const Json::out_of_range& error) {  // a number is too large; the message contains it
     const std::string what = error.what();
     const std::size_t from = what.find('\'') + 1;
     const std::string number = what.substr(from, what.rfind('\'') - from);
@@ -245,7 +247,7 @@ bool IsBlank(const Json& value) {
 std::int32_t LineOfJson(const std::string& text, const std::string& path) {
   const char* read = text.data();
   PathFinder finder(path, read);
-  // A number is known to end only with the character behind it.
+  // The parser detects the end of a number only at the character after it.
   const char* end = text.data() + text.size();
   Json::sax_parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), &finder);
   const char* found = finder.found();

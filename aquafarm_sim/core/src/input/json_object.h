@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// JSON as bulletins write it: with a byte-order mark or a Markdown fence around it, or as the
-/// value of a variable of JavaScript (`let x = …;`, behind comments), numbers as numbers or as
-/// text, and nothing said as null, "", "null" or no key at all.
+/// JSON as found in bulletins. The text may have a byte-order mark or a Markdown fence, or be the
+/// value of a JavaScript variable (`let x = …;`, after comments). Numbers may be numbers or text. A
+/// missing value may be null, "", "null" or an absent key.
 
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -17,44 +17,50 @@
 
 namespace aquafarm::internal {
 
-/// Whether a text starts as `let x = …`, `var x = …` or `const x = …`.
+/// Returns whether a text starts with `let x = …`, `var x = …` or `const x = …`.
 bool IsAssignment(std::string_view text);
 
-/// A JSON text without byte-order mark, Markdown fence and JavaScript; lines stay where they are.
+/// Removes byte-order mark, Markdown fence and JavaScript from a JSON text. Line numbers stay the
+/// same.
 std::string CleanJson(const std::string& text);
 
-/// @throws InputError "file:line: got no valid JSON: …", also for a key that an object has twice
+/// Parses JSON. @throws InputError "file:line: got no valid JSON: …", also for a duplicate key in
+/// an object
 nlohmann::json ParseJson(const std::string& text, HazardPlace& place);
 
-/// Whether JSON says nothing: null, blank or "null" as text, or an object of nothing else.
+/// Returns whether a value is missing: null, a blank text, the text "null", or an object that
+/// contains only such values.
 bool IsBlank(const nlohmann::json& value);
 
-/// The line on which the value of a path such as "[0].points[3].lat" ends, or a list or an object
-/// begins; where there is no such value, that of the nearest parent there is.
+/// Returns the line on which the value of a path such as "[0].points[3].lat" ends, or on which it
+/// begins if it is a list or an object. Returns the line of the nearest existing parent if there is
+/// no such value.
 std::int32_t LineOfJson(const std::string& text, const std::string& path);
 
-/// A JSON object with its path, and the first of several spellings of a key.
+/// A JSON object with its path. Each look-up accepts several spellings of a key and uses the first
+/// one that has a value.
 class JsonObject {
  public:
-  /// @throws InputError when it is no object
+  /// @throws InputError if `value` is not an object
   JsonObject(const nlohmann::json& value, std::string path, HazardPlace& place);
 
   using Keys = std::initializer_list<const char*>;
-  /// The value; null where nothing is said.
+  /// Returns the value, or nullptr if it is missing.
   const nlohmann::json* Find(Keys keys) const;
-  /// The spelling that is used here: of the value, else of a key without one, else the first.
+  /// Returns the spelling used in this object: the key with a value, else a key without a value,
+  /// else the first spelling.
   std::string KeyOf(Keys keys) const;
-  /// @throws InputError when it is no number in [min, max]
+  /// Returns a number; nullopt if it is missing. @throws InputError if it is not in [min, max]
   std::optional<double> Number(Keys keys, double min, double max) const;
   double NeedNumber(Keys keys, double min, double max) const;
-  /// Text, or a number as such, or "" when nothing is said. @throws InputError
+  /// Returns a text, or a number as text; "" if it is missing. @throws InputError
   std::string Text(Keys keys) const;
-  /// UTC; `zone_s` where the text has no zone. @throws InputError
+  /// Returns UTC seconds; `zone_s` applies if the text has no zone. @throws InputError
   std::int64_t NeedTime(Keys keys, std::int64_t zone_s) const;
   GeoPoint NeedPosition(Keys latitude, Keys longitude) const;
-  /// A list, or null. @throws InputError when it is something else
+  /// Returns a list, or nullptr if it is missing. @throws InputError if it is not a list
   const nlohmann::json* List(Keys keys) const;
-  /// Puts the place on this object, for a refusal or a warning.
+  /// Sets the parse position to this object, for an error or a warning, and returns it.
   HazardPlace& Here() const;
   const std::string& path() const { return path_; }
 

@@ -12,7 +12,7 @@
 namespace aquafarm::internal {
 namespace {
 
-constexpr std::size_t kMostWarnings = 100;  // of a file made to fill memory
+constexpr std::size_t kMostWarnings = 100;  // protects against files designed to fill the memory
 
 [[noreturn]] void RefuseNumber(std::string_view text, const char* name, const char* kind,
                                const std::string& min, const std::string& max,
@@ -64,7 +64,7 @@ std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min
 double ReadNumber(std::string_view text, const char* name, double min, double max,
                   const HazardPlace& place) {
   const std::optional<double> value = ParseNumber(text);
-  if (value && *value >= min && *value <= max) return *value;  // false for nan
+  if (value && *value >= min && *value <= max) return *value;  // false for NaN
   RefuseNumber(text, name, "number", Format(min), Format(max), place);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Where a reader of text stands: its lines with their numbers, strict numbers and times, and the
-/// place that a refusal or a warning names.
+/// Context of a text parser: lines with their numbers, strict parsing of numbers and times, and the
+/// position for errors and warnings.
 
 #include <functional>
 #include <optional>
@@ -12,14 +12,14 @@
 
 namespace aquafarm::internal {
 
-/// Where a reader stands: it refuses and warns in the name of a file and a line.
+/// Position of a parser. Reports errors and warnings with the file and the line.
 class HazardPlace {
  public:
   HazardPlace(const std::string& file, std::vector<std::string>& warnings)
       : file_(file), warnings_(warnings) {}
 
-  std::int32_t line{};  ///< 0: `locate` finds it when it is asked for
-  std::string path;     ///< of a value in JSON, said before what is wrong
+  std::int32_t line{};  ///< 0: `locate` determines it on demand
+  std::string path;     ///< path of a value in JSON, reported before the error
   std::function<std::int32_t(const std::string& path)> locate;
 
   /// @throws InputError "file:line: what", with a path "file:line: path.what"
@@ -36,13 +36,13 @@ class HazardPlace {
   std::vector<std::string>& warnings_;
 };
 
-/// The lines of a text, one by one, without CR and LF.
+/// Iterates over the lines of a text, without CR and LF.
 class LineReader {
  public:
   LineReader(std::string_view text, HazardPlace& place) : rest_(text), place_(place) {
     place.line = 0;
   }
-  /// False at the end of the text. Puts place.line on the line it gives.
+  /// Reads the next line and sets place.line to its number; returns false at the end of the text.
   bool Next(std::string_view& line);
 
  private:
@@ -50,18 +50,19 @@ class LineReader {
   HazardPlace& place_;
 };
 
-/// A whole number in [min, max]. @throws InputError "name: got 'x', expected a whole number in …"
+/// Parses a whole number in [min, max].
+/// @throws InputError "name: got 'x', expected a whole number in …"
 std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min, std::int32_t max,
                        const HazardPlace& place);
-/// A decimal number in [min, max].
+/// Parses a decimal number in [min, max]. @throws InputError
 double ReadNumber(std::string_view text, const char* name, double min, double max,
                   const HazardPlace& place);
-/// As ReadWhole, none for a blank text.
+/// Parses as ReadWhole does; returns nullopt for a blank text.
 std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* name,
                                              std::int32_t min, std::int32_t max,
                                              const HazardPlace& place);
 
-/// UTC seconds of YYYYMMDDHH. @throws InputError for a date that is not
+/// Parses YYYYMMDDHH to UTC seconds. @throws InputError for an invalid date
 std::int64_t ReadHour(std::string_view text, const HazardPlace& place);
 
 }  // namespace aquafarm::internal

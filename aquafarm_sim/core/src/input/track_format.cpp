@@ -14,7 +14,7 @@ bool IsDigits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-// CMA and JMA: times of ten digits against eight.
+// Distinguishes CMA (times of ten digits) from JMA (times of eight digits).
 std::optional<HazardFormat> DetectBestTrack(std::string_view text) {
   const std::vector<std::string_view> words = internal::SplitWords(internal::TakeLine(text));
   if (words.empty() || !IsDigits(words[0])) return std::nullopt;

@@ -19,23 +19,24 @@ constexpr std::int32_t kDisasterFeatures = 7;
 constexpr std::int32_t kShipFeatures = 4;
 constexpr std::int32_t kWayFeatures = 3;
 constexpr std::int32_t kCourseFeatures = kMoveCount + kCourseCount;
-constexpr float kValueScale = 1.0F / 100.0F;  // devices' highest paper value
+constexpr float kValueScale = 1.0F / 100.0F;  // 1 / max device value of the paper
 
-// The painted planes come first, so that a run past a plane's end stays inside the buffer.
+// The painted planes come first, so that a run past the end of a plane stays inside the buffer.
 enum Plane : std::size_t { kRisk, kForecast, kObstacle, kPort, kDevice, kSelf, kCargo, kOthers };
 
-// A device's digit in a status code: deployed, aboard the ship, or gone.
+// Returns the digit of a device in a status code: deployed (0), aboard the ship (1) or gone (2).
 std::int32_t Standing(DeviceStatus status, bool aboard_self) {
   if (status == DeviceStatus::kDeployed) return 0;
   return aboard_self ? 1 : 2;
 }
 
-// Which of several agents it is, so that one network can play all of them. Alone, none is needed.
+// Returns the number of one-hot identity features, with which one network can control all agents. A
+// single agent needs none.
 std::int32_t IdentityFeatures(const Scenario& scenario) {
   return scenario.AgentCount() > 1 ? scenario.AgentCount() : 0;
 }
 
-// Steps after which an episode is over at the latest.
+// Returns the max length of an episode [steps].
 float Horizon(const Scenario& scenario) {
   std::int32_t horizon = 0;
   for (const DisasterSpec& disaster : scenario.disasters) {
@@ -68,7 +69,7 @@ Encoder::Encoder(const Scenario& scenario) : scenario_(scenario) {
     }
   }
 
-  // Base-3 codes grow as 3^D: beyond this many devices no table would fit anyway.
+  // Base-3 codes grow as 3^D; with more devices no table would fit in memory.
   constexpr std::int32_t kMostDevices = 14;
   if (fetchable_ > kMostDevices) return;
   std::size_t codes = 1;
@@ -125,7 +126,7 @@ Encoder::TabularState Encoder::Decode(std::uint32_t index) const {
 
 void Encoder::Features(const View& view, float* out) const {
   const Layout& layout = *view.layout;
-  const float scale = scale_;  // a copy: what is written to `out` might else be it
+  const float scale = scale_;  // a copy, because `out` might alias the member
   const Cell self = view.self;
   const auto east = [=](Cell cell) { return static_cast<float>(cell.x - self.x) * scale; };
   const auto north = [=](Cell cell) { return static_cast<float>(cell.y - self.y) * scale; };
@@ -179,7 +180,8 @@ void Encoder::Features(const View& view, float* out) const {
   if (scenario_.view.courses) Courses(view, out);
 }
 
-// Which moves lead off the map or onto a rock or an island. @returns where it ended
+// Writes whether each move leads off the map or into a rock or island. @returns the end of the
+// written range
 float* Encoder::Blocked(const Layout& layout, Cell self, float* out) const {
   const std::int32_t width = scenario_.width;
   const std::int32_t height = scenario_.height;
@@ -188,7 +190,7 @@ float* Encoder::Blocked(const Layout& layout, Cell self, float* out) const {
     return (here[LinearIndex(move, width)] & kBlockedBits) != 0;
   };
   const bool inside = self.x > 0 && self.x < width - 1 && self.y > 0 && self.y < height - 1;
-  if (inside) {  // the usual case, without a branch per move
+  if (inside) {  // the common case, without a branch per move
     for (const Cell move : kMoves) *out++ = static_cast<float>(is_blocked(move));
     return out;
   }
@@ -200,8 +202,8 @@ float* Encoder::Blocked(const Layout& layout, Cell self, float* out) const {
   return out;
 }
 
-// The risk forecast after one step of each move, and on average over the steps of a course that
-// holds on, or of a ship that stays; the map's edge stops a ship.
+// Writes the forecast risk after one step of each move, and the mean forecast risk over the steps
+// of each straight course and of staying. A ship stops at the edge of the map.
 void Encoder::Courses(const View& view, float* out) const {
   CourseRisks risks(scenario_, view.self);
   for (const KnownDisaster& known : view.disasters) {
@@ -212,12 +214,12 @@ void Encoder::Courses(const View& view, float* out) const {
   risks.Write(out, out + kMoveCount);
 }
 
-// The next move and how many are left to every port, and to every device that still waits.
+// Writes the next move and the number of moves left to every port and every deployed device.
 float* Encoder::Ways(const View& view, float* out) const {
   const Layout& layout = *view.layout;
   const auto cell = static_cast<std::size_t>(LinearIndex(view.self, scenario_.width));
   const Way* way = layout.ways.data() + cell * layout.way_count();
-  // Stands for a place that no water leads to as well.
+  // Also encodes unreachable targets.
   const std::int32_t farthest = 2 * (scenario_.width + scenario_.height);
   const auto write = [&] {
     *out++ = static_cast<float>(way->east);

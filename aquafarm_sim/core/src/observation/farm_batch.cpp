@@ -46,7 +46,7 @@ void FarmBatch::Step(const std::uint8_t* actions, const BatchOutput& output) {
     for (std::int32_t i = 0; i < farms(); ++i) StepOne(i, 0, actions, output);
     return;
   }
-  std::exception_ptr failure;  // none may leave the parallel region
+  std::exception_ptr failure;  // exceptions must not leave the parallel region
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (std::int32_t i = 0; i < farms(); ++i) {
     try {

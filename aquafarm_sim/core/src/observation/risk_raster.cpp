@@ -6,7 +6,8 @@
 
 #include "aquafarm/grid/action.h"
 
-// Functions so marked are compiled for the widest registers too, and chosen when a program starts.
+// Functions with this attribute are also compiled for the widest registers. The variant is chosen
+// when the program starts.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define AQUAFARM_WIDEST \
   __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
@@ -20,7 +21,7 @@ namespace {
 using IntRun = std::int32_t __attribute__((vector_size(kRun * sizeof(std::int32_t))));
 using ByteRun = std::uint8_t __attribute__((vector_size(kRun)));
 
-// The cells [x0, x1) × [y0, y1) that a disaster may reach.
+// The cells [x0, x1) × [y0, y1) that a disaster can reach.
 struct Box {
   std::int32_t x0, x1, y0, y1;
 };
@@ -35,8 +36,8 @@ Box ReachedBox(float cx, float cy, float reach, std::int32_t width, std::int32_t
 
 constexpr IntRun kLanes = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-// A row's last run may pass its end, and so the plane's; cells there get level 0, which leaves them
-// as they are.
+// The last run of a row may extend past the end of the row and of the plane. Cells there get level
+// 0, which leaves them unchanged.
 AQUAFARM_WIDEST
 void PaintRings(float cx, float cy, const float* radius_squared, const std::int32_t* levels,
                 Box box, std::int32_t width, std::uint8_t* plane) {
@@ -62,7 +63,7 @@ void PaintRings(float cx, float cy, const float* radius_squared, const std::int3
   }
 }
 
-// The same for rings by quadrants, cell by cell.
+// As PaintRings for rings by quadrants, cell by cell.
 void PaintQuadrants(const ObservableDisaster& disaster, float cx, float cy, Box box,
                     std::int32_t width, std::uint8_t* plane) {
   ObservableDisaster there = disaster;
@@ -77,7 +78,7 @@ void PaintQuadrants(const ObservableDisaster& disaster, float cx, float cy, Box 
   }
 }
 
-/// One step of each course.
+/// Displacement per step of each course.
 struct CourseMoves {
   FloatRun x{};
   FloatRun y{};
@@ -94,7 +95,7 @@ CourseMoves MakeCourseMoves() {
 
 const CourseMoves kCourseMoves = MakeCourseMoves();
 
-// Where courses from a cell lead, [steps] each, as far as the map goes.
+// Computes the positions x, y [steps] on the courses from a cell, clamped to the map.
 AQUAFARM_WIDEST
 void FollowCourses(Cell from, std::int32_t width, std::int32_t height, std::size_t steps,
                    FloatRun* x, FloatRun* y) {
@@ -110,7 +111,7 @@ void FollowCourses(Cell from, std::int32_t width, std::int32_t height, std::size
   }
 }
 
-// Worsens risk [steps] at cells x, y [steps], a step after the other, to that of rings.
+// Merges the risk of the rings into risk [steps] at the cells x, y [steps], step by step.
 AQUAFARM_WIDEST
 void WorsenByRings(const ObservableDisaster& disaster, float age, std::size_t steps,
                    const FloatRun* x, const FloatRun* y, FloatRun* risk) {
@@ -121,7 +122,7 @@ void WorsenByRings(const ObservableDisaster& disaster, float age, std::size_t st
     const FloatRun south = disaster.y - (y[step] - ahead * disaster.dy);
     const FloatRun distance_squared = west * west + south * south;
     FloatRun there = {};
-    // From the outermost: of the rings that hold a cell the innermost counts.
+    // Starts with the outermost ring, because the innermost ring that contains a cell applies.
     for (std::size_t k = rings; k-- > 0;) {
       const FloatRun inside = FloatRun{} + disaster.risk[k];
       there = distance_squared <= disaster.radius_squared[k] ? inside : there;
@@ -130,7 +131,7 @@ void WorsenByRings(const ObservableDisaster& disaster, float age, std::size_t st
   }
 }
 
-// The same for rings by quadrants, cell by cell.
+// As WorsenByRings for rings by quadrants, cell by cell.
 void WorsenByQuadrants(const ObservableDisaster& disaster, float age, std::size_t steps,
                        const FloatRun* x, const FloatRun* y, FloatRun* risk) {
   for (std::size_t step = 0; step < steps; ++step) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The risk of disasters at many cells at once, for encodings: the same float comparisons as
-/// RiskOf, but a run of cells at a time, as vectors of GCC and Clang.
+/// Risk of disasters at many cells at once, for encodings. Uses the same float comparisons as
+/// RiskOf, but processes runs of cells with the vector extensions of GCC and Clang. § refers to the
+/// paper, see docs/model.md.
 
 #include <algorithm>
 #include <array>
@@ -14,26 +15,27 @@
 
 namespace aquafarm {
 
-/// 1 / the worst risk of §2.1.
+/// 1 / |worst risk| of §2.1.
 inline constexpr float kRiskScale = 1.0F / 20.0F;
 
-/// [0, 1] as a byte.
+/// Converts [0, 1] to a byte in [0, 255].
 inline std::uint8_t ToByte(float part) {
   return static_cast<std::uint8_t>(std::min(std::max(part, 0.0F), 1.0F) * 255.0F + 0.5F);
 }
 
-/// Cells that are looked at together.
+/// Number of cells that are processed together.
 inline constexpr std::int32_t kRun = 16;
 using FloatRun = float __attribute__((vector_size(kRun * sizeof(float))));
 
-/// Paints one disaster's risk on planes [H, W] of bytes, 255 for the worst.
+/// Paints the risk of one disaster on byte planes [H, W]; 255 is the worst risk.
 class RiskBrush {
  public:
   /// @param disaster must outlive the brush
   RiskBrush(const ObservableDisaster& disaster, std::int32_t width, std::int32_t height);
 
-  /// Paints it `ahead` steps along its present heading; the worse is kept where one lies already.
-  /// @param plane may be read and written back unchanged up to kRun - 1 bytes past its end
+  /// Paints the disaster `ahead` steps along its current motion. Where the plane already has a
+  /// risk, keeps the worse one.
+  /// @param plane up to kRun - 1 bytes after its end may be read and written back unchanged
   void Paint(float ahead, std::uint8_t* plane) const;
 
  private:
@@ -44,27 +46,28 @@ class RiskBrush {
   std::array<std::int32_t, kMaxRings> levels_{};
 };
 
-/// The moves' courses and, last, staying.
+/// Number of courses: one per move and, last, staying.
 inline constexpr std::int32_t kCourseCount = kMoveCount + 1;
 static_assert(kCourseCount <= kRun);
 
-/// What a ship would meet on each course, every disaster holding its motion.
+/// Risks that a ship would meet on each course if every disaster keeps its motion.
 class CourseRisks {
  public:
-  /// Where the courses lead from `self`, at the risk of the sea; the map's edge stops a ship.
+  /// Starts the courses at `self` with the risk of the sea. A ship stops at the edge of the map.
   CourseRisks(const Scenario& scenario, Cell self);
 
-  /// Takes a disaster as it was known `age` steps ago where it is worse.
+  /// Merges a disaster as known `age` steps ago; the worse risk is kept.
   void Worsen(const ObservableDisaster& disaster, float age);
 
-  /// @param next [kMoveCount] risk after one step of each move @param courses [kCourseCount] mean
-  /// risk of each course; both 1 for the worst of §2.1
+  /// Writes the risks; 1 is the worst risk of §2.1.
+  /// @param next [kMoveCount] risk after one step of each move
+  /// @param courses [kCourseCount] mean risk of each course
   void Write(float* next, float* courses) const;
 
  private:
-  inline static constexpr std::size_t kSteps = 6;  // as far as a course is looked along
+  inline static constexpr std::size_t kSteps = 6;  // length of a course
 
-  // Step by step, a course a lane; the lanes that are left over count for nothing.
+  // One entry per step and one lane per course; the remaining lanes are unused.
   std::array<FloatRun, kSteps> x_;
   std::array<FloatRun, kSteps> y_;
   std::array<FloatRun, kSteps> risk_{};

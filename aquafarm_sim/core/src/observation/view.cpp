@@ -16,7 +16,7 @@ float SquaredDistance(Cell a, float x, float y) {
   return dx * dx + dy * dy;
 }
 
-// Whether a point is within `radius` of any place it is seen from.
+// Returns whether a point is within `radius` of any sensor.
 bool IsSeen(const std::vector<Cell>& eyes, float x, float y, float radius) {
   return std::any_of(eyes.begin(), eyes.end(),
                      [&](Cell eye) { return SquaredDistance(eye, x, y) <= radius * radius; });
@@ -35,8 +35,8 @@ void OpenEyes(const Farm& farm, Cell self, std::vector<Cell>& eyes) {
   }
 }
 
-// Rings, risks and grade as they were when the last bulletin was issued: what came after it is not
-// known out of sight.
+// Restores rings, risks and grade to the time of the last bulletin, because later changes are not
+// observable out of sight.
 void TakeBackToBulletin(const std::vector<Waypoint>& track, const Bulletin& told,
                         ObservableDisaster& belief) {
   if (!track.empty()) {
@@ -56,7 +56,7 @@ void TakeBackToBulletin(const std::vector<Waypoint>& track, const Bulletin& told
   }
 }
 
-// Tells the way that the forecast has it going, instead of how it moves now.
+// Replaces the current motion by the motion of the forecast, if there is one.
 void TellForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
   const auto disaster = static_cast<std::int32_t>(id);
   const std::int32_t issued = farm.step() - known.age;
@@ -73,7 +73,7 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full, const std::vec
   const ViewSpec& view = farm.scenario().view;
   known.belief = disaster;
   known.age = 0;
-  // A ship senses a disaster when its edge is within the sensors' range [decided].
+  // A ship observes a disaster if its edge is within sensor range ([decided], see docs/model.md).
   const float range = view.sensor_radius + disaster.reach();
   known.visible = full || IsSeen(eyes, disaster.x, disaster.y, range);
   known.known = known.visible || disaster.bulletin.step != kNone;
@@ -124,7 +124,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     KnownDevice& known = view.devices[id];
     const Cell cell = farm.CellOf(static_cast<std::int32_t>(id));
     const bool visible = full || IsSeen(view.eyes, cell, radius);
-    // Out of sight, where another ship has carried it is not known, only where it was deployed.
+    // Out of sight only the cell where the device was deployed is known.
     known.cell = visible ? cell : view.layout->devices[id].cell;
     known.status = device.status;
     known.aboard_self = device.carrier == ship;

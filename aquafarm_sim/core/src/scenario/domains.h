@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What a key of a scenario may hold: a domain is named once, in scenario_keys.h, and serves the
-/// reader, the writer and the check of scenarios made in code.
+/// Domains (valid values) of scenario keys. Each domain is declared once, in schema.h, and is used
+/// by the reader, the writer and the validation of scenarios created in code.
 
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@
 
 namespace aquafarm::internal {
 
-/// Numbers from min to max, both allowed unless `open_min`.
+/// Numbers from min to max, both inclusive; min is exclusive if `open_min`.
 template <typename T>
 struct Interval {
   T min{};
@@ -27,17 +27,17 @@ struct Interval {
   bool open_min{false};
 };
 
-/// Text in UTF-8 without control characters but line breaks.
+/// UTF-8 text without control characters except line breaks.
 struct TextOf {
   std::size_t min_bytes{};
   std::size_t max_bytes{};
 };
-/// A cell of the largest farm; whether it is on this one is ValidateScenario's question.
+/// A cell of the largest possible farm. ValidateScenario checks that it is on the actual map.
 struct AnyCell {};
 struct AnyFlag {};
-/// A finite number, or NaN, which files write as .nan.
+/// A finite number or NaN (.nan in files).
 struct NumberOrNone {};
-/// One of an enum's names.
+/// One of the names of an enum.
 struct OneOfNames {};
 /// UTC seconds since 1970, as YYYY-MM-DDTHH:MM:SSZ.
 struct UtcTime {};
@@ -82,7 +82,7 @@ std::vector<std::string> NamesOf() {
   return names;
 }
 
-// Check: throws FieldError when a value is outside its domain.
+// Check throws FieldError if a value is outside its domain.
 
 template <typename T>
 void Check(const std::string& path, T value, const Interval<T>& domain) {
@@ -137,7 +137,7 @@ std::enable_if_t<std::is_enum_v<Enum>> Check(const std::string& path, Enum value
                              std::to_string(kNameCount<Enum> - 1) + "]");
 }
 
-/// @param sizes fewest and most entries
+/// @param sizes min and max number of entries
 inline void CheckSize(const std::string& path, std::size_t size,
                       const std::array<std::size_t, 2>& sizes) {
   if (size >= sizes[0] && size <= sizes[1]) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sea of a scenario: fields of netCDF files become a number a cell.
+// The sea of a scenario: converts fields of netCDF files to one value per cell.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -76,7 +76,7 @@ void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path
 
 namespace {
 
-constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints are under 2 MiB, as are seas
+constexpr std::size_t kMaxFileBytes = 4U << 20U;  // 10,000 waypoints or a sea need under 2 MiB
 
 std::string Write(const Scenario& scenario) {
   internal::YamlWriter writer;

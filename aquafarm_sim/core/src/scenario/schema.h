@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Every key of a scenario with what it may hold, declared once. An archive walks them:
+/// All keys of a scenario and their domains, declared once. An archive visits them:
 ///
-///   YamlReader    fills the structs from a file and refuses what it does not know
-///   YamlWriter    writes them, leaving out what is not in use
-///   FieldChecker  checks structs made in code or sent by others
+///   YamlReader    fills the structs from a file and rejects unknown keys
+///   YamlWriter    writes the structs and omits unused keys
+///   FieldChecker  checks structs created in code or received in messages
 ///
-/// An archive gives Leaf (a value), Object (a block of keys), Optional (a block that may be
-/// absent), Objects (a list of blocks), Has (is a key given?) and When (are the keys from here to
-/// Always in use, and if so why?).
+/// An archive provides Leaf (a value), Object (a block of keys), Optional (a block that may be
+/// absent), Objects (a list of blocks), Has (whether a key is given) and When (whether the keys up
+/// to Always are used, and the condition).
 
 #include <algorithm>
 
@@ -20,22 +20,22 @@ namespace aquafarm::internal {
 
 enum class Need : std::uint8_t { kOptional, kRequired };
 
-inline constexpr std::size_t kMaxListed = 100000;     ///< islands, rocks: far above any farm
-inline constexpr std::size_t kMaxSeaValues = 200000;  ///< so that a file has a few MB
+inline constexpr std::size_t kMaxListed = 100000;     ///< islands or rocks; no real farm has more
+inline constexpr std::size_t kMaxSeaValues = 200000;  ///< limits a file to a few MB
 inline constexpr std::size_t kMaxDisasters = 64;
 inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::size_t kMaxWaypoints = 10000;
 inline constexpr std::int32_t kMaxDevices = 1000;
 inline constexpr std::int32_t kMaxShips = 64;
 inline constexpr std::int32_t kMaxPorts = 256;
-inline constexpr std::int32_t kMaxSteps = 10000000;  // below 2^24: exact in a float
+inline constexpr std::int32_t kMaxSteps = 10000000;  // below 2^24, so exact as a float
 inline constexpr float kFar = 1.0e6F;                // [cells]
 
 inline constexpr Interval<float> kShare{0.0F, 1.0F};
 inline constexpr Interval<float> kRadius{0.0F, kFar};
 inline constexpr Interval<float> kPlace{-kFar, kFar};
 inline constexpr Interval<float> kStep{-static_cast<float>(kMaxSteps), kMaxSteps};
-inline constexpr Interval<float> kRisk{-20.0F, -5.0F};  // §2.1
+inline constexpr Interval<float> kRisk{-20.0F, -5.0F};  // paper §2.1, see docs/model.md
 inline constexpr Interval<float> kPenalty{-1000.0F, 0.0F};
 inline constexpr Interval<float> kReward{-10000.0F, 10000.0F};
 inline constexpr Interval<float> kDeviceValue{0.0F, 10000.0F};
@@ -43,28 +43,29 @@ inline constexpr Interval<std::int32_t> kGrade{1, 4};
 inline constexpr Interval<std::int32_t> kAlong{0, kMaxSide - 1};
 inline constexpr Interval<std::int32_t> kSide{1, kMaxSide};
 
-/// A waypoint as authorities publish it; becomes a Waypoint of grid units.
+/// A waypoint as published by an authority; converted to a Waypoint in grid units.
 struct GeoFix {
   std::int64_t time{};  ///< UTC [s since 1970]
   GeoPoint point;
   std::vector<float> radii_km;
   std::vector<QuadrantRadii> quadrants_km;  ///< instead of radii_km
-  std::optional<float> pressure_hpa;        ///< for readers of the file; changes nothing
-  std::optional<float> wind_mps;            ///< likewise
+  std::optional<float> pressure_hpa;        ///< informative only; has no effect
+  std::optional<float> wind_mps;            ///< informative only; has no effect
 };
 
-/// What turns a GeoFix into a Waypoint; null where there is no file and so no GeoFix.
+/// Parameters that convert a GeoFix to a Waypoint. Pointers to it are null if no file is read,
+/// because there is then no GeoFix.
 struct WorldFrame {
   std::optional<GeoFrame> grid;
   std::optional<std::int64_t> start_time;
   double step_duration_s{};
   double cell_size_m{};
-  std::string folder;  ///< of the scenario file, from which it names others
+  std::string folder;  ///< folder of the scenario file; other file names are relative to it
 };
 
-/// @throws FieldError when the scenario has no start
+/// Converts a UTC time to steps. @throws FieldError when the scenario has no start
 float ToStep(std::int64_t time, const WorldFrame* frame, const std::string& path);
-/// @throws FieldError when the scenario has no origin or start
+/// Converts a GeoFix to a Waypoint. @throws FieldError when the scenario has no origin or start
 void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path,
              Waypoint& waypoint);
 
@@ -74,27 +75,28 @@ void VisitGeoPoint(Archive& a, Point& point) {
   a.Leaf("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
 }
 
-/// A field of a netCDF file as a scenario names it; becomes the values of a SeaLayer.
+/// Reference to a field of a netCDF file; converted to the values of a SeaLayer.
 struct SeaSource {
   std::string file;
   std::string variable;
   double depth_m{};
-  std::optional<std::int64_t> time;  ///< UTC; none: the episode's start, or the file's first
+  std::optional<std::int64_t> time;  ///< UTC; if unset, the start of the episode or else the first
+                                     ///< time of the file
 };
 
-/// Reads a field onto the cells of a farm.
-/// @throws FieldError when the scenario has no origin, or the file no such field there
+/// Reads a field and interpolates it at the cells of a farm.
+/// @throws FieldError when the scenario has no origin, or the file has no such field there
 void Resolve(const SeaSource& source, const WorldFrame& frame, const std::string& path,
              std::int32_t width, std::int32_t height, SeaLayer& layer);
-/// Evaluates a rule of the sea's layers at every cell.
-/// @throws FieldError for what is no expression
+/// Evaluates an expression of the sea's layers at every cell.
+/// @throws FieldError if `rule` is not a valid expression
 std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& layers,
                           const std::string& path);
-/// @throws FieldError for a number that is neither 0, unknown nor in the range
+/// Checks one value per cell. @throws FieldError for a value that is not 0, NaN or in `range`
 void CheckPerCell(const std::string& path, const std::vector<float>& values, std::int32_t width,
                   Interval<float> range);
 
-/// The largest radius of each ring.
+/// Returns the largest radius of each ring.
 inline std::vector<float> Largest(const std::vector<QuadrantRadii>& quadrants) {
   std::vector<float> radii;
   for (const QuadrantRadii& ring : quadrants) {
@@ -214,7 +216,7 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
     if constexpr (Archive::kReads) waypoint.risks = disaster.risks;
     VisitWaypoint(b, waypoint, frame, disaster.grade_risks);
   });
-  if constexpr (Archive::kReads) {  // a tracked disaster is first what its first waypoint is
+  if constexpr (Archive::kReads) {  // a tracked disaster starts in the state of its first waypoint
     if (graded) disaster.risks = disaster.track.front().risks;
     disaster.grade = disaster.track.front().grade;
     disaster.radii = disaster.track.front().radii;
@@ -313,7 +315,8 @@ void VisitView(Archive& a, S& s) {
   });
 }
 
-/// A number for each cell: written as such, read as such or as a rule of the layers.
+/// Visits one number per cell. Numbers are written as values and read as values or as an expression
+/// of the layers.
 template <typename Archive, typename Values>
 void VisitPerCell(Archive& a, const char* rule_key, const char* key, const char* condition,
                   const Scenario& scenario, Interval<float> range, Values& values) {
@@ -358,7 +361,7 @@ void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
   });
 }
 
-/// @param frame is filled once grid and time are known; the disasters' tracks need it
+/// @param frame filled as soon as grid and time are known; required by the disasters' tracks
 template <typename Archive, typename S>
 void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
   a.Leaf("name", s.name, TextOf{1, 100}, Need::kRequired);
@@ -396,7 +399,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
   VisitSeas(a, s, frame);
 }
 
-/// The archive that checks values in memory, used or not.
+/// Archive that checks values in memory, including unused ones.
 class FieldChecker {
  public:
   static constexpr bool kReads = false;

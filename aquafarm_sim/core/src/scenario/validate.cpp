@@ -14,8 +14,8 @@ using internal::At;
 using internal::FieldError;
 using internal::Format;
 
-// Free disasters: every ring wider than the one inside it. Waypoints: never narrower, and 0 where a
-// ring is absent at that time.
+// Checks the radii of rings. Without a track, each ring must be larger than the one inside it. In
+// waypoints it must not be smaller, and 0 means that a ring is absent at that time.
 void CheckRings(const std::string& path, const std::vector<float>& radii,
                 const std::vector<float>& risks, std::size_t rings, bool waypoint) {
   const std::string radii_path = internal::Join(path, "radii");
@@ -49,7 +49,8 @@ void CheckRings(const std::string& path, const std::vector<float>& radii,
   }
 }
 
-// Every ring by quadrants where one is, with radii as the largest; a quadrant never wider inside.
+// Checks rings by quadrants: either all rings of a disaster have them or none, radii hold the
+// largest of each ring, and no quadrant is larger in an inner ring than in an outer one.
 void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& quadrants,
                     const std::vector<float>& radii, bool expected) {
   const std::string here = internal::Join(path, "quadrants");
@@ -70,7 +71,8 @@ void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& q
   }
 }
 
-// Forecasts in order of issue, each of them with points to come, in order of time.
+// Checks that forecasts are in order of issue, and that the points of each are in order of time and
+// after its issue.
 void CheckForecasts(const std::string& path, const std::vector<IssuedForecast>& forecasts) {
   const auto check = [](const std::string& here, float step, float last, const std::string& what) {
     if (step > last) return;
@@ -89,7 +91,7 @@ void CheckForecasts(const std::string& path, const std::vector<IssuedForecast>& 
   }
 }
 
-// What the ranges of single keys do not say.
+// Checks the constraints between the keys of a disaster.
 void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
   const std::size_t rings = disaster.risks.size();
   for (std::size_t i = 0; i < disaster.track.size(); ++i) {
@@ -111,7 +113,7 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
   CheckQuadrants(path, disaster.quadrants, disaster.radii, !disaster.quadrants.empty());
 }
 
-// A layer's name is part of expressions and topics.
+// Returns whether a name is valid as a variable of expressions and as part of a topic name.
 bool IsLayerName(const std::string& name) {
   const auto letter = [](char c) { return c >= 'a' && c <= 'z'; };
   return !name.empty() && letter(name[0]) && std::all_of(name.begin(), name.end(), [&](char c) {
@@ -126,7 +128,7 @@ void CheckCellCount(const std::string& path, std::size_t values, const Scenario&
                              " values, expected one a cell: " + std::to_string(cells));
 }
 
-// As they are written: those of a rule are checked where it is read.
+// Checks values given directly. Values computed by a rule are checked when the rule is read.
 void CheckValues(const char* path, const std::vector<float>& values, const Scenario& scenario,
                  internal::Interval<float> range) {
   if (values.empty()) return;
@@ -160,7 +162,7 @@ void CheckSeas(const Scenario& scenario) {
   CheckValues("seas.device_values", seas.device_value, scenario, internal::kDeviceValue);
 }
 
-// Marks what stands where and refuses a second thing on a cell.
+// Records the object on each cell and rejects a second object on a cell.
 class Occupancy {
  public:
   enum Thing : std::uint8_t { kNothing, kIsland, kRock, kPort, kDevice };
@@ -216,10 +218,10 @@ void CheckFits(const char* path, std::int32_t wanted, std::int32_t& free, const 
   free -= wanted;
 }
 
-constexpr std::uint64_t kMostWays = 16'777'216;  // 128 MiB a layout
+constexpr std::uint64_t kMostWays = 16'777'216;  // 128 MiB per layout
 
 void CheckPlaces(const Scenario& scenario) {
-  constexpr std::int32_t kFewestCells = 4;  // planes are written in runs as long as these
+  constexpr std::int32_t kFewestCells = 4;  // so that a run fits in the planes (kRun)
   if (scenario.CellCount() < kFewestCells) {
     throw FieldError("grid", "got " + Format(scenario.CellCount()) + " cells, expected at least " +
                                  Format(kFewestCells));

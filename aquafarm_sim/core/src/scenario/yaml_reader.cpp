@@ -13,7 +13,7 @@
 namespace aquafarm::internal {
 namespace {
 
-// For messages of one line.
+// Shortens a text for a one-line message.
 std::string Shortened(std::string text) {
   constexpr std::size_t kLongest = 60;
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
@@ -50,7 +50,7 @@ void CheckText(const std::string& text, const std::string& origin_name) {
   }
 }
 
-// Counts nothing but the documents that start.
+// Records the line on which the last document starts and ignores all other events.
 class DocumentStarts : public YAML::EventHandler {
  public:
   void OnDocumentStart(const YAML::Mark& mark) override { line_ = mark.line + 1; }
@@ -71,8 +71,8 @@ class DocumentStarts : public YAML::EventHandler {
   int line_{};
 };
 
-// YAML::LoadAll never ends on a stray closing bracket, and YAML::Load ignores what follows the
-// first document.
+// YAML::LoadAll does not terminate on a stray closing bracket, and YAML::Load ignores everything
+// after the first document.
 YAML::Node ParseDocument(const std::string& text, const std::string& origin_name,
                          const std::string& what) {
   try {

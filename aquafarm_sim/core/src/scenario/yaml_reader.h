@@ -10,23 +10,23 @@
 
 namespace aquafarm::internal {
 
-/// Lines of the keys met so far, by their path.
+/// Line numbers of the keys read so far, by path.
 class LineMap {
  public:
   void Put(const std::string& path, const YAML::Node& node);
-  /// The line of a path, or of the nearest block around it; 0: unknown.
+  /// Returns the line of a path, or of the nearest enclosing block; 0 if unknown.
   int Find(std::string path) const;
 
  private:
   std::map<std::string, int> lines_;
 };
 
-/// The archive that fills structs from a block of keys. Finish refuses what was not asked for.
+/// Archive that fills structs from a block of keys. Finish rejects keys that were not visited.
 class YamlReader {
  public:
   static constexpr bool kReads = true;
 
-  /// @throws FieldError when the node is no block of keys or has a key twice
+  /// @throws FieldError if the node is not a block of keys or has a duplicate key
   YamlReader(const YAML::Node& node, std::string path, LineMap& lines);
 
   bool Has(const char* key, bool) const { return nodes_.count(key) > 0; }
@@ -75,7 +75,7 @@ class YamlReader {
     }
   }
 
-  /// @throws FieldError naming a key that was not asked for, and those allowed
+  /// Rejects unknown keys. @throws FieldError with a key that was not visited and the valid keys
   void Finish() const;
 
  private:
@@ -86,14 +86,14 @@ class YamlReader {
     child.Finish();
   }
 
-  /// The node of a key, or null when it is not there.
+  /// Returns the node of a key, or nullptr if it is absent.
   const YAML::Node* Take(const char* key);
   static void CheckList(const std::string& path, const YAML::Node& node,
                         const std::array<std::size_t, 2>& sizes);
   static FieldError Refusal(const std::string& path, const YAML::Node& node,
                             const std::string& expected);
 
-  // What a value must be, in words.
+  // Expected returns a description of the valid values for messages.
   template <typename T>
   static std::enable_if_t<std::is_arithmetic_v<T>, std::string> Expected(
       const T&, const Interval<T>& domain) {
@@ -186,9 +186,9 @@ class YamlReader {
   const char* condition_{""};
 };
 
-/// Reads a YAML text of one block of keys: `visit` takes them, what it leaves is refused, then
-/// `check` may refuse what was read.
-/// @param what such a file is, for messages: "a scenario"
+/// Reads a YAML text that consists of one block of keys. `visit` reads the keys, the remaining keys
+/// are rejected, and `check` then validates the result.
+/// @param what description of such a file for messages, for example "a scenario"
 /// @throws InputError "file:line: key: …"
 void ReadYaml(const std::string& text, const std::string& origin_name, const std::string& what,
               const std::function<void(YamlReader&)>& visit, const std::function<void()>& check);

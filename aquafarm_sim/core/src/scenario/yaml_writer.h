@@ -5,7 +5,7 @@
 
 namespace aquafarm::internal {
 
-/// The archive that writes structs as YAML, a key a line, in the order of scenario_keys.h.
+/// Archive that writes structs as YAML, one key per line, in the order of schema.h.
 class YamlWriter {
  public:
   static constexpr bool kReads = false;

@@ -27,7 +27,7 @@ Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& lay
         values[i] = static_cast<double>(layers[i].layer.data()[cell]);
         known = known && !std::isnan(values[i]);
       }
-      // Also where nothing is known, so that a wrong expression never passes.
+      // Evaluated at NaN inputs too, so that an invalid expression is always rejected.
       const double value = parser.Eval();
       result.data()[cell] =
           known ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();

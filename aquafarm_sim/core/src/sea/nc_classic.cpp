@@ -10,11 +10,11 @@
 namespace aquafarm::internal {
 namespace {
 
-// Bytes of a value by type, from NC_BYTE = 1 to NC_UINT64 = 11.
+// Size of a value by type, from NC_BYTE = 1 to NC_UINT64 = 11 [bytes].
 constexpr std::array<std::uint64_t, 12> kBytesOfType{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
-// The words of a header, most significant byte first. Once the file has ended, or a word made no
-// sense, all are 0.
+// Reads the big-endian words of a header. After the end of the file or an invalid word, all words
+// are 0.
 class HeaderReader {
  public:
   explicit HeaderReader(std::istream& file) : file_(file) {
@@ -26,9 +26,9 @@ class HeaderReader {
   std::uint64_t Tag() { return Word(4); }
   std::uint64_t Count() { return Word(version_ == 5 ? 8 : 4); }
   std::uint64_t Offset() { return Word(version_ == 1 ? 4 : 8); }
-  /// At most so many as no file of use exceeds.
+  /// Reads a count with a limit that no real file exceeds.
   std::uint64_t FewCount() { return AtMost(Count(), std::uint64_t{1} << 16U); }
-  /// Of a list, behind its tag.
+  /// Reads the tag of a list and returns its length.
   std::uint64_t ListCount() {
     Tag();
     return FewCount();
@@ -59,7 +59,7 @@ class HeaderReader {
     ended_ = ended_ || file_.eof();
     return good() ? word : 0;
   }
-  // Names and values are filled up to four bytes.
+  // Names and values are padded to multiples of four bytes.
   void Skip(std::uint64_t bytes) {
     const std::uint64_t filled = (AtMost(bytes, kMostBytes * 8) + 3) / 4 * 4;
     if (good()) file_.seekg(static_cast<std::streamoff>(filled), std::ios::cur);
@@ -71,7 +71,7 @@ class HeaderReader {
 
 struct Variable {
   double begin{};
-  double bytes{1.0};  // of a record where it has such
+  double bytes{1.0};  // size of all values, or of one record if it has records
   bool has_records{};
 };
 
@@ -90,7 +90,7 @@ Variable ReadVariable(HeaderReader& header, const std::vector<double>& dimension
   }
   header.SkipAttributes();
   variable.bytes *= static_cast<double>(header.BytesOfType());
-  header.Count();  // its size, which a variable of 4 GiB does not fit
+  header.Count();  // the stored size, which is invalid for variables of 4 GiB or more
   variable.begin = static_cast<double>(header.Offset());
   return variable;
 }
@@ -119,12 +119,12 @@ std::optional<double> EndOfClassicValues(std::istream& file) {
     ++with_records;
     record_bytes += std::ceil(variable.bytes / 4.0) * 4.0;
   }
-  // All ones: written as a stream, as many as there are.
+  // All bits set: the file was written as a stream and the number of records is unknown.
   const bool streamed = records == 0xFFFFFFFFU || records == ~std::uint64_t{0};
   double end = 0.0;
   for (const Variable& variable : variables) {
     if (variable.has_records && (records == 0 || streamed)) continue;
-    // A lone variable with records has them one behind the other, not filled up.
+    // The records of a single record variable are contiguous and not padded.
     const double apart = with_records == 1 ? variable.bytes : record_bytes;
     const double before = variable.has_records ? static_cast<double>(records - 1) * apart : 0.0;
     end = std::max(end, variable.begin + before + variable.bytes);

@@ -7,9 +7,10 @@
 
 namespace aquafarm::internal {
 
-/// Where the values of a netCDF file of a classic kind (CDF-1, 2 or 5) end [bytes], as its header
-/// says: what fills up the last variable may be missing behind. Infinity: the file ends before its
-/// header does; none: the header makes no sense. (NetCDF classic format specification)
+/// Returns the offset at which the values of a classic netCDF file (CDF-1, 2 or 5) end [bytes],
+/// according to its header. The padding of the last variable may be missing. Returns infinity if
+/// the file ends within its header, and nullopt if the header is invalid. (NetCDF classic format
+/// specification)
 std::optional<double> EndOfClassicValues(std::istream& file);
 
 }  // namespace aquafarm::internal

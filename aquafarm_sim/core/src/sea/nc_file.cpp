@@ -16,7 +16,7 @@
 namespace aquafarm::internal {
 namespace {
 
-// As much of a file as tells what it is.
+// Detects the type of a file from its first 64 KiB.
 FileLook LookAtBeginning(const std::string& path) {
   std::string text(std::size_t{64} << 10U, '\0');
   std::ifstream file(path, std::ios::binary);
@@ -50,8 +50,8 @@ void NcFile::Need(int status, const std::string& name) const {
   if (status != NC_NOERR) Refuse(name + ": " + nc_strerror(status));
 }
 
-// Beyond the end of a file of the classic kinds libnetcdf reads zeros without a word, and of one
-// cut within its header it says "invalid argument". Those of HDF5 see to it themselves.
+// In classic formats libnetcdf silently reads zeros after the end of a file, and reports "invalid
+// argument" for a file that ends within its header. HDF5 detects truncated files itself.
 void NcFile::CheckLength() const {
   std::ifstream file(path_, std::ios::binary);
   std::array<char, 4> magic{};
@@ -62,7 +62,7 @@ void NcFile::CheckLength() const {
   const std::optional<double> end = EndOfClassicValues(file);
   std::error_code error;
   const auto size = static_cast<double>(std::filesystem::file_size(path_, error));
-  if (error || !end || size >= *end) return;  // libnetcdf says what else is wrong
+  if (error || !end || size >= *end) return;  // libnetcdf reports all other errors
   Refuse("is cut off: got " + Format(size) + " bytes, " +
          (std::isfinite(*end) ? "expected " + Format(*end) : "which end within its header"));
 }

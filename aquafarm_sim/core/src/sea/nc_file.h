@@ -8,30 +8,31 @@
 
 namespace aquafarm::internal {
 
-/// An open netCDF file; what the library says of an error goes behind the file and the variable.
+/// An open netCDF file. Errors of the library are reported with the file and the variable.
 class NcFile {
  public:
-  /// @throws InputError for what is no regular file, no netCDF, or of a classic kind and cut short
+  /// @throws InputError if the path is not a regular file or not netCDF, or if the file has a
+  ///         classic format and is truncated
   explicit NcFile(const std::string& path);
   ~NcFile();
   NcFile(const NcFile&) = delete;
   NcFile& operator=(const NcFile&) = delete;
 
   int id() const { return id_; }
-  /// @throws InputError "sea.nc: what"
+  /// Always throws. @throws InputError "sea.nc: what"
   [[noreturn]] void Refuse(const std::string& what) const;
-  /// @throws InputError "sea.nc: name: …" for a status that is an error
+  /// @throws InputError "sea.nc: name: …" if `status` is an error
   void Need(int status, const std::string& name) const;
 
   std::vector<int> Variables() const;
   std::string Name(int variable) const;
-  /// An attribute of text, or "".
+  /// Returns a text attribute; "" if it is absent.
   std::string Text(int variable, const char* key) const;
-  /// An attribute of one number. @throws InputError for text
+  /// Returns an attribute with one number; nullopt if absent. @throws InputError for text
   std::optional<double> Number(int variable, const char* key) const;
-  /// An attribute of two numbers.
+  /// Returns an attribute with two numbers; nullopt if absent.
   std::optional<std::array<double, 2>> Pair(int variable, const char* key) const;
-  /// What netCDF itself writes where nothing was put; bytes have no such value.
+  /// Returns netCDF's default fill value for the variable's type; nullopt if there is none (bytes).
   std::optional<double> DefaultFill(int variable) const;
 
  private:

@@ -19,15 +19,15 @@ namespace {
 using internal::NcFile;
 
 constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kMostAlong = 1'000'000;    // coordinates of an axis
-constexpr std::size_t kMostValues = 64'000'000;  // of a window
+constexpr std::size_t kMostAlong = 1'000'000;    // coordinates per axis
+constexpr std::size_t kMostValues = 64'000'000;  // values per window
 
 enum class Axis { kTime, kDepth, kLatitude, kLongitude, kOther };
 
 struct Dimension {
   Axis axis{};
   std::string name;
-  int coordinate{-1};  // its 1-D variable
+  int coordinate{-1};  // id of its 1-D coordinate variable
   std::vector<double> at;
 };
 
@@ -44,7 +44,7 @@ bool IsOneOf(const std::string& text, std::initializer_list<const char*> names) 
   return std::find(names.begin(), names.end(), text) != names.end();
 }
 
-// "UP", "DOWN" or "".
+// Returns "UP", "DOWN" or "".
 std::string Positive(const NcFile& file, int coordinate) {
   return internal::Upper(file.Text(coordinate, "positive"));
 }
@@ -55,7 +55,8 @@ bool IsUpwards(const NcFile& file, int coordinate) {
                                                           {"height", "altitude"}));
 }
 
-// Metres a unit of a vertical axis; a decibar of sea water is nearly one. 0: other units.
+// Returns the metres per unit of a vertical axis, or 0 for an unsupported unit. A decibar of sea
+// water is approximately one metre.
 double MetresPer(const std::string& units) {
   const std::string unit = internal::Upper(internal::Trim(units));
   if (unit == "KM") return 1000.0;
@@ -65,7 +66,7 @@ double MetresPer(const std::string& units) {
   return metres ? 1.0 : 0.0;
 }
 
-// By what CF says, else by its name.
+// Determines an axis from its CF attributes, else from its name.
 Axis AxisOf(const NcFile& file, int coordinate, const std::string& name) {
   const std::string standard = file.Text(coordinate, "standard_name");
   const std::string units = file.Text(coordinate, "units");
@@ -159,7 +160,7 @@ std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const st
       file.Refuse(d.name + ": got " + internal::Format(*again) + " twice, expected it once");
     }
     if (d.axis != Axis::kLatitude) continue;
-    constexpr double kPole = 90.0 + 1.0e-3;  // packed numbers are rounded
+    constexpr double kPole = 90.0 + 1.0e-3;  // packed values have rounding errors
     for (const double latitude : d.at) {
       if (std::abs(latitude) <= kPole) continue;
       file.Refuse(d.name + ": got a latitude of " + internal::Format(latitude) +
@@ -176,8 +177,8 @@ std::size_t Nearest(const std::vector<double>& at, double wanted) {
   return static_cast<std::size_t>(nearest - at.begin());
 }
 
-// Forms that UDUNITS takes and ISO 8601 does not: "0:0:0", "00:00:00.0", "00:00:00 UTC",
-// "00:00:00 +00:00".
+// Converts forms that UDUNITS accepts and ISO 8601 does not: "0:0:0", "00:00:00.0", "00:00:00 UTC"
+// and "00:00:00 +00:00".
 std::string PlainTime(std::string time) {
   for (const char* utc : {"UTC", "utc", "Z", "+00:00", "+0:00"}) {
     const std::string_view ending(utc);
@@ -200,7 +201,7 @@ std::string PlainTime(std::string time) {
   return time.find(':') == std::string::npos ? time + ":00" : time;
 }
 
-// "hours since 2000-01-01 00:00:00" as seconds per unit and the UTC of 0.
+// Parses "hours since 2000-01-01 00:00:00" to the seconds per unit and the UTC seconds of value 0.
 std::pair<double, double> TimeUnits(const NcFile& file, const Dimension& time) {
   const std::string units = file.Text(time.coordinate, "units");
   const std::size_t since = units.find(" since ");
@@ -224,13 +225,13 @@ std::pair<double, double> TimeUnits(const NcFile& file, const Dimension& time) {
   return {seconds, static_cast<double>(*zero)};
 }
 
-// What is read along one dimension.
+// Range of indices that is read along one dimension.
 struct Span {
   std::size_t first{};
   std::size_t count{1};
 };
 
-// The values from one before `low` to one after `high`, all of them where none is in between.
+// Returns the values in [low, high] and one more on each side.
 Span Window(const std::vector<double>& at, double low, double high) {
   std::size_t first = at.size();
   std::size_t last = 0;
@@ -239,7 +240,7 @@ Span Window(const std::vector<double>& at, double low, double high) {
     first = std::min(first, i);
     last = std::max(last, i);
   }
-  if (first > last) {  // the ranch is finer than the field: the two values around it
+  if (first > last) {  // the ranch lies between two values: uses those around it
     first = last = Nearest(at, (low + high) / 2.0);
   }
   first = first == 0 ? 0 : first - 1;
@@ -247,7 +248,7 @@ Span Window(const std::vector<double>& at, double low, double high) {
   return {first, last - first + 1};
 }
 
-// [low, high] of the ranch in degrees.
+// Bounding box of the ranch [degrees].
 struct Extent {
   double south{90.0}, north{-90.0}, west{1.0e9}, east{-1.0e9};
 };
@@ -266,7 +267,7 @@ Extent ExtentOf(const GeoFrame& frame, std::int32_t width, std::int32_t height) 
   return extent;
 }
 
-// Turns of the globe that bring the file's longitudes to the ranch's.
+// Returns the offset (0, 360 or -360 degrees) that shifts the file's longitudes to the ranch's.
 double TurnOf(const std::vector<double>& longitude, double near) {
   const auto [west, east] = std::minmax_element(longitude.begin(), longitude.end());
   for (const double turn : {0.0, 360.0, -360.0}) {
@@ -278,7 +279,8 @@ double TurnOf(const std::vector<double>& longitude, double near) {
 void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
   const double scale = file.Number(variable, "scale_factor").value_or(1.0);
   const double offset = file.Number(variable, "add_offset").value_or(0.0);
-  // Compared with the numbers as they are stored. A fill value that the type cannot hold fits none.
+  // These attributes are compared with the packed values. A fill value outside the range of the
+  // type matches no value.
   const std::optional<double> own = file.Number(variable, "_FillValue");
   const std::optional<double> fill = own ? own : file.DefaultFill(variable);
   const std::optional<double> missing = file.Number(variable, "missing_value");
@@ -291,7 +293,7 @@ void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
   for (float& value : values) {
     const bool absent = same(fill, value) || same(missing, value) || !(value >= low) ||
                         !(value <= high) ||
-                        std::abs(value) > 9.9e35F;  // beyond any field of the sea
+                        std::abs(value) > 9.9e35F;  // larger than any real value
     value = absent ? kNoValue : static_cast<float>(value * scale + offset);
   }
 }
@@ -375,7 +377,8 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
 
 namespace {
 
-// Where a coordinate lies between two of the field's; none: half a step outside, or more.
+// Position of a coordinate between two coordinates of the field. Locate returns nullopt for a
+// coordinate more than half a step outside the field.
 struct Between {
   std::array<Eigen::Index, 2> index{};
   double part{};

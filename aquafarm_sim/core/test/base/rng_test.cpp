@@ -10,7 +10,7 @@
 namespace aquafarm {
 namespace {
 
-// Known answer of Philox4x32-10 for counter and key 0: Random123's kat_vectors.
+// Known answer of Philox4x32-10 for counter and key 0, from kat_vectors of Random123.
 TEST(Rng, IsPhilox) {
   const auto draws = Draw({0, 0, Purpose::kLayout, 0}, 0);
   EXPECT_EQ(draws[0], 0x6627e8d5U);

@@ -10,7 +10,7 @@
 namespace aquafarm {
 namespace {
 
-// Rows from the north, as people draw: # land, o rock, . water.
+// Parses rows from the north: # land, o rock, . water.
 LandShare Drawn(const std::vector<std::string>& rows) {
   LandShare share(static_cast<Eigen::Index>(rows.size()),
                   static_cast<Eigen::Index>(rows[0].size()));
@@ -91,8 +91,8 @@ TEST(Coast, FillsPolygonsAndLeavesTheirLakes) {
   ASSERT_EQ(coast.polygons.size(), 2U);
   EXPECT_EQ(coast.polygons[0].size(), 2U) << "a shore and a lake";
   EXPECT_TRUE(coast.warnings.empty());
-  // Cells of about a hundredth of a degree of longitude, 964.6 m; of latitude it is 1108.5 m. The
-  // island covers x from 0.43 to 5.43 and y from 0.39 to 6.13.
+  // A cell has 964.6 m, which is approximately 0.01 degrees of longitude; 0.01 degrees of latitude
+  // are 1108.5 m. The island covers x from 0.43 to 5.43 and y from 0.39 to 6.13.
   const GeoFrame frame({29.9966, 121.9957}, 964.6);
   const LandShare share = ShareOfLand(coast, frame, 12, 8);
   EXPECT_EQ(share(1, 1), 1.0F);
@@ -103,7 +103,7 @@ TEST(Coast, FillsPolygonsAndLeavesTheirLakes) {
   EXPECT_NEAR(share.sum(), (5.0 * 5.0 - 1.0 + 0.5) * 1108.5 / 964.6, 0.8) << "in all";
 }
 
-// The plane at the ranch folds the far hemisphere onto it.
+// The projection on the tangent plane maps the far hemisphere onto the ranch.
 TEST(Coast, OfTheFarSideIsNoLandHere) {
   const auto land = [](const std::string& ring, GeoPoint origin) {
     const Coast coast = ParseCoast(R"({"type": "Polygon", "coordinates": [)" + ring + "]}", "x");
@@ -169,7 +169,7 @@ TEST(Coast, SaysWhenARingHasTooManyLinesToLookThrough) {
 }
 
 TEST(Coast, SpendsItsComparisonsOnTheWholeFile) {
-  std::string ring;  // 18.7 million comparisons
+  std::string ring;  // takes 18.7 million comparisons
   for (int i = 0; i < 6'114; ++i) {
     ring += "[" + std::to_string(i % 2) + "," + std::to_string(i / 6'114.0) + "],";
   }
@@ -226,7 +226,7 @@ TEST(Coast, OfZhoushanHas217Polygons) {
   const Coast coast = LoadCoast(path.string());
   EXPECT_EQ(coast.polygons.size(), 217U);
   EXPECT_TRUE(coast.warnings.empty()) << coast.warnings[0];
-  // The ranch of zhoushan_infa_2021.yaml, whose islands were set by hand.
+  // The ranch of zhoushan_infa_2021.yaml, whose islands were placed manually.
   const Terrain terrain =
       ToTerrain(ShareOfLand(coast, GeoFrame({30.105, 122.605}, 1000.0), 20, 14));
   Grid<std::uint8_t> by_hand = Grid<std::uint8_t>::Zero(14, 20);

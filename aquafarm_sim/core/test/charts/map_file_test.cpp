@@ -28,7 +28,7 @@ class MapFiles : public testing::Test {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
   }
   std::string Path(const char* name) const { return (folder_ / name).string(); }
-  /// Writes m.yaml with more lines and reads it.
+  /// Writes m.yaml with additional lines and reads it.
   MapFile Load(const std::string& more = "") const {
     Write("m.yaml", "image: m.pgm\nresolution: 200\norigin: [1, 2, 0]\nnegate: " +
                         std::string(more.find("light") == std::string::npos ? "0" : "1") +
@@ -52,7 +52,7 @@ std::vector<int> Values(const Grid<std::int8_t>& grid) {
   return {grid.data(), grid.data() + grid.size()};
 }
 
-// Grey 0, 128, 255 and 100: occupied 1, 0.498, 0, 0.608.
+// Grey values 0, 128, 255 and 100 are occupied by 1, 0.498, 0 and 0.608.
 const std::string kPicture = std::string("P5\n# a comment\n2 2 255\n") + '\0' + "\x80\xff\x64";
 
 TEST_F(MapFiles, TurnThePictureSouthUp) {
@@ -75,8 +75,9 @@ TEST_F(MapFiles, KnowEveryMode) {
   EXPECT_EQ(Values(Load("# light is occupied\n").occupancy), (std::vector<int>{100, -1, 0, -1}));
 }
 
-// What map_server makes of a grey in each mode, by hand: occupied is (255 - grey) / 255, or grey /
-// 255 with negate; above 0.65 it is 100, below 0.2 it is 0, between 1 + 98 (occupied - 0.2) / 0.45.
+// Occupancy of a grey value in each mode of map_server, computed manually. The occupied fraction is
+// (255 - grey) / 255, or grey / 255 with negate. The occupancy is 100 above 0.65, 0 below 0.2 and
+// 1 + 98 (occupied - 0.2) / 0.45 between them.
 struct Expected {
   int grey;
   int trinary, scale, raw;
@@ -112,7 +113,7 @@ TEST_F(MapFiles, AreWhatMapServerMakesOfEveryGrey) {
 }
 
 TEST_F(MapFiles, AreUnknownWhereAScaledPictureIsSeenThrough) {
-  // A PNG of 4 x 1 pixels of grey and alpha: 0, 128 and 255 opaque, then 128 of alpha 100.
+  // A PNG of 4 x 1 pixels with grey and alpha: 0, 128 and 255 opaque, then 128 with alpha 100.
   static const char kBytes[] =
       "\x89\x50\x4e\x47\x0d\x0a\x1a\x0a\x00\x00\x00\x0d\x49\x48\x44\x52\x00\x00"
       "\x00\x04\x00\x00\x00\x01\x08\x04\x00\x00\x00\x53\x35\xc7\x46\x00\x00\x00"
@@ -135,7 +136,7 @@ TEST_F(MapFiles, ReadPlainAndDeepPgm) {
 TEST_F(MapFiles, MayHaveLinesOfDos) {
   Write("m.pgm", std::string("P5\r\n2 2\r\n255\r\n") + '\0' + "\xff\xff" + '\0');
   EXPECT_EQ(Values(Load().occupancy), (std::vector<int>{0, 100, 100, 0})) << "from the south";
-  // Without a line's end of two bytes the first pixel may be what ends such a line.
+  // With a line end of one byte, the first pixel may have the value of a line feed.
   Write("m.pgm", std::string("P5 2 1 255\n") + "\n" + '\0');
   EXPECT_EQ(Values(Load().occupancy), (std::vector<int>{100, 100}));
 }
@@ -232,7 +233,7 @@ TEST(RealMaps, AreReadAsMapServerReadsThem) {
   const MapFile ten = LoadMap((maps / "TenByTen.yaml").string());
   EXPECT_EQ(ten.occupancy.rows(), 10);
   EXPECT_EQ(ten.cell_size_m, 1.0);
-  // Greys of 0, 26 and 51 are occupied, 179 (0.298) unknown, 255 free.
+  // Grey values 0, 26 and 51 are occupied, 179 (0.298) is unknown, 255 is free.
   const std::string pgm = Bytes(maps / "TenByTen.pgm");
   ASSERT_EQ(pgm.compare(0, 2, "P5"), 0);
   for (int i = 0; i < 100; ++i) {
@@ -245,14 +246,14 @@ TEST(RealMaps, AreReadAsMapServerReadsThem) {
   EXPECT_EQ(png.origin, (std::array<double, 3>{2.0, 3.0, 1.0}));
   EXPECT_TRUE((png.occupancy == 100 || png.occupancy == 0).all());
   EXPECT_TRUE((png.occupancy == 100).any() && (png.occupancy == 0).any());
-  // The same picture as BMP.
+  // The same image as BMP.
   const fs::path yaml = fs::temp_directory_path() / ("bmp." + std::to_string(getpid()) + ".yaml");
   std::ofstream(yaml) << "image: " << (maps / "testmap.bmp").string()
                       << "\nresolution: 0.1\norigin: [2, 3, 1]\nnegate: 0\n"
                          "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
   const MapFile bmp = LoadMap(yaml.string());
   EXPECT_EQ(Values(bmp.occupancy), Values(png.occupancy));
-  // Its bytes: blue, green, red from the south on, rows filled up to four bytes.
+  // Its bytes are blue, green and red, starting in the south; rows are padded to four bytes.
   const std::string bytes = Bytes(maps / "testmap.bmp");
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
   const std::size_t start = at(10) + 256U * at(11);
@@ -283,7 +284,7 @@ TEST(AsciiGrids, HaveTheirRowsFromTheNorth) {
   EXPECT_EQ(share(1, 0), 1.0F);
   EXPECT_EQ(share(0, 0), 1.0F) << "no data";
   EXPECT_EQ(share(0, 1), 0.0F);
-  // On a ranch whose cells are the grid's, begun at the centre of its south-west value.
+  // A ranch whose cells have the size of the grid's and start at its south-west value.
   const LandShare placed = ShareOfLand(grid, GeoFrame({30.005, 122.005}, 964.6), 3, 1, 0.0F);
   EXPECT_EQ(placed(0, 0), 1.0F);
   EXPECT_LT(placed(0, 1), 0.3F);
@@ -345,7 +346,7 @@ TEST(AsciiGrids, InDegreesLieOnTheGlobe) {
   const std::string longitude = ", expected degrees in [-360, 360], as CELLSIZE is below 1";
   const std::vector<std::array<std::string, 3>> cases{
       {"yllcorner 30.0", "yllcorner 89.98", "in degrees"},
-      {"yllcorner 30.0", "yllcorner 89.99", "in degrees"},  // a node on the pole
+      {"yllcorner 30.0", "yllcorner 89.99", "in degrees"},  // the last node lies on the pole
       {"yllcorner 30.0", "yllcorner -90.005", "in degrees"},
       {"yllcorner 30.0", "yllcorner 95",
        "x:4: YLLCORNER: got 95, cells from 95.005 to 95.015" + latitude},

@@ -37,7 +37,7 @@ TEST(Risk, IsThatOfTheSmallestRingReachedInclusive) {
   EXPECT_EQ(RiskOf(disaster, 10, 10), -20.0F);
   EXPECT_EQ(RiskOf(disaster, 12, 10), -20.0F);  // distance 2: on the ring
   EXPECT_EQ(RiskOf(disaster, 12, 11), -5.0F);
-  EXPECT_EQ(RiskOf(disaster, 13, 14), -5.0F);  // 3-4-5: on the ring
+  EXPECT_EQ(RiskOf(disaster, 13, 14), -5.0F);  // distance 5 (3-4-5 triangle): on the ring
   EXPECT_EQ(RiskOf(disaster, 14, 14), 0.0F);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An episode as bytes and as a hash, and disasters that arrive while it runs.
+// Hashing, saving and loading of an episode, and disasters that arrive during it.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -108,7 +108,7 @@ TEST(SetDisaster, OutOfRangeIsRefusedAndChangesNothing) {
   EXPECT_EQ(farm.Hash(), hash);
 }
 
-/// A farm's state after someone has changed it and sealed it again.
+/// Returns a farm's saved state after a change, with a matching checksum.
 std::string Forge(const Farm& farm, const std::function<void(json&)>& change) {
   const json sealed = json::from_cbor(farm.Save());
   const auto& binary = sealed.at("state").get_binary();
@@ -181,7 +181,7 @@ TEST(SaveLoad, BytesThatNestAMillionDeepAreRefused) {
                InputError);
 }
 
-/// A farm in partial view, some steps after a bulletin of its tide, which grows.
+/// Returns a farm in partial view some steps after a bulletin of its growing tide.
 Farm FarmAfterABulletin() {
   Scenario scenario = CrowdedScenario(1);
   scenario.view = {ViewMode::kPartial, 2.0F, 7, 1.5F};
@@ -190,7 +190,7 @@ Farm FarmAfterABulletin() {
   return farm;
 }
 
-// What a farm says of its own state once it is changed, or "was loaded".
+// Returns the error of loading a farm's own state after a change, or "was loaded".
 std::string Refused(Farm& farm, const std::function<void(json&)>& change) {
   try {
     farm.Load(Forge(farm, change));

@@ -24,7 +24,7 @@ using test::TinyScenario;
 
 Farm TinyFarm() { return MakeFarm(TinyScenario()); }
 
-// From the port (2,0) north to the device at (2,2).
+// Moves from the port (2,0) north to the device at (2,2).
 void FetchTheDevice(Farm& farm) {
   StepOne(farm, Action::kNorth);
   StepOne(farm, Action::kNorth);
@@ -205,7 +205,7 @@ TEST(Disasters, WearDownWhatIsDeployedOrAboard) {
   StepOne(farm, Action::kNorth);
   StepOne(farm, Action::kPickup);
   EXPECT_FLOAT_EQ(farm.devices()[0].health, 0.4F);
-  StepOne(farm, Action::kSouth);  // out of it
+  StepOne(farm, Action::kSouth);  // leaves the disaster
   EXPECT_FLOAT_EQ(farm.devices()[0].health, 0.4F);
 }
 
@@ -236,7 +236,7 @@ TEST(End, RetrievalInTheLastStepIsASuccess) {
   EXPECT_EQ(farm.reason(), EndReason::kAllRetrieved);
 }
 
-// Two ships; both start at the port (2,0).
+// Returns a farm with two ships at the port (2,0).
 Farm TwoShips(std::int32_t capacity = 1) {
   Scenario scenario = TinyScenario();
   scenario.ships = {2, capacity};
@@ -267,7 +267,7 @@ TEST(RightOfWay, HeadOnTheLowerIdTakesTheCellBetween) {
   EXPECT_EQ(farm.ships()[1].cell, (Cell{2, 1}));
   EXPECT_EQ(farm.ships()[1].outcome, Outcome::kCollision);
   EXPECT_EQ(farm.ships()[1].reward, -5.0F);
-  // On they go: neither can pass.
+  // Both continue, but neither can pass.
   Both(farm, Action::kSouth, Action::kNorth);
   EXPECT_EQ(farm.ships()[0].cell, (Cell{2, 2}));
   EXPECT_EQ(farm.ships()[1].cell, (Cell{2, 1}));
@@ -289,7 +289,7 @@ TEST(RightOfWay, AChainFollowsWhenTheLowerIdLeads) {
   Both(farm, Action::kNorth, Action::kNorth);
   EXPECT_EQ(farm.ships()[0].cell, (Cell{2, 2}));
   EXPECT_EQ(farm.ships()[1].cell, (Cell{2, 1}));
-  // Now back: the lower id asks for the cell the higher one has not left yet.
+  // On the way back the lower id moves to the cell that the higher one has not left yet.
   Both(farm, Action::kSouth, Action::kSouth);
   EXPECT_EQ(farm.ships()[0].outcome, Outcome::kCollision);
   EXPECT_EQ(farm.ships()[1].cell, (Cell{2, 0}));
@@ -337,7 +337,7 @@ TEST(RightOfWay, TheShipInADevicesCellHasItAlone) {
     Both(farm, farm.ships()[0].cell.x == 3 ? Action::kNorthWest : Action::kNorth, Action::kHold);
   }
   const Action there =
-      farm.ships()[1].cell.x == 3 ? Action::kNorthWest : Action::kNorth;  // the other wants it too
+      farm.ships()[1].cell.x == 3 ? Action::kNorthWest : Action::kNorth;  // to the same cell
   const Cell before = farm.ships()[1].cell;
   Both(farm, Action::kHold, there);
   EXPECT_EQ(farm.ships()[1].outcome, Outcome::kCollision);
@@ -347,7 +347,7 @@ TEST(RightOfWay, TheShipInADevicesCellHasItAlone) {
   EXPECT_EQ(farm.ships()[1].outcome, Outcome::kIllegalPickup);
   Both(farm, Action::kNorth, there);
   ASSERT_EQ(farm.ships()[1].cell, (Cell{2, 1}));
-  Both(farm, Action::kHold, Action::kPickup);  // it is gone
+  Both(farm, Action::kHold, Action::kPickup);  // the device is gone
   EXPECT_EQ(farm.ships()[1].outcome, Outcome::kIllegalPickup);
   EXPECT_EQ(farm.ships()[1].aboard, 0);
   EXPECT_EQ(farm.ships()[0].aboard, 1);
@@ -415,7 +415,7 @@ TEST(SelfPropelled, DevicesCannotBePickedUp) {
   EXPECT_EQ(farm.ships()[0].outcome, Outcome::kIllegalPickup);
 }
 
-// Steps a farm and the oracle together with random actions and compares all that they say.
+// Steps a farm and the oracle with the same random actions and compares their results.
 void CompareWithOracle(const Scenario& scenario, std::uint64_t seed) {
   Farm farm = MakeFarm(scenario);
   for (std::uint64_t episode = 0; episode < 20; ++episode) {
@@ -426,7 +426,7 @@ void CompareWithOracle(const Scenario& scenario, std::uint64_t seed) {
       std::vector<Action> actions;
       std::vector<std::uint8_t> codes;
       for (std::size_t i = 0; i < farm.ships().size(); ++i) {
-        // Half of the time something legal, so that devices get home too.
+        // Picks up and drops off whenever legal, so that devices are also delivered.
         const ActionMask legal = farm.LegalActions(static_cast<std::int32_t>(i));
         auto action = static_cast<Action>(chance.Below(kActionCount + 1));
         if ((legal & MaskOf(Action::kPickup)) != 0) action = Action::kPickup;

@@ -17,7 +17,7 @@ namespace {
 
 using test::MakeFarm;
 
-/// Ten-minute steps, cells of a kilometre, a storm that goes north for four days.
+/// Ten-minute steps, cells of one kilometre, and a storm that moves north for four days.
 Scenario Forecast() {
   Scenario scenario = test::CrowdedScenario(1, 0);
   scenario.cell_size_m = 1000.0;
@@ -126,7 +126,8 @@ TEST(Forecasts, AreTheSameAsATrackThatIsYetToBegin) {
   EXPECT_NE(ForecastAt(farm, 0, 100, 149)[0], 5.0F) << "it errs from the first step on";
 }
 
-// A farm after 60 steps, whose truth must be that of one whose ships are told how it moves now.
+// Returns a farm after 60 steps and checks that its true state equals that of a farm whose ships
+// observe the current motion.
 Farm PlayedBeside(const Scenario& plain, const Scenario& scenario) {
   Farm told = MakeFarm(scenario);
   Farm knows = MakeFarm(plain);
@@ -207,7 +208,8 @@ TEST(Forecasts, AreWrittenBackAndPartOfTheHash) {
   EXPECT_EQ(ToYaml(other).find("forecast"), std::string::npos);
 }
 
-/// The storm of Forecast() with two forecasts of an authority, of steps 0 and 200, and no error.
+/// The storm of Forecast() with two forecasts issued by an authority at steps 0 and 200, without
+/// forecast_error_km.
 Scenario Said() {
   Scenario scenario = Forecast();
   scenario.view.forecast_error_km.clear();
@@ -320,7 +322,7 @@ TEST(IssuedForecasts, AreOnlyOfATrackOfTheScenario) {
             "disasters[0].forecasts: is used only where there is a track");
 }
 
-// What a file with these forecasts is told, or "was taken".
+// Returns the error of reading a file with these forecasts, or "was taken".
 std::string SaidRefused(const std::string& forecasts, const std::string& errors = "") {
   const std::string text =
       "name: x\ngrid: {origin: {latitude: 30, longitude: 122}}\n"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every shipped scenario played with a fixed seed and compared with test/golden/NAME.txt, which a
-// person can read. After a change of the rules that is meant:
+// Plays every shipped scenario with a fixed seed and compares the result with the human-readable
+// file test/golden/NAME.txt. After an intended change of the rules, run
 //   AQUAFARM_UPDATE_GOLDEN=1 build/golden_playthrough_test
-// then read the difference, and say so in CHANGELOG.rst.
+// then review the difference and document it in CHANGELOG.rst.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The farm as people draw it: north up; # island, o rock, P port, d device, 0-9 ships, and the
-// digit-free sea as . or, under a risk, as ~.
+// Returns the farm as text, north up: # island, o rock, P port, d device, 0-9 ships, . open water,
+// ~ water at a risk.
 std::string Map(const Farm& farm) {
   const Scenario& scenario = farm.scenario();
   std::ostringstream text;
@@ -56,7 +56,7 @@ std::string Number(float value) {
   return text;
 }
 
-// A nearest-thing-first pilot: enough to get devices home on most charts, and easy to follow.
+// A simple policy that heads for the nearest goal. It delivers the devices on most charts.
 Action Pilot(const Farm& farm, std::int32_t id, RandomStream& chance) {
   const Ship& ship = farm.ships()[static_cast<std::size_t>(id)];
   const ActionMask legal = farm.LegalActions(id);
@@ -86,7 +86,7 @@ Action Pilot(const Farm& farm, std::int32_t id, RandomStream& chance) {
     nearest = MovesBetween(to, goal);
     best = static_cast<Action>(move);
   }
-  // In a dead end, a random move finds the way out sooner or later.
+  // Random moves escape from dead ends.
   return best != Action::kHold && chance.Below(8) != 0
              ? best
              : static_cast<Action>(chance.Below(kMoveCount));

@@ -14,7 +14,7 @@
 namespace aquafarm {
 namespace {
 
-// A slow oracle: spreads from cell to cell until nothing changes.
+// Slow oracle: spreads from cell to cell until nothing changes.
 bool WaterConnects(const Layout& layout, const std::vector<Cell>& cells) {
   const auto height = static_cast<std::int32_t>(layout.cells.rows());
   const auto width = static_cast<std::int32_t>(layout.cells.cols());
@@ -71,7 +71,7 @@ void ExpectValid(const Scenario& scenario, const Layout& layout) {
   ASSERT_TRUE(WaterConnects(layout, reachable));
 }
 
-// Everything counted from the grid agrees with the lists, and the planes with one another.
+// Checks that counts from the grid equal those of the lists, and that the planes are consistent.
 void ExpectConsistent(const Scenario& scenario, const Layout& layout) {
   std::size_t rocks = 0;
   std::size_t ports = 0;
@@ -277,7 +277,7 @@ TEST(LinearDevices, StandInStraightRowsOnOpenWater) {
       xs.insert(device.cell.x);
       ys.insert(device.cell.y);
     }
-    // A port on the map's edge may push one device off its row.
+    // A port on the edge of the map may displace one device from its row.
     ASSERT_LE(std::min(xs.size(), ys.size()), 3U);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rings that are no circles: a radius for each quadrant.
+// Rings with a radius for each quadrant.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,14 +18,15 @@ namespace {
 using test::MakeFarm;
 using test::StillDisaster;
 
-/// A storm at (x, y) that reaches farther to the north-east, not at all to the south-west inside.
+/// A storm at (x, y) that reaches farthest to the north-east; its inner ring has no south-west
+/// quadrant.
 DisasterSpec Lopsided(float x, float y) {
   DisasterSpec storm = StillDisaster(x, y, {3.0F, 6.0F}, {-20.0F, -5.0F});
   storm.quadrants = {{3.0F, 2.0F, 0.0F, 1.0F}, {6.0F, 5.0F, 2.0F, 4.0F}};
   return storm;
 }
 
-// The same rule by angles, as a person would read a bulletin.
+// Slow oracle: the same rule computed with bearings.
 float SlowRisk(const DisasterSpec& storm, double x, double y) {
   const double east = x - static_cast<double>((*storm.start)[0]);
   const double north = y - static_cast<double>((*storm.start)[1]);
@@ -87,7 +88,7 @@ TEST(Quadrants, GrowAndShrinkToNothing) {
   EXPECT_EQ(RiskOf(storm, 10, 9), 0.0F);
 }
 
-/// A farm that such a storm crosses, changing shape on its way.
+/// A farm crossed by such a storm, which changes its shape on the track.
 Scenario Crossed() {
   Scenario scenario = test::CrowdedScenario(1, 0);
   DisasterSpec storm = Lopsided(0, 0);

@@ -10,7 +10,7 @@
 namespace aquafarm {
 namespace {
 
-// A slow oracle: better and better ways, from cell to cell, until none changes.
+// Slow oracle: relaxes the distances from cell to cell until nothing changes.
 Grid<std::int32_t> SlowSteps(const Grid<std::uint8_t>& cells, Cell target) {
   Grid<std::int32_t> steps = Grid<std::int32_t>::Constant(cells.rows(), cells.cols(), kUnreachable);
   steps(target.y, target.x) = 0;

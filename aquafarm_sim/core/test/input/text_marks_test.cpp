@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every reader of text takes a byte order mark and the line ends of DOS as if they were not there.
+// Every text reader ignores a byte order mark and accepts DOS line ends.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -45,7 +45,7 @@ std::string Heights(const std::string& text) {
   return std::to_string(ParseAsciiGrid(text, "x").value(1, 2));
 }
 
-// A map's YAML file, or the picture that it names.
+// Reads a map from the text of its YAML file or of its image.
 std::string Map(const std::string& text) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("marks." + std::to_string(getpid()));
@@ -69,7 +69,7 @@ std::string Hash(const std::string& text) { return std::to_string(ParseScenario(
 
 struct Reader {
   const char* name;
-  const char* sample;  ///< of test/data
+  const char* sample;  ///< file in test/data
   std::function<std::string(const std::string& text)> read;
   bool may_be_marked{true};
 };
@@ -86,7 +86,7 @@ TEST_P(TextFiles, MayHaveAByteOrderMarkAndLinesOfDos) {
   for (const char c : plain) dos += c == '\n' ? std::string("\r\n") : std::string{c};
   const std::string said = GetParam().read(plain);
   EXPECT_EQ(GetParam().read(dos), said);
-  if (!GetParam().may_be_marked) return;  // a picture is known by its first bytes
+  if (!GetParam().may_be_marked) return;  // the first bytes identify an image
   EXPECT_EQ(GetParam().read(mark + plain), said);
   EXPECT_EQ(GetParam().read(mark + dos), said);
 }

@@ -32,9 +32,9 @@ TEST(TabularIndex, CountsTheStatusSetsOfTheRules) {
 }
 
 TEST(TabularIndex, ThePapersCountsAreMisprints) {
-  // The paper's factors: each device is delivered or not, whoever has it. Counted on a farm of its
-  // size: |O| = 25·25·2³ = 5,000, printed as 32,000; |S| = |O|·4 ports = 20,000, printed as
-  // 128,000.
+  // Factors of the paper: each device is delivered or not, independent of its carrier. Counted on a
+  // farm of the same size: |O| = 25·25·2³ = 5,000 (printed: 32,000); |S| = |O|·4 ports = 20,000
+  // (printed: 128,000).
   Scenario scenario;
   scenario.width = scenario.height = 25;
   scenario.devices.count = 3;
@@ -54,7 +54,7 @@ TEST(TabularIndex, ThePapersCountsAreMisprints) {
 }
 
 TEST(TabularIndex, ATinyFarmReachesExactlyItsStates) {
-  // 3 × 3, an island in a corner, two devices: 8 water cells, 2² + 2·2 = 8 status sets.
+  // 3 × 3 cells, an island in a corner, two devices: 8 water cells, 2² + 2·2 = 8 status sets.
   Scenario scenario = TinyScenario();
   scenario.width = scenario.height = 3;
   scenario.islands = {{{0, 0}, 1, 1}};
@@ -82,7 +82,7 @@ TEST(TabularIndex, ATinyFarmReachesExactlyItsStates) {
       seen.insert(index);
     }
   }
-  // Everything delivered happens at the port alone: 8 cells × 7 sets and one.
+  // All devices are delivered only at the port: 8 cells × 7 sets plus one state.
   EXPECT_EQ(seen.size(), 8U * 7 + 1);
 }
 
@@ -178,7 +178,7 @@ TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
   for (const Action action : {Action::kNorth, Action::kNorth, Action::kPickup, Action::kWest}) {
     StepOne(farm, action);
   }
-  EXPECT_EQ(Feature(farm, "device0.way_steps"), 0.0F);  // it is aboard
+  EXPECT_EQ(Feature(farm, "device0.way_steps"), 0.0F);  // the device is aboard
   EXPECT_EQ(Feature(farm, "port0.way_east"), 1.0F);
   EXPECT_EQ(Feature(farm, "port0.way_north"), -1.0F);
   EXPECT_FLOAT_EQ(Feature(farm, "port0.way_steps"), 2.0F / 5.0F);
@@ -189,8 +189,8 @@ TEST(Features, TellTheWayByWaterToPortsAndToDevicesThatWait) {
             5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 4 + 5 + (2 + 3) * 3);
 }
 
-/// Compares what features tell of the risks ahead with an oracle, which has them by cell and steps.
-/// @returns at how many places there was some
+/// Compares the features of the risks ahead with an oracle that maps a cell and a number of steps
+/// to a risk. @returns the number of positions with a risk
 template <typename Oracle>
 int ExpectCourses(const Farm& farm, const Oracle& risk_ahead) {
   const Cell self = farm.ships()[0].cell;
@@ -228,7 +228,7 @@ TEST(Features, HaveTheBlockedMovesWhereTheyAreSaidToBe) {
   }
 }
 
-/// Against the disasters themselves, moved on step by step, and the sea.
+/// Compares the features with the disasters themselves, moved step by step, and the sea.
 void ExpectCoursesInPlay(Scenario scenario) {
   scenario.view.courses = true;
   Farm farm = MakeFarm(std::move(scenario));
@@ -252,7 +252,7 @@ void ExpectCoursesInPlay(Scenario scenario) {
 TEST(Features, TellTheRiskForecastAlongEachCourse) {
   Scenario scenario = CrowdedScenario(1, 0);
   ExpectCoursesInPlay(scenario);
-  // One ring is no circle, one is absent in a quadrant, and one storm is over before the other.
+  // Rings by quadrants, of which one is absent in a quadrant; one storm ends before the other.
   scenario.disasters[0].quadrants = {{1.0F, 0.5F, 0.0F, 1.0F}, {2.5F, 2.0F, 1.0F, 1.5F}};
   scenario.disasters[0].duration = 20;
   ExpectCoursesInPlay(scenario);
@@ -283,7 +283,7 @@ TEST(Features, TellTheRiskOfTheSeaAlongEachCourse) {
   EXPECT_GT(risky, 200);
 }
 
-// Out of sight a disaster is where the last bulletin had it, and has gone on for as long since.
+// Out of sight a disaster is assumed to have kept the motion of the last bulletin since its issue.
 TEST(Features, TellTheRiskThatAnOldBulletinLeadsToExpect) {
   Scenario scenario = CrowdedScenario(1, 0);
   scenario.damage.crash_probability = 0.0F;
@@ -317,7 +317,7 @@ TEST(Features, TellTheRiskThatAnOldBulletinLeadsToExpect) {
   EXPECT_GT(old, 10);
 }
 
-// What the planes must say, cell by cell, from look-ups.
+// Slow oracle: computes the planes cell by cell with look-ups.
 std::vector<std::uint8_t> SlowPlanes(const View& view) {
   const Layout& layout = *view.layout;
   const int width = view.scenario->width;

@@ -17,8 +17,8 @@ std::atomic<long> allocations{0};
 std::atomic<std::size_t> allocated_bytes{0};
 }  // namespace
 
-// Counts what the whole program allocates, so that a test can say that stepping does not. Kept out
-// of line: inlined, gcc takes the malloc behind new for a mismatch with free.
+// Counts the allocations of the complete program, so that a test can check that stepping does not
+// allocate. Not inlined, because gcc would then report a mismatch of new and free.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   allocated_bytes += size;
@@ -46,7 +46,7 @@ namespace {
 
 using test::CrowdedScenario;
 
-// Buffers for everything that a batch can write.
+// Buffers for all outputs of a batch.
 struct Buffers {
   explicit Buffers(const FarmBatch& batch) {
     const auto n = static_cast<std::size_t>(batch.farms());
@@ -80,7 +80,7 @@ std::shared_ptr<const Scenario> Shared(Scenario scenario) {
   return std::make_shared<const Scenario>(std::move(scenario));
 }
 
-// The n-th joint action of a test, a function of its number alone.
+// Returns the n-th joint action of a test; depends only on n.
 std::vector<std::uint8_t> Actions(const FarmBatch& batch, std::uint64_t number) {
   std::vector<std::uint8_t> actions(static_cast<std::size_t>(batch.farms() * batch.agents()));
   RandomStream chance({99, number, Purpose::kExploration, 0});
@@ -171,7 +171,7 @@ void ExpectNoAllocation(Scenario scenario) {
   batch.Reset(1, 0, output);
   std::vector<std::vector<std::uint8_t>> actions;
   for (std::uint64_t i = 0; i < 64; ++i) actions.push_back(Actions(batch, i));
-  // The first episodes size what is kept.
+  // The first episodes allocate the reusable memory.
   for (std::size_t i = 0; i < 1000; ++i) batch.Step(actions[i % 64].data(), output);
   const long before = allocations;
   int episodes = 0;
@@ -196,7 +196,7 @@ TEST(FarmBatch, NeitherStepsNorEpisodesAllocate) {
 }
 
 TEST(FarmBatch, AFarmsStateIsUnderAKibibyteBesidesItsChart) {
-  Scenario scenario;  // the paper's sizes; all farms share one chart
+  Scenario scenario;  // sizes of the paper; all farms share one chart
   scenario.disasters.resize(1);
   ValidateScenario(scenario);
   const auto shared = std::make_shared<const Scenario>(scenario);

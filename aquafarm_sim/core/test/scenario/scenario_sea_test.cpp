@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sea of a scenario: as numbers, from a netCDF file, by rules; and what it does in play.
+// The sea of a scenario: given as values, read from a netCDF file or computed by rules, and its
+// effect on episodes.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -21,7 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-/// The 5 × 5 farm, 20 degrees in the south and 1 more a row; none known in the north-east corner.
+/// The 5 × 5 farm with a temperature of 20 degrees in the south, increasing by 1 per row, and
+/// unknown in the north-east corner.
 Scenario Warm() {
   Scenario scenario = test::TinyScenario();
   SeaLayer warmth{"warmth", "degC", {}};
@@ -80,7 +82,7 @@ TEST(Seas, GiveRisksByRuleThatAreFeltLikeThoseOfDisasters) {
   std::vector<std::uint8_t> planes(encoder.planes_size());
   encoder.Planes(view, planes.data());
   for (std::int32_t i = 0; i < 25; ++i) {
-    const int expected = i / 5 > 2 && i < 24 ? 102 : 0;  // 8 / 20 of 255
+    const int expected = i / 5 > 2 && i < 24 ? 102 : 0;  // 255 · 8 / 20
     EXPECT_EQ(planes[static_cast<std::size_t>(i)], expected) << i;
     EXPECT_EQ(planes[static_cast<std::size_t>(25 + i)], expected) << "forecast, " << i;
   }
@@ -178,7 +180,7 @@ TEST(Seas, ThatAreWrongAreRefused) {
   EXPECT_EQ(Refused(ToYaml(twice)), "seas.layers[0].name: got 'warmth' twice, expected it once");
 }
 
-// More cells than a list of islands may have, still below the 200,000 of all seas.
+// 120,000 cells: more than the max number of islands, but less than the 200,000 values of a sea.
 TEST(Seas, OfALargeFarmAreWrittenAndReadBack) {
   Scenario scenario = Warm();
   scenario.width = 400;
@@ -190,7 +192,7 @@ TEST(Seas, OfALargeFarmAreWrittenAndReadBack) {
   EXPECT_EQ(Refused(ToYaml(scenario)), "seas: got 240000 values, expected at most 200000");
 }
 
-/// A file of a field that grows by 100 a degree to the north from 0 at 30 N.
+/// A file with a field that is 0 at 30 N and increases by 100 per degree to the north.
 class SeaFiles : public testing::Test {
  protected:
   SeaFiles() : folder_(fs::temp_directory_path() / ("seas." + std::to_string(getpid()))) {

@@ -31,7 +31,7 @@ std::string MessageOf(const std::string& text) {
   return "no error";
 }
 
-// One fault a file; its first line says what the message must hold after the file's name.
+// Each file has one fault. Its first line contains the expected message without the file name.
 class InvalidScenario : public testing::TestWithParam<fs::path> {};
 
 TEST_P(InvalidScenario, IsRefusedInTheWordsOfItsFirstLine) {
@@ -124,7 +124,7 @@ disasters:
   EXPECT_FLOAT_EQ(track[2].step, 144.0F);
   EXPECT_EQ(track[0].x, 0.0F);
   EXPECT_EQ(track[0].y, 0.0F);
-  // A tenth of a degree at 30 N on WGS 84: 11.085 km north, 9.6486 km east.
+  // 0.1 degrees at 30 N on WGS 84 are 11.085 km north and 9.6486 km east.
   EXPECT_NEAR(track[1].y, 11.085, 0.001);
   EXPECT_NEAR(track[2].x, 9.6486, 0.001);
   EXPECT_FLOAT_EQ(track[0].radii[1], 95.5F);
@@ -134,7 +134,7 @@ disasters:
   EXPECT_EQ(scenario.disasters[0].grade, 3);
 }
 
-// Everything that a file can say, and none of it the default.
+// A scenario that sets every key of a file to a value other than the default.
 Scenario UnusualScenario() {
   Scenario s = test::CrowdedScenario(2);
   s.name = "odd \"name\" \\ 舟山";
@@ -276,7 +276,7 @@ TEST(Numbers, AreWrittenShortAndReadBackExactly) {
     std::memcpy(&value, &word, sizeof(value));
     if (!std::isfinite(value)) continue;
     float back = 0.0F;
-    // Streams refuse what underflows; no number of a scenario is that small.
+    // Streams reject subnormal numbers; no number of a scenario is that small.
     if (std::abs(value) < std::numeric_limits<float>::min()) continue;
     ASSERT_TRUE(internal::Parse(internal::Format(value), back)) << value;
     ASSERT_EQ(back, value) << internal::Format(value);

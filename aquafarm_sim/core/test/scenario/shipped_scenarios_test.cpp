@@ -153,7 +153,7 @@ TEST(InFa, FollowsTheBestTrack) {
   }
 }
 
-// What the comments of the file promise.
+// Verifies the comments in the scenario file.
 TEST(InFa, BringsItsRingsOverTheRanchWhenTheFileSays) {
   const auto scenario = std::make_shared<const Scenario>(Load("zhoushan_infa_2021"));
   Farm farm(scenario);
@@ -178,7 +178,7 @@ TEST(InFa, BringsItsRingsOverTheRanchWhenTheFileSays) {
   EXPECT_EQ(farm.step(), 315);
 }
 
-// The worst risk in the middle of a ranch while its storm passes.
+// Returns the worst risk in the middle of a ranch during the passage of its storm.
 float WorstInTheMiddle(const std::string& name) {
   const auto scenario = std::make_shared<const Scenario>(Load(name));
   Farm farm(scenario);

@@ -21,21 +21,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How a file is written; the field is 10 + 100 · (latitude - 30) + 10 · (longitude - 122) + depth.
+/// Options of a test file. Its field is
+/// 10 + 100 · (latitude - 30) + 10 · (longitude - 122) + depth.
 struct Shape {
   bool north_first{};
   bool depth_up{};
-  double turn{};  ///< added to longitudes
+  double turn{};  ///< added to longitudes [degrees]
   bool packed{true};
   const char* time_units{"hours since 2021-07-25 00:00:00"};
   bool curvilinear{};
   const char* calendar{};
-  std::vector<short> valid_range{};     ///< as the file stores values
-  std::array<short, 2> valid_bounds{};  ///< valid_min and valid_max; alike: none
-  bool own_fill{true};                  ///< else netCDF's default for the type
+  std::vector<short> valid_range{};     ///< in packed values
+  std::array<short, 2> valid_bounds{};  ///< valid_min and valid_max; not written if equal
+  bool own_fill{true};                  ///< if false, uses netCDF's default fill value
   const char* vertical{"depth"};        ///< name of the vertical axis
-  std::vector<std::array<const char*, 2>> vertical_attributes{};  ///< besides depth_up's
-  std::array<const char*, 2> sides{"lat", "lon"};                 ///< names of those axes
+  std::vector<std::array<const char*, 2>> vertical_attributes{};  ///< in addition to depth_up's
+  std::array<const char*, 2> sides{"lat", "lon"};                 ///< names of the horizontal axes
   std::array<const char*, 2> units{"degrees_north", "degrees_east"};
   bool strings{};  ///< attributes as netCDF-4 strings instead of characters
 };
@@ -155,7 +156,7 @@ class SeaFields : public testing::Test {
   }
 };
 
-// At 30.15 N 122.15 E: 10 + 15 + 1.5.
+// Value at 30.15 N 122.15 E: 10 + 15 + 1.5.
 constexpr float kThere = 26.5F;
 
 TEST_F(SeaFields, AreUnpackedAndCutToTheRanch) {
@@ -167,7 +168,7 @@ TEST_F(SeaFields, AreUnpackedAndCutToTheRanch) {
   EXPECT_LT(field.latitude.size(), static_cast<std::size_t>(kLatitudes)) << "cut";
   const Layer layer = ToLayer(field, frame_, 4, 4);
   EXPECT_NEAR(layer(0, 0), kThere, 0.02F);
-  // Three cells of 1 km to the north are 0.02706 degrees: 2.7 more.
+  // Three cells of 1 km to the north are 0.02706 degrees, so the value is 2.7 larger.
   EXPECT_NEAR(layer(3, 0) - layer(0, 0), 2.706F, 0.02F);
   EXPECT_GT(layer(0, 3), layer(0, 0));
 }
@@ -182,7 +183,7 @@ TEST_F(SeaFields, RunEitherWayInLatitudeDepthAndLongitude) {
   }
 }
 
-// By units of pressure, positive, standard_name or axis, as CF 4.3 has it.
+// The axis is identified by units of pressure, positive, standard_name or axis (CF section 4.3).
 TEST_F(SeaFields, HaveAVerticalAxisOfAnyNameThatCfKnows) {
   const auto with = [](std::vector<std::array<const char*, 2>> attributes, bool up = false) {
     Shape shape{false, up};
@@ -259,7 +260,7 @@ TEST_F(SeaFields, HaveNothingOutsideOfTheirValidRange) {
   Shape shape;
   shape.own_fill = false;
   EXPECT_EQ(known(shape), all) << "netCDF's default fill of a short";
-  // Stored as (value - 20) / 0.01: a row is 10 more, so 1000, and the first is at -1000.
+  // Stored as (value - 20) / 0.01: the first row is -1000, and each row is larger by 10 / 0.01.
   shape = {};
   shape.valid_range = {-500, 500};
   const auto ranged = known(shape);
@@ -364,7 +365,7 @@ TEST_F(SeaFields, WithTextForANumberAreRefused) {
     int variable = 0;
     ASSERT_EQ(nc_open(path_.c_str(), NC_WRITE, &file), NC_NOERR);
     nc_inq_varid(file, "so", &variable);
-    // libnetcdf refuses a fill value of another type, so it gets its name afterwards.
+    // libnetcdf rejects a fill value of another type, so the attribute is renamed afterwards.
     nc_redef(file);
     nc_put_att_text(file, variable, "later", 4, "0.01");
     EXPECT_EQ(nc_rename_att(file, variable, "later", key.c_str()), NC_NOERR);
@@ -376,7 +377,7 @@ TEST_F(SeaFields, WithTextForANumberAreRefused) {
 TEST_F(SeaFields, OfTenMegabytesAreCutInHalfASecond) {
   WriteSeaOfTenMegabytes(path_);
   const GeoFrame frame({30.1, 122.1}, 200.0);
-  double fastest_s = 1.0e9;  // of a few, and of the processor, for a busy machine
+  double fastest_s = 1.0e9;  // min CPU time of several runs, robust on a busy machine
   for (int run = 0; run < 5; ++run) {
     const std::clock_t start = std::clock();
     const Layer layer =
@@ -385,7 +386,7 @@ TEST_F(SeaFields, OfTenMegabytesAreCutInHalfASecond) {
     EXPECT_EQ(layer(499, 499), 17.0F);
     fastest_s = std::min(fastest_s, took_s);
   }
-  // 500 x 500 cells are four hundred times the paper's farm.
+  // 500 x 500 cells are 400 times the paper's farm.
   EXPECT_LT(fastest_s, 0.5);
   RecordProperty("milliseconds", static_cast<int>(fastest_s * 1000.0));
 }
@@ -430,7 +431,7 @@ TEST(RealFiles, OfHycomHaveSaltAndWarmth) {
   const Layer surface = ToLayer(warmth, frame, 25, 25);
   EXPECT_GT(surface.minCoeff(), 22.0F);
   EXPECT_LT(surface.maxCoeff(), 35.0F);
-  // What another reader (SciPy's) unpacks at 24.64 N 57.599 E.
+  // Reference values from another reader (SciPy) at 24.64 N 57.599 E.
   const GeoFrame there({24.64000130, 57.5991}, 1000.0);
   const auto at = [&](const char* name, double depth_m) {
     return ToLayer(LoadSeaField(path.string(), {name, {}, depth_m}, there, 2, 2), there, 2, 2)(0,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// netCDF files of the classic kinds that end too soon: libnetcdf would read zeros.
+// Truncated netCDF files of the classic formats, for which libnetcdf would read zeros.
 #include <gtest/gtest.h>
 #include <netcdf.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ class CutFiles : public testing::Test {
       : path_((fs::temp_directory_path() / ("cut." + std::to_string(getpid()) + ".nc")).string()) {}
   ~CutFiles() override { fs::remove(path_); }
 
-  /// What of its length the file is refused with when that many bytes are left of it.
+  /// Truncates the file to `bytes` and returns the error about its length, or "is whole".
   std::string Left(std::uintmax_t bytes) const {
     fs::resize_file(path_, bytes);
     try {
@@ -41,8 +41,9 @@ class CutFiles : public testing::Test {
            std::to_string(expected);
   }
 
-  /// A field so of shorts along time, lat and lon (2 x 2 x columns), time without end or not, and
-  /// beside it a variable of bytes along time. Time has no values, which is refused later.
+  /// Writes a field "so" of shorts along time, lat and lon (2 x 2 x columns). Time is unlimited if
+  /// `records`. With `beside`, adds a variable of bytes along time. Time has no coordinate values,
+  /// so a complete file is rejected for that reason.
   void Write(int kind, std::size_t columns, bool records, bool beside) const {
     int file = 0;
     std::array<int, 3> dims{};
@@ -98,10 +99,10 @@ TEST_F(CutFiles, WithAHeaderLongerThanTheCutAreRefused) {
   }
 }
 
-// What fills a variable up to four bytes holds no value.
+// The padding of a variable to four bytes contains no values.
 TEST_F(CutFiles, MayLackWhatFillsUpTheLastVariable) {
   for (const int kind : kKinds) {
-    Write(kind, 3, false, true);  // two bytes of quality and two more
+    Write(kind, 3, false, true);  // quality has two bytes and two bytes of padding
     const std::uintmax_t whole = size();
     EXPECT_EQ(Left(whole - 2), "is whole") << kind;
     EXPECT_EQ(Left(whole - 3), Cut(whole - 3, whole - 2)) << kind;
@@ -110,7 +111,7 @@ TEST_F(CutFiles, MayLackWhatFillsUpTheLastVariable) {
 
 TEST_F(CutFiles, OfRecordsAreRefusedWithinTheLast) {
   for (const int kind : kKinds) {
-    Write(kind, 3, true, true);  // records of 12 bytes, and of one and three more
+    Write(kind, 3, true, true);  // records of 12 bytes, and of 1 byte with 3 bytes of padding
     const std::uintmax_t whole = size();
     EXPECT_EQ(Left(whole - 3), "is whole") << kind;
     EXPECT_EQ(Left(whole - 4), Cut(whole - 4, whole - 3)) << kind;
@@ -118,7 +119,7 @@ TEST_F(CutFiles, OfRecordsAreRefusedWithinTheLast) {
   }
 }
 
-// One variable alone has its records without anything in between.
+// The records of a single record variable are contiguous.
 TEST_F(CutFiles, OfRecordsOfOneVariableAreRefusedWithinTheLast) {
   for (const int kind : kKinds) {
     Write(kind, 1, true, false);

@@ -6,13 +6,14 @@
 
 namespace aquafarm {
 
-/// Thrown when a caller breaks a documented precondition: a programmer's mistake, not bad input.
+/// Thrown when a caller violates a documented precondition (a programming error, not bad input).
 class LogicError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
 
-/// Thrown for bad outside input (a file, a message, an argument); what() is one line for people.
+/// Thrown for invalid external input (a file, a message, an argument). what() is a one-line
+/// message for the user.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -30,7 +31,7 @@ template <typename A, typename B>
 }  // namespace internal
 }  // namespace aquafarm
 
-// Always on; prints both values and throws LogicError.
+// Active in every build type. On failure throws LogicError with both values.
 #define AQUAFARM_CHECK_OP(op, a, b)                                                               \
   do {                                                                                            \
     const auto check_a = (a);                                                                     \

@@ -7,8 +7,8 @@
 
 namespace aquafarm {
 
-/// Mixes 64-bit words into a hash, each with the finaliser of SplitMix64 (Steele, Lea and Flood,
-/// "Fast splittable pseudorandom number generators", OOPSLA 2014). Not against adversaries.
+/// Mixes 64-bit words into a hash with the finaliser of SplitMix64 (Steele, Lea and Flood, "Fast
+/// splittable pseudorandom number generators", OOPSLA 2014). Not a cryptographic hash.
 class Hasher {
  public:
   void Add(std::uint64_t word) {
@@ -33,7 +33,7 @@ class Hasher {
   std::uint64_t hash_{};
 };
 
-/// Checksum of bytes; the same on every machine.
+/// Returns a checksum of bytes; the result is the same on every machine.
 std::uint64_t HashBytes(std::string_view bytes);
 
 }  // namespace aquafarm

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Chance, keyed by (seed, episode, purpose, stream): counter-based, so that no order of calls, no
-/// number of threads and no compiler changes a draw. Philox4x32-10 of Random123 (Salmon et al.,
-/// "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
+/// Counter-based random numbers keyed by (seed, episode, purpose, stream). A draw does not depend
+/// on the order of calls, the number of threads or the compiler. Philox4x32-10 of Random123 (Salmon
+/// et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
 
 #include <array>
 #include <cstdint>
 
 namespace aquafarm {
 
-/// What a draw is for; every purpose has streams of its own.
+/// Purpose of a draw. Each purpose has its own streams.
 enum class Purpose : std::uint8_t {
   kLayout,
   kStart,
@@ -18,9 +18,9 @@ enum class Purpose : std::uint8_t {
   kDisasterTurn,
   kDamage,
   kSensors,
-  kExploration,  ///< an agent's own choices
+  kExploration,  ///< random choices of an agent
   kLearner,      ///< initial weights, replay samples
-  kForecast,     ///< which way forecasts err
+  kForecast,     ///< direction of forecast errors
 };
 
 /// Identifies an independent sequence of draws.
@@ -28,7 +28,7 @@ struct StreamKey {
   std::uint64_t seed{};
   std::uint64_t episode{};
   Purpose purpose{};
-  std::uint32_t stream{};  ///< ship, disaster, …; below 2^24
+  std::uint32_t stream{};  ///< index of a ship, disaster, …; below 2^24
 };
 
 /// Returns four 32-bit draws, a pure function of key and index.
@@ -43,7 +43,7 @@ constexpr std::uint32_t ToBelow(std::uint32_t draw, std::uint32_t count) {
   return static_cast<std::uint32_t>((static_cast<std::uint64_t>(draw) * count) >> 32U);
 }
 
-/// Walks along one stream; its position is plain data, so it is saved by copying.
+/// Generates one stream of draws. All state is plain data, so a copy saves the position.
 class RandomStream {
  public:
   RandomStream() = default;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Heights as an ASCII grid: "ncols 60" or "60 ncols", nrows, xllcorner or xllcenter (xlower), the
-/// same of y, cellsize, NODATA_value, then the values row by row from the north, any number a line.
+/// Elevations as an ASCII grid. The header has "ncols 60" or "60 ncols", nrows, xllcorner or
+/// xllcenter (or xlower), the same keys for y, cellsize and NODATA_value. The values follow row by
+/// row from the north, with any number of values per line.
 
 #include <string>
 
@@ -13,24 +14,24 @@ namespace aquafarm {
 
 struct AsciiGrid {
   Grid<float> value;  ///< [H, W], row 0 in the south; NaN where there is no data
-  double west{};      ///< of the centre of the south-west cell
-  double south{};
+  double west{};      ///< x of the centre of the south-west cell
+  double south{};     ///< y of the centre of the south-west cell
   double cell_size{};
-  /// Whether places are degrees: cells are smaller than one and the corner is no further off than a
-  /// slip of degrees would be. Else metres.
+  /// Returns whether coordinates are in degrees: cells are smaller than 1 and the corner is within
+  /// twice the range of degrees, so that typing errors are detected. If false, they are in metres.
   bool IsGeographic() const;
 };
 
 /// @throws InputError "bay.asc:3: cellsize: got '0', expected …"
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name);
-/// The same of a file. @throws InputError also when it cannot be read
+/// Reads a file as ParseAsciiGrid does. @throws InputError also when it cannot be read
 AsciiGrid LoadAsciiGrid(const std::string& path);
 
-/// Land is what lies higher than `sea_level`, or has no data. Of a grid in degrees the nearest
-/// values at 5 × 5 points of each cell of the ranch are taken.
+/// Returns the land share of a grid in degrees. Values above `sea_level` or without data are land.
+/// Each cell of the ranch uses the nearest values at 5 × 5 points.
 LandShare ShareOfLand(const AsciiGrid& grid, const GeoFrame& frame, std::int32_t width,
                       std::int32_t height, float sea_level);
-/// A grid in metres as it is, a value a cell.
+/// Returns the land share of a grid in metres, one value per cell of the ranch.
 LandShare ShareOfLand(const AsciiGrid& grid, float sea_level);
 
 }  // namespace aquafarm

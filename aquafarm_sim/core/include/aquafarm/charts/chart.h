@@ -5,7 +5,9 @@
 /// and ASCII grids (ascii_grid.h).
 ///
 ///   share of land in a cell   0 ........ kRockShare ........ kLandShare ........ 1
-///   what it becomes             water             rock               island
+///   type of the cell            water             rock               island
+///
+/// [decided]: our choice where the paper gives no value, see docs/model.md.
 
 #include <vector>
 
@@ -14,37 +16,38 @@
 
 namespace aquafarm {
 
-/// Part of each cell that is land [0, 1], [H, W].
+/// Fraction of land of each cell [0, 1], [H, W].
 using LandShare = Grid<float>;
 
-/// From here on a cell is an island. [decided]
+/// Min land share of an island cell. [decided]
 inline constexpr float kLandShare = 0.4F;
-/// From here on it is a rock: too little land for an island, too much to sail over. [decided]
+/// Min land share of a rock: too little land for an island, too much to sail over. [decided]
 inline constexpr float kRockShare = 0.05F;
 
-/// What the cells of a ranch are, fit for a scenario: all water is one body.
+/// Cell types of a ranch for a scenario, in which all water is connected.
 struct Terrain {
   Grid<std::uint8_t> land;          ///< [H, W]; 1: island
   std::vector<Cell> rocks;          ///< south to north, west to east
-  std::int32_t filled{};            ///< water cells made land, for no ship could come there
+  std::int32_t filled{};            ///< unreachable water cells that were converted to land
   std::int32_t WaterCells() const;  ///< neither island nor rock
 };
 
-/// Turns shares of land into islands and rocks. Water that the largest body of water does not
-/// reach, by moves to all eight sides, becomes land.
+/// Converts land shares to islands and rocks. Water that is not connected to the largest body of
+/// water by the eight moves becomes land.
 /// @throws InputError when there is no water
 Terrain ToTerrain(const LandShare& share);
 
-/// Few blocks that cover exactly the land, as scenario files have them.
+/// Returns a small set of blocks that cover exactly the land, as used in scenario files.
 std::vector<IslandBlock> ToIslands(const Grid<std::uint8_t>& land);
 
-/// The shore water cell nearest to a wanted one, by distance, then from the south-west: water with
-/// land on one of its eight sides, not in `taken`.
+/// Returns the shore cell nearest to `wanted` that is not in `taken`. A shore cell is water with
+/// land among its eight neighbours. Ties are resolved from the south-west.
 /// @throws InputError when there is no land in the chart, or no such cell left
 Cell NearestShore(const Terrain& terrain, Cell wanted, const std::vector<Cell>& taken);
 
-/// Up to `count` shore cells far from one another: the one nearest to the middle first, then always
-/// the farthest from those chosen. Fewer where the shore has fewer; none without land.
+/// Returns up to `count` shore cells that are far from one another: first the cell nearest to the
+/// middle, then repeatedly the cell farthest from those chosen. Returns fewer if the shore has
+/// fewer cells, and an empty list without land.
 std::vector<Cell> SpreadPorts(const Terrain& terrain, std::int32_t count);
 
 }  // namespace aquafarm

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Coastlines as GeoJSON (RFC 7946): Polygon and MultiPolygon, alone, in Features, collections of
-/// either, or GeometryCollections. Other geometries are passed over.
+/// Coastlines as GeoJSON (RFC 7946): Polygon and MultiPolygon, as single geometries or inside
+/// Features, FeatureCollections or GeometryCollections. Other geometries are skipped.
 
 #include <string>
 #include <vector>
@@ -12,9 +12,9 @@
 
 namespace aquafarm {
 
-/// A closed line; the last point is the first.
+/// A closed line; the last point equals the first.
 using CoastRing = std::vector<GeoPoint>;
-/// A shore, then holes (lakes).
+/// An outer ring (shore), followed by holes (lakes).
 using CoastPolygon = std::vector<CoastRing>;
 
 struct Coast {
@@ -22,14 +22,14 @@ struct Coast {
   std::vector<std::string> warnings;  ///< "coast.json:3: features[0]…: ring crosses itself, …"
 };
 
-/// Reads a GeoJSON text. A ring that crosses or runs along itself, or has too many lines to tell,
-/// is kept with a warning: what lies inside it an odd number of times is land.
+/// Parses a GeoJSON text. A ring that crosses or overlaps itself, or has too many segments to
+/// check, is kept with a warning; the even-odd rule then decides what is land.
 /// @throws InputError "coast.json:7: features[0].geometry.coordinates[0]: the ring is open, …"
 Coast ParseCoast(const std::string& text, const std::string& origin_name);
-/// The same of a file. @throws InputError also when it cannot be read
+/// Reads a file as ParseCoast does. @throws InputError also when it cannot be read
 Coast LoadCoast(const std::string& path);
 
-/// How much of each cell of a width × height grid is land, by 5 × 5 samples a cell.
+/// Returns the fraction of land of each cell of a width × height grid, from 5 × 5 samples per cell.
 LandShare ShareOfLand(const Coast& coast, const GeoFrame& frame, std::int32_t width,
                       std::int32_t height);
 

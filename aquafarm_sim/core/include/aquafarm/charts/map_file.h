@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Charts as map_server has them: a YAML file beside a picture.
+/// Charts in the format of map_server: a YAML file and an image in the same folder.
 ///
 ///   image: chart.pgm        PGM, PNG or BMP; dark is occupied
-///   resolution: 200         metres a pixel
+///   resolution: 200         metres per pixel
 ///   origin: [0, 0, 0]       x, y of the south-west corner [m], yaw [rad]
 ///   negate: 0               1: light is occupied
 ///   occupied_thresh: 0.65   above: occupied; below free_thresh: free; between: unknown
 ///   free_thresh: 0.196
-///   mode: trinary           scale: between the two in proportion; raw: pixels are 0 to 100
+///   mode: trinary           scale: linear between the two; raw: pixels are 0 to 100
 ///
 /// (wiki.ros.org/map_server)
 
@@ -26,21 +26,21 @@ struct MapFile {
   std::array<double, 3> origin{};  ///< x, y [m], yaw [rad] of the south-west corner
 };
 
-/// Reads a map; its image is looked for beside it.
-/// @throws InputError with the file, the line and the key, or the place in the picture
+/// Reads a map. A relative image path is resolved against the folder of the YAML file.
+/// @throws InputError with the file, the line and the key, or the position in the image
 MapFile LoadMap(const std::string& yaml_path);
 
-/// Writes NAME.yaml and NAME.pgm beside it, each under another name first: 254 free, 0 occupied
-/// (from 65), 205 unknown, as map_saver does.
+/// Writes NAME.yaml and NAME.pgm in the same folder, each first under a temporary name. Pixel
+/// values are those of map_saver: 254 free, 0 occupied (from 65), 205 unknown.
 /// @throws InputError when a file cannot be written
 void SaveMap(const MapFile& map, const std::string& yaml_path);
 
-/// Occupied cells as land, free ones as water, those between in proportion; unknown is land: no
-/// ship shall go there. [decided]
-/// @throws InputError for a map that is turned: a ranch's grid points north
+/// Returns the land share of each cell: occupied is land, free is water, values between are
+/// proportional. Unknown is land, because ships must not go there ([decided], see docs/model.md).
+/// @throws InputError for a rotated map, because the grid of a ranch points north
 LandShare ShareOfLand(const MapFile& map);
 
-/// The land and rocks of a scenario's first episode as a map.
+/// Returns the land and rocks of the first episode of a scenario as a map.
 MapFile ToMap(const Scenario& scenario);
 
 }  // namespace aquafarm

@@ -10,7 +10,7 @@ enum CellBits : std::uint8_t {
   kIslandBit = 1,
   kRockBit = 2,
   kPortBit = 4,        ///< water
-  kDeviceSiteBit = 8,  ///< water; a device is, or was at the start, deployed here
+  kDeviceSiteBit = 8,  ///< water; a device was deployed here at the start of the episode
 };
 inline constexpr std::uint8_t kBlockedBits = kIslandBit | kRockBit;
 

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Disasters that move over the farm (§2.1).
+/// Disasters that move over the farm (paper §2.1, see docs/model.md).
 ///
 ///      . . r2 . .        risk at a cell = the risk of the smallest ring whose radius is at least
 ///    .   . r1 .   .      the Euclidean distance from the centre to the cell's centre; 0 outside.
-///   .  .   c--->.  .     Several disasters: the worst. O(disasters) per look-up, no grid.
-///    .   . . .   .
+///   .  .   c--->.  .     With several disasters the worst risk counts. A look-up takes
+///    .   . . .   .       O(disasters) and needs no grid.
 ///
-/// A ring need not be a circle: by option it has a radius of its own in each quadrant, as bulletins
-/// give them. A cell due north of the centre counts as north-east, one due east as south-east, and
-/// so on clockwise.
+/// A ring may have a separate radius for each quadrant, as in typhoon bulletins. A cell due north
+/// of the centre belongs to the north-east quadrant, a cell due east to the south-east quadrant,
+/// and so on clockwise.
 ///
-/// Where we differ: the centre moves by a real number of cells along a heading in whole degrees,
-/// and is reflected at the border of the farm enlarged by the largest radius.
+/// Difference from the paper: the centre moves by a real number of cells along a heading in whole
+/// degrees, and is reflected at the border of the farm enlarged by the largest radius.
 
 #include <array>
 #include <cstdint>
@@ -27,22 +27,23 @@
 
 namespace aquafarm {
 
-/// (east, north) parts of a unit vector along a compass bearing; the same bits on every machine.
+/// Returns the (east, north) components of a unit vector along a compass bearing. The result is
+/// bit-identical on every machine.
 /// @param heading_deg in [0, 359]
 std::array<float, 2> HeadingVector(std::int32_t heading_deg);
 
-/// What a bulletin last said of a disaster (partial view).
+/// State of a disaster as last reported by a bulletin (partial view).
 struct Bulletin {
   float x{};
   float y{};
   float speed{};
   std::int32_t heading_deg{};
-  std::int32_t step{kNone};                                ///< when it was issued; kNone: none yet
-  std::array<float, kMaxRings> radius{};                   ///< as they were then, as in Disaster
-  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< likewise
+  std::int32_t step{kNone};                                ///< step of issue; kNone: not issued yet
+  std::array<float, kMaxRings> radius{};                   ///< at the step of issue
+  std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< at the step of issue
 };
 
-/// Of one disaster in play what a view copies, as plain data.
+/// The part of a disaster's state that views copy, as plain data.
 struct ObservableDisaster {
   DisasterKind kind{};
   Border border{};
@@ -57,56 +58,57 @@ struct ObservableDisaster {
   float dy{};
   float speed{};
   std::int32_t heading_deg{};
-  std::uint32_t turn_threshold{};  ///< a step turns when a 31-bit draw is below it
+  std::uint32_t turn_threshold{};  ///< the disaster turns if a 31-bit draw is below it
   float radius_growth{};
-  float margin{};                ///< by which the map is enlarged: the largest radius at the start
-  std::int32_t steps_left{};     ///< 0: over, no risk any more
+  float margin{};                ///< border around the map: the largest radius at the start [cells]
+  std::int32_t steps_left{};     ///< 0: the disaster has ended and causes no risk
   std::int32_t waypoint{kNone};  ///< index of the last waypoint passed; kNone: no track
-  bool by_quadrant{};  ///< rings are no circles: the radii below hold, and radius is the largest
+  bool by_quadrant{};  ///< if true, `quadrant` applies and `radius` holds the largest of the four
   std::array<std::array<float, kMaxRings>, 4> quadrant{};  ///< NE, SE, SW, NW, ring by ring
 
   bool active() const { return steps_left > 0; }
-  /// Largest radius, or 0 when it has no ring.
+  /// Returns the largest radius, or 0 if there is no ring.
   float reach() const { return rings == 0 ? 0.0F : radius[static_cast<std::size_t>(rings - 1)]; }
 };
 
-/// All of it: everything that may change in an episode.
+/// Complete state of a disaster: everything that may change during an episode.
 struct Disaster : ObservableDisaster {
-  std::array<std::uint32_t, 4> draws{};  ///< of the present four steps
+  std::array<std::uint32_t, 4> draws{};  ///< random draws of the current block of four steps
   Bulletin bulletin;
 
-  /// Its rings are those that the bulletin tells of.
+  /// Copies the current rings into the bulletin.
   void TellRings() {
     bulletin.radius = radius;
     bulletin.quadrant = quadrant;
   }
 };
 
-/// A disaster's waypoints; shared, never changed in play.
+/// Waypoints of a disaster; shared and constant during an episode.
 using Track = std::shared_ptr<const std::vector<Waypoint>>;
 
-/// Places a disaster at an episode's start, drawing what its spec leaves open.
+/// Creates a disaster at the start of an episode. Unset fields of its spec are drawn at random.
 Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t seed,
                        std::uint64_t episode, std::int32_t width, std::int32_t height);
 
-/// Moves a disaster into step `step` (the first move of an episode is into step 1): turns, moves,
-/// grows, ages. A disaster that is over does not move.
+/// Advances a disaster to step `step` (the first move of an episode is to step 1): turns, moves,
+/// grows and ages it. A disaster that has ended does not move.
 void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_key,
                   std::int32_t step, std::int32_t width, std::int32_t height);
 
-/// Puts a tracked disaster where its track says it is at `step`.
+/// Sets a tracked disaster to the state of its track at `step`.
 void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
                  std::int32_t step);
 
-/// Sets a ring to a circle; radius 0: the ring is absent, so that a track may gain and lose rings.
+/// Sets a ring to a circle. Radius 0 means that the ring is absent, so a track may gain and lose
+/// rings.
 void SetRing(ObservableDisaster& disaster, std::size_t ring, float radius);
 /// Sets a ring by quadrants.
 void SetRing(ObservableDisaster& disaster, std::size_t ring, const QuadrantRadii& radii);
-/// Widens every ring by `by` cells, to no less than nothing.
+/// Adds `by` cells to the radius of every ring, with a minimum of 0.
 void GrowRings(ObservableDisaster& disaster, float by);
 
-/// Index of the quadrant, NE, SE, SW, NW, in which a point lies seen from a centre.
-/// @param west how far the point is west of the centre @param south likewise
+/// Returns the index of the quadrant (NE, SE, SW, NW) of a point relative to a centre.
+/// @param west distance of the point west of the centre @param south distance south of it
 constexpr std::size_t QuadrantOf(float west, float south) {
   if (west <= 0.0F && south < 0.0F) return 0;
   if (west < 0.0F) return 1;
@@ -114,11 +116,12 @@ constexpr std::size_t QuadrantOf(float west, float south) {
   return west > 0.0F ? 3 : 0;
 }
 
-/// Risk of rings that are no circles, at a point so far to the west and south of it.
+/// Returns the risk of rings by quadrant at a point `west` and `south` of the centre.
 float RiskByQuadrant(const ObservableDisaster& disaster, float west, float south,
                      float distance_squared);
 
-/// Risk of one disaster at a point [cells]; 0 outside or when it is over, else negative.
+/// Returns the risk of one disaster at a point [cells]; 0 outside its rings or after its end, else
+/// negative.
 inline float RiskOf(const ObservableDisaster& disaster, float x, float y) {
   const float dx = disaster.x - x;
   const float dy = disaster.y - y;
@@ -132,7 +135,7 @@ inline float RiskOf(const ObservableDisaster& disaster, float x, float y) {
   return 0.0F;
 }
 
-/// Worst risk of several disasters at a cell.
+/// Returns the worst risk of several disasters at a cell.
 inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   float worst = 0.0F;
   for (const Disaster& disaster : disasters) {
@@ -142,7 +145,7 @@ inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   return worst;
 }
 
-/// Fills the whole risk grid [H, W] of disasters and sea; for those who draw, publish or plan.
+/// Fills the risk grid [H, W] of disasters and sea, for drawing, publishing and planning.
 void FillRisk(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk);
 
 }  // namespace aquafarm

@@ -3,7 +3,7 @@
 
 /// One episode on one farm (Algorithm 1; rules in docs/model.md). A step, in this order:
 ///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Reward →
-///   Finish. Nothing here allocates after construction but Reset of a track set from outside.
+///   Finish. Step never allocates, and Reset only after SetDisaster or Load has set a track.
 
 #include <cstdint>
 #include <memory>
@@ -18,36 +18,36 @@
 
 namespace aquafarm {
 
-/// A rescue ship, or a self-propelled device acting as a ship of its own.
+/// A rescue ship, or a self-propelled device that acts as a ship.
 struct Ship {
   Cell cell{};
-  std::int32_t own_device{kNone};  ///< the self-propelled device that it is; kNone: rescue ship
+  std::int32_t own_device{kNone};  ///< id of the self-propelled device; kNone: rescue ship
   std::int32_t aboard{};           ///< devices aboard
   bool in_play{true};              ///< false once a self-propelled device is delivered
-  Action action{Action::kHold};    ///< of the last step
+  Action action{Action::kHold};    ///< in the last step
   Outcome outcome{Outcome::kHeld};
-  RewardTerms terms;       ///< of the last step, its own
-  float reward{};          ///< of the last step, after sharing
+  RewardTerms terms;       ///< of this ship in the last step, before sharing
+  float reward{};          ///< in the last step, after sharing
   float episode_return{};  ///< sum of rewards
 };
 
-/// A device in play.
+/// State of a device in an episode.
 struct Device {
-  Cell cell{};  ///< where it was deployed or delivered; Farm::CellOf says where it is now
+  Cell cell{};  ///< where it was deployed or delivered; Farm::CellOf returns its current cell
   float value{};
   float health{1.0F};
-  std::int32_t carrier{kNone};  ///< ship it is aboard; kNone unless status is kAboard
+  std::int32_t carrier{kNone};  ///< ship that carries it; kNone unless status is kAboard
   DeviceKind kind{};
   DeviceStatus status{DeviceStatus::kDeployed};
   bool self_propelled{};
 };
 
-/// What an episode came to, kept as it goes.
+/// Statistics of an episode, updated every step.
 struct EpisodeRecord {
   std::uint64_t seed{};
   std::uint64_t episode{};
   std::int32_t steps{};
-  float episode_return{};  ///< sum over ships of their own terms
+  float episode_return{};  ///< sum of the reward terms of all ships, before sharing
   std::int32_t delivered{};
   std::int32_t devices{};
   float delivered_health{};  ///< sum of health over delivered devices
@@ -55,87 +55,88 @@ struct EpisodeRecord {
   std::int32_t collisions{};
   std::int32_t steps_in_disaster{};  ///< ship-steps spent at a risk
   EndReason reason{};
-  /// Whether every device was delivered.
+  /// Returns whether every device was delivered.
   bool Success() const { return reason == EndReason::kAllRetrieved; }
 };
 
-/// One farm; stepping after the end is a programmer's mistake.
+/// One farm. Calling Step after the end of an episode is a programming error.
 class Farm {
  public:
-  /// Stands at the start of episode 0 of seed 0.
+  /// Creates a farm at the start of episode 0 of seed 0.
   /// @param scenario must have passed ValidateScenario
   /// @throws InputError when its layout cannot be drawn
   explicit Farm(std::shared_ptr<const Scenario> scenario);
-  /// Shares a fixed layout between farms instead of drawing it again.
+  /// Creates a farm that uses a shared fixed layout instead of drawing its own.
   Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layout> fixed_layout);
 
   /// Starts episode `episode` of the sequence `seed`.
-  /// @throws InputError when the episode's own layout cannot be drawn; Reset to another then
+  /// @throws InputError when the episode's layout cannot be drawn; call Reset with another episode
   void Reset(std::uint64_t seed, std::uint64_t episode);
 
-  /// Takes one step. @param actions one per agent, [AgentCount()], each an Action incl. kHold
+  /// Executes one step. @param actions one per agent, [AgentCount()], each an Action incl. kHold
   void Step(const std::uint8_t* actions);
 
   const Scenario& scenario() const { return *scenario_; }
-  /// Chart, ports and places of the devices in this episode.
+  /// Chart, ports and initial device cells of this episode.
   const Layout& layout() const { return *layout_; }
-  /// The same, for other farms of a fixed layout.
+  /// The layout as a shared pointer, for other farms with the same fixed layout.
   const std::shared_ptr<const Layout>& shared_layout() const { return layout_; }
-  /// By id: the rescue ships, then the self-propelled devices, [AgentCount()].
+  /// Ships by id: the rescue ships, then the self-propelled devices, [AgentCount()].
   const std::vector<Ship>& ships() const { return ships_; }
-  /// By id, delivered ones too.
+  /// Devices by id, including delivered ones.
   const std::vector<Device>& devices() const { return devices_; }
-  /// By id, as they are, whatever a ship knows of them.
+  /// Disasters by id: the true state, independent of what ships observe.
   const std::vector<Disaster>& disasters() const { return disasters_; }
-  /// Each disaster's waypoints; empty for one that moves on its own.
+  /// Waypoints of each disaster; empty for a disaster without a track.
   const std::vector<Track>& tracks() const { return tracks_; }
-  /// What this episode came to so far.
+  /// Statistics of this episode so far.
   const EpisodeRecord& record() const { return record_; }
-  /// Key of all chance of the sequence of episodes.
+  /// Random seed of the sequence of episodes.
   std::uint64_t seed() const { return record_.seed; }
   /// Number of this episode in the sequence, from 0.
   std::uint64_t episode() const { return record_.episode; }
   /// Steps taken in this episode.
   std::int32_t step() const { return record_.steps; }
-  /// Why the episode ended; kNone while it goes on.
+  /// Reason why the episode ended; kNone while it runs.
   EndReason reason() const { return record_.reason; }
-  /// Whether the episode has ended; only Reset and Load go on then.
+  /// Whether the episode has ended; call Reset or Load to continue.
   bool over() const { return record_.reason != EndReason::kNone; }
 
-  /// Worst risk of disasters and sea at a cell of the map now; 0 or negative.
+  /// Returns the current worst risk of disasters and sea at a cell of the map; 0 or negative.
   float RiskAt(Cell cell) const;
 
-  /// Where a device is now: its own cell, or its carrier's.
+  /// Returns the current cell of a device: its own cell, or the cell of its carrier.
   Cell CellOf(std::int32_t device) const {
     const Device& one = devices_[static_cast<std::size_t>(device)];
     if (one.carrier != kNone) return ships_[static_cast<std::size_t>(one.carrier)].cell;
     return one.cell;
   }
 
-  /// Which actions would not be ILLEGAL for a ship now. All moves for one out of play.
+  /// Returns the legal actions of a ship in the current state; all moves if it is out of play.
   ActionMask LegalActions(std::int32_t ship) const;
 
-  /// Hash of the whole state that decides the future and what agents see; equal states give equal
-  /// hashes on any machine.
+  /// Returns a hash of all state that affects the future or the observations. Equal states give
+  /// equal hashes on every machine.
   std::uint64_t Hash() const;
 
-  /// Writes an episode in progress as CBOR bytes.
+  /// Serializes an episode in progress as CBOR bytes.
   std::string Save() const;
-  /// Continues a saved episode, bit for bit.
-  /// @throws InputError when the bytes are damaged, of another version or of another scenario;
-  ///         the farm is then as it was
+  /// Restores a saved episode, which then continues bit-identically.
+  /// @throws InputError when the bytes are damaged or belong to another version or scenario; the
+  ///         farm is then unchanged
   void Load(const std::string& bytes);
 
-  /// Replaces disaster `id`, or adds one when id is their number: a bulletin arrives. A spec
-  /// without start keeps the present centre (a new one needs a start or a track). Forecasts are
-  /// told only of the scenario's own track: a spec has none.
-  /// @throws InputError on an id or spec out of range, or forecasts; the farm is then as it was
+  /// Applies a bulletin: replaces disaster `id`, or adds a disaster when `id` equals their number.
+  /// A spec without start keeps the current centre; a new disaster needs a start or a track. The
+  /// spec must not contain forecasts, which are available only for tracks of the scenario.
+  /// @throws InputError on an id or spec out of range, or on forecasts; the farm is then unchanged
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
-  /// Most disasters of a farm, those added by bulletins included.
+  /// Max number of disasters of a farm, including those added by bulletins.
   inline static constexpr std::int32_t kMaxDisasters = 64;
 
-  /// Puts a ship elsewhere, for questions of what it would do there.
-  /// @throws InputError when the cell is off the map, blocked or taken; the farm is then as it was
+  /// Moves a ship to another cell, to query an agent's behaviour there.
+  /// @throws InputError when the cell is off the map, blocked or occupied; the farm is then
+  ///         unchanged
   void PlaceShip(std::int32_t ship, Cell cell);
 
  private:
@@ -165,12 +166,12 @@ class Farm {
   std::vector<Device> devices_;
   std::vector<Disaster> disasters_;
   std::vector<Track> tracks_;
-  bool tracks_changed_{};  // by SetDisaster or Load, in this episode
+  bool tracks_changed_{};  // by SetDisaster or Load during this episode
   EpisodeRecord record_;
   std::int32_t remaining_{};  // devices not yet delivered
 };
 
-/// Rock or island crashes cost a device aboard this share of its health.
+/// Returns the fraction of its health that a device aboard loses in a crash into a rock or island.
 float CrashDamage(const Scenario& scenario, std::uint8_t bits, float crash_reward);
 
 }  // namespace aquafarm

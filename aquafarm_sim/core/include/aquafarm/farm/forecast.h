@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What agents are told of a disaster's way while the truth follows its track: what an authority
-/// forecast (a disaster's `forecasts`), or a forecast whose positions are off by an error that
-/// grows with lead time (view.forecast_error_km).
+/// Forecasts of a disaster's track that agents observe. The disaster itself follows its true track.
+/// A forecast is either one issued by an authority (a disaster's `forecasts`) or the true track
+/// with a position error that grows with lead time (view.forecast_error_km).
 ///
 ///      truth     o----o----o----o      forecast(t) = truth(t) + mean error(t - issued) · u
-///      forecast  o-----o-----o-----o   between waypoints straight, at once exact
+///      forecast  o-----o-----o-----o   linear between waypoints, exact at lead time 0
 ///               issued +24 h +48 h
 ///
-/// Of an authority's forecasts the newest counts, from where the storm is on to those of its points
-/// that are to come, then on as between the last two, while the truth has a track. Before the first
-/// was issued, and after the newest has run out, agents are told how the storm moves now. So they
-/// are of a storm that a bulletin has replaced in play.
+/// The newest forecast of an authority applies. It leads from the current position to the points
+/// that lie in the future, and is extrapolated from the last two points while the true track lasts.
+/// Before the first forecast is issued and after the newest one expires, agents observe the current
+/// motion of the storm. This also applies to a storm that a bulletin replaced during the episode.
 ///
-/// u is drawn once an episode and disaster, with a mean length of 1 and any direction: successive
-/// forecasts of one storm err to the same side, and each is better than the one before. [decided]
+/// u is drawn once per episode and disaster, with a mean length of 1 and a random direction.
+/// Successive forecasts of one storm therefore err to the same side, and each is more accurate than
+/// the previous one. [decided], see docs/model.md
 
 #include <array>
 #include <vector>
@@ -24,27 +25,28 @@
 
 namespace aquafarm {
 
-/// Steps after now for which agents are told where a disaster will be.
+/// Lead time, counted from now, of the forecast position that agents observe [steps].
 inline constexpr std::int32_t kForecastSteps = 10;
 
-/// Mean distance of a forecast position from the true one [cells]: straight between nothing at
-/// once and the errors after 24, 48 and 72 hours, and on as between the last two.
+/// Returns the mean distance between the forecast and the true position [cells]. It is interpolated
+/// linearly between 0 at lead time 0 and the errors after 24, 48 and 72 hours, and extrapolated
+/// from the last two.
 /// @param lead [steps], at least 0 @param scenario with view.forecast_error_km
 float MeanForecastError(const Scenario& scenario, float lead);
 
-/// u of a disaster in an episode: near to a normal distribution in both parts, mean length 1.
+/// Returns u of a disaster in an episode: approximately normal in both components, mean length 1.
 std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episode,
                                          std::int32_t disaster);
 
-/// Whether at a step agents of a farm are told a forecast of a disaster.
+/// Returns whether the agents of a farm observe a forecast of a disaster at step `issued`.
 bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
-/// Where the forecast told at one step has a disaster at a later one [cells]. Only positions are
-/// off: radii and risks are the truth's.
+/// Returns the position of a disaster at `step` in the forecast of step `issued` [cells]. Only
+/// positions have errors; radii and risks are the true ones.
 std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::int32_t issued,
                                 std::int32_t step);
 
-/// The forecast told at a step as a track, from then on.
+/// Returns the forecast of step `issued` as a track that starts at that step.
 std::vector<Waypoint> ForecastTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
 }  // namespace aquafarm

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The shortest way by water from every cell to a place, as a chart plotter knows it: breadth-first
-/// search over the 8 moves, around islands and rocks. Ships and disasters are not on a chart.
+/// Shortest routes by water from every cell to a target, as shown by a chart plotter: breadth-first
+/// search over the 8 moves, around islands and rocks. Ships and disasters are ignored.
 
 #include <cstdint>
 #include <vector>
@@ -11,27 +11,28 @@
 
 namespace aquafarm {
 
-/// Further than any way on a map of a million cells.
+/// Distance of unreachable cells; longer than any route on a map of a million cells.
 inline constexpr std::int32_t kUnreachable = 1 << 28;
 
-/// Moves by water from every cell of a chart to the nearest of `count` targets; kUnreachable on
-/// land and where no water leads.
+/// Computes the number of moves by water from every cell of a chart to the nearest of `count`
+/// targets; kUnreachable on land and where no route exists.
 /// @param cells [H, W] CellBits
-/// @param steps [H, W] is resized; no memory is allocated when it and `queue` have been so large
+/// @param steps [H, W], resized; nothing is allocated if `steps` and `queue` are large enough
 void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::size_t count,
                   Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 
-/// The way from one cell to one place: the next move and how many are left, of several shortest
-/// ways the one whose next cell is nearest to the place as the crow flies.
+/// The route from one cell to one target: the next move and the number of moves left. Of several
+/// shortest routes, the one whose next cell is nearest to the target in a straight line.
 struct Way {
   std::int32_t steps{kUnreachable};
-  std::int8_t east{};  ///< of the next move; both 0 at the place and where no way leads to it
+  std::int8_t east{};  ///< next move; both 0 at the target and where no route exists
   std::int8_t north{};
 };
 
-/// Charts the ways from every cell to `target` into every `stride`-th of `ways`, by linear index.
+/// Writes the routes from every cell to `target` to every `stride`-th element of `ways`, by linear
+/// index.
 /// @param ways [H · W · stride]
-/// @param steps and `queue`: scratch, as in StepsByWater
+/// @param steps scratch, like `queue`, as in StepsByWater
 void ChartWays(const Grid<std::uint8_t>& cells, Cell target, Way* ways, std::size_t stride,
                Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 

@@ -6,10 +6,11 @@
 ///        y (north)
 ///        ^        (0, H-1) . . . (W-1, H-1)
 ///        |           .               .        linear index = y * W + x
-///        |         (0, 0)  . . . (W-1, 0)     as nav_msgs/OccupancyGrid; images are flipped
+///        |         (0, 0)  . . . (W-1, 0)     as in nav_msgs/OccupancyGrid; images are flipped
 ///        +------> x (east)
 ///
-/// Lengths are cells, times are steps unless a name says otherwise. (§2.4, Eq. 1)
+/// Lengths are in cells and times in steps unless a name contains another unit. (Paper §2.4 and
+/// Eq. 1, see docs/model.md)
 
 #include <cstdint>
 

@@ -7,8 +7,8 @@
 
 namespace aquafarm {
 
-/// A layer of the farm: H rows (y) × W columns (x), row-major, so that data()[y * W + x] is cell
-/// (x, y) and grid(y, x) the same.
+/// A layer of the farm: H rows (y) × W columns (x), row-major. Cell (x, y) is data()[y * W + x]
+/// and grid(y, x).
 template <typename T>
 using Grid = Eigen::Array<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -16,7 +16,8 @@ constexpr std::int32_t LinearIndex(Cell cell, std::int32_t width) {
   return cell.y * width + cell.x;
 }
 
-/// Chebyshev distance: the number of moves between two cells on open water (diagonals cost one).
+/// Chebyshev distance: the number of moves between two cells on open water (a diagonal is one
+/// move).
 constexpr std::int32_t MovesBetween(Cell a, Cell b) {
   const std::int32_t dx = a.x < b.x ? b.x - a.x : a.x - b.x;
   const std::int32_t dy = a.y < b.y ? b.y - a.y : a.y - b.y;

@@ -7,23 +7,23 @@
 
 namespace aquafarm {
 
-/// The reward of one ship in one step, itemised (§2.5).
+/// The reward of one ship in one step, by term (paper §2.5, see docs/model.md).
 struct RewardTerms {
-  float crash{};     ///< the rock's own, or the island's
+  float crash{};     ///< the reward of the rock or island hit
   float disaster{};  ///< the risk at the ship's cell after it acted
   float pickup{};
-  float drop_off{};  ///< with health × value of each device delivered
+  float drop_off{};  ///< includes health × value of each device delivered
   float illegal{};
   float collision{};
-  float step{};  ///< only when no other term was triggered
+  float step{};  ///< applied only when no other term applies
 
-  /// Sum of the terms, added in the order of their declaration.
+  /// Returns the sum of the terms, added in declaration order.
   float Total() const { return crash + disaster + pickup + drop_off + illegal + collision + step; }
 };
 inline constexpr int kRewardTermCount = 7;
 static_assert(sizeof(RewardTerms) == kRewardTermCount * sizeof(float));
 
-/// Names of the terms, in the order of declaration.
+/// Names of the terms, in declaration order.
 inline constexpr std::array<std::string_view, kRewardTermCount> kRewardTermNames{
     "crash", "disaster", "pickup", "drop_off", "illegal", "collision", "step"};
 

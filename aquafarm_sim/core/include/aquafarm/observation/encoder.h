@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A view as numbers: a tabular index, a feature vector, or H × W planes.
+/// Numeric encodings of a view: a tabular index, a feature vector, or H × W planes.
 ///
 /// Tabular index: status_rank · W·H + cell, over the ship's own cell and the status of every
-/// device that can be fetched, each deployed, aboard this ship, or gone (delivered or aboard
-/// another ship). With capacity C only sets with at most C aboard are counted: for C = 1 and D
-/// devices 2^D + D·2^(D−1) sets. The disaster is not part of it, as in the paper, whose
-/// |S| = 25·25·2³·4 is 20,000 (printed: 128,000) and |O| = 25·25·2³ is 5,000 (printed: 32,000).
+/// fetchable device. Each device is deployed, aboard this ship, or gone (delivered or aboard
+/// another ship). With capacity C only combinations with at most C devices aboard are counted; for
+/// C = 1 and D devices there are 2^D + D·2^(D−1) combinations. As in the paper, the index does not
+/// contain the disaster. The paper's |S| = 25·25·2³·4 is 20,000 (printed: 128,000) and its
+/// |O| = 25·25·2³ is 5,000 (printed: 32,000).
 ///
-/// Features and planes: feature_names() and plane_names() state the exact order.
+/// Features and planes: feature_names() and plane_names() list the exact order.
 
 #include <cstdint>
 #include <string>
@@ -20,38 +21,37 @@
 
 namespace aquafarm {
 
-/// Writes views of one scenario as numbers; const and without memory of the last view.
+/// Encodes views of one scenario. Stateless after construction.
 class Encoder {
  public:
   /// @param scenario must outlive the encoder
   explicit Encoder(const Scenario& scenario);
 
-  /// Number of tabular states, or 0 when they are more than kMaxStates.
+  /// Number of tabular states; 0 if it exceeds kMaxStates.
   std::uint32_t state_count() const { return state_count_; }
   inline static constexpr std::uint64_t kMaxStates = 1ULL << 28U;
   /// Length of a ship's feature vector.
   std::int32_t feature_count() const { return feature_count_; }
-  /// Planes of a ship, each [H, W].
+  /// Number of planes of a ship, each [H, W].
   std::int32_t plane_count() const { return kPlaneCount; }
-  /// Bytes of all planes of one ship: plane_count · H · W.
+  /// Size of all planes of one ship: plane_count · H · W [bytes].
   std::size_t planes_size() const { return planes_size_; }
-  /// What each feature is, in order, [feature_count()].
+  /// Names of the features, in order, [feature_count()].
   std::vector<std::string> feature_names() const;
-  /// What each plane is, in order, [plane_count()].
+  /// Names of the planes, in order, [plane_count()].
   static std::vector<std::string> plane_names();
   inline static constexpr std::int32_t kPlaneCount = 8;
 
-  /// In [0, state_count()), which must not be 0. The same in full and partial view: chart, places
-  /// and status are known.
+  /// Returns the tabular index in [0, state_count()); state_count() must not be 0. Full and partial
+  /// views give the same index, because both contain the chart and the devices' cells and status.
   std::uint32_t Index(const Farm& farm, std::int32_t ship) const;
   std::uint32_t Index(const View& view) const;
-  /// A tabular state: the ship's cell and the status of each device that can be fetched, back from
-  /// an index.
+  /// A decoded tabular state: the ship's cell and the status of each fetchable device.
   struct TabularState {
     Cell cell{};
-    std::vector<DeviceStatus> status;  ///< kDelivered stands for gone
+    std::vector<DeviceStatus> status;  ///< kDelivered also represents "aboard another ship"
   };
-  /// The inverse of Index. @param index [0, state_count())
+  /// Inverse of Index. @param index in [0, state_count())
   TabularState Decode(std::uint32_t index) const;
 
   /// Writes the feature vector. @param out [feature_count()]
@@ -60,7 +60,7 @@ class Encoder {
   void Planes(const View& view, std::uint8_t* out) const;
 
  private:
-  float* Ways(const View& view, float* out) const;  // returns where it ended
+  float* Ways(const View& view, float* out) const;  // returns the end of the written range
   void AddWayNames(std::vector<std::string>& names) const;
   void Courses(const View& view, float* out) const;
   float* Blocked(const Layout& layout, Cell self, float* out) const;
@@ -75,7 +75,7 @@ class Encoder {
   std::size_t planes_size_{};
   float scale_{};                        // 1 / longer side
   float horizon_{};                      // steps of the longest episode
-  std::vector<std::uint8_t> sea_plane_;  // risk of the sea itself; empty: none
+  std::vector<std::uint8_t> sea_plane_;  // risk of the sea itself; empty if there is none
 };
 
 }  // namespace aquafarm

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What one ship may know of a farm (§2.3). Full view: everything. Partial view: the chart and the
-/// places and status of devices are known; health, other ships and disasters only within
-/// sensor_radius; between sightings the last bulletin stands, with its age. Networked agents
-/// (shared_sight) see with the sensors of all that are in play and know where each of them is.
+/// Observation of a farm by one ship (paper §2.3, see docs/model.md). A full view contains
+/// everything. A partial view contains the chart and the cells and status of all devices; it
+/// contains health, other ships and disasters only within sensor_radius. For disasters outside of
+/// it, the last bulletin and its age apply. Networked agents (shared_sight) use the sensors of all
+/// agents in play and know their cells.
 
 #include <cstdint>
 #include <vector>
@@ -31,13 +32,13 @@ struct KnownDevice {
 };
 
 struct KnownDisaster {
-  bool known{};               ///< neither seen nor in a bulletin so far: all else is meaningless
-  bool visible{};             ///< seen now; else from the last bulletin
-  std::int32_t age{};         ///< steps since it was known so; 0 when visible
-  ObservableDisaster belief;  ///< as far as known; its centre is not dead-reckoned
+  bool known{};               ///< seen or in a bulletin; if false, all else is meaningless
+  bool visible{};             ///< seen now; if false, from the last bulletin
+  std::int32_t age{};         ///< age of the information [steps]; 0 when visible
+  ObservableDisaster belief;  ///< last known state; its centre is not dead-reckoned
 };
 
-/// One ship's view; its memory is reused from step to step.
+/// View of one ship. Its memory is reused from step to step.
 struct View {
   std::int32_t ship{};
   Cell self{};
@@ -51,13 +52,13 @@ struct View {
   const Scenario* scenario{};
   const Layout* layout{};
   std::vector<Cell>
-      eyes;  ///< where it is seen from: its own cell, or those of all networked agents
+      eyes;  ///< cells of the sensors: its own cell, or the cells of all networked agents
 };
 
-/// Fills `view` with what `ship` knows now.
+/// Fills `view` with the current observation of `ship`.
 void Observe(const Farm& farm, std::int32_t ship, View& view);
 
-/// Worst risk that the view knows of at a cell.
+/// Returns the worst risk at a cell according to the view.
 inline float KnownRiskAt(const View& view, Cell cell) {
   float worst = view.scenario->SeaRiskAt(cell);
   for (const KnownDisaster& known : view.disasters) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The closed sets of a scenario: kinds of devices and disasters, and modes.
+/// The enumerations of a scenario: kinds of devices and disasters, and modes.
 
 #include <cstdint>
 #include <string_view>
@@ -30,7 +30,7 @@ enum class DisasterKind : std::uint8_t {
 };
 inline constexpr int kDisasterKindCount = 6;
 
-/// Names as scenario files have them, such as "deep_water_breeding" or "red_tide".
+/// Returns the name used in scenario files, such as "deep_water_breeding" or "red_tide".
 std::string_view ToString(DeviceKind value);
 std::string_view ToString(DeviceStatus value);
 std::string_view ToString(DisasterKind value);

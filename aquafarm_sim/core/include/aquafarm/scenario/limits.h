@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The limits that every scenario keeps. Each number is defined here and only here.
+/// Limits of every scenario. Each number is defined only here.
 
 namespace aquafarm {
 
-/// Most rings (radius and risk pairs) that one disaster may have.
+/// Max number of rings (radius and risk pairs) of one disaster.
 inline constexpr int kMaxRings = 4;
-/// Largest farm on a side [cells].
+/// Max width and height of a farm [cells].
 inline constexpr int kMaxSide = 4096;
 
 }  // namespace aquafarm

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Every number of a farm, as plain structs with the defaults of the paper or, where it is silent,
-/// of docs/model.md. scenario_yaml.h is the only reader and writer of these as files.
+/// All parameters of a farm, as plain structs. The defaults come from the paper (§) or, where it
+/// gives no value, from docs/model.md ([decided]). Only scenario_yaml.h reads and writes scenario
+/// files.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace aquafarm {
 
-/// An inclusive range that a number is drawn from.
+/// An inclusive range from which a number is drawn.
 template <typename T>
 struct Range {
   T min{};
@@ -31,14 +32,15 @@ struct IslandBlock {
   std::int32_t height{1};
 };
 
-/// Rocks: `count` drawn ones, or exactly the cells of `cells`; each with its own fixed reward.
+/// Rocks: `count` random cells, or exactly the cells in `cells`. Each rock has a fixed crash
+/// reward.
 struct RockSpec {
   Range<std::int32_t> count{20, 40};  // [decided]
   Range<float> reward{-5.0F, -1.0F};  // §2.5
-  std::vector<Cell> cells;            ///< explicit rocks; then count is not used
+  std::vector<Cell> cells;            ///< explicit rocks; if not empty, count is not used
 };
 
-/// Ports: `count` drawn water cells at a shore, or exactly `cells`.
+/// Ports: `count` random water cells at a shore, or exactly the cells in `cells`.
 struct PortSpec {
   std::int32_t count{4};  // §2.4
   std::vector<Cell> cells;
@@ -46,84 +48,84 @@ struct PortSpec {
 
 struct ShipSpec {
   std::int32_t count{1};
-  std::int32_t capacity{1};  ///< devices aboard at most [decided]
+  std::int32_t capacity{1};  ///< max number of devices aboard [decided]
 };
 
 /// One device of an explicit placement.
 struct DeviceSite {
   Cell cell{};
   DeviceKind kind{};
-  std::optional<float> value;  ///< none: drawn from DeviceSpec::value
+  std::optional<float> value;  ///< if unset, drawn from DeviceSpec::value
   bool self_propelled{};
 };
 
-/// Devices: `count` placed by `placement`, kinds taken in turn from `kinds`; or `sites`.
+/// Devices: `count` devices placed by `placement`, with kinds cycled from `kinds`; or `sites`.
 struct DeviceSpec {
   DevicePlacement placement{DevicePlacement::kRandom};
   std::int32_t count{3};
   std::vector<DeviceKind> kinds{DeviceKind::kTemporaryBreeding, DeviceKind::kMonitoring,
                                 DeviceKind::kBreedingRelease, DeviceKind::kDeepWaterBreeding};
   Range<float> value{50.0F, 100.0F};
-  float health{1.0F};  ///< at the start, in (0, 1]
-  std::int32_t self_propelled{
-      0};                         ///< so many of the drawn devices, the last ones, drive themselves
-  std::vector<DeviceSite> sites;  ///< for DevicePlacement::kExplicit
+  float health{1.0F};              ///< at the start, in (0, 1]
+  std::int32_t self_propelled{0};  ///< the last self_propelled of the count devices move themselves
+  std::vector<DeviceSite> sites;   ///< for DevicePlacement::kExplicit
   std::int32_t Total() const {
     return placement == DevicePlacement::kExplicit ? static_cast<std::int32_t>(sites.size())
                                                    : count;
   }
 };
 
-/// Radii of a ring to the north-east, south-east, south-west and north-west [cells]; 0: not there.
+/// Radii of a ring to the north-east, south-east, south-west and north-west [cells]; 0: no ring in
+/// that quadrant.
 using QuadrantRadii = std::array<float, 4>;
 
-/// A timed waypoint of a disaster; between two of them everything but grade is interpolated.
+/// A timed waypoint of a disaster. Between two waypoints everything except grade is interpolated.
 struct Waypoint {
-  float step{};  ///< steps since the episode's start; may lie before it
+  float step{};  ///< steps since the episode's start; may be negative
   float x{};     ///< [cells]
   float y{};
   std::int32_t grade{1};
-  std::vector<float> radii;  ///< [cells], ascending; as many as the disaster has risks
-  std::vector<float> risks;  ///< as radii
-  /// Rings that are no circles, as many as radii, which are then the largest of each; empty:
-  /// circles
+  std::vector<float> radii;  ///< [cells], ascending; one per risk of the disaster
+  std::vector<float> risks;  ///< one per radius
+  /// Radii by quadrant, one entry per ring; `radii` then holds the largest radius of each ring.
+  /// Empty if all rings are circles.
   std::vector<QuadrantRadii> quadrants{};
 };
 
-/// Where a forecast has a disaster at a step.
+/// Forecast position of a disaster at a step.
 struct ForecastPoint {
   float step{};  ///< steps since the episode's start
   float x{};     ///< [cells]
   float y{};
 };
 
-/// A forecast as an authority issued it.
+/// A forecast issued by an authority.
 struct IssuedForecast {
-  float step{};                       ///< of its issue; may lie before the episode's start
-  std::vector<ForecastPoint> points;  ///< in order of time, all after its issue
+  float step{};                       ///< step of issue; may be negative
+  std::vector<ForecastPoint> points;  ///< in order of time, all after the step of issue
 };
 
-/// Risks of the rings by grade, 1 to 4, each the worst first; empty where a scenario gives none.
+/// Risks of the rings for grades 1 to 4, worst risk first; empty if unset.
 using GradeRisks = std::vector<std::vector<float>>;
 
-/// DisasterInfo of §2.1, with how it moves.
+/// DisasterInfo of §2.1 and the parameters of its motion.
 struct DisasterSpec {
   DisasterKind kind{DisasterKind::kTyphoon};
   std::int32_t grade{3};                            ///< 1 blue … 4 red
   std::vector<float> radii{2.0F, 4.0F, 6.0F};       ///< [cells], ascending
   std::vector<float> risks{-20.0F, -10.0F, -5.0F};  ///< each in [-20, -5], worst first
   float speed{0.5F};                                ///< [cells/step]
-  std::optional<std::int32_t> heading_deg;  ///< compass bearing it moves towards; none: drawn
-  float turn_probability{0.1F};             ///< each step, by +-45 degrees
+  std::optional<std::int32_t> heading_deg;  ///< compass bearing of the motion; random if unset
+  float turn_probability{0.1F};             ///< per step, of a turn by +-45 degrees
   float radius_growth{0.0F};                ///< [cells/step], added to every radius
   Border border{Border::kReflect};
   std::int32_t duration{1000};                ///< [steps] [decided]
-  std::optional<std::array<float, 2>> start;  ///< centre (x, y) [cells]; none: drawn
-  std::vector<Waypoint> track;                ///< if not empty, it moves along this instead
+  std::optional<std::array<float, 2>> start;  ///< centre (x, y) [cells]; random if unset
+  std::vector<Waypoint> track;                ///< if not empty, replaces speed and heading
   std::vector<QuadrantRadii> quadrants{};     ///< as in Waypoint
-  GradeRisks grade_risks{};                   ///< what bulletins that come later bring, too
-  /// What an authority forecast of it, in order of issue: agents are told the newest one issued,
-  /// and the truth follows the track. Only with a track; see forecast.h.
+  GradeRisks grade_risks{};                   ///< also used for bulletins that arrive later
+  /// Forecasts issued by an authority, in order of issue. Agents observe the newest one issued; the
+  /// disaster itself follows the track. Requires a track; see forecast.h.
   std::vector<IssuedForecast> forecasts{};
 };
 
@@ -140,43 +142,44 @@ struct RewardSpec {
 
 struct DamageSpec {
   float crash_probability{1.0F};
-  float island_damage{0.2F};      ///< health lost aboard in a crash on an island
+  float island_damage{0.2F};      ///< health that devices aboard lose in a crash into an island
   float exposure_damage{0.001F};  ///< health lost per step and unit of |risk|
 };
 
-/// What an agent sees (§2.3).
+/// Observation settings of the agents (§2.3).
 struct ViewSpec {
   ViewMode mode{ViewMode::kFull};
   float sensor_radius{5.0F};
   std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins
-  float bulletin_noise{0.0F};        ///< centre off by up to this on each axis [cells]
-  bool shared_sight{};               ///< agents are networked: what one of them sees, all know
-  bool waterways{};  ///< features tell the way by water to ports and devices, as a chart plotter
-  bool courses{};    ///< features tell the risk forecast along each course
-  /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]: agents are told
-  /// a forecast track that errs so much, and the truth follows the track; empty: they are told
-  /// how it moves now. See forecast.h.
+  float bulletin_noise{0.0F};        ///< max error of the reported centre on each axis [cells]
+  bool shared_sight{};               ///< agents are networked and share all observations
+  bool waterways{};  ///< features include the shortest routes by water to ports and devices
+  bool courses{};    ///< features include the forecast risk along each course
+  /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]. Agents observe a
+  /// forecast track with this mean error; the disaster itself follows the track. If empty, agents
+  /// observe the current motion instead. See forecast.h.
   std::vector<float> forecast_error_km{};
 };
 
-/// A field of the sea on the cells of a farm, from netCDF or as given.
+/// A field of the sea on the cells of a farm, read from netCDF or given in the scenario.
 struct SeaLayer {
-  std::string name;           ///< in expressions and topics: a-z, 0-9 and _, a letter first
-  std::string units;          ///< as its source says; may be empty
+  std::string name;           ///< used in expressions and topics: a-z, 0-9 and _, a letter first
+  std::string units;          ///< units given by the source; may be empty
   std::vector<float> values;  ///< [H, W] from the south-west; NaN: land or unknown
 };
 
-/// The sea as it stays during an episode.
+/// Properties of the sea that stay constant during an episode.
 struct SeaSpec {
   std::vector<SeaLayer> layers;
-  /// Risk at each cell whatever the disasters do, [H, W]: 0, NaN (none known) or in [-20, -5];
-  /// empty: none
+  /// Risk at each cell independent of disasters, [H, W]: 0, NaN (unknown) or in [-20, -5]; empty
+  /// if unset
   std::vector<float> risk;
-  /// Value of a device drawn at each cell, [H, W]; NaN: drawn as elsewhere; empty: none
+  /// Value of a device placed at each cell, unless its site sets one, [H, W]; NaN: drawn from
+  /// DeviceSpec::value; empty if unset
   std::vector<float> device_value;
 };
 
-/// A whole farm.
+/// A complete description of a farm.
 struct Scenario {
   std::string name{"unnamed"};
   std::string description;
@@ -201,25 +204,26 @@ struct Scenario {
   ViewSpec view;
   std::optional<SeaSpec> seas;
 
-  /// Hash of the canonical file text; set by the reader, the same for files that mean the same.
+  /// Hash of the canonical file text, set by the reader; equal for equivalent files.
   std::uint64_t hash{};
 
   std::int32_t CellCount() const { return width * height; }
-  /// Ports, chosen or drawn.
+  /// Number of ports, explicit or random.
   std::int32_t PortCount() const {
     return ports.cells.empty() ? ports.count : static_cast<std::int32_t>(ports.cells.size());
   }
-  /// Risk of the sea itself at a cell; 0 where it has none.
+  /// Risk of the sea at a cell independent of disasters; 0 where there is none.
   float SeaRiskAt(Cell cell) const {
     if (!seas || seas->risk.empty()) return 0.0F;
     const float risk = seas->risk[static_cast<std::size_t>(cell.y * width + cell.x)];
-    return risk < 0.0F ? risk : 0.0F;  // NaN: nothing known
+    return risk < 0.0F ? risk : 0.0F;  // NaN (unknown) gives 0
   }
-  /// Devices that are agents of their own.
+  /// Number of devices that are agents themselves.
   std::int32_t SelfPropelledCount() const;
-  /// Devices that a ship must fetch.
+  /// Number of devices that a ship must fetch.
   std::int32_t FetchableCount() const { return devices.Total() - SelfPropelledCount(); }
-  /// Ships and self-propelled devices: the number of actions a step takes. Rescue ships come first.
+  /// Number of ships and self-propelled devices, which is the number of actions per step. Rescue
+  /// ships come first.
   std::int32_t AgentCount() const { return ships.count + SelfPropelledCount(); }
 };
 

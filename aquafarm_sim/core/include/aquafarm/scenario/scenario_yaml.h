@@ -7,23 +7,24 @@
 
 namespace aquafarm {
 
-/// Reads a scenario file. Every key is used or refused.
-/// @throws InputError "ranch.yaml:12: disasters[0].grade: got 7, expected [1, 4]"; an unknown key
-///         is answered with the keys allowed there
+/// Reads a scenario file. Unknown keys are rejected.
+/// @throws InputError "ranch.yaml:12: disasters[0].grade: got 7, expected [1, 4]"; the message for
+///         an unknown key lists the valid keys
 Scenario LoadScenario(const std::string& path);
 
-/// The same for text; `origin_name` stands for the file in messages.
+/// Reads a scenario from text; `origin_name` replaces the file name in messages.
 Scenario ParseScenario(const std::string& text, const std::string& origin_name);
 
-/// Writes every number in use of a scenario, in a fixed order and in grid units, so that
-/// ParseScenario(ToYaml(s)) gives s and equal scenarios give equal texts: what run folders keep.
+/// Writes every used parameter of a scenario, in a fixed order and in grid units.
+/// ParseScenario(ToYaml(s)) returns s, and equal scenarios give equal texts. Run folders store this
+/// text.
 std::string ToYaml(const Scenario& scenario);
 
-/// Hash of what decides the play: HashBytes of ToYaml with an empty name and description. What
-/// ParseScenario sets Scenario::hash to.
+/// Hash of the parameters that affect episodes: HashBytes of ToYaml with an empty name and
+/// description. ParseScenario stores it in Scenario::hash.
 std::uint64_t HashScenario(const Scenario& scenario);
 
-/// UTC seconds since 1970 of YYYY-MM-DDTHH:MM:SSZ. @throws InputError "name: got …"
+/// Converts YYYY-MM-DDTHH:MM:SSZ to UTC seconds since 1970. @throws InputError "name: got …"
 std::int64_t ParseUtc(const std::string& name, const std::string& text);
 
 }  // namespace aquafarm

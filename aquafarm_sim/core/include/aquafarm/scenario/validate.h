@@ -5,13 +5,13 @@
 
 namespace aquafarm {
 
-/// Checks one disaster on its own: numbers finite and in range, radii ascending, as many risks as
-/// radii. Serves scenario files and set_disaster alike.
+/// Validates one disaster: numbers are finite and in range, radii ascend, and each radius has a
+/// risk. Used for scenario files and for set_disaster.
 /// @throws InputError "radii[1]: got 2, expected more than radii[0] = 4"
 void ValidateDisaster(const DisasterSpec& disaster);
 
-/// Checks what a reader of single keys cannot see: cells on the map, things not on one another,
-/// counts that fit. A Scenario made in code must pass it before a Farm is built.
+/// Validates constraints between keys: cells are on the map, objects do not overlap, and counts fit
+/// the map. A Scenario created in code must pass it before it is used to construct a Farm.
 /// @throws InputError with the key path first
 void ValidateScenario(const Scenario& scenario);
 

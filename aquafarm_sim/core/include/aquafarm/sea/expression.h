@@ -8,14 +8,14 @@
 
 namespace aquafarm {
 
-/// A named layer for an expression.
+/// A named input layer of an expression.
 struct NamedLayer {
-  std::string name;  ///< letters, digits and _, not first a digit
+  std::string name;  ///< letters, digits and _; must not start with a digit
   Layer layer;
 };
 
-/// Evaluates an expression (muParser's: + - * / ^, comparisons, ?:, min, max, exp …) at every
-/// cell, with each layer's value under its name. NaN in gives NaN out.
+/// Evaluates an expression in muParser syntax (+ - * / ^, comparisons, ?:, min, max, exp …) at
+/// every cell. Each layer is a variable with the layer's name. NaN inputs give NaN.
 /// @throws InputError "got 'sal * ', expected an expression: …"
 Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& layers);
 

@@ -5,10 +5,11 @@
 ///
 ///   value(time, depth, lat, lon) ── nearest time and depth ── window around the ranch ── Layer
 ///
-/// Packed numbers are unpacked (scale_factor, add_offset); _FillValue or netCDF's default for the
-/// type, missing_value and values outside of valid_range or valid_min … valid_max, compared as they
-/// are stored, are land or unknown: NaN. Latitude may run either way,
-/// longitude be -180 … 180 or 0 … 360, depth count down or up. Curvilinear grids are refused.
+/// Packed values are unpacked with scale_factor and add_offset. Values become NaN (land or unknown)
+/// if, in packed form, they equal _FillValue (or netCDF's default for the type) or missing_value,
+/// or lie outside valid_range or valid_min … valid_max. Latitude may ascend or descend, longitude
+/// may be -180 … 180 or 0 … 360, and depth may be positive down or up. Curvilinear grids are
+/// rejected.
 
 #include <optional>
 #include <string>
@@ -19,34 +20,34 @@
 
 namespace aquafarm {
 
-/// What to read of a file.
+/// Selects the field to read from a file.
 struct SeaFieldChoice {
-  std::string variable;              ///< name, or standard_name
-  std::optional<std::int64_t> time;  ///< UTC; the nearest is taken; none: the first
-  double depth_m{};                  ///< below the surface; the nearest is taken
+  std::string variable;              ///< name or standard_name
+  std::optional<std::int64_t> time;  ///< UTC; selects the nearest time; the first one if unset
+  double depth_m{};                  ///< below the surface; selects the nearest depth
 };
 
-/// A field on the file's own grid, cut to a ranch.
+/// A field on the grid of the file, cropped to a ranch.
 struct SeaField {
-  std::string name;                  ///< of the variable
-  std::string units;                 ///< as the file says
-  std::optional<std::int64_t> time;  ///< of the values, UTC; none: the file has no time
-  std::optional<double> depth_m;     ///< of the values; none: the file has none, or not in metres
+  std::string name;                  ///< name of the variable
+  std::string units;                 ///< units attribute of the file
+  std::optional<std::int64_t> time;  ///< time of the values, UTC; nullopt if the file has no time
+  std::optional<double> depth_m;     ///< depth of the values; nullopt without a depth in metres
   std::vector<double> latitude;      ///< ascending [degrees]
-  std::vector<double> longitude;     ///< ascending [degrees], near those of the ranch
+  std::vector<double> longitude;     ///< ascending [degrees], shifted to the ranch's range
   Grid<float> value;                 ///< [latitude, longitude]; NaN: land or unknown
 };
 
 /// A field on the cells of a ranch, [H, W]; NaN where the field has no value nearby.
 using Layer = Grid<float>;
 
-/// Reads the part of a field around a ranch of width × height cells.
+/// Reads the part of a field that covers a ranch of width × height cells.
 /// @throws InputError "sea.nc: so: there is no such variable; there are: …"
 SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,
                       std::int32_t width, std::int32_t height);
 
-/// The field at each cell's centre: bilinear between four values, or the mean of those that are
-/// there weighted the same.
+/// Interpolates the field bilinearly at the centre of each cell. Where some of the four values are
+/// NaN, returns the mean of the others with the same weights.
 Layer ToLayer(const SeaField& field, const GeoFrame& frame, std::int32_t width,
               std::int32_t height);
 

@@ -43,6 +43,27 @@ def cases_of(path, stems):
     return [entry[:2] for entry in found]
 
 
+def seconds_of(path):
+    """Returns (seconds, name) of each test program in a result file."""
+    try:
+        root = ElementTree.parse(path).getroot()
+    except ElementTree.ParseError:
+        return []
+    if path.name.startswith("ctest-"):
+        return [(float(case.get("time") or 0), case.get("name")) for case in root.iter("testcase")]
+    if path.name.startswith("rostest-") or path.parent.parent.name == "test_results" and \
+            path.parent.name.endswith("core"):
+        return []  # counted by the program's own file or by ctest
+    spent = sum(float(case.get("time") or 0) for case in root.iter("testcase"))
+    return [(spent, f"{path.parent.name} {path.stem}")]
+
+
+def show_slowest(paths):
+    slowest = sorted((entry for path in paths for entry in seconds_of(path)), reverse=True)[:10]
+    if slowest and slowest[0][0] >= 1:
+        print("slowest: " + ", ".join(f"{name} {seconds:.0f} s" for seconds, name in slowest))
+
+
 def main(folders):
     paths = sorted(p for folder in folders for p in pathlib.Path(folder).rglob("*.xml"))
     stems = {path.stem for path in paths}
@@ -52,6 +73,7 @@ def main(folders):
             counts[result] += 1
             if result != "passed":
                 print(f"{result.upper()} {name} ({path})")
+    show_slowest(paths)
     print("{passed} passed, {failed} failed, {skipped} skipped".format(**counts))
     return 1 if counts["failed"] or not counts["passed"] else 0
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What verify_bag finds in bags that were changed.
+// Checks of changed and damaged bags by verify_bag.
 #include "aquafarm_sim/bags/bag_check.h"
 
 #include <aquafarm_msgs/EpisodeSummary.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags written chunk by chunk hold what rosbag's own writer puts into them.
+// Bags written by ChunkedBag have the same content as bags written by rosbag.
 #include "aquafarm_sim/bags/chunked_bag.h"
 
 #include <diagnostic_msgs/KeyValue.h>

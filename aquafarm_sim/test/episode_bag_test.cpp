@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Kept episodes as bags.
+// Recording of kept episodes as bags.
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>

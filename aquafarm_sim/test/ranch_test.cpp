@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Commands of single ships: exactly once, in time, together.
+// Commands of single ships: exactly-once execution, pace, lockstep barrier and claims.
 #include <gtest/gtest.h>
 
 #include <future>

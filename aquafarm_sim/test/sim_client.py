@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of the sim node share: its services by name, and topics with a limit."""
+"""Helpers of the tests of the sim node: its services by name, and topics with a timeout."""
 import time
 
 import rospy

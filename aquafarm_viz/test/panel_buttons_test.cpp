@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The panel "Ranch" as rviz has it, its buttons pressed with a mouse, beside a ranch that runs.
+// The panel "Ranch" as in rviz, connected to a running ranch. The test clicks its buttons.
 #include <gtest/gtest.h>
 
 #include <QApplication>

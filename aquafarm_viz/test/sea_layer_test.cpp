@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers of the sea below the farm, and rings that are no circles.
+// Sea layers below the farm, and rings that are not circles.
 #include <gtest/gtest.h>
 
 #include <stdexcept>

@@ -219,7 +219,7 @@ class Checker {
   bool End() {
     if (!EndEpisode()) return false;
     for (const auto& [key, summary] : summaries_) {
-      // A live recording of a ranch of many farms has all summaries but the states of one farm.
+      // A live recording of many farms has the summaries of all farms, but the states of farm 0.
       const bool of_other_farm = summary.farm != 0 && specs_.count(key) == 0 && check_.episodes > 0;
       if (of_other_farm && specs_.begin()->second.farms > 1) continue;
       check_.difference = "episode " + Number(key.second) + " of seed " + Number(key.first) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What aquafarm_evaluate --route has written, as a bag that can be rendered, replayed and verified.
+// Converts the output of aquafarm_evaluate --route to a bag for rendering, replay and verification.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What verify_bag finds in bags that were changed.
+// Checks of changed and damaged bags by verify_bag.
 #include "aquafarm_sim/bags/bag_check.h"
 
 #include <aquafarm_msgs/EpisodeSummary.h>
@@ -40,7 +40,7 @@ TEST_F(EpisodeBag, ChangesFromOutsideAreCountedAndHideNoMissingStep) {
   int tenth = 0;
   const std::string gap = Changed(whole, true, [&tenth](FarmSpec*, FarmState* state, auto*) {
     if (state == nullptr || state->step < 5 || state->step > 10) return true;
-    return state->step == 10 && ++tenth == 2;  // that after the change
+    return state->step == 10 && ++tenth == 2;  // the state after the change
   });
   EXPECT_EQ("episode 0 step 10: steps 5 to 10 are missing", CheckBag(gap, "").difference);
   const std::string one = Changed(whole, true, [](FarmSpec*, FarmState* state, auto*) {
@@ -75,7 +75,7 @@ TEST_F(EpisodeBag, EverySummaryBelongsToItsEpisodeAndEveryEndHasOne) {
   EXPECT_EQ("episode 7 of seed 5: a summary that no states belong to",
             difference([](FarmSpec*, FarmState* state, EpisodeSummary* summary) {
               if (summary != nullptr) summary->episode = 7;
-              return state == nullptr || state->step < 20;  // not over
+              return state == nullptr || state->step < 20;  // the episode does not end
             }));
   EXPECT_EQ("episode 0 step 5: state.observer: got 0, simulated -1",
             difference([](FarmSpec*, FarmState* state, auto*) {
@@ -105,7 +105,7 @@ TEST_F(EpisodeBag, ASecondSpecThatDiffersIsFound) {
   EXPECT_EQ("episode 0 of seed 5: two specs that differ", CheckBag(path, "").difference);
 }
 
-// The tape of an episode in which all hold.
+// The tape of an episode in which all ships hold.
 TEST_F(EpisodeBag, AMissingStepIsNamed) {
   const std::string whole = OneBag();
   const std::string bag = Changed(whole, true, [](FarmSpec*, FarmState* state, auto*) {
@@ -161,8 +161,9 @@ TEST_F(EpisodeBag, AnEditedSummarySpecActionOrLastBitIsFound) {
             }));
 }
 
-// What a flipped bit ends in: its line, or that it hides; in a process of its own, for a reader
-// that crashes must not end the test.
+// Checks a bag and returns the result: "found" (also as an error message with the bag's path),
+// "hides" (no difference), or a fault of the reader. A separate process checks the bag, so that a
+// crash of the reader does not end the test.
 std::string EndOf(const std::string& path) {
   const pid_t child = fork();
   if (child == 0) {
@@ -181,7 +182,7 @@ std::string EndOf(const std::string& path) {
   return ends.at(static_cast<std::size_t>(WEXITSTATUS(status)));
 }
 
-// Flips one bit in each of `count` bytes from `begin` on, a bag each.
+// Flips one bit in each of `count` bytes from `begin` on; each flip gives one bag.
 void FlipBits(const std::string& bag, std::size_t begin, std::size_t count) {
   std::ifstream file(bag, std::ios::binary);
   std::stringstream content;
@@ -199,10 +200,10 @@ void FlipBits(const std::string& bag, std::size_t begin, std::size_t count) {
   }
 }
 
-// The compressed chunk lies behind the file's header of 4 kB; it is most of the rest.
+// The compressed chunk follows the file's header of 4 kB and is most of the rest of the file.
 TEST_F(EpisodeBag, AFlippedBitAnywhereInTheRecordingIsFound) { FlipBits(OneBag(), 4200, 60); }
 
-// What no checksum guards: lengths, places and names that rosbag's reader trusts.
+// No checksum protects the lengths, offsets and names that rosbag's reader trusts.
 TEST_F(EpisodeBag, ABagWhoseIndexIsDamagedHasItsLine) {
   const std::string bag = OneBag();
   const std::size_t size = fs::file_size(bag);
@@ -218,7 +219,7 @@ std::string ContentOf(const std::string& path) {
   return content.str();
 }
 
-// Writes bytes over those at a place.
+// Overwrites the bytes at an offset.
 void Put(const std::string& path, std::size_t place, const std::string& bytes) {
   ASSERT_NE(place, std::string::npos);
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
@@ -232,8 +233,8 @@ rlim_t DataLimit() {
   return limit.rlim_cur;
 }
 
-// No checksum guards what is not compressed: here the number of a state's ships, of 2^25 more,
-// which would be 4 GB.
+// No checksum protects uncompressed data. Here 2^25 is added to the number of a state's ships,
+// which requests 4 GB.
 TEST_F(EpisodeBag, ALengthThatAsksForAnyMemoryHasItsLine) {
   const std::string path = Changed(OneBag(), false, [](auto*, auto*, auto*) { return true; });
   const rlim_t before = DataLimit();
@@ -257,7 +258,7 @@ TEST_F(EpisodeBag, ALengthThatAsksForAnyMemoryHasItsLine) {
   EXPECT_EQ(before, DataLimit());
 }
 
-// What works on a bag may need any memory; only reading is bounded.
+// Only reading a bag has a memory limit. The code that uses its messages has none.
 TEST_F(EpisodeBag, WhatIsDoneWithABagHasNoBoundOfMemory) {
   const std::string path = OneBag();
   const rlim_t before = DataLimit();
@@ -272,7 +273,7 @@ TEST_F(EpisodeBag, WhatIsDoneWithABagHasNoBoundOfMemory) {
   EXPECT_THROW(ReadingBag(path, [] { throw std::bad_alloc(); }), std::bad_alloc);
 }
 
-// rosbag's reader asks for twice what a chunk needs, and ends the process where it gets none.
+// rosbag's reader allocates twice the size of a chunk and ends the process if the allocation fails.
 TEST_F(EpisodeBag, AChunkOfAnySizeHasItsLine) {
   const std::string path = folder_ + "/chunks.bag";
   {
@@ -332,13 +333,13 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   EXPECT_NE(std::string::npos, Refusal(folder_ + "/text.bag").find("damaged or no bag"));
   const std::string late = folder_ + "/late.bag";
   {
-    ros::Time time;  // as no constructor makes one
+    ros::Time time;  // a value that no constructor accepts
     time.sec = time.nsec = UINT32_MAX;
     rosbag::Bag(late, rosbag::bagmode::Write)
         .write("/ranch/saved_state", time, aquafarm_msgs::SavedState());
   }
   EXPECT_EQ(0U, Refusal(late).find(late + ": damaged or no bag: ")) << Refusal(late);
-  // A field of a header that is padded to 4 kB, in place of the count of connections.
+  // Replaces the count of connections in the header, which is padded to 4 kB.
   const std::string encrypted = Changed(bag, true, [](auto*, auto*, auto*) { return true; });
   const std::string content = ContentOf(encrypted);
   Put(encrypted, content.find("chunk_count="), "encryptor=a/b");

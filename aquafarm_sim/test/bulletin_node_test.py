@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Bulletins put into a folder reach the running episode, and what the ship sees."""
+"""Bulletins put into a folder reach the running episode and the ship's observation."""
 import json
 import os
 import shutil
@@ -22,7 +22,7 @@ NORTH = 0
 
 
 def storm(latitude, radius_km, forecast=None):
-    """A bulletin of 2021-07-24 00:00 UTC, the scenario's start, in Beijing time."""
+    """Returns a bulletin of 2021-07-24 00:00 UTC, the scenario's start, in Beijing time."""
     point = {"time": "2021-07-24T08:00:00", "lat": latitude, "lng": 122.7, "strong": "台风(TY)",
              "speed": 35, "move_dir": "北", "move_speed": 10, "radius7": radius_km,
              "radius10": radius_km / 2, "radius12": radius_km / 4, "forecast": forecast}
@@ -32,7 +32,7 @@ def storm(latitude, radius_km, forecast=None):
 class BulletinNodeTest(unittest.TestCase):
 
     def start(self, folder, namespace=None, *arguments):
-        """The node as rosrun starts it, in the ranch's namespace, each with a name of its own."""
+        """Starts the node as rosrun does, in the ranch's namespace, with a unique name."""
         self.started = getattr(self, "started", 0) + 1
         name = f"{self._testMethodName[:12]}_{self.started}"
         return subprocess.Popen(
@@ -46,7 +46,7 @@ class BulletinNodeTest(unittest.TestCase):
         self.node = self.start(self.folder)
 
     def put(self, name, text):
-        """As writers should: beside, then renamed."""
+        """Writes a temporary file and renames it, as writers should."""
         path = os.path.join(self.folder, name)
         with open(path + ".part", "w", encoding="utf-8") as file:
             file.write(text)
@@ -70,7 +70,7 @@ class BulletinNodeTest(unittest.TestCase):
         self.assertAlmostEqual(-221.7, got.y, delta=1.0)
         self.assertEqual([125.0, 250.0, 500.0], [round(r, 3) for r in got.radii])
 
-        # What is no bulletin changes nothing, and the node lives on.
+        # A file that is not a bulletin changes nothing, and the node keeps running.
         self.put("broken.json", '[{"tfbh": "202106", "points": [')
         self.put("other.txt", "not a bulletin at all")
         time.sleep(0.5)
@@ -127,7 +127,7 @@ class BulletinNodeTest(unittest.TestCase):
         with open(os.path.join(folder, "first.json"), "w", encoding="utf-8") as file:
             file.write(storm(30.0, 50.0))
         node = self.start(folder, "/elsewhere", "_call_limit_s:=0.5")
-        time.sleep(1.0)  # nobody is there yet
+        time.sleep(1.0)  # the service does not exist yet
         service = rospy.Service("/elsewhere/set_disaster", SetDisaster, hang_once)
         end = time.monotonic() + LIMIT_S
         while len(calls) < 2 and time.monotonic() < end:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bags written chunk by chunk hold what rosbag's own writer puts into them.
+// Bags written by ChunkedBag have the same content as bags written by rosbag.
 #include "aquafarm_sim/bags/chunked_bag.h"
 
 #include <diagnostic_msgs/KeyValue.h>
@@ -37,7 +37,7 @@ class ChunkedBagTest : public testing::Test {
   std::string path_;
 };
 
-/// Messages of two topics, some 2 MB that lz4 cannot make smaller, so several chunks.
+/// Writes messages of two topics, about 2 MB that lz4 cannot compress, and thus several chunks.
 template <typename Write>
 void WriteMessages(const Write& write) {
   std::mt19937 chance(1);
@@ -135,7 +135,7 @@ TEST_F(ChunkedBagTest, WhatWasNotClosedIsReindexed) {
     ChunkedBag ours(path_);
     WriteMessages([&](const auto&... message) { ours.Write(message...); });
   }
-  EXPECT_GT(fs::file_size(path_), 1'000'000U);  // whole chunks are on the disk
+  EXPECT_GT(fs::file_size(path_), 1'000'000U);  // complete chunks are on disk
   EXPECT_THROW(rosbag::Bag{path_}, rosbag::BagUnindexedException);
   ASSERT_EQ(0, std::system(("rosbag reindex -q " + path_).c_str()));
   const std::size_t whole = Read(path_).size();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What lives on the globe or on all cells: storms of bulletins, rings by quadrants, forecasts,
-// seas.
+// Conversions of storm bulletins, rings by quadrants, forecasts and sea layers.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -24,7 +23,7 @@ using aquafarm_msgs::StormFix;
 
 constexpr std::uint32_t kStart = 1627084800;  // 2021-07-24 00:00 UTC
 
-/// Off Zhoushan, cells of 1 km, steps of ten minutes, one disaster with risks of its own.
+/// A scenario off Zhoushan: cells of 1 km, steps of ten minutes, one disaster with its own risks.
 Scenario Placed() {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.origin = aquafarm::GeoPoint{30.2, 122.7};
@@ -38,7 +37,7 @@ Scenario Placed() {
   return scenario;
 }
 
-/// A typhoon a degree south of it that goes north, twelve hours of it told.
+/// A typhoon one degree to the south that moves north; its fixes cover twelve hours.
 aquafarm_msgs::Storm North() {
   aquafarm_msgs::Storm storm;
   storm.name = "IN-FA";
@@ -83,7 +82,7 @@ TEST(Storms, BecomeDisastersOfTheRunningEpisode) {
   EXPECT_EQ(disaster.steps_left, 72) << "twelve hours";
   EXPECT_NEAR(disaster.motion_y, 110.85 / 72.0, 0.01);
   EXPECT_EQ(disaster.risks, (std::vector<float>{-19, -9, -6})) << "by the scenario's own table";
-  // Circles of the same area as 230, 210, 190, 170 km.
+  // Circles of the same area as quadrants of 230, 210, 190, 170 km.
   EXPECT_NEAR(disaster.radii[2], std::sqrt((230. * 230 + 210. * 210 + 190. * 190 + 170. * 170) / 4),
               0.01);
   EXPECT_TRUE(disaster.quadrants.empty());
@@ -112,7 +111,7 @@ TEST(Storms, MayComeOnTop) {
       << "with the table of the disaster that has one";
 }
 
-// Farms of one ranch drift apart, for each begins its next episode when its own has ended.
+// The farms of one ranch are at different steps, because each starts its next episode on its own.
 TEST(Storms, ReachTheFarmsForWhichTheyAreNotOver) {
   Scenario scenario = Placed();
   scenario.step_limit = 1000;
@@ -204,7 +203,7 @@ TEST(Storms, AreTheSameThereAndBack) {
   EXPECT_EQ(ToMsg(FromMsg(again)), again);
 }
 
-// Of numbers that a message holds in single precision.
+// Compares numbers that a message holds in single precision.
 void ExpectNear(const std::vector<float>& a, const std::vector<float>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i)
@@ -236,7 +235,7 @@ TEST(Storms, MakeTheSameDisasterThroughAMessage) {
   ASSERT_TRUE(file.tracks[0].fixes[0].max_wind_radius_km);
   for (aquafarm::HazardTrack track : file.tracks) {
     ExpectTheSameThroughAMessage(track);
-    for (aquafarm::HazardFix& fix : track.fixes) fix.rings.clear();  // so all are estimated
+    for (aquafarm::HazardFix& fix : track.fixes) fix.rings.clear();  // all rings are then estimated
     ExpectTheSameThroughAMessage(track);
   }
 }

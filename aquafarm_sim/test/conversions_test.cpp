@@ -135,7 +135,7 @@ TEST(Conversions, PartialObservationHidesWhatIsFar) {
   EXPECT_TRUE(seen.disasters[0].radii.empty());
 }
 
-// What a ship's own agent makes of its observation is what it was trained on, bit for bit.
+// The View that an agent restores from its observation is bit-identical to that of its training.
 TEST(Conversions, AnObservationBringsTheViewBack) {
   for (const bool full : {true, false}) {
     aquafarm::Scenario scenario = aquafarm::test::CrowdedScenario(3, 2);

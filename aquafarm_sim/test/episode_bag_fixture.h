@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Bags of kept episodes, made and changed.
+/// Creates and changes bags of kept episodes.
 
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -31,7 +31,7 @@ using aquafarm_msgs::EpisodeSummary;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-// A storm, and an end soon enough.
+// A scenario with a storm and a short step limit.
 inline aquafarm::Scenario ShortScenario() {
   aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
   scenario.disasters.emplace_back();
@@ -57,7 +57,7 @@ class EpisodeBag : public testing::Test {
     return recorder;
   }
 
-  // Random joint steps, the same every time.
+  // Takes random joint steps, the same in every call.
   static void Play(Ranch& ranch, std::int32_t farms, int steps) {
     aquafarm::RandomStream chance({3, 0, aquafarm::Purpose::kExploration, 0});
     aquafarm_msgs::Step::Request request;
@@ -77,7 +77,7 @@ class EpisodeBag : public testing::Test {
     return bags;
   }
 
-  // One bag of a whole episode of 40 steps or fewer.
+  // Returns one bag of a complete episode of at most 40 steps.
   std::string OneBag() {
     const auto ranch = MakeRanch(ShortScenario());
     {
@@ -100,21 +100,21 @@ class EpisodeBag : public testing::Test {
     ASSERT_TRUE(storm.response.ok) << storm.response.message;
   }
 
-  // One bag of a whole episode into which a storm was sent after 10 steps.
+  // Returns one bag of a complete episode with a storm bulletin after 10 steps.
   std::string StormBag() {
     const auto ranch = MakeRanch(ShortScenario());
     {
       const auto recorder = Record(*ranch, "all");
       Play(*ranch, 1, 10);
       SendStorm(*ranch);
-      SendStorm(*ranch);  // the last of a step is what counts
+      SendStorm(*ranch);  // only the last bulletin of a step counts
       Play(*ranch, 1, 31);
       ranch->SetRecorder(nullptr);
     }
     return Bags().front();
   }
 
-  // Copies a bag, message by message, as `change` says: true keeps a message.
+  // Copies a bag message by message. `change` may change a message; it returns false to drop it.
   std::string Changed(const std::string& bag, bool compressed,
                       const std::function<bool(FarmSpec*, FarmState*, EpisodeSummary*)>& change) {
     const std::string path = folder_ + "/changed.bag";
@@ -141,7 +141,7 @@ class EpisodeBag : public testing::Test {
   std::string folder_;
 };
 
-// What a bag is refused with.
+// Returns the error message that a bag is refused with.
 inline std::string Refusal(const std::string& path, const std::string& ns = "") {
   try {
     CheckBag(path, ns);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Kept episodes as bags.
+// Recording of kept episodes as bags.
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -53,7 +53,7 @@ TEST_F(EpisodeBag, SaysThePaceAndRateThatItsEpisodeBeganWith) {
     faster.request.rate_hz = 50.0;
     ranch->SetPace(faster.request, faster.response);
     ASSERT_TRUE(faster.response.ok);
-    Play(*ranch, 1, 90);  // the second had begun before
+    Play(*ranch, 1, 90);  // the second episode started before the change
     ranch->SetRecorder(nullptr);
   }
   std::vector<double> rates;
@@ -97,7 +97,7 @@ TEST_F(EpisodeBag, KeepSaysWhichEpisodesBecomeBags) {
   ASSERT_EQ(1U, Bags().size());
   EXPECT_EQ(worst, value(Bags()[0]));
   run("failures");
-  EXPECT_EQ(all.size(), Bags().size());  // random play of 40 steps brings nothing home
+  EXPECT_EQ(all.size(), Bags().size());  // 40 random steps deliver no device
 }
 
 TEST_F(EpisodeBag, WhatComesFromOutsideIsPartOfTheEpisode) {

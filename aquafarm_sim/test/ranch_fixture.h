@@ -20,7 +20,7 @@ inline constexpr std::uint8_t kSouth = 1;
 inline constexpr std::uint8_t kPickup = 8;
 inline constexpr std::uint8_t kHold = 10;
 
-/// A ranch of the tiny farm of core/test, in lockstep with a short barrier.
+/// Creates a ranch of the tiny farm of core/test, in lockstep with a short barrier timeout.
 inline std::unique_ptr<Ranch> MakeRanchOf(const aquafarm::Scenario& scenario,
                                           const RanchOptions& options) {
   aquafarm::ValidateScenario(scenario);
@@ -43,7 +43,7 @@ inline aquafarm::Scenario TwoShips() {
   return scenario;
 }
 
-/// Reads farm 0 (or another) as a message.
+/// Returns the state of a farm as a message.
 inline aquafarm_msgs::FarmState StateOf(Ranch& ranch, std::int32_t farm = 0) {
   aquafarm_msgs::GetState call;
   call.request.farm = farm;

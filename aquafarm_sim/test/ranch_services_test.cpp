@@ -24,7 +24,7 @@ aquafarm_msgs::Step::Response StepAll(Ranch& ranch, const std::vector<std::uint8
   return ranch.Step(request);
 }
 
-/// Joint steps with random actions; returns the hashes of all farms after each.
+/// Takes joint steps with random actions. Returns the hashes of all farms after each step.
 std::vector<std::uint64_t> Play(Ranch& ranch, std::size_t actions, int steps, std::uint64_t seed) {
   aquafarm::RandomStream random({seed, 0, aquafarm::Purpose::kExploration, 0});
   std::vector<std::uint64_t> hashes;
@@ -179,7 +179,7 @@ TEST(RanchServices, AJointStepIsRefusedWhileAnotherHoldsAShip) {
   EXPECT_TRUE(ranch->Step(step, "/trainer").ok);
 }
 
-// A learner that waits is told once, when it may go on, that its farms have moved.
+// A waiting learner gets STALE only once, when it may continue.
 TEST(RanchServices, AJointStepHearsWhoIsInTheWayBeforeItIsStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request mine;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Commands of single ships: exactly once, in time, together.
+// Commands of single ships: exactly-once execution, pace, lockstep barrier and claims.
 #include <gtest/gtest.h>
 
 #include <future>
@@ -127,7 +127,7 @@ TEST(Ranch, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   EXPECT_LT(std::chrono::steady_clock::now() - again, milliseconds(200)) << "it waits but once";
   EXPECT_EQ(1U, ranch->counters().late_ships);
   EXPECT_EQ(std::vector<std::int32_t>{1}, ranch->counters().absent);
-  // Back again, it joins in the running episode and is waited for.
+  // When it is back, it joins the running episode, and the farm waits for it.
   auto back = std::async(std::launch::async, [&] { return ranch->Command({1, kHold, 0, 0, 1}); });
   std::this_thread::sleep_for(milliseconds(50));
   EXPECT_EQ(Outcome::HELD, ranch->Command({0, kHold, 0, 0, 12}).code);
@@ -142,7 +142,7 @@ TEST(Ranch, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
   options.barrier_timeout_s = 0.2;
   options.late_ships_hold = true;
   const auto ranch = MakeRanchOf(TwoShips(), options);
-  ranch->Command({0, kNorth, 0, 0, 1});  // ship 1 is given up
+  ranch->Command({0, kNorth, 0, 0, 1});  // ship 1 becomes absent
   EXPECT_EQ(Outcome::STALE, ranch->Command({1, kHold, 9, 9, 1}).code);
   auto waiting = std::async(std::launch::async, [&] {
     return ranch->Command({0, kHold, 0, 0, 2});
@@ -192,7 +192,7 @@ TEST(Ranch, AClaimedShipObeysItsHolderAlone) {
   EXPECT_TRUE(claim("/one", true).ok);
   EXPECT_EQ("", claim("/one", true).holder);
   EXPECT_TRUE(claim("/two", false).ok);
-  std::this_thread::sleep_for(milliseconds(250));  // it says no more
+  std::this_thread::sleep_for(milliseconds(250));  // longer than the claim timeout
   EXPECT_TRUE(claim("/three", false).ok);
 }
 
@@ -206,7 +206,7 @@ TEST(Ranch, ANewerCommandOfTheSameShipSupersedesTheWaitingOne) {
   EXPECT_EQ(Outcome::HELD, newer.get().code);
 }
 
-/// Lets others queue up for the ranch before a step is told to those who wait for it.
+/// Delays each step, so that other calls queue for the ranch before waiting calls get the result.
 class SlowRecorder : public RanchRecorder {
  public:
   void OnStart(const aquafarm::Farm&, std::int32_t, const MessageContext&) override {}
@@ -229,8 +229,8 @@ TEST(Ranch, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
       return result;
     };
     auto first = start(0, kHold, 4 * i + 1);
-    auto partner = start(1, kHold, 4 * i + 2);  // a step begins, and takes a while
-    auto second = start(0, kHold, 4 * i + 3);   // these two bring about the one after it
+    auto partner = start(1, kHold, 4 * i + 2);  // triggers a slow step
+    auto second = start(0, kHold, 4 * i + 3);   // this and the next command trigger the next step
     auto last = start(1, kHold, 4 * i + 4);
     EXPECT_EQ(Outcome::HELD, first.get().code);
     EXPECT_EQ(Outcome::HELD, partner.get().code);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of the sim node share: its services by name, and topics with a limit."""
+"""Helpers of the tests of the sim node: its services by name, and topics with a timeout."""
 import time
 
 import rospy
@@ -21,14 +21,14 @@ def call(name, **fields):
 
 
 def state(**fields):
-    """Reads farm 0 as it is now."""
+    """Returns the current state of farm 0."""
     answer = call("get_state", **fields)
     assert answer.ok, answer.message
     return answer.state
 
 
 def message(topic, kind, condition=lambda m: True):
-    """The first message on a topic that fits; fails after a limit."""
+    """Returns the first message on a topic that satisfies a condition; fails after LIMIT_S."""
     end = time.monotonic() + LIMIT_S
     while time.monotonic() < end:
         got = rospy.wait_for_message(topic, kind, timeout=LIMIT_S)
@@ -55,7 +55,7 @@ class Recorder:
 
 
 def states():
-    """A recorder of the topic state that has its first message."""
+    """Returns a recorder of the topic state after its first message."""
     recorder = Recorder("state", FarmState)
     recorder.wait(len, "a first state")
     return recorder

@@ -19,7 +19,7 @@ HOLD = 10
 
 
 class Caller(threading.Thread):
-    """Gives one command on a thread of its own."""
+    """Sends one command from a separate thread."""
 
     def __init__(self, ship, action, **fields):
         super().__init__()
@@ -118,7 +118,7 @@ class SimNodePairTest(unittest.TestCase):
         seen = state(observation=True, ship=1)
         self.assertEqual((1, 0), (seen.observer, seen.hash))
         self.assertEqual([(d.x, d.y) for d in whole.devices], [(d.x, d.y) for d in seen.devices])
-        self.assertTrue(seen.disasters[0].known)  # by the bulletin of step 0
+        self.assertTrue(seen.disasters[0].known)  # from the bulletin of step 0
         published = message("ship_1/observation", FarmState)
         self.assertEqual(1, published.observer)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the sim node starts and ends: what it refuses, how it goes, and recording."""
+"""Start and end of the sim node: refused parameters, shutdown and recording."""
 import os
 import signal
 import subprocess
@@ -21,7 +21,7 @@ LONE = os.path.join(DATA, "lone.yaml")
 
 
 def start(*arguments):
-    """Starts a sim node; each gets a name of its own, so that no parameter is left from others."""
+    """Starts a sim node with a unique name, so that no parameters of other nodes remain."""
     start.count = getattr(start, "count", 0) + 1
     return subprocess.Popen([SIM_NODE, f"__name:=sim_{start.count}", *arguments], text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The sim node with one ship and three farms, from outside, over services and topics."""
+"""The sim node with one ship and three farms, tested through services and topics."""
 import math
 import os
 import sys
@@ -22,7 +22,7 @@ NORTH, SOUTH, EAST = 0, 1, 3
 
 
 def bulletin(**fields):
-    """A sound bulletin with some fields changed."""
+    """Returns a valid bulletin with some fields changed."""
     values = dict(kind=0, grade=2, radii=[1.0, 2.0], risks=[-20.0, -10.0], speed=0.5, duration=100,
                   has_start=True, x=0.0, y=4.0)
     values.update(fields)
@@ -50,7 +50,7 @@ class SimNodeTest(unittest.TestCase):
         self.assertTrue(result.terminated)
         self.assertFalse(result.truncated)
         self.assertEqual(FarmState.ALL_RETRIEVED, result.reason)
-        # The disaster reaches 2 cells and is never nearer than 2.8: health stays 1.
+        # The disaster has a radius of 2 cells and is always at least 2.8 away: health stays 1.
         self.assertAlmostEqual(100.0, result.reward, places=4)
         over = call("ship_0/move", direction=NORTH).result
         self.assertEqual(Outcome.EPISODE_OVER, over.code)
@@ -74,7 +74,7 @@ class SimNodeTest(unittest.TestCase):
         last = call("ship_0/drop_off", episode=0, step=5).result
         self.assertEqual(FarmState.ALL_RETRIEVED, last.reason)
         joint_return = state().joint_return
-        # The episode is over: a repeat is still answered as the first, and pays nothing more.
+        # The episode has ended: a retry returns the first response and adds no reward.
         self.assertEqual(last, call("ship_0/drop_off", episode=0, step=5).result)
         self.assertEqual(joint_return, state().joint_return)
         self.assertEqual(6, state().step)

@@ -42,10 +42,10 @@ constexpr int kStorage = 3;
 
 struct Request {
   std::string bag;
-  std::string asked;  // bag that this one was made of by asking a policy along; empty: none
+  std::string asked;  // original bag, if `bag` is a copy with the choices of a policy; else empty
   std::string output{"farm.png"};
-  std::string ns;                    // empty: the only one there is
-  std::vector<std::uint64_t> steps;  // empty: 0, or all for a film
+  std::string ns;                    // empty if the bag contains only one ranch
+  std::vector<std::uint64_t> steps;  // empty: step 0, or all steps for a video
   bool at_end{};
   double rate_hz{10.0};
   std::uint64_t every{1};
@@ -54,11 +54,11 @@ struct Request {
   aquafarm_viz::ImageSize size;
 };
 
-// The steps around one that is asked for, in the first episode that has a later one.
+// The recorded steps before and after a requested one, in the first episode that has a later step.
 struct Gap {
-  std::uint64_t step{};  // asked for
+  std::uint64_t step{};  // requested step
   std::uint64_t episode{};
-  std::optional<std::uint64_t> before;  // none: the episode begins later
+  std::optional<std::uint64_t> before;  // nullopt if the episode starts later
   std::optional<std::uint64_t> after;
 
   void See(const FarmState& state) {
@@ -70,7 +70,7 @@ struct Gap {
   }
 };
 
-// What the bag holds, to say what may be asked for.
+// The content of the bag, for error messages.
 struct Found {
   std::uint64_t values{};
   std::uint64_t choices{};
@@ -78,11 +78,11 @@ struct Found {
   std::uint64_t first_episode{};
   std::uint64_t last_episode{};
   std::uint64_t last_step{};
-  std::uint64_t gaps{};                // steps that are missing between others
-  std::optional<std::string> version;  // that recorded it, as its spec says
+  std::uint64_t gaps{};                // number of missing steps between recorded ones
+  std::optional<std::string> version;  // version that recorded it, from its spec
 };
 
-// The bag as who asked for the picture knows it.
+// The name of the bag that the user has given.
 const std::string& Name(const Request& request) {
   return request.asked.empty() ? request.bag : request.asked;
 }
@@ -105,7 +105,7 @@ std::string Missing(const Request& request, const Found& found, const std::vecto
          " (not each of them need be recorded)";
 }
 
-// What stands before the topic `state` in the bag; bags hold names with and without a namespace.
+// Returns the prefix of the topic `state` in the bag. Names in bags may have no namespace.
 std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
   const std::string wanted =
       request.ns.empty() || request.ns.back() == '/' ? request.ns : request.ns + "/";
@@ -137,15 +137,15 @@ std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
   throw std::runtime_error(request.bag + ": holds several ranches, choose one with --ns:" + all);
 }
 
-/// What is drawn: a state with what a picture shows besides.
+/// Input of one picture: a state and the optional content.
 struct Scene {
   const aquafarm_msgs::FarmSpec& spec;
   const FarmState& state;
   aquafarm_viz::Extras extras;
 };
 
-/// Shows each state of the bag (of the episode asked for) until `look` has seen enough.
-/// @param look returns false to end
+/// Calls `look` for each state of the bag (of the requested episode).
+/// @param look returns false to stop
 Found ForEachScene(const Request& request, const std::function<bool(const Scene&)>& look) {
   rosbag::Bag bag;
   aquafarm_sim::OpenBag<aquafarm_msgs::FarmSpec, FarmState, aquafarm_msgs::TrainingStatus,
@@ -158,7 +158,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   aquafarm_viz::Wake route(aquafarm_viz::Wake::kWhole);
   aquafarm_msgs::TrainingStatusConstPtr training;
   std::optional<aquafarm_viz::Values> values;
-  sensor_msgs::PointCloud2ConstPtr cloud;  // not yet read: its spec may come after it
+  sensor_msgs::PointCloud2ConstPtr cloud;  // not yet read, because its spec may follow it
   aquafarm_msgs::PolicyChoiceConstPtr choice;
   Found found;
   const auto expect_none = [&](const std::string& fault) {
@@ -207,7 +207,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   return found;
 }
 
-/// What is asked for and not there is said, but a picture can do without.
+/// Warns about requested content that the bag does not contain but a picture does not require.
 void WarnOfMissing(const Request& request, const Found& found) {
   if (found.gaps > 0) {
     std::fprintf(stderr, "render: %s: %s\n", Name(request).c_str(),
@@ -231,7 +231,7 @@ void WarnOfMissing(const Request& request, const Found& found) {
                request.bag.c_str(), request.bag.c_str());
 }
 
-/// The steps asked for, side by side.
+/// Draws the requested steps next to each other.
 void RenderPicture(const Request& request) {
   if (!cv::haveImageWriter(request.output)) {
     throw std::runtime_error(request.output +
@@ -242,7 +242,7 @@ void RenderPicture(const Request& request) {
   const std::vector<std::uint64_t> steps =
       request.steps.empty() ? std::vector<std::uint64_t>{0} : request.steps;
   std::vector<cv::Mat> pictures(request.at_end ? 1 : steps.size());
-  std::optional<std::uint64_t> episode;  // all pictures are of the first that has one of them
+  std::optional<std::uint64_t> episode;  // first episode with one of the steps
   std::size_t missing = pictures.size();
   std::vector<Gap> gaps(pictures.size());
   for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i].step = steps[i];
@@ -284,9 +284,9 @@ void RenderPicture(const Request& request) {
   }
 }
 
-/// One episode from its first to its last state; the end stays for two seconds.
+/// Writes a video of one episode. The last state is shown for two more seconds.
 void RenderFilm(Request request) {
-  request.size.width -= request.size.width % 2;  // codecs want even sides
+  request.size.width -= request.size.width % 2;  // codecs require even sizes
   request.size.height -= request.size.height % 2;
   aquafarm_viz::FarmPainter painter(request.size);
   std::unique_ptr<aquafarm_viz::Film> film;
@@ -335,7 +335,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--episode", request.episode, "episode (default: the first that has the step)");
-  app.add_option("--asked", request.asked)->group("");  // of ./aquafarm render --policy
+  app.add_option("--asked", request.asked)->group("");  // hidden; for render --policy
   app.add_option("--ns", request.ns, "namespace of the ranch (default: the only one in the bag)");
   app.add_option("--width", request.size.width, "pixels")
       ->check(CLI::Range(aquafarm_viz::kMinImageSide, aquafarm_viz::kMaxImageSide))

@@ -12,7 +12,7 @@
 namespace aquafarm_viz {
 namespace {
 
-// Frames of an episode at 640 x 640: the disaster moves, the ship sails, words change.
+// Frames of an episode at 640 x 640: the disaster, the ship and the text change in each frame.
 void BM_Frame(benchmark::State& bench) {
   cv::setNumThreads(1);
   const int side = static_cast<int>(bench.range(0));
@@ -45,8 +45,8 @@ void BM_FrameUnderATyphoonThatCoversAll(benchmark::State& bench) {
 }
 BENCHMARK(BM_FrameUnderATyphoonThatCoversAll)->Unit(benchmark::kMicrosecond);
 
-// What a policy adds: V_π, best moves, its choice; and a route of up to 500 steps.
-// @param learns whether the map is another each time
+// Frames with V_π, greedy actions and the choice of a policy, and a route of up to 500 steps.
+// @param learns true: the map of values changes in each frame
 void BM_FrameWith(benchmark::State& bench, const char* names, bool learns = false) {
   cv::setNumThreads(1);
   const int side = static_cast<int>(bench.range(0));
@@ -59,7 +59,7 @@ void BM_FrameWith(benchmark::State& bench, const char* names, bool learns = fals
   FarmPainter painter({640, 640});
   const Layers layers = ParseLayers(names);
   for (auto _ : bench) {
-    state.step = (state.step + 1) % 500;  // a new way each time
+    state.step = (state.step + 1) % 500;  // restarts the route after 500 steps
     state.ships.front().x = static_cast<int>(state.step) % side;
     if (learns) values.values.front() = static_cast<float>(state.step % 2);
     wake.Update(state);

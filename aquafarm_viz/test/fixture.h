@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A small ranch made by hand, as the sim node would describe it.
+/// A small ranch as messages, as published by the sim node.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -66,7 +66,7 @@ inline aquafarm_msgs::DisasterState MakeDisaster(int id, float x, float y) {
   return disaster;
 }
 
-/// A ranch of side x side cells with an island in the south-west and one of each thing.
+/// Returns a ranch of side x side cells: an island in the south-west, one object of each kind.
 inline aquafarm_msgs::FarmSpec MakeSpec(int side = 25) {
   aquafarm_msgs::FarmSpec spec;
   spec.header.frame_id = "map";
@@ -105,7 +105,7 @@ inline aquafarm_msgs::FarmSpec MakeSpec(int side = 25) {
   return spec;
 }
 
-/// A state of MakeSpec's ranch: ship 0 under way, three devices deployed, one delivered.
+/// Returns a state of MakeSpec's ranch: ship 0 moves, three devices are deployed, one delivered.
 inline aquafarm_msgs::FarmState MakeState(int side = 25) {
   aquafarm_msgs::FarmState state;
   state.header.frame_id = "map";
@@ -136,7 +136,7 @@ inline aquafarm_msgs::FarmState MakeState(int side = 25) {
   return state;
 }
 
-/// What a policy thinks of MakeSpec's ranch: values x + y, moves to the north-east.
+/// Returns a policy's values of MakeSpec's ranch: value x + y, greedy action north-east.
 inline sensor_msgs::PointCloud2 MakeCloud(int side = 25) {
   sensor_msgs::PointCloud2 cloud;
   cloud.header.frame_id = "map";
@@ -159,7 +159,7 @@ inline sensor_msgs::PointCloud2 MakeCloud(int side = 25) {
   return cloud;
 }
 
-/// Another policy's choice in MakeState's state: north-west.
+/// Returns a compared policy's choice in MakeState's state: north-west.
 inline aquafarm_msgs::PolicyChoice MakeChoice() {
   aquafarm_msgs::PolicyChoice choice;
   choice.seed = 7;
@@ -171,12 +171,12 @@ inline aquafarm_msgs::PolicyChoice MakeChoice() {
   return choice;
 }
 
-/// Lets the first entry of a bag's index point to nowhere, which rosbag's reader trusts.
+/// Makes the first index entry of a bag invalid. rosbag's reader does not validate it.
 inline void DamageIndex(const std::string& path) {
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
   std::stringstream content;
   content << file.rdbuf();
-  // Behind the last field of the entry's record stand the length of its data, then a time.
+  // The last field of the index record is followed by the length of its data, then by a time.
   const std::string version("ver=\x01\0\0\0", 8);
   file.seekp(static_cast<std::streamoff>(content.str().find(version) + version.size() + 4 + 8));
   file.write("\xf0\xff\xff\x7f", 4);

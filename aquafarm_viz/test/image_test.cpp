@@ -23,7 +23,7 @@ cv::Mat1b Near(const cv::Mat& image, Rgb color, int tolerance = 6) {
   return found;
 }
 
-// The middle of all pixels that differ between two pictures.
+// Returns the centre of all pixels that differ between two pictures.
 cv::Point2d MiddleOfDifference(const cv::Mat& a, const cv::Mat& b) {
   cv::Mat difference;
   cv::absdiff(a, b, difference);
@@ -40,7 +40,7 @@ cv::Mat MapOf(const cv::Mat& image, int side = 25, ImageSize size = kSize) {
   return image(PlaceMap(side, side, size).map).clone();
 }
 
-// A state with nothing on the water.
+// Returns a state without ships, devices and disasters.
 aquafarm_msgs::FarmState Empty() {
   auto state = test::MakeState();
   state.ships.clear();
@@ -78,7 +78,7 @@ TEST(Image, PointsTheBowWhereTheShipMoves) {
     state.ships.push_back(test::MakeShip(0, 12, 12));
     state.ships.front().action = action;
     const auto map = MapOf(DrawFarm(spec, state, kSize));
-    // The deck lies behind the middle of the ship.
+    // The deck is behind the centre of the ship.
     std::vector<cv::Point> deck;
     cv::findNonZero(Near(map, ShipColor(0)), deck);
     cv::Point2d sum;
@@ -116,7 +116,7 @@ TEST(Image, MovesTheDisaster) {
   const auto at = [&](float x, float y) {
     auto state = Empty();
     state.disasters.push_back(test::MakeDisaster(0, x, y));
-    state.disasters.front().speed = 0.0F;  // no arrow, so the middle is the centre
+    state.disasters.front().speed = 0.0F;  // no arrow, so the difference is symmetric
     return MiddleOfDifference(empty, MapOf(DrawFarm(spec, state, kSize)));
   };
   const MapView view = PlaceMap(25, 25, kSize).view;
@@ -333,7 +333,7 @@ TEST(Image, SurvivesWhatAnObservationOrAnAttackerMaySend) {
   EXPECT_NO_THROW(DrawFarm(spec, state, kSize, {&wake, &training}));
 }
 
-// How many pixels a layer changes.
+// Returns the number of pixels that a layer changes.
 int Changed(const char* layers, const char* others) {
   auto spec = test::MakeSpec();
   spec.view_mode = aquafarm_msgs::FarmSpec::PARTIAL;

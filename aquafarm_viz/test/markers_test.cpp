@@ -36,7 +36,7 @@ std::set<Key> Keys(const MarkerArray& array) {
   return keys;
 }
 
-// Where a marker's own x (or, for outlines, its bow) points to, as a bearing.
+// Returns the bearing of a marker's x axis (or, for outlines, of its bow).
 double BearingDeg(const Marker& marker, double rest_deg) {
   const auto& q = marker.pose.orientation;
   const double yaw_deg = 2.0 * std::atan2(q.z, q.w) * 180.0 / M_PI;
@@ -151,7 +151,7 @@ TEST(StateMarkers, PointTheArrowWhereTheDisasterHeads) {
   }
   state.disasters.front().heading_deg = 90;
   const auto east = ByKey(StateMarkers(spec, state)).at({"heading", 0}).pose.orientation;
-  EXPECT_NEAR(east.z, 0.0, 1e-12);  // rviz's arrows point east when they are not turned
+  EXPECT_NEAR(east.z, 0.0, 1e-12);  // without rotation rviz arrows point east
   EXPECT_NEAR(east.w, 1.0, 1e-12);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The panel "Ranch" as rviz has it, its buttons pressed with a mouse, beside a ranch that runs.
+// The panel "Ranch" as in rviz, connected to a running ranch. The test clicks its buttons.
 #include <gtest/gtest.h>
 
 #include <QApplication>
@@ -35,7 +35,7 @@ class PanelButtons : public testing::Test {
     }));
   }
 
-  // Lets the window and the topics go on until something is so.
+  // Processes window events and callbacks until a condition is true.
   static bool Until(const std::function<bool()>& is_so, std::chrono::milliseconds limit = kLimit) {
     const auto end = std::chrono::steady_clock::now() + limit;
     while (!is_so()) {
@@ -57,7 +57,7 @@ class PanelButtons : public testing::Test {
     QTest::mouseClick(button, Qt::LeftButton);
   }
 
-  // Chooses in the one box that has it.
+  // Selects an item in the combo box that contains it.
   void Choose(const char* item) {
     for (auto* box : panel_.findChildren<QComboBox*>()) {
       if (const int index = box->findText(item); index >= 0) return box->setCurrentIndex(index);
@@ -88,7 +88,7 @@ TEST_F(PanelButtons, PauseStopsTheFarmStepTakesOneAndItGoesOn) {
   Press("pause");
   ASSERT_TRUE(Until([this] { return Says("   paused") && state_.paused; }));
   const std::uint64_t step = state_.step;
-  Wait(std::chrono::milliseconds(600));  // five steps' time
+  Wait(std::chrono::milliseconds(600));  // the duration of five steps
   EXPECT_EQ(state_.step, step);
   Press("step");
   EXPECT_TRUE(Until([&] { return state_.step == step + 1 && Says("one step, then paused"); }));
@@ -117,7 +117,7 @@ TEST_F(PanelButtons, ThePaceIsThatOfTheBoxes) {
   ASSERT_TRUE(Until([this] { return state_.rate_hz == 50.0 && Says("paced, 50.0 steps/s"); }));
   const std::uint64_t step = state_.step;
   EXPECT_TRUE(
-      Until([&] { return state_.step >= step + 50; }, std::chrono::seconds(3)));  // 8 a second: not
+      Until([&] { return state_.step >= step + 50; }, std::chrono::seconds(3)));  // not at 8 Hz
   SetPace("lockstep", 8.0);
   EXPECT_TRUE(Until(
       [this] { return state_.pace == FarmState::LOCKSTEP && Says("lockstep, 8.0 steps/s"); }));

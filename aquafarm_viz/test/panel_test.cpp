@@ -84,7 +84,7 @@ TEST(RanchModel, ANewTrainingBeginsANewCurve) {
   RanchModel model;
   model.Take(Training(100, 1.0F));
   model.Take(Training(101, 2.0F));
-  model.Take(Training(101, 3.0F));  // no new episode
+  model.Take(Training(101, 3.0F));  // the same episode
   EXPECT_EQ(model.curve().size(), 2U);
   model.Take(Training(1, std::numeric_limits<float>::quiet_NaN()));
   EXPECT_TRUE(model.curve().empty());
@@ -105,7 +105,7 @@ TEST(RanchModel, ADisasterBeginsAtTheShipWithRisksByItsGrade) {
   EXPECT_EQ(model.NextDisaster(), 1);
 }
 
-// What the buttons asked for, as words.
+// Records the requests of the buttons as text.
 struct Asked {
   std::vector<std::string> words;
   RanchButtons Buttons() {
@@ -167,7 +167,7 @@ TEST(RanchWidget, ShowsTablesAndTheCurve) {
                         static_cast<float>(100.0 * std::sin(episode / 10.0))));
   }
   widget.Refresh();
-  widget.Tell("<b>paused</b>");  // no markup
+  widget.Tell("<b>paused</b>");  // must not be parsed as markup
   const QImage after = widget.grab().toImage();
   const QRgb curve = qRgb(0xff, 0xd4, 0x3b);
   EXPECT_EQ(Count(before, curve), 0);

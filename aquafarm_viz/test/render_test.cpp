@@ -43,7 +43,7 @@ class RenderTest : public testing::Test {
 
   std::string Path(const std::string& name) const { return (folder_ / name).string(); }
 
-  // Episodes 12 and 13 with steps 0 to 9, on topics with the prefixes.
+  // Writes episodes 12 and 13 with steps 0 to 9, on topics with the given prefixes.
   std::string MakeBag(const std::vector<std::string>& prefixes) {
     const std::string path = Path("farm.bag");
     rosbag::Bag bag(path, rosbag::bagmode::Write);
@@ -142,7 +142,7 @@ TEST_F(RenderTest, PutsSeveralStepsOfOneEpisodeSideBySide) {
   EXPECT_EQ(cv::norm(picture.colRange(320, 640), cv::imread(Path("y.png"))), 0.0);
 }
 
-// Pictures of a film, as a player sees them.
+// Returns the pictures of a video, decoded as by a player.
 std::vector<cv::Mat> Pictures(const std::string& path) {
   cv::VideoCapture film(path, cv::CAP_FFMPEG);
   std::vector<cv::Mat> pictures;
@@ -159,7 +159,7 @@ TEST_F(RenderTest, MakesAFilmOfOneEpisode) {
     const Result result = Render(bag + " --width 321 --height 241 --fps 5 -o " + path);
     ASSERT_EQ(result.code, 0) << result.output;
     const std::vector<cv::Mat> pictures = Pictures(path);
-    ASSERT_NEAR(double(pictures.size()), 20.0, 1.0) << ending;  // ten steps, and two seconds more
+    ASSERT_NEAR(double(pictures.size()), 20.0, 1.0) << ending;  // ten steps, then two seconds
     ASSERT_EQ(pictures[4].size(), cv::Size(320, 240)) << ending;
     EXPECT_LT(cv::norm(pictures[4], four, cv::NORM_L1) / double(four.total() * 3), 12.0) << ending;
   }
@@ -263,7 +263,7 @@ TEST_F(RenderTest, AFilmMayLeaveStepsOut) {
       Render(bag + " --episode 13 --every 4 --fps 1 --width 160 --height 160 -o " + Path("x.gif"))
           .code,
       0);
-  EXPECT_NEAR(double(Pictures(Path("x.gif")).size()), 6.0, 1.0);  // steps 0, 4, 8, 9, and two more
+  EXPECT_NEAR(double(Pictures(Path("x.gif")).size()), 6.0, 1.0);  // steps 0, 4, 8, 9, then two more
 }
 
 TEST_F(RenderTest, WithoutACodecItSaysWhatElseThereIs) {

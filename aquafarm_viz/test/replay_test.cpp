@@ -24,7 +24,7 @@ class Replay : public testing::Test {
   Replay() : path_(fs::temp_directory_path() / ("replay_test_" + std::to_string(getpid()))) {}
   ~Replay() override { fs::remove(path_); }
 
-  // Episodes 12 and 14 with steps 0, 2, 4 … 98, a step each 0.1 s, and an observation beside each.
+  // Writes episodes 12 and 14 with steps 0, 2, 4 … 98, a step per 0.1 s, and observations.
   std::string MakeBag() {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
     double seconds = 1.0;
@@ -36,7 +36,7 @@ class Replay : public testing::Test {
         auto state = test::MakeState();
         state.episode = episode;
         state.step = step;
-        state.ships[0].x = std::abs(static_cast<int>(step / 2) % 16 - 8);  // to and fro
+        state.ships[0].x = std::abs(static_cast<int>(step / 2) % 16 - 8);  // oscillates
         bag.write("/aquafarm/state", ros::Time(seconds += 0.2), state);
         bag.write("/aquafarm/ship_0/observation", ros::Time(seconds), state);
       }
@@ -58,7 +58,7 @@ class Replay : public testing::Test {
 
 TEST_F(Replay, FindsAStepOrTheNextLaterOneOrTheLast) {
   const ReplayTape tape(MakeBag());
-  EXPECT_EQ(tape.steps().size(), 100U);  // observations are none
+  EXPECT_EQ(tape.steps().size(), 100U);  // observations do not count
   const auto& at = tape.steps().front();
   EXPECT_EQ(tape.Find(at, 12, 4)->step, 4U);
   EXPECT_EQ(tape.Find(at, 14, 5)->step, 6U);
@@ -135,8 +135,8 @@ TEST_F(Replay, WakesAndRoutesAfterAJumpAreThoseOfPlayingThrough) {
   EXPECT_EQ(played[1].Find(0)->places.size(), 31U);
 }
 
-// Of seed 1 episode 5, of seed 1000 episode 5, then that of seed 1 anew; each spec after its first
-// state.
+// Writes episode 5 of seed 1, episode 5 of seed 1000, then episode 5 of seed 1 again. Each spec
+// follows its first state.
 std::string WithTwoSeeds(const std::string& path) {
   rosbag::Bag bag(path, rosbag::bagmode::Write);
   double seconds = 1.0;
@@ -204,7 +204,7 @@ TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
   EXPECT_EQ(FaultOf(path_), path_ + ": no state follows its spec");
   {
     rosbag::Bag bag(path_, rosbag::bagmode::Write);
-    // A connection that calls itself a state, of a definition that is none.
+    // A connection with the type of a state and an invalid definition.
     const auto header = boost::make_shared<ros::M_string>();
     (*header)["type"] = "aquafarm_msgs/FarmState";
     (*header)["md5sum"] = "00000000000000000000000000000000";

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Shows a ranch in the real rviz on a virtual screen and looks at the pixels.
+"""Shows a ranch in rviz on a virtual screen and checks the pixels.
 
-Every shipped configuration must load; devices of all kinds, the ship and the rings must be seen in
-its view, the tables and the training's curve in the panel, and where they belong to the job a
-policy's values, best moves and its choice beside what was done. Skips with a word where rviz or
-Xvfb is not installed. AQUAFARM_SCREENSHOTS=FOLDER keeps the screens as PNG files.
+Every shipped configuration must load. Its view must show devices of all kinds, the ship and the
+rings. The panel must show the tables and the training curve. Some configurations must also show a
+policy's values, its greedy actions, and its choice next to the recorded actions. Skips with a
+message if rviz or Xvfb is not installed. AQUAFARM_SCREENSHOTS=FOLDER saves the screens as PNGs.
 """
 import os
 import shutil
@@ -30,7 +30,7 @@ DISPLAY = ":%d" % (100 + os.getpid() % 800)
 LIMIT_S = 60
 SIDE = 25
 WHY_NOT = "" if shutil.which("Xvfb") and shutil.which("rviz") else "rviz or Xvfb is not installed"
-# Colours of palette.cpp, R G B, in the view.
+# Colours of palette.cpp in the view, as R, G, B.
 WANTED = {
     "temporary breeding": (0xff, 0xa9, 0x4d),
     "monitoring": (0xff, 0xe0, 0x3d),
@@ -42,13 +42,13 @@ WANTED = {
 }
 ROUTE = {"route, a thin line over the sea": (0x57, 0x97, 0xc5)}
 CHOICE = {"choice of the other policy": (0xff, 0x4f, 0xd8)}
-# The same in the panel: CurveWidget's colours.
+# Colours of CurveWidget in the panel.
 PANEL = {
     "back of the curve": (0x10, 0x1d, 0x2a),
     "curve of mean returns": (0xff, 0xd4, 0x3b),
     "curve of success": (0x5f, 0xe0, 0x8a),
 }
-PANEL_WIDTH = 560  # of a window of 1600 x 900
+PANEL_WIDTH = 560  # in a window of 1600 x 900
 VIEW = (slice(80, 860), slice(600, 1190))
 
 
@@ -74,7 +74,7 @@ def farm_state(step):
 
 
 def corner_state(spec, step, outside=False):
-    """A device of each kind, in a corner each, or outside of the farm, where none is drawn."""
+    """Returns a state with one device of each kind in the corners, or outside the farm."""
     state = FarmState(observer=-1, seed=1, episode=spec.episode, step=step)
     corners = [(x, y) for x in (0, spec.width - 1) for y in (0, spec.height - 1)]
     if outside:
@@ -86,7 +86,7 @@ def corner_state(spec, step, outside=False):
 
 
 def values():
-    """V of each cell, highest in the north-east, as a grid and as points; all moves go north."""
+    """Returns V of each cell (max in the north-east) as a grid and as points; all moves go north."""
     grid = OccupancyGrid()
     grid.header.frame_id = "map"
     grid.info.width = grid.info.height = SIDE
@@ -113,7 +113,7 @@ def training(episode):
 
 
 def screen(path):
-    """The picture of an Xvfb screen, [height, width, RGB], from its frame buffer file (XWD)."""
+    """Returns the picture of an Xvfb screen, [height, width, RGB], from its XWD file."""
     with open(path, "rb") as file:
         data = file.read()
     header = struct.unpack(">25I", data[:100])
@@ -125,7 +125,7 @@ def screen(path):
 
 
 def missing(picture, wanted):
-    """The wanted things whose colour is not in the picture, with the pixels there are."""
+    """Returns the names of absent colours with the number of their pixels in the picture."""
     def seen(color):
         near = numpy.abs(picture.astype(int) - numpy.array(color)).max(axis=2) <= 30
         return int(near.sum())
@@ -133,12 +133,12 @@ def missing(picture, wanted):
 
 
 def words(picture):
-    """How many pixels of a picture are ink: darker than half, on paper."""
+    """Returns the number of dark pixels (text) of a picture."""
     return int((picture.max(axis=2) < 100).sum())
 
 
 def arrows(picture):
-    """How many pixels are the paper of best moves."""
+    """Returns the number of light pixels, which are the arrows of greedy actions."""
     return int((picture.min(axis=2) > 200).sum())
 
 
@@ -177,11 +177,11 @@ class RvizTest(unittest.TestCase):
         folder = os.environ.get("AQUAFARM_SCREENSHOTS")
         if not folder:
             return
-        import cv2  # only for people who look
+        import cv2  # only needed for screenshots
         cv2.imwrite(os.path.join(folder, name + ".png"), picture[:, :, ::-1])
 
     def open_rviz(self, job):
-        """Opens rviz with a configuration; returns where its screen's picture is."""
+        """Opens rviz with a configuration. Returns the path of its frame buffer file."""
         self.start("xvfb", "Xvfb", DISPLAY, "-screen", "0", "1600x900x24", "-fbdir", self.folder,
                    "-nolisten", "tcp")
         time.sleep(1)
@@ -191,7 +191,7 @@ class RvizTest(unittest.TestCase):
         return os.path.join(self.folder, "Xvfb_screen0")
 
     def show(self, job, view_wanted, look=lambda view: True):
-        """Shows the ranch with a configuration until all that is wanted is seen."""
+        """Shows the ranch with a configuration until all wanted colours are visible."""
         frame_buffer = self.open_rviz(job)
         end = time.monotonic() + LIMIT_S
         step = 0
@@ -230,7 +230,7 @@ class RvizTest(unittest.TestCase):
                 absent = missing(picture[VIEW], devices)
             self.keep(picture, "size_%d" % episode)
             self.assertFalse(absent, "a farm of %d x %d cells of %g m" % size)
-            # The next farm must not be taken for seen on this one's picture.
+            # Clear the picture, so that it cannot pass for that of the next farm.
             end = time.monotonic() + LIMIT_S
             while len(absent) < len(devices) and time.monotonic() < end:
                 step += 1
@@ -253,7 +253,7 @@ class RvizTest(unittest.TestCase):
 
 
 def tell_skipped():
-    """Leaves a result that says so: rosunit's own counts what was skipped as passed."""
+    """Writes a result file with skipped tests, because rosunit counts skipped tests as passed."""
     names = unittest.TestLoader().getTestCaseNames(RvizTest)
     suite = ElementTree.Element("testsuite", tests=str(len(names)), errors="0", failures="0")
     for name in names:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers of the sea below the farm, and rings that are no circles.
+// Sea layers below the farm, and rings that are not circles.
 #include <gtest/gtest.h>
 
 #include <stdexcept>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr ImageSize kSize{800, 640};
 
-/// A ranch of 8 x 8 cells whose sea is warmer to the north, unknown in the north-east corner.
+/// Returns a ranch of 8 x 8 cells. The sea gets warmer to the north; the NE corner is unknown.
 aquafarm_msgs::FarmSpec Warm() {
   aquafarm_msgs::FarmSpec spec = test::MakeSpec(8);
   spec.islands.clear();
@@ -95,7 +95,7 @@ TEST(SeaLayer, ThatWasRefusedIsRefusedAgain) {
   EXPECT_EQ(cv::norm(warm, again, cv::NORM_INF), 0.0) << "and what was drawn before is drawn whole";
 }
 
-/// A storm in the middle that reaches to the north-east alone.
+/// Returns a state with a storm in the centre whose rings reach only to the north-east.
 aquafarm_msgs::FarmState Lopsided() {
   aquafarm_msgs::FarmState state = Empty();
   state.disasters.push_back(test::MakeDisaster(0, 3.5F, 3.5F));

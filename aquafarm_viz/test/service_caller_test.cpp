@@ -40,7 +40,7 @@ class ServiceCallerTest : public testing::Test {
  protected:
   ServiceCallerTest() : spinner_(1) { spinner_.start(); }
 
-  // Calls a service and waits for its line; the call itself must return at once.
+  // Calls a service and waits for its line. The call itself must return immediately.
   std::string LineOf(const std::string& name) {
     std::mutex mutex;
     std::condition_variable came;
@@ -58,7 +58,7 @@ class ServiceCallerTest : public testing::Test {
     return line;
   }
 
-  // Clicks on one caller so many times, and waits for as many lines.
+  // Calls a service `clicks` times and waits for as many lines.
   std::vector<std::string> LinesOf(const std::string& name, std::size_t clicks) {
     std::mutex mutex;
     std::condition_variable came;
@@ -111,7 +111,7 @@ TEST_F(ServiceCallerTest, EachCallOfOneCallerHasTheWholeLimit) {
 
 TEST_F(ServiceCallerTest, ACallTooManyIsRefusedWithALine) {
   const auto server = node_.advertiseService("quick", AnswerQuickly);
-  const auto lines = LinesOf("quick", 11);  // one under way at most, and eight that wait
+  const auto lines = LinesOf("quick", 11);  // at most one is running and eight wait
   EXPECT_EQ(lines.size(), 11U);
   const std::string refused = "/quick: not called, 8 calls wait for their answers already";
   const auto refusals = std::count(lines.begin(), lines.end(), refused);

@@ -87,7 +87,7 @@ TEST(Values, RefusesACloudOfAnotherKind) {
             "values/points: got 100 bytes, expected 625 x 1 points of 17");
   EXPECT_EQ(FaultOf([](auto& cloud) {
               cloud.width = cloud.height = 1U << 31U;
-              cloud.point_step = 32;  // together 2^67 bytes, which 64 bits hold as none
+              cloud.point_step = 32;  // the product of 2^67 bytes overflows 64 bits
               cloud.data.clear();
             }),
             "values/points: got 0 bytes, expected 2147483648 x 2147483648 points of 32");
@@ -98,11 +98,11 @@ TEST(Values, RefusesACloudOfAnotherKind) {
             "values/points: field x: got type 7 at byte 0, expected type 7 within point_step");
 }
 
-// Of 255: a rim is blended from many strokes, of which OpenCV rounds each to a whole colour; laid
-// over at once they are rounded once.
+// Max difference, of 255. An edge is blended from many strokes, and OpenCV rounds after each
+// stroke. A cached drawing is blended and rounded only once.
 constexpr double kRounding = 12.0;
 
-// A painter keeps what it has drawn of values; that must never show in place of others.
+// A painter caches the drawing of values. It must never show the cache for other values.
 TEST(Values, APainterDrawsThemAsOneThatHasDrawnNothingElse) {
   using Farms = std::vector<const aquafarm_msgs::FarmSpec*>;
   using Maps = std::vector<const Values*>;
@@ -131,13 +131,13 @@ TEST(Values, APainterDrawsThemAsOneThatHasDrawnNothingElse) {
       EXPECT_GT(cv::norm(draw(painter, *farm, &turned, layers), draw(away, *farm, &values, layers),
                          cv::NORM_INF),
                 2 * kRounding);
-      draw(painter, farm == &spec ? other : spec, nullptr, layers);  // a new background between
+      draw(painter, farm == &spec ? other : spec, nullptr, layers);  // with another background
     }
   }
 }
 
-// Cells of whole pixels have their signs where they would be drawn one by one, the others' signs
-// are at the nearest pixel.
+// In cells of whole pixels the cached symbols are at the exact position, in other cells at the
+// nearest pixel.
 TEST(Values, SignsPutOnAMapAreThoseDrawnOnIt) {
   for (const int side : {10, 25, 33, 100, 500}) {
     auto values = ReadValues(test::MakeCloud(side), test::MakeSpec(side));

@@ -22,7 +22,7 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-// Plays the sim node with messages made by hand. No /clock runs: the node must not need it.
+// Publishes messages in place of the sim node, without /clock: the node must not need it.
 class VizNodeTest : public testing::Test {
  protected:
   static constexpr double kLimit_s = 10.0;
@@ -53,7 +53,7 @@ class VizNodeTest : public testing::Test {
     }
   }
 
-  // Each test plays an episode of its own.
+  // Each test plays a different episode.
   void Play(std::uint64_t episode, std::uint64_t step) {
     auto state = test::MakeState();
     state.episode = episode;
@@ -100,7 +100,7 @@ TEST_F(VizNodeTest, CompressesOnlyWhatIsAskedFor) {
     const auto subscriber = node_.subscribe<sensor_msgs::CompressedImage>(
         "image/compressed", 10,
         [&](const sensor_msgs::CompressedImageConstPtr& image) { images.push_back(image); });
-    // Nothing moves, yet whoever comes gets a picture.
+    // No new state arrives, but a new subscriber gets a picture.
     ASSERT_TRUE(Until([&] { return !images.empty(); }));
   }
   const cv::Mat picture = cv::imdecode(images.back()->data, cv::IMREAD_COLOR);
@@ -130,9 +130,9 @@ TEST_F(VizNodeTest, TellsEachShipsRouteAsAPathInMetres) {
   EXPECT_EQ(path->poses.back().pose.position.y, 7 * cell_m);
 }
 
-// Counts what comes on `markers`.
+// Counts the messages and namespaces of `markers`.
 struct MarkerCount {
-  std::map<std::string, int> delete_all;  // by episode, as the status names it
+  std::map<std::string, int> delete_all;  // by episode, as written in the status
   std::set<std::string> spaces;
   std::string status;
   void Take(const MarkerArray& array) {
@@ -192,7 +192,7 @@ TEST_F(VizNodeTest, WaitsForTheSpecThatFits) {
 TEST_F(VizNodeTest, DrawsThePolicysMovesAndAsksForValuesOnlyWhileSomebodyLooks) {
   ros::Publisher values = node_.advertise<sensor_msgs::PointCloud2>("values/points", 1, true);
   auto cloud = test::MakeCloud();
-  cloud.point_step = 1;  // hostile
+  cloud.point_step = 1;  // invalid
   values.publish(cloud);
   Announce(80);
   Play(80, 1);

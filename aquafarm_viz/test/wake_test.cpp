@@ -91,7 +91,7 @@ TEST(Wake, ARouteGoesOnWhereStatesWereMissedAndAWakeBeginsAnew) {
   ASSERT_EQ(route.Find(0)->places.size(), 5U);
   EXPECT_TRUE(Wake::IsGap(route.Find(0)->places[2], route.Find(0)->places[3]));
   EXPECT_FALSE(Wake::IsGap(route.Find(0)->places[3], route.Find(0)->places[4]));
-  EXPECT_EQ(route.Find(0)->UnbrokenFrom(), 3U);  // what a path shows, which can leave nothing out
+  EXPECT_EQ(route.Find(0)->UnbrokenFrom(), 3U);  // a Path cannot contain gaps
   EXPECT_EQ(wake.Find(0)->UnbrokenFrom(), 0U);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Every topic, service and frame name of a ranch, relative to its namespace unless it begins with
-/// a slash. Nodes and clients take them from here.
+/// The names of all topics, services and frames of a ranch. A name is relative to the ranch's
+/// namespace unless it starts with a slash. Nodes and clients must use these constants.
 
 #include <cstdint>
 #include <string>
@@ -35,11 +35,11 @@ inline constexpr const char* kSetPace = "set_pace";
 inline constexpr const char* kMapFrame = "map";
 inline constexpr const char* kEarthFrame = "earth";
 
-/// Name of a ship's own namespace and tf frame.
+/// Name of a ship's namespace and tf frame.
 inline std::string Ship(std::int32_t id) { return "ship_" + std::to_string(id); }
 /// Name of a disaster's tf frame.
 inline std::string Disaster(std::int32_t id) { return "disaster_" + std::to_string(id); }
-/// Topic of a layer of the sea as a grid to look at; its numbers are at "values" below it.
+/// Topic of a sea layer as a grid for display. SeaValues is the topic of its numbers.
 inline std::string Sea(const std::string& layer) { return std::string(kSea) + "/" + layer; }
 inline std::string SeaValues(const std::string& layer) { return Sea(layer) + "/values"; }
 inline std::string Observation(std::int32_t ship) { return Ship(ship) + "/observation"; }

@@ -12,12 +12,12 @@
 
 namespace aquafarm_sim {
 
-/// Reads a node's private parameters; each is used or refused.
+/// Reads a node's private parameters. Every parameter is either used or refused.
 class Params {
  public:
   explicit Params(const ros::NodeHandle& private_node) : node_(private_node) {}
 
-  // Each leaves `value` as it is when the parameter is absent.
+  // Each function leaves `value` unchanged if the parameter is not set.
   // @throws InputError "~episodes: got -1, expected [0, 2147483647]"
 
   void Text(const std::string& name, std::string& value) { Read(name, "a text", value); }
@@ -29,10 +29,10 @@ class Params {
     if (Read(name, "a number", value)) CheckRange(name, value, min, max);
   }
 
-  /// Leaves a parameter to others, such as a library that reads it.
+  /// Allows a parameter that other code reads, such as a library.
   void Allow(const std::string& name) { known_.push_back(name); }
 
-  /// @throws InputError naming an unknown parameter, and those there are
+  /// @throws InputError that names an unknown parameter and lists the known ones
   void RefuseOthers() const {
     std::vector<std::string> there;
     node_.getParamNames(there);
@@ -47,7 +47,7 @@ class Params {
     }
   }
 
-  /// "name:=value" of what was given; for records.
+  /// The parameters that were set, as "name:=value", for run records.
   const std::vector<std::string>& given() const { return given_; }
 
  private:

@@ -41,10 +41,10 @@ std::string Missing(std::uint64_t first, std::uint64_t last) {
   return "steps " + Number(first) + " to " + Number(last) + " are missing";
 }
 
-/// One episode of a bag, simulated along.
+/// Simulates one episode of a bag in parallel with reading it.
 class Simulation {
  public:
-  /// @throws InputError when the spec's scenario is none
+  /// @throws InputError if the spec does not contain a valid scenario
   explicit Simulation(const FarmSpec& spec)
       : scenario_(std::make_shared<const aquafarm::Scenario>(
             aquafarm::ParseScenario(spec.scenario_yaml, "spec.scenario_yaml"))),
@@ -53,7 +53,7 @@ class Simulation {
     farm_.Reset(spec.seed, spec.episode);
   }
 
-  /// Each answers with the first difference, or nothing.
+  /// Each Check returns the first difference; empty if there is none.
   std::string Check(const FarmSpec& spec) const {
     const aquafarm::Encoder encoder(*scenario_);
     FarmSpec simulated;
@@ -91,7 +91,7 @@ class Simulation {
     return difference.empty() ? "" : "episode." + difference;
   }
 
-  /// A grid of the present state; one of another moment is passed over.
+  /// Checks a grid of the current state. A grid of another time is skipped.
   std::string Check(const OccupancyGrid& grid, bool is_chart) const {
     OccupancyGrid simulated;
     if (is_chart) {
@@ -154,19 +154,19 @@ class Simulation {
   std::shared_ptr<const aquafarm::Scenario> scenario_;
   Farm farm_;
   ros::Time spec_stamp_;
-  bool begun_{};     // something of this episode was seen, so the next thing is where it stands
-  bool seen_{};      // the state where the farm stands was compared
-  ros::Time stamp_;  // of that state
+  bool begun_{};     // a message of this episode was read, so the next one must match its step
+  bool seen_{};      // the current state of the farm was compared
+  ros::Time stamp_;  // stamp of that state
 };
 
 /// Seed and episode.
 using Key = std::pair<std::uint64_t, std::uint64_t>;
 
-/// Takes a bag's messages in, in order. Topics come over connections of their own, so a live
-/// recording may hold an episode's first state before its spec and its summary before its end.
+/// Checks a bag's messages in order. Each topic has a separate connection, so a live recording may
+/// contain an episode's first state before its spec, and its summary before its last state.
 class Checker {
  public:
-  /// @param path of the bag, for messages
+  /// @param path path of the bag, for error messages
   Checker(std::map<Key, FarmSpec> specs, std::multimap<Key, EpisodeSummary> summaries,
           std::string path)
       : specs_(std::move(specs)), summaries_(std::move(summaries)), path_(std::move(path)) {}
@@ -186,7 +186,7 @@ class Checker {
     return Compared(Step(), simulation_->Check(*grid, is_chart));
   }
 
-  /// @returns false at a difference
+  /// @returns false if there is a difference
   bool EndEpisode() {
     if (!simulation_) return true;
     const Farm& farm = simulation_->farm();
@@ -215,11 +215,11 @@ class Checker {
     return true;
   }
 
-  /// Looks at what no state belongs to. @returns false at a difference
+  /// Checks messages that belong to no state. @returns false if there is a difference
   bool End() {
     if (!EndEpisode()) return false;
     for (const auto& [key, summary] : summaries_) {
-      // Of a ranch of many farms a live recording has all summaries, but the states of one farm.
+      // A live recording of many farms has the summaries of all farms, but the states of farm 0.
       const bool of_other_farm = summary.farm != 0 && specs_.count(key) == 0 && check_.episodes > 0;
       if (of_other_farm && specs_.begin()->second.farms > 1) continue;
       check_.difference = "episode " + Number(key.second) + " of seed " + Number(key.first) +
@@ -239,7 +239,7 @@ class Checker {
 
   std::uint64_t Step() const { return static_cast<std::uint64_t>(simulation_->farm().step()); }
 
-  /// Goes on with an episode, or begins it; a step 0 after others begins it again.
+  /// Continues an episode or starts it. A step 0 after other steps restarts it.
   bool Enter(const Key& key, std::uint64_t step) {
     if (simulation_ && key == key_ && (step != 0 || Step() == 0)) return true;
     if (!EndEpisode()) return false;
@@ -258,9 +258,9 @@ class Checker {
   }
 
   const std::map<Key, FarmSpec> specs_;
-  std::multimap<Key, EpisodeSummary> summaries_;  // those not yet compared
+  std::multimap<Key, EpisodeSummary> summaries_;  // summaries that are not yet compared
   const std::string path_;
-  Key key_;  // of the simulation
+  Key key_;  // key of the simulated episode
   std::optional<Simulation> simulation_;
   BagCheck check_;
 };
@@ -278,7 +278,7 @@ Summaries ReadSummaries(const rosbag::Bag& bag, const std::string& topic) {
   return all;
 }
 
-/// @param difference set where a spec says otherwise than one before of the same episode
+/// @param difference set if a spec differs from an earlier one of the same episode
 Specs ReadSpecs(const rosbag::Bag& bag, const std::string& topic, std::string& difference) {
   Specs all;
   for (const auto& message : rosbag::View(bag, rosbag::TopicQuery(topic))) {
@@ -295,7 +295,7 @@ Specs ReadSpecs(const rosbag::Bag& bag, const std::string& topic, std::string& d
   return all;
 }
 
-/// @throws InputError when an episode was recorded by another version
+/// @throws InputError if an episode was recorded by another version
 void CheckVersions(const std::map<Key, FarmSpec>& specs, const std::string& path) {
   for (const auto& [key, spec] : specs) {
     if (spec.version == aquafarm::kVersion) continue;

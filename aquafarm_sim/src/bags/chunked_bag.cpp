@@ -17,13 +17,13 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
-// Of the first record's fields and what fills it up. Whoever appends or reindexes writes it again
-// in place, so it has to be as long as rosbag's.
+// Length of the first record's fields and padding. Tools that append or reindex overwrite the
+// record in place, so it must be as long as rosbag's.
 constexpr std::size_t kHeaderBytes = 4096;
 constexpr std::size_t kMostChunkBytes = std::size_t{256} << 20U;  // lz4 and readers count in int
-constexpr int kLz4Block = 6;                                      // of 1 MiB, as rosbag has it
+constexpr int kLz4Block = 6;                                      // 1 MiB, as in rosbag
 
-// As the format asks for, and as every machine that ROS runs on has it: the least byte first.
+// The format requires little-endian byte order. All machines that ROS supports are little-endian.
 template <typename Number>
 void Put(Number number, Bytes& bytes) {
   const auto* const first = reinterpret_cast<const std::uint8_t*>(&number);
@@ -41,7 +41,7 @@ void Put(const ros::Time& time, Bytes& bytes) {
   Put(time.nsec, bytes);
 }
 
-/// Fields, each with its length before it, behind the length of all.
+/// Serializes fields, each preceded by its length, and all preceded by the total length.
 class Fields {
  public:
   explicit Fields(Bytes& bytes) : bytes_(bytes), begin_(bytes.size()) {
@@ -79,7 +79,7 @@ void PutData(const Bytes& data, Bytes& bytes) {
 }
 
 void Compress(Bytes& source, Bytes& compressed) {
-  // What does not become smaller is stored as it is, with a few bytes a block and at the ends.
+  // Incompressible data is stored uncompressed, with a few bytes of overhead per block and frame.
   compressed.resize(source.size() + source.size() / 1024 + 64);
   auto size = static_cast<unsigned>(compressed.size());
   const int result = roslz4_buffToBuffCompress(
@@ -204,7 +204,7 @@ void ChunkedBag::WriteBagHeader(std::uint64_t index_position) {
       .Add("index_pos", index_position)
       .Add("op", BagOp::kBag)
       .End();
-  const std::size_t fields = header.size() - sizeof(std::uint32_t);  // without their length
+  const std::size_t fields = header.size() - sizeof(std::uint32_t);  // without the total length
   PutData(Bytes(kHeaderBytes - fields, ' '), header);
   WriteFile(header);
 }

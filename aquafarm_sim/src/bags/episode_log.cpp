@@ -22,7 +22,7 @@ using aquafarm::Farm;
 constexpr std::int32_t kRiskPeriod = 10;  // steps
 constexpr std::int32_t kMoment_ns = 1000;
 
-/// The messages of one episode as it is played.
+/// Creates and writes the messages of one episode during its simulation.
 class Messages {
  public:
   Messages(ChunkedBag& bag, const EpisodeTape& tape, const BagFormat& format)
@@ -66,14 +66,14 @@ class Messages {
   }
 
  private:
-  // A bag knows no time 0, so an episode begins one period after it.
+  // A bag cannot contain time 0, so an episode starts one period after it.
   void SetTime(std::int32_t step) {
     const ros::Time stamp(static_cast<double>(step + 1) / context_.rate_hz);
     if (stamp != context_.stamp) order_ = 0;
     context_.stamp = stamp;
   }
 
-  // Readers get messages of one time in any order, so each comes a moment after the one before.
+  // Readers get messages of equal time in any order, so each message is kMoment_ns after the last.
   template <typename Message>
   void Write(const char* name, const Message& message) {
     bag_.Write(format_.ns + name, context_.stamp + ros::Duration(0, kMoment_ns * order_++),
@@ -83,7 +83,7 @@ class Messages {
   ChunkedBag& bag_;
   const BagFormat& format_;
   MessageContext context_;
-  std::int32_t order_{};  // of the next message among those of this stamp
+  std::int32_t order_{};  // index of the next message among those of this stamp
   aquafarm_msgs::FarmState state_;
   nav_msgs::OccupancyGrid risk_;
 };
@@ -100,7 +100,7 @@ void Play(Farm& farm, const EpisodeTape& tape, Messages& messages) {
   if (tape.first_step == 0) {
     messages.State(farm);
   } else {
-    farm.Load(tape.changes.front().state);  // so that the first change is of the farm's step
+    farm.Load(tape.changes.front().state);  // the first change is then at the farm's step
   }
   take_changes();
   const std::size_t agents = farm.ships().size();

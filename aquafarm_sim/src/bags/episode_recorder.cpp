@@ -17,25 +17,26 @@
 namespace aquafarm_sim {
 namespace {
 
-/// Whoever steps goes before this thread. Not SCHED_IDLE, which starves beside other programs, and
-/// which a user without privileges could not end once the farms have to wait.
+/// Gives the stepping threads priority over this thread. SCHED_IDLE is not used: the thread would
+/// starve next to other programs, and a user without privileges cannot leave SCHED_IDLE when the
+/// farms have to wait.
 void StepBack() {
-  // As sched_setattr(2) has it; its header cannot stand beside sched.h.
+  // As in sched_setattr(2), whose header conflicts with sched.h.
   struct {
     std::uint32_t size{48};
     std::uint32_t policy{SCHED_OTHER};
     std::uint64_t flags{};
     std::int32_t nice{19};
     std::uint32_t priority{};
-    // Linux since 6.6 leaves a thread the processor for its slice, whoever wakes in the meantime,
-    // and since 6.12 lets it ask for a short one.
-    std::uint64_t runtime_ns{100'000};  // of a slice: the least there is
+    // Since Linux 6.6 a thread keeps the processor for its time slice even if another thread wakes
+    // up. Since 6.12 a thread can request a short time slice.
+    std::uint64_t runtime_ns{100'000};  // time slice: the min that Linux accepts
     std::uint64_t deadline_ns{};
     std::uint64_t period_ns{};
   } attributes;
   static_assert(sizeof(attributes) == 48);
   if (syscall(SYS_sched_setattr, 0, &attributes, 0U) == 0) return;
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), attributes.nice);  // where it is forbidden
+  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), attributes.nice);  // fallback
 }
 
 std::string MakeFolder(std::string folder) {
@@ -93,7 +94,7 @@ void EpisodeRecorder::OnStart(const aquafarm::Farm& farm, std::int32_t number,
   tape.farm = number;
   tape.seed = farm.seed();
   tape.episode = farm.episode();
-  tape.paced = context.paced && number == 0;  // the others know joint steps alone
+  tape.paced = context.paced && number == 0;  // the other farms only take joint steps
   tape.rate_hz = context.rate_hz;
   tape.first_step = farm.step();
   if (farm.step() != 0) tape.changes.push_back({farm.step(), farm.Save()});
@@ -112,7 +113,7 @@ void EpisodeRecorder::OnStep(const aquafarm::Farm& farm, std::int32_t number,
 void EpisodeRecorder::OnIntervention(const aquafarm::Farm& farm, std::int32_t number) {
   auto& changes = tapes_[static_cast<std::size_t>(number)].changes;
   if (changes.empty() || changes.back().step != farm.step()) changes.emplace_back();
-  changes.back() = {farm.step(), farm.Save()};  // what a step begins with counts
+  changes.back() = {farm.step(), farm.Save()};  // only the last change before a step counts
 }
 
 bool EpisodeRecorder::Wants(const EpisodeTape& tape) {
@@ -170,7 +171,7 @@ void EpisodeRecorder::Run() {
     try {
       Write(tape);
       written = true;
-    } catch (const TapeError& error) {  // costs this one alone
+    } catch (const TapeError& error) {  // only this episode is lost
       ROS_ERROR("an episode is not kept: %s", error.what());
     } catch (const std::exception& error) {
       fault = error.what();
@@ -191,7 +192,7 @@ void EpisodeRecorder::Run() {
 void EpisodeRecorder::Write(const EpisodeTape& tape) {
   const std::string name = BagName(tape);
   std::string path = folder_ + "/" + name;
-  // One of the same name is another's: of a farm, a load or a run before.
+  // A file of the same name belongs to another farm, a load_state or an earlier run.
   for (int i = 2; std::filesystem::exists(path); ++i) {
     path = folder_ + "/" + name.substr(0, name.size() - 4) + "_" + std::to_string(i) + ".bag";
   }

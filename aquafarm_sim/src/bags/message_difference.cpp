@@ -13,7 +13,8 @@ struct Line {
   std::string value;
 };
 
-// roscpp prints "name: value", nested by two blanks; an array entry names its array again.
+// roscpp prints "name: value", indented by two spaces per level. An array entry repeats the name of
+// its array.
 Line ReadLine(std::istringstream& text) {
   std::string line;
   std::getline(text, line);

@@ -39,7 +39,7 @@ void FillShip(const aquafarm::Farm& farm, std::int32_t id, aquafarm_msgs::ShipSt
   message.legal_actions = farm.LegalActions(id);
 }
 
-/// A ship of which no more is known than where it is, if that.
+/// Fills a ship of which at most the position is known.
 void FillOtherShip(const aquafarm::Farm& farm, const aquafarm::KnownShip& known,
                    aquafarm_msgs::ShipState& message) {
   const aquafarm::Ship& ship = farm.ships()[static_cast<std::size_t>(known.id)];
@@ -259,7 +259,7 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const Message
   const aquafarm::Ship& self = farm.ships()[static_cast<std::size_t>(view.ship)];
   if (farm.scenario().view.mode == aquafarm::ViewMode::kFull) {
     ToMsg(farm, context, message);
-    for (std::size_t i = 0; i < view.disasters.size(); ++i) {  // as it is forecast to move
+    for (std::size_t i = 0; i < view.disasters.size(); ++i) {  // the forecast motion
       message.disasters[i].motion_x = view.disasters[i].belief.dx;
       message.disasters[i].motion_y = view.disasters[i].belief.dy;
     }

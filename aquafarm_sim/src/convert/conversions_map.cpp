@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids and frames: from cells and compass bearings to metres and ROS's axes.
+// Grids and frames: converts cells and compass bearings to metres and ROS axes.
 #include <Eigen/Geometry>
 #include <GeographicLib/Geocentric.hpp>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace aquafarm_sim {
 namespace {
 
-/// The worst risk that a disaster may have (§2.1).
+/// The worst possible risk of a disaster (§2.1 of the paper, docs/model.md).
 constexpr float kWorstRisk = -20.0F;
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 
@@ -57,7 +57,7 @@ void SeaToMsg(const aquafarm::SeaLayer& layer, const aquafarm::Scenario& scenari
   FillGridInfo(scenario, context, message);
   float least = std::numeric_limits<float>::infinity();
   float greatest = -least;
-  for (const float value : layer.values) {  // fmin and fmax pass over NaN
+  for (const float value : layer.values) {  // fmin and fmax ignore NaN
     least = std::fmin(least, value);
     greatest = std::fmax(greatest, value);
   }
@@ -111,7 +111,7 @@ geometry_msgs::TransformStamped EarthToMsg(const aquafarm::GeoPoint& origin,
   message.header.stamp = context.stamp;
   message.header.frame_id = earth_frame;
   message.child_frame_id = context.map_frame;
-  std::vector<double> rotation(9);  // row by row; turns (east, north, up) into ECEF
+  std::vector<double> rotation(9);  // [3, 3] row-major, from (east, north, up) to ECEF
   auto& translation = message.transform.translation;
   GeographicLib::Geocentric::WGS84().Forward(origin.latitude, origin.longitude, 0.0, translation.x,
                                              translation.y, translation.z, rotation);

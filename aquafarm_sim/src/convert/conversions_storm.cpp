@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Storms on the globe, as bulletins announce them.
+// Storms in geographic coordinates, as announced by bulletins.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,7 +12,7 @@ namespace aquafarm_sim {
 namespace {
 
 constexpr std::size_t kMaxFixes = 10000;
-constexpr std::size_t kMostRings = 8;  // winds that any source speaks of
+constexpr std::size_t kMostRings = 8;  // max number of wind radii in any source
 
 void CheckNumber(const std::string& name, double value, double low, double high) {
   if (value >= low && value <= high) return;  // false for NaN
@@ -77,7 +77,7 @@ aquafarm::HazardFix FixFrom(const aquafarm_msgs::StormFix& message, const std::s
   return fix;
 }
 
-// @param after time that the first must be later than
+// @param after the first fix must be later than this time
 std::vector<aquafarm::HazardFix> FixesFrom(const std::vector<aquafarm_msgs::StormFix>& messages,
                                            const std::string& name, std::int64_t after) {
   CheckCount(name, messages.size(), kMaxFixes);

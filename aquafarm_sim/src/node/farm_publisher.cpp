@@ -15,16 +15,17 @@ namespace {
 
 constexpr std::uint32_t kQueue = 10;
 constexpr std::uint32_t kRecordQueue = 10000;
-// rosbag record keeps 100 messages a topic while it writes a chunk; what comes faster is lost.
+// rosbag record queues 100 messages per topic while it writes a chunk and drops further ones.
 constexpr std::chrono::milliseconds kRecordPeriod{2};
 constexpr std::size_t kMaxSummaries = 1000;
-// A recorder connects to its topics one after the other: it is ready when none came for so long.
+// A recorder connects to its topics one after the other. It is ready if no connection is added for
+// this time.
 const ros::WallDuration kRecorderGrace(0.5);
 
 }  // namespace
 
-// A late subscriber gets the last message at once; a latched topic would mark it so in bags, where
-// a slice without its start would then show a state that is long past.
+// A late subscriber gets the last message immediately. The topic is not latched: a latched message
+// is marked in bags, and a slice of such a bag without its start would show an outdated state.
 template <typename Message>
 void RanchPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
                                Topic<Message>& topic) {
@@ -61,7 +62,7 @@ RanchPublisher::RanchPublisher(const ros::NodeHandle& node_handle, const SimPara
   Advertise(node, names::kState, state_);
   Advertise(node, names::kRisk, risk_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
-    // A ship's driver that comes late sees at once where it is.
+    // A ship's driver that subscribes late receives the current observation immediately.
     const ros::SubscriberStatusCallback greet =
         [this, ship](const ros::SingleSubscriberPublisher& subscriber) {
           ranch_.Inspect([&](const RanchView& view) {
@@ -184,7 +185,7 @@ void RanchPublisher::Fill(const RanchView& view) {
   FillFrames(view);
 }
 
-// Whoever drives a ship by what it sees must see each step; nobody else needs to.
+// A node that drives a ship by its observations must receive every step; other nodes need not.
 void RanchPublisher::PublishObservations(const RanchView& view) {
   const std::lock_guard<std::mutex> lock(observation_mutex_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
@@ -256,7 +257,8 @@ void RanchPublisher::Send() {
   frames_.sendTransform(frame_messages_);
 }
 
-// They stay, but a slice of a bag from an episode's start on shall have them.
+// Sea layers are constant. They are sent again at each episode's start so that a slice of a bag
+// from there contains them.
 void RanchPublisher::SendSeas() {
   const aquafarm::Scenario& scenario = ranch_.scenario();
   for (std::size_t i = 0; i < seas_.size(); ++i) {

@@ -32,8 +32,8 @@ namespace {
 constexpr std::uint32_t kCommonThreads = 2;
 constexpr double kDiagnosticsPeriod_s = 1.0;
 constexpr double kLookPeriod_s = 0.05;
-constexpr double kAtWork_s = 2.0;     // since the last joint step
-constexpr double kSaveLimit_s = 8.0;  // roslaunch kills after 15
+constexpr double kAtWork_s = 2.0;     // max time since the last joint step of a running trainer
+constexpr double kSaveLimit_s = 8.0;  // roslaunch sends SIGTERM after 15 s
 
 std::atomic<bool> interrupted{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
@@ -43,7 +43,7 @@ std::shared_ptr<const aquafarm::Scenario> Load(const std::string& scenario) {
       aquafarm::LoadScenario(ResolveScenario(scenario, ScenarioFolder())));
 }
 
-/// A service that `handle` answers; what it throws is logged and fails the call.
+/// Advertises a service with the callback `handle`. Its exceptions are logged and fail the call.
 template <typename Service, typename Handle>
 ros::ServiceServer Serve(ros::NodeHandle& node, const std::string& name, Handle handle) {
   using Request = typename Service::Request;
@@ -61,7 +61,7 @@ ros::ServiceServer Serve(ros::NodeHandle& node, const std::string& name, Handle 
   return node.advertiseService(name, callback);
 }
 
-/// The same, told who calls.
+/// As Serve; `handle` also receives the name of the calling node.
 template <typename Service, typename Handle>
 ros::ServiceServer ServeCaller(ros::NodeHandle& node, const std::string& name, Handle handle) {
   using Event = ros::ServiceEvent<typename Service::Request, typename Service::Response>;
@@ -79,7 +79,7 @@ ros::ServiceServer ServeCaller(ros::NodeHandle& node, const std::string& name, H
   return node.advertiseService(options);
 }
 
-/// The command that a ship's request is.
+/// Converts a ship's request to a command.
 template <typename Request>
 ShipCommand ToCommand(std::int32_t ship, std::uint8_t action, const Request& request,
                       const std::string& caller) {
@@ -129,7 +129,7 @@ SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_nod
   diagnostics_timer_ =
       node_.createWallTimer(ros::WallDuration(kDiagnosticsPeriod_s),
                             [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
-  // One waiting command a ship at most, so one thread more is always free.
+  // At most one command per ship waits, so one thread is always free.
   const std::int32_t threads = agents == 1 ? 1 : agents + 1;
   ship_spinner_ =
       std::make_unique<ros::AsyncSpinner>(static_cast<std::uint32_t>(threads), &ship_queue_);
@@ -255,7 +255,7 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   diagnosed_at_ = time;
 }
 
-// Once when a ship is given up and once when it is back.
+// Logs once when a ship becomes absent and once when it is back.
 void SimNode::TellAbsent(const std::vector<std::int32_t>& absent) const {
   const auto without = [](const std::vector<std::int32_t>& ships,
                           const std::vector<std::int32_t>& others) {
@@ -273,7 +273,7 @@ void SimNode::TellAbsent(const std::vector<std::int32_t>& absent) const {
   if (!back.empty()) ROS_WARN("back: ship %s", Joined(back).c_str());
 }
 
-// Ctrl-C in a launch reaches trainer and farm at once: a trainer at work gets the time to save.
+// Ctrl-C in a launch reaches trainer and farm together. A running trainer gets time to save.
 void SimNode::LetClientsSave() {
   const ros::WallTime start = ros::WallTime::now();
   const auto elapsed_s = [&start] { return (ros::WallTime::now() - start).toSec(); };
@@ -282,11 +282,11 @@ void SimNode::LetClientsSave() {
          ranch_.counters().saves == saves && elapsed_s() < kSaveLimit_s) {
     ros::WallDuration(kLookPeriod_s).sleep();
   }
-  ros::WallDuration(kLookPeriod_s).sleep();  // lets the answer leave
+  ros::WallDuration(kLookPeriod_s).sleep();  // time to send the response
 }
 
 int RunSimNode() {
-  // ROS's console is gone once the last node handle is, so refusals go to stderr directly.
+  // rosconsole ends with the last node handle, so refusals are printed to stderr directly.
   try {
     SimNode node(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::AsyncSpinner spinner(kCommonThreads);

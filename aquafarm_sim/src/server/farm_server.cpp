@@ -126,8 +126,8 @@ aquafarm_msgs::CommandResult Ranch::Refuse(std::int32_t ship, std::uint8_t code,
   return result;
 }
 
-// A paced farm whose episode is over begins the next one with its next tick, so a command then is
-// meant for no step yet.
+// A paced farm whose episode has ended starts the next episode at its next tick. Until then there
+// is no step that a command could be for.
 aquafarm_msgs::CommandResult Ranch::AcceptPaced(const ShipCommand& command) {
   if (batch_->farm(0).over()) {
     return Refuse(command.ship, Outcome::EPISODE_OVER,
@@ -135,7 +135,7 @@ aquafarm_msgs::CommandResult Ranch::AcceptPaced(const ShipCommand& command) {
   }
   Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
   slot.pending = command;
-  slot.reply = nullptr;  // a command that waited when the pace changed is superseded
+  slot.reply = nullptr;  // supersedes a command that waited when the pace changed
   ++slot.ticket;
   slot.changed.notify_all();
   slot.last = command;
@@ -155,7 +155,7 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
   slot.pending = command;
   slot.reply = &reply;
   const std::uint64_t ticket = ++slot.ticket;
-  slot.changed.notify_all();  // An earlier command of this ship that still waits is superseded.
+  slot.changed.notify_all();  // supersedes an earlier command of this ship that still waits
   if (EveryShipHasACommand()) {
     StepPublishedFarm();
     return *reply;
@@ -166,14 +166,14 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
   const std::uint64_t episodes = episode_count_;
   const bool woken = slot.changed.wait_until(
       lock, deadline, [&] { return reply || slot.ticket != ticket || !slot.pending || ending_; });
-  if (reply) return *reply;  // even if the ship has had newer commands since
+  if (reply) return *reply;  // even if the ship has newer commands
   if (slot.ticket != ticket) {
     ++counters_.superseded;
     return Refuse(
         command.ship, Outcome::SUPERSEDED,
         "ship " + std::to_string(command.ship) + " gave a newer command for the same step");
   }
-  slot.heard_at = Clock::now();  // it was there all the time
+  slot.heard_at = Clock::now();  // the client was connected while it waited
   if (!woken && !ending_ && options_.late_ships_hold && !context_.paused && !context_.paced) {
     GoOnWithoutTheLate();
     return *reply;
@@ -193,7 +193,7 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
                     " s: " + missing);
 }
 
-// Whether the farm waits for a ship's command.
+// Returns true if the farm waits for a command of the ship.
 bool Ranch::IsMissing(std::int32_t ship) const {
   const auto i = static_cast<std::size_t>(ship);
   return batch_->farm(0).ships()[i].in_play && !slots_[i]->is_absent && !slots_[i]->pending;
@@ -214,7 +214,7 @@ std::string Ranch::MissingShips() const {
   return names;
 }
 
-// A ship whose node died or is late holds, and is not waited for again until it is back.
+// A ship whose node has died or is late holds. The farm ignores it until its next command.
 void Ranch::GoOnWithoutTheLate() {
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (!IsMissing(ship)) continue;
@@ -227,7 +227,7 @@ void Ranch::GoOnWithoutTheLate() {
 bool Ranch::IsHeldByAnother(Slot& slot, const std::string& caller) {
   if (slot.holder.empty() || slot.holder == caller) return false;
   const std::chrono::duration<double> silence = Clock::now() - slot.heard_at;
-  // A holder whose command waits for the other ships is there.
+  // A holder whose command waits for the other ships is present.
   if (slot.pending || silence.count() < options_.claim_timeout_s) return true;
   slot.holder.clear();
   ++counters_.dropped_clients;
@@ -240,7 +240,7 @@ std::optional<Ranch::Refusal> Ranch::CheckHolder(std::int32_t ship, const std::s
   return Refusal{Outcome::CLAIMED, "ship " + std::to_string(ship) + " is held by " + slot.holder};
 }
 
-// Whoever may command a ship and says something, even too late, is there.
+// A client that may command a ship is present if it sends a command, even a late one.
 std::optional<Ranch::Refusal> Ranch::Hear(const ShipCommand& command) {
   if (command.ship < 0 || command.ship >= agents_) return std::nullopt;
   if (auto refusal = CheckHolder(command.ship, command.caller)) return refusal;
@@ -291,10 +291,11 @@ void Ranch::StepPublishedFarm() {
     Tell(
         [&](RanchListener& listener) { listener.OnEpisodeEnd(ToMsg(farm.record(), 0, context_)); });
   }
-  for (const auto& slot : slots_) slot->changed.notify_all();  // last: whoever wakes needs the lock
+  for (const auto& slot : slots_)
+    slot->changed.notify_all();  // last: a woken thread needs the lock
 }
 
-// Those who wait are answered STALE.
+// Waiting commands return STALE.
 void Ranch::DropPending() {
   for (const auto& slot : slots_) {
     if (!slot->pending) continue;
@@ -304,7 +305,7 @@ void Ranch::DropPending() {
   }
 }
 
-// Also the last answers, when steps may get the same numbers again.
+// Also drops the last responses, because step numbers may repeat.
 void Ranch::DropCommands() {
   DropPending();
   for (const auto& slot : slots_) slot->last.reset();
@@ -355,7 +356,7 @@ void Ranch::Tick() {
   } catch (const std::exception& error) {
     ++turn_;  // the farm may have stepped
     DropCommands();
-    context_.paused = true;  // A farm that cannot go on must not fail at every tick.
+    context_.paused = true;  // a farm that cannot continue must not fail at every tick
     counters_.fault = error.what();
   }
 }
@@ -399,7 +400,7 @@ void Ranch::Advance() {
   if (steps_to_pause_ > 0 && --steps_to_pause_ == 0) context_.paused = true;
 }
 
-// Begins with a tick of its own, so that an episode's end and the next one's start differ in stamp.
+// The start of an episode has a separate tick, so that its stamp differs from that of the last end.
 void Ranch::EpisodeBegan(bool by_joint_step) {
   ++episode_count_;
   Advance();
@@ -412,7 +413,7 @@ void Ranch::Changed(bool by_joint_step) {
   Tell([this](RanchListener& listener) { listener.OnChange(View()); });
 }
 
-// What has happened stands, also where it cannot be told.
+// The step is kept even if notifying the listener fails.
 void Ranch::Tell(const std::function<void(RanchListener&)>& telling) {
   if (listener_ == nullptr) return;
   try {

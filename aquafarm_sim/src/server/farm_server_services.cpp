@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The requests that concern all ships or all farms at once.
+// The requests that affect all ships or all farms.
 #include <aquafarm_msgs/Outcome.h>
 
 #include <algorithm>
@@ -26,12 +26,12 @@ std::string OutOfRange(const std::string& name, std::int64_t got, std::int64_t l
          std::to_string(most) + "]";
 }
 
-/// Whether a storm is told; one of which only a part is said is refused, not passed over.
+/// Returns true if any field of the storm is set. An incomplete storm is refused, not ignored.
 bool IsSaid(const aquafarm_msgs::Storm& storm) {
   return !storm.fixes.empty() || !storm.forecast.empty() || !storm.name.empty();
 }
 
-/// Sizes an array, or empties it when it is not wanted, and says where its entries go.
+/// Resizes an array, or clears it if not `wanted`. Returns the address of its entries.
 template <typename T>
 T* Sized(bool wanted, std::size_t size, std::vector<T>& entries) {
   entries.resize(wanted ? size : 0);
@@ -48,7 +48,7 @@ void Ranch::Answer(std::uint8_t code, const std::string& message, Response& resp
   if (!response.ok) ++counters_.refused;
 }
 
-/// Runs a request; what it throws becomes a code. @param bad_input code for an InputError
+/// Runs a request and converts exceptions to codes. @param bad_input code of an InputError
 template <typename Response, typename Request>
 void Ranch::Guarded(std::uint8_t bad_input, Response& response, Request&& request) {
   try {
@@ -71,7 +71,7 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
       Answer(refusal->code, refusal->message, step_refusal_);
       return step_refusal_;
     }
-    last_step_.sequence = 0;  // until the answer is complete
+    last_step_.sequence = 0;  // until the response is complete
     joint_step_at_ = Clock::now();
     Answer(Outcome::OK, "", step_answer_);
     batch_->Step(request.actions.data(), Prepare(request.encodings, step_answer_.result));
@@ -97,7 +97,7 @@ std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& r
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (auto refusal = CheckHolder(ship, caller)) return refusal;
   }
-  // Last: whoever waits until the farms are free again is told once that they have moved.
+  // Checked last: a client that waits for the farms then gets STALE only once, when they are free.
   if (request.turn != 0 && request.turn != turn_) {
     return Refusal{Outcome::STALE, "turn: got " + std::to_string(request.turn) +
                                        ", the farms are at " + std::to_string(turn_) +
@@ -254,7 +254,7 @@ void Ranch::Reset(const aquafarm_msgs::Reset::Request& request,
   if (request.sequence != 0) reset_answer_ = response;
 }
 
-// A layout that cannot be drawn must leave the present episodes as they are.
+// If a layout cannot be generated, the current episodes must stay unchanged.
 void Ranch::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first) {
   if (farms != batch_->farms() || scenario_->layout == aquafarm::LayoutMode::kPerEpisode) {
     auto fresh = std::make_unique<aquafarm::FarmBatch>(scenario_, farms, options_.threads);
@@ -324,7 +324,7 @@ void Ranch::LoadState(const aquafarm_msgs::LoadState::Request& request,
     batch_->Load(std::string(request.data.begin(), request.data.end()));
     RecordStarts();
     for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
-      recorder_->OnIntervention(batch_->farm(i), i);  // also at step 0 it may be changed
+      recorder_->OnIntervention(batch_->farm(i), i);  // the loaded state may differ even at step 0
     }
     ForgetAnswers();
     EpisodeBegan();
@@ -396,7 +396,7 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     const auto step_of = [&](std::int32_t i) { return batch_->farm(i).step(); };
     std::int32_t earliest = step_of(first);
     for (std::int32_t i = first; i < end; ++i) earliest = std::min(earliest, step_of(i));
-    // Refused when it is over at the earliest step, so for all.
+    // Refused if the storm has ended at the earliest step, and thus for all farms.
     aquafarm::DisasterSpec spec =
         on_globe ? aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id, earliest)
                  : FromMsg(request.info);
@@ -414,9 +414,9 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                       response);
       }
     }
-    // All that could differ between farms is checked, so what the first accepts, all accept.
+    // All differences between farms are checked, so a disaster that the first accepts, all accept.
     for (std::int32_t i = first; i < end; ++i) {
-      if (left(i) <= 0) continue;  // a storm that is over there
+      if (left(i) <= 0) continue;  // the storm has ended for this farm
       spec.duration = left(i);
       batch_->farm(i).SetDisaster(request.id, spec);
       if (recorder_ != nullptr) recorder_->OnIntervention(batch_->farm(i), i);

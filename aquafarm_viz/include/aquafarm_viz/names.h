@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Names of topics, parameters and frames that this package uses; all are relative but the frame.
+/// Names of the topics, parameters and frames of this package. All but the frame are relative.
 
 namespace aquafarm_viz::names {
 
@@ -15,7 +15,7 @@ inline constexpr char kMoves[] = "moves";
 inline constexpr char kImage[] = "image";
 inline constexpr char kCompressed[] = "image/compressed";
 
-inline constexpr char kRoute[] = "route";  ///< beneath ship_<id>
+inline constexpr char kRoute[] = "route";  ///< in the namespace ship_<id>
 
 inline constexpr char kLayersParam[] = "layers";
 inline constexpr char kRateParam[] = "rate_hz";

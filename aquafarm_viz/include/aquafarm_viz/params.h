@@ -8,7 +8,7 @@
 
 namespace aquafarm_viz {
 
-/// Reads a number; leaves `value` as it is where the parameter is absent.
+/// Reads a number. Leaves `value` unchanged if the parameter is not set.
 /// @throws std::invalid_argument "/viz/rate_hz: got x, expected a number in [low, high]"
 template <typename Value>
 void ReadParam(const ros::NodeHandle& node, const char* name, Value& value, Value low, Value high) {
@@ -21,7 +21,7 @@ void ReadParam(const ros::NodeHandle& node, const char* name, Value& value, Valu
   throw std::invalid_argument(line.str());
 }
 
-/// Reads true or false; leaves `value` as it is where the parameter is absent.
+/// Reads a boolean. Leaves `value` unchanged if the parameter is not set.
 /// @throws std::invalid_argument "/replay/loop: got x, expected true or false"
 inline void ReadParam(const ros::NodeHandle& node, const char* name, bool& value) {
   XmlRpc::XmlRpcValue raw;

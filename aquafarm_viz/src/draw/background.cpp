@@ -11,7 +11,7 @@ namespace {
 
 using aquafarm_msgs::FarmSpec;
 
-// Coverage of the islands at the map's pixels, coasts rounded off within their cells.
+// Returns the coverage of the map's pixels by islands. Coasts are rounded within their cells.
 cv::Mat1b IslandCoverage(const FarmSpec& spec, const Layout& layout) {
   cv::Mat1b land(layout.map.size(), std::uint8_t{0});
   const double cell_px = layout.view.cell_px();
@@ -25,14 +25,14 @@ cv::Mat1b IslandCoverage(const FarmSpec& spec, const Layout& layout) {
   }
   if (cell_px < 3.0 || spec.islands.empty()) return land;
   const double sigma = 0.27 * cell_px;
-  // The border is repeated outwards, so that an island at the edge of the farm goes on beyond it.
+  // The border pixels are replicated, so that an island at the edge of the farm extends beyond it.
   cv::GaussianBlur(land, land, {}, sigma, sigma, cv::BORDER_REPLICATE);
   const double steepness = std::max(1.0, 1.7 * sigma);
   land.convertTo(land, -1, steepness, 127.5 * (1.0 - steepness));
   return land;
 }
 
-// Distance to the nearest pixel that is zero in `away_from`, in cells; far where there is none.
+// Returns the distance to the nearest zero pixel of `away_from` [cells]; large if there is none.
 cv::Mat1f DistanceCells(const cv::Mat1b& away_from, double cell_px) {
   if (cv::countNonZero(away_from) == away_from.size().area()) {
     return cv::Mat1f(away_from.size(), 1e6F);
@@ -120,7 +120,7 @@ void DrawAxes(cv::Mat& image, const Layout& layout, const Fonts& fonts) {
   }
 }
 
-// A scale bar of a round length that fits into `room_px`.
+// Draws a scale bar with a round length that fits into `room_px`.
 void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_m,
                   const Layout& layout, const Fonts& fonts) {
   const double px_per_m = layout.view.cell_px() / cell_size_m;

@@ -8,10 +8,10 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr int kShift = 4;  // OpenCV's fixed point: sixteenths of a pixel
+constexpr int kShift = 4;  // OpenCV's fixed-point coordinates: 1/16 pixel
 
 cv::Point Fixed(cv::Point2d point) {
-  // Far outside any image, but well inside an int with its shift.
+  // Far outside any image, but small enough for a shifted int.
   constexpr double kFar = 1.0e6;
   return {cvRound(std::clamp(point.x, -kFar, kFar) * (1 << kShift)),
           cvRound(std::clamp(point.y, -kFar, kFar) * (1 << kShift))};

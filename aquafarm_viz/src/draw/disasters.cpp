@@ -14,15 +14,15 @@ using aquafarm_msgs::FarmState;
 
 bool IsDrawn(const DisasterState& disaster) { return disaster.known && disaster.steps_left > 0; }
 
-// Shades are bytes: 0 none, kFaintest at a risk of -5, 255 at -20; between 0 and kFaintest lie the
-// half covered pixels of the outermost edge.
+// A shade is a byte: 0 no risk, kFaintest at a risk of -5, 255 at -20. Values between 0 and
+// kFaintest are partly covered pixels of the outermost edge.
 constexpr double kFaintest = 55.0;
 constexpr double kShareFaintest = 0.38;
 constexpr double kShareWorst = 0.68;
 
 double Shade(double risk) { return kFaintest + (255.0 - kFaintest) * Severity(risk); }
 
-// Colour times share, and what is left for the picture below, for each shade.
+// Premultiplied colour of a shade and the fraction of the background that it keeps, both times 256.
 struct ShadeEntry {
   std::array<std::uint16_t, 3> paint;
   std::uint16_t rest;
@@ -47,11 +47,11 @@ const std::array<ShadeEntry, 256>& ShadeTable() {
   return kTable;
 }
 
-// A disaster's rings in pixels of the map.
+// The rings of a disaster in pixels of the map.
 struct Rings {
   cv::Point2d centre;
   std::vector<std::array<float, 4>> radii_px;  // NE, SE, SW, NW
-  std::vector<float> shade_steps;  // shade of a ring above that of the next one outwards
+  std::vector<float> shade_steps;              // shade of a ring minus that of the next outer ring
 };
 
 float Largest(const std::array<float, 4>& radii) {
@@ -73,7 +73,7 @@ Rings InPixels(const DisasterState& disaster, const Layout& layout) {
   return rings;
 }
 
-// Adds one disaster to a row: the worst shade so far, and how much of a ring's edge runs there.
+// Adds one disaster to a row: updates the worst shade and the coverage by ring edges of each pixel.
 void ShadeRow(const Rings& rings, int row, std::vector<float>& shades, std::vector<float>& edges,
               std::vector<float>& scratch) {
   const auto north = static_cast<float>(row - rings.centre.y);
@@ -90,7 +90,7 @@ void ShadeRow(const Rings& rings, int row, std::vector<float>& shades, std::vect
   std::fill(shade + from, shade + to, 0.0F);
   for (std::size_t ring = 0; ring < rings.radii_px.size(); ++ring) {
     const std::array<float, 4>& radii = rings.radii_px[ring];
-    const bool is_north = north < 0.0F;  // rows count downwards
+    const bool is_north = north < 0.0F;  // row indices increase downwards
     const float to_east = radii[is_north ? 0 : 1];
     const float to_west = radii[is_north ? 3 : 2];
     const float step = rings.shade_steps[ring];
@@ -140,7 +140,7 @@ void DrawArrow(cv::Mat& map, cv::Point2d from, double bearing_deg, double length
 }
 
 void DrawTyphoonEye(cv::Mat& map, cv::Point2d at, double radius_px, const cv::Scalar& color) {
-  // One arm of the chart symbol, turning anticlockwise as on the northern half of the globe.
+  // One arm of the chart symbol, counter-clockwise as in the northern hemisphere.
   static const std::vector<cv::Point2f> kArm = [] {
     constexpr int kCorners = 14;
     std::vector<cv::Point2f> points;
@@ -196,8 +196,8 @@ std::string Distance(double metres) {
                             : Number(metres, 0) + " m";
 }
 
-// A pointer at the border towards a centre that lies outside the map, with its heading and its
-// distance from the farm's middle.
+// Draws a pointer at the border towards a centre outside the map, with its heading and its distance
+// from the centre of the farm.
 void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, cv::Point2d centre,
                        double cell_size_m, const Layout& layout, const Fonts& fonts) {
   static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
@@ -207,7 +207,7 @@ void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, cv::Point2d 
   const double bearing = std::atan2(centre.x - at.x, at.y - centre.y) * 180.0 / CV_PI;
   double top = at.y;
   double foot = at.y;
-  if (disaster.speed > 0.0F) {  // beside the pointer, so that all of it is on the map
+  if (disaster.speed > 0.0F) {  // next to the pointer, so that the whole arrow is on the map
     const double length = 40.0 * layout.unit;
     const double turn = disaster.heading_deg * CV_PI / 180.0;
     const cv::Point2d way(length * std::sin(turn), -length * std::cos(turn));

@@ -16,7 +16,7 @@ using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 using aquafarm_msgs::ShipState;
 
-// `at` is the middle of the bar.
+// `at` is the centre of the bar.
 void DrawHealthBar(cv::Mat& map, cv::Point2d at, double width_px, double health,
                    const Layout& layout) {
   const int width = std::max(6, cvRound(width_px));
@@ -52,7 +52,7 @@ void DrawPort(cv::Mat& image, cv::Point2d at, std::int32_t id, const Layout& lay
                   Bgr(kInk));
 }
 
-// Things in one cell are set side by side.
+// Places objects of one cell next to each other.
 class Crowd {
  public:
   cv::Point2d Offset(int x, int y, int of, double radius_px) {
@@ -124,7 +124,7 @@ void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Placing& placing,
   StrokeShape(image, outline, placing, Bgr(kInk), rim + 1);
   FillShape(image, outline, placing, Bgr(color));
   if (placing.size_px < 7.0) return;
-  // The net pen inside the frame.
+  // the net pen inside the frame
   StrokeShape(image, outline, {placing.at, 0.55 * placing.size_px, placing.bearing_deg},
               Bgr(Mix(color, kInk, 0.55)), rim);
 }
@@ -164,7 +164,7 @@ void DrawRoutes(cv::Mat& map, const FarmState& state, const Wake& route, const L
 void DrawSight(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
   if (spec.view_mode != FarmSpec::PARTIAL) return;
   const double radius_px = double(spec.sensor_radius) * layout.view.cell_px();
-  if (!(radius_px > 0.0 && radius_px < map.rows + map.cols)) return;  // NaN, or beyond the map
+  if (!(radius_px > 0.0 && radius_px < map.rows + map.cols)) return;  // NaN or larger than the map
   for (const auto& ship : state.ships) {
     if (!ship.visible || !ship.active || !InGrid(spec, ship.x, ship.y)) continue;
     StrokeCircle(map, layout.view.ToPixel(ship.x, ship.y), radius_px, Bgr(kPaper), layout.Px(1.5));
@@ -185,7 +185,7 @@ void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
     if (!InGrid(spec, device.x, device.y)) continue;
     cv::Point2d at = layout.view.ToPixel(device.x, device.y);
     if (device.status == DeviceState::DELIVERED) {
-      // Lined up on the quay beside the port.
+      // in a row on the quay next to the port
       const int index = delivered[{device.x, device.y}]++;
       const double step = 9.0 * layout.unit;
       const double inwards = at.y > map.rows / 2.0 ? -1.0 : 1.0;
@@ -204,7 +204,7 @@ void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
                const Layout& layout, const Fonts& fonts) {
   const auto per_cell = ShipsPerCell(state);
   Crowd crowd;
-  // From the last to the first, so that the lower ids, which have right of way, lie on top.
+  // From last to first, so that lower ids, which have right of way, are on top.
   for (auto ship = state.ships.rbegin(); ship != state.ships.rend(); ++ship) {
     if (!ship->visible || !ship->active || !InGrid(spec, ship->x, ship->y)) continue;
     const double radius = layout.ship_radius_px();

@@ -15,7 +15,7 @@ namespace {
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-// Whether two episodes have the same background.
+// Returns true if two episodes have the same background.
 bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
   const auto same_cell = [](const auto& c, const auto& d) { return c.x == d.x && c.y == d.y; };
   return a.width == b.width && a.height == b.height && a.cell_size_m == b.cell_size_m &&
@@ -29,7 +29,7 @@ bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
                     });
 }
 
-// Whether two maps look the same; bytes are compared, for none is NaN.
+// Returns true if two maps look the same. Compares bytes, because NaN means that there is no value.
 bool SameMap(const Values& a, const Values& b) {
   return a.width == b.width && a.height == b.height && a.lowest == b.lowest &&
          a.highest == b.highest && a.actions == b.actions &&
@@ -47,15 +47,15 @@ struct FarmPainter::Parts {
   ImageSize size;
   Fonts fonts;
   Layout layout;
-  FarmSpec drawn;   // what the background shows
-  std::string sea;  // which layer of the sea with it
+  FarmSpec drawn;   // spec of the background
+  std::string sea;  // sea layer of the background
   cv::Mat background;
-  std::optional<MoveSigns> moves;  // of the layout; none: not wanted yet
-  Values values;                   // what the next is of
-  cv::Mat valued;                  // the map of the background with V_π; empty: not drawn yet
+  std::optional<MoveSigns> moves;  // for the layout; nullopt before the first use
+  Values values;                   // values drawn in `valued`
+  cv::Mat valued;                  // map of the background with V_π; empty if not drawn yet
   cv::Mat image;
 
-  /// Forgets what is of other values, or of another background.
+  /// Clears the cache if the values or the background have changed.
   void Follow(const Values* now, bool is_new_background) {
     const bool is_new = now != nullptr && !SameMap(*now, values);
     if (is_new) values = *now;
@@ -76,7 +76,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
       sea == p.sea && (sea.empty() || spec.scenario_yaml == p.drawn.scenario_yaml);
   const bool is_new = p.background.empty() || !SameBackground(spec, p.drawn) || !same_sea;
   if (is_new) {
-    p.background.release();  // until all of it is drawn: a sea may be refused
+    p.background.release();  // stays empty if DrawSea throws
     p.layout = MakeLayout(spec.width, spec.height, p.size);
     p.moves.reset();
     cv::Mat background = DrawBackground(spec, p.layout, p.fonts, p.size);

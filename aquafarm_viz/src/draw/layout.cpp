@@ -8,7 +8,7 @@
 namespace aquafarm_viz {
 namespace {
 
-// Design units; a picture of 640 x 640 has one pixel a unit.
+// Sizes in design units. A picture of 640 x 640 has one pixel per unit.
 constexpr double kDesignSide = 640.0;
 constexpr double kTop = 46.0;
 constexpr double kBottom = 44.0;
@@ -16,8 +16,8 @@ constexpr double kPanelWidth = 152.0;
 constexpr double kAxisLeft = 26.0;
 constexpr double kAxisBottom = 18.0;
 constexpr double kGap = 10.0;
-constexpr int kSmallest = 300;      // pixels; smaller pictures show the map alone
-constexpr double kWholePixels = 6;  // cells this big get whole pixels and so crisp borders
+constexpr int kSmallest = 300;      // [pixels]; smaller pictures show only the map
+constexpr double kWholePixels = 6;  // min cell size with whole pixels, for sharp borders
 
 }  // namespace
 

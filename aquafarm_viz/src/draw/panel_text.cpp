@@ -31,7 +31,7 @@ std::string WorldTime(const FarmSpec& spec, const FarmState& state) {
   return text.data();
 }
 
-// Writes pieces of text after one another until the room is used up.
+// Draws pieces of text one after another until the width is used up.
 class Line {
  public:
   Line(cv::Mat& image, cv::Point start, int right) : image_(image), at_(start), right_(right) {}
@@ -112,7 +112,7 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
   if (const auto left = Duration(training.time_left_s); !left.empty()) pair("left", left);
 }
 
-// Writes the panel's lists from the top down, as far as there is room above the legend.
+// Draws the panel's lists from the top down to the legend.
 class Panel {
  public:
   Panel(cv::Mat& image, const Layout& layout, const Fonts& fonts)

@@ -9,8 +9,8 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr double kValueShare = 0.62;     // of the colours of V_π over the sea
-constexpr double kLeastArrow_px = 11.0;  // between the middles of two arrows
+constexpr double kValueShare = 0.62;     // opacity of V_π over the sea
+constexpr double kLeastArrow_px = 11.0;  // min distance of two arrows
 
 cv::Mat Colors(const cv::Mat& shares) {
   cv::Mat colors;
@@ -30,7 +30,7 @@ void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px
 }  // namespace
 
 void DrawValues(cv::Mat& map, const Values& values) {
-  // A header over the values, which are only read; row 0 is the north then.
+  // A header for the values without a copy; they are only read. Row 0 is the south here.
   const cv::Mat from_south(values.height, values.width, CV_32F,
                            const_cast<float*>(values.values.data()));
   cv::Mat north_up;
@@ -38,7 +38,7 @@ void DrawValues(cv::Mat& map, const Values& values) {
   const cv::Mat known = north_up == north_up;  // not NaN
   cv::Mat shares(north_up.size(), CV_8U, cv::Scalar(128));
   if (const double span = double(values.highest) - double(values.lowest); span > 0.0) {
-    // First the difference: scaled, values far from 0 have too few digits.
+    // Subtract before scaling, because values far from 0 lose precision.
     cv::subtract(north_up, cv::Scalar(double(values.lowest)), north_up);
     north_up.convertTo(shares, CV_8U, 255.0 / span);
   }
@@ -89,7 +89,7 @@ MoveSigns::MoveSigns(const Layout& layout)
     : view_(layout.view),
       every_(std::max(1, int(std::ceil(kLeastArrow_px * layout.unit / view_.cell_px())))),
       size_px_(0.8 * every_ * view_.cell_px()) {
-  // Between pixels as the cells' middles are where cells have whole pixels.
+  // Same sub-pixel position as the cell centres if cells have whole pixels.
   const int half = cvCeil(0.5 * size_px_) + 3;
   const cv::Point2d middle = view_.ToPixel(0, view_.height() - 1);
   phase_ = middle - cv::Point2d(std::floor(middle.x), std::floor(middle.y));

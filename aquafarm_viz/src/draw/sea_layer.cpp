@@ -16,10 +16,10 @@ namespace {
 struct SeaLayer {
   std::string name;
   std::string units;
-  std::vector<float> values;  // [H, W] from the south
+  std::vector<float> values;  // [H, W] row-major, from the south
 };
 
-// The spec's scenario is canonical: each layer's numbers stand in it, as many as there are cells.
+// The spec's scenario is canonical: it contains the numbers of each layer, one per cell.
 SeaLayer LayerOf(const aquafarm_msgs::FarmSpec& spec, const std::string& name) {
   std::string names;
   try {
@@ -40,7 +40,7 @@ SeaLayer LayerOf(const aquafarm_msgs::FarmSpec& spec, const std::string& name) {
                               (names.empty() ? "it has none" : names));
 }
 
-// Colours of a layer [H, W] with north up, and where it has a value.
+// Colours of a layer, [H, W] with north up, and a mask of the cells with a value.
 struct HeatMap {
   cv::Mat3b color;
   cv::Mat1b known;
@@ -50,7 +50,7 @@ struct HeatMap {
 
 HeatMap Heat(const SeaLayer& layer, int width, int height) {
   HeatMap map;
-  for (const float value : layer.values) {  // fmin and fmax pass over NaN
+  for (const float value : layer.values) {  // fmin and fmax ignore NaN
     map.least = std::fmin(map.least, value);
     map.greatest = std::fmax(map.greatest, value);
   }
@@ -88,7 +88,7 @@ void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::strin
           cv::Rect(low, cv::Point(std::max(high.x, low.x + 1), std::max(high.y, low.y + 1))) &
           cv::Rect({0, 0}, map.size());
       cv::Mat part = map(cell);
-      // The chart shines through, so that islands and rocks stay what they are.
+      // The chart stays visible below, so that islands and rocks can be recognised.
       cv::addWeighted(part, 0.35, cv::Mat(part.size(), CV_8UC3, heat.color(row, x)), 0.65, 0.0,
                       part);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The parts that a picture is put together from; private to this package.
+/// The parts of a picture; private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -17,24 +17,24 @@
 
 namespace aquafarm_viz {
 
-/// Where everything lies in a picture of some size; an empty rectangle is left out.
+/// The layout of a picture. A part with an empty rectangle is not drawn.
 struct Layout {
-  double unit{1.0};  ///< pixels of a design unit: 1 in a picture of 640 x 640
+  double unit{1.0};  ///< pixels per design unit: 1 in a picture of 640 x 640
   cv::Rect top;
   cv::Rect map;
   cv::Rect panel;
   cv::Rect bottom;
   MapView view;
 
-  /// Design units as whole pixels, at least 1.
+  /// Converts design units to whole pixels, at least 1.
   int Px(double units) const;
-  /// Pixels from the middle of a device to its corners.
+  /// Distance from the centre of a device to its corners [pixels].
   double device_radius_px() const;
-  /// Pixels from the middle of a ship to its bow.
+  /// Distance from the centre of a ship to its bow [pixels].
   double ship_radius_px() const;
 };
 
-/// Lays a picture out.
+/// Computes the layout of a picture of a width x height farm.
 Layout MakeLayout(int width, int height, ImageSize size);
 
 /// The fonts of a picture.
@@ -45,10 +45,10 @@ struct Fonts {
   Font title;
 };
 
-/// Steps of an axis: 1, 2 or 5 times a power of ten, at least `least_px` apart.
+/// Returns the tick spacing of an axis [cells]: 1, 2 or 5 times a power of ten, min `least_px`.
 int TickStep(double cell_px, double least_px);
 
-/// Draws what stays the same during an episode: sea, islands, rocks, axes, legend.
+/// Draws the constant parts of an episode: sea, islands, rocks, axes, legend.
 cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                        const Fonts& fonts, ImageSize size);
 
@@ -56,81 +56,83 @@ cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout
 void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                 const Fonts& fonts);
 
-/// Paints a layer of the sea, named in the spec's scenario, onto a background's map.
+/// Draws a sea layer of the spec's scenario onto the map of a background.
 /// @throws std::invalid_argument "layers: got 'sea:salt', expected one of the scenario's: warmth"
 void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::string& name,
              const Layout& layout, const Fonts& fonts);
 
-/// Shades the rings of all disasters on the map, the worst risk where they meet.
+/// Shades the rings of all disasters on the map. Where they overlap the worst risk counts.
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Draws each disaster's centre and heading, or at the border where it is outside.
+/// Draws each disaster's centre and heading, or a pointer at the border if it is outside the map.
 void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                        const aquafarm_msgs::FarmState& state, const Layout& layout,
                        const Fonts& fonts);
 
-/// Draws the ways that ships came.
+/// Draws the recent trails of the ships.
 void DrawWakes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Wake& wake,
                const Layout& layout);
 
-/// Draws the ways that ships came since the episode began, from violet over red to yellow.
+/// Draws the trails of the ships since the start of the episode, from violet over red to yellow.
 void DrawRoutes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Wake& route,
                 const Layout& layout);
 
-/// Lays the colours of V_π over the map.
+/// Blends the colours of V_π over the map.
 void DrawValues(cv::Mat& map, const Values& values);
 
-/// Draws the scale of those colours into a corner of the map.
+/// Draws the colour scale of V_π into a corner of the map.
 void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, const Fonts& fonts);
 
-/// What is drawn over a map, kept to be laid over others: premultiplied colours with what they keep
-/// of what is below.
+/// A cached drawing that can be blended over maps: premultiplied colours, and the fraction of the
+/// background that each keeps.
 class Overlay {
  public:
-  /// @param middle of what is drawn, on a canvas of a size
-  /// @param draw draws the same onto whatever it is given
+  /// @param size size of the canvas
+  /// @param middle centre of the drawing on the canvas
+  /// @param draw draws the same picture onto any map
   Overlay(cv::Size size, cv::Point middle, const std::function<void(cv::Mat& map)>& draw);
-  /// Puts the middle to a place of a map, which may leave out part of it.
+  /// Blends the drawing over a map with its centre at `middle`. Parts outside the map are clipped.
   void LayOver(cv::Mat& map, cv::Point middle) const;
 
  private:
   struct Pixel {
-    cv::Point at;     // from the middle
-    cv::Vec3b color;  // as over black
-    int keep;         // of 255
+    cv::Point at;     // offset from the centre
+    cv::Vec3b color;  // colour over black
+    int keep;         // fraction of the background, [0, 255]
   };
   std::vector<Pixel> pixels_;
 };
 
-/// Draws one best move: an arrow, for a pickup a disc, for a drop-off a ring.
+/// Draws one greedy action: an arrow for a move, a disc for a pickup, a ring for a drop-off.
 void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
               const Layout& layout);
 
-/// The best move of each cell, by signs that are drawn once and put to the nearest pixel.
+/// Draws the greedy action of each cell with symbols that are drawn once and then copied to the
+/// nearest pixel.
 class MoveSigns {
  public:
   explicit MoveSigns(const Layout& layout);
   void Draw(cv::Mat& map, const Values& values) const;
-  /// Of cells that have a sign, along each axis.
+  /// Distance of two symbols along each axis [cells].
   int every() const { return every_; }
   double size_px() const { return size_px_; }
 
  private:
-  static constexpr std::uint8_t kSigns = 10;  // actions but hold
+  static constexpr std::uint8_t kSigns = 10;  // all actions except hold
 
   MapView view_;
   int every_;
   double size_px_;
-  cv::Point2d phase_;  // of a cell's middle within its pixel
+  cv::Point2d phase_;  // position of a cell's centre within its pixel
   std::vector<Overlay> signs_;
 };
 
-/// Draws what another policy would do with each ship.
+/// Draws the actions that a compared policy chooses for each ship.
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
                 const aquafarm_msgs::PolicyChoice& choice, const Layout& layout,
                 const Fonts& fonts);
 
-/// Draws how far each ship sees in partial view.
+/// Draws the sensor range of each ship in partial view.
 void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Layout& layout);
 
@@ -142,7 +144,7 @@ void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Layout& 
 void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Layout& layout);
 
-/// Draws ships with what they carry, and self-propelled devices.
+/// Draws ships with the devices aboard, and self-propelled devices.
 void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Wake* wake, const Layout& layout,
                const Fonts& fonts);
@@ -150,15 +152,15 @@ void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 /// Draws the symbol of a device with a dark rim.
 void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Placing& placing, double faded);
 
-/// Writes the lines above and below the map, the lists of the panel and how the episode ended.
+/// Draws the text above and below the map, the lists of the panel and the end of the episode.
 void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Extras& extras, const Layout& layout,
                const Fonts& fonts);
 
-inline constexpr Rgb kPanel{0x10, 0x1d, 0x2a};  ///< behind words
+inline constexpr Rgb kPanel{0x10, 0x1d, 0x2a};  ///< background of text
 inline constexpr Rgb kRule{0x2b, 0x3d, 0x4f};   ///< thin lines between parts
-inline constexpr Rgb kWords{0xe6, 0xed, 0xf3};  ///< words
-inline constexpr Rgb kFaint{0x8b, 0x9b, 0xab};  ///< words that matter less
+inline constexpr Rgb kWords{0xe6, 0xed, 0xf3};  ///< text
+inline constexpr Rgb kFaint{0x8b, 0x9b, 0xab};  ///< secondary text
 inline constexpr Rgb kGood{0x5f, 0xe0, 0x8a};   ///< a reward above 0
 inline constexpr Rgb kBad{0xff, 0x7b, 0x72};    ///< a reward below 0
 

@@ -25,7 +25,7 @@ std::string Ending(const std::string& path) {
   return ending;
 }
 
-/// Where a film is written until it is whole; the ending stays, for it says the format.
+/// Path of the temporary file of a video. It keeps the extension, which selects the format.
 std::string Beside(const std::string& path) {
   return (fs::path(path).parent_path() / (fs::path(path).stem().string() + ".part" + Ending(path)))
       .string();
@@ -42,13 +42,13 @@ void RemoveUnfinished(const std::string& path) {
   fs::remove(Beside(path), ignored);
 }
 
-/// By the codecs that OpenCV finds on this machine.
+/// Writes videos with the codecs that OpenCV finds on this machine.
 class VideoFilm final : public Film {
  public:
   VideoFilm(const std::string& path, cv::Size size, double rate_hz, bool is_mp4) : path_(path) {
     setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
     setenv("OPENCV_LOG_LEVEL", "OFF", 0);
-    // H.264 alone: what else there is for mp4, no browser plays.
+    // Only H.264: browsers do not play other mp4 codecs of OpenCV.
     const std::vector<std::string> codecs =
         is_mp4 ? std::vector<std::string>{"avc1"} : std::vector<std::string>{"VP90", "VP80"};
     std::string tried;
@@ -72,7 +72,7 @@ class VideoFilm final : public Film {
     ++pictures_;
   }
 
-  // The writer does not say when the disk is full, so what it wrote is looked at.
+  // The writer does not report a full disk, so the written file is checked.
   void Close() override {
     writer_.release();
     if (Pictures() < pictures_) {
@@ -94,7 +94,7 @@ class VideoFilm final : public Film {
   int pictures_{};
 };
 
-/// The nearest of 256 colours, looked up in a cube of 32 levels a side.
+/// Finds the nearest of 256 colours with a lookup table of 32 levels per channel.
 class Quantizer {
  public:
   explicit Quantizer(const std::vector<cv::Vec3b>& palette) : nearest_(kSide * kSide * kSide) {
@@ -123,13 +123,13 @@ class Quantizer {
   std::vector<GifByteType> nearest_;
 };
 
-/// Colours are chosen from the first pictures, of which some are kept back for that.
+/// Writes gifs. The first kFirst pictures are buffered to choose the palette.
 class GifFilm final : public Film {
  public:
   GifFilm(const std::string& path, cv::Size size, double rate_hz)
       : path_(path), size_(size), pause_(std::max(2, cvRound(100.0 / rate_hz))) {
     int error = 0;
-    // giflib's own opening would let nobody else read it.
+    // giflib's open function creates a file that other users cannot read.
     const int handle = open(Beside(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (handle >= 0) file_ = EGifOpenFileHandle(handle, &error);
     if (file_ == nullptr) throw StorageError(path + ": could not be written");
@@ -179,7 +179,7 @@ class GifFilm final : public Film {
     first_.clear();
   }
 
-  // Only the rows that changed.
+  // Writes only the rows that have changed.
   void Write(const cv::Mat& picture) {
     cv::Mat indices(picture.size(), CV_8U);
     std::transform(picture.begin<cv::Vec3b>(), picture.end<cv::Vec3b>(), indices.begin<uchar>(),
@@ -209,7 +209,7 @@ class GifFilm final : public Film {
 
   const std::string path_;
   const cv::Size size_;
-  const int pause_;  // hundredths of a second; viewers take less than 2 for a fault
+  const int pause_;  // [1/100 s]; viewers treat values below 2 as invalid
   GifFileType* file_{};
   std::vector<cv::Mat> first_;
   std::unique_ptr<Quantizer> quantizer_;
@@ -238,7 +238,7 @@ std::vector<cv::Vec3b> Palette(const std::vector<cv::Mat>& pictures) {
   if (samples.size() < kColors) samples.resize(kColors);
   cv::Mat labels;
   cv::Mat centers;
-  cv::theRNG().state = 1;  // the same colours every time
+  cv::theRNG().state = 1;  // for reproducible colours
   cv::kmeans(cv::Mat(samples).reshape(1), kColors, labels, {cv::TermCriteria::COUNT, 6, 0.0}, 1,
              cv::KMEANS_PP_CENTERS, centers);
   std::vector<cv::Vec3b> palette;

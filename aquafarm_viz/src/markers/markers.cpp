@@ -26,9 +26,9 @@ using visualization_msgs::MarkerArray;
 
 constexpr int kCircleCorners = 72;
 
-// Layers from the bottom up, in units of height.
+// Layers from bottom to top, in units of height.
 enum Layer {
-  kSeaLayer = -1,  // below the maps that rviz draws at height 0
+  kSeaLayer = -1,  // below the grids, which rviz draws at height 0
   kLandLayer = 1,
   kRingLayer,
   kRockLayer,
@@ -59,12 +59,12 @@ geometry_msgs::Point Point(double x, double y, double z = 0.0) {
   return point;
 }
 
-// Makes markers of one farm: metres, layers and sizes follow from its spec.
+// Creates the markers of one farm with positions [m], layers and sizes according to its spec.
 class Maker {
  public:
   Maker(const FarmSpec& spec, const std_msgs::Header& header)
       : cell_m_(spec.cell_size_m),
-        // On large farms things are drawn larger than a cell, or nobody could see them.
+        // On large farms objects are drawn larger than a cell to stay visible.
         thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
         layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
         header_(header) {
@@ -107,7 +107,7 @@ class Maker {
     return marker;
   }
 
-  // A flat convex shape as a fan of triangles.
+  // Returns a flat convex shape as a triangle fan.
   Marker Shape(const char* space, int id, Layer layer, double x, double y,
                const std::vector<cv::Point2f>& outline, double size_m, Rgb color) const {
     Marker marker = Make(space, id, Marker::TRIANGLE_LIST, layer, x, y);
@@ -129,7 +129,7 @@ class Maker {
   std_msgs::Header header_;
 };
 
-// Bearings turn clockwise from north, yaw turns anticlockwise; `rest_deg` is the yaw at which the
+// A bearing is clockwise from north, a yaw is counter-clockwise. `rest_deg` is the yaw at which the
 // shape points north.
 geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
   const double yaw = (rest_deg - bearing_deg) * CV_PI / 180.0;
@@ -139,7 +139,7 @@ geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
   return turned;
 }
 constexpr double kShapeNorthDeg = 0.0;   // outlines have their bow at north
-constexpr double kArrowNorthDeg = 90.0;  // rviz's arrows point along x
+constexpr double kArrowNorthDeg = 90.0;  // rviz arrows point along x
 
 Marker Sea(const Maker& maker, const FarmSpec& spec) {
   Marker sea = maker.Make("sea", 0, Marker::CUBE, kSeaLayer, (spec.width - 1) / 2.0,
@@ -151,7 +151,7 @@ Marker Sea(const Maker& maker, const FarmSpec& spec) {
   return sea;
 }
 
-// The same flat shape at many cells, in one marker.
+// Adds one flat shape per cell to a single marker.
 void AddCell(Marker& marker, const Maker& maker, const aquafarm_msgs::Cell& cell,
              const std::vector<cv::Point2f>& outline, double size_cells) {
   const auto corner = [&](cv::Point2f point) {
@@ -200,7 +200,7 @@ void AddPorts(MarkerArray& array, const Maker& maker, const FarmSpec& spec) {
     array.markers.push_back(disc);
     Marker letter = maker.Text("port_letter", port.id, port.cell.x, port.cell.y,
                                PortLetter(port.id), 0.8 * maker.thing_m(), kInk);
-    letter.pose.position.z = kDeviceLayer * maker.layer_m();  // below ships in port
+    letter.pose.position.z = kDeviceLayer * maker.layer_m();  // below ships in the port
     array.markers.push_back(letter);
   }
 }
@@ -312,7 +312,7 @@ QuadrantRadii RingMetres(const Maker& maker, const DisasterState& disaster, std:
   return radii;
 }
 
-// Adds the flat band between two rings about the marker's pose.
+// Adds the flat band between two rings around the marker's pose.
 void AddBand(Marker& marker, const QuadrantRadii& inner, const QuadrantRadii& outer) {
   static_assert(kCircleCorners % 4 == 0, "quadrants begin at a corner");
   constexpr std::array<std::size_t, 4> kAnticlockwiseFromEast{0, 3, 2, 1};
@@ -332,7 +332,7 @@ void AddBand(Marker& marker, const QuadrantRadii& inner, const QuadrantRadii& ou
   }
 }
 
-// The band between the next smaller ring and this one, so that shades do not add up.
+// Returns the band between the next smaller ring and this one, so that shades do not overlap.
 Marker RingBand(const Maker& maker, const DisasterState& disaster, int ring) {
   const auto i = static_cast<std::size_t>(ring);
   Marker band = maker.Make("ring", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
@@ -344,7 +344,7 @@ Marker RingBand(const Maker& maker, const DisasterState& disaster, int ring) {
   return band;
 }
 
-// A band and not a line: rviz's lines turn towards the viewer and vanish here and there from above.
+// Returns a band instead of a line: rviz lines face the viewer and partly vanish in top-down view.
 Marker RingEdge(const Maker& maker, const DisasterState& disaster, int ring) {
   const auto i = static_cast<std::size_t>(ring);
   Marker edge = maker.Make("ring_edge", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,

@@ -29,7 +29,7 @@ void Refuse(const std::string& message, Response& response) {
   response.message = message;
 }
 
-// What viz draws anew from the states of a replay; a recording of it is for other viewers.
+// Returns true for messages that viz draws again from the replayed states. They are not replayed.
 bool IsDrawn(const rosbag::MessageInstance& message) {
   static const std::set<std::string> kDrawn{"visualization_msgs/MarkerArray", "nav_msgs/Path",
                                             "sensor_msgs/Image", "sensor_msgs/CompressedImage"};
@@ -66,7 +66,7 @@ ReplayNode::ReplayNode(ros::NodeHandle node, const ReplayParams& params)
     if (topics_.count(topic) != 0 || IsDrawn(message)) continue;
     ros::AdvertiseOptions options = rosbag::createAdvertiseOptions(
         message, IsState(message) ? ReplayTape::kQueueOfStates : kQueue);
-    // Whoever comes late sees what stands; a state is for those who watch.
+    // A late subscriber gets the last message. States are not latched.
     options.latch =
         message.getDataType() != ros::message_traits::datatype<aquafarm_msgs::FarmState>();
     topics_[topic] = node_.advertise(options);
@@ -116,7 +116,7 @@ void ReplayNode::Publish(std::size_t position) {
 
 void ReplayNode::Tick() {
   const ros::WallTime now = ros::WallTime::now();
-  if (now < ticked_) return;  // the delay
+  if (now < ticked_) return;  // during delay_s
   if (!begun_) Begin();
   const double passed_s = (now - ticked_).toSec();
   ticked_ = now;

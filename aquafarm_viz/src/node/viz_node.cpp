@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kWarnEvery_s = 5.0;
 constexpr int kJpegQuality = 90;
-constexpr std::size_t kStamps = 200;  // states among which that of a map of values is looked for
-constexpr std::int32_t kMostRoutes = 64;  // ships with a topic of their own
+constexpr std::size_t kStamps = 200;      // states to search for the one of a map of values
+constexpr std::int32_t kMostRoutes = 64;  // max ships with a route topic
 
 visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
                                        const visualization_msgs::MarkerArray& second) {
@@ -49,7 +49,7 @@ VizNode::VizNode(ros::NodeHandle node, const VizParams& params)
       [this](const ros::SingleSubscriberPublisher& subscriber) { OnMarkerSubscriber(subscriber); });
   moves_ = node.advertise<visualization_msgs::MarkerArray>(
       names::kMoves, 2, [this](const ros::SingleSubscriberPublisher&) { moved_ = !values_; });
-  // A new onlooker gets a picture even of a farm that stands still.
+  // A new subscriber gets a picture even if the farm does not change.
   const auto redraw = [this](const ros::SingleSubscriberPublisher&) { pictured_ = false; };
   image_ = node.advertise<sensor_msgs::Image>(names::kImage, 2, redraw);
   compressed_ = node.advertise<sensor_msgs::CompressedImage>(names::kCompressed, 2, redraw);
@@ -175,7 +175,7 @@ void VizNode::PublishRoutes(const Shown& shown) {
     nav_msgs::Path path;
     path.header = shown.state->header;
     path.header.frame_id = names::kMapFrame;
-    const std::size_t first = way->UnbrokenFrom();  // a path has no way to leave a piece out
+    const std::size_t first = way->UnbrokenFrom();  // a Path message cannot contain gaps
     path.poses.resize(way->places.size() - first);
     for (std::size_t i = 0; i < path.poses.size(); ++i) {
       const cv::Point& place = way->places[first + i];

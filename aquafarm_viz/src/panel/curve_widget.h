@@ -8,7 +8,7 @@
 
 namespace aquafarm_viz {
 
-/// The mean return over episodes as a line, the success rate (0 … 100 %) as a fainter one.
+/// Plots the mean return over episodes as a line and the success rate (0 … 100 %) as a fainter one.
 class CurveWidget : public QWidget {
  public:
   explicit CurveWidget(QWidget* parent = nullptr);

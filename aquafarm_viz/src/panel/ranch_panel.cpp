@@ -21,7 +21,7 @@ namespace aquafarm_viz {
 namespace {
 
 constexpr double kCallLimit_s = 5.0;
-// A command in lockstep waits for the other ships, as long as the ranch's ~barrier_timeout_s.
+// A command in lockstep waits for the other ships, at most ~barrier_timeout_s of the sim node.
 constexpr double kCommandLimit_s = 60.0;
 constexpr int kRefresh_ms = 200;
 constexpr char kWholeFarm[] = "Whole Farm";
@@ -43,7 +43,7 @@ RanchPanel::RanchPanel(QWidget* parent)
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(widget_);
   caller_ = MakeCaller(kCallLimit_s);
-  // rviz spins in the thread of its windows, so these may touch the model.
+  // rviz spins in its window thread, so these callbacks may use the model.
   spec_ = node_.subscribe<aquafarm_msgs::FarmSpec>(
       names::kSpec, Pairing::kSpecs, [this](const aquafarm_msgs::FarmSpecConstPtr& spec) {
         model_.Take(spec);
@@ -60,7 +60,7 @@ RanchPanel::RanchPanel(QWidget* parent)
         changed_ = true;
       });
   connect(&timer_, &QTimer::timeout, this, [this] {
-    // Also without news: the window may have another size.
+    // Also without new messages, because the window size may have changed.
     if (rviz_ != nullptr && model_.shown().spec) {
       whole_view_.Follow(*rviz_, *model_.shown().spec);
     }

@@ -13,8 +13,8 @@
 
 namespace aquafarm_viz {
 
-/// The panel "Ranch" of rviz: topics of the ranch in whose namespace rviz runs, live or replayed,
-/// and its services.
+/// The rviz panel "Ranch". It shows the topics of the ranch in the namespace of rviz, live or
+/// replayed, and calls its services.
 class RanchPanel : public rviz::Panel {
  public:
   explicit RanchPanel(QWidget* parent = nullptr);
@@ -31,11 +31,11 @@ class RanchPanel : public rviz::Panel {
   RanchModel model_;
   RanchWidget* widget_;
   std::unique_ptr<ServiceCaller> caller_;
-  std::map<int, std::unique_ptr<ServiceCaller>> helms_;  // by ship: one that waits blocks no other
+  std::map<int, std::unique_ptr<ServiceCaller>> helms_;  // by ship: commands may wait
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_;
-  rviz::VisualizationManager* rviz_{};  // null outside rviz, where Panel's own is not set
+  rviz::VisualizationManager* rviz_{};  // null outside rviz, where vis_manager_ is not set
   WholeView whole_view_;
   QTimer timer_;
   bool changed_{};

@@ -68,7 +68,7 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
 QLabel* RanchWidget::AddLine(QBoxLayout* layout) {
   auto* line = new QLabel();
   line->setWordWrap(true);
-  line->setTextFormat(Qt::PlainText);  // what comes from a network is no markup
+  line->setTextFormat(Qt::PlainText);  // text from the network must not be parsed as markup
   line->setTextInteractionFlags(Qt::TextSelectableByMouse);
   layout->addWidget(line);
   return line;
@@ -135,7 +135,7 @@ void RanchWidget::AddHelm(QBoxLayout* layout) {
   auto* rose = new QGridLayout();
   rose->setSpacing(2);
   row->addLayout(rose);
-  // Actions of FarmState by their place, north up; 10 holds.
+  // Actions as in Command.action, arranged as a compass with north up; 10 is hold.
   static constexpr std::uint8_t kRose[3][3]{{4, 0, 5}, {2, 10, 3}, {6, 1, 7}};
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 3; ++x) {

@@ -18,7 +18,7 @@ class QBoxLayout;
 
 namespace aquafarm_viz {
 
-/// What the buttons do; each must return at once.
+/// The actions of the buttons. Each must return immediately.
 struct RanchButtons {
   std::function<void(bool paused, std::uint32_t steps)> pause;
   std::function<void(std::uint64_t seed)> reset;
@@ -28,15 +28,16 @@ struct RanchButtons {
   std::function<void(std::uint64_t step)> jump;
 };
 
-/// The panel "Ranch" without rviz and ROS: shows a model, and its buttons call functions.
+/// The widget of the panel "Ranch", independent of rviz and ROS. It shows a model, and its buttons
+/// call functions.
 class RanchWidget : public QWidget {
  public:
-  /// @param model is looked at by Refresh; must outlive the widget
+  /// @param model is read by Refresh; must outlive the widget
   RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget* parent = nullptr);
 
-  /// Shows what the model says now.
+  /// Shows the current content of the model.
   void Refresh();
-  /// The line at the bottom: what became of the last button.
+  /// Sets the line at the bottom: the result of the last button.
   void Tell(const std::string& line);
 
  private:

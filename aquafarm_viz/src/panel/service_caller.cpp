@@ -6,7 +6,7 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr std::size_t kMostWaiting = 8;  // more clicks than that are refused
+constexpr std::size_t kMostWaiting = 8;  // max waiting calls; further ones are refused
 
 }  // namespace
 

@@ -16,21 +16,21 @@
 
 namespace aquafarm_viz {
 
-/// Calls services from a thread of its own, one after another, so that a window never waits; a call
-/// without an answer within the limit is cut off, and one too many is refused with a line.
+/// Calls services one after another from a separate thread, so that a window never blocks. A call
+/// without a response within the limit is aborted. A call is refused if too many calls wait.
 class ServiceCaller {
  public:
   using OnAnswer = std::function<void(const std::string& line)>;
 
-  /// @param on_answer gets a line for people after each call, in this object's thread; of a call
-  /// that is refused, in the caller's
+  /// @param on_answer receives a readable line after each call, in the thread of this object; for a
+  ///        refused call, in the thread of the caller
   ServiceCaller(ros::NodeHandle node, double limit_s, OnAnswer on_answer);
   ~ServiceCaller();
   ServiceCaller(const ServiceCaller&) = delete;
   ServiceCaller& operator=(const ServiceCaller&) = delete;
 
-  /// Calls a service of the ranch whose answer has ok and message.
-  /// @param describe what to say of an answer that is ok
+  /// Calls a service of the ranch whose response has the fields ok and message.
+  /// @param describe returns the line for a response with ok
   template <typename Service>
   void Call(const std::string& name, Service service,
             std::function<std::string(const Service&)> describe) {
@@ -53,7 +53,7 @@ class ServiceCaller {
   static std::string Describe(const std::string& name, const Service& service,
                               const Describer& describe) {
     if constexpr (std::is_same_v<Service, aquafarm_msgs::Command>) {
-      return describe(service);  // whose answer has words in a result of its own
+      return describe(service);  // its message is in the field result
     } else {
       return service.response.ok ? describe(service) : name + ": " + service.response.message;
     }
@@ -61,8 +61,8 @@ class ServiceCaller {
 
   void Enqueue(const std::string& name, std::function<std::string()> job);
   std::string LimitInWords() const;
-  bool Arm(ros::ServiceClient* client);  // false when this object ends
-  bool Disarm();                         // whether it was cut off
+  bool Arm(ros::ServiceClient* client);  // false during destruction
+  bool Disarm();                         // true if the call was aborted
   void Work();
   void Watch();
 
@@ -73,8 +73,8 @@ class ServiceCaller {
   std::condition_variable changed_;
   std::deque<std::function<std::string()>> jobs_;
   ros::ServiceClient* armed_{};
-  Clock::time_point end_;  // of the armed call
-  std::uint64_t calls_{};  // armed so far
+  Clock::time_point end_;  // deadline of the armed call
+  std::uint64_t calls_{};  // number of calls armed so far
   bool cut_off_{};
   bool ending_{};
   std::thread worker_;

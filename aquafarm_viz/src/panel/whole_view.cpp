@@ -10,7 +10,7 @@
 
 namespace aquafarm_viz {
 
-constexpr double kMargin = 0.05;  // of the farm on each side; the words above it need as much
+constexpr double kMargin = 0.05;  // fraction of the farm on each side, for the text above it
 
 rviz::ViewController* WholeView::FromAbove(rviz::VisualizationManager& rviz) {
   rviz::ViewController* view = rviz.getViewManager()->getCurrent();
@@ -33,7 +33,7 @@ void WholeView::Follow(rviz::VisualizationManager& rviz, const aquafarm_msgs::Fa
   const QWidget* window = rviz.getRenderPanel();
   if (!wanted || view == nullptr || window == nullptr) return;
   const Place now = Read(*view);
-  if (width_m_ != 0.0 && !(now == place_)) {  // somebody moved it
+  if (width_m_ != 0.0 && !(now == place_)) {  // the user moved the view
     wanted = false;
     return;
   }
@@ -48,7 +48,7 @@ void WholeView::Follow(rviz::VisualizationManager& rviz, const aquafarm_msgs::Fa
   if (!is_new && wanted_place == place_) return;
   const auto set = [view](const char* name, float value) {
     rviz::Property* property = view->subProp(name);
-    property->setShouldBeSaved(false);  // rviz would ask whether to save what nobody changed
+    property->setShouldBeSaved(false);  // else rviz asks to save a change not made by the user
     property->setValue(value);
     property->setShouldBeSaved(true);
   };

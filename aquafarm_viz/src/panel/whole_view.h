@@ -10,19 +10,19 @@ class VisualizationManager;
 
 namespace aquafarm_viz {
 
-/// Keeps rviz's view from above on the whole farm, until somebody moves it.
+/// Keeps rviz's top-down view on the whole farm until the user moves the view.
 class WholeView {
  public:
-  /// Shows a farm anew when it or the window has another size than before.
+  /// Adjusts the view if the size of the farm or of the window has changed.
   void Follow(rviz::VisualizationManager& rviz, const aquafarm_msgs::FarmSpec& spec);
-  /// Whether the view is where it was put, or will be put there by the first farm.
+  /// Returns true if the view is unchanged since Follow, or if the first farm will set it.
   bool IsKept(rviz::VisualizationManager& rviz) const;
 
-  bool wanted{};  ///< as the configuration says
+  bool wanted{};  ///< set by the rviz configuration
 
  private:
   struct Place {
-    float x_m, y_m, scale, angle;  // of the view's middle; pixels a metre; as rviz counts it
+    float x_m, y_m, scale, angle;  // centre of the view; pixels per metre; as defined by rviz
     bool operator==(const Place& other) const {
       return x_m == other.x_m && y_m == other.y_m && scale == other.scale && angle == other.angle;
     }
@@ -30,7 +30,7 @@ class WholeView {
   static rviz::ViewController* FromAbove(rviz::VisualizationManager& rviz);
   static Place Read(rviz::ViewController& view);
 
-  double width_m_{};  // of the farm that was put into view; 0: none yet
+  double width_m_{};  // size of the farm in view; 0 before the first farm
   double height_m_{};
   Place place_{};
 };

@@ -26,7 +26,7 @@ bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// What stands before a topic's last name.
+// Returns the part of a topic before its last name.
 std::string Namespace(const std::string& topic) { return topic.substr(0, topic.rfind('/') + 1); }
 
 }  // namespace
@@ -105,7 +105,8 @@ std::optional<ReplayTape::Step> ReplayTape::Find(const Step& shown, std::uint64_
   return last;
 }
 
-// The last before the step; topics come over connections of their own, so it may also lie behind.
+// Returns the last spec before the step. Each topic has a separate connection, so the spec may also
+// be recorded after the step.
 std::optional<std::size_t> ReplayTape::SpecOf(const Step& step) const {
   const std::string space = Namespace(messages_[step.position].getTopic());
   std::optional<std::size_t> found;

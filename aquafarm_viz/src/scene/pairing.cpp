@@ -22,7 +22,7 @@ std::string Pairing::AddState(const aquafarm_msgs::FarmStateConstPtr& state) {
 
 void Pairing::Pair() {
   if (newest_ == nullptr) return;
-  // The same episode may be announced again, after a reset with the same seed: the last one holds.
+  // An episode may have several specs, after a reset with the same seed: the last one is valid.
   for (auto spec = specs_.rbegin(); spec != specs_.rend(); ++spec) {
     if (!SameEpisode(**spec, *newest_)) continue;
     shown_ = {*spec, newest_};

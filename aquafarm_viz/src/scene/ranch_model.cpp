@@ -127,7 +127,8 @@ aquafarm_msgs::DisasterInfo RanchModel::MakeDisaster(std::uint8_t kind, std::uin
   aquafarm_msgs::DisasterInfo info;
   info.kind = kind;
   info.grade = grade;
-  // The worst risk follows the grade, -5 (blue) to -20 (red), and falls to -5 outside.
+  // The risk of the inner ring depends on the grade, from -5 (blue) to -20 (red). The outer ring
+  // has -5.
   const float worst = -5.0F * static_cast<float>(grade);
   for (const float share : {1.0F / 3.0F, 2.0F / 3.0F, 1.0F}) {
     info.radii.push_back(static_cast<float>(radius) * share);

@@ -19,7 +19,7 @@ using sensor_msgs::PointCloud2;
 using sensor_msgs::PointField;
 using visualization_msgs::Marker;
 
-constexpr double kHeight_m = 4.0;  // above the sea and the grids of rviz, below ships
+constexpr double kHeight_m = 4.0;  // above the sea and rviz's grids, below ships
 
 void CheckField(const PointCloud2& cloud, const std::string& name, std::uint8_t type,
                 std::uint32_t bytes) {
@@ -43,7 +43,7 @@ void Check(const PointCloud2& cloud) {
   CheckField(cloud, "action", PointField::UINT8, 1);
   const auto points = static_cast<std::uint64_t>(cloud.width) * cloud.height;
   const std::uint64_t size = cloud.data.size();
-  // No product of numbers from outside is made that might not fit.
+  // Divides first, because a product of input numbers may overflow.
   if (points <= size / cloud.point_step && points * cloud.point_step == size) return;
   throw std::invalid_argument("values/points: got " + std::to_string(size) + " bytes, expected " +
                               std::to_string(cloud.width) + " x " + std::to_string(cloud.height) +
@@ -73,7 +73,7 @@ geometry_msgs::Point At(double x, double y) {
   return point;
 }
 
-// A flat arrow of two triangles and a shaft, in cells, pointing to `bearing`.
+// Adds a flat arrow of a head and a shaft that points along a bearing.
 void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m,
               double size = 1.0) {
   static constexpr double kOutline[9][2]{{-0.04, -0.34}, {0.04, -0.34}, {0.04, 0.05},
@@ -108,7 +108,7 @@ Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec)
   for (std::size_t i = 0; i < points; ++i, ++x, ++y, ++value, ++action) {
     const double column = std::round(double(*x) / spec.cell_size_m);
     const double row = std::round(double(*y) / spec.cell_size_m);
-    // False for NaN.
+    // false for NaN
     if (!(column >= 0 && row >= 0 && column < spec.width && row < spec.height)) continue;
     const std::size_t cell = read.Index(int(column), int(row));
     read.actions[cell] = *action <= 9 ? *action : Values::kNoAction;
@@ -175,7 +175,7 @@ visualization_msgs::MarkerArray ChoiceMarkers(const aquafarm_msgs::PolicyChoice&
         AddArrow(marker, ship.x + 1.6 * std::sin(turn), ship.y + 1.6 * std::cos(turn), bearing,
                  spec.cell_size_m, 3.0);
       } else {
-        // Four arrows towards the ship: it would work with its cargo.
+        // Four arrows towards the ship represent a pickup or drop-off.
         for (const int side : {0, 90, 180, 270}) {
           const double to = side * CV_PI / 180.0;
           AddArrow(marker, ship.x + 0.9 * std::sin(to), ship.y + 0.9 * std::cos(to), side + 180,

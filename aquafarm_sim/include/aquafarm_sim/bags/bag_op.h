@@ -5,7 +5,7 @@
 
 namespace aquafarm_sim {
 
-/// What a record of a bag is (format 2.0, http://wiki.ros.org/Bags/Format/2.0).
+/// Type of a record of a bag (format 2.0, http://wiki.ros.org/Bags/Format/2.0).
 enum class BagOp : std::uint8_t {
   kMessage = 2,
   kBag = 3,

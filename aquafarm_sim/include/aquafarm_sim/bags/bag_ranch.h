@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Which ranch a bag is of, in a header alone: agents link no library of this package but the core.
+/// Finds the ranch that a bag was recorded from. Header-only, because agents link only the core
+/// library of this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <rosbag/bag.h>
@@ -16,10 +17,10 @@
 
 namespace aquafarm_sim {
 
-/// Namespace of the ranch in a bag, with the slash after it.
-/// @param path of the bag, for messages
-/// @param ns of the ranch wanted; empty: the only one there is
-/// @throws aquafarm::InputError when there is none, or several
+/// Returns the namespace of a ranch in a bag, with a trailing slash.
+/// @param path path of the bag, for error messages
+/// @param ns namespace of the ranch; empty if the bag contains only one ranch
+/// @throws aquafarm::InputError if the bag has no such ranch, or several and `ns` is empty
 inline std::string FindRanch(const rosbag::Bag& bag, const std::string& path,
                              const std::string& ns) {
   std::set<std::string> found;

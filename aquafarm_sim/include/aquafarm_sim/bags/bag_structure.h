@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What rosbag's reader trusts and what a damaged bag has wrong: lengths, places, the index.
+/// Checks the parts of a bag that rosbag's reader does not validate: lengths, offsets, the index.
 
 #include <rosbag/bag.h>
 #include <rosbag/chunked_file.h>
@@ -31,24 +31,24 @@
 namespace aquafarm_sim {
 namespace internal {
 
-/// Why a bag is damaged, in a few words.
+/// Thrown when a bag is damaged; the message names the damage.
 struct Damage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Walks along the records of a bag, or of a chunk of one (format 2.0, wiki.ros.org/Bags/Format).
+/// Iterates over the records of a bag or of a chunk (format 2.0, wiki.ros.org/Bags/Format).
 class BagRecords {
  public:
-  /// @param whole what the bytes are, where they are not the bag: " of ..."
+  /// @param whole suffix " of ..." for error messages if the bytes are only a part of the bag
   explicit BagRecords(std::string_view bytes, std::size_t position = 0, std::string whole = "")
       : bytes_(bytes), position_(position), whole_(std::move(whole)) {}
 
-  std::size_t position() const { return position_; }  ///< of the next record
-  std::size_t begin() const { return begin_; }        ///< of this record
+  std::size_t position() const { return position_; }  ///< offset of the next record
+  std::size_t begin() const { return begin_; }        ///< offset of the current record
   std::string_view data() const { return data_; }
   bool AtEnd() const { return position_ == bytes_.size(); }
 
-  /// Goes to the next record. @throws Damage where none can be
+  /// Advances to the next record. @throws Damage if the bytes do not contain a whole record
   void Next() {
     begin_ = position_;
     fields_ = Fields(Take());
@@ -57,7 +57,7 @@ class BagRecords {
 
   using FieldMap = std::map<std::string_view, std::string_view>;
 
-  /// What bytes of this record have by name.
+  /// Parses bytes of the current record into named fields.
   FieldMap Fields(std::string_view bytes) const {
     FieldMap fields;
     while (!bytes.empty()) {
@@ -90,7 +90,7 @@ class BagRecords {
     if (!Is(op)) throw Damage("another kind of record" + Where());
   }
 
-  /// The number at a place that must be in the bytes.
+  /// Reads a number at an offset. The bytes must contain it; this is not checked.
   template <typename Number>
   static Number Read(std::string_view bytes, std::size_t place) {
     Number number;
@@ -126,16 +126,16 @@ class BagRecords {
   std::string_view data_;
 };
 
-/// The messages of a chunk, as its content or its index has them.
+/// The messages of a chunk, read from its content or from its index.
 struct ChunkMessages {
-  using Entry = std::tuple<std::uint32_t, std::uint64_t, std::uint32_t>;  // connection, time, place
+  using Entry = std::tuple<std::uint32_t, std::uint64_t, std::uint32_t>;  // connection, time, begin
   std::vector<Entry> entries;
 
   bool operator==(const ChunkMessages& other) const { return entries == other.entries; }
 
   void Sort() { std::sort(entries.begin(), entries.end()); }
 
-  /// Messages of each connection.
+  /// Number of messages of each connection.
   std::map<std::uint32_t, std::uint32_t> Counts() const {
     std::map<std::uint32_t, std::uint32_t> counts;
     for (const Entry& entry : entries) ++counts[std::get<0>(entry)];
@@ -143,10 +143,11 @@ struct ChunkMessages {
   }
 };
 
-/// Where messages come from, by its number: its topic and what is told of it.
+/// The connections by number. The value holds the topic and the fields of the connection header.
 using Connections = std::map<std::uint32_t, std::map<std::string, std::string>>;
 
-/// Takes a connection in; those of chunks and those of the bag's end are the same.
+/// Adds a connection. The connection records of the chunks and of the index must be equal.
+/// @throws Damage if a connection with the same number differs
 inline void TakeConnection(const BagRecords& record, Connections& connections) {
   std::map<std::string, std::string> told{{"/topic", std::string(record.Text("topic"))}};
   for (const auto& [name, value] : record.Fields(record.data())) {
@@ -156,10 +157,11 @@ inline void TakeConnection(const BagRecords& record, Connections& connections) {
   if (!is_new && known->second != told) throw Damage("another connection" + record.Where());
 }
 
-/// @param connections gets those of the chunk
-/// @throws Damage, or rosbag::BagException where it cannot be decompressed
+/// Reads the messages of a chunk.
+/// @param connections receives the connections of the chunk
+/// @throws Damage, or rosbag::BagException if the chunk cannot be decompressed
 inline ChunkMessages ReadChunk(const BagRecords& chunk, Connections& connections) {
-  constexpr std::size_t kMost = std::size_t{256} << 20U;  // rosbag asks for twice as much
+  constexpr std::size_t kMost = std::size_t{256} << 20U;  // rosbag allocates twice as much
   const std::size_t size = chunk.Get<std::uint32_t>("size");
   const std::string_view kind = chunk.Text("compression");
   if (size > kMost) throw Damage("a chunk of more than 256 MiB" + chunk.Where());
@@ -194,9 +196,9 @@ inline ChunkMessages ReadChunk(const BagRecords& chunk, Connections& connections
   return messages;
 }
 
-/// Adds what one record of a chunk's index has.
+/// Adds the entries of one index record of a chunk.
 inline void ReadIndex(const BagRecords& index, ChunkMessages& messages) {
-  constexpr std::size_t kBytes = 12;  // of an entry: time and place
+  constexpr std::size_t kBytes = 12;  // per entry: time and offset
   const std::size_t count = index.Get<std::uint32_t>("count");
   if (index.Get<std::uint32_t>("ver") != 1 || index.data().size() != count * kBytes) {
     throw Damage("an index" + index.Where());
@@ -208,11 +210,12 @@ inline void ReadIndex(const BagRecords& index, ChunkMessages& messages) {
   }
 }
 
-/// @param chunks those of which nothing was told so far; loses this one
-/// @throws Damage when what is told of a chunk at the bag's end is not so
+/// Compares a chunk-info record with its chunk.
+/// @param chunks chunks that no chunk-info record has described so far; the chunk is removed
+/// @throws Damage if the chunk-info record disagrees with the chunk
 inline void CheckChunkInfo(const BagRecords& info, const Connections& connections,
                            std::map<std::uint64_t, ChunkMessages>& chunks) {
-  constexpr std::size_t kBytes = 8;  // of an entry: connection and count
+  constexpr std::size_t kBytes = 8;  // per entry: connection and count
   const auto chunk = chunks.find(info.Get<std::uint64_t>("chunk_pos"));
   const std::size_t count = info.Get<std::uint32_t>("count");
   if (chunk == chunks.end() || info.Get<std::uint32_t>("ver") != 1 ||
@@ -224,7 +227,7 @@ inline void CheckChunkInfo(const BagRecords& info, const Connections& connection
     counts[BagRecords::Read<std::uint32_t>(info.data(), kBytes * i)] =
         BagRecords::Read<std::uint32_t>(info.data(), kBytes * i + sizeof(std::uint32_t));
   }
-  // Seconds stand before nanoseconds, so a time compares as these two.
+  // A time is stored as seconds, then nanoseconds: swap the halves to compare times as integers.
   const auto ordered = [](std::uint64_t time) { return (time << 32U) | (time >> 32U); };
   std::uint64_t first = UINT64_MAX;
   std::uint64_t last = 0;
@@ -242,10 +245,10 @@ inline void CheckChunkInfo(const BagRecords& info, const Connections& connection
   chunks.erase(chunk);
 }
 
-/// Looks through a bag for what its index and its content do not agree in; bags without an index,
-/// and what is none of version 2.0, are left to rosbag, which says so.
-/// @throws Damage or rosbag::BagException when it is damaged
-/// @throws aquafarm::InputError when it is encrypted, or there is none
+/// Checks that the index of a bag agrees with its content. A bag without an index passes, because
+/// rosbag reports it.
+/// @throws Damage or rosbag::BagException if the bag is damaged or not a bag of version 2.0
+/// @throws aquafarm::InputError if the bag is encrypted or the file does not exist
 inline void CheckStructure(const std::string& path) {
   static constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
   std::error_code ignored;
@@ -273,8 +276,8 @@ inline void CheckStructure(const std::string& path) {
   const std::uint64_t index = records.Get<std::uint64_t>("index_pos");
   const std::uint32_t chunk_count = records.Get<std::uint32_t>("chunk_count");
   const std::uint32_t connection_count = records.Get<std::uint32_t>("conn_count");
-  if (index == 0) return;  // its recording was killed
-  // No recording of a ranch is compressed as much; what is would keep its reader busy for hours.
+  if (index == 0) return;  // the recording was killed
+  // No recording of a ranch is compressed this much. Reading such a bag would take hours.
   const std::uint64_t most_bytes = (std::uint64_t{1} << 30U) + 4'000 * std::uint64_t{bytes.size()};
   std::uint64_t all_bytes = 0;
   std::map<std::uint64_t, ChunkMessages> chunks;

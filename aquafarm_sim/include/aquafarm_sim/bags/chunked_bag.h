@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Writes a bag of format 2.0 (http://wiki.ros.org/Bags/Format/2.0) with lz4, each chunk put
-/// together in memory and written at once. Why not rosbag::Bag: docs/decisions/chunked_bag.md.
+/// Writes a bag of format 2.0 (http://wiki.ros.org/Bags/Format/2.0) with lz4 compression. Each
+/// chunk is assembled in memory and written at once. docs/decisions/chunked_bag.md gives the
+/// reasons for not using rosbag::Bag.
 
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
@@ -19,17 +20,17 @@
 
 namespace aquafarm_sim {
 
-/// A bag being written. Close comes last, and once.
+/// A bag that is being written. Close must be the last call and must be called only once.
 class ChunkedBag {
  public:
-  /// @throws std::system_error when the file cannot be written
+  /// @throws std::system_error if the file cannot be written
   explicit ChunkedBag(const std::string& path);
 
-  /// Adds a message to the chunk; a chunk that is large enough is compressed and written.
-  /// @param time not before that of the message written last
-  /// @throws std::invalid_argument when it is
-  /// @throws std::length_error when the chunk would have more than 256 MiB
-  /// @throws std::system_error when the file cannot be written
+  /// Adds a message to the current chunk. A chunk of at least 256 KiB is compressed and written.
+  /// @param time must not be earlier than the time of the previous message
+  /// @throws std::invalid_argument if `time` is earlier
+  /// @throws std::length_error if the chunk would exceed 256 MiB
+  /// @throws std::system_error if the file cannot be written
   template <typename Message>
   void Write(const std::string& topic, const ros::Time& time, const Message& message) {
     namespace traits = ros::message_traits;
@@ -45,25 +46,25 @@ class ChunkedBag {
     if (chunk_.size() >= kChunkBytes) EndChunk();
   }
 
-  /// Writes what is left, and the index. Without it `rosbag reindex` finds the whole chunks.
-  /// @throws std::system_error when the file cannot be written
+  /// Writes the last chunk and the index. Without Close, `rosbag reindex` recovers complete chunks.
+  /// @throws std::system_error if the file cannot be written
   void Close();
 
  private:
   using Bytes = std::vector<std::uint8_t>;
 
-  static constexpr std::size_t kChunkBytes = 256 * 1024;  // from here on it is written
+  static constexpr std::size_t kChunkBytes = 256 * 1024;  // min size at which a chunk is written
 
   struct Connection {
     std::uint32_t number{};
-    Bytes record;           // of this connection; the index repeats it
-    std::uint32_t count{};  // of its messages in this chunk
-    Bytes index;            // of this chunk: time and place of each
+    Bytes record;           // the connection record; the index repeats it
+    std::uint32_t count{};  // number of its messages in the current chunk
+    Bytes index;            // time and offset of each of its messages in the current chunk
   };
 
   Connection& Connect(const std::string& topic, const std::string& type, const std::string& md5sum,
                       const std::string& definition);
-  /// @returns room for the message
+  /// @returns buffer of `length` bytes for the message
   std::uint8_t* AddMessage(Connection& connection, const ros::Time& time, std::uint32_t length);
   void EndChunk();
   void WriteBagHeader(std::uint64_t index_position);
@@ -72,7 +73,7 @@ class ChunkedBag {
   std::ofstream file_;
   std::map<std::string, Connection> connections_;  // by topic
   Bytes chunk_;
-  std::optional<ros::Time> chunk_start_;  // of its first message
+  std::optional<ros::Time> chunk_start_;  // time of its first message
   ros::Time latest_;
   Bytes compressed_;
   Bytes chunk_infos_;  // records

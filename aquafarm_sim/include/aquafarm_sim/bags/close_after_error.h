@@ -7,8 +7,8 @@
 
 namespace aquafarm_sim {
 
-/// Closes a bag whose writing failed. What its end writes may fail as well, in its destructor too,
-/// which would end the process; then it is left, with its file open.
+/// Closes a bag after a write error. If closing fails too, the bag is leaked with its file open,
+/// because its destructor would throw and end the process.
 inline void AbandonBag(std::unique_ptr<rosbag::Bag> bag) {
   try {
     bag->close();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// An episode as what decides it: seed, number, actions, and what came from outside. From these few
-/// bytes a step the whole episode is played again, bit for bit, and written as a bag.
+/// Compact log of an episode: seed, index, actions and external changes, a few bytes per step. The
+/// episode is simulated again from this log, bit-identically, and written as a bag.
 
 #include <cstdint>
 #include <memory>
@@ -15,49 +15,50 @@
 
 namespace aquafarm_sim {
 
-/// A tape that does not give its record again.
+/// Thrown when the replay of a tape does not reproduce its record.
 struct TapeError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One farm's episode, as it goes.
+/// The log of one farm's episode.
 struct EpisodeTape {
-  /// The farm's saved state after something came from outside.
+  /// The farm's saved state after an external change, such as a bulletin.
   struct Change {
-    std::int32_t step{};  ///< steps taken before
+    std::int32_t step{};  ///< number of steps taken before the change
     std::string state;
   };
   std::int32_t farm{};
   std::uint64_t seed{};
   std::uint64_t episode{};
-  bool paced{};                       ///< when it began
-  double rate_hz{};                   ///< then; 0: the format's
-  std::int32_t first_step{};          ///< steps taken before the tape began: a loaded episode's
+  bool paced{};                       ///< pace at the start of the episode
+  double rate_hz{};                   ///< rate at the start; 0: the rate of BagFormat
+  std::int32_t first_step{};          ///< steps before the tape starts; above 0 if it was loaded
   std::vector<std::uint8_t> actions;  ///< [steps, agents]
   std::vector<Change> changes;        ///< by step
-  aquafarm::EpisodeRecord record;     ///< once it is over
+  aquafarm::EpisodeRecord record;     ///< valid after the end of the episode
 };
 
-/// How an episode is written.
+/// Properties of the bags that are the same for all episodes.
 struct BagFormat {
-  std::string ns;  ///< of the ranch's topics, with the slash after it
+  std::string ns;  ///< namespace of the ranch's topics, with a trailing slash
   std::string map_frame{"map"};
-  double rate_hz{10.0};  ///< steps a second of the bag's clock, where the tape has none of its own
+  double rate_hz{10.0};  ///< steps per second of the bag's clock if the tape's rate_hz is 0
   std::int32_t farms{1};
 };
 
-/// "episode_00000012_seed_1_return_+102.4.bag".
+/// File name of the bag: "episode_00000012_seed_1_return_+102.4.bag".
 std::string BagName(const EpisodeTape& tape);
 
-/// Plays tapes again and writes them as bags. One serves many: its farm is made once.
+/// Simulates tapes again and writes them as bags. Reuse one writer for many tapes: it creates its
+/// farm only once.
 class EpisodeBagWriter {
  public:
   EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario, BagFormat format);
 
-  /// Writes spec, chart, risk (every tenth step), every state, what came from outside, and the
-  /// summary into an lz4 bag: first beside `path` as path.active, then renamed.
-  /// @throws TapeError when the tape does not give its record
-  /// @throws std::runtime_error when it cannot be written; nothing is left of it then
+  /// Writes spec, chart, risk (every tenth step), every state, the external changes and the summary
+  /// into an lz4 bag. The bag is written to path.active and then renamed to `path`.
+  /// @throws TapeError if the simulation does not reproduce the tape's record
+  /// @throws std::runtime_error if the bag cannot be written; a partial file is removed
   void Write(const EpisodeTape& tape, const std::string& path);
 
  private:

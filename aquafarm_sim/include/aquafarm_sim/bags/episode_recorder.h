@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Keeps episodes as bags while the ranch runs, every step of them, without slowing it: the ranch
-/// leaves actions on a tape, a thread of its own plays the kept tapes again and writes them.
+/// Writes complete episodes as bags while the ranch runs, without slowing it down. The ranch
+/// appends actions to a tape. A separate thread simulates the kept tapes again and writes the bags.
 
 #include <chrono>
 #include <condition_variable>
@@ -20,41 +20,41 @@
 
 namespace aquafarm_sim {
 
-/// Which episodes are kept.
+/// Selects the episodes to keep.
 struct Keep {
   enum class Which : std::uint8_t { kNone, kAll, kEvery, kBest, kWorst, kFailures };
   Which which{};
-  std::uint64_t every{};  ///< kEvery: episodes whose number it divides
+  std::uint64_t every{};  ///< kEvery: keeps episodes whose index is a multiple of it
 };
 
-/// Reads "none", "all", "every:10", "best", "worst" or "failures".
+/// Parses "none", "all", "every:10", "best", "worst" or "failures".
 /// @throws InputError "~keep: got 'some', expected none, all, every:N, best, worst or failures"
 Keep ParseKeep(const std::string& text);
 
-/// How far the writing may fall behind.
+/// Limits of the backlog of unwritten episodes.
 struct RecorderLimits {
-  // Steps are written at some 300,000 a second: this is a second's work.
-  std::size_t waiting_bytes{300'000};      ///< of actions left to write; then the farms wait
-  std::chrono::milliseconds wait{10'000};  ///< that they wait at most; then nothing more is kept
+  // About 300,000 steps are written per second, so this is the work of one second.
+  std::size_t waiting_bytes{300'000};      ///< max unwritten actions [bytes]; above it farms wait
+  std::chrono::milliseconds wait{10'000};  ///< max wait of the farms; after it recording stops
 };
 
 class EpisodeRecorder final : public RanchRecorder {
  public:
-  /// @throws InputError when the folder cannot be made
+  /// @throws InputError if the folder cannot be created
   EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep, std::string folder,
                   BagFormat format, RecorderLimits limits = {});
-  /// Writes what is left first.
+  /// Writes the queued episodes, then stops the thread.
   ~EpisodeRecorder() override;
 
   void OnStart(const aquafarm::Farm& farm, std::int32_t number,
                const MessageContext& context) override;
-  /// Waits while more is left to write than the limits say, but no longer than they say.
+  /// Appends a step. Blocks while the backlog exceeds the limits, at most for `limits.wait`.
   void OnStep(const aquafarm::Farm& farm, std::int32_t number,
               const std::uint8_t* actions) override;
   void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) override;
 
-  std::uint64_t kept() const;  ///< bags written so far
-  std::string fault() const;   ///< why nothing is kept any more; empty: all is well
+  std::uint64_t kept() const;  ///< number of bags written so far
+  std::string fault() const;   ///< reason why recording stopped; empty if it has not
 
  private:
   bool Wants(const EpisodeTape& tape);
@@ -64,16 +64,16 @@ class EpisodeRecorder final : public RanchRecorder {
 
   const Keep keep_;
   const std::string folder_;
-  EpisodeBagWriter writer_;  // only the writing thread touches it
+  EpisodeBagWriter writer_;  // used only by the writing thread
   const RecorderLimits limits_;
-  std::vector<EpisodeTape> tapes_;  // by farm; only the ranch's thread touches them
+  std::vector<EpisodeTape> tapes_;  // by farm; used only by the ranch's thread
   std::optional<float> extreme_;    // best or worst return so far
-  std::string extreme_path_;        // its bag; only the writing thread touches it
+  std::string extreme_path_;        // bag of that episode; used only by the writing thread
 
   mutable std::mutex mutex_;  // guards the rest
   std::condition_variable changed_;
   std::deque<EpisodeTape> queue_;
-  std::size_t waiting_bytes_{};  // of the actions queued and being written
+  std::size_t waiting_bytes_{};  // size of the actions that are queued or being written
   std::uint64_t kept_{};
   std::string fault_;
   bool ending_{};

@@ -11,11 +11,11 @@
 
 namespace aquafarm_sim {
 
-/// Where two printed messages first differ: "ships[0].reward: got -1, simulated -6".
+/// Returns the first difference of two printed messages: "ships[0].reward: got -1, simulated -6".
 std::string FirstDifferentLine(const std::string& got, const std::string& simulated);
 
-/// The first field in which a message differs from a simulated one; empty: they are equal, to the
-/// last bit.
+/// Returns the first field in which a message differs from a simulated one; empty if both are
+/// bit-identical.
 template <typename Message>
 std::string FirstDifference(const Message& got, const Message& simulated) {
   const auto bytes = [](const Message& message) {

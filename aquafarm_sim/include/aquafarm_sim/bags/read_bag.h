@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// How bags are opened, and what is said of those that cannot be read; in a header alone, for
-/// agents and viewers link no library of this package but the core.
+/// Opens bags and reports the errors of unreadable ones. Header-only, because agents and viewers
+/// link only the core library of this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <ros/exception.h>
@@ -29,7 +29,8 @@
 
 namespace aquafarm_sim {
 
-/// What is said of a bag without a spec, behind its name: that there is none, or of what type.
+/// Returns the error message for a bag without a spec, to append to its path: there is no such
+/// topic, or it has another type.
 inline std::string NoSpec(const rosbag::Bag& bag) {
   const std::string type = ros::message_traits::datatype<aquafarm_msgs::FarmSpec>();
   const std::string name = std::string("/") + names::kSpec;
@@ -45,13 +46,13 @@ inline std::string NoSpec(const rosbag::Bag& bag) {
   return ": no topic spec, so nothing says what was played" + way_out;
 }
 
-/// Who recorded a bag, by the version that its spec has.
+/// Describes the version that recorded a bag. `version` is FarmSpec.version; it may be empty.
 inline std::string RecordedBy(const std::string& version) {
   return version.empty() ? "recorded by an unnamed version" : "recorded by version " + version;
 }
 
-/// Does what a bag's content may be at fault for.
-/// @throws aquafarm::InputError with the bag's path before what the work threw
+/// Calls `work` and prepends the path of the bag to the message of an InputError.
+/// @throws aquafarm::InputError "PATH: " and the message that `work` threw
 template <typename Work>
 auto NamingBag(const std::string& path, const Work& work) -> decltype(work()) {
   try {
@@ -63,14 +64,15 @@ auto NamingBag(const std::string& path, const Work& work) -> decltype(work()) {
 
 namespace internal {
 
-/// Bounds this process's memory while it lives: a damaged length of a list asks for any.
+/// Limits the memory of this process during its lifetime, because a damaged array length can
+/// request any amount of memory.
 class MemoryLimit {
  public:
-  /// @param more bytes than there are in use now
+  /// @param more max additional memory [bytes]
   explicit MemoryLimit(std::uintmax_t more) {
     std::ifstream file("/proc/self/statm");
     rlim_t pages = 0;
-    for (int field = 0; field < 6; ++field) file >> pages;  // the sixth: data and stack
+    for (int field = 0; field < 6; ++field) file >> pages;  // the sixth field is data + stack
     if (!file || getrlimit(RLIMIT_DATA, &before_) != 0) return;
     rlimit limit = before_;
     limit.rlim_cur = std::min<rlim_t>(before_.rlim_cur,
@@ -88,9 +90,9 @@ class MemoryLimit {
   bool is_set_{};
 };
 
-/// Does what allocates as a bag says.
-/// @param size of the bag, bytes
-/// @throws Damage where it asks for more than a sound one would
+/// Calls `work`, which allocates memory as requested by a bag.
+/// @param size size of the bag [bytes]
+/// @throws Damage if `work` requests more memory than a valid bag of this size needs
 template <typename Work>
 auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
   constexpr std::uintmax_t kSpareBytes = std::uintmax_t{2} << 30U;
@@ -106,8 +108,9 @@ auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
 
 }  // namespace internal
 
-/// @param to_the_letter whether comments and layout of the definitions count as well
-/// @throws aquafarm::InputError when a topic of one of these types has another than this version
+/// Checks that the bag's definitions of the given message types equal those of this version.
+/// @param to_the_letter true: comments and whitespace of the definitions must be equal too
+/// @throws aquafarm::InputError if a topic of one of these types has another definition
 template <typename... Messages>
 void CheckMessages(const rosbag::Bag& bag, const std::string& path, bool to_the_letter = false) {
   namespace traits = ros::message_traits;
@@ -128,9 +131,9 @@ void CheckMessages(const rosbag::Bag& bag, const std::string& path, bool to_the_
   }
 }
 
-/// Opens a bag that rosbag's reader does not crash of: it trusts lengths and places.
-/// @tparam Messages that will be read, of this version
-/// @throws aquafarm::InputError of one line with the bag's path
+/// Opens a bag after checking its lengths and offsets, on which rosbag's reader would crash.
+/// @tparam Messages message types to read; their definitions must equal those of this version
+/// @throws aquafarm::InputError with a message of one line that contains the bag's path
 template <typename... Messages>
 void OpenBag(rosbag::Bag& bag, const std::string& path) {
   std::error_code ignored;
@@ -147,22 +150,23 @@ void OpenBag(rosbag::Bag& bag, const std::string& path) {
   } catch (const internal::Damage& damage) {
     throw aquafarm::InputError(path + ": damaged: " + damage.what() +
                                "; 'rosbag reindex' may mend its index");
-  } catch (const std::exception& error) {  // of rosbag, its plugins, times and the mapping
+  } catch (const std::exception& error) {  // from rosbag, its plugins, times and the file mapping
     throw aquafarm::InputError(path + ": damaged or no bag: " + error.what());
   }
   CheckMessages<Messages...>(bag, path);
 }
 
-/// A message of a bag; nothing when it is of another type.
-/// @throws what ReadingBag makes an InputError of
+/// Returns a message of a bag; null if it has another type.
+/// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
   if (message.getMD5Sum() != ros::message_traits::md5sum<Message>()) return nullptr;
   return internal::Bounded(0, [&] { return message.instantiate<Message>(); });
 }
 
-/// Does what opens and reads a bag, by OpenBag and Instantiate.
-/// @throws aquafarm::InputError of one line with the bag's path when the bag is at fault
+/// Calls `work`, which opens and reads a bag with OpenBag and Instantiate.
+/// @throws aquafarm::InputError with a message of one line that contains the bag's path, if the bag
+///         is damaged
 template <typename Work>
 auto ReadingBag(const std::string& path, const Work& work) -> decltype(work()) {
   try {

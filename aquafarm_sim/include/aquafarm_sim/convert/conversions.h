@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// From the core's types to messages and back, as free functions that know nothing of nodes. Those
-/// with a message as last argument fill it and reuse its memory.
+/// Converts the core's types to messages and back. The functions do not depend on nodes. A function
+/// with a message as last argument fills it and reuses its memory.
 
 #include <aquafarm_msgs/Cell.h>
 #include <aquafarm_msgs/DeviceState.h>
@@ -29,9 +29,9 @@
 
 namespace aquafarm_sim {
 
-/// What a message says besides what the farm knows.
+/// Values of a message that are not part of the farm.
 struct MessageContext {
-  ros::Time stamp;  ///< of /clock
+  ros::Time stamp;  ///< time of /clock
   std::string map_frame{"map"};
   bool paced{};
   double rate_hz{10.0};
@@ -40,64 +40,68 @@ struct MessageContext {
 
 aquafarm_msgs::Cell ToMsg(aquafarm::Cell cell);
 aquafarm_msgs::RewardTerms ToMsg(const aquafarm::RewardTerms& terms);
-/// Health and place as they are, not as someone knows them.
+/// Converts the true health and position, not an observation of them.
 aquafarm_msgs::DeviceState ToMsg(const aquafarm::Farm& farm, std::int32_t device);
-/// As it is: known, visible and of age 0.
+/// Converts the true state: known, visible and of age 0.
 void ToMsg(const aquafarm::ObservableDisaster& disaster, std::int32_t id,
            aquafarm_msgs::DisasterState& message);
-/// The whole state.
+/// Converts the whole state.
 void ToMsg(const aquafarm::Farm& farm, const MessageContext& context,
            aquafarm_msgs::FarmState& message);
-/// What `view.ship` knows; in full view everything. Its reward and return are its own.
+/// Converts the observation of `view.ship`; in full view the whole state. Reward and return are
+/// those of this ship.
 void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const MessageContext& context,
            aquafarm_msgs::FarmState& message);
-/// `farms` and `yaml` are the number of farms and the canonical text of the farm's scenario.
+/// Converts the constants of an episode.
+/// @param farms number of farms
+/// @param yaml canonical YAML of the farm's scenario
 void ToMsg(const aquafarm::Farm& farm, const aquafarm::Encoder& encoder, std::int32_t farms,
            const std::string& yaml, const MessageContext& context,
            aquafarm_msgs::FarmSpec& message);
 aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record, std::int32_t farm,
                                     const MessageContext& context);
 
-/// Land and rocks: 100 blocked, 0 water. The grid's origin is the south-west corner of cell (0, 0),
-/// whose centre is the origin of the map frame.
+/// Converts islands and rocks to a grid: 100 blocked, 0 water. The grid's origin is the south-west
+/// corner of cell (0, 0), whose centre is the origin of the map frame.
 nav_msgs::OccupancyGrid ChartToMsg(const aquafarm::Farm& farm, const MessageContext& context);
-/// 0 no risk … 100 the worst there can be (-20), rounded.
+/// Converts risk to a grid: 0 no risk … 100 the worst possible risk (-20), rounded.
 void RiskToMsg(const std::vector<aquafarm::Disaster>& disasters, const aquafarm::Scenario& scenario,
                const MessageContext& context, nav_msgs::OccupancyGrid& message);
 
-/// map → frame at a point [cells], facing a compass bearing.
+/// Transform map → `frame` at a point [cells], oriented along a compass bearing.
 geometry_msgs::TransformStamped PoseToMsg(const std::string& frame, double x, double y,
                                           std::int32_t bearing_deg,
                                           const aquafarm::Scenario& scenario,
                                           const MessageContext& context);
-/// earth (ECEF of WGS 84) → map (east, north, up at the origin).
+/// Transform earth (ECEF of WGS 84) → map (east, north, up at the origin).
 geometry_msgs::TransformStamped EarthToMsg(const aquafarm::GeoPoint& origin,
                                            const std::string& earth_frame,
                                            const MessageContext& context);
-/// Compass bearing of a move; `otherwise` for what is no move.
+/// Returns the compass bearing of a move [degrees]; `otherwise` if the action is not a move.
 std::int32_t BearingOf(aquafarm::Action action, std::int32_t otherwise);
 
-/// Most waypoints that a track in a message may have.
+/// Max number of waypoints of a track in a message.
 inline constexpr std::size_t kMaxWaypoints = 10000;
-/// Checks sizes and closed sets; numbers are checked where the disaster is set.
+/// Converts a disaster. Checks array lengths and enumerations; SetDisaster checks the numbers.
 /// @throws InputError "info.radii: got 1000000 entries, expected at most 4"
 aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message);
 
-/// A bulletin of the globe, for ToDisaster of hazard_disaster.h.
+/// Converts a storm bulletin, for use with ToDisaster (storms/to_disaster.h).
 /// @throws InputError "storm.fixes[0].latitude_deg: got 95, expected a number in [-90, 90]"
 aquafarm::HazardTrack FromMsg(const aquafarm_msgs::Storm& message);
 
-/// A track with the forecast that it goes on with, if it has one.
+/// Converts a track with its forecast, if it has one.
 aquafarm_msgs::Storm ToMsg(const aquafarm::HazardTrack& track);
 
-/// A layer of the sea: 0 its least value … 100 its greatest, -1 unknown.
+/// Converts a sea layer to a grid: 0 its min value … 100 its max value, -1 unknown.
 void SeaToMsg(const aquafarm::SeaLayer& layer, const aquafarm::Scenario& scenario,
               const MessageContext& context, nav_msgs::OccupancyGrid& message);
-/// The same in its own units, [1, H, W]; the first dimension's label is "warmth [degC]".
+/// Converts a sea layer to an array [1, H, W] in its own unit. The label of the first dimension is
+/// name and unit, for example "warmth [degC]".
 std_msgs::Float32MultiArray SeaToMsg(const aquafarm::SeaLayer& layer,
                                      const aquafarm::Scenario& scenario);
 
-/// Time in the scenario's world after `step` steps; 0 when it cannot be a ros::Time.
+/// Returns the scenario's world time after `step` steps; 0 if ros::Time cannot represent it.
 ros::Time WorldTime(const aquafarm::Scenario& scenario, std::int64_t step);
 
 }  // namespace aquafarm_sim

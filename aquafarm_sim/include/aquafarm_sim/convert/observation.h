@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A ship's observation as agents read it, in a header alone: they link no library of this package
-/// but the core.
+/// Converts the observation message of a ship for agents. Header-only, because agents link only the
+/// core library of this package.
 
 #include <aquafarm_msgs/FarmState.h>
 
@@ -15,7 +15,7 @@
 
 namespace aquafarm_sim {
 
-/// What is known of a disaster.
+/// Converts what a ship knows of a disaster.
 inline aquafarm::KnownDisaster FromMsg(const aquafarm_msgs::DisasterState& message) {
   aquafarm::KnownDisaster known;
   known.known = message.known != 0;
@@ -47,10 +47,10 @@ inline aquafarm::KnownDisaster FromMsg(const aquafarm_msgs::DisasterState& messa
   return known;
 }
 
-/// What a ship knows, back from its observation, as Observe would have filled it; `eyes` and what a
-/// view does not tell of a disaster excepted.
-/// @param layout of the observation's episode; scenario and layout must outlive the view
-/// @throws InputError when it is no ship's observation of a farm of `scenario`
+/// Restores the View of a ship from its observation message, as filled by Observe. It does not
+/// restore `eyes` and the disaster fields that a view does not contain.
+/// @param layout layout of the observation's episode; scenario and layout must outlive the view
+/// @throws InputError if the message is not a ship's observation of a farm of `scenario`
 inline void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Scenario& scenario,
                     const aquafarm::Layout& layout, aquafarm::View& view) {
   const auto ship = static_cast<std::size_t>(message.observer);

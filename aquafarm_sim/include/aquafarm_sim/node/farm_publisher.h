@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What people and bags see of a ranch: state, observations, risk, tf and clock at a limited wall
-/// rate, or every step when recording; spec, chart and tf_static again at each episode's start.
-/// Stepping only marks that something changed, so that publishing never slows it.
+/// Publishes the topics of a ranch: state, observations, risk, tf and clock at a limited wall rate,
+/// or at every step when recording; spec, chart and tf_static at each start of an episode. Stepping
+/// only sets a flag, so that publishing never slows it down.
 
 #include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -32,29 +32,29 @@ namespace aquafarm_sim {
 
 class RanchPublisher : public RanchListener {
  public:
-  /// @param ranch must outlive the publisher, which listens to it until it is destroyed
+  /// @param ranch must outlive the publisher, which is its listener until it is destroyed
   RanchPublisher(const ros::NodeHandle& node, const SimParams& params, Ranch& ranch);
   ~RanchPublisher() override;
   RanchPublisher(const RanchPublisher&) = delete;
   RanchPublisher& operator=(const RanchPublisher&) = delete;
 
-  /// Waits until someone subscribes to `episode`, which only recorders do before the first step.
-  /// @returns false when nobody came within the limit
+  /// Waits for a subscriber of `episode`. Only recorders subscribe to it before the first step.
+  /// @returns false if there is no subscriber within the limit
   bool WaitForRecorder(double limit_s);
 
   void OnChange(const RanchView& view) override;
   void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) override;
 
-  /// Episode summaries that were left out because they came faster than they could be sent.
+  /// Number of episode summaries that were dropped because the queue was full.
   std::uint64_t dropped_summaries() const { return dropped_summaries_; }
 
  private:
-  /// A topic whose last message a new subscriber gets at once, without the latched flag.
+  /// A topic that sends its last message to each new subscriber, without the latched flag.
   template <typename Message>
   struct Topic {
     ros::Publisher publisher;
     Message message;
-    bool valid{};  // message was sent
+    bool valid{};  // true: a message was sent
   };
 
   template <typename Message>
@@ -89,15 +89,15 @@ class RanchPublisher : public RanchListener {
   std::mutex message_mutex_;  // guards the messages below and those of the topics
   std::uint64_t published_episode_{};
   bool episode_is_new_{};
-  std::chrono::steady_clock::time_point next_record_;  // recording goes no faster than bags follow
+  std::chrono::steady_clock::time_point next_record_;  // limits recording to the rate of rosbag
   MessageContext context_;
   aquafarm_msgs::FarmSpec spec_message_;
   nav_msgs::OccupancyGrid chart_message_;
-  std::vector<aquafarm::Disaster> disasters_;  // to fill the risk grid from, when unlocked
+  std::vector<aquafarm::Disaster> disasters_;  // copy for the risk grid, used without a lock
   std::vector<geometry_msgs::TransformStamped> frame_messages_;
-  std::vector<std::int32_t> bearings_;  // of each ship's last move
+  std::vector<std::int32_t> bearings_;  // bearing of each ship's last move [degrees]
 
-  std::mutex observation_mutex_;  // guards what ships see
+  std::mutex observation_mutex_;  // guards the observations
   struct Observation {
     ros::Publisher publisher;
     aquafarm_msgs::FarmState message;  // its memory is reused
@@ -105,7 +105,7 @@ class RanchPublisher : public RanchListener {
   std::vector<Observation> observations_;
   aquafarm::View view_;  // scratch
 
-  std::mutex queue_mutex_;  // guards the rest; taken last
+  std::mutex queue_mutex_;  // guards the rest; locked last
   std::condition_variable wake_;
   std::deque<aquafarm_msgs::EpisodeSummary> summaries_;
   std::atomic<bool> dirty_{};

@@ -11,14 +11,15 @@
 
 namespace aquafarm_sim {
 
-/// Serves calls one at a time, deserializing every request into the same memory and serializing the
-/// answer from where it lies: in the steady state the codec allocates nothing but the wire buffer.
+/// Serves calls one at a time. Every request is deserialized into the same object, and the response
+/// is serialized without a copy. In the steady state the codec allocates only the wire buffer.
 template <typename Service>
 class ReusingService : public ros::ServiceCallbackHelper {
  public:
   using Request = typename Service::Request;
   using Response = typename Service::Response;
-  /// Is told the calling node's name. The answer must stay as it is until the next call.
+  /// Receives the request and the name of the calling node. The returned response must stay valid
+  /// and unchanged until the next call.
   using Handler = std::function<const Response&(const Request&, const std::string&)>;
 
   explicit ReusingService(Handler handler) : handler_(std::move(handler)) {}
@@ -46,7 +47,7 @@ class ReusingService : public ros::ServiceCallbackHelper {
   }
 
  private:
-  // A request of a million entries must not leave its memory behind.
+  // The memory of larger requests is freed after the call.
   static constexpr std::size_t kMostKeptBytes = std::size_t{1} << 16U;
 
   std::mutex mutex_;

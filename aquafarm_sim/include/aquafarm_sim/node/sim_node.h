@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The ranch as a ROS node: its services, its topics, its diagnostics. Callbacks convert, call,
-/// convert; what is allowed when is the Ranch's.
+/// The ranch as a ROS node: services, topics and diagnostics. Callbacks convert the request, call
+/// the Ranch and convert the result. The Ranch decides which requests are allowed.
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/callback_queue.h>
@@ -25,11 +25,11 @@ namespace aquafarm_sim {
 class SimNode {
  public:
   /// @param node namespace of the topics and services
-  /// @throws InputError on a parameter or scenario that is not allowed
+  /// @throws InputError if a parameter or the scenario is invalid
   SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node);
   ~SimNode();
 
-  /// Serves on for a moment when a trainer is at work, until it has saved.
+  /// Keeps serving for a limited time if a trainer is running, until the trainer has saved.
   void LetClientsSave();
   SimNode(const SimNode&) = delete;
   SimNode& operator=(const SimNode&) = delete;
@@ -45,8 +45,8 @@ class SimNode {
   ros::NodeHandle node_;
   Ranch ranch_;
   RanchPublisher publisher_;
-  std::unique_ptr<EpisodeRecorder> recorder_;  // null: no episodes are kept
-  // Commands may wait for other ships; on threads of their own they keep nobody else waiting.
+  std::unique_ptr<EpisodeRecorder> recorder_;  // null if no episodes are kept
+  // Commands may wait for other ships. They run on separate threads and block no other call.
   ros::CallbackQueue ship_queue_;
   ros::NodeHandle ship_node_;
   std::vector<ros::ServiceServer> services_;
@@ -58,7 +58,7 @@ class SimNode {
   std::thread pacer_;
 };
 
-/// Runs the node until ROS ends it. @return the exit code: 0, or 2 when its input was refused
+/// Runs the node until ROS shuts down. @return the exit code: 0, or 2 if the input was refused
 int RunSimNode();
 
 }  // namespace aquafarm_sim

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The protocol of ros_api over a FarmBatch, without any transport: who advances time, commands
-/// that count exactly once, the lockstep barrier, joint steps, save and load. Every public function
-/// may be called from any thread; none throws, wrong requests get a code and change nothing.
+/// The protocol of docs/ros_api.md for a FarmBatch, independent of the transport: pace, commands
+/// that are executed exactly once, the lockstep barrier, joint steps, save and load. Every public
+/// function may be called from any thread. No function throws after construction: invalid requests
+/// return a code and change nothing.
 ///
-///   lockstep:  ship 0 --Command--> waits ----------+--> answer of step k+1
-///              ship 1 -----------------Command-----+--> answer of step k+1   (or TIMEOUT)
-///   paced:     ship 0 --Command--> ACCEPTED for step k+1, which the clock takes
+///   lockstep:  ship 0 --Command--> waits ----------+--> result of step k+1
+///              ship 1 -----------------Command-----+--> result of step k+1   (or TIMEOUT)
+///   paced:     ship 0 --Command--> ACCEPTED for step k+1, which the clock triggers
 
 #include <aquafarm_msgs/Claim.h>
 #include <aquafarm_msgs/CommandResult.h>
@@ -36,112 +37,113 @@
 
 namespace aquafarm_sim {
 
-/// Limits of what a request may ask for.
+/// Limits of the values of requests.
 inline constexpr std::int32_t kMaxFarms = 4096;
 inline constexpr double kMinRate_hz = 0.001;
 inline constexpr double kMaxRate_hz = 1000.0;
-/// Cells of all farms together where each has a layout of its own.
+/// Max number of cells of all farms together if every episode has a new layout.
 inline constexpr std::int64_t kMaxDrawnCells = 64'000'000;
 inline constexpr std::size_t kMaxAnswerBytes = std::size_t{256} << 20U;
 
 struct RanchOptions {
   std::int32_t farms{1};
-  std::int32_t threads{1};  ///< that step farms
+  std::int32_t threads{1};  ///< number of threads that step the farms
   std::uint64_t seed{};
   bool paced{};
   double rate_hz{10.0};
   double barrier_timeout_s{10.0};
-  bool late_ships_hold{};  ///< lockstep: after the timeout the farm goes on without who is late
-  double claim_timeout_s{10.0};  ///< without a command of its holder a claim ends
+  bool late_ships_hold{};  ///< lockstep: after the timeout the farm steps without the late ships
+  double claim_timeout_s{10.0};  ///< time without a command of its holder until a claim expires
   std::string map_frame{"map"};
 };
 
-/// One ship's command: what for, and for when.
+/// The command of one ship: an action and its target step.
 struct ShipCommand {
   std::int32_t ship{};
   std::uint8_t action{};
   std::uint64_t episode{};
   std::uint64_t step{};
   std::uint64_t token{};
-  std::string caller{};  ///< node that gave it; empty: not known
+  std::string caller{};  ///< name of the calling node; empty if unknown
   friend bool operator==(const ShipCommand& a, const ShipCommand& b) {
     return a.ship == b.ship && a.action == b.action && a.episode == b.episode && a.step == b.step &&
            a.token == b.token;
   }
-  /// Meant for whatever is now, and not to be told from the next of its kind.
+  /// True if the command names neither a step nor a token: a retry looks like a new command.
   bool anonymous() const { return episode == 0 && step == 0 && token == 0; }
 };
 
-/// What went on so far; for diagnostics.
+/// Counters for diagnostics.
 struct RanchCounters {
-  std::uint64_t farm_steps{};  ///< over all farms
-  std::uint64_t late_ships{};  ///< held for want of a command; in lockstep each that was given up
-  std::uint64_t barrier_timeouts{};  ///< lockstep: commands answered TIMEOUT
-  std::uint64_t superseded{};        ///< clients that were overtaken by another of the same ship
-  std::uint64_t dropped_clients{};   ///< holders of a ship who fell silent and lost it
-  std::uint64_t refused{};           ///< requests answered with any other code of refusal
-  std::uint64_t saves{};             ///< states handed out by save_state
-  std::vector<std::int32_t> absent;  ///< ships that lockstep has given up until they command again
-  double joint_step_age_s{1e9};      ///< since the last joint step
-  std::string fault;                 ///< why paced running paused itself; empty: it did not
-  std::uint64_t untold{};            ///< what the listener missed
-  std::string untold_why;            ///< the last time; empty: it missed nothing
+  std::uint64_t farm_steps{};  ///< steps, summed over all farms
+  std::uint64_t late_ships{};  ///< paced: holds without a command; lockstep: ships gone absent
+  std::uint64_t barrier_timeouts{};  ///< lockstep: commands that returned TIMEOUT
+  std::uint64_t superseded{};        ///< commands replaced by another one of the same ship
+  std::uint64_t dropped_clients{};   ///< expired claims
+  std::uint64_t refused{};           ///< requests refused with any other code
+  std::uint64_t saves{};             ///< successful save_state calls
+  std::vector<std::int32_t> absent;  ///< ships that lockstep does not wait for
+  double joint_step_age_s{1e9};      ///< time since the last joint step
+  std::string fault;                 ///< error that paused the paced farm; empty if there is none
+  std::uint64_t untold{};            ///< number of failed notifications of the listener
+  std::string untold_why;            ///< reason of the last failure; empty if there is none
 };
 
-/// The farms as they stand, seen while nothing moves.
+/// The current state of the farms. It is valid during the callback, while no farm steps.
 struct RanchView {
   const aquafarm::FarmBatch& batch;
-  const std::string& yaml;  ///< canonical text of the scenario
+  const std::string& yaml;  ///< canonical YAML of the scenario
   MessageContext context;
-  std::uint64_t episode_count{};  ///< episodes that farm 0 has begun; tells a new one
-  std::uint64_t version{};        ///< changes whenever farm 0 does
-  bool joint{};  ///< the last change was a joint step's: nobody waits to see each observation
+  std::uint64_t episode_count{};  ///< number of episodes that farm 0 has started
+  std::uint64_t version{};        ///< changes whenever farm 0 changes
+  bool joint{};  ///< true if a joint step made the last change: no driver needs each observation
 };
 
-/// Is told of changes while nothing moves; must be quick and must not call the ranch.
+/// Receives changes while no farm steps. Callbacks must be quick and must not call the ranch.
 class RanchListener {
  public:
   virtual ~RanchListener() = default;
-  /// Farm 0 has stepped or begun an episode.
+  /// Called after farm 0 has stepped or started an episode.
   virtual void OnChange(const RanchView& view) = 0;
   virtual void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) = 0;
 };
 
-/// Is told of all that decides the farms' episodes, in order, while nothing moves; must not call
-/// the ranch.
+/// Receives everything that determines the farms' episodes, in order, while no farm steps.
+/// Callbacks must not call the ranch.
 class RanchRecorder {
  public:
   virtual ~RanchRecorder() = default;
-  /// Farm `number` has begun an episode, or goes on with a loaded one.
-  /// @param context of the ranch then: its pace and rate
+  /// Called after farm `number` has started an episode or loaded one.
+  /// @param context pace and rate of the ranch at this time
   virtual void OnStart(const aquafarm::Farm& farm, std::int32_t number,
                        const MessageContext& context) = 0;
-  /// It has taken a step. @param actions [agents]
+  /// Called after farm `number` has taken a step. @param actions [agents]
   virtual void OnStep(const aquafarm::Farm& farm, std::int32_t number,
                       const std::uint8_t* actions) = 0;
-  /// Something from outside has changed it between two steps.
+  /// Called after an external change of farm `number` between two steps.
   virtual void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) = 0;
 };
 
 class Ranch {
  public:
-  /// @throws InputError when the scenario cannot be laid out
+  /// @throws InputError if no layout of the scenario can be generated
   Ranch(std::shared_ptr<const aquafarm::Scenario> scenario, const RanchOptions& options);
 
-  /// @param listener must outlive the ranch's use; null: none
+  /// @param listener must stay valid until it is replaced or the ranch ends; null: no listener
   void SetListener(RanchListener* listener);
-  /// The same; it is told at once of the episodes that the farms are in.
+  /// As SetListener. OnStart is called immediately for the current episode of each farm.
   void SetRecorder(RanchRecorder* recorder);
 
-  /// Lockstep: returns when the step was taken, refused or timed out. Paced: at once.
+  /// Executes a command. Lockstep: returns when the step was taken, refused or timed out. Paced:
+  /// returns immediately.
   aquafarm_msgs::CommandResult Command(const ShipCommand& command);
-  /// Takes a ship for the calling node alone, or gives it back.
+  /// Claims a ship for the calling node, or releases the claim.
   void Claim(std::int32_t ship, const std::string& caller, bool release,
              aquafarm_msgs::Claim::Response& response);
-  /// The same as Command for a move, whose action must be one.
+  /// As Command, but refuses an action that is not a move.
   aquafarm_msgs::CommandResult MoveShip(const ShipCommand& command);
-  /// The answer stays valid until the next call of Step, which the caller must not overlap.
-  /// @param caller node that asks; empty: not known
+  /// The response stays valid until the next call of Step. Calls of Step must not overlap.
+  /// @param caller name of the calling node; empty if unknown
   const aquafarm_msgs::Step::Response& Step(const aquafarm_msgs::Step::Request& request,
                                             const std::string& caller = {});
   void Reset(const aquafarm_msgs::Reset::Request& request, aquafarm_msgs::Reset::Response& response,
@@ -158,14 +160,14 @@ class Ranch {
   void SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                    aquafarm_msgs::SetDisaster::Response& response);
 
-  /// Takes the steps of paced running when they are due; returns after Shutdown.
+  /// Takes the steps of paced running at their times. Returns after Shutdown.
   void RunPaced();
-  /// Takes one paced step of farm 0, or begins its next episode when the present one is over.
+  /// Takes one paced step of farm 0, or starts its next episode if the current one has ended.
   void Tick();
-  /// Answers all who wait, and all later commands, with SHUTTING_DOWN.
+  /// Makes all waiting and all later commands return SHUTTING_DOWN.
   void Shutdown();
 
-  /// Calls `look` while nothing moves.
+  /// Calls `look` while no farm steps.
   void Inspect(const std::function<void(const RanchView&)>& look);
   RanchCounters counters();
   std::int32_t agents() const { return agents_; }
@@ -176,25 +178,25 @@ class Ranch {
   using Clock = std::chrono::steady_clock;
   using Lock = std::unique_lock<std::mutex>;
 
-  /// What is known of one ship's commands.
+  /// The commands of one ship.
   struct Slot {
-    std::optional<ShipCommand> pending;                    // for the next step
-    std::uint64_t ticket{};                                // of the newest command
-    std::optional<aquafarm_msgs::CommandResult>* reply{};  // of who waits for it; null: nobody
-    std::optional<ShipCommand> last;  // the last accepted command and its answer
+    std::optional<ShipCommand> pending;                    // command for the next step
+    std::uint64_t ticket{};                                // number of the newest command
+    std::optional<aquafarm_msgs::CommandResult>* reply{};  // of the waiting call; null if none
+    std::optional<ShipCommand> last;  // last accepted command; `answer` is its result
     aquafarm_msgs::CommandResult answer;
     std::condition_variable changed;
-    bool is_absent{};            // it was late, and nobody waits for it until it is back
-    std::string holder;          // node that has claimed it; empty: none
-    Clock::time_point heard_at;  // of the holder's last command or claim
+    bool is_absent{};            // it was late; the farm does not wait for it
+    std::string holder;          // node that has claimed it; empty if unclaimed
+    Clock::time_point heard_at;  // time of the holder's last command or claim
   };
   struct Refusal {
     std::uint8_t code{};
     std::string message;
   };
-  /// The last accepted request of its kind; another client's numbers mean nothing.
+  /// Identifies the last accepted request of a kind. Sequence numbers are per client.
   struct Numbered {
-    std::uint64_t sequence{};  // 0: none
+    std::uint64_t sequence{};  // 0: no request
     std::string caller;
     bool IsRepeated(std::uint64_t by_sequence, const std::string& by_caller) const {
       return sequence != 0 && sequence == by_sequence && caller == by_caller;
@@ -250,12 +252,12 @@ class Ranch {
   std::unique_ptr<aquafarm::FarmBatch> batch_;
   MessageContext context_;
   std::uint64_t clock_ns_{};
-  std::uint32_t steps_to_pause_{};  // 0: it does not pause by itself
+  std::uint32_t steps_to_pause_{};  // 0: no scheduled pause
   std::uint64_t episode_count_{};
   std::uint64_t version_{};
-  std::uint64_t turn_;  // of StepResult; begins so that a node that came back has others
+  std::uint64_t turn_;  // StepResult.turn; the start value differs after a restart of the node
   bool ending_{};
-  bool changed_jointly_{};  // the last change was a joint step's
+  bool changed_jointly_{};  // a joint step made the last change
   std::condition_variable pace_changed_;
   std::vector<std::unique_ptr<Slot>> slots_;
   std::vector<std::uint8_t> actions_;  // scratch, one per ship
@@ -263,7 +265,7 @@ class Ranch {
   RanchListener* listener_{};
   RanchRecorder* recorder_{};
   RanchCounters counters_;
-  Clock::time_point joint_step_at_{};  // of the last joint step; the clock's zero: none
+  Clock::time_point joint_step_at_{};  // time of the last joint step; the clock's zero if none
 
   Numbered last_step_;
   aquafarm_msgs::Step::Response step_answer_;

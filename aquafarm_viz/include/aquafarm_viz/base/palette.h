@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Colours and outlines that the image and the markers share.
+/// Colours and outlines of both the image and the markers.
 
 #include <cstdint>
 #include <opencv2/core/types.hpp>
@@ -17,10 +17,10 @@ struct Rgb {
   std::uint8_t b{};
 };
 
-/// The colour as OpenCV's BGR images want it.
+/// Converts a colour to OpenCV's BGR order.
 inline cv::Scalar Bgr(Rgb c) { return {double(c.b), double(c.g), double(c.r)}; }
 
-/// The colour between two: share 0 gives `from`, 1 gives `to`.
+/// Interpolates two colours: share 0 gives `from`, 1 gives `to`.
 Rgb Mix(Rgb from, Rgb to, double share);
 
 inline constexpr Rgb kSeaDeep{0x1b, 0x4f, 0x78};
@@ -34,27 +34,27 @@ inline constexpr Rgb kPort{0xff, 0xff, 0xff};
 inline constexpr Rgb kInk{0x12, 0x20, 0x2e};
 inline constexpr Rgb kPaper{0xf4, 0xf7, 0xf9};
 inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
-inline constexpr Rgb kChoiceColor{0xff, 0x4f, 0xd8};  ///< of what another policy would do
+inline constexpr Rgb kChoiceColor{0xff, 0x4f, 0xd8};  ///< choice of a compared policy
 
-/// The colour of a device kind (DeviceState.kind); grey for a kind that does not exist.
+/// The colour of a device kind (DeviceState.kind); grey for an unknown kind.
 Rgb DeviceColor(std::uint8_t kind);
 
 /// The short name of a device kind, such as "monitoring".
 std::string DeviceName(std::uint8_t kind);
 
-/// The outline of a device kind about the origin, y up, within the unit circle, anticlockwise.
+/// The outline of a device kind around the origin: y up, within the unit circle, counter-clockwise.
 const std::vector<cv::Point2f>& DeviceOutline(std::uint8_t kind);
 
-/// Green at full health over amber to red at none.
+/// The colour of a health in [0, 1]: from green (1) over amber to red (0).
 Rgb HealthColor(double health);
 
-/// The colour of a ship's deck, by id.
+/// The colour of a ship's deck, selected by id.
 Rgb ShipColor(std::int32_t id);
 
-/// A ship's hull about the origin with its bow at (0, 1), y up, anticlockwise.
+/// The outline of a ship's hull around the origin: bow at (0, 1), y up, counter-clockwise.
 const std::vector<cv::Point2f>& HullOutline();
 
-/// How bad a risk is: 0 at -5 and above, 1 at -20 and below; linear between.
+/// Severity of a risk: 0 at -5 and above, 1 at -20 and below, linear in between.
 double Severity(double risk);
 
 /// The colour of a severity in [0, 1]: yellow, orange, red, purple.
@@ -66,13 +66,13 @@ Rgb GradeColor(std::uint8_t grade);
 /// The name of a disaster kind, such as "red tide".
 std::string DisasterName(std::uint8_t kind);
 
-/// The bearing of a move, degrees clockwise from north; -1 for an action that is no move.
+/// The bearing of a move [degrees], clockwise from north; -1 if the action is not a move.
 int MoveBearingDeg(std::uint8_t action);
 
-/// The compass point of a bearing in [0, 359], such as "NE".
+/// The compass point of a bearing in [0, 359] degrees, such as "NE".
 std::string CompassPoint(int bearing_deg);
 
-/// A port's letters: A ... Z, AA ...
+/// The letters of a port: A ... Z, AA ...
 std::string PortLetter(std::int32_t id);
 
 }  // namespace aquafarm_viz

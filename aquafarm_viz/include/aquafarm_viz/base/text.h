@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Anti-aliased text, fast enough for every frame: each character is drawn once, then copied.
+/// Anti-aliased text. Each character is drawn once and then copied, so that text is fast enough to
+/// draw in every frame.
 
 #include <array>
 #include <cstdint>
@@ -12,22 +13,22 @@
 
 namespace aquafarm_viz {
 
-/// The characters of Latin-1 at one size. Uses DejaVu or Liberation where installed, else the
-/// strokes that OpenCV brings.
+/// The Latin-1 characters at one size. Uses DejaVu or Liberation if installed, else OpenCV's
+/// stroke font.
 class Font {
  public:
   /// @param size_px  nominal height, from ascender to descender, in pixels; at least 4.
-  /// @param file     a TrueType file; empty chooses OpenCV's strokes.
+  /// @param file     a TrueType file; empty selects OpenCV's stroke font.
   Font(int size_px, const std::string& file);
 
-  /// The width of a text (UTF-8) in pixels.
+  /// Returns the width of a text (UTF-8) in pixels.
   int Width(std::string_view text) const;
 
-  /// The text, cut with an ellipsis where it is wider than `width_px`.
+  /// Returns the text, truncated with an ellipsis if it is wider than `width_px`.
   std::string Fit(std::string_view text, int width_px) const;
 
-  /// Draws a text (UTF-8) with its baseline's left end at `at` and returns its width in pixels.
-  /// Whatever falls outside the 8-bit BGR image is left out.
+  /// Draws a text (UTF-8) with the left end of its baseline at `at`. Returns its width in pixels.
+  /// Parts outside the 8-bit BGR image are clipped.
   int Draw(cv::Mat& image, std::string_view text, cv::Point at, const cv::Scalar& color) const;
 
   /// The height of a capital letter in pixels.
@@ -49,13 +50,13 @@ class Font {
   int cap_height_{};
 };
 
-/// The first installed font file that suits, plain or bold; empty when there is none.
+/// Returns the first suitable font file that is installed, regular or bold; empty if there is none.
 std::string FindFontFile(bool bold);
 
-/// A number as people write it, with `decimals` places; "-" for one that is not finite.
+/// Formats a number with `decimals` decimal places; "-" if it is not finite.
 std::string Number(double value, int decimals);
 
-/// A count with commas between thousands.
+/// Formats a count with commas between thousands.
 std::string Count(std::uint64_t value);
 
 }  // namespace aquafarm_viz

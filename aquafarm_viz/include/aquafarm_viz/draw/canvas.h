@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Anti-aliased shapes at fractions of a pixel, on 8-bit BGR images.
+/// Draws anti-aliased shapes with sub-pixel positions on 8-bit BGR images.
 
 #include <opencv2/core.hpp>
 #include <vector>
@@ -10,14 +10,14 @@
 
 namespace aquafarm_viz {
 
-/// How an outline (unit size, y up, bow at north) is placed on an image.
+/// Pose of an outline (unit size, y up, bow at north) in an image.
 struct Placing {
-  cv::Point2d at;        ///< pixel of its origin
-  double size_px{1.0};   ///< pixels of a unit
-  double bearing_deg{};  ///< turned clockwise from north
+  cv::Point2d at;        ///< position of its origin [pixels]
+  double size_px{1.0};   ///< pixels per unit
+  double bearing_deg{};  ///< rotation, clockwise from north
 };
 
-/// The pixel of a point of a placed outline.
+/// Returns the pixel coordinates of a point of a placed outline.
 cv::Point2d Place(cv::Point2d point, const Placing& placing);
 
 /// Fills an outline; the outline need not be convex.
@@ -39,7 +39,7 @@ void StrokeCircle(cv::Mat& image, cv::Point2d centre, double radius_px, const cv
 void DrawLine(cv::Mat& image, cv::Point2d from, cv::Point2d to, const cv::Scalar& color,
               int thickness);
 
-/// Lays a colour over a part of the image, share 1 hides what was there.
+/// Blends a colour over a part of the image. Share 1 replaces the part completely.
 void Tint(cv::Mat& image, cv::Rect part, const cv::Scalar& color, double share);
 
 }  // namespace aquafarm_viz

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The farm as a picture, without an X server.
+/// Draws the farm as a picture, without an X server.
 ///
 ///     .---------------------------------------.
 ///     | scenario                   world time |
@@ -27,16 +27,16 @@
 
 namespace aquafarm_viz {
 
-/// Where the map lies in a picture.
+/// Position of the map in a picture.
 struct MapPlace {
-  cv::Rect map;  ///< the part of the picture that the map fills
-  MapView view;  ///< cells to pixels of that part
+  cv::Rect map;  ///< part of the picture that contains the map
+  MapView view;  ///< maps cells to pixels of this part
 };
 
-/// The place of the map of a width x height farm in a picture of the given size.
+/// Returns the position of the map of a width x height farm in a picture of the given size.
 MapPlace PlaceMap(int width, int height, ImageSize size);
 
-/// Draws pictures of one size, keeping what stays the same from picture to picture.
+/// Draws pictures of one size. Caches the parts that do not change between pictures.
 class FarmPainter {
  public:
   explicit FarmPainter(ImageSize size);
@@ -44,7 +44,7 @@ class FarmPainter {
   FarmPainter(FarmPainter&&) noexcept;
   FarmPainter& operator=(FarmPainter&&) noexcept;
 
-  /// Draws a state; the 8-bit BGR picture is valid until the next call.
+  /// Draws a state. The returned 8-bit BGR picture is valid until the next call.
   /// The spec must pass CheckSpec and the state CheckState.
   const cv::Mat& Draw(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                       const Extras& extras = {});
@@ -55,7 +55,7 @@ class FarmPainter {
 };
 
 /// Draws one picture.
-/// @throws std::invalid_argument for a spec or state that cannot be drawn, saying why.
+/// @throws std::invalid_argument with the reason if the spec or state cannot be drawn
 cv::Mat DrawFarm(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                  ImageSize size = {}, const Extras& extras = {});
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The size of a picture and what it may show besides the state.
+/// The size of a picture and its optional content.
 
 #include <aquafarm_msgs/PolicyChoice.h>
 #include <aquafarm_msgs/TrainingStatus.h>
@@ -12,23 +12,23 @@
 
 namespace aquafarm_viz {
 
-inline constexpr int kMinImageSide = 160;   ///< pixels
-inline constexpr int kMaxImageSide = 4096;  ///< pixels
+inline constexpr int kMinImageSide = 160;   ///< min width and height [pixels]
+inline constexpr int kMaxImageSide = 4096;  ///< max width and height [pixels]
 
-/// The size of a picture in pixels; values are brought into [kMinImageSide, kMaxImageSide].
+/// The size of a picture in pixels. Values are clamped to [kMinImageSide, kMaxImageSide].
 struct ImageSize {
   int width{800};
   int height{640};
 };
 
-/// What a picture may show besides the state; nullptr leaves it out.
+/// Optional content of a picture in addition to the state; nullptr omits it.
 struct Extras {
-  const Wake* wake{};                               ///< the ways ships came
-  const aquafarm_msgs::TrainingStatus* training{};  ///< how the learner gets on
-  const Wake* route{};                              ///< of the whole episode so far
-  Layers layers{};                                  ///< which of them, and of the state, are drawn
-  const Values* values{};                           ///< what a policy thinks of each cell
-  const aquafarm_msgs::PolicyChoice* choice{};      ///< what another policy would do in this state
+  const Wake* wake{};                               ///< recent trails of the ships
+  const aquafarm_msgs::TrainingStatus* training{};  ///< progress of the learner
+  const Wake* route{};                              ///< trails since the start of the episode
+  Layers layers{};                                  ///< layers to draw
+  const Values* values{};                           ///< values and greedy actions of a policy
+  const aquafarm_msgs::PolicyChoice* choice{};      ///< choice of a compared policy in this state
 };
 
 }  // namespace aquafarm_viz

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Where a cell lies in a picture. Images start at the top and the farm at the south-west corner:
-/// this is the one place that flips y.
+/// Maps cells to pixels. The origin of an image is at the top left, that of the farm in the
+/// south-west corner. Only this file flips y.
 ///
 ///       picture                     farm
 ///   (0,0)--> column               ^ y (north)
@@ -19,11 +19,11 @@ namespace aquafarm_viz {
 class MapView {
  public:
   MapView() = default;
-  /// @param cell_px  side of a cell in pixels, above 0; need not be whole.
+  /// @param cell_px  side length of a cell in pixels, above 0; may be fractional.
   MapView(int width, int height, double cell_px)
       : width_(width), height_(height), cell_px_(cell_px) {}
 
-  /// The pixel coordinates of a place given in cells; a cell's centre has whole coordinates.
+  /// Returns the pixel coordinates of a point in cells. Cell centres have integer coordinates.
   cv::Point2d ToPixel(double x, double y) const {
     return {(x + 0.5) * cell_px_ - 0.5, (height_ - 0.5 - y) * cell_px_ - 0.5};
   }

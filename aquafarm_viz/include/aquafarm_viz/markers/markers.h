@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The farm as rviz markers in frame `map`, in metres: the centre of cell (x, y) is at
-/// (x, y) * cell_size_m. Markers are flat and low, since rviz's view from above cuts off at 500 m.
+/// Converts the farm to rviz markers in frame `map`, in metres: the centre of cell (x, y) is at
+/// (x, y) * cell_size_m. Markers are flat and low, because rviz's top-down view clips at 500 m.
 ///
-/// Namespaces and ids are stable: a thing keeps its marker for the whole episode, and what is no
-/// longer there is deleted by its own id. Lifetimes are 0.
+/// Namespaces and ids are stable: an object keeps its marker for the whole episode, and the marker
+/// of a removed object is deleted by its id. Lifetimes are 0.
 ///
 ///     | namespace                       | id                         |
 ///     | sea, island, rocks              | 0                          |
@@ -24,11 +24,12 @@
 
 namespace aquafarm_viz {
 
-/// The markers of what stands still during an episode. The first one deletes all markers when
-/// `clear`, as at the start of an episode.
+/// Returns the markers that are constant during an episode. If `clear`, the first one deletes all
+/// markers; use it at the start of an episode.
 visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec, bool clear);
 
-/// The markers of ships, devices and disasters, and of the line with episode, step and return.
+/// Returns the markers of ships, devices and disasters, and of the line with episode, step and
+/// return.
 /// The spec must pass CheckSpec and the state CheckState.
 visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec,
                                              const aquafarm_msgs::FarmState& state,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Plays a bag with the services that a running ranch has: `pause` (and so many steps), `set_pace`,
-/// and `jump` to a step. rosbag play cannot jump, and knows no steps.
+/// Replays a bag with the services `pause` (also after a number of steps), `set_pace` and `jump` to
+/// a step. rosbag play supports neither jumps nor steps.
 
 #include <aquafarm_msgs/Jump.h>
 #include <aquafarm_msgs/Pause.h>
@@ -19,23 +19,23 @@ namespace aquafarm_viz {
 /// The parameters of the node, from its private namespace.
 struct ReplayParams {
   std::string bag;
-  double speed{1.0};      ///< as fast as recorded times this, (0, 1000]
-  double start_s{};       ///< seconds into the bag
-  int start_episode{-1};  ///< -1: the first
-  int start_step{};       ///< of that episode
-  double delay_s{1.0};    ///< wall time before it begins, for others to come up
-  bool paused{};          ///< begins paused
-  bool loop{};            ///< begins anew at its end
-  bool keep_alive{};      ///< leaves the last picture until it is ended
+  double speed{1.0};      ///< speed relative to the recording, (0, 1000]
+  double start_s{};       ///< start position in the bag [s]
+  int start_episode{-1};  ///< episode to start with; -1: the first one
+  int start_step{};       ///< step of that episode to start with
+  double delay_s{1.0};    ///< wall time before the start, so that other nodes can start
+  bool paused{};          ///< true: starts paused
+  bool loop{};            ///< true: restarts at the end of the bag
+  bool keep_alive{};      ///< true: keeps running at the end and shows the last picture
 };
 
-/// @throws std::invalid_argument naming the parameter, what it is and what is allowed
+/// @throws std::invalid_argument with the parameter, its value and the allowed values
 ReplayParams ReadReplayParams(const ros::NodeHandle& node);
 
 class ReplayNode {
  public:
   /// @param node namespace of the services and of topics without a leading slash
-  /// @throws std::runtime_error when the bag cannot be shown
+  /// @throws std::runtime_error if the bag cannot be shown
   ReplayNode(ros::NodeHandle node, const ReplayParams& params);
 
   const ReplayTape& tape() const { return tape_; }
@@ -59,8 +59,8 @@ class ReplayNode {
   double speed_;
   bool paused_;
   bool begun_{};
-  std::size_t next_{};  // message to publish
-  ros::Time now_;       // of the bag
+  std::size_t next_{};  // index of the next message to publish
+  ros::Time now_;       // current bag time
   ros::WallTime ticked_;
   std::map<std::string, ros::Publisher> topics_;
   ros::Publisher clock_;

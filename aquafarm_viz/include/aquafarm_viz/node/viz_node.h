@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The one node of this package: spec and state in, markers and images out.
+/// The visualisation node: subscribes to spec and state, publishes markers and images.
 
 #include <aquafarm_msgs/TrainingStatus.h>
 #include <ros/ros.h>
@@ -20,18 +20,18 @@ namespace aquafarm_viz {
 
 /// The parameters of the node, from its private namespace.
 struct VizParams {
-  double rate_hz{20.0};  ///< most drawings a second of wall time, (0, 1000]
-  ImageSize image;       ///< pixels, each side in [kMinImageSide, kMaxImageSide]
-  Layers layers;         ///< of the pictures
+  double rate_hz{20.0};  ///< max drawings per second of wall time, (0, 1000]
+  ImageSize image;       ///< [pixels], each side in [kMinImageSide, kMaxImageSide]
+  Layers layers;         ///< layers of the pictures
 };
 
 /// Reads the parameters.
-/// @throws std::invalid_argument naming the parameter, what it is and what is allowed.
+/// @throws std::invalid_argument with the parameter, its value and the allowed values
 VizParams ReadVizParams(const ros::NodeHandle& node);
 
-/// Publishes `markers`, `moves`, `image`, `image/compressed` and each ship's `ship_<id>/route`, at
-/// most rate_hz times a second of wall time, only of states that are new, and each only while
-/// somebody subscribes.
+/// Publishes `markers`, `moves`, `image`, `image/compressed` and each ship's `ship_<id>/route`, max
+/// rate_hz times per second of wall time. Only new states are drawn, and only topics with a
+/// subscriber are published.
 class VizNode {
  public:
   /// @param node  namespace of the topics.
@@ -57,15 +57,15 @@ class VizNode {
   const Layers layers_;
   FarmPainter painter_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
-  bool marked_{};                           // state of `markers`: whether it is up to date
-  bool pictured_{};                         // the same of the images
-  bool routed_{};                           // and of the routes
-  bool moved_{true};                        // and of the moves
-  sensor_msgs::PointCloud2ConstPtr cloud_;  // of `values/points`, not yet read
+  bool marked_{};                           // true: `markers` are up to date
+  bool pictured_{};                         // true: the images are up to date
+  bool routed_{};                           // true: the routes are up to date
+  bool moved_{true};                        // true: the moves are up to date
+  sensor_msgs::PointCloud2ConstPtr cloud_;  // last message of `values/points`; null after reading
   std::optional<Values> values_;
-  std::deque<std::pair<ros::Time, std::uint64_t>> stamps_;  // of the last states, with their steps
+  std::deque<std::pair<ros::Time, std::uint64_t>> stamps_;  // stamps and steps of the last states
   aquafarm_msgs::PolicyChoiceConstPtr choice_;
-  Shown marked_episode_;  // the episode whose standing markers were sent
+  Shown marked_episode_;  // the episode whose constant markers were sent
 
   ros::Publisher markers_;
   ros::Publisher moves_;
@@ -75,7 +75,7 @@ class VizNode {
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_topic_;
-  ros::Subscriber values_topic_;  // only while somebody looks: it costs whoever computes it
+  ros::Subscriber values_topic_;  // only while they are shown: the publisher computes on demand
   ros::Subscriber choice_topic_;
   ros::WallTimer timer_;
 };

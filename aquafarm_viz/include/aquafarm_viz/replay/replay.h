@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A recorded bag as something to walk about in: forwards at any rate, or straight to a step.
+/// Random access to the messages and steps of a recorded bag.
 
 #include <aquafarm_msgs/FarmState.h>
 #include <rosbag/bag.h>
@@ -17,50 +17,53 @@
 
 namespace aquafarm_viz {
 
-/// Whether a message is the state of a ranch; observations have that type, but tell of one ship.
+/// Returns true if a message is the state of a ranch. Observations of ships have the same type and
+/// give false.
 bool IsState(const rosbag::MessageInstance& message);
 
-/// The messages of a bag in the order of their times, and where its steps are among them.
+/// The messages of a bag in time order, and the positions of its steps among them.
 class ReplayTape {
  public:
-  /// Where a state lies.
+  /// Position of a state.
   struct Step {
-    std::size_t position{};  ///< among the messages
+    std::size_t position{};  ///< index in messages()
     std::uint64_t seed{};
     std::uint64_t episode{};
     std::uint64_t step{};
-    std::size_t run{};  ///< one from an episode's first state on to its last; no two are the same
+    std::size_t run{};  ///< unique number of one playthrough of an episode
   };
 
-  static constexpr std::size_t kMostStates = 10'000;  ///< sent before a step that is jumped to
-  /// For senders and receivers: a jump sends them all at once.
+  static constexpr std::size_t kMostStates = 10'000;  ///< max states sent before a jump's target
+  /// Queue size for publishers and subscribers: a jump sends all these states at once.
   static constexpr std::uint32_t kQueueOfStates = kMostStates + 100;
 
-  /// @throws std::runtime_error in one line when there is nothing to show: no bag, another version
+  /// @throws std::runtime_error with a message of one line if the bag cannot be shown: not a bag,
+  ///         another version, no state
   explicit ReplayTape(const std::string& path);
 
   const std::vector<rosbag::MessageInstance>& messages() const { return messages_; }
   const std::vector<Step>& steps() const { return steps_; }  ///< never empty
 
-  /// The step at or before a position; the first when there is none.
+  /// Returns the last step at or before a position; the first step if there is none.
   const Step& At(std::size_t position) const;
 
-  /// The step asked for, or the next later one of that episode, or its last.
-  /// @param shown where one is: an episode of that number is its own run, else the first run of the
-  /// same seed, else the first of all
-  /// @returns nothing when the bag has no such episode
+  /// Returns the requested step. If it is not recorded, returns the next recorded step of the
+  /// episode, or its last one.
+  /// @param shown the step that is shown now. If several runs have this episode index, its own run
+  ///        is preferred, then the first run with its seed, then the first run.
+  /// @returns nullopt if the bag does not contain the episode
   std::optional<Step> Find(const Step& shown, std::uint64_t episode, std::uint64_t step) const;
 
-  /// What must be sent for a step to be seen: the spec of its episode, then the newest message of
-  /// each other topic and the states of its run before it, for wakes and routes; ascending
-  /// positions, the step's own last.
+  /// Returns the positions of the messages to send for showing a step: the spec of its episode,
+  /// then, in ascending order, the newest message of each other topic and the earlier states of its
+  /// run (for trails and routes). The state of the step is the last one.
   std::vector<std::size_t> UpTo(const Step& step) const;
 
-  /// What people should know before they look, a line each: missing steps, another version.
-  /// @param version of this suite
+  /// Returns warnings about the bag, one line each: missing steps, another version.
+  /// @param version version of aquafarm that is running
   std::vector<std::string> Notes(const std::string& version) const;
 
-  /// Seconds of the bag between two steps of a run, above 0.
+  /// Returns the mean bag time between two steps of a run [s], above 0.
   double StepPeriod_s(std::size_t run) const;
 
  private:
@@ -71,7 +74,7 @@ class ReplayTape {
   };
 
   void Read(const std::string& path);
-  /// @param message a state, as the next one
+  /// @param message the message that contains `state`, the next one in time order
   void AddStep(const rosbag::MessageInstance& message, const aquafarm_msgs::FarmState& state);
   std::optional<std::size_t> SpecOf(const Step& step) const;
 
@@ -81,9 +84,9 @@ class ReplayTape {
   std::vector<Step> steps_;
   std::vector<Spec> specs_;
   std::map<std::string, Step> last_;  // by topic, while reading
-  std::size_t runs_{};                // begun so far
-  std::uint64_t missing_{};           // steps between others
-  std::set<std::string> versions_;    // that recorded it
+  std::size_t runs_{};                // number of runs found so far
+  std::uint64_t missing_{};           // number of missing steps between recorded ones
+  std::set<std::string> versions_;    // versions that recorded the bag
 };
 
 }  // namespace aquafarm_viz

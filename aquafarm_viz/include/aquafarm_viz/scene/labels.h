@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Facts of a state in a few words, as pictures and the panel say them.
+/// Formats parts of a state as short texts for pictures and the panel.
 
 #include <aquafarm_msgs/FarmState.h>
 
@@ -12,31 +12,31 @@
 
 namespace aquafarm_viz {
 
-/// "NE", "pickup", "drop-off" or "hold".
+/// Name of an action: "NE", "pickup", "drop-off" or "hold".
 std::string ActionName(std::uint8_t action);
 
-/// "crash", "edge", …; empty for what went as wanted.
+/// Name of an outcome: "crash", "edge", …; empty for OK.
 std::string OutcomeName(std::uint8_t outcome);
 
-/// "deployed", "aboard" or "delivered".
+/// Name of a device status: "deployed", "aboard" or "delivered".
 std::string StatusName(std::uint8_t status);
 
-/// The phase of a training, such as "evaluating"; empty for one that does not exist.
+/// Name of a training phase, such as "evaluating"; empty for an unknown phase.
 std::string PhaseName(std::uint8_t phase);
 
-/// Hours, minutes and seconds as 1:02:03; empty for what is no duration.
+/// Formats a duration as 1:02:03 (hours, minutes, seconds); empty if it is not a valid duration.
 std::string Duration(double seconds);
 
-/// A rate with three digits and a thousands letter.
+/// Formats a rate with three digits and a suffix for thousands.
 std::string Rate(double value);
 
-/// With its sign, one decimal.
+/// Formats a number with its sign and one decimal.
 std::string Signed(double value);
 
-/// "2 steps are missing; 'verify' says which".
+/// Warning about missing steps: "2 steps are missing; 'verify' says which".
 std::string MissingSteps(std::uint64_t count);
 
-/// The reward terms of the last step by name, each summed over ships.
+/// Returns the reward terms of the last step with their names, each summed over ships.
 std::array<std::pair<const char*, float>, 7> RewardTermsOf(const aquafarm_msgs::FarmState& state);
 
 }  // namespace aquafarm_viz

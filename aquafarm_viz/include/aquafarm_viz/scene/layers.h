@@ -5,22 +5,22 @@
 
 namespace aquafarm_viz {
 
-/// What a picture shows besides the chart, ships and devices.
+/// Optional layers of a picture, in addition to the chart, ships and devices.
 struct Layers {
-  bool wake{true};    ///< the recent way of each ship
-  bool risk{true};    ///< the rings of disasters, shaded by severity
-  bool route{};       ///< the whole way of each ship, coloured in time order (Fig. 11)
-  bool sight{};       ///< in partial view: how far each ship sees
-  bool values{};      ///< V_π of each cell, where a policy publishes it
-  bool moves{};       ///< the policy's best move in each cell
-  std::string sea{};  ///< the layer of the scenario's sea painted below all; empty: none
+  bool wake{true};    ///< recent trail of each ship
+  bool risk{true};    ///< rings of disasters, shaded by severity
+  bool route{};       ///< whole trail of each ship, coloured in time order (Fig. 11)
+  bool sight{};       ///< sensor range of each ship in partial view
+  bool values{};      ///< V_π of each cell, if a policy publishes it
+  bool moves{};       ///< greedy action of the policy in each cell
+  std::string sea{};  ///< sea layer of the scenario that is the background; empty: no sea layer
 };
 
-/// Reads names with commas between them, such as "risk,route,sea:warmth"; "none" for nothing.
+/// Parses names separated by commas, such as "risk,route,sea:warmth"; "none" for no layer.
 /// @throws std::invalid_argument "layers: got 'rain', expected some of: wake, risk, …"
 Layers ParseLayers(const std::string& names);
 
-/// "wake, risk, …": all there are.
+/// Returns the names of all layers: "wake, risk, …".
 std::string LayerNames();
 
 }  // namespace aquafarm_viz

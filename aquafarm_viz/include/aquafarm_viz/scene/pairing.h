@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Brings specs and states together: they come over different connections, in any order.
+/// Matches specs with states. They arrive over different connections, in any order.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
@@ -12,27 +12,27 @@
 
 namespace aquafarm_viz {
 
-/// A state and the spec of its episode; both null when there is nothing to show.
+/// A state and the spec of its episode; both are null if there is nothing to show.
 struct Shown {
   aquafarm_msgs::FarmSpecConstPtr spec;
   aquafarm_msgs::FarmStateConstPtr state;
 };
 
-/// Remembers the last specs and the last state, and gives out the newest pair that fits.
+/// Stores the last specs and the last state, and returns the newest matching pair.
 class Pairing {
  public:
-  static constexpr std::size_t kSpecs = 16;  ///< specs remembered
+  static constexpr std::size_t kSpecs = 16;  ///< max number of stored specs
 
-  /// Takes a spec in; returns why it is refused, or nothing.
+  /// Adds a spec. Returns the reason if it is refused; empty if it is accepted.
   std::string AddSpec(const aquafarm_msgs::FarmSpecConstPtr& spec);
 
-  /// Takes a state in; returns why it is refused, or nothing.
+  /// Adds a state. Returns the reason if it is refused; empty if it is accepted.
   std::string AddState(const aquafarm_msgs::FarmStateConstPtr& state);
 
-  /// The newest state whose spec is known.
+  /// Returns the newest state whose spec is known, with this spec.
   const Shown& shown() const { return shown_; }
 
-  /// Says in one line that the newest state waits for its spec; empty when it does not.
+  /// Returns a line of text if the spec of the newest state is missing; empty if it is not.
   std::string Waiting() const;
 
  private:

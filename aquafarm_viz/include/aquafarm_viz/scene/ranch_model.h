@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What the panel "Ranch" shows, as plain text and numbers: it knows no window and no node.
+/// The content of the panel "Ranch" as plain text and numbers, independent of Qt windows and nodes.
 
 #include <aquafarm_msgs/DisasterInfo.h>
 #include <aquafarm_msgs/FarmSpec.h>
@@ -26,22 +26,25 @@ struct CurvePoint {
 class RanchModel {
  public:
   using Row = std::vector<std::string>;
-  /// The curve keeps between half and all of so many points, over the whole training.
+  /// Capacity of the curve. A long training keeps between half this number and this number of
+  /// points, spread over the whole training.
   static constexpr std::size_t kMostPoints = 1000;
 
-  /// Each returns why it is refused, or nothing.
+  /// Each Take adds a message. Returns the reason if it is refused; empty if it is accepted.
   std::string Take(const aquafarm_msgs::FarmSpecConstPtr& spec) { return pairing_.AddSpec(spec); }
   std::string Take(const aquafarm_msgs::FarmStateConstPtr& state);
   void Take(const aquafarm_msgs::TrainingStatusConstPtr& training);
 
-  /// "paper   episode 12   step 17 / 5,000   return −42.5"; "no ranch yet" before the first state.
+  /// Returns "paper   episode 12   step 17 / 5,000   return −42.5", or "no ranch yet" before the
+  /// first state.
   std::string Headline() const;
-  /// "reward −5.0:   disaster −5.0"
+  /// Returns "reward −5.0:   disaster −5.0".
   std::string RewardLine() const;
+  /// Returns, for example:
   /// "q_learning, training   episode 120 / 2,000   mean return 81.2   success 62 %   left 0:42"
   std::string TrainingLine() const;
 
-  /// Columns of the tables; rows have as many entries.
+  /// Column titles of the tables. Each row has the same number of entries.
   static const Row& ShipColumns();
   static const Row& DeviceColumns();
   std::vector<Row> Ships() const;
@@ -51,19 +54,21 @@ class RanchModel {
   const Shown& shown() const { return pairing_.shown(); }
   bool paused() const;
 
-  /// A disaster for `set_disaster`: it begins at a ship's cell, or the farm's middle without one.
-  /// @param kind of DisasterState @param grade 1 blue … 4 red, which also sets its rings' risks
-  /// @param radius of the largest of its three rings [cells]
+  /// Returns a disaster for `set_disaster`. Its centre is a ship's cell, or the centre of the farm
+  /// if there is no ship.
+  /// @param kind kind of DisasterState
+  /// @param grade 1 blue … 4 red; also determines the risks of its rings
+  /// @param radius radius of the largest of its three rings [cells]
   aquafarm_msgs::DisasterInfo MakeDisaster(std::uint8_t kind, std::uint8_t grade,
                                            double radius) const;
-  /// Id under which it is one more.
+  /// Returns the id that adds a disaster.
   std::int32_t NextDisaster() const;
 
  private:
   Pairing pairing_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
   std::vector<CurvePoint> curve_;
-  std::uint64_t every_{1};  // of the points that come, one in so many is kept
+  std::uint64_t every_{1};  // keeps one of this many received points
   std::uint64_t came_{};
 };
 

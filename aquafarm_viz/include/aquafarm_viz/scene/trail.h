@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What a single state cannot tell: where ships came from and which way they point.
+/// Tracks the past positions and headings of ships, which a single state does not contain.
 
 #include <aquafarm_msgs/FarmState.h>
 
@@ -12,32 +12,32 @@
 
 namespace aquafarm_viz {
 
-/// The recent way of a ship.
+/// The trail of a ship.
 struct ShipWake {
-  int bearing_deg{};             ///< of its last move, [0, 359], clockwise from north
-  std::deque<cv::Point> places;  ///< cells it stood at, oldest first, the present one last
+  int bearing_deg{};             ///< bearing of its last move, [0, 359], clockwise from north
+  std::deque<cv::Point> places;  ///< visited cells, oldest first, the current one last
 
-  /// The first place from which on no state was missed.
+  /// Returns the index of the first cell after the last gap; 0 if there is no gap.
   std::size_t UnbrokenFrom() const;
 };
 
-/// Remembers the recent way of each ship of one farm; with room for it, its whole route.
+/// Stores the trail of each ship of one farm: its last cells, or its whole route.
 class Wake {
  public:
-  static constexpr std::size_t kLength = 24;        ///< places remembered of a wake
-  static constexpr std::size_t kWhole = 1'000'000;  ///< the same of a route
-  static constexpr int kMaxJump = 2;                ///< cells; farther apart: states were missed
+  static constexpr std::size_t kLength = 24;        ///< max cells of a trail
+  static constexpr std::size_t kWhole = 1'000'000;  ///< max cells of a route
+  static constexpr int kMaxJump = 2;                ///< max distance [cells] that is not a gap
 
   explicit Wake(std::size_t length = kLength) : length_(length) {}
 
-  /// Takes the next state in; another episode or an earlier step starts anew.
+  /// Adds the next state. Another episode or an earlier step clears all trails.
   void Update(const aquafarm_msgs::FarmState& state);
 
-  /// Whether states were missed between two places. A wake begins anew there; a route goes on, and
-  /// is drawn without that piece.
+  /// Returns true if states between two cells are missing. A trail restarts after a gap. A route
+  /// continues, and the gap is not drawn.
   static bool IsGap(cv::Point from, cv::Point to);
 
-  /// The way of a ship; nullptr for one never seen.
+  /// Returns the trail of a ship; nullptr for an unknown ship.
   const ShipWake* Find(std::int32_t ship) const;
 
  private:
@@ -48,7 +48,7 @@ class Wake {
   std::map<std::int32_t, ShipWake> ships_;
 };
 
-/// The bearing to draw a ship at: of its move in this state, else of its wake, else 0.
+/// Returns the bearing to draw a ship at: that of its move in this state, else of its trail, or 0.
 int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Wake* wake);
 
 }  // namespace aquafarm_viz

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes networks.json: reference values and gradients for networks_test.
 
-The networks are written out once more, in double, from their equations: layers, Wang et al.'s
-dueling head (2016) and an LSTM with forget gates (Gers et al. 2000) in PyTorch's order of gates,
-i, f, g, o. Each slope is taken by a complex step (Squire and Trapp 1998), which knows nothing of
-back-propagation and is exact to the last digits.
+The networks are implemented from their equations in double precision: linear layers, the dueling
+head of Wang et al. (2016) and an LSTM with forget gates (Gers et al. 2000) in PyTorch's order of
+gates, i, f, g, o. Gradients are complex-step derivatives (Squire and Trapp 1998), which are
+independent of back-propagation and exact to machine precision.
 """
 import argparse
 import json

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Joint steps a second with a policy_node for each of eight ships, in lockstep through ROS.
+"""Measures joint steps per second with one policy_node per ship (default 8), in lockstep via ROS.
 
 Prints a `metric value unit` line for RANDOM and one for a network, each the median of a few rounds.
-Needs a built workspace in the environment; starts a master of its own when there is none."""
+Needs a built workspace in the environment; starts a master if there is none."""
 import argparse
 import pathlib
 import signal
@@ -23,7 +23,7 @@ LIMIT_S = 30.0
 
 
 def start(*command):
-    """Starts a program whose words nobody reads."""
+    """Starts a program and discards its output."""
     return subprocess.Popen([str(word) for word in command], stdout=subprocess.DEVNULL,
                             stderr=subprocess.DEVNULL)
 
@@ -37,7 +37,7 @@ def program(package, name):
 
 
 def scenario_of(ships, folder):
-    """A copy of two_squads with so many ships."""
+    """A copy of two_squads with the given number of ships."""
     source = pathlib.Path(rospkg.RosPack().get_path("aquafarm_sim")) / "scenarios/two_squads.yaml"
     text = source.read_text(encoding="utf-8")
     changed = text.replace("ships: {count: 2,", f"ships: {{count: {ships},")
@@ -48,8 +48,8 @@ def scenario_of(ships, folder):
 
 
 def train_network(scenario, folder):
-    """A DQN of the usual size. What it has learnt does not matter to its speed, but a good one
-    would end episodes within a round."""
+    """A DQN of the usual size. Training does not affect its speed, but a well-trained policy would
+    end episodes within a round."""
     run = pathlib.Path(folder) / "dqn"
     subprocess.run([program("aquafarm_agents", "aquafarm_train"), scenario, "-a", "dqn", "-n",
                     "6000", "-o", "device=cpu", "--random", "0", "--evaluate", "0", "-d", run],
@@ -58,7 +58,7 @@ def train_network(scenario, folder):
 
 
 def measure(get_state, rounds, round_s):
-    """Joint steps a second of each round that stayed within an episode."""
+    """Joint steps per second of each round that stayed within an episode."""
     rates = []
     end = time.monotonic() + LIMIT_S
     while get_state().state.step < 100:
@@ -78,7 +78,7 @@ def measure(get_state, rounds, round_s):
 
 
 def end_all(children):
-    """Interrupts programs, the youngest first, and waits for them."""
+    """Interrupts programs, the newest first, and waits for them."""
     for child in reversed(children):
         child.send_signal(signal.SIGINT)
     for child in reversed(children):
@@ -90,7 +90,7 @@ def end_all(children):
 
 
 def measure_agents(name, policy, scenario, arguments):
-    """Starts a farm and its agents, measures and ends them."""
+    """Starts a farm and its agents, measures their speed and ends them."""
     space = f"/bench_agents_{name}_{socket.gethostname().replace('-', '_')}"
     children = []
     try:

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What keeping every step of every episode (record:=all) costs a single-ship training through ROS.
+"""Measures the cost of recording every step (record:=all) in a single-ship training through ROS.
 
-Plays pairs of trainings, one without and one with, alternately, so that both meet the same load of
-the machine, and prints `metric value unit` lines: medians of each kind, and of the ratio within
-pairs. Needs a built workspace in the environment; starts a master of its own."""
+Runs pairs of trainings, alternately without and with recording, so that both see the same machine
+load. Prints `metric value unit` lines: the median of each kind, and of the ratio within pairs.
+Needs a built workspace in the environment; starts its own master."""
 import argparse
 import os
 import pathlib
@@ -17,8 +17,8 @@ import time
 
 import roslib.packages
 
-LIMIT_S = 300.0  # of a training
-END_S = 60.0  # of a node that is asked to end, with what it has left to write
+LIMIT_S = 300.0  # max duration of a training
+END_S = 60.0  # max time for a node to end, including its remaining output
 
 
 def program(package, name):
@@ -30,14 +30,14 @@ def program(package, name):
 
 
 def free_port():
-    """A port that nobody listens on."""
+    """An unused port."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         return listener.getsockname()[1]
 
 
 def cpu_s(process, limit_s):
-    """Waits for the end of a process and returns the processor seconds that it took."""
+    """Waits for the end of a process and returns its processor time [s]."""
     end = time.monotonic() + limit_s
     while True:
         pid, status, usage = os.wait4(process.pid, os.WNOHANG)
@@ -51,7 +51,7 @@ def cpu_s(process, limit_s):
 
 
 def end_all(processes):
-    """Kills what still runs."""
+    """Kills the processes that still run."""
     for process in processes:
         if process.returncode is None:
             process.kill()
@@ -59,9 +59,10 @@ def end_all(processes):
 
 
 def train(folder, keep, steps, environment):
-    """One training; returns wall seconds of its steps, processor seconds of farm and learner, bags.
+    """Runs one training; returns wall time of its steps [s], processor time of farm and learner [s]
+    and the number of bags.
 
-    What the recorder has left to write when the training ends is in its processor time."""
+    The processor time includes the output that the recorder writes after the training."""
     namespace = f"/bench_{folder.name}"
     common = {"env": environment, "stderr": subprocess.DEVNULL}
     log = folder / "train.log"
@@ -92,7 +93,7 @@ def train(folder, keep, steps, environment):
 
 
 def main():
-    """Starts a master, plays the pairs, tells."""
+    """Starts a master, runs the pairs and prints the results."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--pairs", type=int, default=9)
     parser.add_argument("--steps", type=int, default=60000)

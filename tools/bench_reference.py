@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures a well-known reference and relates a benchmark's figure to it.
+"""Measures a well-known reference and prints the ratio of a benchmark's figure to it.
 
 usage: bench_reference.py taxi | numpy | sb3 | torch BENCH_OUTPUT, a file with 'metric value unit'
-lines. One core each; no reference's environment but Taxi's costs anything, which flatters it.
+lines. Each uses one core. Except for Taxi the references have environments without computing cost,
+which is in their favour.
 """
 import sys
 import time
@@ -13,12 +14,12 @@ import numpy
 CHUNK = 10000
 DURATION_S = 3.0
 STATES, ACTIONS = 20000, 10
-FEATURES, FARMS = 43, 16  # of paper.yaml, without the ways by water and the courses
+FEATURES, FARMS = 43, 16  # of paper.yaml, without water distances and lookahead risks
 
 
 def taxi_steps_per_second():
-    """Steps Gymnasium's Taxi-v3 under random actions drawn beforehand; returns steps a second."""
-    import gymnasium  # in the environment of this reference alone
+    """Steps Gymnasium's Taxi-v3 with precomputed random actions; returns steps per second."""
+    import gymnasium  # installed only for this reference
     env = gymnasium.make("Taxi-v3")
     env.reset(seed=1)
     actions = numpy.random.default_rng(1).integers(0, 6, CHUNK).tolist()
@@ -34,8 +35,8 @@ def taxi_steps_per_second():
 
 
 def numpy_steps_per_second():
-    """Q-learning as a NumPy loop on an environment that costs nothing, which flatters it: states
-    and rewards are drawn beforehand; returns training steps a second."""
+    """Q-learning as a NumPy loop with precomputed states and rewards instead of an environment,
+    which is in its favour; returns training steps per second."""
     rng = numpy.random.default_rng(1)
     table = numpy.zeros((STATES, ACTIONS), numpy.float32)
     states = rng.integers(0, STATES, CHUNK + 1).tolist()
@@ -54,8 +55,8 @@ def numpy_steps_per_second():
 
 
 def sb3_updates_per_second():
-    """Stable-Baselines3's DQN with the numbers of bench_deep's on 16 environments that give the
-    same observation always; returns updates a second, 4 farm steps and an update each."""
+    """Stable-Baselines3's DQN with the hyperparameters of bench_deep, on 16 environments with a
+    constant observation; returns updates per second, with 4 farm steps per update."""
     import gymnasium
     import torch
     from stable_baselines3 import DQN
@@ -85,9 +86,9 @@ def sb3_updates_per_second():
 
 
 def torch_updates_per_second():
-    """The updates alone of a recurrent Q-network in PyTorch: 32 drawn sequences of 16 steps after a
-    burn-in of 8, LSTM of 64 units between two layers, Double DQN, Huber loss, Adam; returns updates
-    a second."""
+    """Only the updates of a recurrent Q-network in PyTorch: 32 sampled sequences of 16 steps after
+    a burn-in of 8, LSTM of 64 units between two layers, Double DQN, Huber loss, Adam; returns
+    updates per second."""
     import torch
     from torch import nn
     torch.set_num_threads(1)
@@ -131,7 +132,7 @@ def torch_updates_per_second():
     return updates / (time.perf_counter() - begin)
 
 
-# How each reference is measured, its name, and the metric of ours that is related to it.
+# Function, name, and the metric of this suite that is compared with it, for each reference.
 REFERENCES = {
     "taxi": (taxi_steps_per_second, "taxi_v3", "farm_steps_tabular"),
     "numpy": (numpy_steps_per_second, "numpy_q_learning", "q_learning_training_steps"),

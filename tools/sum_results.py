@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Adds up JUnit-style results (gtest, ctest, rostest, nosetests) under the given folders.
 
-Names each failed case and ends with one line 'N passed, N failed, N skipped'; exits 1 when a case
-failed, a file is no result, or nothing was run at all. catkin_test_results is not used for the
-sum: it passes over files it cannot read and knows no ctest results.
+Lists each failed case and ends with one line 'N passed, N failed, N skipped'. Exits with 1 if a
+case failed, a file is not a result file, or no test was run. catkin_test_results is not used
+because it ignores unreadable files and does not support ctest results.
 """
 import pathlib
 import sys
@@ -28,14 +28,14 @@ def cases_of(path, stems):
         return [("failed", f"no readable result ({error})")]
     found = [(outcome(case), f"{case.get('classname', '')}.{case.get('name', '')}", case)
              for case in root.iter("testcase")]
-    # rostest tells the fate of a test program beside the program's own results in rosunit-*: there
-    # a pass says nothing, but a failure may be all that is known.
+    # rostest reports the result of a test program in addition to the program's own results in
+    # rosunit-*. Its passes are redundant, but a failure may be the only record.
     if path.name.startswith("rostest-"):
         found = [entry for entry in found if entry[0] == "failed"]
-    # To ctest an executable is one case; it counts only where gtest left no result of its own.
+    # ctest reports an executable as one case. It counts only if gtest wrote no result of its own.
     if path.name.startswith("ctest-"):
         found = [entry for entry in found if entry[2].get("name") not in stems]
-    # What fails before the first case (setUpClass) is told by the suite alone.
+    # A failure before the first case (setUpClass) appears only in the suite's counters.
     told = int(root.get("errors") or 0) + int(root.get("failures") or 0)
     untold = told - sum(entry[0] == "failed" for entry in found)
     if not path.name.startswith("ctest-"):

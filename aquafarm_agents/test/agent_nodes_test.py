@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""One node for each ship: they solve a farm together, in lockstep and paced; one that dies holds its
-own ship only and joins again; ships are held by one node each."""
+"""One node per ship: the nodes solve a farm together, in lockstep and paced. If one dies, only its
+ship holds until it rejoins. Each ship is claimed by one node."""
 import os
 import pathlib
 import signal
@@ -58,13 +58,13 @@ class AgentNodesTest(unittest.TestCase):
                        "_mode:=act", f"_ship:={ship}", f"_policy:={policy}", *parameters)
 
     def is_seen_by(self, name):
-        """Whether a node has subscribed to an observation, which it does once it holds its ship."""
+        """True if a node has subscribed to an observation, which it does after the claim."""
         subscribers = rosgraph.Master("/test").getSystemState()[1]
         return any(topic.startswith(self.namespace) and topic.endswith("/observation")
                    and f"{self.namespace}/{name}" in nodes for topic, nodes in subscribers)
 
     def call(self, name, kind, **fields):
-        """Calls a service of the ranch; what it refuses fails the test."""
+        """Calls a service of the ranch; a rejected request fails the test."""
         answer = rospy.ServiceProxy(f"{self.namespace}/{name}", kind)(**fields)
         self.assertTrue(answer.ok, answer.message)
         return answer
@@ -198,7 +198,7 @@ class AgentNodesTest(unittest.TestCase):
         self.sim(WIDE, "_barrier_timeout_s:=3600")
         first = self.agent(0, "random", "_sim_timeout_s:=1")
         first.wait_for(lambda: self.is_seen_by("agent_0"), "its ship")
-        time.sleep(32)  # longer than any other call may take
+        time.sleep(32)  # longer than the limit of other calls
         self.assertIsNone(first.process.poll(), first.words())
         self.agent(1, "random")
         self.wait_until(lambda state: state.step > 20, "both ships at work")
@@ -217,7 +217,7 @@ class AgentNodesTest(unittest.TestCase):
         claim = rospy.ServiceProxy(f"{self.namespace}/ship_1/claim", Claim)
         run = self.agent(1, "planner")
         run.wait_for(lambda: claim(release=True).holder == f"{self.namespace}/agent_1", "its ship")
-        time.sleep(7)  # it has nothing to command
+        time.sleep(7)  # it sends no commands
         self.assertEqual(f"{self.namespace}/agent_1", claim(release=False).holder)
         run.interrupt()
         self.assertTrue(claim(release=False).ok, "it gave the ship back")
@@ -242,7 +242,7 @@ class AgentNodesTest(unittest.TestCase):
         self.assertIn(f"node {self.namespace}/agent_1 runs already, at http://", second.words())
         step = self.state().step
         self.wait_until(lambda state: state.step > step + 20, "the first to drive on")
-        first.send(signal.SIGKILL)  # whom the master remembers, but who is dead, is in nobody's way
+        first.send(signal.SIGKILL)  # its stale registration must not block the next node
         first.process.wait(20)
         step = self.state().step
         self.agent(1, "random")
@@ -250,7 +250,7 @@ class AgentNodesTest(unittest.TestCase):
 
     def test_a_policy_for_another_number_of_ships_is_refused(self):
         self.sim("four_squads")
-        self.call("ship_0/claim", Claim)  # it is not asked for by a policy that cannot drive it
+        self.call("ship_0/claim", Claim)  # a policy that does not fit must not claim it
         before = self.state().hash
         run = self.agent(0, self.trained())
         self.assertEqual(2, run.code(), run.words())

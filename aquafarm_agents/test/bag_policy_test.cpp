@@ -48,7 +48,7 @@ class BagPolicy : public testing::Test {
 
   std::string Path(const std::string& name) const { return folder_ / name; }
 
-  // A ship that holds until the time is over; it may be put elsewhere in step 3.
+  // A ship that holds until the step limit; it may be moved from outside in step 3.
   std::string MakeBag(bool is_changed) {
     const auto scenario = std::make_shared<const aquafarm::Scenario>(
         aquafarm::LoadScenario(AQUAFARM_TEST_DATA "/tiny.yaml"));
@@ -104,7 +104,7 @@ class BagPolicy : public testing::Test {
     }
   }
 
-  // The bag again, with each state as many times as `times` says.
+  // A copy of the bag that repeats each state `times(state)` times.
   std::string Copy(const std::string& path, const std::function<int(const FarmState&)>& times,
                    const std::function<void(SavedState&)>& change = nullptr) {
     rosbag::Bag source(path, rosbag::bagmode::Read);
@@ -130,7 +130,7 @@ class BagPolicy : public testing::Test {
     return AskAlong(bag, aquafarm::agents::FindPolicy("random"), options);
   }
 
-  // What RANDOM would do in each step; of several answers in one step the last.
+  // Choices of RANDOM in each step; the last one if there are several.
   Actions ChoicesOf(const std::string& bag) {
     EXPECT_EQ("", Ask(bag, Path("asked.bag")).difference);
     rosbag::Bag asked(Path("asked.bag"), rosbag::bagmode::Read);
@@ -148,13 +148,13 @@ class BagPolicy : public testing::Test {
   const fs::path folder_;
 };
 
-// RANDOM answers otherwise each time that it is asked, so it tells how often it was.
+// RANDOM returns another choice at each query, so its choices reveal the number of queries.
 TEST_F(BagPolicy, AStateThatComesAgainIsAskedOnce) {
   const std::string bag = MakeBag(false);
   const Actions once = ChoicesOf(bag);
   ASSERT_EQ(60U, once.size());
   EXPECT_EQ(once, ChoicesOf(Copy(bag, [](const FarmState& state) {
-              return state.step % 7 == 2 ? 3 : 1;  // as a ranch that pauses sends them
+              return state.step % 7 == 2 ? 3 : 1;  // like a ranch that pauses
             })));
 }
 
@@ -162,7 +162,7 @@ TEST_F(BagPolicy, AStateThatWasChangedIsAskedWithTheMemoryOfBefore) {
   EXPECT_EQ(ChoicesOf(MakeBag(false)), ChoicesOf(MakeBag(true)));
 }
 
-// What it has learnt is of no matter: a network of any weights remembers.
+// The weights do not matter: any recurrent network carries state.
 TEST_F(BagPolicy, AMemoryIsCarriedFromTheEpisodesStartOn) {
   const std::string scenario_file = AQUAFARM_TEST_DATA "/tiny.yaml";
   const std::string train = "timeout -k 1 120 '" AQUAFARM_TRAIN "' '" + scenario_file +

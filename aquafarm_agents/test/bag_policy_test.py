@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A bag's states asked of any saved policy: agreement, values, and clear lines for what is none."""
+"""Queries saved policies at the states of a bag: agreement, values, and clear error messages."""
 import pathlib
 import re
 import shutil
@@ -33,7 +33,7 @@ class BagPolicyTest(unittest.TestCase):
         return run.words()
 
     def trained(self, scenario=TINY):
-        """Run folder of a policy that has learnt, on the tiny farm to solve it; trained once."""
+        """Run folder of a trained policy, which solves the tiny farm; trained once."""
         folder = self.folder / f"trained_{scenario.stem}"
         if not folder.exists():
             self.run_well(program("aquafarm_agents", "aquafarm_train"), scenario, "--steps",
@@ -41,7 +41,7 @@ class BagPolicyTest(unittest.TestCase):
         return folder
 
     def bag_of(self, policy, scenario):
-        """A bag of an episode that a policy has played; made once."""
+        """A bag of an episode played by a policy; made once."""
         bag = self.folder / f"{pathlib.Path(str(policy)).name}_{scenario.stem}.bag"
         if not bag.exists():
             route = bag.with_suffix(".json")
@@ -51,7 +51,7 @@ class BagPolicyTest(unittest.TestCase):
         return bag
 
     def changed(self, bag, change):
-        """A copy of a bag; change(topic, message) gives the message to write, or None for none."""
+        """A copy of a bag; change(topic, message) returns the message to write, or None to skip."""
         path = self.folder / "changed.bag"
         with rosbag.Bag(str(bag)) as source, rosbag.Bag(str(path), "w") as copy:
             for topic, message, time in source.read_messages():
@@ -76,11 +76,11 @@ class BagPolicyTest(unittest.TestCase):
         self.assertGreater(choices, 2)
         row = words.splitlines()[1].split()
         self.assertEqual("100.0", row[3], words)
-        self.assertGreater(float(row[5]), 20.0, words)  # what it expects at the start
+        self.assertGreater(float(row[5]), 20.0, words)  # expected return at the start
         words = self.run_well(program("aquafarm_agents", "bag_policy"), bag, "random")
         agreed, choices = map(int, re.search(r"(\d+) of (\d+) choices agree", words).groups())
         self.assertLess(agreed, choices, words)
-        self.assertEqual("-", words.splitlines()[1].split()[5])  # chance holds no values
+        self.assertEqual("-", words.splitlines()[1].split()[5])  # RANDOM has no values
 
     def test_a_policy_with_whole_farms_is_asked_too(self):
         words = self.run_well(program("aquafarm_agents", "bag_policy"),
@@ -104,7 +104,7 @@ class BagPolicyTest(unittest.TestCase):
             done = [[ship.action for ship in m.ships]
                     for _, m, _ in asked.read_messages("/aquafarm/state")]
         self.assertEqual(done[1:], [list(choice.actions) for choice in told])
-        self.assertTrue(any(first != second for first, second in done[1:]))  # not one for both
+        self.assertTrue(any(first != second for first, second in done[1:]))  # ships differ
         self.assertEqual({2}, {len(choice.values) for choice in told})
 
     def test_the_bag_that_is_written_holds_all_of_the_old_one_and_what_it_would_do(self):
@@ -125,10 +125,10 @@ class BagPolicyTest(unittest.TestCase):
                 ["/aquafarm/state", "/aquafarm/choice"])]
         self.assertEqual(list(range(len(states) - 1)), [choice.step for choice in choices])
         self.assertEqual({"q_learning"}, {choice.policy for choice in choices})
-        self.assertEqual("/aquafarm/choice", order[0])  # it is there when its state is shown
+        self.assertEqual("/aquafarm/choice", order[0])  # available when its state is shown
         self.assertEqual((len(states)) // 2, len(clouds))
         self.assertEqual((0, 100), (min(v for v in grids[0].data if v >= 0), max(grids[0].data)))
-        self.assertIn(-1, grids[0].data)  # rocks and islands hold none
+        self.assertIn(-1, grids[0].data)  # rocks and islands have no value
         cloud = clouds[0]
         self.assertEqual(["x", "y", "z", "value", "action"], [f.name for f in cloud.fields])
         points = [struct.unpack_from("<4fB", cloud.data, i * cloud.point_step)

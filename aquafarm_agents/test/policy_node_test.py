@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Saved policies through ROS: evaluated as in process, driving ships, refused with a reason."""
+"""Saved policies through ROS: evaluated as in process, driving ships, rejected with a reason."""
 import csv
 import json
 import os

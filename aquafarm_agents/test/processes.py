@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the tests of the agents' nodes share: programs that are started, watched and ended."""
+"""Helpers for the tests of the agents' nodes: programs that are started, watched and ended."""
 import ipaddress
 import os
 import pathlib
@@ -26,7 +26,7 @@ def program(package, name):
 
 
 class Program:
-    """A running program whose words go to a file; killed when a test ends."""
+    """A running program whose output goes to a file; killed at the end of the test."""
 
     def __init__(self, test, *command):
         self._file = tempfile.NamedTemporaryFile("w+", prefix="aquafarm_", suffix=".log")
@@ -35,11 +35,11 @@ class Program:
         test.addCleanup(self.kill)
 
     def words(self):
-        """Everything it has printed so far."""
+        """Complete output so far."""
         return pathlib.Path(self._file.name).read_text()
 
     def code(self, limit_s=LIMIT_S):
-        """Waits for its end and returns its exit code."""
+        """Waits for the program to end and returns its exit code."""
         try:
             return self.process.wait(timeout=limit_s)
         except subprocess.TimeoutExpired:
@@ -50,19 +50,19 @@ class Program:
         self.process.send_signal(number)
 
     def interrupt(self, limit_s=30.0):
-        """Ends it as Ctrl-C does, with everything that it has started."""
+        """Ends the program and its child processes like Ctrl-C."""
         if self.process.poll() is None:
             self.send(signal.SIGINT)
             self.code(limit_s)
 
     def kill(self):
-        """Ends it at once, also when it was stopped."""
+        """Kills the program, also when it is suspended."""
         if self.process.poll() is None:
             self.send(signal.SIGKILL)
         self.process.wait()
 
     def wait_for(self, condition, what, limit_s=LIMIT_S):
-        """Waits until a condition holds, while it runs."""
+        """Waits until a condition holds while the program runs."""
         end = time.monotonic() + limit_s
         while not condition():
             assert self.process.poll() is None, f"ended before {what}:\n{self.words()}"
@@ -71,20 +71,20 @@ class Program:
 
 
 def free_port():
-    """A port that nobody listened at a moment ago."""
+    """A port that is currently unused."""
     with socket.socket() as one:
         one.bind(("", 0))
         return one.getsockname()[1]
 
 
 class SecondHost:
-    """Another host: a network namespace with a cable of its own to this one; gone when a test ends.
+    """Another host: a network namespace with a virtual cable to this one; removed after the test.
 
-    Skips the test where there is no ip (iproute2), or namespaces are not permitted.
+    Skips the test if ip (iproute2) is missing or namespaces are not permitted.
     """
 
     def __init__(self, test):
-        # A network of four addresses of the range for tests between hosts (RFC 2544).
+        # Four addresses from the range reserved for tests between hosts (RFC 2544).
         network = int(ipaddress.ip_address("198.18.0.0")) + os.getpid() % 32768 * 4
         self.here = str(ipaddress.ip_address(network + 1))
         self.there = str(ipaddress.ip_address(network + 2))
@@ -109,7 +109,7 @@ class SecondHost:
             assert done.returncode == 0, f"ip {command}: {done.stderr.strip()}"
 
     def environment(self, port, inside):
-        """Words before a command that runs on this host, or inside the other, with a master here."""
+        """Prefix of a command that runs on this host or inside the other, with a master here."""
         words = ("env", "-u", "ROS_HOSTNAME", f"ROS_MASTER_URI=http://{self.here}:{port}",
                  f"ROS_IP={self.there if inside else self.here}")
         return (*self.inside, *words) if inside else words
@@ -122,14 +122,14 @@ def start_sim(test, namespace, scenario, *parameters):
 
 
 def start_agent(test, node, namespace, *parameters):
-    """Starts train_node or policy_node; each under a name of its own, so that no parameter of an
-    earlier one is left."""
+    """Starts train_node or policy_node under a unique name, so that it does not inherit parameters
+    of an earlier node."""
     start_agent.count = getattr(start_agent, "count", 0) + 1
     return Program(test, program("aquafarm_agents", node), f"__ns:={namespace}",
                    f"__name:=agent_{os.getpid()}_{start_agent.count}", *parameters)
 
 
 def newest_checkpoint(run_folder):
-    """Name of a run folder's newest checkpoint; empty when there is none."""
+    """Name of a run folder's newest checkpoint; empty if there is none."""
     names = sorted(path.name for path in pathlib.Path(run_folder).glob("checkpoints/step_*.ckpt"))
     return names[-1] if names else ""

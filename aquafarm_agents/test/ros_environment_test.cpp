@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Farms behind ROS services are those of this process, bit for bit.
+// Farms behind ROS services are bit-identical to farms in this process.
 #include "aquafarm_agents/link/ros_environment.h"
 
 #include <aquafarm_msgs/DropOff.h>
@@ -53,7 +53,7 @@ void ExpectSameFinished(const Results& a, const Results& b) {
   }
 }
 
-/// Plays both at random, side by side. @returns the number of episodes that ended
+/// Plays the same random actions on both. @returns the number of episodes that ended
 std::size_t ExpectSameTransitions(Environment& ros, Environment& local, int steps) {
   std::size_t ended = 0;
   RandomActions random(17);
@@ -107,7 +107,7 @@ TEST(RosEnvironment, KeepsTheContractWithTwoShips) {
   RunEnvironmentContract(environment, 600, false);
 }
 
-/// One command by a ship's own service.
+/// Sends one command through a ship's own service.
 template <typename Service, typename Fill>
 aquafarm_msgs::CommandResult Send(ros::ServiceClient& client, Fill fill) {
   Service service;

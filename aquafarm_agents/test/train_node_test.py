@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Training through ROS: the bits of training in process, kills, losses and refusals."""
+"""Training through ROS: bit-identity with training in process, kills, losses and rejected input."""
 import os
 import pathlib
 import signal

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Episodes kept while a ranch is trained on: whole, verifiable, also when the farm is killed."""
+"""Episodes recorded during a training are complete and verifiable, also if the farm is killed."""
 import os
 import pathlib
 import shutil
@@ -24,11 +24,11 @@ FIRST_CHUNK = 4117  # bytes before it in every bag
 
 
 def is_stopped(pid):
-    """Whether each thread of a process has stopped."""
+    """True if each thread of a process is suspended."""
     try:
         return all((task / "stat").read_text().rpartition(")")[2].split()[0] == "T"
                    for task in pathlib.Path(f"/proc/{pid}/task").iterdir())
-    except OSError:  # one has just ended
+    except OSError:  # a thread has just ended
         return False
 
 
@@ -41,18 +41,18 @@ class KeepEpisodesTest(unittest.TestCase):
         return sorted(self.folder.rglob("episode_*.bag"))
 
     def half_written(self):
-        """Returns a bag being written of which a chunk and its index are on the disk, or None."""
+        """Returns an unfinished bag with a chunk and its index on the disk, or None."""
         for bag in self.folder.rglob("*.active"):
             try:
                 content = bag.read_bytes()
-            except FileNotFoundError:  # it is whole now
+            except FileNotFoundError:  # it is complete now
                 continue
             if int.from_bytes(content[content.find(INDEX) + len(INDEX):][:8], "little") != 0:
-                continue  # it only waits for its name
+                continue  # it is complete but not renamed yet
             end = FIRST_CHUNK
-            for _ in range(2):  # its header and what it holds, each behind its length
+            for _ in range(2):  # header and data, each preceded by its length
                 end += 4 + int.from_bytes(content[end:end + 4], "little")
-            if len(content) > end:  # the index behind it is written at once
+            if len(content) > end:  # the index after it is written with it
                 return bag
         return None
 
@@ -104,14 +104,14 @@ class KeepEpisodesTest(unittest.TestCase):
             os.kill(pid, signal.SIGKILL)
             ranch.exit_code(60)
         self.assertGreaterEqual(len(self.bags()), 5)
-        code, words = verify(*self.bags()[-20:])  # hundreds may lie there
+        code, words = verify(*self.bags()[-20:])  # there may be hundreds
         self.assertEqual(0, code, words)
         self.assertEqual([cut], list(self.folder.rglob("*.active")))
         subprocess.run(["rosbag", "reindex", str(cut)], check=True, timeout=60,
                        capture_output=True)
         code, words = verify(cut)
         self.assertEqual(0, code, words)
-        # All that was missing may have been its end's index.
+        # The only missing part may be the index at its end.
         self.assertRegex(words, r": identical: 1 episode, \d+ steps"
                          r"(, the end of one is not in the bag)?\n")
 
@@ -121,7 +121,7 @@ class KeepEpisodesTest(unittest.TestCase):
             self.assertEqual(0, ranch.exit_code(60), ranch.words())
         whole = self.bags()[0]
         cut = self.folder / "cut.bag"
-        # What a kill leaves: chunks without the index that closing writes at the end.
+        # State after a kill: chunks without the index that closing writes at the end.
         with rosbag.Bag(str(whole)) as bag:
             end = bag._index_data_pos
         data = bytearray(whole.read_bytes()[:end])

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the keyboard node makes of keys and answers."""
+"""Key handling and output of the keyboard node."""
 import importlib.machinery
 import importlib.util
 import pathlib

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every launch file parses, documents its arguments and stays on the loopback address; every field
-of a message says what it is."""
+"""Every launch file parses, documents its arguments and stays on the loopback address. Every field
+of a message has a comment."""
 import pathlib
 import re
 import sys
@@ -46,7 +46,7 @@ class LaunchFilesTest(unittest.TestCase):
         for path in FILES:
             for argument in ElementTree.parse(path).getroot().findall("arg"):
                 if argument.get("value"):
-                    continue  # made of others; nobody can give it
+                    continue  # derived from others; users cannot set it
                 where = f"{path.name}: {argument.get('name')}"
                 self.assertGreater(len(argument.get("doc") or ""), 15, where)
                 if where != "replay.launch: bag":

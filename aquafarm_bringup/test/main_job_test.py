@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The main job on real input: In-Fa 2021 off Dongji, trained on, recorded, verified, replayed."""
+"""The main job on real input, In-Fa 2021 off Dongji: train, record, verify and replay."""
 import json
 import os
 import pathlib
@@ -26,7 +26,7 @@ class MainJobTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
     def train(self):
-        """The one command; returns its run folder and what greedy and RANDOM reach."""
+        """Trains with one command; returns its run folder and the results of greedy and RANDOM."""
         run = self.folder / "run"
         with Ranch("train", "scenario:=zhoushan_infa_2021", "steps:=3000000", "viz:=false",
                    "evaluation_episodes:=100", "random_episodes:=50",
@@ -36,7 +36,7 @@ class MainJobTest(unittest.TestCase):
                       for name in ("evaluation", "evaluation_random"))
 
     def record(self, run):
-        """The trained policy's episode as a bag."""
+        """Bag of an episode of the trained policy."""
         with Ranch("evaluate", "scenario:=zhoushan_infa_2021", f"policy:={run}", "episodes:=1",
                    "record:=all", "viz:=false", f"record_dir:={self.folder}") as ranch:
             self.assertEqual(0, ranch.exit_code(60), ranch.words())
@@ -45,7 +45,7 @@ class MainJobTest(unittest.TestCase):
         return bags[0]
 
     def replay(self, bag):
-        """Pictures of the bag, other than each other, from a ranch without a farm."""
+        """Replays the bag without a simulator and collects pictures that differ from each other."""
         pictures = set()
         with Ranch("replay", f"bag:={bag}", "headless:=true", port=free_port()) as ranch:
             os.environ.update(ranch.environment)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A ship is driven from a terminal, as a person would, through play.launch."""
+"""A ship is driven from a terminal through play.launch, as a user would do it."""
 import os
 import pathlib
 import pty
@@ -27,7 +27,7 @@ class PlayLaunchTest(unittest.TestCase):
         return Ranch("play", "viz:=false", *arguments, stdin=self._terminal)
 
     def press(self, ranch, key, words):
-        """Presses a key and waits for the words that it must cause."""
+        """Presses a key and waits for the expected output."""
         os.write(self._keys, key)
         ranch.wait_for(lambda: words in ranch.words(), KEY_LIMIT_S)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a launch file as a person would, on a port and in folders of its own, under a limit."""
+"""Runs a launch file as a user would, on its own port and in its own folders, with a time limit."""
 import os
 import pathlib
 import signal
@@ -10,23 +10,23 @@ import time
 
 
 def free_port():
-    """Returns a port that nobody listened on a moment ago."""
+    """Returns a port that is currently unused."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return probe.getsockname()[1]
 
 
 def verify(*bags):
-    """(exit code, words) of verify_bag, called as a person does."""
+    """(exit code, output) of verify_bag, called as a user does."""
     done = subprocess.run(["rosrun", "aquafarm_bringup", "verify_bag", *map(str, bags)], timeout=60,
                           capture_output=True, text=True)
     return done.returncode, done.stdout + done.stderr
 
 
 class Ranch:
-    """A launch in a process group of its own; leaving the context ends all of it.
+    """A launch in its own process group; leaving the context ends all its processes.
 
-    Trainings make their report, which takes seconds, only where a test asks for it.
+    Trainings write their report, which takes seconds, only if reports is true.
     """
 
     def __init__(self, launch, *arguments, port=None, stdin=subprocess.DEVNULL, reports=False):
@@ -74,7 +74,7 @@ class Ranch:
         return self._process.poll() is None
 
     def exit_code(self, limit_s):
-        """Waits for the launch to end by itself; returns the exit code that its nodes left."""
+        """Waits for the launch to end by itself; returns the exit code recorded by its nodes."""
         try:
             self._process.wait(timeout=limit_s)
         except subprocess.TimeoutExpired as error:

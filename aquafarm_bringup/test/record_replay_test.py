@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A bag holds whole episodes, and replay shows them without a farm."""
+"""A bag contains complete episodes, and replay shows them without a simulator."""
 import os
 import pathlib
 import shutil
@@ -57,7 +57,7 @@ class RecordReplayTest(unittest.TestCase):
         episodes = {}
         for state in self.messages("/aquafarm/state"):
             steps = episodes.setdefault(state.episode, [])
-            if not steps or steps[-1] != state.step:  # a new subscriber is sent the last state
+            if not steps or steps[-1] != state.step:  # the last state is latched
                 steps.append(state.step)
         self.assertGreaterEqual(len(episodes), EPISODES)
         for episode, steps in episodes.items():

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A replay is paused, stepped, paced and sent to a step, beside what another policy would do."""
+"""A replay can be paused, stepped, paced and sent to a step, and shows another policy's choices."""
 import os
 import pathlib
 import select
@@ -69,7 +69,7 @@ class ReplayTest(unittest.TestCase):
         cls.jump = rospy.ServiceProxy("/aquafarm/jump", Jump)
 
     def shown(self, step):
-        """Waits until a step is what was shown last."""
+        """Waits until `step` is the last step shown."""
         self.ranch.wait_for(lambda: self.states and self.states[-1].step == step, LIMIT_S)
 
     def test_a_jump_comes_with_the_choice_of_the_policy(self):
@@ -80,7 +80,7 @@ class ReplayTest(unittest.TestCase):
         self.assertIn("choices agree with what was done", self.ranch.words())
 
     def play(self, *parameters):
-        """A player of its own beside the launch; returns its process and the list of states."""
+        """Starts a separate player; returns its process and the list of states."""
         space = f"/alone_{len(self.players)}"
         states = []
         rospy.Subscriber(space + "/state", FarmState, states.append, queue_size=1000)
@@ -152,7 +152,7 @@ class ReplayTest(unittest.TestCase):
                 place = state.ships[0].x, state.ships[0].y
                 if not way or way[-1] != place:
                     way.append(place)
-            self.assertGreater(len(way), 25)  # more than a wake
+            self.assertGreater(len(way), 25)  # longer than the trail
             self.assertEqual(step, self.jump(step=step).step)
             self.ranch.wait_for(lambda: way == [
                 (round(pose.pose.position.x / 1000), round(pose.pose.position.y / 1000))
@@ -192,7 +192,7 @@ class ReplayTest(unittest.TestCase):
         devel = pathlib.Path(render).parents[2]
         if not SCRIPT.exists() or devel.name != "devel":
             self.skipTest("the package stands alone")
-        workspace = self.folder / "ws"  # one that nothing needs to be built in
+        workspace = self.folder / "ws"  # an already built workspace
         workspace.mkdir()
         (workspace / "devel").symlink_to(devel)
         (workspace / "src").mkdir()
@@ -223,7 +223,7 @@ class ReplayTest(unittest.TestCase):
         run(ask, self.bag, policy, "-o", asked, "--values-at", 17)
         run(render, asked, "--step", 17, *layers, "-o", other)
         self.assertEqual(other.read_bytes(), one.read_bytes())
-        run(ask, self.bag, policy, "-o", asked)  # a map each ten steps: that of step 10
+        run(ask, self.bag, policy, "-o", asked)  # one map per ten steps: that of step 10
         run(render, asked, "--step", 17, *layers, "-o", other)
         self.assertNotEqual(other.read_bytes(), one.read_bytes())
         words = run(SCRIPT, "render", self.bag, "--policy", "clairvoyant", *layers, "-o", one)
@@ -301,7 +301,7 @@ class ReplayTest(unittest.TestCase):
         with Ranch("replay", f"bag:={self.bag}", "headless:=true", "viz:=false",
                    "policy:=clairvoyant") as ranch:
             pid = ranch.wait_for(lambda: ranch.node_pid("bag_policy"), 60)
-            os.kill(pid, signal.SIGSTOP)  # hears nothing
+            os.kill(pid, signal.SIGSTOP)  # cannot handle signals
             ranch.interrupt()
             ranch.exit_code(10)
             self.assertFalse(pathlib.Path(f"/proc/{pid}").exists())

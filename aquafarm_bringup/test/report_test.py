@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report of a run and of a benchmark: what must be in it, and what it is refused for."""
+"""The report of a run and of a benchmark: required contents and error messages."""
 import base64
 import html
 import html.parser
@@ -31,8 +31,8 @@ time: {step_limit: 60}
 layout: {rocks: {count: [2, 2]}, ports: {count: 1}, devices: {count: 1}}
 """
 
-# A page in a window of 390 pixels, and its elements that stand out of it or of their box; tables
-# and texts may scroll in theirs.
+# Shows a page in a window of 390 pixels and lists the elements that overflow the window or their
+# box. Tables and preformatted texts may scroll in their own box.
 PHONE = """<!DOCTYPE html><iframe width="390" height="844" frameborder="0" srcdoc="PAGE"></iframe>
 <script>
 onload = () => {
@@ -54,14 +54,14 @@ def program(package, name):
 
 
 def run(package, name, *arguments, **options):
-    """(exit code, words) of a program."""
+    """(exit code, output) of a program."""
     done = subprocess.run([program(package, name), *map(str, arguments)], timeout=120, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, **options)
     return done.returncode, done.stdout
 
 
 class Page(html.parser.HTMLParser):
-    """A page's elements, words and addresses; its tags must match."""
+    """Elements, texts and addresses of a page; its tags must match."""
 
     def __init__(self, path):
         super().__init__()
@@ -92,7 +92,7 @@ class Page(html.parser.HTMLParser):
         self.words += data
 
     def embedded(self, kind):
-        """The files of a kind that the page carries."""
+        """Embedded files of a kind."""
         head = f"data:{kind};base64,"
         return [base64.b64decode(one[len(head):]) for one in self.addresses
                 if one.startswith(head)]
@@ -157,7 +157,7 @@ class ReportTest(unittest.TestCase):
                           if not one.startswith(("#", "data:"))])
 
     def too_wide(self, text):
-        """What of a page stands out of a phone's window, in words."""
+        """Description of the elements that overflow a phone's window."""
         browser = shutil.which("chromium") or shutil.which("google-chrome")
         if browser is None:
             self.skipTest("chromium is not installed")
@@ -213,7 +213,7 @@ class ReportTest(unittest.TestCase):
             pictures = 0
             while capture.read()[0]:
                 pictures += 1
-            self.assertGreater(pictures, 24)  # its steps, and two seconds of its end
+            self.assertGreater(pictures, 24)  # its steps, and two seconds at the end
 
     def test_without_an_encoder_that_browsers_play_the_films_are_gifs(self):
         output = self.folder / "gifs.html"

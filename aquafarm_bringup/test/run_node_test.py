@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""run_node keeps the exit code that roslaunch throws away and restarts servers."""
+"""run_node keeps the exit code that roslaunch discards, and restarts servers."""
 import os
 import pathlib
 import signal

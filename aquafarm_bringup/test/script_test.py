@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The script ./aquafarm refuses what it does not know and says what is missing."""
+"""The script ./aquafarm rejects unknown arguments and reports what is missing."""
 import fcntl
 import json
 import os
@@ -25,7 +25,7 @@ INTERRUPTED = 130
 
 
 def run(*command, **options):
-    """Runs a command under a limit and returns the finished process with its words."""
+    """Runs a command with a time limit and returns the finished process with its output."""
     return subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LIMIT_S,
                           check=False, **options)
@@ -50,7 +50,7 @@ class ScriptTest(unittest.TestCase):
         self.assertIn("got 'sarsa', expected name:=value", done.stdout)
 
     def test_what_is_not_named_lies_beside_the_user(self):
-        with tempfile.TemporaryDirectory() as folder:  # refused after the defaults are told
+        with tempfile.TemporaryDirectory() as folder:  # rejected after the defaults are printed
             done = run(SCRIPT, "train", "resume:=maybe", cwd=folder)
             self.assertEqual(2, done.returncode, done.stdout)
             self.assertIn(f"taking run_dir:={folder}/runs/", done.stdout)
@@ -71,7 +71,7 @@ class ScriptTest(unittest.TestCase):
             self.assertIn("start_step: got 'first', expected a number", done.stdout)
 
     def test_a_resumed_run_takes_what_is_not_given_from_its_folder(self):
-        def taken(folder, *arguments):  # refused after the defaults are told
+        def taken(folder, *arguments):  # rejected after the defaults are printed
             done = run(SCRIPT, "train", "resume:=true", "viz:=perhaps", *arguments, cwd=folder)
             self.assertEqual(2, done.returncode, done.stdout)
             self.assertIn("viz: got 'perhaps', expected true or false", done.stdout)
@@ -121,7 +121,7 @@ class ScriptTest(unittest.TestCase):
             ws, tree = folder / "ws", folder / "tree"
             for part in (ws / "src", ws / "build", ws / "devel", tree):
                 part.mkdir(parents=True)
-            copy = tree / "aquafarm"  # whose workspace is built already: this test's own
+            copy = tree / "aquafarm"  # its workspace is that of this test, already built
             copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "false -C"))
             (tree / "aquafarm_bringup").symlink_to(PACKAGE)
             (ws / "src" / "aquafarm").symlink_to(tree)
@@ -140,7 +140,7 @@ class ScriptTest(unittest.TestCase):
                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
                 self.addCleanup(process.stdout.close)
                 self.addCleanup(process.wait)
-                self.addCleanup(process.terminate)  # the script lets its nodes end
+                self.addCleanup(process.terminate)  # the script shuts its nodes down
                 return process
 
             first = train("scenario:=zhoushan_infa_2021", "algorithm:=sarsa", "farms:=8", "seed:=3",
@@ -238,7 +238,7 @@ class ScriptTest(unittest.TestCase):
                                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
                 self.addCleanup(second.kill)
                 self.assertIn("something else is building in", second.stdout.readline())
-                (ws / "built").touch()  # what the first one does at its end
+                (ws / "built").touch()  # as the first build does at its end
             finally:
                 os.close(lock)
             words, _ = second.communicate(timeout=LIMIT_S)

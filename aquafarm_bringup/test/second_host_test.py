@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""roslaunch starts a ship's agent on another host by <machine>, as docs/several_agents.md tells.
+"""roslaunch starts a ship's agent on another host by <machine>, as in docs/several_agents.md.
 
-The other host is a network namespace with an ssh server of its own; skipped where there is neither."""
+The other host is a network namespace with its own ssh server; skipped if either is unavailable."""
 import os
 import pathlib
 import re
@@ -69,7 +69,7 @@ class SecondHostTest(unittest.TestCase):
         self.server = Program(self, *self.host.inside, SSHD, "-D", "-e", "-f", config)
 
     def loader(self):
-        """An env-loader as a boat would have it."""
+        """An env-loader as on a ship's computer."""
         value = os.environ.get
         path = self.folder / "env.sh"
         path.write_text(LOADER.format(
@@ -90,7 +90,7 @@ class SecondHostTest(unittest.TestCase):
                       f"HOME={self.folder / 'home'}", "ROSLAUNCH_SSH_UNKNOWN=1",
                       f"ROS_HOME={self.folder / 'ros'}", f"ROS_LOG_DIR={self.folder / 'log'}",
                       "roslaunch", "-p", str(port), launch)
-        self.addCleanup(run.interrupt)  # so that roslaunch ends its nodes, also when a check fails
+        self.addCleanup(run.interrupt)  # roslaunch must end its nodes also if a check fails
         master = xmlrpc.client.ServerProxy(f"http://{self.host.here}:{port}")
 
         def address():
@@ -102,11 +102,11 @@ class SecondHostTest(unittest.TestCase):
 
         run.wait_for(lambda: address() != "", "the agent of ship 1 to be there", limit_s=60)
         self.assertEqual(self.host.there, re.match(r"http://([^:/]+)", address()).group(1))
-        # Both ships must command before the farm steps: the clock moves only if both do.
+        # The farm steps, and the clock advances, only when both ships have sent a command.
         self.assertGreater(self.clock_after(port, 60), 1.0)
 
     def clock_after(self, port, limit_s):
-        """Seconds on the farm's clock once it has moved, or 0.0."""
+        """Time of the farm's clock [s] after it has advanced, or 0.0."""
         command = [*self.host.environment(port, inside=False), "rostopic", "echo", "-n", "30", "-p",
                    "/clock"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=limit_s, check=False)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""agents.launch and sim.launch as a person starts them: each ship's node does its work."""
+"""agents.launch and sim.launch as a user starts them: each ship's node does its work."""
 import os
 import pathlib
 import signal
@@ -24,7 +24,8 @@ LIMIT_S = 30
 HOLD = 10
 CLAIM_TIMEOUT_S = 10
 DATA = pathlib.Path(__file__).resolve().parents[2] / "aquafarm_agents" / "test" / "data"
-# A ship with more to fetch at random than fits into an episode, and a device that drives itself.
+# A ship that cannot deliver all devices in an episode of random actions, and a self-propelled
+# device.
 FERRY = """# SPDX-License-Identifier: BSD-3-Clause
 name: ferry
 grid: {width: 5, height: 5}
@@ -43,7 +44,7 @@ def call(name, kind, **fields):
 
 
 def state():
-    """Farm 0 as it is now, or None while no sim node answers."""
+    """Current state of farm 0, or None while there is no sim node."""
     try:
         return call("get_state", GetState).state
     except (rospy.ServiceException, OSError):
@@ -63,7 +64,7 @@ class StartedLaunchTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.port = free_port()  # this process speaks to the masters that the launches start there
+        cls.port = free_port()  # this process uses the masters that the launches start on it
         os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{cls.port}"
 
     def start(self, launch, *arguments):
@@ -74,14 +75,14 @@ class StartedLaunchTest(unittest.TestCase):
         return ranch
 
     def wait(self, ranch, condition, limit_s=LIMIT_S):
-        """Waits for a state of farm 0 that fits, and returns it."""
+        """Waits for a matching state of farm 0 and returns it."""
         def look():
             now = state()
             return now if now and condition(now) else None
         return ranch.wait_for(look, limit_s)
 
     def pause_with_the_device_home(self, ranch):
-        """Stops the farm in an episode whose device has driven itself home."""
+        """Pauses the farm in an episode in which the self-propelled device is delivered."""
         for _ in range(200):
             call("pause", Pause, paused=True, steps=100)
             now = self.wait(ranch, lambda now: now.paused)
@@ -95,7 +96,7 @@ class StartedLaunchTest(unittest.TestCase):
         ranch = self.start("agents", f"scenario:={scenario}", "late_s:=20")
         for silence_s in (CLAIM_TIMEOUT_S + 1, 0):
             home = self.pause_with_the_device_home(ranch)
-            time.sleep(silence_s)  # it has nothing to command
+            time.sleep(silence_s)  # it sends no commands
             claim = call("ship_1/claim", Claim)
             self.assertEqual((Outcome.CLAIMED, "/aquafarm/agent_1"), (claim.code, claim.holder))
             call("pause", Pause, paused=False)

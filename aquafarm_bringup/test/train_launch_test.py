@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Training through ROS from start to end, and what it makes of faults and accidents."""
+"""Training through ROS from start to end, with faults and wrong input."""
 import os
 import pathlib
 import shlex
@@ -34,7 +34,7 @@ class TrainLaunchTest(unittest.TestCase):
                      "evaluation_episodes:=20", "random_episodes:=20", *arguments)
 
     def wait_until_training(self, ranch):
-        """Waits until the first line of metrics is there."""
+        """Waits for the first line of metrics."""
         metrics = self.run_dir / "metrics.csv"
         ranch.wait_for(lambda: metrics.exists() and metrics.read_text().count("\n") > 1,
                        START_LIMIT_S)
@@ -115,7 +115,7 @@ class TrainLaunchTest(unittest.TestCase):
         words = shlex.split(told)
         self.assertEqual(["go", "on", "roslaunch", "aquafarm_bringup", "train.launch"], words[:5])
         self.assertEqual(["resume:=true", f"run_dir:={self.run_dir}"], words[-2:])
-        with self.train(*words[5:-1]) as ranch:  # the limit is the run's own
+        with self.train(*words[5:-1]) as ranch:  # the limit is that of the run
             self.assertEqual(0, ranch.exit_code(90), ranch.words())
         parts, self.run_dir = self.run_dir, self.run_dir.parent / "whole"
         with self.train(*begun) as ranch:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""V_π beside the sea: likeness is found, unknown cells stay out, files are refused in words."""
+"""Comparison of V_π with the sea: similarity, unknown cells, and error messages for wrong files."""
 import json
 import os
 import pathlib
@@ -131,7 +131,7 @@ class ValuesTest(unittest.TestCase):
         done = subprocess.run([program, "clairvoyant", ranch, "-o", output], check=False,
                               capture_output=True, text=True, timeout=100)
         self.assertEqual(0, done.returncode, done.stderr)
-        # The device waits in the north-east: the farther north, the sooner it is reached.
+        # The device is in the north-east: a start farther north reaches it sooner.
         report = json.loads(pathlib.Path(output + ".json").read_text(encoding="utf-8"))
         self.assertEqual(36, report["seas"][0]["cells"])
         self.assertGreater(report["seas"][0]["spearman_rho"], 0.5)
@@ -142,7 +142,7 @@ class ValuesTest(unittest.TestCase):
                         "--namespace", "/pond"])
 
     def publishes(self, command):
-        """The maps come as topics, and stay for whoever comes later; without a master: a line."""
+        """Checks that the maps are published on latched topics, and the error without a master."""
         alone = subprocess.run(command, check=False, capture_output=True, text=True, timeout=100,
                                env={**os.environ, "ROS_MASTER_URI": "http://127.0.0.1:9"})
         self.assertEqual(2, alone.returncode)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What the programs share: where scenarios are, and Ctrl-C.
+// Helpers shared by the programs: scenario lookup and Ctrl-C.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace aquafarm::agents {
 inline std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
 
-/// The first Ctrl-C asks to save and end, the second ends at once.
+/// The first Ctrl-C requests saving and exit; the second one exits immediately.
 inline void StopOnSignals() {
   const auto handler = [](int signal) {
     stop_requested = true;
@@ -31,8 +31,8 @@ inline void StopOnSignals() {
   std::signal(SIGTERM, handler);
 }
 
-/// Folder of the shipped scenarios: of the workspace that this program was installed into, else of
-/// the sources.
+/// Folder of the shipped scenarios: in the workspace that this program is installed in, else in the
+/// sources.
 inline std::string ScenarioFolder() {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -42,7 +42,7 @@ inline std::string ScenarioFolder() {
   return fs::is_directory(installed, ignored) ? installed.string() : AQUAFARM_SCENARIO_DIR;
 }
 
-/// A path, or the name of a scenario in `folder`.
+/// Loads a scenario by path, or by name from `folder`.
 inline Scenario FindScenario(const std::string& name, const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -60,17 +60,17 @@ inline Scenario FindScenario(const std::string& name, const std::string& folder)
   throw InputError("scenario: got '" + name + "', expected a file or one of: " + Join(names));
 }
 
-/// Which farm a program plays on.
+/// Scenario selected on the command line.
 struct ScenarioChoice {
   std::string name{"paper"};
   std::string folder{ScenarioFolder()};
-  std::int32_t max_steps{};  ///< step limit of an episode; 0: the scenario's own
+  std::int32_t max_steps{};  ///< step limit of an episode; 0: that of the scenario
 
   std::shared_ptr<const Scenario> Load() const {
     Scenario scenario = FindScenario(name, folder);
     if (max_steps == 0) return std::make_shared<const Scenario>(std::move(scenario));
     scenario.step_limit = max_steps;
-    // As a file would give it, so that its hash is that of its text.
+    // Parsed from its text like a file, so that the hash is that of the text.
     return std::make_shared<const Scenario>(ParseScenario(ToYaml(scenario), scenario.name));
   }
 };

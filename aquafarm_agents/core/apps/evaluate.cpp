@@ -30,7 +30,7 @@ struct Arguments {
   EnvironmentOptions environment{64, 0, false, 1};
 };
 
-// Without a scenario: the one that the policy's run folder keeps.
+// Path or name of the scenario. The default is the scenario in the policy's run folder.
 std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
   namespace fs = std::filesystem;
   if (!arguments.scenario.name.empty()) return arguments.scenario.name;
@@ -43,7 +43,7 @@ std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
   throw InputError("scenario: got nothing, and there is no scenario.yaml beside " + saved.path);
 }
 
-// Mean of the bounds of the episodes that were played.
+// Mean bound of the played episodes.
 double MeanBound(const std::shared_ptr<const Scenario>& scenario, const Evaluation& evaluation) {
   const auto count = static_cast<std::int32_t>(evaluation.episodes.size());
   double sum = 0.0;
@@ -62,7 +62,7 @@ ExitCode Run(Arguments arguments) {
   const auto scenario = arguments.scenario.Load();
   LocalEnvironment environment(scenario, arguments.environment);
   const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
-  if (arguments.bound) TeamBound(Farm(scenario));  // refuses at once what it cannot bound
+  if (arguments.bound) TeamBound(Farm(scenario));  // fails early if the scenario has no bound
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
   Evaluation evaluation =
@@ -73,7 +73,7 @@ ExitCode Run(Arguments arguments) {
                });
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
-  std::fflush(stdout);  // before what may still go wrong
+  std::fflush(stdout);  // before steps that may still fail
   if (arguments.bound && evaluation.complete) {
     evaluation.mean_bound = MeanBound(scenario, evaluation);
     if (stop_requested) return ExitCode::kInterrupted;
@@ -93,7 +93,7 @@ ExitCode Run(Arguments arguments) {
     if (stop_requested) return ExitCode::kInterrupted;
     WriteValues(arguments.values, values, saved.path, *scenario);
   }
-  // The evaluation comes last: where it is, all is there.
+  // The evaluation is written last: if it exists, all files exist.
   if (!arguments.route.empty() && evaluation.complete) {
     const auto make_policy = [&saved](const EnvironmentSpec& spec) {
       return MakePolicy(saved, spec);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Farm steps and updates a second of the deep learners on paper.yaml, 16 farms, one thread: with
-// the plain feature vector (43 numbers), as the references of tools/bench_reference.py have it, and
-// with the ways by water and the courses in it (81).
+// Farm steps and updates per second of the deep learners on paper.yaml, 16 farms, one thread: with
+// the plain feature vector (43 values), as in the references of tools/bench_reference.py, and with
+// the water distances and lookahead risks (81 values).
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -28,7 +28,7 @@ std::shared_ptr<const Scenario> Paper(bool all_features) {
   return std::make_shared<const Scenario>(std::move(scenario));
 }
 
-// One learner for all repetitions; its replay is full and its updates are under way.
+// One learner for all repetitions, after its replay is filled and its updates have started.
 struct Training {
   Training(const char* algorithm, const std::string& options, bool all_features)
       : environment(Paper(all_features),
@@ -75,7 +75,7 @@ BENCHMARK(LstmDqn);
 BENCHMARK(LstmDqnAllFeatures);
 
 void Print(const std::string& name, double steps, double steps_per_update) {
-  if (steps == 0.0) return;  // not asked for
+  if (steps == 0.0) return;  // not selected
   bench::PrintMetric(name + "_training_steps", steps, "steps/s");
   bench::PrintMetric(name + "_updates", steps / steps_per_update, "updates/s");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clairvoyant plan of one episode of paper.yaml, and the decisions a second of the planner that
-// goes by the forecast and plans anew each step; one thread, episodes of unlike seeds.
+// Time of the clairvoyant plan of one episode of paper.yaml, and decisions per second of the
+// planner that replans each step from the forecast. One thread, episodes of different seeds.
 #include <benchmark/benchmark.h>
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Training steps a second of the tabular learners on paper.yaml, one thread, and how long it takes
-// until the farm is solved. Reference for the ratios: the same farms under RANDOM.
+// Training steps per second of the tabular learners on paper.yaml, one thread, and the time until
+// the farm is solved. Ratios are relative to the same farms under RANDOM.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ LocalEnvironment Paper() {
           {kFarms, kIndexBit, false, 1}};
 }
 
-// Learns from the start of its schedules on; items are farm steps.
+// Trains from the start of the schedules; items are farm steps.
 void TrainSteps(benchmark::State& state, const char* algorithm, const char* options) {
   LocalEnvironment environment = Paper();
   const Algorithm& entry = FindAlgorithm(algorithm);
@@ -59,8 +59,8 @@ BENCHMARK(Sarsa);
 BENCHMARK(Boltzmann);
 
 struct Solution {
-  double seconds{};  ///< of a training with the defaults
-  double success{};  ///< greedy, over kEvaluationEpisodes seeds never trained on
+  double seconds{};  ///< training time with the defaults
+  double success{};  ///< success rate of the greedy policy over kEvaluationEpisodes unseen seeds
 };
 
 Solution Solve(const char* algorithm, std::uint64_t seed) {

@@ -17,11 +17,11 @@
 namespace aquafarm::agents::test {
 
 inline std::shared_ptr<const Scenario> Share(Scenario scenario) {
-  // As a file would give it, so that its hash is that of its text.
+  // Parsed from its text like a file, so that the hash is that of the text.
   return std::make_shared<const Scenario>(ParseScenario(ToYaml(scenario), scenario.name));
 }
 
-/// One device two steps from a port, a step limit that random play rarely beats.
+/// One device two steps from a port, with a step limit that RANDOM rarely meets.
 inline std::shared_ptr<const Scenario> TinyFarm(std::int32_t step_limit = 60) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = step_limit;
@@ -33,7 +33,7 @@ inline std::shared_ptr<const Scenario> Paper() {
       LoadScenario(std::string(AQUAFARM_SCENARIO_DIR) + "/paper.yaml"));
 }
 
-/// A folder of its own for each test, gone at its end.
+/// Provides a temporary folder, removed at the end of each test.
 class FolderTest : public ::testing::Test {
  protected:
   FolderTest() {
@@ -44,7 +44,7 @@ class FolderTest : public ::testing::Test {
   std::string folder_;
 };
 
-/// The words of what `act` throws; empty when it throws nothing.
+/// Message of the exception that `act` throws; empty if it does not throw.
 template <typename Exception, typename Act>
 std::string MessageOf(Act&& act) {
   try {

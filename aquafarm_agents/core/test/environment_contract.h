@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// What every environment must keep, whatever is behind it.
+// Contract test of the Environment interface, for every implementation.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 
 namespace aquafarm::agents::test {
 
-/// Draws the same actions for the same seed.
+/// Random actions that are reproducible by seed.
 class RandomActions {
  public:
   explicit RandomActions(std::uint64_t seed)
@@ -35,7 +35,7 @@ inline std::size_t Entries(const EnvironmentSpec& spec) {
   return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
 }
 
-/// Everything but `finished` is the same.
+/// Compares all fields except `finished`.
 inline void ExpectSame(const Results& a, const Results& b) {
   EXPECT_EQ(a.rewards, b.rewards);
   EXPECT_EQ(a.outcomes, b.outcomes);
@@ -61,7 +61,7 @@ inline void ExpectFirstObservations(const EnvironmentSpec& spec, const Results& 
   EXPECT_TRUE(results.finished.empty());
 }
 
-/// What a pickup or drop-off came to must be what the mask said before.
+/// Checks that the outcome of a pickup or drop-off agrees with the mask before the step.
 inline void ExpectMaskHeld(std::uint8_t action, ActionMask before, std::uint8_t outcome) {
   if (action < kMoveCount || outcome == static_cast<std::uint8_t>(Outcome::kOutOfPlay)) return;
   const bool illegal = outcome == static_cast<std::uint8_t>(Outcome::kIllegalPickup) ||
@@ -69,7 +69,7 @@ inline void ExpectMaskHeld(std::uint8_t action, ActionMask before, std::uint8_t 
   EXPECT_EQ(illegal, ((before >> action) & 1U) == 0) << "action " << +action;
 }
 
-/// Plays at random for a while and checks each step against the last.
+/// Plays random actions and checks each step against the previous one.
 inline void ExpectStepsKeepTheRules(Environment& environment, std::uint64_t seed, int steps,
                                     bool one_ship_masks) {
   const EnvironmentSpec& spec = environment.spec();
@@ -176,8 +176,11 @@ inline void ExpectBadBytesAreRefused(Environment& environment) {
   ExpectSame(environment.Step(actions), after);
 }
 
-/// @param environment must give hashes
-/// @param one_ship_masks masks are promises only where no other ship can act in between
+/// Runs the contract test.
+/// @param environment must provide hashes
+/// @param one_ship_masks true to check outcomes against masks, which requires that no other ship
+/// can
+///        act in between
 inline void RunEnvironmentContract(Environment& environment, int steps = 600,
                                    bool one_ship_masks = true) {
   const EnvironmentSpec& spec = environment.spec();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Runs a program beside the test, with limits.
+// Runs a program as a child process of the test, with time limits.
 
 #include <fcntl.h>
 #include <sys/wait.h>
@@ -17,7 +17,7 @@ namespace aquafarm::agents::test {
 
 class Process {
  public:
-  /// @param output file that gets what it prints
+  /// @param output file that receives the output of the program
   Process(std::vector<std::string> arguments, const std::string& output) {
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -40,7 +40,8 @@ class Process {
 
   void Kill(int signal) const { kill(pid_, signal); }
 
-  /// Its exit code; minus the signal that ended it; −1000 when it did not end within the limit.
+  /// Waits for the end of the program. @returns its exit code, minus the number of the signal that
+  /// ended it, or −1000 if it did not end within the limit
   int Wait(double limit_s = 60.0) {
     const auto start = std::chrono::steady_clock::now();
     int status = 0;
@@ -58,7 +59,7 @@ class Process {
   pid_t pid_{};
 };
 
-/// Polls until `condition` holds. @returns false when the limit is over
+/// Polls until `condition` holds. @returns false after the time limit
 template <typename Condition>
 bool WaitUntil(Condition&& condition, double limit_s = 30.0) {
   const auto start = std::chrono::steady_clock::now();

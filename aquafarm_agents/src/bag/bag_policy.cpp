@@ -45,7 +45,7 @@ using Key = std::pair<std::uint64_t, std::uint64_t>;  // seed and episode
 
 std::string Number(std::uint64_t value) { return std::to_string(value); }
 
-/// @param path of the bag, for messages
+/// Scenario of a spec. @param path of the bag, for error messages
 std::shared_ptr<const aquafarm::Scenario> ScenarioOf(const FarmSpec& spec,
                                                      const std::string& path) {
   return aquafarm_sim::NamingBag(path, [&] {
@@ -54,12 +54,12 @@ std::shared_ptr<const aquafarm::Scenario> ScenarioOf(const FarmSpec& spec,
   });
 }
 
-/// A farm as recorded, and a policy that is asked along.
+/// Replays a recorded farm and queries a policy at each state.
 class Companion {
  public:
-  /// @param path of the bag, for messages
-  /// @param rewinds whether states may be changed from outside, so that it must know those before
-  /// @throws InputError when the spec's scenario is none, or the policy does not fit it
+  /// @param path of the bag, for error messages
+  /// @param rewinds true if states may be changed from outside; earlier states are then stored
+  /// @throws InputError if the spec contains no valid scenario, or the policy does not fit it
   Companion(const FarmSpec& spec, const std::string& path, const agents::SavedPolicy& saved,
             bool rewinds)
       : rewinds_(rewinds),
@@ -76,7 +76,7 @@ class Companion {
     episode_.value_at_start = std::nanf("");
   }
 
-  /// Takes in what came from outside. @returns why it cannot, or nothing
+  /// Loads a state that was set from outside. @returns an error message, or an empty string
   std::string Load(const SavedState& saved) {
     const std::uint64_t step = Step();
     if (begun_ && saved.step > step) return Missing(seen_ ? step + 1 : step, saved.step);
@@ -94,7 +94,7 @@ class Companion {
     return "";
   }
 
-  /// Follows the recording to a state. @returns why it cannot, or nothing
+  /// Simulates the recording up to a state. @returns an error message, or an empty string
   std::string Follow(const FarmState& state) {
     const std::uint64_t step = Step();
     const std::uint64_t expected = seen_ ? step + 1 : step;
@@ -109,13 +109,13 @@ class Companion {
     return "state.hash: got " + Number(state.hash) + ", simulated " + Number(hash);
   }
 
-  /// Whether it was asked for this very state last, which a ranch may send again.
+  /// True if the last query was for the same state, which a ranch may publish more than once.
   bool HasAsked(const FarmState& state) const {
     return asked_ > 0 && choice_.step == state.step && asked_hash_ == state.hash;
   }
 
-  /// Asks for the state where the farm stands; once, though the state comes again. Where the state
-  /// was changed from outside, with the memory of before it.
+  /// Queries the policy at the current state of the farm. A repeated state is queried only once. If
+  /// the state was changed from outside, the query uses the recurrent state before that step.
   const PolicyChoice& Ask(const FarmState& state) {
     choice_.header = state.header;
     if (HasAsked(state)) return choice_;
@@ -162,7 +162,7 @@ class Companion {
     return "steps " + Number(first) + " to " + Number(last) + " are missing";
   }
 
-  /// Takes the last question back.
+  /// Undoes the last query.
   void Rewind() {
     asked_states_.pop_back();
     policy_->Begin(episode_.seed, 1);
@@ -172,7 +172,7 @@ class Companion {
     --asked_;
   }
 
-  /// The step to a state, with the actions that were taken.
+  /// Simulates the step to a state with the recorded actions.
   std::string Take(const FarmState& state) {
     if (over()) return "the episode is over since step " + Number(Step());
     const auto& ships = farms_.farm(0).ships();
@@ -202,19 +202,19 @@ class Companion {
   aquafarm::FarmBatch farms_;
   agents::LocalEnvironment environment_;
   std::unique_ptr<agents::Policy> policy_;
-  std::unique_ptr<agents::Policy> elsewhere_;  // for the maps: its memory is not the episode's
+  std::unique_ptr<agents::Policy> elsewhere_;  // for the maps: it has a separate recurrent state
   PolicyChoice choice_;
   EpisodeChoices episode_;
-  bool begun_{};  // something of this episode came, so the next thing is where it stands
-  bool seen_{};   // the state where the farm stands came, and was asked for unless it is over
+  bool begun_{};  // a message of this episode was read, so `farms_` is at its state
+  bool seen_{};   // the current state was read, and queried unless the episode is over
   std::uint64_t asked_{};
-  std::uint64_t asked_hash_{};  // of the state that choice_ is of
+  std::uint64_t asked_hash_{};  // hash of the state of choice_
   std::vector<std::string> asked_states_;
-  float value_{};  // of choice_
+  float value_{};  // sum of choice_.values
   double value_sum_{};
 };
 
-/// A bag written beside its place and renamed when it is whole.
+/// A bag that is written under a temporary name and renamed when it is complete.
 class Output {
  public:
   explicit Output(std::string path) : path_(std::move(path)), beside_(path_ + ".active") {
@@ -236,7 +236,8 @@ class Output {
       bag_->write(message.getTopic(), message.getTime(), message, message.getConnectionHeader());
     });
   }
-  /// Just before a time, so that it is there when the state of that time is shown.
+  /// Writes a message just before `time`, so that it is available when the state of that time is
+  /// shown.
   template <typename Message>
   void Add(const std::string& topic, ros::Time time, const Message& message) {
     if (time.toNSec() > ros::TIME_MIN.toNSec()) time -= ros::Duration(0, 1);
@@ -257,7 +258,7 @@ class Output {
     fs::remove(beside_, ignored);
   }
 
-  // What goes wrong in writing is no fault of the bag that is read.
+  // Converts write errors, so that they are not reported as errors of the input bag.
   template <typename Work>
   void Guard(const Work& work) const {
     try {
@@ -288,7 +289,7 @@ std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& top
   return specs;
 }
 
-/// Why a policy gives no maps of values and moves on farms of a scenario; empty: it does.
+/// Reason why a policy gives no maps of values and moves on farms of a scenario; empty if it does.
 std::string WhyNoMaps(const agents::SavedPolicy& saved, const aquafarm::Scenario& scenario) {
   const std::string& name = saved.checkpoint.algorithm;
   if (saved.encodings == 0) return name + " looks at nothing, so it has no values and best moves";
@@ -298,7 +299,7 @@ std::string WhyNoMaps(const agents::SavedPolicy& saved, const aquafarm::Scenario
   return agents::WhyNoBestMoves(scenario);
 }
 
-/// Goes through the messages of a bag, in order.
+/// Processes the messages of a bag in order.
 class Walk {
  public:
   Walk(std::map<Key, FarmSpec> specs, const agents::SavedPolicy& saved,
@@ -326,7 +327,7 @@ class Walk {
         goes_on = TakeState(*state, message.getTime());
       }
     }
-    // What an earlier policy left is not copied along.
+    // Messages of an earlier policy are not copied.
     const bool is_old = topic == ranch_ + names::kChoice || topic == ranch_ + names::kValues ||
                         topic == ranch_ + names::kValuePoints;
     if (goes_on && output_ && !is_old) output_->Copy(message);
@@ -361,7 +362,8 @@ class Walk {
     return true;
   }
 
-  /// @param fault empty: none. @returns whether there is none
+  /// Records a fault as the difference. @param fault empty if there is none
+  /// @returns true if there is no fault
   bool Holds(std::uint64_t step, const std::string& fault) {
     if (fault.empty()) return true;
     result_.difference = "episode " + Number(key_.second) + " step " + Number(step) + ": " + fault;

@@ -34,7 +34,7 @@ using aquafarm::InputError;
 using aquafarm_msgs::FarmState;
 using aquafarm_msgs::Outcome;
 
-// Without an observation for so long, the last one is acted on again.
+// After this time without an observation, the command for the last one is repeated.
 constexpr double kSilence_s = 2.0;
 constexpr std::uint32_t kQueue = 10;
 
@@ -85,13 +85,13 @@ class AgentDriver::Impl {
         ROS_INFO("episode %llu: %s, return %.1f", static_cast<unsigned long long>(over->episode),
                  success ? "all retrieved" : "over", static_cast<double>(over->joint_return));
         if (acted_in_ == std::pair(over->seed, over->episode)) ended.push_back(success);
-        // Whoever is late must not reset what the others have begun meanwhile.
+        // A late agent must not reset an episode that the others have started meanwhile.
         const bool is_now = newest_->seed == over->seed && newest_->episode == over->episode;
         if (is_now) StartNext(*over);
       }
       if (!now || now->reason != FarmState::NONE) continue;
       if (!now->ships[static_cast<std::size_t>(options_.ship)].active) continue;
-      if (now != acted_on_) {  // else its command is given again, and no memory moves on
+      if (now != acted_on_) {  // else repeats the command without advancing the recurrent state
         Look(*now);
         policy.Act(results_, actions_);
         acted_on_ = now;
@@ -129,11 +129,12 @@ class AgentDriver::Impl {
         ros::TransportHints().tcpNoDelay());
   }
 
-  // Another ship's agent may have begun the next episode before this one looks.
+  // Stores ended episodes, because another ship's agent may start the next one before this agent
+  // processes the end.
   void Take(const FarmState::ConstPtr& message) {
     newest_ = message;
     if (message->reason == FarmState::NONE) {
-      over_seen_.reset();  // the same episode may be played, and end, again
+      over_seen_.reset();  // the same episode may be played again
       return;
     }
     if (over_seen_ && *over_seen_ == std::pair(message->seed, message->episode)) return;
@@ -141,7 +142,7 @@ class AgentDriver::Impl {
     over_.push_back(message);
   }
 
-  // Newer than what has been acted on; null when there is none yet.
+  // Waits for an observation newer than the last one; null if there is none yet.
   FarmState::ConstPtr WaitForObservation() {
     const ros::WallTime start = ros::WallTime::now();
     while (!Stopped()) {
@@ -153,19 +154,19 @@ class AgentDriver::Impl {
         return newest_;
       }
       if ((ros::WallTime::now() - start).toSec() < kSilence_s) continue;
-      again_ = true;  // perhaps a command was lost; one too many is answered STALE
+      again_ = true;  // a command may be lost; a superfluous one returns STALE
       return nullptr;
     }
     return nullptr;
   }
 
-  // The chart of an episode follows from its seed; all else is what the observation tells.
+  // The layout of an episode follows from its seed. All other inputs come from the observation.
   void Look(const FarmState& message) {
     if (farm_->seed() != message.seed || farm_->episode() != message.episode) {
       farm_->Reset(message.seed, message.episode);
       results_.started[0] = 1;
     }
-    if (message.step == 0) results_.started[0] = 1;  // also of the same episode, begun again
+    if (message.step == 0) results_.started[0] = 1;  // also if the same episode is restarted
     const auto ship = static_cast<std::size_t>(options_.ship);
     aquafarm_sim::FromMsg(message, *scenario_, farm_->layout(), view_);
     results_.legal[ship] = message.ships[ship].legal_actions;
@@ -210,11 +211,11 @@ class AgentDriver::Impl {
   void Command(const FarmState& now, const std::string& name, ServiceLink& link, Service& service) {
     service.request.episode = now.episode;
     service.request.step = now.step;
-    service.request.token = ++token_;  // a repeat after a lost connection moves nothing twice
+    service.request.token = ++token_;  // makes a repeat after a lost connection idempotent
     link.Call(name, service);
     const auto& result = service.response.result;
     switch (result.code) {
-      case Outcome::STALE:  // late, or overtaken: the next observation says where the farm is
+      case Outcome::STALE:  // late or superseded: the next observation contains the current state
       case Outcome::EPISODE_OVER:
       case Outcome::SUPERSEDED:
         return;
@@ -243,17 +244,18 @@ class AgentDriver::Impl {
   std::optional<ShipClaim> claim_;
   SlowWarning warning_;
   std::shared_ptr<const aquafarm::Scenario> scenario_;
-  std::unique_ptr<aquafarm::Farm> farm_;  // for its layout alone
+  std::unique_ptr<aquafarm::Farm> farm_;  // used only for its layout
   std::unique_ptr<aquafarm::Encoder> encoder_;
   EnvironmentSpec spec_;
   aquafarm::View view_;
-  Results results_;  // of one farm, of which only this ship's share is filled
+  Results results_;  // of one farm; only this ship's entries are filled
   std::vector<std::uint8_t> actions_;
   FarmState::ConstPtr newest_;
-  std::vector<FarmState::ConstPtr> over_;  // the last of each episode that is not dealt with yet
+  std::vector<FarmState::ConstPtr>
+      over_;  // last states of ended episodes that are not processed yet
   std::optional<std::pair<std::uint64_t, std::uint64_t>> over_seen_;  // seed and episode
-  FarmState::ConstPtr acted_on_;  // what the present actions were chosen from
-  FarmState::ConstPtr seen_;      // what was handed out last
+  FarmState::ConstPtr acted_on_;  // the current actions were chosen from it
+  FarmState::ConstPtr seen_;      // last observation returned by WaitForObservation
   std::optional<std::pair<std::uint64_t, std::uint64_t>> acted_in_;  // seed and episode
   bool again_{};
   std::uint64_t token_{ros::WallTime::now().toNSec()};

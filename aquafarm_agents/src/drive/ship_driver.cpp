@@ -128,12 +128,12 @@ class ShipDriver::Impl {
   void StartNext() {
     if (State().pace == aquafarm_msgs::FarmState::PACED) return;
     aquafarm_msgs::Reset reset;
-    reset.request.only_if_over = true;  // several drivers may ask for it
+    reset.request.only_if_over = true;  // several drivers may request it
     reset_.Call(names::kReset, reset);
     if (!reset.response.ok) throw EnvironmentLost("sim node: reset: " + reset.response.message);
   }
 
-  // In lockstep each ship's call waits for the others', so they are made side by side.
+  // In lockstep each ship's call waits for the other ships, so the calls are made in parallel.
   void Send() {
     std::vector<std::future<void>> calls;
     for (std::size_t i = 1; i < ships_.size(); ++i) {
@@ -149,10 +149,10 @@ class ShipDriver::Impl {
     command.request.action = actions_[static_cast<std::size_t>(ships_[i])];
     command.request.episode = seen_->first;
     command.request.step = seen_->second;
-    command.request.token = ++token_;  // a repeat after a lost connection moves nothing twice
+    command.request.token = ++token_;  // makes a repeat after a lost connection idempotent
     commands_[i]->Call(names::kCommand, command);
     const std::uint8_t code = command.response.result.code;
-    // Late or overtaken: the next look says where the farm is.
+    // Late or superseded: the next call of get_state returns the current state.
     const bool usual = command.response.result.ok || code == Outcome::STALE ||
                        code == Outcome::EPISODE_OVER || code == Outcome::PAUSED ||
                        code == Outcome::TIMEOUT || code == Outcome::SUPERSEDED;
@@ -181,12 +181,12 @@ class ShipDriver::Impl {
   ServiceLink get_;
   ServiceLink save_;
   ServiceLink reset_;
-  std::optional<ShipClaim> claim_;  // none where it drives all ships
+  std::optional<ShipClaim> claim_;  // nullopt when driving all ships
   std::vector<std::int32_t> ships_;
-  std::vector<std::unique_ptr<ServiceLink>> commands_;  // one a ship
+  std::vector<std::unique_ptr<ServiceLink>> commands_;  // one per ship
   std::unique_ptr<LocalEnvironment> mirror_;
   std::vector<std::uint8_t> actions_;
-  std::atomic<bool> again_{};  // a command was dropped: look and send anew
+  std::atomic<bool> again_{};  // a command was dropped: query the state and send again
   std::atomic<std::uint64_t> token_{ros::WallTime::now().toNSec()};  // of the last command
   SlowWarning warning_;
   std::optional<std::pair<std::uint64_t, std::uint64_t>> seen_;  // episode and step

@@ -4,7 +4,7 @@
 namespace aquafarm_agents {
 namespace {
 
-// Coarse, so that arming costs a fast call next to nothing.
+// Coarse, so that the overhead of a fast call is negligible.
 constexpr std::chrono::milliseconds kLook{200};
 
 }  // namespace
@@ -36,7 +36,7 @@ void CallLimit::Watch() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!ended_.wait_for(lock, kLook, [this] { return ends_; })) {
     if (armed_ == nullptr || Clock::now() - since_ < limit_) continue;
-    armed_->shutdown();  // drops the connection, which ends the call
+    armed_->shutdown();  // drops the connection, which aborts the call
     armed_ = nullptr;
   }
 }

@@ -19,7 +19,7 @@
 namespace aquafarm_agents {
 namespace {
 
-constexpr int kLimit_ms = 2000;  // for a host that does not say whether anybody listens
+constexpr int kLimit_ms = 2000;  // for a host that does not respond
 
 bool Completes(int connection) {
   pollfd wanted{connection, POLLOUT, 0};
@@ -43,7 +43,7 @@ bool Connects(const addrinfo& address) {
   return connected;
 }
 
-/// False also when a host has said nothing until the limit.
+/// True if a process accepts connections on the port; false if the host does not respond in time.
 bool IsListenedOn(const std::string& host, std::uint32_t port) {
   addrinfo wanted{};
   wanted.ai_socktype = SOCK_STREAM;
@@ -65,7 +65,7 @@ void RefuseTwin() {
   XmlRpc::XmlRpcValue payload;
   request[0] = name;
   request[1] = name;
-  // Fails also where no master answers, which whoever needs it says better.
+  // Also fails if there is no master. Later calls report that better.
   if (!ros::master::execute("lookupNode", request, response, payload, /*wait_for_master=*/false)) {
     return;
   }

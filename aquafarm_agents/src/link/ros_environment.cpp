@@ -30,9 +30,9 @@ static_assert(int{StepResult::FEATURES} == int{aquafarm::agents::kFeaturesBit});
 static_assert(int{StepResult::PLANES} == int{aquafarm::agents::kPlanesBit});
 
 constexpr double kRetryPeriod_s = 0.1;
-// Without an episode that ends: another trains on the same farms.
+// Max restarts without a completed episode. More indicate another client on the same farms.
 constexpr int kMostRestarts = 20;
-// Those that the sim node knows as well.
+// Observation types that the sim node also provides.
 constexpr int kFarmEncodings =
     aquafarm::agents::kIndexBit | aquafarm::agents::kFeaturesBit | aquafarm::agents::kPlanesBit;
 
@@ -86,7 +86,7 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
       encodings_(static_cast<std::uint8_t>((options_.encodings & kFarmEncodings) |
                                            (options_.hashes ? int{StepResult::HASHES} : 0))),
       limit_(options_.call_limit_s),
-      // Numbers of an earlier client of the same farms must not come again.
+      // Must not repeat the numbers of an earlier client of the same farms.
       sequence_(ros::WallTime::now().toNSec()) {
   aquafarm_msgs::GetState::Response now = GetState(0, true);
   if (now.state.pace == aquafarm_msgs::FarmState::PACED) {
@@ -160,14 +160,14 @@ const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
   }
   Take(step_.response.result);
   if (!results_.finished.empty()) restarts_ = 0;
-  for (const EpisodeResult& ended : results_.finished) {  // its farm goes on N episodes later
+  for (const EpisodeResult& ended : results_.finished) {  // its farm continues N episodes later
     next_episode_ =
         std::max(next_episode_, ended.episode + static_cast<std::uint64_t>(spec_.farms) + 1);
   }
   return results_;
 }
 
-// The state comes by a call of its own: planners take longer than that at any step.
+// The farm states need a separate call, which is cheap relative to a planning step.
 void RosEnvironment::Take(StepResult& result) {
   if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) results_.states = Save();
   turn_ = result.turn;

@@ -38,8 +38,8 @@ std::unique_ptr<agents::Policy> MakeAndWarn(const agents::SavedPolicy& saved,
 struct PolicyParams {
   std::string policy;
   std::string mode{"evaluate"};
-  std::string output;  ///< prefix of .csv and .json; empty: none are written
-  int episodes{-1};    ///< act: 0 for ever; -1: not given
+  std::string output;  ///< prefix of .csv and .json; empty to write none
+  int episodes{-1};    ///< act: 0 for no limit; -1 if not given
   int seed{1000};
   int ship{-1};
   double sim_timeout_s{20.0};
@@ -105,12 +105,13 @@ void TellEnded(std::size_t successes, std::size_t episodes) {
   std::printf("%zu of %zu episodes ended with every device delivered\n", successes, episodes);
 }
 
-// Values are of ship 0, so where each ship has a node of its own, that ship's alone tells them.
+// Values are those of ship 0. If each ship has its own node, only the node of ship 0 publishes
+// them.
 double ValuesPeriod_s(const PolicyParams& params) {
   return params.ship > 0 ? 0.0 : params.values_period_s;
 }
 
-// One ship's own agent, which knows what its ship does.
+// Runs the agent of one ship, which receives only that ship's observation.
 ExitCode ActAlone(const ros::NodeHandle& node, const PolicyParams& params,
                   const agents::SavedPolicy& saved) {
   AgentDriver driver(node, saved.encodings, {params.ship, params.sim_timeout_s, &stop_requested});

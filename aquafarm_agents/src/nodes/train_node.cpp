@@ -40,7 +40,7 @@ TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   aquafarm_sim::Params reader(node);
   int episodes = 0;
   int seed = 1;
-  double steps = 0.0;  // a parameter holds no whole number beyond 31 bits
+  double steps = 0.0;  // integer parameters are limited to 32 bits
   reader.Text("algorithm", params.run.algorithm);
   reader.Text("exploration", params.run.exploration);
   reader.Text("options", params.run.options);
@@ -111,7 +111,7 @@ TrainingStatus ToMsg(const agents::RunStatus& status, const agents::RunOptions& 
   return message;
 }
 
-/// Tells people: on a topic each time, on the console now and then.
+/// Reports the status: always on a topic, periodically on the console.
 class Herald {
  public:
   Herald(ros::NodeHandle& node, agents::RunOptions options)
@@ -139,7 +139,7 @@ class Herald {
 
   void End(const agents::RunReport& report) {
     Publish(ToMsg(report.status, options_, report.code));
-    ros::WallDuration(0.2).sleep();  // lets the last status leave before the node does
+    ros::WallDuration(0.2).sleep();  // lets the last status be sent before the node exits
   }
 
  private:
@@ -178,13 +178,13 @@ int End(ExitCode code, const std::string& summary) {
   return static_cast<int>(code);
 }
 
-/// name:=value as a shell takes it.
+/// name:=value, quoted for a shell.
 std::string Argument(const std::string& name, const std::string& value) {
   const bool is_plain = value.find_first_of(" '") == std::string::npos;
   return ' ' + name + ":=" + (is_plain ? value : '"' + value + '"');
 }
 
-/// What train.launch needs to be told so that the run may be gone on with; farms 0: unknown.
+/// Launch arguments that resume this run with train.launch. report.farms is 0 if unknown.
 std::string Arguments(const agents::RunReport& report, const agents::RunOptions& run) {
   const agents::RunOptions defaults;
   std::string text = Argument("scenario", run.run_dir + "/scenario.yaml");
@@ -201,7 +201,7 @@ std::string Arguments(const agents::RunReport& report, const agents::RunOptions&
   return text;
 }
 
-/// What people may want to do next.
+/// Suggested next commands.
 std::string Next(const agents::RunReport& report, const agents::RunOptions& run) {
   const char* const script = std::getenv("AQUAFARM_LAUNCHER");
   const auto launch = [script](const std::string& name) {
@@ -209,8 +209,8 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
                              : "roslaunch aquafarm_bringup " + name + ".launch";
   };
   if (report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost) {
-    if (report.farms == 0) return "";  // it never began
-    // The script takes from the run folder what it is not told; roslaunch cannot.
+    if (report.farms == 0) return "";  // it never started
+    // The script reads missing arguments from the run folder; roslaunch cannot.
     return "go on      " + launch("train") + (script != nullptr ? "" : Arguments(report, run)) +
            " resume:=true" + Argument("run_dir", run.run_dir) + "\n";
   }

@@ -23,7 +23,7 @@ using aquafarm::agents::Policy;
 
 constexpr double kCallLimit_s = 2.0;
 constexpr auto kPollPeriod = std::chrono::milliseconds(100);
-constexpr int kRest = 9;  // times as long as it worked
+constexpr int kRest = 9;  // multiple of the working time
 constexpr int kCopyRest = 49;
 constexpr int kNice = 10;
 
@@ -70,12 +70,12 @@ void ValuesPublisher::Offer(std::unique_ptr<Policy> policy) {
 }
 
 void ValuesPublisher::Run() {
-  // Of this thread alone, on Linux.
+  // On Linux this affects only this thread.
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
   std::unique_lock<std::mutex> lock(mutex_);
   while (!ending_) {
     if (policy_ == nullptr || !IsWatched() || Clock::now() < due_) {
-      changed_.wait_for(lock, kPollPeriod);  // nothing tells of subscribers
+      changed_.wait_for(lock, kPollPeriod);  // polls: new subscribers raise no event here
       continue;
     }
     const std::shared_ptr<Policy> policy = policy_;
@@ -83,7 +83,7 @@ void ValuesPublisher::Run() {
     const auto start = Clock::now();
     try {
       Look(*policy);
-    } catch (const std::exception& error) {  // the sim node is gone or has other farms now
+    } catch (const std::exception& error) {  // the sim node is gone or has other farms
       farms_.reset();
       ROS_DEBUG("no values: %s", error.what());
     }

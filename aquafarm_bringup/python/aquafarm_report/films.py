@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A policy's best, median and worst episode as films, and the map, by the suite's own programs."""
+"""Videos of a policy's best, median and worst episode, and the map, by the suite's programs."""
 import csv
 import json
 import pathlib
@@ -8,13 +8,13 @@ import subprocess
 import roslib.packages
 
 LIMIT_S = 300
-FRAMES = 240  # a film has no more than some so many
+FRAMES = 240  # approximate max number of frames of a video
 SIDE = ["--width", "640", "--height", "560"]
-SEED = 2000  # of episodes that neither training nor the benchmark plays
+SEED = 2000  # seed of episodes that neither training nor the benchmark plays
 
 
 class ReportError(Exception):
-    """Why there is no report, in one line."""
+    """Reason why a report cannot be made, in one line."""
 
 
 def program(package, name):
@@ -26,7 +26,7 @@ def program(package, name):
 
 
 def call(package, name, *arguments):
-    """Runs a program; its last line of errors is ours when it fails."""
+    """Runs a program; on failure raises ReportError with its last line of stderr."""
     try:
         subprocess.run([program(package, name), *map(str, arguments)], check=True, timeout=LIMIT_S,
                        capture_output=True, text=True)
@@ -38,7 +38,7 @@ def call(package, name, *arguments):
 
 
 def evaluate(run, folder, episodes):
-    """Plays a run's policy greedily: (summary, one dict an episode)."""
+    """Plays a run's policy greedily: (summary, one dict per episode)."""
     call("aquafarm_agents", "aquafarm_evaluate", run, "--episodes", episodes, "--seed", SEED,
          "--write", folder / "evaluation")
     with open(folder / "evaluation.csv", newline="") as file:
@@ -47,7 +47,7 @@ def evaluate(run, folder, episodes):
 
 
 def choose(rows):
-    """[(best, its row), (median, …), (worst, …)] by return; an episode is shown once."""
+    """[(best, its row), (median, …), (worst, …)] by return, without duplicate episodes."""
     ranked = sorted(rows, key=lambda row: (-float(row["return"]), int(row["episode"])))
     chosen = []
     for name, row in (("best", ranked[0]), ("median", ranked[len(ranked) // 2]),
@@ -58,7 +58,7 @@ def choose(rows):
 
 
 def bag_of(run, folder, episode):
-    """A bag of an episode of SEED."""
+    """Records an episode of SEED as a bag."""
     route, bag = folder / f"{episode}.json", folder / f"{episode}.bag"
     call("aquafarm_agents", "aquafarm_evaluate", run, "--episodes", 1, "--farms", 1, "--seed", SEED,
          "--route", route, "--route-episode", episode)
@@ -67,7 +67,7 @@ def bag_of(run, folder, episode):
 
 
 def draw_film(bag, steps):
-    """A film of a bag: mp4, or gif where there is no codec."""
+    """Renders a bag as a video: mp4, or gif if there is no codec."""
     every = max(1, -(-steps // FRAMES))
     for ending in (".mp4", ".gif"):
         path = pathlib.Path(bag).with_suffix(ending)
@@ -81,7 +81,7 @@ def draw_film(bag, steps):
 
 
 def draw_map(bag):
-    """The farm at an episode's start."""
+    """Renders the farm at an episode's start."""
     path = pathlib.Path(bag).with_suffix(".png")
     call("aquafarm_viz", "render", bag, "-o", path, "--step", 0, *SIDE)
     return path

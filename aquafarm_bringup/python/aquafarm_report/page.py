@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""HTML from its parts; nothing is loaded from anywhere."""
+"""Building blocks of a self-contained HTML page."""
 import base64
 import html
 import mimetypes
@@ -28,7 +28,7 @@ pre{overflow-x:auto;font-size:.8rem;line-height:1.35}
 
 
 def escape(value):
-    """Text as HTML shows it."""
+    """Text escaped for HTML."""
     return html.escape(str(value))
 
 
@@ -43,14 +43,14 @@ def section(title, *parts):
 
 
 def tiles(pairs):
-    """Large numbers with small names; pairs of (number, name)."""
+    """Large numbers with small labels, from pairs (number, label)."""
     return '<div class="tiles">' + "".join(
         f'<div class="tile"><b>{escape(value)}</b><span>{escape(name)}</span></div>'
         for value, name in pairs) + "</div>"
 
 
 def table(head, rows):
-    """Rows of cells; scrolls sideways where it is too wide."""
+    """Table of rows of cells; scrolls horizontally if it is too wide."""
     def line(tag, cells):
         return "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in cells) + "</tr>"
     return ('<div class="wide"><table>' + line("th", head) +
@@ -63,7 +63,7 @@ def picture(path, caption):
 
 
 def film(path, caption):
-    """A video, or a picture that moves."""
+    """A video element, or a picture for an animated gif."""
     if path.suffix == ".gif":
         return picture(path, caption)
     return (f'<figure><video controls muted playsinline preload="metadata" src="{embed(path)}">'

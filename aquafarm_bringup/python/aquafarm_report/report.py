@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a report of a run and of a benchmark holds."""
+"""Contents of the report of a run or of a benchmark."""
 import csv
 import io
 import json
@@ -9,7 +9,7 @@ import tempfile
 
 import matplotlib
 
-matplotlib.use("svg")  # no display is asked for
+matplotlib.use("svg")  # needs no display
 import numpy as np  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
 
@@ -17,12 +17,12 @@ from aquafarm_report import films, page  # noqa: E402
 from aquafarm_report.films import ReportError  # noqa: E402
 
 WINDOW = 50  # episodes of the moving mean, as in the paper's measures
-POINTS = 800  # of a curve, at most
+POINTS = 800  # max points of a curve
 EPISODES = 100
 
 
 def read_metrics(path):
-    """Columns of metrics.csv as arrays; empty when nothing was trained."""
+    """Columns of metrics.csv as arrays; empty if nothing was trained."""
     with open(path, newline="") as file:
         rows = list(csv.DictReader(file))
     return {name: np.array([float(row[name] or "nan") for row in rows])
@@ -53,7 +53,7 @@ def draw_curves(columns):
 
 
 def show_episodes(run, folder, episodes):
-    """Sections with the table, the map and the films of a run's policy, and its summary."""
+    """Summary of a run's policy, and sections with the table, the map and the videos."""
     summary, rows = films.evaluate(run, folder, episodes)
     shown, chart = [], None
     for name, row in films.choose(rows):
@@ -78,7 +78,7 @@ def show_episodes(run, folder, episodes):
 
 
 def report_run(run, folder, episodes):
-    """The page of a run folder."""
+    """Page of a run folder."""
     settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
     columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
     summary, sections = show_episodes(run, folder, episodes)
@@ -99,14 +99,14 @@ def report_run(run, folder, episodes):
 
 
 def read_table(path):
-    """Head and rows of table.md."""
+    """Header and rows of table.md."""
     rows = [[cell.strip().strip("*") for cell in line.strip().strip("|").split("|")]
             for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("|")]
     return [cell or "learner" for cell in rows[0]], rows[2:]
 
 
 def best_run(benchmark):
-    """The first run folder of the learner with the highest return; None when none is left."""
+    """First existing run folder, by decreasing return of the learner; None if there is none."""
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     for row in sorted(results["table"], key=lambda row: -row["return_per_episode"]):
         run = benchmark / "runs" / row["name"] / "seed_1"
@@ -116,7 +116,7 @@ def best_run(benchmark):
 
 
 def report_benchmark(benchmark, folder, episodes):
-    """The page of a benchmark's folder."""
+    """Page of a benchmark's folder."""
     settings = json.loads((benchmark / "benchmark.json").read_text(encoding="utf-8"))
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
     tiles = page.tiles([

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""V_π beside the sea (Fig. 10): heat maps on the same cells, with how alike they are."""
+"""V_π next to the sea (Fig. 10): heat maps on the same cells, with their similarity."""
 import json
 import os
 import pathlib
@@ -23,11 +23,11 @@ NOTE = ("Spearman's rho is of the ranks over the cells where both are known; nei
 
 
 class ValuesError(Exception):
-    """What is wrong with a file, in one line."""
+    """Reason why a file or a request is invalid, in one line."""
 
 
 def read(path):
-    """V_π [H, W] from the south, NaN where there is none, and the sea's layers by name."""
+    """Reads V_π [H, W] from the south, NaN where undefined, and the layers of the sea."""
     try:
         text = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
         values = np.array(text["values"], dtype=float)
@@ -41,7 +41,7 @@ def read(path):
 
 
 def filled(field, known):
-    """The field with the nearest known value where it is not known."""
+    """The field with unknown values replaced by the nearest known ones."""
     nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
     return field[tuple(nearest)]
 
@@ -52,9 +52,9 @@ def scaled(field, known):
 
 
 def compare(values, field):
-    """How alike two maps are over the cells where both are known.
+    """Similarity of two maps over the cells where both are known.
 
-    None stands for what cannot be said: too few cells, or a map without any difference.
+    Measures are None if undefined: too few cells, or a constant map.
     """
     known = np.isfinite(values) & np.isfinite(field)
     result = {"cells": int(known.sum()), "spearman_rho": None, "ssim": None, "ssim_turned": None}
@@ -77,7 +77,7 @@ def said(number):
 
 
 def draw(text, values, layers, results, path):
-    """The maps side by side, north up, land in grey."""
+    """Draws the maps side by side, north up, land in grey."""
     maps = [("$V_\\pi$", "points", values, "magma", "")]
     maps += [(name, units, field, "viridis",
               f"rho {said(result['spearman_rho'])}, SSIM {said(result['ssim'])} "
@@ -105,7 +105,7 @@ def draw(text, values, layers, results, path):
 
 
 def make(values_file, output):
-    """Writes <output>.png and <output>.json. @returns the lines that people read"""
+    """Writes <output>.png and <output>.json. @returns the summary as readable lines"""
     text, values, layers = read(values_file)
     results = [compare(values, field) for _, _, field in layers]
     draw(text, values, layers, results, f"{output}.png")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""V_π that was played out, as the topics that rviz, the picture and bags know."""
+"""Publishes V_π from rollouts on the topics used by rviz, the image node and bags."""
 import numpy as np
 import rosgraph
 import rospy
@@ -9,11 +9,14 @@ from sensor_msgs.msg import PointCloud2, PointField
 from aquafarm_report.values import ValuesError
 
 FRAME = "map"
-NO_ACTION = 255  # played values say what a start pays, not what to do there
+NO_ACTION = 255  # rollout values contain returns but no actions
 
 
 def to_grid(values, cell_size_m, stamp):
-    """0 the lowest … 100 the highest value, -1 none. values: [H, W] from the south, NaN: none."""
+    """Grid of values scaled from 0 (lowest) to 100 (highest), -1 where undefined.
+
+    values: [H, W] from the south, NaN where undefined.
+    """
     grid = OccupancyGrid()
     grid.header.frame_id = FRAME
     grid.header.stamp = grid.info.map_load_time = stamp
@@ -31,7 +34,7 @@ def to_grid(values, cell_size_m, stamp):
 
 
 def to_points(values, cell_size_m, stamp):
-    """The values as they are: x, y, z [m], value, action, one point a cell that has one."""
+    """Points with unscaled values: x, y, z [m], value, action; one per cell with a value."""
     rows, columns = np.nonzero(np.isfinite(values))
     points = np.zeros(len(rows), dtype=[("x", "<f4"), ("y", "<f4"), ("z", "<f4"),
                                         ("value", "<f4"), ("action", "u1")])
@@ -53,7 +56,7 @@ def to_points(values, cell_size_m, stamp):
 
 
 def require_master():
-    """Raises ValuesError when no ROS master answers; nothing is waited for then."""
+    """Raises ValuesError without waiting if there is no ROS master."""
     if not rosgraph.is_master_online():
         raise ValuesError("--publish: no ROS master answers at "
                           f"{rosgraph.rosenv.get_master_uri()}; start ./aquafarm sim first and "
@@ -61,10 +64,10 @@ def require_master():
 
 
 def publish(values, cell_size_m, namespace):
-    """Latches topics `values` and `values/points` in a namespace until Ctrl-C."""
+    """Publishes latched topics `values` and `values/points` in a namespace until Ctrl-C."""
     require_master()
     rospy.init_node("values", anonymous=True)
-    stamp = rospy.Time.from_sec(0)  # of no step: they are of whole episodes
+    stamp = rospy.Time.from_sec(0)  # not of a single step: values are of complete episodes
     name = f"{namespace.rstrip('/')}/values"
     grid = rospy.Publisher(name, OccupancyGrid, queue_size=1, latch=True)
     points = rospy.Publisher(f"{name}/points", PointCloud2, queue_size=1, latch=True)

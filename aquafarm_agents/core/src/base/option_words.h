@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What readers of learner options share: words of a closed set and whole numbers.
+/// Helpers for reading learner options: words of a closed set and whole numbers.
 
 #include <array>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace aquafarm::agents {
 
-/// Reads one of `words`, which stand in the order of Kind.
+/// Reads one of `words`, which are in the order of Kind.
 /// @throws InputError "loss: got 'l1', expected one of: huber, mse"
 template <typename Kind, std::size_t size>
 Kind ReadWord(OptionReader& reader, const std::string& key, Kind otherwise,
@@ -28,6 +28,7 @@ Kind ReadWord(OptionReader& reader, const std::string& key, Kind otherwise,
   throw InputError(key + ": got '" + text + "', expected one of: " + Join(names));
 }
 
+/// Reads a whole number in [min, max]; `value` is also the default.
 /// @throws InputError "batch: got 2.5, expected a whole number"
 template <typename Whole>
 void ReadWhole(OptionReader& reader, const std::string& key, double min, double max, Whole& value) {
@@ -42,7 +43,7 @@ inline void ReadNumber(OptionReader& reader, const std::string& key, double min,
   value = reader.Number(key, value, min, max);
 }
 
-/// auto, cpu or cuda. @throws InputError
+/// Reads the device: auto, cpu or cuda. @throws InputError
 inline std::string ReadDevice(OptionReader& reader) {
   constexpr std::array<std::string_view, 3> kDevices{"auto", "cpu", "cuda"};
   enum class Device : std::uint8_t { kAuto, kCpu, kCuda };

@@ -16,13 +16,13 @@
 namespace aquafarm::agents {
 namespace {
 
-// The new name itself must be on the disk before an older file may go.
+// The rename must be on disk before the caller removes older files.
 bool SyncFolderOf(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const int handle =
       open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (handle < 0) return false;
-  const bool synced = fsync(handle) == 0 || errno == EINVAL;  // not every file system can
+  const bool synced = fsync(handle) == 0 || errno == EINVAL;  // not every file system supports it
   close(handle);
   return synced;
 }

@@ -10,8 +10,8 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kMeanShare = 0.01F;  // of a step in the mean error of late
-constexpr float kMostPay = 5.0F;     // in mean pays, so that a shock cannot drown the farm's reward
+constexpr float kMeanShare = 0.01F;  // weight of a step in the moving average of the error
+constexpr float kMostPay = 5.0F;     // in mean intrinsic rewards: bounds outliers
 
 class CuriousLearner final : public Learner {
  public:
@@ -40,11 +40,11 @@ class CuriousLearner final : public Learner {
   const std::size_t agents_;
   const Schedule weight_;
   CuriosityModule module_;
-  Results paid_;                           // what the learner is shown
-  std::vector<float> seen_;                // [N, S, F] at the last step; empty: none
+  Results paid_;                           // results with the intrinsic reward added
+  std::vector<float> seen_;                // [N, S, F] at the last step; empty before it
   std::vector<std::uint8_t> taken_;        // [N, S] there
   std::vector<std::uint8_t> was_in_play_;  // [N, S] there
-  float mean_error_{};                     // of late; 0: none yet
+  float mean_error_{};                     // moving average; 0 before the first step
   std::uint64_t steps_{};                  // of all farms
   // Scratch: the transitions of this step.
   std::vector<float> from_;
@@ -116,7 +116,7 @@ void CuriousLearner::Load(const Checkpoint& checkpoint) {
   checkpoint.GetArray("curiosity.seen", taken.size() * features_, seen);
   checkpoint.GetArray("curiosity.in_play", taken.size(), in_play);
   checkpoint.GetArray("curiosity.mean", 1, mean);
-  // Trainings from before it was saved go on too.
+  // Older checkpoints do not contain this section.
   if (checkpoint.Has("curiosity.steps")) checkpoint.GetArray("curiosity.steps", 1, steps);
   learner_->Load(checkpoint);
   module_.Load(checkpoint);

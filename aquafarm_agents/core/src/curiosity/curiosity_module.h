@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The models behind curiosity.h, and what they learn from.
+/// The networks of curiosity.h and their training.
 
 #include <torch/torch.h>
 
@@ -13,7 +13,7 @@
 
 namespace aquafarm::agents {
 
-/// φ, inverse and forward model; two layers each.
+/// φ, the inverse model and the forward model, each with two layers.
 class CuriosityNetwork final : public torch::nn::Module {
  public:
   explicit CuriosityNetwork(std::int64_t features);
@@ -32,16 +32,16 @@ class CuriosityNetwork final : public torch::nn::Module {
   torch::nn::Sequential forward_{nullptr};
 };
 
-/// Learns to foresee transitions and says how little it foresaw each.
+/// Learns to predict transitions and returns the prediction error of each.
 class CuriosityModule {
  public:
   CuriosityModule(std::int64_t features, std::uint64_t seed);
 
   /// @param from, to [B, F], row-major
   /// @param actions [B]
-  /// @param farm_steps until now, which a failure names
-  /// @param errors [B] of each transition, before learning from them
-  /// @throws LearnerFailed when its loss or gradient is not finite
+  /// @param farm_steps so far; part of the failure message
+  /// @param errors [B] error of each transition, before learning from them
+  /// @throws LearnerFailed if the loss or gradient is not finite
   void Step(std::vector<float>& from, std::vector<float>& to, std::vector<std::int64_t>& actions,
             std::uint64_t farm_steps, std::vector<float>& errors);
 
@@ -56,7 +56,7 @@ class CuriosityModule {
   const std::uint64_t seed_;
   std::shared_ptr<CuriosityNetwork> network_;
   FlatAdam adam_;
-  std::vector<float> from_;  // transitions not yet learnt from
+  std::vector<float> from_;  // transitions waiting for the next update
   std::vector<float> to_;
   std::vector<std::int64_t> actions_;
 };

@@ -33,7 +33,7 @@ EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
 void AddUpTerms(const std::vector<float>& terms, std::vector<float>& rewards) {
   AQUAFARM_CHECK_EQ(terms.size(), rewards.size() * kRewardTermCount);
   for (std::size_t entry = 0; entry < rewards.size(); ++entry) {
-    // In their order, as RewardTerms::Total adds them.
+    // Same order of summation as RewardTerms::Total.
     const auto own = terms.begin() + static_cast<std::ptrdiff_t>(entry * kRewardTermCount);
     rewards[entry] = std::accumulate(own, own + kRewardTermCount, 0.0F);
   }
@@ -127,7 +127,7 @@ const Results& LocalEnvironment::Step(const std::vector<std::uint8_t>& actions) 
   return results_;
 }
 
-// A farm that is over starts its next episode in the next step, so a reason is always a new one.
+// A finished farm starts its next episode in the next step, so each reason marks a new result.
 void LocalEnvironment::CollectFinished() {
   results_.finished.clear();
   for (std::int32_t i = 0; i < spec_.farms; ++i) {

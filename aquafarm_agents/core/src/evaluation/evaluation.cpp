@@ -93,7 +93,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
       told = present;
       on_progress(over);
     }
-    if (environment.TakeRestarted()) {  // fresh farms; what is over stays so
+    if (environment.TakeRestarted()) {  // new farms; finished episodes are kept
       policy.Begin(evaluation.seed, environment.spec().farms);
       now = &environment.Reset(evaluation.seed);
     }

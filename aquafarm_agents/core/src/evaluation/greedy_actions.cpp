@@ -10,7 +10,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// Where ship 0 could be.
+// Cells that ship 0 can occupy.
 std::vector<Cell> FreeCells(const Farm& farm) {
   std::vector<Cell> cells;
   for (std::int32_t y = 0; y < farm.scenario().height; ++y) {
@@ -38,7 +38,7 @@ std::string WhyNoBestMoves(const Scenario& scenario) {
          std::to_string(kMaxCells);
 }
 
-// A farm for each of many cells, so that the policy is asked once for all of them.
+// One farm per cell, in batches, so that one call of the policy covers many cells.
 std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy& policy,
                                 const std::atomic<bool>* stop) {
   const auto scenario = std::make_shared<const Scenario>(farm.scenario());
@@ -47,7 +47,7 @@ std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy
   const std::string state = farm.Save();
   std::vector<BestMove> moves;
   std::vector<std::uint8_t> actions;
-  std::unique_ptr<FarmBatch> farms;  // both made again only for the last, smaller part
+  std::unique_ptr<FarmBatch> farms;  // made again only for the last, smaller batch
   std::unique_ptr<LocalEnvironment> environment;
   while (moves.size() < cells.size() && (stop == nullptr || !*stop)) {
     const std::size_t first = moves.size();

@@ -20,7 +20,7 @@ constexpr std::size_t kCellsAtOnce = 64;
 
 bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop; }
 
-// A copy of the farm with ship 0 in each cell where it can be, and those cells.
+// One copy of the farm per cell that ship 0 can occupy, and those cells.
 class Starts {
  public:
   Starts(const std::shared_ptr<const Scenario>& scenario, const Farm& farm)
@@ -31,7 +31,7 @@ class Starts {
       try {
         moved.PlaceShip(0, {i % width_, i / width_});
         cells_.push_back(i);
-      } catch (const InputError&) {  // blocked or taken
+      } catch (const InputError&) {  // blocked or occupied
       }
     }
   }
@@ -47,7 +47,7 @@ class Starts {
   std::vector<std::int32_t> cells_;
 };
 
-// Plays farms to the end of the episode that they are in. @returns its return, by farm
+// Plays all farms to the end of their current episodes. @returns the return of each farm
 std::vector<double> PlayOut(LocalEnvironment& environment, const std::string& farms, Policy& policy,
                             std::uint64_t seed, const std::atomic<bool>* stop) {
   const std::int32_t count = environment.spec().farms;
@@ -62,7 +62,7 @@ std::vector<double> PlayOut(LocalEnvironment& environment, const std::string& fa
     results = &environment.Step(actions);
     for (const EpisodeResult& ended : results->finished) {
       const auto farm = static_cast<std::size_t>(ended.farm);
-      if (over[farm]) continue;  // it has begun another episode meanwhile
+      if (over[farm]) continue;  // this is a later episode of the farm
       over[farm] = true;
       returns[farm] = static_cast<double>(ended.episode_return);
       --left;

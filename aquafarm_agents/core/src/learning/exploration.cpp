@@ -9,15 +9,15 @@
 namespace aquafarm::agents {
 namespace {
 
-// Below this a temperature is as good as greedy and 1/T stays finite.
+// At this temperature the choice is effectively greedy, and 1/T is still finite.
 constexpr double kMinTemperature = 1e-6;
 constexpr double kMaxTemperature = 1e6;
 
-// Rewards are of the order of 100: from near uniform down to near greedy.
+// Rewards are of the order of 100, so this decays from nearly uniform to nearly greedy.
 const Schedule kBoltzmannDefault{ScheduleKind::kExponential, 20.0, 0.5, 0.5};
 
-// As much as a step costs, and nothing in the second half, so that what is learnt in the end is the
-// farm's own reward.
+// Starts at the cost of a step. It is 0 in the second half, so that the final values are those of
+// the farm's own reward.
 const Schedule kCuriosityDefault{ScheduleKind::kLinear, 1.0, 0.0, 0.5};
 constexpr double kMaxCuriosity = 1e6;
 constexpr std::string_view kCuriosity = "icm";
@@ -116,7 +116,7 @@ std::uint8_t Explorer::ChooseBoltzmann(const float* values, ActionMask allowed, 
   std::uint8_t chosen = 0;
   for (std::uint8_t a = 0; a < kActionCount; ++a) {
     if (probabilities[a] <= 0.0) continue;
-    chosen = a;  // the last possible one when rounding leaves a rest
+    chosen = a;  // fallback if rounding leaves a remainder: the last allowed action
     left -= probabilities[a];
     if (left < 0.0) break;
   }

@@ -15,7 +15,7 @@ EnvironmentSpec SpecOfOne(EnvironmentSpec spec) {
   return spec;
 }
 
-// Keys of chance that no run of a neighbouring seed has.
+// Seeds of the agents' random streams, distinct from those of runs with nearby seeds.
 std::uint64_t SeedOf(std::uint64_t seed, std::size_t agent) {
   return seed ^ (static_cast<std::uint64_t>(agent) << 48U);
 }
@@ -39,7 +39,7 @@ Checkpoint PartOf(const Checkpoint& whole, std::size_t agent) {
   return part;
 }
 
-/// The share of one agent in what happened on all farms; its memory is reused.
+/// Extracts the results of one agent from those of all farms. Reuses its buffers.
 class Share {
  public:
   /// @param agents of one farm

@@ -15,7 +15,7 @@ SumTree::SumTree(std::size_t leaves) : leaves_(1) {
 void SumTree::Set(std::size_t leaf, float priority) {
   std::size_t node = leaves_ + leaf;
   nodes_[node] = priority;
-  // Sums are made anew, not adjusted, so that rounding does not pile up.
+  // Sums are recomputed instead of adjusted, so that rounding errors do not accumulate.
   for (node /= 2; node >= 1; node /= 2) nodes_[node] = nodes_[2 * node] + nodes_[2 * node + 1];
 }
 
@@ -59,7 +59,7 @@ void Replay<Scalar>::Add(const Results& results, const Scalar* observations, con
   std::copy_n(results.legal.data(), entries, legal_.data() + row);
   for (std::size_t i = 0; i < entries; ++i) {
     const std::size_t farm = i / static_cast<std::size_t>(options_.agents);
-    // An agent out of play is done, whatever its farm still does.
+    // An agent that is not in play is done, even if its farm's episode continues.
     constexpr auto kDone = static_cast<std::uint8_t>(EndReason::kAllRetrieved);
     reasons_[row + i] = results.in_play[i] != 0 ? results.reasons[farm] : kDone;
     started_[row + i] = results.started[farm];
@@ -81,7 +81,7 @@ Transition Replay<Scalar>::At(std::size_t age, std::size_t entry, std::size_t st
   transition.discount = 1.0F;
   for (std::size_t k = 1; k <= steps; ++k) {
     const std::size_t row = Row(age + k, entry);
-    if (k > 1 && started(row)) break;  // the episode was lost; its last known moment is the end
+    if (k > 1 && started(row)) break;  // the episode was lost: end at its last stored time step
     transition.reward += transition.discount * rewards_[row];
     transition.discount *= discount;
     transition.to = row;

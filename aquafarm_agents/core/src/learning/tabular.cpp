@@ -11,9 +11,9 @@
 namespace aquafarm::agents {
 namespace {
 
-// Stands for the last action of an agent that is out of play.
+// Marks agents that are not in play: they have no last action.
 constexpr auto kNoAction = std::numeric_limits<std::uint64_t>::max();
-constexpr float kLossShare = 0.01F;  // of one step in the moving average of the loss
+constexpr float kLossShare = 0.01F;  // weight of one step in the moving average of the loss
 
 std::size_t Entries(const EnvironmentSpec& spec) {
   return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);

@@ -18,7 +18,7 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kErrorShare = 0.01F;  // of a new mean square error in the moving average
+constexpr float kErrorShare = 0.01F;  // weight of a new mean squared error in the moving average
 constexpr std::uint32_t kActorStream = 0;
 constexpr std::uint32_t kBatchStream = 1;
 constexpr std::uint32_t kCriticStream = 2;
@@ -29,7 +29,7 @@ float Sum(const std::vector<float>& numbers) {
 }
 
 float Gumbel(RandomStream& chance) {
-  // Away from 0 and 1, whose logarithms are no numbers.
+  // Excludes 0 and 1, for which the result is infinite.
   const float unit = 0.999998F * chance.Unit() + 1e-6F;
   return -std::log(-std::log(unit));
 }
@@ -39,13 +39,13 @@ void MarkOne(std::uint8_t action, float mark, float* out) {
   out[action] = mark;
 }
 
-/// What the actors saw up to one moment of each of B farms: T steps, the last of them that moment.
+/// Observations of the actors of B farms in a window of T steps; the last is the sampled time step.
 struct Window {
   std::vector<float> observations;  // [T, B, S, F]
   std::vector<float> keeps;         // [T, B, S]
   std::vector<float> carry;         // [B, S, carry_size] before the first step
-  std::vector<float> forbidden;     // [B, S, kActionCount] by MarkForbidden, at the last
-  std::vector<float> present;       // [B, S] 1: in play at the last
+  std::vector<float> forbidden;     // [B, S, kActionCount] by MarkForbidden, at the last step
+  std::vector<float> present;       // [B, S] 1 if in play at the last step
 };
 
 class MaddpgLearner final : public Learner {
@@ -107,8 +107,8 @@ class MaddpgLearner final : public Learner {
   FlatParameters actor_target_;
   FlatParameters judge_target_;
   Explorer explorer_;
-  RandomStream chance_;  // of batches and their noise
-  RandomStream acting_;  // of what is tried
+  RandomStream chance_;  // for batches and their noise
+  RandomStream acting_;  // for exploration
   std::vector<float> carry_;
   Replay<float> replay_;
   MomentSampler<float> sampler_;
@@ -118,15 +118,15 @@ class MaddpgLearner final : public Learner {
   std::uint64_t updates_{};
   float loss_;
 
-  // The minibatch of B moments.
+  // The minibatch of B time steps.
   Window from_;
   Window to_;
-  std::vector<Moment> drawn_;         // [B]
-  std::vector<float> taken_;          // [B, S, kActionCount] one-hot; 0 for an agent that is done
-  std::vector<float> judged_;         // the same, but action 0 for an agent that is done
-  std::vector<float> rewards_;        // [B, S]
+  std::vector<Moment> drawn_;   // [B]
+  std::vector<float> taken_;    // [B, S, kActionCount] one-hot; zeros for an agent that is done
+  std::vector<float> judged_;   // [B, S, kActionCount] one-hot; action 0 for an agent that is done
+  std::vector<float> rewards_;  // [B, S]
   std::vector<float> discounts_;      // [B, S]
-  std::vector<float> weights_;        // [B, S] 0: an agent that was done before
+  std::vector<float> weights_;        // [B, S] 0 for an agent that was already done
   std::vector<float> noise_;          // [B, S, kActionCount]
   std::vector<float> agent_rewards_;  // scratch, [S]
 };
@@ -201,7 +201,7 @@ void MaddpgLearner::Step(const Results& results, double progress,
   replay_.SetActions(actions);
 }
 
-// The best of logits with Gumbel noise is a draw from their softmax.
+// The argmax of logits with Gumbel noise is a sample of their softmax.
 void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& actions) {
   const torch::NoGradGuard no_grad;
   explorer_.SetProgress(progress_);
@@ -217,8 +217,8 @@ void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& ac
   }
 }
 
-// A moment with a whole window before it, or its episode's start. The oldest moments of the replay
-// may have neither: the first one of the same farm that has stands for them.
+// Draws a time step whose complete window, or the start of its episode, is stored. The oldest time
+// steps of the replay may have neither; the first one of the same farm that has replaces them.
 Moment MaddpgLearner::DrawMoment(std::size_t i) {
   const Moment drawn = sampler_.Draw(chance_, i);
   for (std::size_t back = 0; back <= drawn.age; ++back) {
@@ -255,12 +255,13 @@ void MaddpgLearner::Draw() {
     }
     for (std::size_t agent = 0; agent < agents(); ++agent) {
       const std::size_t k = i * agents() + agent;
-      // A shared reward comes in as long as anybody is at work.
+      // With a team reward an agent receives rewards until all agents are done.
       const bool is_done =
           spec_.team_reward ? all_done : IsTerminated(replay_.reason(all.to + agent));
       rewards_[k] = agent_rewards_[agent] * scale;
       discounts_[k] = is_done ? 0.0F : all.discount;
-      // So the values of agents that are done, on which others' targets rest, are learnt too.
+      // With a team reward the values of agents that are done are trained as well, because the
+      // targets of the others depend on them.
       weights_[k] = spec_.team_reward ? 1.0F : from_.present[k];
     }
   }
@@ -268,7 +269,8 @@ void MaddpgLearner::Draw() {
   for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] *= importance[k / agents()];
 }
 
-// A moment is as surprising as those who learn from it found it in the mean. @param errors [B, S]
+// Sets the priority of a time step to the mean error of the agents that learn from it.
+// @param errors [B, S]
 void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor learnt = ToDevice(weights_, {options_.batch, spec_.agents}) > 0.0F;
   const torch::Tensor means =
@@ -279,8 +281,8 @@ void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
   }
 }
 
-// Near an episode's start the window is filled up with its first moment, after which the memory is
-// emptied.
+// Near an episode's start the window is padded with the first time step, and the recurrent state is
+// reset after the padding.
 void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Window& to) {
   std::size_t back = 0;
   while (back + 1 < window() && back < age && !replay_.started(replay_.Row(age - back, first))) {
@@ -353,12 +355,13 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
     const torch::Tensor forbidden = ToDevice(to_.forbidden, joint);
     const torch::Tensor logits = Logits(target_actors_, to_) + forbidden;
     const torch::Tensor present = ToDevice(to_.present, each);
-    const torch::Tensor best = logits.argmax(2) * present.to(torch::kLong);  // 0 for those done
+    const torch::Tensor best =
+        logits.argmax(2) * present.to(torch::kLong);  // 0 for agents that are done
     const torch::Tensor chosen = torch::one_hot(best, kActionCount).to(torch::kFloat);
     const torch::Tensor values = target_critic_.Forward(Observations(to_)[options_.window - 1],
                                                         chosen * present.unsqueeze(2));
     torch::Tensor next = (values * chosen).sum(2);
-    // Of an agent that is done, action 0 alone is ever fitted: it stands for none.
+    // For an agent that is done only the value of action 0 is trained; it represents "no action".
     if (options_.best_response) {
       next = torch::where(present > 0.0F, (values + forbidden).amax(2), next);
     }
@@ -376,7 +379,7 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
   return (torch::smooth_l1_loss(predicted, targets, at::Reduction::None) * weights).sum();
 }
 
-// The critic is linear in an agent's own action, so its slope there is its value of each action.
+// The critic is linear in an agent's own action, so its gradient is the vector of action values.
 void MaddpgLearner::UpdateActors(const torch::Tensor& observations, std::uint64_t position) {
   const std::vector<std::int64_t> joint{options_.batch, spec_.agents, kActionCount};
   torch::Tensor slope;

@@ -14,18 +14,20 @@
 
 namespace aquafarm::agents {
 
-/// The actors of all agents of a farm: one network each, or one for all.
+/// The actors of all agents of a farm: one network per agent, or one shared network.
 class ActorTeam final : public torch::nn::Module {
  public:
   ActorTeam(const EnvironmentSpec& spec, const MaddpgOptions& options);
 
-  /// Numbers of (h, c) that an agent carries; 0 when the actors have no memory.
+  /// Number of values of an agent's recurrent state (h, c); 0 if the actors are not recurrent.
   std::int64_t carry_size() const { return carry_size_; }
 
-  /// Logits at a window's last step, the memory moved on through it.
+  /// Logits at the last step of a window. Advances the recurrent state through the window.
   /// @param observations [T, B, S, F]
-  /// @param keeps [T, B, S] 0: the memory is emptied before that step
-  /// @param carry [B, S, carry_size] before the window; becomes that after it. Undefined: no memory
+  /// @param keeps [T, B, S] 0 resets the recurrent state before that step
+  /// @param carry [B, S, carry_size] recurrent state before the window; receives the state after
+  /// it.
+  ///        Undefined if the actors are not recurrent
   /// @returns [B, S, kActionCount]
   torch::Tensor Forward(const torch::Tensor& observations, const torch::Tensor& keeps,
                         torch::Tensor& carry);
@@ -39,13 +41,13 @@ class ActorTeam final : public torch::nn::Module {
   std::vector<std::shared_ptr<RecurrentNetwork>> recurrent_;
 };
 
-/// Each agent's Q of each of its actions, from all observations and the others' actions: one
-/// network that judges them all.
+/// Q of each action of each agent, given all observations and the other agents' actions. One
+/// network serves all agents.
 class JointCritic final : public torch::nn::Module {
  public:
   JointCritic(const EnvironmentSpec& spec, std::int64_t hidden);
   /// @param observations [B, S, F]
-  /// @param actions [B, S, kActionCount] one-hot, or 0 for an agent that is done
+  /// @param actions [B, S, kActionCount] one-hot, or zeros for an agent that is done
   /// @returns [B, S, kActionCount]
   torch::Tensor Forward(const torch::Tensor& observations, const torch::Tensor& actions);
 

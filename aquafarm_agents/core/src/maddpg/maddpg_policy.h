@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The actors of MADDPG at play, without their critic.
+/// Policies that use the actors of MADDPG, without the critic.
 
 #include <torch/torch.h>
 
@@ -16,16 +16,18 @@
 
 namespace aquafarm::agents {
 
-/// Empties the memory of farms whose episodes begin. @param carry what each agent carries between
-/// steps, on the host: [farms, size_of_farm], empty without memory
+/// Resets the recurrent state of farms whose episodes begin.
+/// @param carry recurrent state of each agent between steps, on the host: [farms, size_of_farm];
+///        empty if the actors are not recurrent
 void ClearStarted(const Results& results, std::size_t size_of_farm, std::vector<float>& carry);
 
-/// One step of all actors. @param carry as above; moved on
+/// Runs all actors for one step. @param carry as above; advanced by one step
 /// @returns logits [entries, kActionCount], on the CPU
 torch::Tensor StepActors(ActorTeam& actors, const Results& results, const EnvironmentSpec& spec,
                          std::vector<float>& carry, torch::Device device);
 
-/// Plays every actor's likeliest action. @throws InputError when the weights are another network's
+/// Makes a policy that plays the most likely action of every actor.
+/// @throws InputError if the weights belong to another network
 std::unique_ptr<Policy> MakeActorsPolicy(const EnvironmentSpec& spec, const MaddpgOptions& options,
                                          const std::vector<float>& weights);
 

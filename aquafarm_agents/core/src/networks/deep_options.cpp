@@ -20,7 +20,8 @@ DeepOptions Tuned(bool recurrent) {
   return options;
 }
 
-// §3.4.3 and Algorithm 2 print no more than this; numbers they leave open are the tuned ones.
+// Only the values printed in §3.4.3 and Algorithm 2. Values that they leave open are the tuned
+// ones.
 DeepOptions Paper(bool recurrent) {
   DeepOptions options = Tuned(recurrent);
   options.loss = LossKind::kMse;
@@ -33,7 +34,7 @@ DeepOptions Paper(bool recurrent) {
   return options;
 }
 
-// Algorithm 2 as printed replays single tuples, each with its own stored (h, c).
+// Algorithm 2 as printed replays single tuples, each with its stored (h, c).
 enum class Replayed : std::uint8_t { kSequences, kPaperTuple };
 constexpr std::array<std::string_view, 2> kReplayed{"sequences", "paper_tuple"};
 
@@ -52,12 +53,12 @@ void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
                      " burn_in=" + std::to_string(options.burn_in) +
                      ", expected 1 and 0, or replayed=sequences");
   }
-  // A return ends where its sequence does.
+  // An n-step return cannot extend beyond its sequence.
   if (options.n_step > options.sequence) {
     throw InputError("n_step: got " + std::to_string(options.n_step) +
                      ", expected at most sequence, which is " + std::to_string(options.sequence));
   }
-  // Beyond it, steps near an episode's beginning would never be learnt from.
+  // With a longer burn-in, steps near an episode's beginning would never be trained on.
   if (options.burn_in > 0 && options.burn_in >= options.sequence) {
     throw InputError("burn_in: got " + std::to_string(options.burn_in) +
                      ", expected less than sequence, which is " + std::to_string(options.sequence));

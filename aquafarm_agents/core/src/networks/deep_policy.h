@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What the deep learners and their policies do alike around a network: read observations, and
-/// compare a saved network with the farms it shall play on.
+/// Helpers shared by the deep learners and their policies: reading observations and checking a
+/// saved network against the farms of a run.
 
 #include <torch/torch.h>
 
@@ -19,7 +19,7 @@
 
 namespace aquafarm::agents {
 
-/// Where a saved policy plays: what learnt on CUDA need not find it again.
+/// Device for playing a saved policy: a policy trained on CUDA also plays without it.
 inline std::string PlayingDevice(const std::string& trained_on) {
   return trained_on == "cuda" ? "auto" : trained_on;
 }
@@ -28,13 +28,14 @@ inline std::size_t EntryCount(const EnvironmentSpec& spec) {
   return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
 }
 
-/// What learners may do now: all actions, or the legal ones.
+/// Mask of the allowed actions: all actions, or the legal ones.
 inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
   return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
 }
 
-/// The same, and where mask_blocked is set, of the moves only those into open water; all of them
-/// for a ship that has none around it. @param features of the ship, a row of Results::features
+/// Mask of the allowed actions. With mask_blocked it also excludes moves that do not lead into open
+/// water, unless no move does.
+/// @param features of the ship, a row of Results::features
 /// @tparam Options DeepOptions or MaddpgOptions
 template <typename Options>
 ActionMask Allowed(ActionMask legal, const float* features, const Options& options) {
@@ -48,34 +49,38 @@ ActionMask Allowed(ActionMask legal, const float* features, const Options& optio
   return (open & kMoveMask) != 0 ? open : allowed;
 }
 
-/// Planes have no such features, and DeepOptions refuses mask_blocked with them.
+/// Mask of the allowed actions for planes. DeepOptions rejects mask_blocked with planes, which lack
+/// the required features.
 inline ActionMask Allowed(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
   return Allowed(legal, options.mask_illegal);
 }
 
-/// Marks what must not be chosen: 0, or a number far below any value, and finite, so that nothing
-/// becomes NaN. @param out [kActionCount]
+/// Writes an additive mask: 0 for allowed actions, −1e9 for forbidden ones. The mask is finite, so
+/// that no NaN arises. @param out [kActionCount]
 inline void MarkForbidden(ActionMask allowed, float* out) {
   for (std::size_t a = 0; a < kActionCount; ++a) {
     out[a] = ((allowed >> a) & 1U) != 0 ? 0.0F : -1e9F;
   }
 }
 
-/// How much less than the best action that is not forbidden the taken one is worth: what advantage
-/// learning takes a share of off its target. @param values [..., kActionCount]
-/// @param forbidden likewise, by MarkForbidden @param actions [..., 1] @returns [...]
+/// Advantage gap max_a Q − Q(s, a) of the taken actions over the allowed ones, for advantage
+/// learning.
+/// @param values [..., kActionCount]
+/// @param forbidden [..., kActionCount] by MarkForbidden
+/// @param actions [..., 1]
+/// @returns [...]
 inline torch::Tensor Shortfall(const torch::Tensor& values, const torch::Tensor& forbidden,
                                const torch::Tensor& actions) {
   return (values + forbidden).amax(-1) - values.gather(-1, actions).squeeze(-1);
 }
 
-/// Farms that took a step; the others began an episode.
+/// Number of farms that took a step; the others began an episode.
 inline std::uint64_t FarmSteps(const Results& results) {
   return static_cast<std::uint64_t>(
       std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
 }
 
-/// How the network sees: float features, or bytes of planes (255 stands for 1).
+/// Observation traits of a network: float features, or bytes of planes (255 represents 1).
 template <typename Scalar>
 struct Sight;
 
@@ -106,18 +111,19 @@ struct Sight<std::uint8_t> {
   }
 };
 
-/// Numbers of one observation.
+/// Number of values of one observation.
 inline std::size_t ElementCount(const std::vector<std::int64_t>& shape) {
   return static_cast<std::size_t>(
       std::accumulate(shape.begin(), shape.end(), std::int64_t{1}, std::multiplies<>()));
 }
 
-/// {count, rest…}
+/// Shape {count, rest…}.
 inline std::vector<std::int64_t> WithCount(std::size_t count, std::vector<std::int64_t> rest) {
   rest.insert(rest.begin(), static_cast<std::int64_t>(count));
   return rest;
 }
 
+/// Checks that a policy fits farms of `spec`.
 /// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
 void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
 

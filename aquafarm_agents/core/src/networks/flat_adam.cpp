@@ -24,8 +24,8 @@ bool FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double grad
   return true;
 }
 
-// Made by the library at its first step; made here before, so that it can be saved and loaded at
-// any time.
+// The library creates the state at its first step. It is created here earlier, so that it can be
+// saved and loaded at any time.
 torch::optim::AdamParamState& FlatAdam::State() {
   auto& states = adam_.state();
 #if TORCH_VERSION_MAJOR >= 2

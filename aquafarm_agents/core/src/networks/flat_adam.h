@@ -10,16 +10,16 @@
 
 namespace aquafarm::agents {
 
-/// Adam (Kingma and Ba 2015) on all parameters of a module, as one tensor; it can be saved and
+/// Adam (Kingma and Ba 2015) on all parameters of a module as one tensor. It can be saved and
 /// loaded at any time, also before its first step.
 class FlatAdam {
  public:
   /// Moves the module's parameters to the device.
   FlatAdam(torch::nn::Module& module, torch::Device device);
 
-  /// Takes one step down the gradient of `loss`.
-  /// @param gradient_limit largest norm of the gradient; 0: none
-  /// @returns false when the gradient is not finite; the parameters are then as they were
+  /// Takes one optimizer step on `loss`.
+  /// @param gradient_limit max norm of the gradient; 0: no limit
+  /// @returns false if the gradient is not finite; the parameters are then unchanged
   [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double gradient_limit);
 
   FlatParameters& parameters() { return parameters_; }
@@ -27,7 +27,7 @@ class FlatAdam {
 
   /// Adds sections `<prefix>weights`, `<prefix>adam.mean`, `<prefix>adam.square`, `<prefix>adam`.
   void Save(Checkpoint& checkpoint, const std::string& prefix = "") const;
-  /// @throws InputError when they are missing or do not fit; it is then as it was
+  /// @throws InputError if sections are missing or do not fit; the state is then unchanged
   void Load(const Checkpoint& checkpoint, const std::string& prefix = "");
 
  private:

@@ -28,7 +28,7 @@ class MlpNetwork final : public QNetwork {
   Head head_;
 };
 
-// Two convolutions of 3 × 3, the second with stride 2, and a hidden layer.
+// Two 3 × 3 convolutions, the second with stride 2, and a hidden layer.
 class CnnNetwork final : public QNetwork {
  public:
   CnnNetwork(std::int64_t planes, std::int64_t height, std::int64_t width, std::int64_t hidden,
@@ -143,8 +143,8 @@ void DrawWeights(nn::Module& module, std::uint64_t seed, std::uint32_t stream) {
   std::int64_t fan_in = 1;
   for (auto& item : module.named_parameters()) {
     torch::Tensor& weights = item.value();
-    // A bias follows its weights and shares their fan-in; an LSTM's is its hidden size, which its
-    // recurrent weights, of that width, come to as well.
+    // A bias follows its weights and has the same fan-in. For an LSTM it is the hidden size, which
+    // is also the width of the recurrent weights before the biases.
     if (weights.dim() > 1) fan_in = weights.numel() / weights.size(0);
     const float limit = 1.0F / std::sqrt(static_cast<float>(fan_in));
     float* const values = weights.data_ptr<float>();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Action-value networks on libtorch (1.13 to 2.x). Included by few files: torch.h takes long to
-/// compile.
+/// Action-value networks on libtorch (1.13 to 2.x). Include this header sparingly: torch.h is slow
+/// to compile.
 
 #include <torch/torch.h>
 
@@ -17,7 +17,7 @@
 
 namespace aquafarm::agents {
 
-/// The device that a name stands for. @throws InputError when it is cuda and there is none
+/// Device of a name. @throws InputError if the name is cuda and there is no CUDA device
 torch::Device FindDevice(const std::string& name);
 
 /// Q(s, ·) from features: hidden - ReLU - hidden - ReLU - head.
@@ -39,11 +39,12 @@ class QNetwork : public torch::nn::Module {
   virtual torch::Tensor Forward(const torch::Tensor& input) = 0;
 };
 
-/// A network for farms of `spec`, with PyTorch's own initial weights drawn from (seed, kLearner).
+/// Makes a network for farms of `spec`. Initial weights follow PyTorch's distribution, drawn from
+/// (seed, kLearner).
 std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOptions& options,
                                       std::uint64_t seed);
 
-/// What is seen passes the memory and goes round it as well, which learns several times as fast:
+/// Recurrent network with a skip connection around the LSTM, which learns several times as fast:
 ///
 ///   Linear - ReLU --+-- LSTM --+-- Linear - ReLU - head
 ///                   +----------+
@@ -53,10 +54,10 @@ class RecurrentNetwork : public torch::nn::Module {
 
   using State = std::pair<torch::Tensor, torch::Tensor>;  ///< h, c, each [1, B, hidden]
   /// @param input [T, B, F]
-  /// @param state before the first step; becomes that after the last
+  /// @param state before the first step; receives the state after the last
   /// @returns [T, B, kActionCount]
   torch::Tensor Forward(const torch::Tensor& input, State& state);
-  /// Steps the state alone.
+  /// Advances only the state.
   void WarmUp(const torch::Tensor& input, State& state);
 
  private:
@@ -66,29 +67,29 @@ class RecurrentNetwork : public torch::nn::Module {
   Head head_{nullptr};
 };
 
-/// All parameters of a module as one tensor (and so their gradients), for optimisers, copies and
-/// files: each of these is then one operation.
+/// All parameters of a module, and their gradients, as one tensor. Optimizer steps, copies and file
+/// access are then one operation each.
 class FlatParameters {
  public:
-  /// Moves the module's parameters to the device and into one tensor; the module goes on using
+  /// Moves the module's parameters to the device and into one tensor. The module continues to use
   /// them.
   FlatParameters(torch::nn::Module& module, torch::Device device);
 
-  /// A leaf with a gradient; [size]
+  /// Leaf tensor with a gradient, [size].
   torch::Tensor& values() { return values_; }
   const torch::Tensor& values() const { return values_; }
   std::int64_t size() const { return values_.numel(); }
 
   std::vector<float> ToVector() const;
-  /// @throws InputError unless there are size() values
+  /// @throws InputError unless `values` has size() values
   void FromVector(const std::vector<float>& values);
 
  private:
   torch::Tensor values_;
 };
 
-/// Draws initial weights as PyTorch does, uniform in ±1/√fan_in, but from (seed, kLearner): the
-/// same on every version of the library.
+/// Draws initial weights as PyTorch does, uniform in ±1/√fan_in, but from (seed, kLearner). They
+/// are the same with every version of the library.
 void DrawWeights(torch::nn::Module& module, std::uint64_t seed, std::uint32_t stream);
 
 }  // namespace aquafarm::agents

@@ -27,7 +27,7 @@ MomentSampler<Scalar>::MomentSampler(const Replay<Scalar>& replay, const DeepOpt
 template <typename Scalar>
 void MomentSampler<Scalar>::Remember() {
   for (std::size_t entry = 0; entry < replay_.entries(); entry += group_) {
-    Mark(replay_.Row(replay_.size() - 1, entry), false);  // whatever was there is gone
+    Mark(replay_.Row(replay_.size() - 1, entry), false);  // clears the overwritten time step
     if (replay_.size() <= steps_) continue;
     const std::size_t age = replay_.size() - 1 - steps_;
     Mark(replay_.Row(age, entry), Begins(age, entry));
@@ -57,7 +57,7 @@ Moment MomentSampler<Scalar>::Draw(RandomStream& chance, std::size_t i) {
     return {replay_.Age(row), row % replay_.entries()};
   }
   const auto moments = static_cast<std::uint32_t>(replay_.size() - steps_);
-  for (;;) {  // most moments begin a transition, and IsReady has seen one
+  for (;;) {  // terminates: IsReady holds, and most time steps begin a transition
     const std::size_t age = chance.Below(moments);
     const std::size_t entry =
         group_ * chance.Below(static_cast<std::uint32_t>(replay_.entries() / group_));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Which moments of a replay a learner learns from: any alike, or by how wrong it was there (Schaul
-/// et al. 2016): P(i) ∝ |δ_i|^α, set right by weights (N P(i))^-β.
+/// Sampling of replayed transitions: uniform, or prioritised by the TD error (Schaul et al. 2016)
+/// with P(i) ∝ |δ_i|^α and importance weights (N P(i))^-β.
 
 #include <cstdint>
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace aquafarm::agents {
 
-/// A moment of one agent, or of a whole farm, in a replay.
+/// Index of a time step of one agent, or of a whole farm, in a replay.
 struct Moment {
   std::size_t age{};
   std::size_t entry{};
@@ -25,26 +25,26 @@ template <typename Scalar>
 class MomentSampler {
  public:
   /// @param replay must outlive the sampler
-  /// @param steps that a moment must have after it
-  /// @param group 1, or the agents of a farm, to draw moments of whole farms: their entry is that
-  /// of the farm's first agent, who may be done
+  /// @param steps number of later time steps that a drawn time step must have
+  /// @param group 1, or the number of agents of a farm to draw whole farms. The entry is then that
+  ///        of the farm's first agent, which may be done
   MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps,
                 std::size_t group = 1);
 
-  /// The replay got a moment more.
+  /// Updates the sampler after a time step was added to the replay.
   void Remember();
-  /// Whether there is a moment to draw; Draw must not be called otherwise.
+  /// True if a transition can be drawn. Precondition of Draw.
   bool IsReady() const;
-  /// Draws the i-th moment of a batch.
+  /// Draws the i-th transition of a batch.
   Moment Draw(RandomStream& chance, std::size_t i);
-  /// Weights of the batch just drawn, [batch], the largest 1. @param progress of the run: β rises
-  /// to 1 with it
+  /// Importance weights of the last batch, [batch], scaled to a max of 1.
+  /// @param progress of the run, [0, 1]; β rises to 1 with it
   const std::vector<float>& Weigh(double progress);
-  /// The error that was found at the row of a drawn moment; of no use when all are drawn alike.
+  /// Sets the TD error at the row of a drawn transition. No effect with uniform sampling.
   void SetError(std::size_t row, float error);
 
   void Save(Checkpoint& checkpoint) const;
-  /// The replay must have been loaded before. @throws InputError
+  /// Requires a loaded replay. @throws InputError
   void Load(const Checkpoint& checkpoint);
 
  private:
@@ -55,15 +55,15 @@ class MomentSampler {
   }
 
   const Replay<Scalar>& replay_;
-  const double priority_;    // α; 0: all alike
-  const double importance_;  // β at the start
+  const double priority_;    // α; 0: uniform
+  const double importance_;  // initial β
   const std::size_t steps_;
   const std::size_t group_;
   std::vector<std::uint8_t> beginnings_;  // by row: 1 where a transition begins
   std::size_t beginning_count_{};
-  std::unique_ptr<SumTree> priorities_;  // by row; null: all alike
+  std::unique_ptr<SumTree> priorities_;  // by row; null if uniform
   float largest_priority_{1.0F};
-  std::vector<float> weights_;  // P(i) until they are weighed
+  std::vector<float> weights_;  // P(i) until Weigh is called
 };
 
 extern template class MomentSampler<float>;

@@ -11,7 +11,7 @@ namespace {
 
 using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// out = W·in + b, with W and then b at {weights}, which goes on behind them.
+// out = W·in + b. `weights` points to W followed by b and is advanced past them.
 void Apply(const float*& weights, const Eigen::Ref<const Eigen::VectorXf>& in,
            Eigen::VectorXf& out) {
   const Eigen::Map<const Matrix> matrix(weights, out.size(), in.size());

@@ -9,19 +9,19 @@
 
 namespace aquafarm::agents {
 
-/// The feature network of networks.h for one observation, without libtorch: a call of that costs
-/// several times the arithmetic of one row, and more where many nodes share a processor's caches.
-/// With finite weights it differs from it by rounding alone.
+/// The feature network of networks.h for one observation, without libtorch. A libtorch call costs
+/// several times the arithmetic of one row, and more when many nodes share the processor's caches.
+/// With finite weights the results differ only by rounding.
 class RowNetwork {
  public:
-  /// Keeps the weights; copies of a policy have one each.
+  /// Takes ownership of the weights. Each copy of a policy has its own.
   /// @param features of an observation
-  /// @param weights as FlatParameters orders those of MakeNetwork with network=mlp
-  /// @throws LogicError when they are not as many as the network has
+  /// @param weights in the order of FlatParameters for MakeNetwork with network=mlp
+  /// @throws LogicError if their number differs from that of the network
   RowNetwork(std::size_t features, const DeepOptions& options, std::vector<float> weights);
-  /// The values of one observation.
+  /// Action values of one observation.
   /// @param features [features]
-  /// @returns Q of [kActionCount] actions, until the next call
+  /// @returns Q [kActionCount], valid until the next call
   const float* Forward(const float* features);
 
  private:

@@ -47,7 +47,7 @@ void SequenceBatch::Fill(std::size_t b, const Replay<float>& replay, const Momen
 void SequenceBatch::FillRun(std::size_t b, const Replay<float>& replay, const Moment& first,
                             const DeepOptions& options) {
   const auto [age, entry] = first;
-  std::size_t last = 0;  // moment at which the run ends
+  std::size_t last = 0;  // time step at which the run ends
   while (last < steps_ && replay.Begins(age + last, entry, 1)) ++last;
   for (std::size_t t = 0; t <= steps_; ++t) {
     const std::size_t row = replay.Row(age + std::min(t, last), entry);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What LSTM-DQN learns from at a time (R2D2: Kapturowski et al. 2019).
+/// Minibatch of sequences for LSTM-DQN (R2D2: Kapturowski et al. 2019).
 
 #include <cstdint>
 #include <vector>
@@ -12,20 +12,21 @@
 
 namespace aquafarm::agents {
 
-/// A minibatch of B runs of moments, time first. A run has burn_in moments that warm up the state,
-/// then the moments 0 … T whose first T are learnt from while their episode lasts.
+/// A minibatch of B runs of time steps, time-major. A run has burn_in time steps that warm up the
+/// state, followed by time steps 0 … T. The first T of these are trained on as far as their episode
+/// lasts.
 struct SequenceBatch {
   std::vector<float> warm_up;         ///< [burn_in, B, F]
   std::vector<float> observations;    ///< [T + 1, B, F]
-  std::vector<float> carry;           ///< [B, 2, hidden] before the first moment of warm_up
-  std::vector<float> warms_up;        ///< [B] 0: carry is the state before moment 0 already
+  std::vector<float> carry;           ///< [B, 2, hidden] before the first time step of warm_up
+  std::vector<float> warms_up;        ///< [B] 0 if carry is already the state before time step 0
   std::vector<std::int64_t> actions;  ///< [T, B]
   std::vector<float> rewards;         ///< [T, B] summed over the steps to `next`
-  std::vector<float> discounts;       ///< [T, B] of the value at `next`
-  std::vector<std::int64_t> next;     ///< [T, B] moment that the target looks at
+  std::vector<float> discounts;       ///< [T, B] factor of the value at `next`
+  std::vector<std::int64_t> next;     ///< [T, B] time step of the bootstrap value
   std::vector<float> forbidden;       ///< [T + 1, B, kActionCount]
-  std::vector<float> weights;         ///< [T, B] 1: learnt, 0: not
-  std::vector<std::size_t> rows;      ///< [T, B] of the replay
+  std::vector<float> weights;         ///< [T, B] 1 if trained on, else 0
+  std::vector<std::size_t> rows;      ///< [T, B] rows of the replay
 
   /// @param features F
   /// @param carry_size 2 · hidden
@@ -33,11 +34,10 @@ struct SequenceBatch {
 
   std::size_t size() const { return warms_up.size(); }
 
-  /// Makes the moment the first that run b learns from, or the nearest before it whose state is
-  /// known: the state is warmed up from burn_in moments back, with the state stored there. A run
-  /// never crosses an episode: near its beginning it starts there, with the empty state that is
-  /// exact. Where the ring has dropped what is before, the state stored at its oldest moment has
-  /// to do.
+  /// Fills run b, which trains from `moment` on. The state is warmed up over the burn_in time steps
+  /// before it, from the state stored at the first of them. A run never crosses an episode start:
+  /// near it the run begins at the first time step of the episode, whose state is exactly zero.
+  /// Near the end of the ring the run begins at the oldest stored time step, with its stored state.
   void Fill(std::size_t b, const Replay<float>& replay, const Moment& moment,
             const DeepOptions& options);
 

@@ -9,7 +9,7 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kErrorShare = 0.01F;  // of a new mean square error in the moving average
+constexpr float kErrorShare = 0.01F;  // weight of a new mean squared error in the moving average
 constexpr std::uint64_t kUpdatesPerLook = 8;
 constexpr const char* kAverage = "average_weights";
 
@@ -61,7 +61,7 @@ void ValueOptimizer::Update(const torch::Tensor& predicted, const torch::Tensor&
   }
   ++updates_;
   const torch::NoGradGuard no_grad;
-  if (average_) {  // of all weights alike, until those of late count for more
+  if (average_) {  // arithmetic mean at first, then an exponential moving average
     const double share = std::max(options_.average_rate, 1.0 / static_cast<double>(updates_));
     average_->values().lerp_(online().values(), share);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What DQN and LSTM-DQN share: their networks, the optimiser, and when to update.
+/// Parts shared by DQN and LSTM-DQN: the networks, the optimizer and the update schedule.
 
 #include <torch/torch.h>
 
@@ -19,38 +19,38 @@
 
 namespace aquafarm::agents {
 
-/// Parameters to act by in a learner's own checkpoint, or in that of its policy alone.
+/// Parameters of the acting network, from the checkpoint of a learner or of a policy.
 std::vector<float> ActingWeights(const Checkpoint& checkpoint);
 
-/// Where a minibatch came from, so that a bad one can be drawn again.
+/// Origin of a minibatch in the random stream, so that a faulty one can be reproduced.
 struct BatchOrigin {
-  std::uint64_t seed{};      ///< of the learner's stream of chance
-  std::uint64_t position{};  ///< in it before the first draw
+  std::uint64_t seed{};      ///< seed of the learner's random stream
+  std::uint64_t position{};  ///< position in the stream before the first draw
 };
 
 class ValueOptimizer {
  public:
-  /// All modules have the same parameters; the others begin as copies of `online`.
-  /// @param acting a module of its own when options.average_rate is set, else unused
+  /// All modules have the same architecture. `target` and `acting` start as copies of `online`.
+  /// @param acting a separate module if options.average_rate is set, else unused
   ValueOptimizer(const DeepOptions& options, torch::nn::Module& online, torch::nn::Module& target,
                  torch::nn::Module& acting, torch::Device device);
 
-  /// Farm steps were taken; sets the learning rate.
+  /// Counts farm steps and sets the learning rate.
   void Count(std::uint64_t farm_steps, double progress);
-  /// Takes one update from what is due. @returns false when none is
+  /// Consumes one due update. @returns false if no update is due
   bool TakeDue();
 
-  /// Mean loss of predictions [n] against targets [n], weighted [n] (summing to what `weights`
-  /// sums to), then one step of Adam, then the target follows.
-  /// @throws LearnerFailed when the loss or its gradient is not finite; the weights are then as
-  /// they were
+  /// Computes the weighted mean loss of predictions [n] against targets [n] with weights [n], takes
+  /// one step of Adam and updates the target network.
+  /// @throws LearnerFailed if the loss or its gradient is not finite; the parameters are then
+  ///         unchanged
   void Update(const torch::Tensor& predicted, const torch::Tensor& targets,
               const torch::Tensor& weights, const BatchOrigin& origin);
 
-  /// Its loss is the mean square error, weighted as the updates are, in squared units of reward,
-  /// whatever loss is minimised and however rewards are scaled (Fig. 12).
+  /// Statistics of the learner. The loss is the mean squared TD error with the weights of the
+  /// updates, in squared units of the unscaled reward, for every loss function (Fig. 12).
   LearnerStatus status(double exploration) const;
-  /// What agents act by: the parameters learnt, or their running average.
+  /// Parameters by which agents act: the online parameters, or their moving average.
   const FlatParameters& acting() const { return average_ ? *average_ : online(); }
   std::uint64_t updates() const { return updates_; }
 

@@ -41,7 +41,7 @@ std::string Duration(double seconds) {
   return text;
 }
 
-/// One training; its members are what the steps of Train share.
+/// One training; its members are the state shared by the steps of Train.
 class Run {
  public:
   Run(RunOptions options, const std::function<void(const RunStatus&)>& on_status,
@@ -108,7 +108,8 @@ void Run::All(const MakeEnvironment& make_environment) {
   if (report_.code == ExitCode::kOk) report_.status.message.clear();
 }
 
-// Fig. 6. The farms must be asked who decides before it is known which encodings are read.
+// Fig. 6. A first environment provides the spec for the choice. The observation types depend on the
+// chosen algorithm.
 void Run::Choose(const MakeEnvironment& make_environment) {
   const Choice choice = ChooseAlgorithm(make_environment(0)->spec());
   options_.algorithm = report_.status.algorithm = choice.algorithm;
@@ -116,7 +117,7 @@ void Run::Choose(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
 }
 
-// A resumed run goes on to its old limits unless it is given others.
+// A resumed run keeps its old limits unless new ones are given.
 void Run::TakeOverLimits(const RunFolder& folder) {
   if (options_.episodes != 0 || options_.steps != 0) return;
   const std::string path = folder.path() + "/run.json";
@@ -131,7 +132,7 @@ void Run::TakeOverLimits(const RunFolder& folder) {
   }
 }
 
-// The newest checkpoint; when that is damaged, the one before it.
+// Resumes from the newest checkpoint, or from the one before it if the newest is damaged.
 bool Run::Resume(Trainer& trainer, const RunFolder& folder) {
   std::string first_damage;
   for (const std::string& path : folder.Checkpoints()) {
@@ -295,7 +296,7 @@ void CheckAlgorithm(const RunOptions& options) {
                                  "evaluate policy:=") +
                      options.algorithm);
   }
-  algorithm.encodings(LearnerOptionsOf(options));  // refuses wrong ones
+  algorithm.encodings(LearnerOptionsOf(options));  // throws on wrong options
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ SavedPolicy FindPolicy(const std::string& where) {
 }
 
 std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSpec& spec) {
-  const std::string& version = saved.checkpoint.version;  // of those that do not learn: none
+  const std::string& version = saved.checkpoint.version;  // empty for policies that do not learn
   if (!version.empty() && version != spec.version) {
     throw InputError(saved.path + ": was trained by aquafarm " + version + ", expected " +
                      spec.version +

@@ -64,7 +64,7 @@ void Trainer::Resume(const Checkpoint& checkpoint, const std::string& path) {
       metrics_ = std::make_unique<MetricsFile>(folder_->metrics_path(),
                                                state.at("metrics_bytes").get<std::uint64_t>());
     }
-    // Without them the farms were lost when it was saved.
+    // The section is missing if the farms were lost when the checkpoint was saved.
     if (checkpoint.Has("environment")) {
       results_ = &environment_.Load(checkpoint.Section("environment"));
     }
@@ -81,7 +81,7 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
   try {
     Train(stop, on_progress);
     if (!IsDone()) end = TrainingEnd::kInterrupted;
-    Save(true);  // flushes the metrics as well
+    Save(true);  // also flushes the metrics
   } catch (const EnvironmentLost& error) {
     message_ = error.what();
     end = TrainingEnd::kLost;
@@ -91,7 +91,7 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
   } catch (const LearnerFailed& error) {
     message_ = error.what();
     end = TrainingEnd::kDiverged;
-  } catch (const InputError& error) {  // the farms came back as others
+  } catch (const InputError& error) {  // the farms came back with another scenario
     message_ = error.what();
     end = TrainingEnd::kLost;
   }
@@ -100,7 +100,7 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
   } catch (const StorageError& error) {
     message_ += std::string("; ") + error.what();
   }
-  // Ctrl-C stops the farms as well when both run in one launch.
+  // In a shared launch Ctrl-C also stops the farms.
   if (end == TrainingEnd::kLost && stop != nullptr && *stop) end = TrainingEnd::kInterrupted;
   Report(on_progress);
   return end;
@@ -155,7 +155,7 @@ void Trainer::CountEpisode(const EpisodeResult& result) {
   successes_[slot] = result.Success() ? 1 : 0;
   ++progress_.episodes;
   const auto farms = static_cast<std::uint64_t>(environment_.spec().farms);
-  next_episode_ = std::max(next_episode_, result.episode + farms + 1);  // its farm's next
+  next_episode_ = std::max(next_episode_, result.episode + farms + 1);  // next episode of this farm
   progress_.last_return = result.episode_return;
   if (progress_.episodes >= returns_.size()) {
     float sum = 0.0F;

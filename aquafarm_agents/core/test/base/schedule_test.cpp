@@ -31,7 +31,7 @@ TEST(Schedule, ExponentialHalvesInEqualTimes) {
 TEST(Schedule, HarmonicFallsAsOneOverTheTime) {
   const Schedule schedule = ParseSchedule("harmonic:8:2:0.6", "rate", 0, 10);
   EXPECT_DOUBLE_EQ(schedule.At(0.0), 8.0);
-  EXPECT_DOUBLE_EQ(schedule.At(0.2), 4.0);  // its inverse grows from 1/8 to 1/2 in equal parts
+  EXPECT_DOUBLE_EQ(schedule.At(0.2), 4.0);  // the inverse grows linearly from 1/8 to 1/2
   EXPECT_DOUBLE_EQ(schedule.At(0.4), 8.0 / 3.0);
   EXPECT_DOUBLE_EQ(schedule.At(0.6), 2.0);
   EXPECT_DOUBLE_EQ(schedule.At(1.0), 2.0);

@@ -9,7 +9,7 @@
 namespace aquafarm::agents::test {
 namespace {
 
-/// Action 0 moves the first feature to 1, action 1 to −1; the others are as they were.
+/// Action 0 sets the first feature to 1, action 1 to −1; the other features are unchanged.
 struct Transitions {
   std::vector<float> from;
   std::vector<float> to;
@@ -41,7 +41,7 @@ TEST(Curiosity, WhatIsWellKnownSurprisesLessThanWhatIsNew) {
   RandomStream chance({4, 0, Purpose::kLearner, 0});
   float known = 0.0F;
   for (int i = 0; i < 1500; ++i) known = MeanError(module, Draw(chance, 16, 0.0F));
-  const float fresh = MeanError(module, Draw(chance, 16, 3.0F));  // a place never seen
+  const float fresh = MeanError(module, Draw(chance, 16, 3.0F));  // unseen features
   EXPECT_GT(known, 0.0F);
   EXPECT_GT(fresh, 20.0F * known);
 }
@@ -60,7 +60,7 @@ TEST(Curiosity, TheForwardModelDoesNotTeachWhatIsSeen) {
   }
 }
 
-/// Records what it is paid and always moves north.
+/// Records its rewards and always moves north.
 class Purse final : public Learner {
  public:
   explicit Purse(std::vector<float>& rewards) : rewards_(rewards) {}
@@ -105,7 +105,7 @@ TEST(Curiosity, PaysForTransitionsAloneAndNothingOnceItsWeightIsGone) {
     }
     results = &environment.Step(actions);
   }
-  EXPECT_GT(starts, 3);  // beyond the first
+  EXPECT_GT(starts, 3);  // in addition to the first
 }
 
 TEST(Curiosity, ALossThatIsNoNumberNamesTheStepAndTheSeed) {

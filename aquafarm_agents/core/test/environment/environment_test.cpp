@@ -47,7 +47,7 @@ TEST(LocalEnvironment, GivesOnlyWhatWasAskedFor) {
             2U * static_cast<std::size_t>(environment.spec().feature_count));
 }
 
-// The same farm with each reward kept to its agent is the oracle.
+// The oracle is the same farm with individual rewards.
 TEST(LocalEnvironment, TellsWhoseTheTeamsRewardIs) {
   Scenario team = aquafarm::test::CrowdedScenario(2);
   team.rewards.sharing = RewardSharing::kTeam;

@@ -11,7 +11,7 @@
 namespace aquafarm::agents::test {
 namespace {
 
-/// North until the device, back south with it: solves the tiny farm in six steps.
+/// Moves north to the device and returns it south: solves the tiny farm in six steps.
 class Scripted final : public Policy {
  public:
   std::uint8_t encodings() const override { return 0; }
@@ -50,7 +50,7 @@ TEST(Evaluate, MeasuresWhatHappened) {
   ASSERT_EQ(evaluation.episodes.size(), 10U);
   EXPECT_EQ(evaluation.success_rate, 1.0);
   EXPECT_EQ(evaluation.mean_steps, 6.0);
-  // Four steps at −1, pickup 20, drop-off 20 and the device's 80.
+  // Four steps at −1, pickup 20, drop-off 20 and the device's value 80.
   EXPECT_NEAR(evaluation.mean_return, 116.0, 1e-4);
   EXPECT_NEAR(evaluation.return_per_step, 116.0 / 6.0, 1e-4);
   EXPECT_EQ(evaluation.mean_delivered_health, 1.0);

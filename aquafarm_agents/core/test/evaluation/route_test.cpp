@@ -18,7 +18,7 @@ std::unique_ptr<Policy> Plan(const EnvironmentSpec& spec) {
   return std::make_unique<PlannerPolicy>(spec, Foresight::kClairvoyant);
 }
 
-// The device is two cells north of the port: fetched and brought home in six steps.
+// The device is two cells north of the port: pickup and delivery take six steps.
 TEST(Route, IsTheEpisodeAndTheBestMoveOfEveryFreeCell) {
   const Route route = TraceRoute(TinyFarm(), kStatesBit, Plan, 3, 0);
   ASSERT_EQ(route.steps.size(), 7U);
@@ -28,7 +28,7 @@ TEST(Route, IsTheEpisodeAndTheBestMoveOfEveryFreeCell) {
   EXPECT_EQ(route.steps.back().cell, (Cell{2, 0}));
   EXPECT_EQ(route.steps.back().delivered, 1);
   EXPECT_TRUE(route.result.Success());
-  // 25 cells less four of the island and a rock.
+  // 25 cells minus four island cells and a rock.
   ASSERT_EQ(route.at_start.size(), 20U);
   ASSERT_EQ(route.after_pickup.size(), 20U);
   const auto of = [](const std::vector<BestMove>& moves, Cell cell) {
@@ -63,7 +63,7 @@ TEST(BestMoves, OfATableCarryItsValues) {
     }
     values.insert(move.value);
   }
-  EXPECT_EQ(values.size(), 20U);  // each cell is a state of its own
+  EXPECT_EQ(values.size(), 20U);  // each cell is a distinct state
 }
 
 TEST(BestMoves, OfAPlannerHaveNoValuesAndMayBeStopped) {

@@ -99,7 +99,7 @@ TEST_F(CheckpointFile, AnUnwritablePlaceIsSaid) {
       "cannot be written: No such file or directory");
 }
 
-// A file size limit stands for a full disk.
+// A file size limit simulates a full disk.
 TEST_F(CheckpointFile, AFullDiskKeepsTheLastGoodOne) {
   const std::string path = folder_ + "/a.ckpt";
   WriteCheckpoint(path, Example());

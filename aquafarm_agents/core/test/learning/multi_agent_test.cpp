@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Learners of several agents: each solves a tiny farm of two ships, agents that are done learn no
-// more, and what is saved goes on bit for bit.
+// Multi-agent learners: each solves a tiny farm of two ships, agents that are done stop learning,
+// and restored learners continue bit-identically.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr const char* kSmallRecurrent =
     "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=4 "
     "burn_in=2 learning_rate=linear:0.003:0.0001:1";
 
-/// Two ships at two ports, two devices, one reward.
+/// Two ships at two ports, two devices, team reward.
 Scenario TwoShips() {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.ships.count = 2;
@@ -36,7 +36,7 @@ Scenario TwoShips() {
   return scenario;
 }
 
-/// Two devices that drive themselves, and a ship that fetches a third.
+/// Two self-propelled devices, and a ship that picks up a third device.
 Scenario SmartDevices() {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.devices.sites.push_back({{4, 1}, DeviceKind::kMonitoring, 70.0F, true});
@@ -74,7 +74,8 @@ TEST(TwoShips, AreLedHomeByLearnersOfValuesThatRemember) {
   }
 }
 
-// The settings that ship but for size and longer exploration: a run is too short for a tenth of it.
+// The shipped settings except for the size and a longer exploration: a tenth of such a short run is
+// not enough.
 const std::string kActors =
     "start=500 replay=20000 exploration=epsilon_greedy:linear:1:0.05:0.5 hidden=";
 
@@ -92,8 +93,8 @@ TEST(TwoShips, AreLedHomeByActorsThatRemember) {
       0.98);
 }
 
-// As Lowe et al. print it, but for the critic, which is one network for all: targets by the own
-// target actor, moments drawn alike, an actor's network each.
+// MADDPG as printed by Lowe et al., except that all agents share one critic: targets by the own
+// target actor, uniform replay, one network per actor.
 TEST(TwoShips, AreLedHomeByActorsAsPrinted) {
   constexpr const char* kPrinted =
       "hidden=32 start=500 replay=20000 actor_rate=0.001 logit_penalty=0.01 best_response=false "
@@ -101,7 +102,7 @@ TEST(TwoShips, AreLedHomeByActorsAsPrinted) {
   EXPECT_GE(SuccessAfter("maddpg", kPrinted, 40000, TwoShips()), 0.98);
 }
 
-// A replay that is full of one episode has moments without a window before them.
+// In a replay filled by one episode the oldest time steps have no complete window.
 TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
   Scenario scenario = TwoShips();
   scenario.step_limit = 5000;
@@ -147,7 +148,7 @@ TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {
   EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, SmartDevices()), 0.98);
 }
 
-// Those that are home early are done; what the others are worth must not rest on them.
+// Agents that are delivered early are done. The values of the others must not depend on them.
 TEST(SmartDevices, AreLedHomeByActorsWithOwnRewardsOrTheTeams) {
   EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, SmartDevices()), 0.98);
   Scenario team = SmartDevices();
@@ -201,7 +202,7 @@ TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
   const Transition last = replay.At(0, 1, 3, 0.5F);
   EXPECT_FLOAT_EQ(last.reward, 2.0F + 0.5F * 2.0F);
   EXPECT_EQ(last.discount, 0.0F);
-  // For the team it goes on.
+  // For the team the episode continues.
   float rewards[2];
   const JointTransition all = replay.JointAt(0, 0, 3, 0.5F, rewards);
   EXPECT_FLOAT_EQ(rewards[0], 1.0F * 1.75F);
@@ -297,7 +298,7 @@ void ExpectTheOwnShareIsEnough(const std::string& algorithm, const std::string& 
   }
 }
 
-// As the node of a ship does, which knows its own share alone.
+// A ship's own node has only the observations of that ship.
 TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
   ExpectTheOwnShareIsEnough(GetParam(), "hidden=8");
   if (GetParam() != "maddpg") return;
@@ -306,7 +307,7 @@ TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
   ExpectTheOwnShareIsEnough("maddpg", "hidden=8 shared=false recurrent=true");
 }
 
-// The weights are the same on every device. On a machine with CUDA this shows less.
+// The weights are the same on every device. On a machine with CUDA this test is weaker.
 TEST_P(Saved, PoliciesTrainedOnCudaPlayWhereThereIsNone) {
   const Algorithm& entry = FindAlgorithm(GetParam());
   LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});

@@ -8,13 +8,13 @@
 namespace aquafarm::agents::test {
 namespace {
 
-// Two farms of one agent; the observation of farm f at moment t is {t, f}.
+// Two farms with one agent each. The observation of farm f at time step t is {t, f}.
 class TwoFarms {
  public:
   explicit TwoFarms(std::size_t moments, std::size_t carry = 0)
       : replay_({moments * 2, 2, 1, 2, carry}) {}
 
-  /// @param reasons of the two farms at this moment
+  /// @param first, second end reasons of the two farms at this time step
   void Add(EndReason first, EndReason second, bool started = false) {
     Results results;
     const auto t = static_cast<float>(moment_);
@@ -90,7 +90,7 @@ TEST(Replay, NothingBeginsAtAnEpisodesLastMomentOrWithoutASuccessor) {
   EXPECT_FALSE(replay.Begins(2, 1, 1)) << "the newest";
 }
 
-// The farms were gone and are back with new episodes: what was done last led nowhere.
+// The farms were lost and came back with new episodes: the last action has no known outcome.
 TEST(Replay, ALostEpisodeEndsAtItsLastKnownMoment) {
   TwoFarms farms(10);
   for (int t = 0; t < 3; ++t) farms.Add(kNot, kNot);

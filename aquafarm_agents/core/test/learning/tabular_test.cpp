@@ -11,7 +11,7 @@
 namespace aquafarm::agents::test {
 namespace {
 
-/// A chain of three states, told by hand.
+/// A chain of three states with hand-made results.
 struct Chain {
   EnvironmentSpec spec;
   Results results;
@@ -81,7 +81,7 @@ TEST(Tabular, TheStartOfAnEpisodeIsNoTransition) {
   EXPECT_EQ(learner.table().values, before);
 }
 
-/// Eq. 12 and 14 as they are printed, entry by entry.
+/// Literal implementation of Eq. 12 and 14, one entry at a time.
 struct Oracle {
   std::vector<float> q;
   float alpha;

@@ -65,7 +65,7 @@ TEST(Networks, OneRowAloneHasTheValuesOfLibtorch) {
   for (const bool dueling : {false, true}) {
     DeepOptions options;
     options.network = NetworkKind::kMlp;
-    options.hidden = 11;  // no multiple of a vector's width
+    options.hidden = 11;  // not a multiple of the SIMD width
     options.dueling = dueling;
     const auto network = MakeNetwork(spec, options, 3);
     const std::vector<float> weights = FlatParameters(*network, torch::kCPU).ToVector();
@@ -99,8 +99,8 @@ TEST(Networks, GradientsOfEveryKindAreDifferences) {
   }
 }
 
-// An LSTM by its equations (Hochreiter and Schmidhuber 1997, with forget gates; PyTorch's order of
-// gates i, f, g, o), one number at a time, between the layers around it.
+// Scalar implementation of the LSTM equations (Hochreiter and Schmidhuber 1997, with forget gates;
+// gates in PyTorch's order i, f, g, o), with the layers before and after the LSTM.
 std::vector<double> RecurrentByHand(const std::vector<float>& weights,
                                     const std::vector<std::vector<float>>& input,
                                     std::size_t hidden) {
@@ -203,7 +203,7 @@ TEST(RecurrentNetwork, GradientsAreDifferences) {
   });
 }
 
-// As `wave` of references/networks.py.
+// Same values as `wave` of references/networks.py.
 torch::Tensor Wave(std::vector<std::int64_t> shape, double step) {
   torch::Tensor tensor = torch::empty(shape, torch::kDouble);
   for (std::int64_t i = 0; i < tensor.numel(); ++i) {
@@ -212,7 +212,7 @@ torch::Tensor Wave(std::vector<std::int64_t> shape, double step) {
   return tensor;
 }
 
-// Their gradients as one vector, the weights having been made a wave.
+// Sets the weights to a wave and returns the gradients as one vector.
 template <typename Loss>
 torch::Tensor GradientAtAWave(torch::nn::Module& network, Loss loss) {
   network.to(torch::kDouble);

@@ -25,8 +25,8 @@ DeepOptions Options(std::int32_t n_step) {
   return options;
 }
 
-// One farm whose observation is {moment, episode} and whose carry is {moment}. Episodes have one to
-// nine steps and end, each fourth by being lost.
+// One farm with observation {time step, episode} and recurrent state {time step}. Episodes have one
+// to nine steps. Every fourth episode ends because the farm is lost.
 void FillReplay(Replay<float>& replay, int moments) {
   Results results;
   results.legal = {kAllActions};
@@ -51,7 +51,7 @@ void FillReplay(Replay<float>& replay, int moments) {
 
 TEST(SequenceBatch, NeverCrossesAnEpisode) {
   Replay<float> replay({kMoments, 1, 1, 2, 1});
-  FillReplay(replay, 3 * kMoments);  // the ring has dropped most of it
+  FillReplay(replay, 3 * kMoments);  // most time steps are overwritten
   for (const int n_step : {1, 3}) {
     const DeepOptions options = Options(n_step);
     SequenceBatch batch(options, 2, 1);
@@ -81,7 +81,7 @@ TEST(SequenceBatch, NeverCrossesAnEpisode) {
       }
       EXPECT_TRUE(is_drawn_learnt);
       for (std::size_t t = learnt; t < kSequence; ++t) EXPECT_EQ(batch.weights[t], 0.0F);
-      if (batch.warms_up[0] == 0.0F) {  // from the state that is stored beside its first moment
+      if (batch.warms_up[0] == 0.0F) {  // starts from the state stored with its first time step
         ++cold;
         const bool at_start = replay.started(batch.rows[0]);
         EXPECT_EQ(batch.carry[0], at_start ? 0.0F : first);
@@ -100,7 +100,7 @@ TEST(SequenceBatch, NeverCrossesAnEpisode) {
   }
 }
 
-// Two agents, the first of whom is done from the third moment on.
+// Two agents; the first is done from the third time step on.
 TEST(MomentSampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
   constexpr std::size_t kFarms = 2;
   constexpr std::size_t kAgents = 2;

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes networks.json, with which networks_test compares libtorch's values and gradients.
+"""Writes networks.json: reference values and gradients for networks_test.
 
-The networks are written out once more, in double, from their equations: layers, Wang et al.'s
-dueling head (2016) and an LSTM with forget gates (Gers et al. 2000) in PyTorch's order of gates,
-i, f, g, o. Each slope is taken by a complex step (Squire and Trapp 1998), which knows nothing of
-back-propagation and is exact to the last digits.
+The networks are implemented from their equations in double precision: linear layers, the dueling
+head of Wang et al. (2016) and an LSTM with forget gates (Gers et al. 2000) in PyTorch's order of
+gates, i, f, g, o. Gradients are complex-step derivatives (Squire and Trapp 1998), which are
+independent of back-propagation and exact to machine precision.
 """
 import argparse
 import json
@@ -22,7 +22,7 @@ TINY = 1e-30
 
 
 def wave(size, step):
-    """Numbers in ±0.4 that any language makes the same."""
+    """Values in ±0.4, reproducible in any language."""
     return 0.4 * np.sin(1.0 + step * np.arange(size))
 
 
@@ -35,7 +35,7 @@ def sigmoid(x):
 
 
 class Weights:
-    """Hands out a flat vector in the order of PyTorch's parameters, a matrix before its bias."""
+    """Splits a flat vector in the order of PyTorch's parameters, a matrix before its bias."""
 
     def __init__(self, flat):
         self.flat, self.taken = flat, 0
@@ -65,7 +65,7 @@ def mlp(flat, dueling):
 
 
 def lstm(flat, dueling):
-    """Values [STEPS, BATCH, ACTIONS]; the memory is empty at first."""
+    """Values [STEPS, BATCH, ACTIONS]; the initial recurrent state is zero."""
     weights = Weights(flat)
     first = weights.layer(FEATURES, HIDDEN)
     from_input, from_memory = weights.take(4 * HIDDEN, HIDDEN), weights.take(4 * HIDDEN, HIDDEN)
@@ -93,7 +93,7 @@ def size_of(network, dueling):
 
 
 def reference(network, dueling):
-    """Of the loss that is the sum of all values' squares."""
+    """Values and gradient of the loss that is the sum of all squared values."""
     size = size_of(network, dueling)
     values = network(wave(size, 0.7).astype(complex), dueling)
     gradient = []

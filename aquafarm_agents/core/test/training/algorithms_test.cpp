@@ -21,7 +21,7 @@ TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
     const auto learner = algorithm.make(environment.spec(), 1, "");
     EXPECT_EQ(learner->encodings(), algorithm.encodings("")) << algorithm.name;
     EXPECT_GT(algorithm.default_steps, 0U);
-    // What it says of itself makes the same again.
+    // The resolved options make the same learner again.
     EXPECT_EQ(algorithm.make(environment.spec(), 1, learner->options())->options(),
               learner->options());
   }
@@ -40,7 +40,7 @@ TEST(Algorithms, ATableOfManyStatesIsTrainedForLonger) {
   EXPECT_EQ(steps("dqn"), 200'000U);
 }
 
-// Deep learners learn too rarely for a short test unless told otherwise.
+// With the default options deep learners update too rarely for a short test.
 std::string Lively(const Algorithm& algorithm) {
   const std::string name = algorithm.name;
   const std::string small = "hidden=8 batch=8 start=20 replay=300 priority=0.5";
@@ -60,7 +60,7 @@ void ExpectContinues(const Algorithm& algorithm, const std::string& options) {
   }
   Checkpoint checkpoint;
   learner->Save(checkpoint);
-  // From what it says of itself: a resumed run may be given no more than that.
+  // From the resolved options: a resumed run may have nothing else.
   const auto resumed = algorithm.make(environment.spec(), 1, learner->options());
   EXPECT_EQ(resumed->options(), learner->options()) << algorithm.name << ' ' << options;
   resumed->Load(checkpoint);

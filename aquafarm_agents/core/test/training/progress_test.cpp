@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The line on the terminal of a training.
+// The progress line of a training.
 #include <gtest/gtest.h>
 
 #include "aquafarm/agents/training/run.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A training that was stopped and resumed gives the same bits as one that never stopped.
+// A training that was stopped and resumed gives bit-identical results to an uninterrupted one.
 #include <filesystem>
 
 #include "agents_fixture.h"
@@ -23,7 +23,7 @@ class Resume : public FolderTest {
     options.seed = 4;
     options.steps = episodes == 0 ? 40000 : 0;
     options.episodes = episodes;
-    options.checkpoint_period_s = 0.0;  // at each look at the clock
+    options.checkpoint_period_s = 0.0;  // at every check of the clock
     options.progress_period_s = 0.0;
     Trainer trainer(environment, *learner, options, &folder);
     const auto newest = folder.NewestCheckpoint();
@@ -47,7 +47,7 @@ class Resume : public FolderTest {
         << "metrics differ";
   }
 
-  /// @param run its name begins with that of its algorithm
+  /// @param run name of the run; it begins with the name of the algorithm
   std::vector<std::string> Command(const std::string& run, bool resume) const {
     std::vector<std::string> command{AQUAFARM_TRAIN,
                                      "paper",

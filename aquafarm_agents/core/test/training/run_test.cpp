@@ -36,7 +36,7 @@ class RunTest : public FolderTest {
   std::vector<RunStatus> statuses_;
 };
 
-/// A farm that is gone for good after some steps.
+/// A farm that is lost permanently after some steps.
 class LostEnvironment final : public Environment {
  public:
   explicit LostEnvironment(int steps)
@@ -140,7 +140,7 @@ TEST_F(RunTest, LostFarmsAreSaidAndTheLearnerIsSaved) {
   EXPECT_GT(saved.steps, 900U);
   EXPECT_FALSE(saved.Has("environment"));
 
-  options_.resume = true;  // with fresh episodes
+  options_.resume = true;  // with new episodes
   options_.steps = 2000;
   const RunReport resumed = Train(lose_after(1000000));
   EXPECT_EQ(resumed.code, ExitCode::kOk) << resumed.summary;
@@ -194,7 +194,7 @@ TEST_F(Programs, RefuseWhatTheyDoNotKnow) {
 TEST_F(Programs, NameTheLastGoodCheckpointOfATrainingThatDivergedAndPlayIt) {
   std::vector<std::string> command{AQUAFARM_TRAIN, "paper", "-d", folder_ + "/run", "-a", "dqn"};
   command.insert(command.end(), {"-f", "4", "-n", "100000", "--checkpoint-period", "0"});
-  // Weights that grow by 1 an update, until gradients of such rewards are beyond any float.
+  // The weights grow by 1 per update until the gradients of such rewards overflow a float.
   for (const char* option :
        {"learning_rate=1", "reward_scale=1e9", "gradient_limit=0", "loss=mse", "discount=1",
         "target_period=1", "priority=0", "hidden=128", "batch=8", "start=500", "replay=1000"}) {

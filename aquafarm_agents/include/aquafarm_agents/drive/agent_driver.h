@@ -15,29 +15,29 @@ namespace aquafarm_agents {
 
 struct AgentDriverOptions {
   std::int32_t ship{};
-  double wait_limit_s{20.0};  ///< for the sim node
+  double wait_limit_s{20.0};  ///< max wait for the sim node
   const std::atomic<bool>* stop{};
 };
 
-/// One ship's own agent, as it would be deployed: it subscribes to that ship's observation, claims
-/// the ship and calls its move, pickup and drop_off; of the rest it knows what its ship does. In
-/// lockstep its command waits for the other ships', paced it is in time or its ship holds. Begun in
-/// the middle of an episode it joins there.
+/// Agent of one ship, as in a deployment. It subscribes only to that ship's observation, claims the
+/// ship and calls its move, pickup and drop_off services. In lockstep mode its command waits for
+/// the commands of the other ships. In paced mode a late command makes the ship hold. An agent that
+/// starts in mid-episode joins that episode.
 class AgentDriver {
  public:
   /// Waits for the sim node.
-  /// @param encodings of the policy; not kStatesBit, which asks for the whole farm
-  /// @throws InputError when there is no such ship, EnvironmentLost
+  /// @param encodings of the policy, without kStatesBit, which needs the complete farm state
+  /// @throws InputError if there is no such ship; EnvironmentLost
   AgentDriver(const ros::NodeHandle& node, std::uint8_t encodings, AgentDriverOptions options);
   ~AgentDriver();
 
   const aquafarm::agents::EnvironmentSpec& spec() const;
 
-  /// Claims the ship, and drives it until `episodes` have ended, or for ever when 0; returns early
-  /// when stopped.
-  /// @returns of those episodes that it saw end, whether every device was delivered
-  /// @throws InputError when another node holds the ship, EnvironmentLost when the sim node is gone
-  ///         for longer than the limit
+  /// Claims the ship and drives it until `episodes` episodes have ended, or without end if 0.
+  /// Returns early when stopped.
+  /// @returns for each observed end of an episode, whether every device was delivered
+  /// @throws InputError if another node has claimed the ship; EnvironmentLost if the sim node is
+  ///         unreachable for longer than the limit
   std::vector<bool> Drive(aquafarm::agents::Policy& policy, std::uint64_t seed,
                           std::int32_t episodes);
 

@@ -17,14 +17,13 @@
 namespace aquafarm_agents {
 
 struct ShipDriverOptions {
-  std::int32_t ship{-1};      ///< -1: all of farm 0
-  double wait_limit_s{20.0};  ///< for the sim node
+  std::int32_t ship{-1};      ///< -1: all ships of farm 0
+  double wait_limit_s{20.0};  ///< max wait for the sim node
   const std::atomic<bool>* stop{};
 };
 
-/// Drives ships of a running ranch, paced or lockstep, by their own commands. It sees what the
-/// policy's encodings say: the farm's saved state is read into a farm of its own, whose encoder
-/// and view are those of training.
+/// Drives ships of a running ranch, paced or lockstep, by ship commands. It loads the farm's saved
+/// state into a local farm, which computes the policy's observation types exactly as in training.
 class ShipDriver {
  public:
   /// Waits for the sim node. @throws InputError, EnvironmentLost
@@ -33,10 +32,10 @@ class ShipDriver {
 
   const aquafarm::agents::EnvironmentSpec& spec() const;
 
-  /// Drives until `episodes` have ended, or for ever when 0; returns early when stopped. A ship
-  /// that it drives alone is claimed until then.
-  /// @throws InputError when another node holds the ship, EnvironmentLost when the sim node is gone
-  /// for longer than the limit
+  /// Drives until `episodes` episodes have ended, or without end if 0. Returns early when stopped.
+  /// A single ship is claimed until then.
+  /// @throws InputError if another node has claimed the ship; EnvironmentLost if the sim node is
+  ///         unreachable for longer than the limit
   std::vector<aquafarm::agents::EpisodeResult> Drive(aquafarm::agents::Policy& policy,
                                                      std::uint64_t seed, std::int32_t episodes);
 

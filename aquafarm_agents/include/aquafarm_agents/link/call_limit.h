@@ -10,8 +10,8 @@
 
 namespace aquafarm_agents {
 
-/// Gives service calls the limit that roscpp lacks: a call that has taken longer is cut off, so
-/// that it returns false. For one caller, whose calls do not overlap.
+/// Adds the timeout that roscpp lacks to service calls: a call that exceeds the limit is aborted
+/// and returns false. For a single caller whose calls do not overlap.
 class CallLimit {
  public:
   explicit CallLimit(double limit_s);
@@ -19,9 +19,9 @@ class CallLimit {
   CallLimit(const CallLimit&) = delete;
   CallLimit& operator=(const CallLimit&) = delete;
 
-  /// @returns false when there was no answer: the service is gone or the limit is over. The client
-  ///          is shut down then and has to be made anew: roscpp at times goes on calling a dropped
-  ///          connection valid.
+  /// @returns false if there was no response: the service is gone or the limit is exceeded. The
+  ///          client is then shut down and must be recreated, because roscpp sometimes continues to
+  ///          report a dropped connection as valid.
   template <typename Service>
   bool Call(ros::ServiceClient& client, Service& service) {
     Arm(client);

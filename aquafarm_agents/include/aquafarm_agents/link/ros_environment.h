@@ -20,25 +20,25 @@
 namespace aquafarm_agents {
 
 struct RosEnvironmentOptions {
-  std::int32_t farms{};  ///< 0: as many as the sim node has
+  std::int32_t farms{};  ///< 0: all farms of the sim node
   std::uint8_t encodings{aquafarm::agents::kIndexBit};
   bool hashes{};
-  double wait_limit_s{20.0};        ///< for the sim node to be there, or to come back
-  double call_limit_s{30.0};        ///< for one call
-  double pause_limit_s{3600.0};     ///< for a paused (or paced) farm to go on
-  const std::atomic<bool>* stop{};  ///< ends all waits at once; null: never
-  std::function<void(const std::string&)> on_notice;  ///< is told of losses, waits and returns
+  double wait_limit_s{20.0};        ///< max wait for the sim node to start or to return
+  double call_limit_s{30.0};        ///< max duration of one call
+  double pause_limit_s{3600.0};     ///< max wait for a paused (or paced) farm to continue
+  const std::atomic<bool>* stop{};  ///< ends all waits; null if they cannot be ended
+  std::function<void(const std::string&)> on_notice;  ///< reports losses, waits and returns
 };
 
-/// Farms behind a sim node's services. Connections are persistent. A lost call is sent again with
-/// its number, so that no farm steps twice; farms that another has moved, reset or loaded, or a sim
-/// node that came back without its farms, are reset to fresh episodes of the same seed and
-/// TakeRestarted() says so. Any call throws EnvironmentLost
-/// when the sim node is gone for longer than the limits.
+/// Farms behind a sim node's services. Connections are persistent. A lost call is repeated with the
+/// same number, so that no farm steps twice. The farms are reset to new episodes of the same seed
+/// if another client has stepped, reset or loaded them, or if the sim node came back without them;
+/// TakeRestarted() then returns true. Any call throws EnvironmentLost if the sim node is
+/// unreachable for longer than the limits.
 class RosEnvironment final : public aquafarm::agents::Environment {
  public:
   /// Waits for the sim node.
-  /// @throws InputError when its farms cannot be used as asked
+  /// @throws InputError if its farms do not support the options
   RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOptions options);
 
   const aquafarm::agents::EnvironmentSpec& spec() const override { return spec_; }
@@ -77,14 +77,14 @@ class RosEnvironment final : public aquafarm::agents::Environment {
 
   aquafarm::agents::EnvironmentSpec spec_;
   aquafarm::agents::Results results_;
-  aquafarm_msgs::Step step_;  // its memory is reused
+  aquafarm_msgs::Step step_;  // reused buffer
   std::uint64_t sequence_;
   bool restarted_{};
-  int restarts_{};  // since an episode has ended
+  int restarts_{};  // since the last end of an episode
 
-  std::uint64_t turn_{};  // of the last result: tells whether the farms are still as it left them
+  std::uint64_t turn_{};  // of the last result; a different one means that the farms have changed
   std::uint64_t seed_{};
-  std::uint64_t next_episode_{};  // beyond all that have begun
+  std::uint64_t next_episode_{};  // above all started episodes
 };
 
 }  // namespace aquafarm_agents

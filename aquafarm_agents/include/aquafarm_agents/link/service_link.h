@@ -13,14 +13,14 @@
 
 namespace aquafarm_agents {
 
-/// One persistent connection to a service, made again when it breaks, with limits.
+/// One persistent service connection with timeouts. It reconnects after a failure.
 class ServiceLink {
  public:
   inline static constexpr double kCallLimit_s = 30.0;
 
-  /// @param wait_limit_s for an answer after the first attempt was lost
-  /// @param stop may be set by a signal handler; null: never
-  /// @param call_limit_s for an answer to one attempt
+  /// @param wait_limit_s max wait for a response after the first attempt failed
+  /// @param stop may be set by a signal handler; null if calls cannot be stopped
+  /// @param call_limit_s max wait for the response to one attempt
   ServiceLink(ros::NodeHandle node, double wait_limit_s, const std::atomic<bool>* stop,
               double call_limit_s = kCallLimit_s)
       : node_(std::move(node)),
@@ -29,7 +29,7 @@ class ServiceLink {
         call_limit_s_(call_limit_s),
         limit_(call_limit_s) {}
 
-  /// @throws EnvironmentLost when there is no answer within the limit
+  /// Calls the service. @throws EnvironmentLost if there is no response within the limit
   template <typename Service>
   void Call(const std::string& name, Service& service) {
     ros::WallTime lost_since;
@@ -38,7 +38,7 @@ class ServiceLink {
       if (!client_.isValid()) client_ = node_.serviceClient<Service>(name, true);
       if (client_.isValid() && limit_.Call(client_, service)) return;
       const ros::WallTime now = ros::WallTime::now();
-      // An answer may be long in coming; only one that never came counts from the call on.
+      // A response may take long. The wait counts from the call only if the call timed out.
       if (lost_since.isZero()) lost_since = (now - begun).toSec() < call_limit_s_ ? now : begun;
       const bool stopped = !ros::ok() || (stop_ != nullptr && *stop_);
       if (stopped || (now - lost_since).toSec() >= wait_limit_s_) {
@@ -60,7 +60,7 @@ class ServiceLink {
   ros::ServiceClient client_;
 };
 
-/// Limit of a ship's command, which may wait for those of the others.
+/// Timeout of a ship's command, which may wait for the commands of the other ships.
 inline double CommandLimit_s(double barrier_timeout_s) {
   return barrier_timeout_s + ServiceLink::kCallLimit_s;
 }

@@ -13,11 +13,11 @@
 
 namespace aquafarm_agents {
 
-/// Holds a ship for this node as long as it lives.
+/// Claims a ship for this node during its lifetime.
 class ShipClaim {
  public:
-  /// @param wait_limit_s for the sim node
-  /// @throws InputError when another node holds the ship, EnvironmentLost
+  /// @param wait_limit_s max wait for the sim node
+  /// @throws InputError if another node has claimed the ship; EnvironmentLost
   ShipClaim(ros::NodeHandle node, std::int32_t ship, double wait_limit_s,
             const std::atomic<bool>* stop)
       : node_(std::move(node)),
@@ -30,14 +30,14 @@ class ShipClaim {
     claim.request.release = true;
     try {
       ServiceLink(node_, kReleaseLimit_s, nullptr, kReleaseLimit_s).Call(name_, claim);
-    } catch (const aquafarm::agents::EnvironmentLost&) {  // the claim ends by itself
+    } catch (const aquafarm::agents::EnvironmentLost&) {  // the claim expires by itself
     }
   }
   ShipClaim(const ShipClaim&) = delete;
   ShipClaim& operator=(const ShipClaim&) = delete;
 
-  /// Claims anew now and then, which also finds out whether the sim node is there. To be called
-  /// while nothing is commanded. @throws InputError, EnvironmentLost as at the start
+  /// Renews the claim periodically, which also checks that the sim node is running. Must be called
+  /// while no command is sent. @throws InputError, EnvironmentLost like the constructor
   void RenewWhenDue() {
     if ((ros::WallTime::now() - claimed_at_).toSec() >= kPeriod_s) Renew();
   }

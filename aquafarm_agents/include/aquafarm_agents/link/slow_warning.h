@@ -8,8 +8,7 @@
 
 namespace aquafarm_agents {
 
-/// Warns at most once in 5 s by the wall clock: ROS time stands still with the farm. For any
-/// thread.
+/// Warns at most once per 5 s of wall time, because ROS time stops with the farm. Thread-safe.
 class SlowWarning {
  public:
   void Say(const std::string& text) {

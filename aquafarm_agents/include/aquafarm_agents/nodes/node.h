@@ -3,12 +3,12 @@
 
 namespace aquafarm_agents {
 
-/// Trains through a ranch's services as the private parameters say, publishes how it goes on
-/// `training`, prints a summary.
+/// Trains through the services of a ranch, configured by private parameters. Publishes the progress
+/// on `training` and prints a summary.
 /// @returns an ExitCode
 int RunTrainNode();
 
-/// Lets a saved policy play through a ranch's services: evaluates it, or drives ships.
+/// Plays a saved policy through the services of a ranch: evaluates it, or drives ships.
 /// @returns an ExitCode
 int RunPolicyNode();
 

@@ -6,11 +6,11 @@
 
 namespace aquafarm_agents {
 
-/// Set by Ctrl-C and by roslaunch's end.
+/// Set by Ctrl-C and by the shutdown of roslaunch.
 inline std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
 
-/// Asks to save and end instead of dying; after ros::init with NoSigintHandler.
+/// Installs handlers that request saving and exit. Call it after ros::init with NoSigintHandler.
 inline void StopOnSignals() {
   const auto handler = [](int) { stop_requested = true; };
   std::signal(SIGINT, handler);

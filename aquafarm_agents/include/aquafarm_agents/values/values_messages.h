@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// V_π and best moves as standard messages, for rviz, Foxglove and bags.
+/// V_π and greedy actions as standard messages, for rviz, Foxglove and bags.
 
 #include <nav_msgs/OccupancyGrid.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -13,13 +13,14 @@
 
 namespace aquafarm_agents {
 
-/// 0 the lowest of the values … 100 the highest; -1 where there is none. All -1 without values.
+/// Grid of values scaled from 0 (lowest) to 100 (highest); -1 in cells without a value. All cells
+/// are -1 if the policy has no values.
 nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<aquafarm::agents::BestMove>& moves,
                                      const aquafarm::Scenario& scenario,
                                      const std_msgs::Header& header);
 
-/// A point for each cell: float32 x, y, z [m] of its centre, float32 value as it is (NaN: none),
-/// uint8 action as in FarmState.
+/// One point per cell: float32 x, y, z [m] of its centre, float32 unscaled value (NaN if there is
+/// none), uint8 action as in FarmState.
 sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<aquafarm::agents::BestMove>& moves,
                                         const aquafarm::Scenario& scenario,
                                         const std_msgs::Header& header);

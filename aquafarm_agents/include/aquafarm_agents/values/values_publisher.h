@@ -17,23 +17,23 @@
 
 namespace aquafarm_agents {
 
-/// Publishes V_π and the best move of each cell of farm 0 as it stands (`values`, latched, and
-/// `values/points`, latched), while somebody subscribes. A thread of low priority does it, and
-/// rests nine times as long as it worked, so that playing and training do not wait for it.
+/// Publishes V_π and the greedy action of each cell of farm 0 in its current state (`values` and
+/// `values/points`, both latched) while there are subscribers. A low-priority thread computes them
+/// and sleeps nine times as long as it works, so that it does not slow down playing and training.
 class ValuesPublisher {
  public:
-  /// @param period_s between two looks, at least; 0: never
+  /// @param period_s min time between two publications; 0 disables them
   ValuesPublisher(const ros::NodeHandle& node, double period_s);
   ~ValuesPublisher();
   ValuesPublisher(const ValuesPublisher&) = delete;
   ValuesPublisher& operator=(const ValuesPublisher&) = delete;
 
-  /// Takes a newer policy when it would be looked at soon. Learners copy theirs for it, so that is
-  /// asked for no more often than to take a fiftieth of the caller's time.
+  /// Replaces the policy if a publication is due soon. `make` copies the learner's policy. It is
+  /// called so rarely that it takes at most a fiftieth of the caller's time.
   void Refresh(const std::function<std::unique_ptr<aquafarm::agents::Policy>()>& make);
 
-  /// Takes a policy of its own from now on. One that knows the whole farm (a planner) or looks at
-  /// nothing (random) holds no values and is left aside.
+  /// Replaces the policy. Ignores policies without values: planners (which read the complete farm
+  /// state) and random (which reads no observation).
   void Offer(std::unique_ptr<aquafarm::agents::Policy> policy);
 
  private:
@@ -46,11 +46,12 @@ class ValuesPublisher {
   const std::chrono::duration<double> period_;
   ros::Publisher grid_;
   ros::Publisher points_;
-  std::unique_ptr<aquafarm::FarmBatch> farms_;  // as the sim node's; only the thread touches them
+  std::unique_ptr<aquafarm::FarmBatch>
+      farms_;  // copies of the sim node's farms; used only by the thread
   std::string frame_;
-  Clock::time_point copy_due_;  // only the caller of Refresh touches it
+  Clock::time_point copy_due_;  // used only by the caller of Refresh
 
-  std::mutex mutex_;  // guards the rest
+  std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::shared_ptr<aquafarm::agents::Policy> policy_;
   Clock::time_point due_;

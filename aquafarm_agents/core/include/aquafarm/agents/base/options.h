@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A learner's options as people write them: "discount=0.97 learning_rate=linear:0.2:0.05:1".
+/// Parser of learner options, for example "discount=0.97 learning_rate=linear:0.2:0.05:1".
 
 #include <map>
 #include <string>
@@ -13,24 +13,25 @@
 
 namespace aquafarm::agents {
 
-/// Hands out options by key with defaults; what nobody asked for is refused by Finish().
+/// Reads options by key, with defaults. Finish() rejects options that were never read.
 class OptionReader {
  public:
-  /// @param text key=value, separated by blanks or commas
-  /// @throws InputError on anything else and on a key given twice
+  /// @param text key=value pairs, separated by blanks or commas
+  /// @throws InputError on any other syntax and on duplicate keys
   explicit OptionReader(const std::string& text);
 
-  /// Value of `key` in [min, max].
+  /// Value of `key` in [min, max]; `otherwise` is the default.
   double Number(const std::string& key, double otherwise, double min, double max);
-  /// true or false.
+  /// Value of `key`, true or false; `otherwise` is the default.
   bool Flag(const std::string& key, bool otherwise);
   Schedule GetSchedule(const std::string& key, const Schedule& otherwise, double min, double max);
   std::string Text(const std::string& key, const std::string& otherwise);
 
-  /// @throws InputError naming the first key that was not asked for, and all that were
+  /// @throws InputError naming the first key that was never read, and all valid keys
   void Finish() const;
 
-  /// Every option asked for with its value in force, sorted: what checkpoints and run.json keep.
+  /// Every option that was read, with its effective value, sorted by key. Checkpoints and run.json
+  /// contain this text.
   std::string Resolved() const;
   /// Replaces the resolved text of `key` by its canonical form.
   void Resolve(const std::string& key, const std::string& value) { resolved_[key] = value; }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A number that changes as training proceeds, over progress in [0, 1]:
+/// A parameter that varies with the training progress in [0, 1]:
 ///
 ///   constant     start ----------------------
-///   linear       start \                          over the first `share` of the run
+///   linear       start \                          over the first fraction `share` of the run
 ///                       \_________ end
 ///   exponential  start · (end/start)^(progress/share), then end
-///   harmonic     start / (1 + (start/end - 1) · progress/share), then end: falls soon, and goes on
-///                falling like 1/t, as Robbins and Monro (1951) ask of a rate that ends all chance
+///   harmonic     start / (1 + (start/end - 1) · progress/share), then end. It decays like 1/t, as
+///                Robbins and Monro (1951) require of a learning rate that averages out the noise
 
 #include <cstdint>
 #include <string>
@@ -23,20 +23,21 @@ std::string_view ToString(ScheduleKind value);
 struct Schedule {
   ScheduleKind kind{ScheduleKind::kConstant};
   double start{};
-  double end{};       ///< not used when constant
-  double share{1.0};  ///< of the run until `end` is reached, (0, 1]; not used when constant
+  double end{};       ///< ignored by kConstant
+  double share{1.0};  ///< fraction of the run after which `end` is reached, (0, 1]; ignored by
+                      ///< kConstant
 
-  /// @param progress of the run, [0, 1]
+  /// Value at `progress` of the run, [0, 1].
   double At(double progress) const;
 };
 
 /// Reads "0.1", "linear:1:0.05:0.5" or "exponential:10:0.5:0.5" (kind:start:end:share).
-/// @param what stands first in messages, such as "learning_rate"
-/// @throws InputError when it is none of these or a number is not in [min, max]; an exponential
-///         or harmonic one needs start and end above 0
+/// @param what prefix of error messages, such as "learning_rate"
+/// @throws InputError if `text` has another form or a number is not in [min, max]; exponential and
+///         harmonic schedules need start and end above 0
 Schedule ParseSchedule(const std::string& text, const std::string& what, double min, double max);
 
-/// The text that ParseSchedule reads back to the same.
+/// Text from which ParseSchedule reads the same schedule.
 std::string ToString(const Schedule& schedule);
 
 }  // namespace aquafarm::agents

@@ -7,20 +7,21 @@
 
 namespace aquafarm::agents {
 
-/// Thrown when a disk or folder refuses: full, unwritable, in use. what() is one line for people.
+/// Thrown when a disk or folder is full, not writable or in use. what() is one readable line.
 class StorageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Writes beside, syncs, renames: under `path` there is always a whole file, the old or the new.
-/// @throws StorageError; `path` is then as it was and nothing is left beside it
+/// Writes a temporary file next to `path`, syncs it and renames it, so that `path` always contains
+/// either the complete old file or the complete new one.
+/// @throws StorageError; `path` is then unchanged and the temporary file is removed
 void WriteFileAtomically(const std::string& path, std::string_view bytes);
 
-/// @throws InputError when there is no such file or it cannot be read
+/// Contents of a file. @throws InputError if it does not exist or cannot be read
 std::string ReadFile(const std::string& path);
 
-/// "runs/x/policy.ckpt: cannot be written: No space left on device" from errno.
+/// Error message from errno: "runs/x/policy.ckpt: cannot be written: No space left on device".
 std::string ErrnoText(const std::string& path, const std::string& what);
 
 }  // namespace aquafarm::agents

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Numbers and lists as text.
+/// Conversion of numbers and lists to and from text.
 
 #include <string>
 #include <vector>
 
 namespace aquafarm::agents {
 
-/// Reads a whole text as a number. @throws InputError "discount: got 'x', expected a number"
+/// Parses the complete text as a number.
+/// @param what prefix of error messages
+/// @throws InputError "discount: got 'x', expected a number"
 double ParseNumber(const std::string& text, const std::string& what);
 
-/// The shortest decimal text that reads back to the same number.
+/// Shortest decimal text that parses back to the same number.
 std::string FormatNumber(double value);
 
-/// "a, b, c"
+/// Names separated by commas: "a, b, c".
 std::string Join(const std::vector<std::string>& names);
 
 }  // namespace aquafarm::agents

@@ -8,11 +8,11 @@
 
 namespace aquafarm::agents {
 
-/// Farms in this process.
+/// Environment whose farms run in this process.
 class LocalEnvironment final : public Environment {
  public:
   /// @param scenario must have passed ValidateScenario
-  /// @throws InputError when the scenario cannot be laid out
+  /// @throws InputError if no layout can be generated for the scenario
   LocalEnvironment(std::shared_ptr<const Scenario> scenario, const EnvironmentOptions& options);
 
   const EnvironmentSpec& spec() const override { return spec_; }
@@ -21,7 +21,7 @@ class LocalEnvironment final : public Environment {
   std::string Save() override;
   const Results& Load(const std::string& bytes) override;
 
-  /// For tools that look at the farms besides learning on them.
+  /// The farms, for tools that inspect them.
   const FarmBatch& batch() const { return batch_; }
 
  private:
@@ -30,16 +30,16 @@ class LocalEnvironment final : public Environment {
 
   FarmBatch batch_;
   EnvironmentSpec spec_;
-  std::vector<float> terms_;  // [N, S, kRewardTermCount]; empty unless own rewards are asked for
+  std::vector<float> terms_;  // [N, S, kRewardTermCount]; empty unless own rewards are requested
   bool with_states_{};
   Results results_;
   BatchOutput output_;
 };
 
-/// How a farm's episode ended.
+/// Result of a farm's episode from its record.
 EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm);
 
-/// The spec of farms of a scenario.
+/// Spec of `farms` farms of a scenario.
 EnvironmentSpec MakeSpec(const Scenario& scenario, const Encoder& encoder, std::int32_t farms);
 
 }  // namespace aquafarm::agents

@@ -8,23 +8,23 @@
 
 namespace aquafarm::agents {
 
-/// Chooses actions for all agents of all farms and learns nothing.
+/// Chooses actions for all agents of all farms. Does not learn.
 class Policy {
  public:
   virtual ~Policy() = default;
 
-  /// What it reads of Results; EncodingBits.
+  /// The observation types it requires, a mask of EncodingBits.
   virtual std::uint8_t encodings() const = 0;
 
-  /// Begins to play anew: forgets what it carried from step to step.
-  /// @param seed of its own chance, if it uses any
+  /// Starts new episodes: resets the recurrent state.
+  /// @param seed of its random numbers, if it draws any
   virtual void Begin(std::uint64_t seed, std::int32_t farms) = 0;
 
-  /// Chooses for the step after `results`. @param actions is resized to [N, S]
+  /// Chooses the actions of the step after `results`. @param actions is resized to [N, S]
   virtual void Act(const Results& results, std::vector<std::uint8_t>& actions) = 0;
 
-  /// V_π as it learnt it: what each action that Act chose last is expected to bring from then on
-  /// (discounted), [N, S]; empty: it holds no values.
+  /// Learned V_π: the expected discounted return of each action that the last Act chose, [N, S].
+  /// Empty if the policy has no value estimates.
   const std::vector<float>& values() const { return values_; }
 
  protected:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Playing without learning, on episodes never trained on: training seeds lie below 2^63,
-/// evaluation seeds above, so that no choice of numbers makes them meet.
+/// Evaluation of a policy on episodes that are never used in training. Training seeds lie below
+/// 2^63 and evaluation seeds above, so they never overlap.
 
 #include <atomic>
 #include <cstdint>
@@ -16,39 +16,39 @@
 
 namespace aquafarm::agents {
 
-/// Set in every seed of evaluation and in none of training.
+/// Set in every evaluation seed, clear in every training seed.
 inline constexpr std::uint64_t kEvaluationSeedBit = 1ULL << 63U;
-/// The seed in which farms play when asked to evaluate with `seed`.
+/// Seed of the farms for an evaluation with `seed`.
 constexpr std::uint64_t EvaluationSeed(std::uint64_t seed) { return seed | kEvaluationSeedBit; }
 
-/// What a policy came to.
+/// Aggregate results of evaluating one policy.
 struct Evaluation {
-  std::uint64_t seed{};                 ///< of the farms, with kEvaluationSeedBit
-  std::vector<EpisodeResult> episodes;  ///< 0, 1, 2, … of the seed, in order
+  std::uint64_t seed{};                 ///< seed of the farms, with kEvaluationSeedBit
+  std::vector<EpisodeResult> episodes;  ///< episodes 0, 1, 2, … of the seed, in order
   double mean_return{};                 ///< per episode
-  double return_per_step{};             ///< all returns over all steps (§4.2)
-  double success_rate{};                ///< share that ended with every device delivered
+  double return_per_step{};             ///< sum of returns / sum of steps (§4.2)
+  double success_rate{};                ///< fraction of episodes that delivered every device
   double mean_steps{};
-  double mean_delivered_health{};  ///< over episodes with a delivery; 0: none
+  double mean_delivered_health{};  ///< over episodes with a delivery; 0 if there are none
   double mean_crashes{};
   double mean_steps_in_disaster{};
   double wall_s{};
-  bool complete{};                   ///< false when it was stopped
-  std::optional<double> mean_bound;  ///< of these episodes (team_bound.h), if asked for
+  bool complete{};                   ///< false if it was stopped early
+  std::optional<double> mean_bound;  ///< of these episodes (team_bound.h), if requested
 };
 
-/// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). The result does not depend on the
-/// number of farms for a policy that uses no chance, but for the rounding of a network, which may
-/// differ between numbers of rows.
-/// @param stop may be set by a signal handler; null: never
-/// @param on_progress is told now and then how many episodes are over
+/// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). For a deterministic policy the result
+/// does not depend on the number of farms, except for the rounding of a network, which may differ
+/// between batch sizes.
+/// @param stop may be set by a signal handler; null if the evaluation cannot be stopped
+/// @param on_progress called periodically with the number of finished episodes
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
                     const std::function<void(std::size_t over)>& on_progress = {});
 
-/// What an evaluation was of; goes into its JSON so that it can be done again.
+/// Inputs of an evaluation. WriteEvaluation stores them so that it can be repeated.
 struct EvaluationContext {
-  std::string policy;  ///< path, or random
+  std::string policy;  ///< path, or "random"
   std::string algorithm;
   std::uint64_t training_steps{};
   std::string scenario_name;

@@ -10,22 +10,22 @@
 
 namespace aquafarm::agents {
 
-/// Column names of one EpisodeResult in CSV files.
+/// CSV column names of an EpisodeResult.
 inline constexpr const char* kEpisodeColumns =
     "farm,seed,episode,steps,return,delivered,devices,delivered_health,crashes,collisions,"
     "steps_in_disaster,reason,success";
 
-/// Appends an episode in the order of kEpisodeColumns; numbers read back to the same bits.
+/// Appends an episode in the order of kEpisodeColumns. Numbers parse back to the same bits.
 void AppendEpisode(const EpisodeResult& result, std::string& text);
 
-/// metrics.csv: a line an episode, `number,total_steps,<kEpisodeColumns>,exploration,
-/// learning_rate,loss`. It holds no wall time, so that a resumed run gives the same bytes.
+/// metrics.csv: one line per episode, `number,total_steps,<kEpisodeColumns>,exploration,
+/// learning_rate,loss`. It contains no wall time, so that a resumed run writes the same bytes.
 class MetricsFile {
  public:
-  /// Starts the file anew. @throws StorageError
+  /// Creates the file, or truncates an existing one. @throws StorageError
   explicit MetricsFile(std::string path);
-  /// Continues it at `size` bytes; what was written after them is cut off.
-  /// @throws InputError when it is shorter; StorageError
+  /// Truncates the file to `size` bytes and continues there.
+  /// @throws InputError if it is shorter; StorageError
   MetricsFile(std::string path, std::uint64_t size);
   ~MetricsFile();
   MetricsFile(const MetricsFile&) = delete;
@@ -33,11 +33,11 @@ class MetricsFile {
 
   void Append(std::uint64_t number, std::uint64_t total_steps, const EpisodeResult& result,
               const LearnerStatus& status);
-  /// Hands all lines to the operating system. @throws StorageError
+  /// Writes all buffered lines to the operating system. @throws StorageError
   void Flush();
   /// Flushes and syncs to the disk. @throws StorageError
   void Sync();
-  /// Bytes so far, flushed or not.
+  /// Size in bytes, including lines that are not flushed yet.
   std::uint64_t size() const { return flushed_ + buffer_.size(); }
 
  private:

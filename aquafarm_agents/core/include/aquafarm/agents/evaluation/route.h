@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// One episode as a policy plays it, and what it would do if the ship were elsewhere: what Fig. 11
-/// shows as a coloured route and an arrow at each cell.
+/// Trace of one episode of a policy, and its greedy action in each cell. Fig. 11 draws them as a
+/// coloured route and one arrow per cell.
 
 #include <atomic>
 #include <functional>
@@ -17,40 +17,40 @@
 
 namespace aquafarm::agents {
 
-/// Makes the policy for farms of a spec, afresh: without anything carried from earlier steps.
+/// Makes a new policy for farms of a spec, with empty recurrent state.
 using MakePolicyFor = std::function<std::unique_ptr<Policy>(const EnvironmentSpec&)>;
 
-/// The farm before a step, or at the end.
+/// State of the farm before a step, or at the end of the episode.
 struct RouteStep {
   Cell cell{};  ///< of ship 0
   std::int32_t aboard{};
   std::int32_t delivered{};
-  float episode_return{};  ///< so far
+  float episode_return{};  ///< sum of the rewards so far
   std::vector<Disaster> disasters;
-  std::uint8_t action{};  ///< taken then; of the last entry, none
+  std::uint8_t action{};  ///< taken in this step; unused in the last entry
 };
 
 struct Route {
   std::shared_ptr<const Layout> layout;
   std::vector<RouteStep> steps;
   std::vector<std::uint8_t>
-      actions;  ///< [steps, agents] of all agents: with them it is played again
+      actions;  ///< [steps, agents] of all agents: enough to replay the episode
   EpisodeResult result;
-  /// The greedy action of ship 0 in every free cell, as the farm stands at the episode's start and
-  /// (empty when that never comes) right after the first pickup. A policy with a memory is asked
-  /// with an empty one.
+  /// Greedy action of ship 0 in every free cell, at the episode's start and right after the first
+  /// pickup (empty if there is no pickup). A recurrent policy starts from an empty state.
   std::vector<BestMove> at_start;
   std::vector<BestMove> after_pickup;
 };
 
-/// Plays one episode of EvaluationSeed(seed), ship 0's route; other agents play along.
-/// @param stop may be set by a signal handler: the route then ends where it is; null: never
-/// @throws InputError when the scenario or the policy do not fit
+/// Plays one episode of EvaluationSeed(seed) with all agents and records the route of ship 0.
+/// @param stop may be set by a signal handler: the route then ends early; null if it cannot be
+///        stopped
+/// @throws InputError if the scenario or the policy does not fit
 Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
                  const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
                  const std::atomic<bool>* stop = nullptr);
 
-/// Writes it as JSON: the chart, an entry a step, and the best moves. @throws StorageError
+/// Writes JSON with the chart, one entry per step, and the greedy actions. @throws StorageError
 void WriteRoute(const std::string& path, const Route& route, const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

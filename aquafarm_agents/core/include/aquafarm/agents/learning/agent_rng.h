@@ -11,8 +11,8 @@ namespace aquafarm::agents {
 
 struct Checkpoint;
 
-/// What each agent of each farm draws its exploration from: entry i from stream i of (seed,
-/// exploration). Saved and loaded it goes on bit for bit.
+/// Random streams for exploration, one per agent of each farm: entry i is stream i of (seed,
+/// exploration). Restored streams continue bit-identically.
 class EntryStreams {
  public:
   EntryStreams() = default;
@@ -22,7 +22,7 @@ class EntryStreams {
   RandomStream& operator[](std::size_t entry) { return streams_[entry]; }
 
   void Save(Checkpoint& checkpoint) const;
-  /// @throws InputError when it is not of as many entries
+  /// @throws InputError if the number of entries differs
   void Load(const Checkpoint& checkpoint);
 
  private:

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// One file that holds a learner, whole or as a policy alone. Little-endian:
+/// File format of a complete learner or of a policy alone. Little-endian:
 ///
 ///   magic "aquaCKPT" | u32 format | u32 0 | u64 bytes of index | u64 bytes of sections |
-///   u64 checksum of all that follows | index (CBOR: what it is, and its sections) | raw sections
+///   u64 checksum of all that follows | index (CBOR: metadata and section table) | raw sections
 ///
-/// It is written beside, synced and renamed, so a name never stands for half a file.
+/// Files are written by WriteFileAtomically, so a file is never incomplete.
 
 #include <cstdint>
 #include <map>
@@ -21,15 +21,15 @@ namespace aquafarm::agents {
 inline constexpr std::uint32_t kCheckpointFormat = 2;
 
 struct Checkpoint {
-  // What it is.
+  // Metadata.
   std::string kind;          ///< kTraining or kPolicy
   std::string algorithm;     ///< such as q_learning
-  std::string options;       ///< of the learner, resolved
-  std::string version;       ///< of the suite that wrote it
-  std::uint64_t seed{};      ///< of the training
-  EnvironmentSpec spec;      ///< farms that it was made on; without the YAML text
-  std::uint64_t steps{};     ///< farm steps and
-  std::uint64_t episodes{};  ///< episodes of training behind it
+  std::string options;       ///< resolved options of the learner
+  std::string version;       ///< version of the suite that wrote it
+  std::uint64_t seed{};      ///< seed of the training
+  EnvironmentSpec spec;      ///< spec of the training farms, without the YAML text
+  std::uint64_t steps{};     ///< farm steps of training so far
+  std::uint64_t episodes{};  ///< episodes of training so far
 
   std::map<std::string, std::string> sections;  ///< raw bytes by name
 
@@ -37,14 +37,14 @@ struct Checkpoint {
   inline static constexpr const char* kPolicy = "policy";
 
   bool Has(const std::string& name) const { return sections.count(name) != 0; }
-  /// @throws InputError when there is none
+  /// @throws InputError if there is no such section
   const std::string& Section(const std::string& name) const;
 
   template <typename T>
   void SetArray(const std::string& name, const std::vector<T>& values) {
     sections[name].assign(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
   }
-  /// @throws InputError unless there are exactly `size` values
+  /// @throws InputError unless the section has exactly `size` values
   template <typename T>
   void GetArray(const std::string& name, std::size_t size, std::vector<T>& values) const {
     const std::string& bytes = Section(name);
@@ -57,14 +57,16 @@ struct Checkpoint {
   static void CheckSize(const std::string& name, std::size_t got, std::size_t expected);
 };
 
-/// @throws StorageError; the file is then as it was
+/// Writes a checkpoint file. @throws StorageError; the file is then unchanged
 void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint);
 
-/// @throws InputError when it is missing, no checkpoint, damaged or of another format
+/// Reads a checkpoint file.
+/// @throws InputError if it is missing, is not a checkpoint, is damaged or has another format
 Checkpoint ReadCheckpoint(const std::string& path);
 
-/// Refuses to continue a training on other terms. @param path stands first in messages
-/// @throws InputError with what differs
+/// Checks that a checkpoint was written by a training with the same settings.
+/// @param path prefix of error messages
+/// @throws InputError naming the difference
 void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
                     const std::string& algorithm, const std::string& options, std::uint64_t seed,
                     const EnvironmentSpec& spec);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// How a learner that knows action values tries others (Fig. 7).
+/// Exploration strategies of value-based learners (Fig. 7).
 ///
-///   ε-greedy (Eq. 7)   with probability ε any action, else the best known
-///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. T counts in units of
-///                      reward. The paper prints no temperature, which is T = 1 here
-///   curiosity            either of them, paid besides for what could not be foreseen; curiosity.h
+///   ε-greedy (Eq. 7)   a uniform action with probability ε, else the greedy action
+///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. T has the unit of the
+///                      reward. The paper's equation has no temperature, which is T = 1 here
+///   curiosity          either of them, with an intrinsic reward for prediction errors; curiosity.h
 ///
-/// ε and T follow a Schedule. Every agent of every farm draws from a stream of its own.
+/// ε and T follow a Schedule. Every agent of every farm has its own random stream.
 
 #include <array>
 #include <cstdint>
@@ -23,7 +23,7 @@
 
 namespace aquafarm::agents {
 
-/// Every action of the learners' action space.
+/// Mask of all actions of the action space.
 inline constexpr ActionMask kAllActions = (1U << kActionCount) - 1;
 
 enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann };
@@ -32,8 +32,8 @@ std::string_view ToString(ExplorationKind value);
 
 struct ExplorationOptions {
   ExplorationKind kind{ExplorationKind::kEpsilonGreedy};
-  Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε, or the temperature
-  /// Mean reward that curiosity pays for a step [reward]; 0: not curious.
+  Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε or temperature
+  /// Mean intrinsic reward of a step [reward]; 0 disables curiosity.
   Schedule curiosity{ScheduleKind::kConstant, 0.0};
   bool is_curious() const {
     const bool changes = curiosity.kind != ScheduleKind::kConstant;
@@ -42,23 +42,24 @@ struct ExplorationOptions {
 };
 
 /// Reads "epsilon_greedy" or "boltzmann", alone or with a schedule: "epsilon_greedy:0.1",
-/// "boltzmann:exponential:10:0.5:0.5". "icm" before them and a plus makes it curious, alone or with
-/// a schedule of its weight: "icm+epsilon_greedy:0.1", "icm:linear:2:0:0.5+boltzmann".
-/// @throws InputError with what is allowed
+/// "boltzmann:exponential:10:0.5:0.5". The prefix "icm+" adds curiosity, optionally with a schedule
+/// of its weight: "icm+epsilon_greedy:0.1", "icm:linear:2:0:0.5+boltzmann".
+/// @throws InputError listing the allowed forms
 ExplorationOptions ParseExploration(const std::string& text);
 std::string ToString(const ExplorationOptions& options);
 
-/// The best action and its value; the lowest number among equals.
+/// Greedy action and its value. Ties go to the lowest action number.
 struct Best {
   std::uint8_t action{};
   float value{};
 };
 
+/// Greedy action among the allowed ones.
 /// @param values [kActionCount]
 /// @param allowed at least one bit of kAllActions
 inline Best BestOf(const float* values, ActionMask allowed) {
   Best best{0, -std::numeric_limits<float>::infinity()};
-  if (allowed == kAllActions) {  // the usual case, without a branch per action
+  if (allowed == kAllActions) {  // the common case, without a branch per action
     best.value = values[0];
     for (std::uint8_t a = 1; a < kActionCount; ++a) {
       const bool better = values[a] > best.value;
@@ -75,21 +76,22 @@ inline Best BestOf(const float* values, ActionMask allowed) {
   return best;
 }
 
-/// Eq. 8, numerically safe for any finite values and temperature > 0; 0 for what is not allowed.
+/// Action probabilities of Eq. 8, numerically stable for finite values and temperature > 0;
+/// forbidden actions have probability 0.
 std::array<double, kActionCount> BoltzmannProbabilities(const float* values, ActionMask allowed,
                                                         double temperature);
 
-/// Chooses actions; saved and loaded it goes on bit for bit.
+/// Chooses exploratory actions. A restored explorer continues bit-identically.
 class Explorer {
  public:
   /// @param entries farms × agents; entry i draws from stream i of (seed, exploration)
-  /// @param value_scale what a reward of 1 is among the values that Choose is given
+  /// @param value_scale scale of the values passed to Choose: values per unit of reward
   Explorer(const ExplorationOptions& options, std::uint64_t seed, std::size_t entries,
            double value_scale = 1.0);
 
   /// @param progress of the run, [0, 1]
   void SetProgress(double progress);
-  /// ε or temperature in force.
+  /// Current ε or temperature.
   double level() const { return level_; }
 
   /// @param values [kActionCount]
@@ -104,7 +106,7 @@ class Explorer {
   }
 
   void Save(Checkpoint& checkpoint) const { streams_.Save(checkpoint); }
-  /// @throws InputError when it is not of as many entries
+  /// @throws InputError if the number of entries differs
   void Load(const Checkpoint& checkpoint) { streams_.Load(checkpoint); }
 
  private:

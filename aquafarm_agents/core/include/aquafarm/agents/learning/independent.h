@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Independent learners (Fig. 6; Tan 1993): each agent learns for itself with a learner of its own,
-/// as if the others were part of the sea.
+/// Independent learners (Fig. 6; Tan 1993): each agent has its own learner, which treats the other
+/// agents as part of the environment.
 
 #include <functional>
 #include <memory>
@@ -12,19 +12,20 @@
 
 namespace aquafarm::agents {
 
-/// Makes the learner of one agent. @param spec of farms with that agent alone
+/// Makes the learner of one agent. @param spec of farms with a single agent
 using MakeAgentLearner =
     std::function<std::unique_ptr<Learner>(const EnvironmentSpec& spec, std::uint64_t seed)>;
 
-/// One learner for each agent of a farm, each with chance of its own. @throws InputError of `make`
+/// Makes one learner per agent of a farm, each with its own random streams.
+/// @throws InputError from `make`
 std::unique_ptr<Learner> MakeIndependent(const EnvironmentSpec& spec, std::uint64_t seed,
                                          const MakeAgentLearner& make);
 
 using MakeAgentPolicy =
     std::function<std::unique_ptr<Policy>(const Checkpoint&, const EnvironmentSpec&)>;
 
-/// Plays what each of them learnt.
-/// @throws InputError when the policy does not fit farms of `spec`, with the reason
+/// Makes the policy that combines the policies of all agents.
+/// @throws InputError with the reason if the policy does not fit farms of `spec`
 std::unique_ptr<Policy> MakeIndependentPolicy(const Checkpoint& checkpoint,
                                               const EnvironmentSpec& spec,
                                               const MakeAgentPolicy& make);

@@ -13,32 +13,33 @@
 
 namespace aquafarm::agents {
 
-/// Thrown when learning cannot go on, such as at a loss that is no number; what() is one line.
+/// Thrown when learning cannot continue, for example after a non-finite loss. what() is one line.
 class LearnerFailed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// How a learner is getting on.
+/// Training statistics of a learner.
 struct LearnerStatus {
-  float loss{};         ///< mean square error of late (a moving average) [reward²]; NaN: none
+  float loss{};         ///< moving average of the squared TD error [reward²]; NaN before the first
   float exploration{};  ///< ε or temperature
   float learning_rate{};
 };
 
-/// Improves its values from what happens on N farms × S agents. Knows no farm and no transport.
+/// Learns from the transitions of N farms × S agents. Independent of the simulator and the
+/// transport.
 class Learner {
  public:
   virtual ~Learner() = default;
 
-  /// What it reads of Results; EncodingBits.
+  /// The observation types it requires, a mask of EncodingBits.
   virtual std::uint8_t encodings() const = 0;
-  /// All its options with their values in force; equal for learners that learn alike.
+  /// All options with their effective values. Learners with equal options learn identically.
   virtual std::string options() const = 0;
 
-  /// Learns from the transition that ended in `results` (entries with started = 1 are none), then
-  /// chooses the next actions, exploring. Only termination stops bootstrapping; truncation does
-  /// not.
+  /// Learns from the transition that ended in `results`, then chooses the next exploratory actions.
+  /// Entries with started = 1 hold no transition and are skipped. Only termination stops
+  /// bootstrapping; truncation does not.
   /// @param progress of the run, [0, 1]; drives the schedules
   /// @param actions is resized to [N, S]
   /// @throws LearnerFailed
@@ -47,14 +48,14 @@ class Learner {
 
   virtual LearnerStatus status() const = 0;
 
-  /// What it would do now, exploring nothing: a snapshot that lives on its own.
+  /// Snapshot of the current greedy policy. It is independent of the learner's lifetime.
   virtual std::unique_ptr<Policy> GreedyPolicy() const = 0;
 
-  /// Adds what MakePolicy of the same algorithm needs.
+  /// Adds the sections that MakePolicy of the same algorithm needs.
   virtual void SavePolicy(Checkpoint& checkpoint) const = 0;
-  /// Adds everything: a learner that loads it goes on bit for bit.
+  /// Adds the complete state: a learner restored from it continues bit-identically.
   virtual void Save(Checkpoint& checkpoint) const = 0;
-  /// @throws InputError when sections are missing or do not fit
+  /// Restores the state saved by Save. @throws InputError if sections are missing or do not fit
   virtual void Load(const Checkpoint& checkpoint) = 0;
 };
 

@@ -8,7 +8,7 @@
 
 namespace aquafarm::agents {
 
-/// RANDOM of §4: every action equally likely, whatever it sees, legal or not.
+/// RANDOM of §4: a uniform choice among all actions, legal or not, independent of the observation.
 class RandomPolicy final : public Policy {
  public:
   explicit RandomPolicy(std::int32_t agents) : agents_(agents) {}
@@ -24,10 +24,10 @@ class RandomPolicy final : public Policy {
   EntryStreams streams_;
 };
 
-/// RANDOM where a learner is asked for: goes through all the motions and learns nothing.
+/// RANDOM behind the Learner interface. It acts uniformly and does not learn.
 class RandomLearner final : public Learner {
  public:
-  /// @throws InputError on any option; it has none
+  /// @throws InputError unless `options` is empty
   RandomLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
   std::uint8_t encodings() const override { return 0; }
   std::string options() const override { return ""; }

@@ -4,12 +4,10 @@
 /// Q-learning (Watkins; Eq. 12) and SARSA (Rummery and Niranjan; Eq. 14) over a table of floats:
 ///
 ///   Q(s, a) ← Q(s, a) + α (r + γ V(s') − Q(s, a))        V(s') = 0 after termination
-///   Q-learning: V(s') = max over a' of Q(s', a')          SARSA: V(s') = Q(s', a') of the a'
-///   chosen
+///   Q-learning: V(s') = max_a' Q(s', a')         SARSA: V(s') = Q(s', a') of the chosen a'
 ///
-/// The two differ in V alone; both choose a' before the update. Each agent has a table of its own
-/// that all farms share, entries updated in farm order. An episode cut off at the step limit is
-/// bootstrapped like any other step.
+/// The two differ only in V. Both choose a' before the update. Each agent has one table for all
+/// farms; updates are in farm order. A truncated episode bootstraps like any other step.
 
 #include <cstdint>
 #include <memory>
@@ -21,40 +19,41 @@
 
 namespace aquafarm::agents {
 
-/// Floats [agents, states, kActionCount] row-major.
+/// Action values [agents, states, kActionCount], row-major.
 struct QTable {
   std::int32_t agents{};
   std::uint32_t states{};
   std::vector<float> values;
 
   QTable() = default;
-  /// @throws InputError when the farm has no tabular states or the table would be too large
+  /// @throws InputError if the farm has no tabular states or the table would exceed kMaxBytes
   QTable(const EnvironmentSpec& spec, float initial_value);
   std::size_t Row(std::int32_t agent, std::uint32_t state) const {
     return (static_cast<std::size_t>(agent) * states + state) * kActionCount;
   }
-  /// Largest table that is made [bytes].
+  /// Max size of a table [bytes].
   inline static constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30U;
 };
 
-/// V(s') of Eq. 12: what the best action is worth.
+/// V(s') of Eq. 12: the value of the greedy action.
 struct QLearningRule {
   static float NextValue(float best, float /*chosen*/) { return best; }
 };
-/// V(s') of Eq. 14: what the chosen action is worth.
+/// V(s') of Eq. 14: the value of the chosen action.
 struct SarsaRule {
   static float NextValue(float /*best*/, float chosen) { return chosen; }
 };
 
-/// Numbers of a tabular learner, with what was measured to do well on the shipped farms.
+/// Hyperparameters of a tabular learner. The defaults are tuned on the shipped farms.
 struct TabularOptions {
   Schedule learning_rate{ScheduleKind::kLinear, 0.5, 0.02, 1.0};
   double discount{0.97};
   ExplorationOptions exploration;
-  double initial_value{0.0};  ///< of every entry; high values make it try everything once
-  bool mask_illegal{false};   ///< never try, nor bootstrap on, actions that would be ILLEGAL
+  double initial_value{
+      0.0};                  ///< of every entry; high values are optimistic and promote exploration
+  bool mask_illegal{false};  ///< mask ILLEGAL actions when acting and bootstrapping
 
-  /// Reads "key=value …". @param resolved gets all of them with their values in force
+  /// Parses "key=value …". @param resolved receives all options with their effective values
   /// @throws InputError
   static TabularOptions Parse(const std::string& text, std::string& resolved);
 };
@@ -81,7 +80,8 @@ class TabularLearner final : public Learner {
   std::int32_t farms_;
   QTable table_;
   Explorer explorer_;
-  std::vector<std::uint64_t> pending_;  // [N, S] offset into values of the (s, a) in progress
+  std::vector<std::uint64_t>
+      pending_;  // [N, S] offset into values of the (s, a) of the current step
   float learning_rate_{};
   float loss_;
 };
@@ -89,7 +89,7 @@ class TabularLearner final : public Learner {
 extern template class TabularLearner<QLearningRule>;
 extern template class TabularLearner<SarsaRule>;
 
-/// Plays the best action of a table; the lowest number among equals.
+/// Plays the greedy action of a table. Ties go to the lowest action number.
 class GreedyTabularPolicy final : public Policy {
  public:
   GreedyTabularPolicy(QTable table, bool mask_illegal)
@@ -103,7 +103,8 @@ class GreedyTabularPolicy final : public Policy {
   bool mask_illegal_;
 };
 
-/// @throws InputError when the policy does not fit farms of `spec`, with the reason
+/// Makes a greedy policy from the table of a checkpoint.
+/// @throws InputError with the reason if the policy does not fit farms of `spec`
 std::unique_ptr<Policy> MakeTabularPolicy(const Checkpoint& checkpoint,
                                           const EnvironmentSpec& spec);
 

@@ -9,7 +9,7 @@
 
 namespace aquafarm::agents {
 
-/// Which observation a network reads, and how.
+/// Architecture of a network and the observation type that it reads.
 enum class NetworkKind : std::uint8_t {
   kMlp,  ///< the feature vector, two hidden layers
   kCnn,  ///< the planes, two convolutions and a hidden layer
@@ -17,60 +17,60 @@ enum class NetworkKind : std::uint8_t {
 inline constexpr int kNetworkKindCount = 2;
 std::string_view ToString(NetworkKind value);
 
-/// How the error of a prediction counts.
+/// Loss function of the TD error.
 enum class LossKind : std::uint8_t { kHuber, kMse };
 inline constexpr int kLossKindCount = 2;
 std::string_view ToString(LossKind value);
 
-/// Numbers and switches of DQN and LSTM-DQN. Two presets give the defaults: *tuned*, what was
-/// measured to do well on the shipped farms, and *paper*, §3.4.3 as printed with every switch off.
+/// Hyperparameters of DQN and LSTM-DQN. Two presets define the defaults: *tuned*, with values tuned
+/// on the shipped farms, and *paper*, §3.4.3 as printed with every extension disabled.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
   std::int32_t hidden{256};  ///< units of a hidden layer; of the LSTM when recurrent
-  Schedule learning_rate{ScheduleKind::kLinear, 5e-4, 1e-5, 1.0};  ///< of Adam
+  Schedule learning_rate{ScheduleKind::kLinear, 5e-4, 1e-5, 1.0};  ///< learning rate of Adam
   double discount{0.97};
   ExplorationOptions exploration{
       ExplorationKind::kEpsilonGreedy, {ScheduleKind::kLinear, 1.0, 0.005, 0.1}, {}};
-  std::int32_t batch{64};  ///< transitions, or sequences, of an update
+  std::int32_t batch{64};  ///< transitions, or sequences, per update
   Schedule steps_per_update{ScheduleKind::kConstant, 2.0};  ///< farm steps between updates
   std::uint64_t start{5000};                                ///< farm steps before the first update
-  std::uint64_t replay{100000};                             ///< transitions kept
-  std::uint64_t target_period{250};  ///< updates between copies to the target network (hard)
-  double target_rate{0.0};           ///< share copied at each update (soft) instead; 0: hard
+  std::uint64_t replay{100000};                             ///< capacity in transitions
+  std::uint64_t target_period{250};  ///< updates between hard copies to the target network
+  double target_rate{0.0};           ///< soft target update rate per update; 0: hard copies
   LossKind loss{LossKind::kHuber};
-  double gradient_limit{10.0};  ///< largest norm of a gradient; 0: none
+  double gradient_limit{10.0};  ///< max norm of the gradient; 0: no limit
 
-  // Switches beyond §3.4.3, with their sources.
+  // Extensions beyond §3.4.3, with their sources.
   bool double_q{true};        ///< van Hasselt et al. 2016
   bool dueling{false};        ///< Wang et al. 2016
-  std::int32_t n_step{1};     ///< Sutton 1988; 1: off
+  std::int32_t n_step{1};     ///< Sutton 1988; 1 disables it
   double priority{0.6};       ///< exponent α of Schaul et al. 2016; 0: uniform
-  double importance{0.4};     ///< exponent β of the same, at the start; 1 at the end
-  double reward_scale{0.05};  ///< 1: off
-  /// Share of the newest weights in a moving average, which then acts instead of them (Polyak and
-  /// Juditsky 1992; the plain mean until there are 1 / share of them); 0: off
+  double importance{0.4};     ///< initial exponent β of Schaul et al. 2016; rises to 1
+  double reward_scale{0.05};  ///< factor of the rewards; 1: unscaled
+  /// Rate of the moving average of the weights; the agents then act by the average (Polyak and
+  /// Juditsky 1992). It is the arithmetic mean for the first 1 / rate updates. 0 disables it.
   double average_rate{0.0};
-  /// α of advantage learning (Baird 1999; Bellemare et al. 2016): of what an action is worth less
-  /// than the best this share is taken off its target, so that errors of the network less often
-  /// make it the best; 0: off
+  /// α of advantage learning (Baird 1999; Bellemare et al. 2016): subtracts
+  /// α · (max_a Q − Q(s, a)) from the target, so that approximation errors change the greedy action
+  /// less often. 0 disables it.
   double action_gap{0.0};
-  /// Points that an action counts less, while exploring, for each time that it was taken in the
-  /// same situation (cell, load, devices still out) of this episode; 0: off
+  /// Penalty on the value of an action during exploration [reward], per earlier use of the action
+  /// in the same situation (cell, load, devices still out) of this episode. 0 disables it.
   double repetition_penalty{0.0};
-  bool mask_illegal{true};   ///< never try, nor bootstrap on, actions that would be ILLEGAL
-  bool mask_blocked{false};  ///< nor moves onto a charted rock, an island or off the map
+  bool mask_illegal{true};   ///< mask ILLEGAL actions when acting and bootstrapping
+  bool mask_blocked{false};  ///< also mask moves onto a charted rock, an island or off the map
 
-  // Recurrent alone (R2D2: Kapturowski et al. 2019).
-  std::int32_t sequence{4};  ///< steps learnt from; replayed=paper_tuple: 1, with burn_in 0
-  std::int32_t burn_in{2};   ///< steps before them that only warm up the state
+  // Recurrent networks only (R2D2: Kapturowski et al. 2019).
+  std::int32_t sequence{4};  ///< training steps per sequence; replayed=paper_tuple: 1, burn_in 0
+  std::int32_t burn_in{2};   ///< steps before them that only warm up the recurrent state
 
-  /// Learn the sum of all agents' values instead of each on its own (VDN); set by the algorithm.
+  /// Learn the sum of all agents' values instead of each individually (VDN); set by the algorithm.
   bool joint{};
 
   std::string device{"auto"};  ///< auto, cpu or cuda
-  std::int32_t threads{1};     ///< of the network library on the CPU
+  std::int32_t threads{1};     ///< CPU threads of the network library
 
-  /// Reads "key=value …". @param resolved gets all of them with their values in force
+  /// Parses "key=value …". @param resolved receives all options with their effective values
   /// @throws InputError
   static DeepOptions Parse(const std::string& text, bool recurrent, std::string& resolved);
 };

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The network library as it runs here: its threads, and the libraries beneath it.
+/// Runtime settings of the network library: its threads and the libraries that it links.
 
 #include <cstdint>
 #include <string>
 
 namespace aquafarm::agents {
 
-/// Sets the library's threads. A slow BLAS is noted for TakeTorchWarning.
+/// Sets the number of threads of the library. A slow BLAS is reported by TakeTorchWarning.
 void PrepareTorch(std::int32_t threads);
 
-/// What there is to warn of about the network library, told once, after a learner or a policy was
-/// made; one line for people, empty: nothing.
+/// Warning about the network library, returned once after a learner or a policy was made. One
+/// readable line; empty if there is no warning.
 std::string TakeTorchWarning();
 
-/// The libraries that networks learn with here, such as "libtorch 1.13.1, OpenBLAS 0.3.21 …
-/// SkylakeX": where they or the kernels differ, the last bits of a training do. Empty: no network
-/// was made.
+/// Libraries used by the networks, such as "libtorch 1.13.1, OpenBLAS 0.3.21 … SkylakeX". Other
+/// versions or kernels change the last bits of a training. Empty if no network was made.
 std::string NetworkLibraries();
 
 }  // namespace aquafarm::agents

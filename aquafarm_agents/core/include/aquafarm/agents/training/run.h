@@ -15,14 +15,14 @@
 
 namespace aquafarm::agents {
 
-/// What agents learn from where a scenario shares the reward: `own`, each from its own part, or
-/// `shared`, all from the sum. Returns are the team's in any case.
+/// Credit assignment in scenarios with a team reward: each agent learns from its individual reward
+/// (`own`), or all agents learn from the sum (`shared`). Reported returns are always the team's.
 inline constexpr std::array<const char*, 2> kCredits{"own", "shared"};
 
-/// A training from its first argument to its summary, wherever the farms are.
+/// Arguments of a training run, with farms in this process or behind ROS services.
 struct RunOptions {
   std::string algorithm{"q_learning"};  ///< or kAutoAlgorithm
-  std::string exploration;              ///< empty: the algorithm's own
+  std::string exploration;              ///< empty: default of the algorithm
   std::string options;                  ///< key=value …; see OptionReader
   std::string credit{"own"};            ///< own or shared; see kCredits
   std::uint64_t seed{1};
@@ -32,46 +32,47 @@ struct RunOptions {
   bool resume{};
   double checkpoint_period_s{30.0};
   double progress_period_s{1.0};
-  std::int32_t evaluation_episodes{1000};  ///< greedy, at the end; 0: none
-  std::int32_t random_episodes{100};       ///< of RANDOM beside it; 0: none
+  std::int32_t evaluation_episodes{1000};  ///< greedy, at the end; 0 disables them
+  std::int32_t random_episodes{100};       ///< of RANDOM, for comparison; 0 disables them
   std::vector<std::string> arguments;      ///< as given; for run.json
 };
 
-/// What those who watch are told.
+/// Phase of a training run, as reported to observers.
 enum class RunPhase : std::uint8_t { kStarting, kTraining, kEvaluating, kEnded };
 
 struct RunStatus {
   RunPhase phase{};
-  std::string algorithm;  ///< once auto has chosen, what it chose
+  std::string algorithm;  ///< the selected algorithm once auto has chosen
   TrainingProgress progress;
-  Evaluation evaluation;  ///< of the learner; meaningful once phase is kEnded and has_evaluation
+  Evaluation evaluation;  ///< of the learner; valid if phase is kEnded and has_evaluation is true
   bool has_evaluation{};
-  std::string message;       ///< one line for people; empty: nothing to say
-  const Learner* learner{};  ///< while it trains; only for the time of the call
+  std::string message;       ///< one readable line; empty if there is no message
+  const Learner* learner{};  ///< set during training; valid only during the call
 };
 
 struct RunReport {
   ExitCode code{};
   RunStatus status;
   Evaluation random;
-  std::int32_t farms{};     ///< stepped together; 0: none were reached
-  std::string summary;      ///< a few lines for people
-  std::string policy_path;  ///< empty: none was written
+  std::int32_t farms{};     ///< number of farms; 0 if no environment was made
+  std::string summary;      ///< a few readable lines
+  std::string policy_path;  ///< empty if no policy was written
 };
 
-/// Refuses options that cannot work, before anything is started.
-/// @throws InputError
+/// Validates the options before the run starts. @throws InputError
 void CheckRunOptions(const RunOptions& options);
 
-/// Makes the environment for the encodings that the algorithm reads.
+/// Makes the environment with the observation types that the algorithm requires.
 using MakeEnvironment = std::function<std::unique_ptr<Environment>(std::uint8_t encodings)>;
 
-/// Trains, saves the policy, evaluates it against RANDOM. Throws nothing; the report says it all.
+/// Trains, saves the policy and evaluates it against RANDOM. Never throws; errors are returned in
+/// the report.
 RunReport Train(const RunOptions& options, const MakeEnvironment& make_environment,
                 const std::function<void(const RunStatus&)>& on_status,
                 const std::atomic<bool>* stop);
 
-/// "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  success 0.62  … left 1.2 s"
+/// Progress line: "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  success 0.62  … left 1.2
+/// s"
 std::string DescribeProgress(const TrainingProgress& progress);
 
 }  // namespace aquafarm::agents

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Where a training keeps everything:
+/// Folder with all files of a training run:
 ///
 ///   lock           held while a process trains here
 ///   scenario.yaml  canonical text of the farm
 ///   run.json       algorithm, options, seed, limits, version, scenario hash, arguments
-///   metrics.csv    a line an episode
+///   metrics.csv    one line per episode
 ///   checkpoints/   the last two, named by their steps
-///   policy.ckpt    what was learnt, at the end
+///   policy.ckpt    the learned policy, written at the end
 ///   evaluation.*   the greedy evaluation at the end
 
 #include <cstdint>
@@ -22,10 +22,10 @@ namespace aquafarm::agents {
 
 class RunFolder {
  public:
-  /// Opens or makes the folder, tries whether it can be written, and locks it.
-  /// @param resume false: a folder that holds a run already is refused
-  /// @throws StorageError when it cannot be written or another process trains here;
-  ///         InputError when it holds a run and `resume` is false, or none and it is true
+  /// Opens or creates the folder, checks that it is writable and locks it.
+  /// @param resume true to continue the run in the folder, false to start a new one
+  /// @throws StorageError if it is not writable or another process trains here;
+  ///         InputError if it contains a run and `resume` is false, or no run and `resume` is true
   RunFolder(std::string path, bool resume);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
@@ -35,15 +35,15 @@ class RunFolder {
   std::string metrics_path() const { return path_ + "/metrics.csv"; }
   std::string policy_path() const { return path_ + "/policy.ckpt"; }
 
-  /// @throws StorageError
+  /// Writes a file of the folder atomically. @throws StorageError
   void Write(const std::string& name, const std::string& bytes) const;
 
   /// Writes checkpoints/step_<steps>.ckpt and removes all but the last two.
-  /// @throws StorageError; those before stay
+  /// @throws StorageError; older checkpoints are then kept
   void SaveCheckpoint(const Checkpoint& checkpoint) const;
-  /// Paths of all checkpoints, the newest first.
+  /// Paths of all checkpoints, newest first.
   std::vector<std::string> Checkpoints() const;
-  /// Path of the newest checkpoint, if there is one.
+  /// Path of the newest checkpoint; nullopt if there is none.
   std::optional<std::string> NewestCheckpoint() const { return NewestCheckpoint(path_); }
   static std::optional<std::string> NewestCheckpoint(const std::string& run_folder);
 
@@ -54,7 +54,7 @@ class RunFolder {
   int lock_{-1};
 };
 
-/// A folder for a run that was given none: runs/<date>-<time>.
+/// Default folder of a run: runs/<date>-<time>.
 std::string NewRunFolder();
 
 }  // namespace aquafarm::agents

@@ -9,20 +9,20 @@
 
 namespace aquafarm::agents {
 
-/// A policy as it was found on disk.
+/// A policy loaded from disk, or a built-in one.
 struct SavedPolicy {
-  std::string path;       ///< file that it was read from, or the name of one that needs none
-  Checkpoint checkpoint;  ///< what the file says; of one without a file its algorithm alone
+  std::string path;       ///< source file, or the name of a built-in policy
+  Checkpoint checkpoint;  ///< contents of the file; a built-in policy has only the algorithm
   std::uint8_t encodings{};
 };
 
-/// Finds a policy.
+/// Finds a policy by path or name.
 /// @param where a run folder, a policy or checkpoint file, or random, planner or clairvoyant
-/// @throws InputError when there is none, or it is damaged
+/// @throws InputError if there is no such policy, or the file is damaged
 SavedPolicy FindPolicy(const std::string& where);
 
-/// Makes it play on farms of `spec`, which need not be the scenario that it was trained on.
-/// @throws InputError when it does not fit, with the reason
+/// Makes a policy that plays on farms of `spec`. The scenario may differ from that of the training.
+/// @throws InputError with the reason if it does not fit
 std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

@@ -18,63 +18,63 @@
 namespace aquafarm::agents {
 
 struct TrainerOptions {
-  std::string algorithm;             ///< name, for checkpoints
-  std::uint64_t seed{1};             ///< of episodes; below kEvaluationSeedBit
-  std::uint64_t episodes{};          ///< 0: no such limit
-  std::uint64_t steps{};             ///< farm steps; 0: no such limit. One of the two is needed
-  double checkpoint_period_s{30.0};  ///< changes no result
+  std::string algorithm;             ///< name stored in checkpoints
+  std::uint64_t seed{1};             ///< seed of the episodes; below kEvaluationSeedBit
+  std::uint64_t episodes{};          ///< limit; 0: no limit. One of the two limits is required
+  std::uint64_t steps{};             ///< limit in farm steps; 0: no limit
+  double checkpoint_period_s{30.0};  ///< does not affect results
   double progress_period_s{1.0};
 };
 
-/// How a training is getting on.
+/// Progress of a training.
 struct TrainingProgress {
   std::uint64_t episodes{};
   std::uint64_t steps{};          ///< farm steps
-  std::uint64_t episode_limit{};  ///< 0: none
-  std::uint64_t step_limit{};     ///< 0: none
-  float last_return{};            ///< NaN: no episode has ended
-  float mean_return{};            ///< of the last kWindow episodes; NaN: none
-  float best_mean_return{};       ///< best mean over a full window; NaN: none yet
-  float success_rate{};           ///< of the last kWindow episodes; NaN: none
+  std::uint64_t episode_limit{};  ///< 0: no limit
+  std::uint64_t step_limit{};     ///< 0: no limit
+  float last_return{};            ///< NaN before the first episode has ended
+  float mean_return{};            ///< of the last kWindow episodes; NaN before the first
+  float best_mean_return{};       ///< best mean over a full window; NaN before the first
+  float success_rate{};           ///< of the last kWindow episodes; NaN before the first
   LearnerStatus learner;
   double steps_per_second{};
   double elapsed_s{};        ///< in this process
-  double time_left_s{-1.0};  ///< -1: not known
-  std::uint32_t restarts{};  ///< times that lost farms came back fresh
+  double time_left_s{-1.0};  ///< -1 if unknown
+  std::uint32_t restarts{};  ///< number of times that lost farms were replaced by new ones
   inline static constexpr int kWindow = 50;
 };
 
-/// Why a training came to its end.
+/// Reason for the end of a training.
 enum class TrainingEnd : std::uint8_t { kDone, kInterrupted, kLost, kStorage, kDiverged };
 
-/// Lets a learner train on an environment: limits, progress, metrics, checkpoints, interruption.
-/// The same options give the same bits however often it was stopped and resumed.
+/// Trains a learner on an environment: limits, progress, metrics, checkpoints, interruption. The
+/// same options give bit-identical results, however often the training is stopped and resumed.
 class Trainer {
  public:
-  /// @param folder for metrics and checkpoints; null: none are kept
-  /// @throws InputError when no limit is given
+  /// @param folder for metrics and checkpoints; null to write none
+  /// @throws InputError if no limit is set
   Trainer(Environment& environment, Learner& learner, const TrainerOptions& options,
           RunFolder* folder = nullptr);
   ~Trainer();
 
-  /// Goes on from a checkpoint of the same run. Before Run.
-  /// @param path stands first in messages
-  /// @throws InputError when it does not fit, with what differs
+  /// Continues from a checkpoint of the same run. Must be called before Run.
+  /// @param path prefix of error messages
+  /// @throws InputError naming the difference if it does not fit
   void Resume(const Checkpoint& checkpoint, const std::string& path);
 
   using OnProgress = std::function<void(const TrainingProgress&)>;
 
-  /// Trains until a limit is reached or `stop` is set, and saves. Never throws what the farms or
-  /// the disk do: see the end and message().
-  /// @param stop may be set by a signal handler; null: never
+  /// Trains until a limit is reached or `stop` is set, then saves. Does not throw on failures of
+  /// the farms or the disk: they are reported by the returned end and message().
+  /// @param stop may be set by a signal handler; null if the training cannot be stopped
   TrainingEnd Run(const std::atomic<bool>* stop = nullptr, const OnProgress& on_progress = {});
 
   TrainingProgress progress() const { return progress_; }
-  /// What went wrong, one line for people; empty: nothing.
+  /// Error message, one readable line; empty if there was no error.
   const std::string& message() const { return message_; }
-  /// What there is to tell since the last call, one line for people; empty: nothing.
+  /// Returns and clears the latest notice, one readable line; empty if there is none.
   std::string TakeNotice() { return std::exchange(notice_, {}); }
-  /// Share of the run that is done, [0, 1].
+  /// Fraction of the run that is done, [0, 1].
   double Done() const;
 
  private:
@@ -93,10 +93,10 @@ class Trainer {
   RunFolder* const folder_;
   std::unique_ptr<MetricsFile> metrics_;
 
-  const Results* results_{};  // that stand; null: not begun
+  const Results* results_{};  // current; null before the start
   std::vector<std::uint8_t> actions_;
   TrainingProgress progress_;
-  std::uint64_t next_episode_{};  // beyond all that have begun
+  std::uint64_t next_episode_{};  // above all started episodes
   std::vector<float> returns_ = std::vector<float>(TrainingProgress::kWindow);  // ring
   std::vector<std::uint8_t> successes_ = std::vector<std::uint8_t>(TrainingProgress::kWindow);
   LearnerStatus status_;

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/base/hash.h"
 #include "aquafarm/base/version.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm_sim/bags/bag_ranch.h"
@@ -25,6 +26,20 @@
 
 namespace aquafarm_sim {
 namespace {
+
+// Whether a definition has the text of this version or, with other comments, of an earlier one.
+bool IsSameText(const std::string& type, const std::string& in_bag,
+                const std::string& in_this_version) {
+  // Checksums of the texts of version 0.1.0 (commit 859eafa).
+  static const std::map<std::string, std::uint64_t> kVersion010{
+      {"aquafarm_msgs/FarmSpec", 0xc74863b23d59b24eU},
+      {"aquafarm_msgs/FarmState", 0x5225216189e06b76U},
+      {"aquafarm_msgs/SavedState", 0xfea0953b02051c1aU},
+      {"aquafarm_msgs/EpisodeSummary", 0x49c1b3db06029400U}};
+  if (in_bag == in_this_version) return true;
+  const auto known = kVersion010.find(type);
+  return known != kVersion010.end() && known->second == aquafarm::HashBytes(in_bag);
+}
 
 using aquafarm::Farm;
 using aquafarm::InputError;
@@ -318,7 +333,8 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
   return ReadingBag(path, [&] {
     rosbag::Bag bag;
     OpenBag<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path);
-    CheckMessages<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path, true);
+    CheckMessages<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path,
+                                                                                  IsSameText);
     const std::string ranch = FindRanch(bag, path, ns);
     BagCheck refused;
     auto specs = ReadSpecs(bag, ranch + names::kSpec, refused.difference);

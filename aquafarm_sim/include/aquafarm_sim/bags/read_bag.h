@@ -18,14 +18,12 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
 #include "aquafarm/base/check.h"
-#include "aquafarm/base/hash.h"
 #include "aquafarm_sim/bags/bag_structure.h"
 #include "aquafarm_sim/names.h"
 
@@ -110,33 +108,24 @@ auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
 
 }  // namespace internal
 
-/// Returns true if a definition is the text that an earlier version had: its comments were other
-/// ones, its fields the same.
-inline bool IsEarlierDefinition(const std::string& type, const std::string& definition) {
-  // Checksums of the texts of version 0.1.0 (commit 859eafa).
-  static const std::map<std::string, std::uint64_t> kVersion010{
-      {"aquafarm_msgs/FarmSpec", 0xc74863b23d59b24eU},
-      {"aquafarm_msgs/FarmState", 0x5225216189e06b76U},
-      {"aquafarm_msgs/SavedState", 0xfea0953b02051c1aU},
-      {"aquafarm_msgs/EpisodeSummary", 0x49c1b3db06029400U}};
-  const auto known = kVersion010.find(type);
-  return known != kVersion010.end() && known->second == aquafarm::HashBytes(definition);
-}
+/// Compares the definition of a message type in a bag with that of this version.
+using SameText = bool(const std::string& type, const std::string& in_bag,
+                      const std::string& in_this_version);
 
 /// Checks that the bag's definitions of the given message types equal those of this version.
-/// @param to_the_letter true: comments and whitespace must be equal, too, to those of this version
-/// or
-///        of an earlier one
+/// @param is_same_text compares the text of a definition, comments included, with this version's;
+///        nullptr: only the md5 sums are compared
 /// @throws aquafarm::InputError if a topic of one of these types has another definition
 template <typename... Messages>
-void CheckMessages(const rosbag::Bag& bag, const std::string& path, bool to_the_letter = false) {
+void CheckMessages(const rosbag::Bag& bag, const std::string& path,
+                   SameText* is_same_text = nullptr) {
   namespace traits = ros::message_traits;
   rosbag::View view(bag);
   for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
     const auto is_other = [&](const char* type, const char* md5sum, const char* definition) {
-      return connection->datatype == type &&
-             (connection->md5sum != md5sum || (to_the_letter && connection->msg_def != definition &&
-                                               !IsEarlierDefinition(type, connection->msg_def)));
+      if (connection->datatype != type) return false;
+      return connection->md5sum != md5sum ||
+             (is_same_text != nullptr && !is_same_text(type, connection->msg_def, definition));
     };
     if (!(is_other(traits::datatype<Messages>(), traits::md5sum<Messages>(),
                    traits::definition<Messages>()) ||

@@ -251,8 +251,7 @@ class AgentDriver::Impl {
   Results results_;  // of one farm; only this ship's entries are filled
   std::vector<std::uint8_t> actions_;
   FarmState::ConstPtr newest_;
-  std::vector<FarmState::ConstPtr>
-      over_;  // last states of ended episodes that are not processed yet
+  std::vector<FarmState::ConstPtr> over_;  // last states of ended, unprocessed episodes
   std::optional<std::pair<std::uint64_t, std::uint64_t>> over_seen_;  // seed and episode
   FarmState::ConstPtr acted_on_;  // the current actions were chosen from it
   FarmState::ConstPtr seen_;      // last observation returned by WaitForObservation

@@ -142,7 +142,8 @@ class AgentDriver::Impl {
     over_.push_back(message);
   }
 
-  // Waits for an observation newer than the last one; null if there is none yet.
+  // Waits for a new observation, or returns the last one again if its command must be repeated;
+  // null if there is none after kSilence_s.
   FarmState::ConstPtr WaitForObservation() {
     const ros::WallTime start = ros::WallTime::now();
     while (!Stopped()) {

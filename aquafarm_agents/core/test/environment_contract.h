@@ -179,8 +179,7 @@ inline void ExpectBadBytesAreRefused(Environment& environment) {
 /// Runs the contract test.
 /// @param environment must provide hashes
 /// @param one_ship_masks true to check outcomes against masks, which requires that no other ship
-/// can
-///        act in between
+///        can act in between
 inline void RunEnvironmentContract(Environment& environment, int steps = 600,
                                    bool one_ship_masks = true) {
   const EnvironmentSpec& spec = environment.spec();

@@ -142,7 +142,8 @@ class AgentDriver::Impl {
     over_.push_back(message);
   }
 
-  // Waits for an observation newer than the last one; null if there is none yet.
+  // Waits for a new observation, or returns the last one again if its command must be repeated;
+  // null if there is none after kSilence_s.
   FarmState::ConstPtr WaitForObservation() {
     const ros::WallTime start = ros::WallTime::now();
     while (!Stopped()) {
@@ -251,8 +252,7 @@ class AgentDriver::Impl {
   Results results_;  // of one farm; only this ship's entries are filled
   std::vector<std::uint8_t> actions_;
   FarmState::ConstPtr newest_;
-  std::vector<FarmState::ConstPtr>
-      over_;  // last states of ended episodes that are not processed yet
+  std::vector<FarmState::ConstPtr> over_;  // last states of ended, unprocessed episodes
   std::optional<std::pair<std::uint64_t, std::uint64_t>> over_seen_;  // seed and episode
   FarmState::ConstPtr acted_on_;  // the current actions were chosen from it
   FarmState::ConstPtr seen_;      // last observation returned by WaitForObservation

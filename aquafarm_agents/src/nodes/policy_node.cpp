@@ -105,8 +105,7 @@ void TellEnded(std::size_t successes, std::size_t episodes) {
   std::printf("%zu of %zu episodes ended with every device delivered\n", successes, episodes);
 }
 
-// Values are those of ship 0. If each ship has its own node, only the node of ship 0 publishes
-// them.
+// Values are those of ship 0, so if each ship has its own node, only that of ship 0 publishes.
 double ValuesPeriod_s(const PolicyParams& params) {
   return params.ship > 0 ? 0.0 : params.values_period_s;
 }

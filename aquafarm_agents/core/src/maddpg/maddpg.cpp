@@ -355,8 +355,7 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
     const torch::Tensor forbidden = ToDevice(to_.forbidden, joint);
     const torch::Tensor logits = Logits(target_actors_, to_) + forbidden;
     const torch::Tensor present = ToDevice(to_.present, each);
-    const torch::Tensor best =
-        logits.argmax(2) * present.to(torch::kLong);  // 0 for agents that are done
+    const torch::Tensor best = logits.argmax(2) * present.to(torch::kLong);  // 0 if done
     const torch::Tensor chosen = torch::one_hot(best, kActionCount).to(torch::kFloat);
     const torch::Tensor values = target_critic_.Forward(Observations(to_)[options_.window - 1],
                                                         chosen * present.unsqueeze(2));

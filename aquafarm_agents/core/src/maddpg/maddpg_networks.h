@@ -26,8 +26,7 @@ class ActorTeam final : public torch::nn::Module {
   /// @param observations [T, B, S, F]
   /// @param keeps [T, B, S] 0 resets the recurrent state before that step
   /// @param carry [B, S, carry_size] recurrent state before the window; receives the state after
-  /// it.
-  ///        Undefined if the actors are not recurrent
+  ///        it. Undefined if the actors are not recurrent
   /// @returns [B, S, kActionCount]
   torch::Tensor Forward(const torch::Tensor& observations, const torch::Tensor& keeps,
                         torch::Tensor& carry);

@@ -38,6 +38,7 @@ struct MaddpgOptions {
   std::string device{"auto"};   ///< auto, cpu or cuda
   std::int32_t threads{1};
 
+  /// Parses "key=value …". @param resolved receives all options with their effective values
   /// @throws InputError
   static MaddpgOptions Parse(const std::string& text, std::string& resolved);
 };

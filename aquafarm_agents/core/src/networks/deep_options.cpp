@@ -20,8 +20,7 @@ DeepOptions Tuned(bool recurrent) {
   return options;
 }
 
-// Only the values printed in §3.4.3 and Algorithm 2. Values that they leave open are the tuned
-// ones.
+// Sets only the values printed in §3.4.3 and Algorithm 2. The others keep the tuned defaults.
 DeepOptions Paper(bool recurrent) {
   DeepOptions options = Tuned(recurrent);
   options.loss = LossKind::kMse;

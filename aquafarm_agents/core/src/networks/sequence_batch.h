@@ -37,7 +37,7 @@ struct SequenceBatch {
   /// Fills run b, which trains from `moment` on. The state is warmed up over the burn_in time steps
   /// before it, from the state stored at the first of them. A run never crosses an episode start:
   /// near it the run begins at the first time step of the episode, whose state is exactly zero.
-  /// Near the end of the ring the run begins at the oldest stored time step, with its stored state.
+  /// If earlier time steps are overwritten, it begins at the oldest one, with its stored state.
   void Fill(std::size_t b, const Replay<float>& replay, const Moment& moment,
             const DeepOptions& options);
 

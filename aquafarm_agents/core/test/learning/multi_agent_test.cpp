@@ -74,8 +74,7 @@ TEST(TwoShips, AreLedHomeByLearnersOfValuesThatRemember) {
   }
 }
 
-// The shipped settings except for the size and a longer exploration: a tenth of such a short run is
-// not enough.
+// The shipped settings except for the size and a longer exploration, because the runs are short.
 const std::string kActors =
     "start=500 replay=20000 exploration=epsilon_greedy:linear:1:0.05:0.5 hidden=";
 

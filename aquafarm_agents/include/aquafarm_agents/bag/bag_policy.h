@@ -29,17 +29,15 @@ struct EpisodeChoices {
 
 struct BagChoices {
   std::vector<EpisodeChoices> episodes;
-  std::string
-      difference;       ///< first state that the actions do not reproduce; empty if there is none
-  std::string no_maps;  ///< reason why requested maps were not written; empty if they were
+  std::string difference;  ///< first state that the actions do not reproduce; empty if none
+  std::string no_maps;     ///< reason why requested maps were not written; empty if they were
 };
 
 struct BagPolicyOptions {
   std::string ns;      ///< namespace of the ranch; empty: the only one in the bag
   std::string output;  ///< bag to write: a copy with `choice` and values; empty to write none
-  std::uint64_t values_every{10};  ///< steps between two value maps in the output; 0: no maps
-  std::set<std::uint64_t>
-      values_at;  ///< steps with a value map; overrides values_every if not empty
+  std::uint64_t values_every{10};     ///< steps between two value maps in the output; 0: no maps
+  std::set<std::uint64_t> values_at;  ///< steps with a value map; empty: use values_every
 };
 
 /// Compares a bag with a policy.

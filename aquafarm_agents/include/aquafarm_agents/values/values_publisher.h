@@ -46,8 +46,7 @@ class ValuesPublisher {
   const std::chrono::duration<double> period_;
   ros::Publisher grid_;
   ros::Publisher points_;
-  std::unique_ptr<aquafarm::FarmBatch>
-      farms_;  // copies of the sim node's farms; used only by the thread
+  std::unique_ptr<aquafarm::FarmBatch> farms_;  // copies of the sim node's; used by the thread
   std::string frame_;
   Clock::time_point copy_due_;  // used only by the caller of Refresh
 

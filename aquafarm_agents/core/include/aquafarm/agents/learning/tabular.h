@@ -49,9 +49,8 @@ struct TabularOptions {
   Schedule learning_rate{ScheduleKind::kLinear, 0.5, 0.02, 1.0};
   double discount{0.97};
   ExplorationOptions exploration;
-  double initial_value{
-      0.0};                  ///< of every entry; high values are optimistic and promote exploration
-  bool mask_illegal{false};  ///< mask ILLEGAL actions when acting and bootstrapping
+  double initial_value{0.0};  ///< of every entry; optimistic (high) values promote exploration
+  bool mask_illegal{false};   ///< mask ILLEGAL actions when acting and bootstrapping
 
   /// Parses "key=value …". @param resolved receives all options with their effective values
   /// @throws InputError
@@ -80,8 +79,7 @@ class TabularLearner final : public Learner {
   std::int32_t farms_;
   QTable table_;
   Explorer explorer_;
-  std::vector<std::uint64_t>
-      pending_;  // [N, S] offset into values of the (s, a) of the current step
+  std::vector<std::uint64_t> pending_;  // [N, S] offset into values of the current (s, a)
   float learning_rate_{};
   float loss_;
 };

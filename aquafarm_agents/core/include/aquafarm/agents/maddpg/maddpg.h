@@ -7,12 +7,10 @@
 ///   o_i ─ actor i ─ logits ─ Gumbel-softmax ─ a_i       critic i (o_1 … o_S, a_others) → Q_i(a_i)
 ///
 ///   critic   y_i = r_i + γ Q_i'(o', a'). The others' a' are the most likely actions of their
-///   target
-///            actors; the own a_i' is the best response to them (best_response=false: that of the
-///            own target actor). Huber loss
+///            target actors; the own a_i' is the best response to them (best_response=false: that
+///            of the own target actor). Huber loss
 ///   actor i  maximizes Q_i(o, a) − logit_penalty · mean logits², with a relaxed a_i and the
-///   replayed
-///            actions of the others
+///            replayed actions of the others
 ///
 /// The critic returns the values of all actions of its agent at once, as in COMA (Foerster et al.
 /// 2018). It is therefore linear in a_i, and its gradient at a relaxed action is exact. One network

@@ -71,8 +71,7 @@ RunReport Train(const RunOptions& options, const MakeEnvironment& make_environme
                 const std::function<void(const RunStatus&)>& on_status,
                 const std::atomic<bool>* stop);
 
-/// Progress line: "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  success 0.62  … left 1.2
-/// s"
+/// Progress line: "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  …  left 1.2 s".
 std::string DescribeProgress(const TrainingProgress& progress);
 
 }  // namespace aquafarm::agents

@@ -84,6 +84,12 @@ TEST_F(EpisodeBag, EverySummaryBelongsToItsEpisodeAndEveryEndHasOne) {
             }));
 }
 
+TEST(OldBag, OfVersion010IsVerifiedInSpiteOfItsOtherComments) {
+  const BagCheck check = CheckBag(AQUAFARM_SIM_TEST_DATA "/version_0_1_0.bag", "");
+  EXPECT_EQ("", check.difference);
+  EXPECT_EQ(1U, check.episodes);
+}
+
 TEST_F(EpisodeBag, ASecondSpecThatDiffersIsFound) {
   const std::string path = Changed(OneBag(), true, [](auto*, auto*, auto*) { return true; });
   FarmSpec spec;

@@ -12,6 +12,7 @@
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/planning/team_bound.h"
 #include "aquafarm/agents/training/saved_policy.h"
+#include "aquafarm/scenario/limits.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -126,7 +127,7 @@ int Main(int argc, char** argv) {
   app.add_option("-e,--episodes", arguments.episodes, "episodes")->check(CLI::Range(1, 10000000));
   app.add_option("-s,--seed", arguments.seed, "seed of the episodes");
   app.add_option("-f,--farms", arguments.environment.farms, "farms stepped together")
-      ->check(CLI::Range(1, 4096));
+      ->check(CLI::Range(1, kMaxFarms));
   app.add_option("-w,--write", arguments.output,
                  "write <this>.csv and <this>.json; empty: nothing");
   app.add_option(

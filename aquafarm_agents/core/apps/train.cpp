@@ -8,6 +8,7 @@
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/run.h"
+#include "aquafarm/scenario/limits.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -55,7 +56,7 @@ int Main(int argc, char** argv) {
                  "eight a state of a large table");
   app.add_option("-s,--seed", options.seed, "seed of episodes and exploration");
   app.add_option("-f,--farms", environment.farms, "farms stepped together")
-      ->check(CLI::Range(1, 4096));
+      ->check(CLI::Range(1, kMaxFarms));
   app.add_option("-t,--threads", environment.threads, "threads that step them")
       ->check(CLI::Range(1, 256));
   app.add_option("-d,--run-dir", options.run_dir, "run folder; empty: a new one under ./runs");

@@ -12,6 +12,7 @@
 
 #include "aquafarm/agents/training/run.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/scenario/limits.h"
 #include "aquafarm_agents/link/ros_environment.h"
 #include "aquafarm_agents/nodes/node.h"
 #include "aquafarm_agents/nodes/signals.h"
@@ -48,7 +49,7 @@ TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   reader.Int("episodes", 0, INT_MAX, episodes);
   reader.Number("steps", 0.0, 1e15, steps);
   reader.Int("seed", 0, INT_MAX, seed);
-  reader.Int("farms", 0, 4096, params.environment.farms);
+  reader.Int("farms", 0, aquafarm::kMaxFarms, params.environment.farms);
   reader.Text("run_dir", params.run.run_dir);
   reader.Flag("resume", params.run.resume);
   reader.Number("checkpoint_period_s", 0.0, 86400.0, params.run.checkpoint_period_s);

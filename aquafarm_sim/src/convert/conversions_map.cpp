@@ -6,14 +6,15 @@
 #include <limits>
 #include <vector>
 
+#include "aquafarm/base/angle.h"
+#include "aquafarm/scenario/limits.h"
 #include "aquafarm_sim/convert/conversions.h"
 
 namespace aquafarm_sim {
 namespace {
 
-/// The worst possible risk of a disaster (§2.1 of the paper, docs/model.md).
-constexpr float kWorstRisk = -20.0F;
-constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
+using aquafarm::kRadiansPerDegree;
+using aquafarm::kWorstRisk;
 
 void FillGridInfo(const aquafarm::Scenario& scenario, const MessageContext& context,
                   nav_msgs::OccupancyGrid& message) {

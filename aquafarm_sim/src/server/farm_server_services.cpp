@@ -387,7 +387,7 @@ void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     const std::int32_t end = request.farm < 0 ? batch_->farms() : first + 1;
     for (std::int32_t i = first; i < end; ++i) {
       const auto count = static_cast<std::int32_t>(batch_->farm(i).disasters().size());
-      const std::int32_t most = std::min(count, aquafarm::Farm::kMaxDisasters - 1);
+      const std::int32_t most = std::min(count, aquafarm::kMaxDisasters - 1);
       if (request.id < 0 || request.id > most) {
         return Answer(Outcome::BAD_VALUE, OutOfRange("id", request.id, 0, most), response);
       }

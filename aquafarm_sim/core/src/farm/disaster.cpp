@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "aquafarm/base/angle.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/grid/action.h"
 
@@ -17,7 +18,7 @@ struct SineCosine {
 };
 
 SineCosine OfFirstOctant(int degrees) {
-  const double x = degrees * (3.14159265358979323846 / 180.0);
+  const double x = degrees * kRadiansPerDegree;
   double sine = 0.0;
   double cosine = 0.0;
   double term = 1.0;

@@ -14,6 +14,7 @@
 #include <algorithm>
 
 #include "aquafarm/grid/geo_frame.h"
+#include "aquafarm/scenario/limits.h"
 #include "scenario/domains.h"
 
 namespace aquafarm::internal {
@@ -22,11 +23,9 @@ enum class Need : std::uint8_t { kOptional, kRequired };
 
 inline constexpr std::size_t kMaxListed = 100000;     ///< islands or rocks; no real farm has more
 inline constexpr std::size_t kMaxSeaValues = 200000;  ///< limits a file to a few MB
-inline constexpr std::size_t kMaxDisasters = 64;
 inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::size_t kMaxWaypoints = 10000;
 inline constexpr std::int32_t kMaxDevices = 1000;
-inline constexpr std::int32_t kMaxShips = 64;
 inline constexpr std::int32_t kMaxPorts = 256;
 inline constexpr std::int32_t kMaxSteps = 10000000;  // below 2^24, so exact as a float
 inline constexpr float kFar = 1.0e6F;                // [cells]
@@ -35,7 +34,7 @@ inline constexpr Interval<float> kShare{0.0F, 1.0F};
 inline constexpr Interval<float> kRadius{0.0F, kFar};
 inline constexpr Interval<float> kPlace{-kFar, kFar};
 inline constexpr Interval<float> kStep{-static_cast<float>(kMaxSteps), kMaxSteps};
-inline constexpr Interval<float> kRisk{-20.0F, -5.0F};  // paper §2.1, see docs/model.md
+inline constexpr Interval<float> kRisk{kWorstRisk, kMildestRisk};
 inline constexpr Interval<float> kPenalty{-1000.0F, 0.0F};
 inline constexpr Interval<float> kReward{-10000.0F, 10000.0F};
 inline constexpr Interval<float> kDeviceValue{0.0F, 10000.0F};

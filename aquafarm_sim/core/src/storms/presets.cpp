@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "aquafarm/base/angle.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/validate.h"
 #include "base/text.h"
@@ -14,8 +15,6 @@ namespace aquafarm {
 namespace {
 
 using internal::Interval;
-
-constexpr double kPi = 3.14159265358979323846;
 
 // The keys of one preset, each asked for once.
 class Keys {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "aquafarm/base/angle.h"
 #include "base/name_of.h"
 
 namespace aquafarm {
@@ -38,7 +39,6 @@ class HollandProfile {
     constexpr double kAmbient_hpa = 1010.0;
     constexpr double kAirDensity = 1.15;  // kg/m3
     constexpr double kEarthRotation = 7.292e-5;
-    constexpr double kPi = 3.14159265358979323846;
     const double latitude = std::abs(fix.position.latitude);
     const double wind = *fix.wind_mps;
     max_wind_radius_ = 1000.0 * fix.max_wind_radius_km.value_or(

@@ -131,7 +131,7 @@ TEST(ValidateScenario, NamesTheDisaster) {
   scenario.disasters[1].radii = {1.0F, 1.0F, 2.0F};
   EXPECT_EQ(MessageOf([&] { ValidateScenario(scenario); }),
             "disasters[1].radii[1]: got 1, expected more than radii[0] = 1");
-  scenario.disasters.assign(Farm::kMaxDisasters, DisasterSpec{});
+  scenario.disasters.assign(kMaxDisasters, DisasterSpec{});
   EXPECT_NO_THROW(ValidateScenario(scenario));
   scenario.disasters.emplace_back();
   EXPECT_THROW(ValidateScenario(scenario), InputError);

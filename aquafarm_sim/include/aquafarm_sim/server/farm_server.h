@@ -33,12 +33,13 @@
 #include <vector>
 
 #include "aquafarm/observation/farm_batch.h"
+#include "aquafarm/scenario/limits.h"
 #include "aquafarm_sim/convert/conversions.h"
 
 namespace aquafarm_sim {
 
 /// Limits of the values of requests.
-inline constexpr std::int32_t kMaxFarms = 4096;
+using aquafarm::kMaxFarms;
 inline constexpr double kMinRate_hz = 0.001;
 inline constexpr double kMaxRate_hz = 1000.0;
 /// Max number of cells of all farms together if every episode has a new layout.

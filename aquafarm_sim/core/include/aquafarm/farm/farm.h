@@ -131,8 +131,6 @@ class Farm {
   /// spec must not contain forecasts, which are available only for tracks of the scenario.
   /// @throws InputError on an id or spec out of range, or on forecasts; the farm is then unchanged
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
-  /// Max number of disasters of a farm, including those added by bulletins.
-  inline static constexpr std::int32_t kMaxDisasters = 64;
 
   /// Moves a ship to another cell, to query an agent's behaviour there.
   /// @throws InputError when the cell is off the map, blocked or occupied; the farm is then

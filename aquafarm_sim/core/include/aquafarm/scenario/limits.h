@@ -3,11 +3,22 @@
 
 /// Limits of every scenario. Each number is defined only here.
 
+#include <cstdint>
+
 namespace aquafarm {
 
 /// Max number of rings (radius and risk pairs) of one disaster.
 inline constexpr int kMaxRings = 4;
 /// Max width and height of a farm [cells].
 inline constexpr int kMaxSide = 4096;
+/// Max number of disasters of a farm, including those added by bulletins.
+inline constexpr std::int32_t kMaxDisasters = 64;
+/// Max number of rescue ships of a farm.
+inline constexpr std::int32_t kMaxShips = 64;
+/// Max number of farms that are stepped together.
+inline constexpr std::int32_t kMaxFarms = 4096;
+/// The range of a disaster's risk (paper §2.1, see docs/model.md).
+inline constexpr float kWorstRisk = -20.0F;
+inline constexpr float kMildestRisk = -5.0F;
 
 }  // namespace aquafarm

@@ -2,6 +2,7 @@
 // JMA / RSMC Tokyo best track: fixed columns. (jma.go.jp, e_format_bst.html)
 #include <cmath>
 
+#include "aquafarm/base/angle.h"
 #include "base/text.h"
 #include "storms/formats/formats.h"
 #include "storms/track_text.h"
@@ -27,12 +28,11 @@ std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double long
                                              double shortest) {
   std::array<double, kQuadrantCount> radius{};
   constexpr std::int32_t kSymmetric = 9;
-  constexpr double kDegree = 3.14159265358979323846 / 180.0;
   const double towards = direction == kSymmetric ? 0.0 : direction * 45.0;  // 1 NE … 8 N
   const double middle = (longest + shortest) / 2.0;
   const double aside = (longest - shortest) / 2.0;
   for (std::size_t q = 0; q < radius.size(); ++q) {
-    const double angle = (45.0 + 90.0 * static_cast<double>(q) - towards) * kDegree;
+    const double angle = (45.0 + 90.0 * static_cast<double>(q) - towards) * kRadiansPerDegree;
     const double across = aside * std::sin(angle);
     radius[q] = aside * std::cos(angle) + std::sqrt(middle * middle - across * across);
   }

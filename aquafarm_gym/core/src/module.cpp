@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Python module aquafarm_core: scenarios, and FarmBatch writing into NumPy arrays.
+// The native part of the Python package aquafarm_core: scenarios, and FarmBatch writing into NumPy
+// arrays.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <cstring>
-#include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,150 +13,10 @@
 #include "aquafarm/base/version.h"
 #include "aquafarm/observation/farm_batch.h"
 #include "aquafarm/scenario/scenario_yaml.h"
-#include "buffers.h"
+#include "batch.h"
 
 namespace aquafarm::python {
 namespace py = pybind11;
-
-/// A FarmBatch and the NumPy arrays that it writes; they are NumPy's own memory, so nothing is
-/// copied on the way to Python.
-class Batch {
- public:
-  Batch(std::shared_ptr<const Scenario> scenario, std::int32_t farms, std::int32_t threads,
-        const std::vector<std::string>& write)
-      : batch_(std::move(scenario), CheckFarms(farms), threads), types_(BufferTypes(batch_)) {
-    for (const std::string& name : write) {
-      const BufferType& type = TypeOf(name);
-      py::array array(py::dtype(type.dtype), type.shape);
-      std::memset(array.mutable_data(), 0, static_cast<std::size_t>(array.nbytes()));
-      Keep(type, std::move(array));
-    }
-  }
-
-  void Bind(const std::string& name, const py::array& array) {
-    const Turn turn(busy_);
-    const BufferType& type = TypeOf(name);
-    if (!Fits(array, type)) {
-      throw InputError(name + ": got " + Describe(array) + ", expected writeable row-major " +
-                       Describe(type.dtype, type.shape));
-    }
-    Keep(type, array);
-  }
-
-  void Reset(std::uint64_t seed, std::uint64_t first_episode) {
-    const Turn turn(busy_);
-    const py::gil_scoped_release release;
-    batch_.Reset(seed, first_episode, output_);
-    is_reset_ = true;
-  }
-
-  void Step(const py::array& actions) {
-    const Turn turn(busy_);
-    const std::vector<py::ssize_t> shape{batch_.farms(), batch_.agents()};
-    if (!actions.dtype().equal(py::dtype::of<std::uint8_t>()) || actions.ndim() != 2 ||
-        actions.shape(0) != shape[0] || actions.shape(1) != shape[1] ||
-        (actions.flags() & py::array::c_style) == 0) {
-      throw InputError("actions: got " + Describe(actions) + ", expected row-major " +
-                       Describe("uint8", shape));
-    }
-    if (!is_reset_) throw InputError("step: got no reset before, expected one");
-    const auto* first = static_cast<const std::uint8_t*>(actions.data());
-    const py::gil_scoped_release release;
-    const std::uint8_t worst = *std::max_element(first, first + actions.size());
-    if (worst > kActionCount) {
-      throw InputError("actions: got " + std::to_string(worst) + ", expected [0, " +
-                       std::to_string(kActionCount) + "]");
-    }
-    batch_.Step(first, output_);
-  }
-
-  /// How the episodes that are over went, by farm.
-  py::list Finished() const {
-    const Turn turn(busy_);
-    py::list finished;
-    for (std::int32_t i = 0; i < batch_.farms(); ++i) {
-      const EpisodeRecord& record = batch_.farm(i).record();
-      if (record.reason == EndReason::kNone) continue;
-      py::dict one;
-      one["farm"] = i;
-      one["seed"] = record.seed;
-      one["episode"] = record.episode;
-      one["steps"] = record.steps;
-      one["episode_return"] = record.episode_return;
-      one["devices"] = record.devices;
-      one["delivered"] = record.delivered;
-      one["delivered_health"] =
-          record.delivered == 0 ? 0.0F
-                                : record.delivered_health / static_cast<float>(record.delivered);
-      one["crashes"] = record.crashes;
-      one["collisions"] = record.collisions;
-      one["steps_in_disaster"] = record.steps_in_disaster;
-      one["reason"] = ToString(record.reason);
-      one["success"] = record.Success();
-      finished.append(one);
-    }
-    return finished;
-  }
-
-  py::bytes Save() const {
-    const Turn turn(busy_);
-    return batch_.Save();
-  }
-  void Load(const std::string& bytes) {
-    const Turn turn(busy_);
-    batch_.Load(bytes);
-    batch_.Write(output_);
-    is_reset_ = true;
-  }
-
-  const FarmBatch& batch() const { return batch_; }
-  const std::map<std::string, py::array>& buffers() const { return buffers_; }
-
- private:
-  /// Refuses a call while another thread's still runs; taken and given back under the GIL, which
-  /// reset and step release in between.
-  class Turn {
-   public:
-    explicit Turn(bool& busy) : busy_(busy) {
-      if (busy_) throw std::runtime_error("FarmBatch: another thread's call still runs");
-      busy_ = true;
-    }
-    ~Turn() { busy_ = false; }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-   private:
-    bool& busy_;
-  };
-
-  static std::int32_t CheckFarms(std::int32_t farms) {
-    if (farms < 1) {
-      throw InputError("farms: got " + std::to_string(farms) + ", expected at least 1");
-    }
-    return farms;
-  }
-
-  const BufferType& TypeOf(const std::string& name) const {
-    std::string names;
-    for (const BufferType& type : types_) {
-      if (type.name == name) return type;
-      names += (names.empty() ? "" : ", ") + type.name;
-    }
-    throw InputError("buffer: got '" + name + "', expected one of: " + names);
-  }
-
-  void Keep(const BufferType& type, py::array array) {
-    Point(output_, type.name, array.mutable_data());
-    buffers_[type.name] = std::move(array);
-  }
-
-  FarmBatch batch_;
-  std::vector<BufferType> types_;
-  std::map<std::string, py::array> buffers_;
-  BatchOutput output_;
-  bool is_reset_{};
-  mutable bool busy_{};
-};
 
 std::vector<std::string> Names(int count, std::string (*name)(int)) {
   std::vector<std::string> names;
@@ -172,14 +29,32 @@ std::string NameOf(int value) {
   return std::string(ToString(static_cast<T>(value)));
 }
 
+// What aquafarm_core checks at import: whether this module and NumPy agree on arrays.
+void DefineProbes(py::module_& module) {
+  module.def(
+      "_made_array",
+      [](const std::string& dtype, const std::vector<py::ssize_t>& shape) {
+        return py::array(py::dtype(dtype), shape);
+      },
+      py::arg("dtype"), py::arg("shape"), "An array made as buffers are made.");
+  module.def(
+      "_write_last",
+      [](py::array array, std::uint8_t value) {
+        auto* bytes = static_cast<std::uint8_t*>(array.mutable_data());
+        bytes[array.nbytes() - 1] = value;
+      },
+      py::arg("array"), py::arg("value"), "Writes the last byte of an array in place.");
+}
+
 void DefineConstants(py::module_& module) {
   module.attr("VERSION") = kVersion;
+  module.attr("PYBIND11") = py::make_tuple(PYBIND11_VERSION_MAJOR, PYBIND11_VERSION_MINOR);
 #ifdef NDEBUG
   module.attr("OPTIMISED") = true;
 #else
   module.attr("OPTIMISED") = false;
 #endif
-  module.attr("SCENARIO_FOLDER") = AQUAFARM_SCENARIO_DIR;
+  module.attr("SOURCE_SCENARIO_FOLDER") = AQUAFARM_SCENARIO_DIR;
   module.attr("ACTIONS") = Names(kActionCount, NameOf<Action>);
   module.attr("HOLD") = static_cast<int>(Action::kHold);
   module.attr("OUTCOMES") = Names(kOutcomeCount, NameOf<Outcome>);
@@ -209,7 +84,18 @@ void DefineScenario(py::module_& module) {
       .def_readonly("height", &Scenario::height)
       .def_readonly("step_limit", &Scenario::step_limit)
       .def_property_readonly("ships", [](const Scenario& s) { return s.ships.count; })
-      .def_property_readonly("agents", &Scenario::AgentCount);
+      .def_property_readonly("agents", &Scenario::AgentCount)
+      .def(
+          "__eq__", [](const Scenario& a, const Scenario& b) { return ToYaml(a) == ToYaml(b); },
+          py::is_operator())
+      .def("__hash__", [](const Scenario& s) { return py::hash(py::int_(s.hash)); })
+      .def("__repr__",
+           [](const Scenario& s) { return "<aquafarm_core.Scenario '" + s.name + "'>"; })
+      .def(py::pickle([](const Scenario& s) { return py::make_tuple(ToYaml(s), s.name); },
+                      [](const py::tuple& state) {
+                        return std::make_shared<Scenario>(ParseScenario(
+                            state[0].cast<std::string>(), state[1].cast<std::string>()));
+                      }));
 }
 
 void DefineBatch(py::module_& module) {
@@ -220,9 +106,9 @@ N farms, S agents: rewards float32 [N, S], terms float32 [N, S, 7], outcomes uin
 uint16 [N, S], in_play uint8 [N, S], reasons uint8 [N], started uint8 [N], hashes uint64 [N], index uint32 [N, S],
 features float32 [N, S, F], planes uint8 [N, S, P, H, W].
 A farm whose reason is not 0 ignores the action of the next step and starts its next episode.)")
-      .def(py::init([](std::shared_ptr<Scenario> scenario, std::int32_t farms,
-                       const std::vector<std::string>& write, std::int32_t threads) {
-             return std::make_unique<Batch>(std::move(scenario), farms, threads, write);
+      .def(py::init([](std::shared_ptr<Scenario> scenario, const py::object& farms,
+                       const std::vector<std::string>& write, const py::object& threads) {
+             return std::make_unique<Batch>(std::move(scenario), farms, write, threads);
            }),
            py::arg("scenario"), py::arg("farms") = 1,
            py::arg("write") = std::vector<std::string>{"rewards", "reasons", "started"},
@@ -231,11 +117,20 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
            "Writes into this array from now on: the caller's memory, such as a replay's.")
       .def("reset", &Batch::Reset, py::arg("seed"), py::arg("first_episode") = 0,
            "Starts the sequence `seed`: farm i of N at episode first_episode + i, then every N-th.")
+      .def("start", &Batch::Start, py::arg("mask"), py::arg("seeds"), py::arg("episodes"),
+           py::arg("stride") = 1,
+           "Starts episodes[i] of the sequence seeds[i] in the farms that `mask` (bool [N]) "
+           "selects; their later episodes are `stride` apart.")
+      .def("start_next", &Batch::StartNext, py::arg("mask"),
+           "Starts the next episode in the farms that `mask` (bool [N]) selects.")
       .def("step", &Batch::Step, py::arg("actions"),
            "Takes one step in every farm; actions uint8 [N, S], each in [0, 10], 10 holds.")
-      .def("finished", &Batch::Finished, "How the episodes that are over went, by farm.")
+      .def("finished", &Batch::Finished, "Records of the episodes that are over, by farm.")
+      .def("text", &Batch::Text, py::arg("farm") = 0, "The present state of one farm as text.")
       .def("save", &Batch::Save, "All farms as bytes, mid-episode.")
       .def("load", &Batch::Load, py::arg("data"), "Continues saved farms bit for bit.")
+      .def("__eq__", &Batch::Equals, py::is_operator())
+      .def(py::pickle([](const Batch& batch) { return batch.State(); }, &Batch::FromState))
       .def_property_readonly("buffers", &Batch::buffers)
       .def_property_readonly("farms", [](const Batch& b) { return b.batch().farms(); })
       .def_property_readonly("agents", [](const Batch& b) { return b.batch().agents(); })
@@ -247,7 +142,7 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
 
 }  // namespace aquafarm::python
 
-PYBIND11_MODULE(aquafarm_core, module) {
+PYBIND11_MODULE(_native, module) {
   module.doc() = "The farm's core: scenarios, and many farms stepped into NumPy arrays.";
   pybind11::register_exception_translator([](std::exception_ptr raised) {
     try {
@@ -256,6 +151,7 @@ PYBIND11_MODULE(aquafarm_core, module) {
       PyErr_SetString(PyExc_ValueError, error.what());
     }
   });
+  aquafarm::python::DefineProbes(module);
   aquafarm::python::DefineConstants(module);
   aquafarm::python::DefineScenario(module);
   aquafarm::python::DefineBatch(module);

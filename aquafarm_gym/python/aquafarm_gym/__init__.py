@@ -2,27 +2,45 @@
 """The marine ranch for researchers: Gymnasium and PettingZoo over farms in this process or behind
 ROS services, with the same spaces and the same transitions, bit for bit.
 
-    env = gymnasium.make("aquafarm/Farm-v0", scenario="paper")       # one ship
-    envs = gymnasium.make_vec("aquafarm/Farm-v0", num_envs=1024)     # many farms of one ship
+    env = gymnasium.make("aquafarm/Paper-v1")                        # one ship
+    env = gymnasium.make("aquafarm/Farm-v1", scenario="my.yaml")     # one ship on any farm
+    envs = gymnasium.make_vec("aquafarm/Farm-v1", num_envs=1024)     # many farms of one ship
     env = aquafarm_gym.FarmParallelEnv("two_squads")                 # several ships
+    envs = aquafarm_gym.TeamVectorEnv(1024, "two_squads")            # many farms of several ships
 """
-import gymnasium
+import importlib
+import importlib.util
+from typing import TYPE_CHECKING, Any
 
-from aquafarm_gym.env import FarmEnv, FarmVectorEnv
-from aquafarm_gym.farms import LocalFarms, find_scenario
+from aquafarm_core import __version__ as __version__
 
-__all__ = ["FarmEnv", "FarmParallelEnv", "FarmVectorEnv", "LocalFarms", "RosFarms",
-           "find_scenario"]
+from aquafarm_gym.env import FarmEnv as FarmEnv
+from aquafarm_gym.farms import LocalFarms as LocalFarms
+from aquafarm_gym.farms import find_scenario as find_scenario
+from aquafarm_gym.registration import register_envs as register_envs
+from aquafarm_gym.vector_env import FarmVectorEnv as FarmVectorEnv
+from aquafarm_gym.vector_env import TeamVectorEnv as TeamVectorEnv
+from aquafarm_gym.wrappers import ActionMaskInObservation as ActionMaskInObservation
+from aquafarm_gym.wrappers import VectorActionMaskInObservation as VectorActionMaskInObservation
 
-gymnasium.register("aquafarm/Farm-v0", entry_point=FarmEnv, vector_entry_point=FarmVectorEnv)
+if TYPE_CHECKING:
+    from aquafarm_gym.parallel_env import FarmParallelEnv as FarmParallelEnv
+    from aquafarm_gym.ros import RosFarms as RosFarms
+    from aquafarm_gym.sb3 import FarmVecEnv as FarmVecEnv
+
+# Imported when asked for: each needs a package that not every installation has.
+_OPTIONAL = {"FarmParallelEnv": ("parallel_env", "pettingzoo"), "RosFarms": ("ros", "rospy"),
+             "FarmVecEnv": ("sb3", "stable_baselines3")}
+
+__all__ = ["ActionMaskInObservation", "FarmEnv", "FarmVectorEnv", "LocalFarms", "TeamVectorEnv",
+           "VectorActionMaskInObservation", "find_scenario", "register_envs"]
+__all__ += [name for name, (_, needs) in _OPTIONAL.items() if importlib.util.find_spec(needs)]
+
+register_envs()
 
 
-def __getattr__(name):
-    """What needs PettingZoo or rospy is imported when it is asked for."""
-    if name == "FarmParallelEnv":
-        from aquafarm_gym.parallel_env import FarmParallelEnv
-        return FarmParallelEnv
-    if name == "RosFarms":
-        from aquafarm_gym.ros import RosFarms
-        return RosFarms
+def __getattr__(name: str) -> Any:
+    if name in _OPTIONAL:
+        module, _ = _OPTIONAL[name]
+        return getattr(importlib.import_module(f"aquafarm_gym.{module}"), name)
     raise AttributeError(f"module {__name__} has no {name}")

@@ -1,83 +1,99 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gymnasium environments: one farm with one ship, and many of them as arrays."""
+"""The Gymnasium environment of one farm with one ship."""
+from __future__ import annotations
+
+import html
+import pathlib
+from typing import Any
+
 import aquafarm_core as core
 import gymnasium
 import numpy as np
-from gymnasium.vector.utils import batch_space
+import numpy.typing as npt
 
 from aquafarm_gym import spaces
+from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, check_seed, summary_of
 from aquafarm_gym.farms import ENCODINGS, LocalFarms
 
-SEED_MASK = (1 << 64) - 1
 
-
-def one_agent(farms):
+def one_agent(farms: Any) -> Any:
     """Refuses farms of several agents."""
     if farms.agents != 1:
-        raise ValueError(f"scenario {farms.name}: got {farms.agents} agents, expected 1; "
-                         "FarmParallelEnv is for several")
+        raise ValueError(f"scenario {farms.name}: got {farms.agents} agents, expected 1; use "
+                         "FarmParallelEnv or TeamVectorEnv")
     return farms
 
 
-def observation_of(farms, observation):
+def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
     """The array of an observation; refuses farms that do not write it."""
     if observation not in farms.buffers:
         has = ", ".join(name for name in ENCODINGS if name in farms.buffers)
         raise ValueError(f"observation: got '{observation}', but the farms given write {has}")
-    return farms.buffers[observation]
+    array: npt.NDArray[Any] = farms.buffers[observation]
+    return array
 
 
-class Episodes:
-    """Where the sequence of episodes stands: a seed starts one, a reset without seed goes on."""
-
-    def __init__(self):
-        self.seed, self.episode = None, 0
-
-    def next(self, seed, options, drawn_seed, by=1):
-        """The (seed, episode) to begin; options may name an `episode` of the sequence."""
-        if seed is None and self.seed is not None:
-            self.episode += by
-        else:
-            self.seed = (seed if seed is not None else drawn_seed()) & SEED_MASK
-            self.episode = 0
-        if options and "episode" in options:
-            self.episode = int(options["episode"])
-        return self.seed, self.episode
+def check_render_mode(render_mode: str | None, farms: Any) -> str | None:
+    """Refuses an unknown mode, and farms that cannot be drawn."""
+    if render_mode not in (None, "ansi"):
+        raise ValueError(f"render_mode: got '{render_mode}', expected ansi or None; pictures are "
+                         "drawn by './aquafarm render'")
+    if render_mode is not None and not hasattr(farms, "text"):
+        raise ValueError(f"render_mode: got '{render_mode}' for farms behind ROS, expected None; "
+                         "watch them in rviz")
+    return render_mode
 
 
-class FarmEnv(gymnasium.Env):
+def html_of(text: str) -> str:
+    """A text picture for a notebook."""
+    return f'<pre style="line-height: 1.1">{html.escape(text)}</pre>'
+
+
+class FarmEnv(gymnasium.Env[Any, Any]):
     """One farm with one ship.
 
-    observation: `features` (default), `planes` or `index`. info holds `action_mask` (1: would not
-    be illegal), `outcome` (a name of aquafarm_core.OUTCOMES) and, when an episode is over,
-    `is_success` and `summary`. reset(seed=…) starts a sequence of episodes, reset() goes on with
-    its next one, options={"episode": k} with its k-th.
+    observation: `features` (default), `planes` or `index`. info has the same keys at every step,
+    with numbers alone: `action_mask` (int8 [10], 1: legal), `outcome` (index into
+    aquafarm_core.OUTCOMES), `reason` (index into aquafarm_core.REASONS, 0: the episode continues),
+    `is_success`, and `summary`, whose entries are 0 until the episode ends. reset(seed=…) starts a
+    sequence of episodes, reset() continues with its next one, options={"episode": k} with its k-th.
+    Copies and pickles of farms in this process continue bit for bit.
     """
 
-    metadata = {"render_modes": []}
+    metadata: dict[str, Any] = {"render_modes": ["ansi"], "render_fps": 4}
 
-    def __init__(self, scenario="paper", observation="features", farms=None, render_mode=None):
+    def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper",
+                 observation: str = "features", farms: Any = None,
+                 render_mode: str | None = None) -> None:
         """farms: a backend instead of a scenario played in this process, such as RosFarms()."""
         self.farms = one_agent(farms or LocalFarms(scenario, 1, observation))
-        self.render_mode = render_mode
+        self.render_mode = check_render_mode(render_mode, self.farms)
+        self.observation = observation
         self.action_space = spaces.action_space()
         self.observation_space = spaces.observation_space(self.farms, observation)
-        self._is_index = observation == "index"
-        self._buffers = self.farms.buffers
-        self._observation = observation_of(self.farms, observation)
         self._episodes = Episodes()
+        self._attach()
+
+    def _attach(self) -> None:
+        """Names the arrays that the farms write."""
+        self._buffers = self.farms.buffers
+        self._observation = observation_of(self.farms, self.observation)
         self._actions = np.zeros((1, 1), np.uint8)
 
-    def reset(self, *, seed=None, options=None):
+    def reset(self, *, seed: int | None = None,
+              options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        options = check_options(options, ("episode",))
+        if seed is not None:
+            seed = check_seed(seed)
         super().reset(seed=seed)
         self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed))
         return self._observe(), self._info()
 
-    def step(self, action):
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         if not self.action_space.contains(action):
             raise ValueError(f"action: got {action!r}, expected a whole number in [0, 9]")
         if self._buffers["reasons"][0] != 0:
-            raise gymnasium.error.ResetNeeded("the episode is over: reset first")
+            raise gymnasium.error.ResetNeeded("step: the episode is over; reset first")
         self._actions[0, 0] = action
         self.farms.step(self._actions)
         reason = int(self._buffers["reasons"][0])
@@ -85,97 +101,47 @@ class FarmEnv(gymnasium.Env):
         return (self._observe(), float(self._buffers["rewards"][0, 0]),
                 reason != 0 and not truncated, truncated, self._info())
 
-    def action_masks(self):
+    def render(self) -> str | None:  # type: ignore[override]
+        """The farm as text in the mode `ansi` (marks: aquafarm/farm_text.h)."""
+        if self.render_mode is None:
+            gymnasium.logger.warn("render: got render_mode None, expected ansi; pass "
+                                  "render_mode='ansi' to the constructor")
+            return None
+        text: str = self.farms.text(0)
+        return text
+
+    def action_masks(self) -> npt.NDArray[np.bool_]:
         """Legal actions as sb3_contrib's MaskablePPO asks for them."""
         return spaces.action_mask(self._buffers["legal"][0, 0]).astype(bool)
 
-    def close(self):
+    def close(self) -> None:
         self.farms.close()
 
-    def _observe(self):
+    def _observe(self) -> Any:
         entry = self._observation[0, 0]
-        return int(entry) if self._is_index else entry.copy()
+        return np.int64(entry) if self.observation == "index" else entry.copy()
 
-    def _info(self):
-        info = {"action_mask": spaces.action_mask(self._buffers["legal"][0, 0]),
-                "outcome": core.OUTCOMES[self._buffers["outcomes"][0, 0]]}
-        if self._buffers["reasons"][0] != 0:
-            info["summary"] = self.farms.finished()[0]
-            info["is_success"] = info["summary"]["success"]
-        return info
+    def _info(self) -> dict[str, Any]:
+        over = self._buffers["reasons"][0] != 0
+        summary = summary_of(self.farms.finished()[0]) if over else NO_SUMMARY.copy()
+        return {"action_mask": spaces.action_mask(self._buffers["legal"][0, 0]),
+                "outcome": int(self._buffers["outcomes"][0, 0]), "reason": summary["reason"],
+                "is_success": summary["success"], "summary": summary}
 
+    def _repr_html_(self) -> str:
+        return html_of(self.farms.text(0) if hasattr(self.farms, "text") else repr(self))
 
-class FarmVectorEnv(gymnasium.vector.VectorEnv):
-    """N farms with one ship each, stepped together in this process (or behind ROS, by `farms`).
+    def __getstate__(self) -> dict[str, Any]:
+        views = ("_buffers", "_observation", "_actions")
+        return {name: value for name, value in self.__dict__.items() if name not in views}
 
-    A farm whose episode is over starts its next one in the next step, whose action it ignores.
-    With copy=False observations and rewards are the arrays that the farms write, overwritten by
-    the next step. infos holds `legal` (bits, uint16 [N]; spaces.action_mask unfolds them) and
-    `started`, and `summary` where episodes are over; each with its mask `_legal`, `_started`,
-    `_summary` [N], as Gymnasium's vector environments have it.
-    """
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._attach()
 
-    metadata = {"render_modes": []}
-    if hasattr(gymnasium.vector, "AutoresetMode"):  # since Gymnasium 1.1
-        metadata["autoreset_mode"] = gymnasium.vector.AutoresetMode.NEXT_STEP
+    def __eq__(self, other: object) -> bool:
+        return (isinstance(other, FarmEnv) and self.observation == other.observation
+                and self._episodes == other._episodes and bool(self.farms == other.farms))
 
-    def __init__(self, num_envs=1, scenario="paper", observation="features", copy=True, threads=1,
-                 farms=None, render_mode=None):
-        self.farms = one_agent(farms or LocalFarms(scenario, num_envs, observation,
-                                                   threads=threads))
-        self.num_envs = self.farms.farms
-        self.render_mode = render_mode
-        self.single_action_space = spaces.action_space()
-        self.single_observation_space = spaces.observation_space(self.farms, observation)
-        self.action_space = batch_space(self.single_action_space, self.num_envs)
-        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
-        buffers = self.farms.buffers
-        self._observation = observation_of(self.farms, observation)[:, 0]
-        self._rewards = buffers["rewards"][:, 0]
-        self._reasons, self._started = buffers["reasons"], buffers["started"].view(bool)
-        self._legal = buffers["legal"][:, 0]
-        self._everywhere = np.ones(self.num_envs, bool)
-        self._everywhere.flags.writeable = False
-        self._copy = copy
-        self._actions = np.zeros((self.num_envs, 1), np.uint8)
-        self._episodes = Episodes()
-        self._begun = np.zeros(self.num_envs, int)  # episodes since the last reset, by farm
-
-    def reset(self, *, seed=None, options=None):
-        super().reset(seed=seed)
-        # Farm i of N plays every N-th episode: go on behind the farm that has come furthest.
-        by = self.num_envs * (1 + int(self._begun.max()))
-        self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed, by))
-        self._begun[:] = 0
-        return self._out(self._observation), self._infos()
-
-    def step(self, actions):
-        actions = np.asarray(actions)
-        if actions.shape != (self.num_envs,) or actions.dtype.kind not in "iu":
-            raise ValueError(f"actions: got {actions.dtype} {list(actions.shape)}, expected whole "
-                             f"numbers [{self.num_envs}]")
-        if actions.min() < 0 or actions.max() >= len(core.ACTIONS):
-            raise ValueError(f"actions: got {actions.min()} to {actions.max()}, expected [0, 9]")
-        self._actions[:, 0] = actions
-        self.farms.step(self._actions)
-        self._begun += self._started
-        truncated = self._reasons == core.STEP_LIMIT
-        terminated = (self._reasons != 0) ^ truncated
-        return (self._out(self._observation), self._out(self._rewards), terminated, truncated,
-                self._infos())
-
-    def close_extras(self, **kwargs):
-        self.farms.close()
-
-    def _out(self, array):
-        return array.copy() if self._copy else array
-
-    def _infos(self):
-        infos = {"legal": self._out(self._legal), "_legal": self._everywhere,
-                 "started": self._out(self._started), "_started": self._everywhere}
-        if self._reasons.any():
-            over = self._reasons != 0
-            infos["summary"] = np.full(self.num_envs, None)
-            infos["summary"][over] = self.farms.finished()  # by farm
-            infos["_summary"] = over
-        return infos
+    def __hash__(self) -> int:
+        return hash((FarmEnv, self.observation, self.farms))

@@ -1,41 +1,44 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """N farms with S agents each, as arrays: what every environment here stands on.
 
-A backend has the attributes name, yaml, farms, agents, state_count, feature_count, plane_count,
-height, width and buffers (see aquafarm_core.FarmBatch), and the calls reset(seed, first_episode),
-step(actions), finished() and close(). LocalFarms is the farm in this process;
-aquafarm_gym.ros.RosFarms the one behind ROS.
+A backend has the attributes name, yaml, farms, agents, state_count, feature_names, feature_count,
+plane_count, height, width and buffers (see aquafarm_core.FarmBatch), and the methods
+reset(seed, first_episode), step(actions), finished() and close(). LocalFarms, the farms in this
+process, also has start, start_next and text; aquafarm_gym.ros.RosFarms, the farms behind ROS, has
+not.
 """
+from __future__ import annotations
+
 import pathlib
+from typing import Any
 
 import aquafarm_core as core
+import numpy as np
+import numpy.typing as npt
 
 ENCODINGS = ("index", "features", "planes")
 ALWAYS = ("rewards", "outcomes", "legal", "in_play", "reasons", "started")
 
 
-def scenario_folder():
-    """Folder of the shipped scenarios: beside an installed module, else of the sources."""
-    prefix = pathlib.Path(core.__file__).parent / "../../.."  # <prefix>/lib/python3/dist-packages
-    installed = (prefix / "share/aquafarm_sim/scenarios").resolve()
-    return installed if installed.is_dir() else pathlib.Path(core.SCENARIO_FOLDER)
-
-
-def find_scenario(scenario):
+def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario:
     """A Scenario from itself, from a shipped one's name, or from a file's path."""
     if isinstance(scenario, core.Scenario):
         return scenario
-    shipped = scenario_folder() / f"{scenario}.yaml"
+    folder = pathlib.Path(core.SCENARIO_FOLDER)
+    names = ", ".join(sorted(path.stem for path in folder.glob("*.yaml")))
+    expected = f"expected an aquafarm_core.Scenario, a file or one of: {names}"
+    if not isinstance(scenario, (str, pathlib.Path)):
+        raise ValueError(f"scenario: got {scenario!r}, {expected}")
+    shipped = folder / f"{scenario}.yaml"
     if shipped.is_file() and "/" not in str(scenario):
         return core.Scenario.load(str(shipped))
     if pathlib.Path(scenario).is_file():
         return core.Scenario.load(str(scenario))
-    names = ", ".join(sorted(path.stem for path in scenario_folder().glob("*.yaml")))
-    raise ValueError(f"scenario: got '{scenario}', expected a file or one of: {names}")
+    raise ValueError(f"scenario: got '{scenario}', {expected}")
 
 
-def check_encoding(encoding, state_count, name):
-    """Refuses what is no encoding, and a table of a farm that has too many states for one."""
+def check_encoding(encoding: str, state_count: int, name: str) -> None:
+    """Refuses an unknown encoding, and a table of a farm that has too many states for one."""
     if encoding not in ENCODINGS:
         raise ValueError(f"observation: got '{encoding}', expected one of: {', '.join(ENCODINGS)}")
     if encoding == "index" and state_count == 0:
@@ -44,23 +47,63 @@ def check_encoding(encoding, state_count, name):
 
 
 class LocalFarms:
-    """Farms in this process."""
+    """Farms in this process. Copies and pickles continue bit for bit."""
 
-    def __init__(self, scenario="paper", farms=1, observation="features", hashes=False, threads=1):
+    def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper", farms: int = 1,
+                 observation: str = "features", hashes: bool = False, threads: int = 1) -> None:
         scenario = find_scenario(scenario)
         check_encoding(observation, core.FarmBatch(scenario).state_count, scenario.name)
         write = [*ALWAYS, observation] + (["hashes"] if hashes else [])
+        self.scenario = scenario
         self.batch = core.FarmBatch(scenario, farms, write, threads)
-        self.buffers = self.batch.buffers
         self.name = scenario.name
-        self.yaml = scenario.yaml
-        self.farms, self.agents = farms, scenario.agents
+        self.farms, self.agents = self.batch.farms, scenario.agents
         self.state_count = self.batch.state_count
-        self.feature_count = len(self.batch.feature_names)
+        self.feature_names = self.batch.feature_names
+        self.feature_count = len(self.feature_names)
         self.plane_count = len(core.PLANES)
         self.height, self.width = scenario.height, scenario.width
-        self.reset, self.step = self.batch.reset, self.batch.step
-        self.finished = self.batch.finished
 
-    def close(self):
-        """Nothing is held but memory."""
+    @property
+    def yaml(self) -> str:
+        """The scenario's text."""
+        return self.scenario.yaml
+
+    @property
+    def buffers(self) -> dict[str, npt.NDArray[Any]]:
+        """The arrays that reset and step write."""
+        return self.batch.buffers
+
+    def reset(self, seed: int, first_episode: int = 0) -> None:
+        """As FarmBatch.reset."""
+        self.batch.reset(seed, first_episode)
+
+    def step(self, actions: npt.NDArray[np.uint8]) -> None:
+        """As FarmBatch.step."""
+        self.batch.step(actions)
+
+    def finished(self) -> list[dict[str, Any]]:
+        """As FarmBatch.finished."""
+        return self.batch.finished()
+
+    def start(self, mask: npt.NDArray[np.bool_], seeds: list[int], episodes: list[int],
+              stride: int) -> None:
+        """As FarmBatch.start."""
+        self.batch.start(mask, seeds, episodes, stride)
+
+    def start_next(self, mask: npt.NDArray[np.bool_]) -> None:
+        """As FarmBatch.start_next."""
+        self.batch.start_next(mask)
+
+    def text(self, farm: int = 0) -> str:
+        """As FarmBatch.text."""
+        return self.batch.text(farm)
+
+    def close(self) -> None:
+        """Releases nothing: the farms hold memory alone."""
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, LocalFarms) and self.batch == other.batch
+
+    def __hash__(self) -> int:
+        return hash((LocalFarms, self.scenario, self.farms))

@@ -1,56 +1,82 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A PettingZoo environment: one farm whose ships, and devices that drive themselves, act."""
+from __future__ import annotations
+
+import pathlib
+import warnings
+from collections.abc import Callable
+from typing import Any
+
 import aquafarm_core as core
 import numpy as np
+import numpy.typing as npt
 from gymnasium.utils import seeding
 from pettingzoo import ParallelEnv
 
 from aquafarm_gym import spaces
-from aquafarm_gym.env import Episodes, observation_of
+from aquafarm_gym.env import check_render_mode, html_of, observation_of
+from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, summary_of
 from aquafarm_gym.farms import LocalFarms
 
 
-class FarmParallelEnv(ParallelEnv):
+class FarmParallelEnv(ParallelEnv[str, Any, Any]):
     """One farm with several agents, named ship_0, ship_1, … as in ROS; those that are
-    self-propelled devices come last and end on their own when they are delivered.
+    self-propelled devices come last and terminate when they are delivered.
 
-    Observations and infos are those of FarmEnv, an agent each.
+    Observations and infos are those of FarmEnv, one per agent. state() is the observations of all
+    agents in one array (`state_space`), as centralized critics read it.
     """
 
-    metadata = {"name": "aquafarm_v0", "render_modes": [], "is_parallelizable": True}
+    metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": ["ansi"], "render_fps": 4,
+                                "is_parallelizable": True}
 
-    def __init__(self, scenario="two_squads", observation="features", farms=None,
-                 render_mode=None):
+    def __init__(self, scenario: core.Scenario | str | pathlib.Path = "two_squads",
+                 observation: str = "features", farms: Any = None,
+                 render_mode: str | None = None) -> None:
         """farms: a backend instead of a scenario played in this process, such as RosFarms()."""
         self.farms = farms or LocalFarms(scenario, 1, observation)
-        self.render_mode = render_mode
+        self.observation = observation
+        self.render_mode = check_render_mode(render_mode, self.farms)
         self.possible_agents = [f"ship_{i}" for i in range(self.farms.agents)]
-        self.agents = []
+        self.agents: list[str] = []
         self.observation_spaces = {agent: spaces.observation_space(self.farms, observation)
                                    for agent in self.possible_agents}
-        self.action_spaces = {agent: spaces.action_space() for agent in self.possible_agents}
-        self._is_index = observation == "index"
-        self._buffers = self.farms.buffers
-        self._observation = observation_of(self.farms, observation)
+        self.action_spaces: dict[str, Any] = {agent: spaces.action_space()
+                                              for agent in self.possible_agents}
+        self.state_space = spaces.state_space(self.farms, observation)
         self._episodes = Episodes()
         self._number = {agent: i for i, agent in enumerate(self.possible_agents)}
+        self._attach()
 
-    def observation_space(self, agent):
+    def _attach(self) -> None:
+        """Names the arrays that the farms write."""
+        self._buffers = self.farms.buffers
+        self._observation = observation_of(self.farms, self.observation)
+
+    def observation_space(self, agent: str) -> Any:
         return self.observation_spaces[agent]
 
-    def action_space(self, agent):
+    def action_space(self, agent: str) -> Any:
         return self.action_spaces[agent]
 
-    def reset(self, seed=None, options=None):
+    def reset(self, seed: int | None = None,
+              options: dict[str, Any] | None = None) -> tuple[dict[str, Any], dict[str, Any]]:
+        known = {"episode"}
+        for name in set(options or ()) - known:  # PettingZoo's own tests pass unknown options
+            warnings.warn(f"reset: options: got '{name}', expected one of: episode; it is ignored",
+                          stacklevel=2)
+        kept = {name: value for name, value in (options or {}).items() if name in known}
+        options = check_options(kept, known)
         self.farms.reset(*self._episodes.next(seed, options, lambda: seeding.np_random()[1]))
         self.agents = self.possible_agents[:]
         return self._of_agents(self._observe), self._of_agents(self._info)
 
-    def step(self, actions):
+    def step(self, actions: dict[str, Any]) -> tuple[
+            dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Any]]:
         if set(actions) != set(self.agents):
             raise ValueError(f"actions: got those of {sorted(actions)}, expected {self.agents}")
         if not self.agents:
-            raise ValueError("the episode is over: reset first")
+            raise ValueError("step: the episode is over; reset first")
         joint = np.full((1, self.farms.agents), core.HOLD, np.uint8)
         for agent, action in actions.items():
             if not self.action_spaces[agent].contains(action):
@@ -70,20 +96,47 @@ class FarmParallelEnv(ParallelEnv):
         self.agents = [] if reason else [a for a in self.agents if not terminations[a]]
         return results
 
-    def close(self):
+    def state(self) -> npt.NDArray[Any]:
+        """The observations of all agents, also of those that are done: features [S · F], planes
+        [S · P, H, W], index [S]."""
+        return self._observation[0].astype(self.state_space.dtype).reshape(self.state_space.shape)
+
+    def render(self) -> str | None:
+        """The farm as text in the mode `ansi` (marks: aquafarm/farm_text.h)."""
+        return None if self.render_mode is None else self.farms.text(0)
+
+    def close(self) -> None:
         self.farms.close()
 
-    def _of_agents(self, value):
+    def _of_agents(self, value: Callable[[int], Any]) -> dict[str, Any]:
         return {agent: value(self._number[agent]) for agent in self.agents}
 
-    def _observe(self, i):
+    def _observe(self, i: int) -> Any:
         entry = self._observation[0, i]
-        return int(entry) if self._is_index else entry.copy()
+        return np.int64(entry) if self.observation == "index" else entry.copy()
 
-    def _info(self, i):
-        info = {"action_mask": spaces.action_mask(self._buffers["legal"][0, i]),
-                "outcome": core.OUTCOMES[self._buffers["outcomes"][0, i]]}
-        if self._buffers["reasons"][0] != 0:
-            info["summary"] = self.farms.finished()[0]
-            info["is_success"] = info["summary"]["success"]
-        return info
+    def _info(self, i: int) -> dict[str, Any]:
+        over = self._buffers["reasons"][0] != 0
+        summary = summary_of(self.farms.finished()[0]) if over else NO_SUMMARY.copy()
+        return {"action_mask": spaces.action_mask(self._buffers["legal"][0, i]),
+                "outcome": int(self._buffers["outcomes"][0, i]), "reason": summary["reason"],
+                "is_success": summary["success"], "summary": summary}
+
+    def _repr_html_(self) -> str:
+        return html_of(self.farms.text(0) if hasattr(self.farms, "text") else repr(self))
+
+    def __getstate__(self) -> dict[str, Any]:
+        views = ("_buffers", "_observation")
+        return {name: value for name, value in self.__dict__.items() if name not in views}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._attach()
+
+    def __eq__(self, other: object) -> bool:
+        return (isinstance(other, FarmParallelEnv) and self.observation == other.observation
+                and (self.agents, self._episodes) == (other.agents, other._episodes)
+                and bool(self.farms == other.farms))
+
+    def __hash__(self) -> int:
+        return hash((FarmParallelEnv, self.observation, self.farms))

@@ -87,6 +87,8 @@ class RosFarms:
         self.name, self.yaml = spec.scenario_name, spec.scenario_yaml
         self.farms, self.agents = farms, spec.agents
         self.state_count, self.feature_count = spec.state_count, spec.feature_count
+        self.feature_names = core.FarmBatch(
+            core.Scenario.parse(self.yaml, self.name)).feature_names
         self.plane_count, self.height, self.width = spec.plane_count, spec.height, spec.width
         self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
         # Different from those of an earlier client of this node.

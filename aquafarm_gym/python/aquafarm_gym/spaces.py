@@ -1,26 +1,62 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The spaces of one agent; the same for farms in process and behind ROS."""
+from typing import Any
+
 import aquafarm_core as core
 import numpy as np
+import numpy.typing as npt
 from gymnasium import spaces
 
-ACTION_BITS = np.left_shift(1, np.arange(len(core.ACTIONS))).astype(np.uint16)
+N_ACTIONS = len(core.ACTIONS)
+
+# Bounds of the features by the last part of their names (FarmBatch.feature_names). Lengths are in
+# units of the map's longer side; a storm's centre and reach may lie far outside of the map.
+FAR = 1e4
+BOUNDS = {
+    "x": (-1, 1), "y": (-1, 1), "time_left": (-1, 1), "free_capacity": (0, 1),
+    "risk_here": (-1, 0), "deployed": (0, 1), "aboard": (0, 1), "worth": (0, 100),
+    "known": (0, 1), "motion_east": (-FAR, FAR), "motion_north": (-FAR, FAR), "reach": (0, FAR),
+    "age": (0, FAR), "visible": (0, 1), "self": (0, 1), "way_east": (-1, 1), "way_north": (-1, 1),
+    "way_steps": (0, 4), "stay": (-1, 0)}
+GROUP_BOUNDS = {"blocked": (0, 1), "risk": (-1, 0), "course": (-1, 0)}
 
 
-def action_space():
+def feature_bounds(name: str) -> tuple[float, float]:
+    """The least and greatest value of a feature."""
+    group, _, part = name.rpartition(".")
+    if group in GROUP_BOUNDS:
+        return GROUP_BOUNDS[group]
+    if part in ("east", "north"):
+        return (-FAR, FAR) if group.startswith("disaster") else (-1, 1)
+    return BOUNDS[part]
+
+
+def action_space() -> spaces.Discrete:
     """The paper's ten actions: eight moves, pickup, drop-off (names: aquafarm_core.ACTIONS)."""
-    return spaces.Discrete(len(core.ACTIONS))
+    return spaces.Discrete(N_ACTIONS)
 
 
-def observation_space(farms, encoding):
-    """Discrete for `index`, Box for `features` and `planes`."""
+def observation_space(farms: Any, encoding: str) -> spaces.Space[Any]:
+    """Discrete for `index`, a bounded Box for `features` and `planes`."""
     if encoding == "index":
         return spaces.Discrete(farms.state_count)
     if encoding == "features":
-        return spaces.Box(-np.inf, np.inf, (farms.feature_count,), np.float32)
+        bounds = np.array([feature_bounds(name) for name in farms.feature_names], np.float32)
+        return spaces.Box(bounds[:, 0], bounds[:, 1], dtype=np.float32)
     return spaces.Box(0, 255, (farms.plane_count, farms.height, farms.width), np.uint8)
 
 
-def action_mask(legal):
+def action_mask(legal: npt.ArrayLike) -> npt.NDArray[np.int8]:
     """Bits of legal actions [...] as 0 and 1 [..., 10], as Discrete.sample(mask) takes them."""
-    return ((np.asarray(legal)[..., None] & ACTION_BITS) != 0).astype(np.int8)
+    bits = np.array(legal, "<u2")[..., None].view(np.uint8)
+    return np.unpackbits(bits, axis=-1, count=N_ACTIONS, bitorder="little").view(np.int8)
+
+
+def state_space(farms: Any, encoding: str) -> spaces.Space[Any]:
+    """The observations of all agents of a farm in one space."""
+    own = observation_space(farms, encoding)
+    if isinstance(own, spaces.Discrete):
+        return spaces.MultiDiscrete([int(own.n)] * farms.agents)
+    assert isinstance(own, spaces.Box)
+    low, high = (np.concatenate([bound] * farms.agents) for bound in (own.low, own.high))
+    return spaces.Box(low, high, dtype=own.dtype.type)

@@ -10,11 +10,16 @@ function(aquafarm_set_warnings target)
     -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off -fno-semantic-interposition)
 endfunction()
 
-# Adds a shared library with C++17, all warnings and no undefined symbols.
+# Adds a shared library with C++17, all warnings and no undefined symbols; a static library with
+# AQUAFARM_STATIC_CORE, for a Python module that contains it.
 function(aquafarm_add_core_library target)
-  add_library(${target} SHARED ${ARGN})
+  if(AQUAFARM_STATIC_CORE)
+    add_library(${target} STATIC ${ARGN})
+  else()
+    add_library(${target} SHARED ${ARGN})
+  endif()
   target_compile_features(${target} PUBLIC cxx_std_17)
-  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   target_link_options(${target} PRIVATE LINKER:--no-undefined)
   aquafarm_set_warnings(${target})
 endfunction()

@@ -2,8 +2,10 @@
 #include "aquafarm/observation/farm_batch.h"
 
 #include <omp.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <exception>
 #include <nlohmann/json.hpp>
@@ -13,6 +15,18 @@
 #include "base/cbor.h"
 
 namespace aquafarm {
+namespace {
+
+// OpenMP's threads do not survive a fork. A parallel region in the child waits for them forever if
+// the parent had started them, so only the first process that steps in parallel may do so.
+bool MayUseThreads() {
+  static std::atomic<pid_t> owner{0};
+  pid_t expected = 0;
+  const pid_t self = getpid();
+  return owner.compare_exchange_strong(expected, self) || expected == self;
+}
+
+}  // namespace
 
 FarmBatch::FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms,
                      std::int32_t threads)
@@ -26,23 +40,41 @@ FarmBatch::FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farm
   const bool fixed = scenario_->layout == LayoutMode::kFixed;
   const std::shared_ptr<const Layout> layout = fixed ? farms_[0].shared_layout() : nullptr;
   for (std::int32_t i = 1; i < farms; ++i) farms_.emplace_back(scenario_, layout);
+  strides_.assign(farms_.size(), static_cast<std::uint64_t>(farms));
   views_.resize(static_cast<std::size_t>(threads_));
 }
 
 void FarmBatch::Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output) {
   for (std::int32_t i = 0; i < farms(); ++i) {
-    farm(i).Reset(seed, first_episode + static_cast<std::uint64_t>(i));
-    WriteOne(i, 0, true, output);
+    Start(i, seed, first_episode + static_cast<std::uint64_t>(i),
+          static_cast<std::uint64_t>(farms()), output);
   }
+}
+
+void FarmBatch::Start(std::int32_t i, std::uint64_t seed, std::uint64_t episode,
+                      std::uint64_t stride, const BatchOutput& output) {
+  set_stride(i, stride);
+  farm(i).Reset(seed, episode);
+  WriteOne(i, 0, true, output);
+}
+
+void FarmBatch::set_stride(std::int32_t i, std::uint64_t stride) {
+  AQUAFARM_CHECK_GE(stride, 1U);
+  strides_[static_cast<std::size_t>(i)] = stride;
 }
 
 void FarmBatch::StartNext(std::int32_t i) {
   Farm& next = farm(i);
-  next.Reset(next.seed(), next.episode() + static_cast<std::uint64_t>(farms()));
+  next.Reset(next.seed(), next.episode() + stride(i));
+}
+
+void FarmBatch::StartNext(std::int32_t i, const BatchOutput& output) {
+  StartNext(i);
+  WriteOne(i, 0, true, output);
 }
 
 void FarmBatch::Step(const std::uint8_t* actions, const BatchOutput& output) {
-  if (threads_ == 1) {
+  if (threads_ == 1 || !MayUseThreads()) {
     for (std::int32_t i = 0; i < farms(); ++i) StepOne(i, 0, actions, output);
     return;
   }

@@ -10,6 +10,7 @@
 #include "aquafarm/charts/ascii_grid.h"
 #include "aquafarm/charts/coast.h"
 #include "aquafarm/charts/map_file.h"
+#include "aquafarm/farm/farm_text.h"
 #include "aquafarm/farm/layout.h"
 #include "aquafarm/observation/encoder.h"
 #include "aquafarm/scenario/scenario_yaml.h"
@@ -492,15 +493,7 @@ std::string Sketch(const Scenario& scenario) {
   generator.Generate(scenario.layout_seed, 0, layout);
   std::string text;
   for (std::int32_t y = scenario.height; y-- > 0;) {
-    for (std::int32_t x = 0; x < scenario.width; ++x) {
-      const std::uint8_t bits = layout.bits({x, y});
-      const char mark = (bits & kIslandBit) != 0       ? '#'
-                        : (bits & kRockBit) != 0       ? 'o'
-                        : (bits & kPortBit) != 0       ? 'P'
-                        : (bits & kDeviceSiteBit) != 0 ? 'd'
-                                                       : '.';
-      text += mark;
-    }
+    for (std::int32_t x = 0; x < scenario.width; ++x) text += ChartMark(layout.bits({x, y}), 'd');
     text += '\n';
   }
   return text;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "aquafarm/base/check.h"
 #include "base/text.h"
@@ -18,7 +17,6 @@ namespace {
 
 using internal::NcFile;
 
-constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 constexpr std::size_t kMostAlong = 1'000'000;    // coordinates per axis
 constexpr std::size_t kMostValues = 64'000'000;  // values per window
 
@@ -294,7 +292,7 @@ void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
     const bool absent = same(fill, value) || same(missing, value) || !(value >= low) ||
                         !(value <= high) ||
                         std::abs(value) > 9.9e35F;  // larger than any real value
-    value = absent ? kNoValue : static_cast<float>(value * scale + offset);
+    value = absent ? kNoSeaValue : static_cast<float>(value * scale + offset);
   }
 }
 
@@ -373,62 +371,6 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
   if (north_first) std::reverse(field.latitude.begin(), field.latitude.end());
   if (east_first) std::reverse(field.longitude.begin(), field.longitude.end());
   return field;
-}
-
-namespace {
-
-// Position of a coordinate between two coordinates of the field. Locate returns nullopt for a
-// coordinate more than half a step outside the field.
-struct Between {
-  std::array<Eigen::Index, 2> index{};
-  double part{};
-};
-
-std::optional<Between> Locate(const std::vector<double>& at, double wanted) {
-  const double margin =
-      at.size() > 1 ? (at.back() - at.front()) / static_cast<double>(at.size() - 1) / 2.0 : 0.5;
-  if (wanted < at.front() - margin || wanted > at.back() + margin) return std::nullopt;
-  const auto next = std::upper_bound(at.begin(), at.end(), wanted);
-  const auto last = static_cast<Eigen::Index>(at.size()) - 1;
-  const auto i = static_cast<Eigen::Index>(next - at.begin());
-  const Eigen::Index low = std::clamp<Eigen::Index>(i - 1, 0, last);
-  const Eigen::Index high = std::clamp<Eigen::Index>(i, 0, last);
-  const double span = at[static_cast<std::size_t>(high)] - at[static_cast<std::size_t>(low)];
-  const double part = span > 0.0 ? (wanted - at[static_cast<std::size_t>(low)]) / span : 0.0;
-  return Between{{low, high}, std::clamp(part, 0.0, 1.0)};
-}
-
-float ValueAt(const SeaField& field, GeoPoint point) {
-  double longitude = point.longitude;
-  while (longitude < field.longitude.front() - 180.0) longitude += 360.0;
-  while (longitude > field.longitude.back() + 180.0) longitude -= 360.0;
-  const std::optional<Between> row = Locate(field.latitude, point.latitude);
-  const std::optional<Between> column = Locate(field.longitude, longitude);
-  if (!row || !column) return kNoValue;
-  double sum = 0.0;
-  double weights = 0.0;
-  for (std::size_t r = 0; r < 2; ++r) {
-    for (std::size_t c = 0; c < 2; ++c) {
-      const double weight =
-          (r == 0 ? 1.0 - row->part : row->part) * (c == 0 ? 1.0 - column->part : column->part);
-      const float value = field.value(row->index[r], column->index[c]);
-      if (std::isnan(value)) continue;
-      sum += weight * static_cast<double>(value);
-      weights += weight;
-    }
-  }
-  return weights > 0.0 ? static_cast<float>(sum / weights) : kNoValue;
-}
-
-}  // namespace
-
-Layer ToLayer(const SeaField& field, const GeoFrame& frame, std::int32_t width,
-              std::int32_t height) {
-  Layer layer(height, width);
-  for (std::int32_t y = 0; y < height; ++y) {
-    for (std::int32_t x = 0; x < width; ++x) layer(y, x) = ValueAt(field, frame.ToGeo(x, y));
-  }
-  return layer;
 }
 
 }  // namespace aquafarm

@@ -2,6 +2,8 @@
 #include "aquafarm/observation/farm_batch.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -234,6 +236,46 @@ TEST(FarmBatch, SaysWhichAgentsAreDoneUntilTheirNextEpisode) {
   step(Action::kNorth);
   EXPECT_EQ(buffers.started[0], 1);
   EXPECT_EQ(buffers.in_play, (std::vector<std::uint8_t>{1, 1}));
+}
+
+TEST(FarmBatch, StartsOneFarmAndKeepsItsStride) {
+  const auto scenario = Shared(CrowdedScenario(2));
+  FarmBatch batch(scenario, 3);
+  Buffers buffers(batch);
+  batch.Reset(3, 0, buffers.View());
+  const std::vector<std::uint64_t> before = buffers.hashes;
+  batch.Start(1, 8, 40, 1, buffers.View());
+  Farm alone(scenario);
+  alone.Reset(8, 40);
+  EXPECT_EQ(buffers.hashes, (std::vector<std::uint64_t>{before[0], alone.Hash(), before[2]}));
+  batch.StartNext(1, buffers.View());
+  batch.StartNext(2, buffers.View());
+  EXPECT_EQ(batch.farm(1).episode(), 41U);
+  EXPECT_EQ(batch.farm(2).episode(), 5U);
+  alone.Reset(8, 41);
+  EXPECT_EQ(buffers.hashes[1], alone.Hash());
+  batch.Reset(3, 0, buffers.View());
+  batch.StartNext(1, buffers.View());
+  EXPECT_EQ(batch.farm(1).episode(), 4U);
+}
+
+TEST(FarmBatch, AForkedProcessStepsOnAfterItsParentUsedThreads) {
+  const auto scenario = Shared(CrowdedScenario(2));
+  FarmBatch batch(scenario, 8, 2);
+  Buffers buffers(batch);
+  batch.Reset(1, 0, buffers.View());
+  batch.Step(Actions(batch, 0).data(), buffers.View());
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    alarm(20);  // ends a child that waits for threads it does not have
+    batch.Step(Actions(batch, 1).data(), buffers.View());
+    _exit(batch.farm(0).step() == 2 ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
 }  // namespace

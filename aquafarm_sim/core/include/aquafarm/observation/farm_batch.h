@@ -37,7 +37,8 @@ struct BatchOutput {
 class FarmBatch {
  public:
   /// Farm i of N plays episodes i, i + N, i + 2N, … of a seed.
-  /// @param threads number of threads that step the farms; results do not depend on it
+  /// @param threads number of threads that step the farms; results do not depend on it. A process
+  ///        forked from one that has stepped with several threads steps with one.
   /// @throws InputError when the layout cannot be drawn
   FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms, std::int32_t threads = 1);
 
@@ -68,6 +69,18 @@ class FarmBatch {
   /// Starts farm i's next episode.
   /// @throws InputError when its layout cannot be drawn
   void StartNext(std::int32_t i);
+  /// Starts farm i's next episode and writes its first observation.
+  /// @throws InputError when its layout cannot be drawn
+  void StartNext(std::int32_t i, const BatchOutput& output);
+  /// Starts episode `episode` of the sequence `seed` in farm i alone and writes its first
+  /// observation. Later episodes of this farm are `stride` apart until the next Reset.
+  /// @throws InputError when its layout cannot be drawn
+  void Start(std::int32_t i, std::uint64_t seed, std::uint64_t episode, std::uint64_t stride,
+             const BatchOutput& output);
+  /// Episodes between two of farm i; farms() unless Start has set another number.
+  std::uint64_t stride(std::int32_t i) const { return strides_[static_cast<std::size_t>(i)]; }
+  /// Sets the number of episodes between two of farm i. @param stride at least 1
+  void set_stride(std::int32_t i, std::uint64_t stride);
 
   /// Serializes all farms; farms restored by Load continue bit-identically.
   std::string Save() const;
@@ -84,7 +97,8 @@ class FarmBatch {
   std::shared_ptr<const Scenario> scenario_;
   std::vector<Farm> farms_;
   Encoder encoder_;
-  std::vector<View> views_;  // one per thread
+  std::vector<std::uint64_t> strides_;  // by farm: episodes from one to its next
+  std::vector<View> views_;             // one per thread
   std::int32_t agents_{};
   std::int32_t threads_{};
 };

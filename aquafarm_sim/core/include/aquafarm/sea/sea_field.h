@@ -11,6 +11,7 @@
 /// may be -180 … 180 or 0 … 360, and depth may be positive down or up. Curvilinear grids are
 /// rejected.
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +20,9 @@
 #include "aquafarm/grid/grid.h"
 
 namespace aquafarm {
+
+/// Value of a field on land and where the file has none.
+inline constexpr float kNoSeaValue = std::numeric_limits<float>::quiet_NaN();
 
 /// Selects the field to read from a file.
 struct SeaFieldChoice {
@@ -42,7 +46,8 @@ struct SeaField {
 using Layer = Grid<float>;
 
 /// Reads the part of a field that covers a ranch of width × height cells.
-/// @throws InputError "sea.nc: so: there is no such variable; there are: …"
+/// @throws InputError "sea.nc: so: there is no such variable; there are: …"; always, in a build
+///         without netCDF (CMake: AQUAFARM_WITH_NETCDF=OFF)
 SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,
                       std::int32_t width, std::int32_t height);
 

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The farm's core: scenarios, and many farms stepped into NumPy arrays.
+
+    batch = FarmBatch(Scenario.load("my.yaml"), farms=1024, write=["rewards", "planes"])
+    batch.reset(seed=7)
+    batch.step(numpy.zeros((1024, 1), numpy.uint8))
+    batch.buffers["rewards"]
+"""
+import pathlib
+import pkgutil
+
+import numpy
+
+# A CMake build folder and a catkin devel space hold the native module apart from the sources.
+__path__ = pkgutil.extend_path(__path__, __name__)
+
+from aquafarm_core import _native  # noqa: E402
+from aquafarm_core._abi import numpy_fault  # noqa: E402
+
+_fault = numpy_fault(_native, numpy)
+if _fault:
+    raise ImportError(_fault)
+
+from aquafarm_core._native import (  # noqa: E402
+    ACTIONS, HOLD, OPTIMISED, OUTCOMES, PLANES, REASONS, STEP_LIMIT, TERMS, VERSION, FarmBatch,
+    Scenario)
+
+__version__ = VERSION
+FarmBatch.__module__ = Scenario.__module__ = __name__  # where pickle finds them
+
+
+def _scenario_folder():
+    """The shipped scenarios: in a wheel, next to a catkin install, or in the sources."""
+    native = pathlib.Path(_native.__file__).resolve().parent
+    for folder in (native / "scenarios", native.parents[3] / "share/aquafarm_sim/scenarios"):
+        if folder.is_dir():
+            return str(folder)
+    return _native.SOURCE_SCENARIO_FOLDER
+
+
+SCENARIO_FOLDER = _scenario_folder()
+
+__all__ = ["ACTIONS", "HOLD", "OPTIMISED", "OUTCOMES", "PLANES", "REASONS", "SCENARIO_FOLDER",
+           "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Scenario"]

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Seeds, episodes and options of reset, and the numbers that infos hold."""
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Collection
+from typing import Any
+
+import aquafarm_core as core
+
+# int64 arrays and C longs must hold every seed.
+SEED_LIMIT = 1 << 63
+EPISODE_LIMIT = 1 << 62
+
+REASON_CODES = {name: code for code, name in enumerate(core.REASONS)}
+# Entries of info["summary"] while an episode runs; the types are those of a finished one.
+NO_SUMMARY: dict[str, Any] = {
+    "seed": 0, "episode": 0, "steps": 0, "episode_return": 0.0, "devices": 0, "delivered": 0,
+    "delivered_health": 0.0, "crashes": 0, "collisions": 0, "steps_in_disaster": 0, "reason": 0,
+    "success": False}
+
+
+def whole_number(where: str, value: Any, limit: int, hint: str) -> int:
+    """Checks a whole number in [0, limit)."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = -1
+    if not 0 <= number < limit:
+        raise ValueError(f"reset: {where}: got {value!r}, expected a whole number in [0, 2**"
+                         f"{limit.bit_length() - 1}); {hint}")
+    return number
+
+
+def check_seed(seed: Any) -> int:
+    """A seed of the environments: a whole number in [0, 2**63)."""
+    return whole_number("seed", seed, SEED_LIMIT, "pass a smaller seed, or None to draw one")
+
+
+def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dict[str, Any]:
+    """Options of reset; refuses unknown names and an `episode` that is no number of one."""
+    options = {} if options is None else options
+    for name in options:
+        if name not in known:
+            raise ValueError(f"reset: options: got '{name}', expected one of: "
+                             f"{', '.join(sorted(known))}; correct the name or leave it out")
+    if "episode" in options:
+        whole_number("options['episode']", options["episode"], EPISODE_LIMIT,
+                     "number the episodes of a seed from 0")
+    return options
+
+
+def summary_of(finished: dict[str, Any]) -> dict[str, Any]:
+    """A record of FarmBatch.finished() as numbers alone, with the entries of NO_SUMMARY."""
+    numbers = {name: finished[name] for name in NO_SUMMARY}
+    numbers["reason"] = REASON_CODES[finished["reason"]]
+    return numbers
+
+
+class Episodes:
+    """Position in the sequence of episodes: a seed starts one, a reset without a seed continues."""
+
+    def __init__(self) -> None:
+        self.seed: int | None = None
+        self.episode = 0
+
+    def next(self, seed: Any, options: dict[str, Any], drawn_seed: Callable[[], int | None],
+             by: int = 1) -> tuple[int, int]:
+        """The (seed, episode) to begin; options may name an `episode` of the sequence."""
+        if seed is not None:
+            self.seed, self.episode = check_seed(seed), 0
+        elif self.seed is None:
+            self.seed, self.episode = (drawn_seed() or 0) % SEED_LIMIT, 0
+        else:
+            self.episode += by
+        if "episode" in options:
+            self.episode = operator.index(options["episode"])
+        return self.seed, self.episode
+
+    def __eq__(self, other: object) -> bool:
+        return (isinstance(other, Episodes)
+                and (self.seed, self.episode) == (other.seed, other.episode))
+
+    __hash__ = None  # type: ignore[assignment]

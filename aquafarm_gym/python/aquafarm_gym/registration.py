@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The Gymnasium ids. A number after -v changes when the same seed and actions give another
+observation, reward, end or info; docs/python.md lists what changed."""
+from __future__ import annotations
+
+import gymnasium
+
+# Farms of one ship that are shipped; each has an id of its own.
+SCENARIOS = {"Paper": "paper", "PaperPartial": "paper_partial", "Partial": "partial",
+             "Procedural": "procedural", "RedTide": "red_tide",
+             "ZhoushanDanas2019": "zhoushan_danas_2019", "ZhoushanInfa2021": "zhoushan_infa_2021",
+             "ZhoushanMitag2019": "zhoushan_mitag_2019"}
+VERSION = 1
+
+
+def register_envs() -> None:
+    """Registers aquafarm/Farm-v1 and one id per scenario, such as aquafarm/Paper-v1."""
+    for name, scenario in {"Farm": "paper", **SCENARIOS}.items():
+        gymnasium.register(f"aquafarm/{name}-v{VERSION}", entry_point="aquafarm_gym.env:FarmEnv",
+                           vector_entry_point="aquafarm_gym.vector_env:FarmVectorEnv",
+                           kwargs={"scenario": scenario})

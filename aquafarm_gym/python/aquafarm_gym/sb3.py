@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many farms for Stable-Baselines3, stepped together in C++."""
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Iterable
+from typing import Any
+
+import aquafarm_core as core
+import numpy as np
+import numpy.typing as npt
+from stable_baselines3.common.monitor import Monitor
+from stable_baselines3.common.vec_env import VecEnv
+
+from aquafarm_gym import spaces
+from aquafarm_gym.env import observation_of, one_agent
+from aquafarm_gym.episodes import Episodes, summary_of
+from aquafarm_gym.farms import LocalFarms
+
+
+class FarmVecEnv(VecEnv):
+    """N farms with one ship each as a Stable-Baselines3 VecEnv.
+
+    A farm whose episode is over starts its next one in the same step; its info then holds
+    `terminal_observation`, `TimeLimit.truncated`, `episode` (r, l, as Monitor has them) and
+    `is_success`. action_masks() is what sb3_contrib's MaskablePPO asks for.
+    """
+
+    def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
+                 observation: str = "features", threads: int = 1) -> None:
+        farms = one_agent(LocalFarms(scenario, num_envs, observation, threads=threads))
+        self.farms = farms
+        self.render_mode: str | None = None
+        self._observation = observation_of(farms, observation)[:, 0]
+        self._dtype = np.int64 if observation == "index" else self._observation.dtype
+        self._rewards = farms.buffers["rewards"][:, 0]
+        self._reasons = farms.buffers["reasons"]
+        self._legal = farms.buffers["legal"][:, 0]
+        self._actions = np.zeros((farms.farms, 1), np.uint8)
+        self._episodes = Episodes()
+        super().__init__(farms.farms, spaces.observation_space(farms, observation),
+                         spaces.action_space())
+
+    def reset(self) -> npt.NDArray[Any]:
+        """Starts the sequence of the seed set by seed(); without one the sequence continues."""
+        seed = self._seeds[0]
+        if seed is None and self._episodes.seed is not None:
+            self.farms.start_next(np.ones(self.num_envs, bool))
+        else:
+            drawn = np.random.SeedSequence().generate_state(1, np.uint64)[0]
+            self.farms.reset(*self._episodes.next(seed, {}, lambda: int(drawn)))
+        self._reset_seeds()
+        self._reset_options()
+        self.reset_infos = [{} for _ in range(self.num_envs)]
+        return self._observation.astype(self._dtype)
+
+    def step_async(self, actions: npt.NDArray[Any]) -> None:
+        actions = np.asarray(actions)
+        if actions.shape != (self.num_envs,) or actions.min() < 0 or (
+                actions.max() >= spaces.N_ACTIONS):
+            raise ValueError(f"actions: got {list(actions.shape)} from {actions.min()} to "
+                             f"{actions.max()}, expected [{self.num_envs}] in [0, 9]")
+        self._actions[:, 0] = actions
+
+    def step_wait(self) -> Any:
+        self.farms.step(self._actions)
+        rewards = self._rewards.copy()
+        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        over = self._reasons != 0
+        if over.any():
+            for one in self.farms.finished():
+                infos[one["farm"]] = self._last_info(one)
+            self.farms.start_next(over)
+        return self._observation.astype(self._dtype), rewards, over, infos
+
+    def _last_info(self, finished: dict[str, Any]) -> dict[str, Any]:
+        summary = summary_of(finished)
+        last = self._observation[finished["farm"]].astype(self._dtype)
+        return {"terminal_observation": last, "is_success": summary["success"], "summary": summary,
+                "TimeLimit.truncated": summary["reason"] == core.STEP_LIMIT,
+                "episode": {"r": summary["episode_return"], "l": summary["steps"], "t": 0.0}}
+
+    def action_masks(self) -> npt.NDArray[np.bool_]:
+        """Legal actions, bool [N, 10]."""
+        return spaces.action_mask(self._legal).astype(bool)
+
+    def close(self) -> None:
+        self.farms.close()
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        return [getattr(self, attr_name)] * self._count(indices)
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        raise ValueError(f"set_attr: got '{attr_name}', expected no attribute: the farms of a "
+                         "FarmVecEnv have one scenario; make another FarmVecEnv")
+
+    def env_method(self, method_name: str, *method_args: Any, indices: Any = None,
+                   **method_kwargs: Any) -> list[Any]:
+        if method_name != "action_masks":
+            raise ValueError(f"env_method: got '{method_name}', expected action_masks; the farms "
+                             "of a FarmVecEnv have no other method of their own")
+        masks = self.action_masks()
+        return [masks[i] for i in self._get_indices(indices)]
+
+    def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
+        # infos hold what Monitor would add.
+        return [wrapper_class is Monitor] * self._count(indices)
+
+    def _count(self, indices: None | int | Iterable[int]) -> int:
+        return len(list(self._get_indices(indices)))

@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gymnasium vector environments: many farms as arrays, with one ship or with several each."""
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Sequence
+from typing import Any
+
+import aquafarm_core as core
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+from gymnasium.vector.utils import batch_space
+
+from aquafarm_gym import spaces
+from aquafarm_gym.env import check_render_mode, html_of, observation_of, one_agent
+from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, check_seed, summary_of
+from aquafarm_gym.farms import LocalFarms
+
+NEXT_STEP, SAME_STEP, DISABLED = AUTORESET_MODES = ("NextStep", "SameStep", "Disabled")
+Array = npt.NDArray[Any]
+
+
+def autoreset_name(mode: Any, farms: Any) -> str:
+    """The name of a gymnasium.vector.AutoresetMode, or of a text that names one."""
+    name = getattr(mode, "value", mode)
+    if name not in AUTORESET_MODES:
+        raise ValueError(f"autoreset_mode: got {mode!r}, expected a "
+                         f"gymnasium.vector.AutoresetMode or one of: {', '.join(AUTORESET_MODES)}")
+    if name != NEXT_STEP and not hasattr(farms, "start_next"):
+        raise ValueError(f"autoreset_mode: got {name} for farms behind ROS, expected {NEXT_STEP}; "
+                         "play the farms in this process, or leave autoreset_mode out")
+    return str(name)
+
+
+class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
+    """N farms, stepped together: what the two classes below share."""
+
+    metadata: dict[str, Any] = {"render_modes": ["ansi"], "render_fps": 4}
+
+    def __init__(self, farms: Any, observation: str, copy: bool, render_mode: str | None,
+                 autoreset_mode: Any) -> None:
+        self.farms = farms
+        self.num_envs = self.farms.farms
+        self.observation = observation
+        self.render_mode = check_render_mode(render_mode, farms)
+        self._mode = autoreset_name(autoreset_mode, farms)
+        if hasattr(gymnasium.vector, "AutoresetMode"):  # since Gymnasium 1.1
+            self.metadata = {**self.metadata,
+                             "autoreset_mode": gymnasium.vector.AutoresetMode(self._mode)}
+        self._copy = copy
+        self._episodes = Episodes()
+        self._own_sequences = False  # whether some farm plays a sequence of its own
+        self._begun = np.zeros(self.num_envs, np.int64)  # episodes since the last reset, by farm
+        self._attach()
+
+    def _attach(self) -> None:
+        """Names the arrays that the farms write."""
+        buffers = self.farms.buffers
+        self._observation = self._agents_of(observation_of(self.farms, self.observation))
+        self._all_rewards = buffers["rewards"]
+        self._reasons, self._started = buffers["reasons"], buffers["started"].view(bool)
+        self._legal = self._agents_of(buffers["legal"])
+        self._outcomes = self._agents_of(buffers["outcomes"])
+        self._actions = np.zeros((self.num_envs, self.farms.agents), np.uint8)
+        self._everywhere = np.ones(self.num_envs, bool)
+        self._nowhere = np.zeros(self.num_envs, bool)
+        self._no_summary = {name: np.zeros(self.num_envs, np.asarray(value).dtype)
+                            for name, value in NO_SUMMARY.items()}
+        for array in (self._everywhere, self._nowhere, *self._no_summary.values()):
+            array.flags.writeable = False  # handed out at every step
+
+    def _agents_of(self, array: Array) -> Array:
+        """What an observation, action or mask holds of [N, S, …]."""
+        raise NotImplementedError
+
+    def _rewards(self) -> Array:
+        """The reward of each farm, [N]."""
+        raise NotImplementedError
+
+    def reset(self, *, seed: int | Sequence[int | None] | None = None,
+              options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Starts episodes. seed: one number starts its sequence, farm i of N at episode i; a list
+        starts a sequence per farm at its episode 0. Without a seed each farm's sequence continues.
+        options: `episode` (added to the first episode) and `reset_mask` (bool [N], the farms that
+        start; the others stay as they are)."""
+        options = check_options(options, ("episode", "reset_mask"))
+        mask = self._mask_of(options)
+        seeds = self._seeds_of(seed)
+        super().reset(seed=seed if seeds is None else None)
+        if seeds is not None:
+            self._start_each(mask, seeds, int(options.get("episode", 0)))
+        elif mask is None and not (self._own_sequences and seed is None and not options):
+            self._start_all(seed, options)
+        elif seed is None and "episode" not in options:
+            self._start_next(self._everywhere if mask is None else mask)
+        else:
+            self._start_masked(mask, seed, int(options.get("episode", 0)))
+        return self._out(self._observation), self._infos(self._reasons != 0)
+
+    def _mask_of(self, options: dict[str, Any]) -> Array | None:
+        mask = options.get("reset_mask")
+        if mask is None:
+            return None
+        fits = isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
+        if not fits or mask.dtype != np.bool_ or not mask.any():
+            raise ValueError(f"reset: options['reset_mask']: got {mask!r}, expected a bool array "
+                             f"[{self.num_envs}] with an entry that is True")
+        self._need_local("reset_mask")
+        if self._episodes.seed is None and not self._own_sequences and not mask.all():
+            raise ValueError("reset: got a reset_mask before the first reset, expected one of all "
+                             "farms; call reset() without reset_mask first")
+        return mask
+
+    def _seeds_of(self, seed: Any) -> list[int | None] | None:
+        if seed is None or not isinstance(seed, (list, tuple, np.ndarray)):
+            if seed is not None:
+                check_seed(seed)
+            return None
+        if len(seed) != self.num_envs:
+            raise ValueError(f"reset: seed: got {len(seed)} seeds, expected {self.num_envs}; pass "
+                             "one per farm, or one number for all")
+        self._need_local("a list of seeds")
+        return [None if one is None else check_seed(one) for one in seed]
+
+    def _need_local(self, given: str) -> None:
+        if not hasattr(self.farms, "start"):
+            raise ValueError(f"reset: got {given} for farms behind ROS, expected none; these farms "
+                             "start together: pass one seed")
+
+    def _start_all(self, seed: int | None, options: dict[str, Any]) -> None:
+        # Farm i of N plays every N-th episode: continue behind the farm that has come furthest.
+        by = self.num_envs * (1 + int(self._begun.max()))
+        self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed, by))
+        self._begun[:] = 0
+        self._own_sequences = False
+
+    def _ensure_reset(self) -> None:
+        if self._episodes.seed is None:
+            self._start_all(None, {})
+
+    def _start_next(self, mask: Array) -> None:
+        self._ensure_reset()
+        self.farms.start_next(mask)
+        self._begun += mask
+
+    def _start_each(self, mask: Array | None, seeds: list[int | None], episode: int) -> None:
+        self._ensure_reset()
+        mask = self._everywhere if mask is None else mask
+        seeded = mask & np.array([one is not None for one in seeds])
+        if (mask & ~seeded).any():
+            self._start_next(mask & ~seeded)
+        if seeded.any():
+            self.farms.start(seeded, [one or 0 for one in seeds], [episode] * self.num_envs, 1)
+        self._own_sequences = True
+
+    def _start_masked(self, mask: Array | None, seed: int | None, episode: int) -> None:
+        self._ensure_reset()
+        sequence = self._episodes.seed if seed is None else seed
+        self.farms.start(self._everywhere if mask is None else mask, [sequence] * self.num_envs,
+                         [episode + i for i in range(self.num_envs)], self.num_envs)
+        self._own_sequences = True
+
+    def step(self, actions: Any) -> tuple[Any, Array, Array, Array, dict[str, Any]]:
+        actions = np.asarray(actions)
+        shape = self.action_space.shape
+        if actions.shape != shape or actions.dtype.kind not in "iu":
+            raise ValueError(f"actions: got {actions.dtype} {list(actions.shape)}, expected whole "
+                             f"numbers {list(shape or ())}")
+        if actions.min() < 0 or actions.max() >= spaces.N_ACTIONS:
+            raise ValueError(f"actions: got {actions.min()} to {actions.max()}, expected [0, 9]")
+        if self._mode == DISABLED and self._reasons.any():
+            raise gymnasium.error.ResetNeeded(
+                f"step: the episodes of farms {np.flatnonzero(self._reasons).tolist()} are over; "
+                "reset them with options={'reset_mask': mask} first")
+        self._actions[...] = actions.reshape(self._actions.shape)
+        self.farms.step(self._actions)
+        self._begun += self._started
+        over = self._reasons != 0
+        truncated = self._reasons == core.STEP_LIMIT
+        rewards = self._rewards()
+        if self._mode == SAME_STEP and not self._copy:
+            rewards = rewards.copy()  # a farm that starts again in this step overwrites its entry
+        if self._mode == SAME_STEP and over.any():
+            infos = self._restart(over)
+        else:
+            infos = self._infos(over)
+        return self._out(self._observation), rewards, over ^ truncated, truncated, infos
+
+    def _restart(self, over: Array) -> dict[str, Any]:
+        """Starts the next episodes at once; infos hold the last observations and infos."""
+        final_obs = np.full(self.num_envs, None)
+        for i in np.flatnonzero(over):
+            final_obs[i] = self._observation[i].copy()
+        final_info = self._infos(over)
+        self._start_next(over)
+        return {**self._infos(self._nowhere), "final_obs": final_obs, "_final_obs": over,
+                "final_info": final_info, "_final_info": over}
+
+    def render(self) -> tuple[str, ...] | None:
+        """Each farm as text in the mode `ansi`."""
+        if self.render_mode is None:
+            return None
+        return tuple(self.farms.text(i) for i in range(self.num_envs))
+
+    def close_extras(self, **kwargs: Any) -> None:
+        self.farms.close()
+
+    def _out(self, array: Array) -> Array:
+        return array.copy() if self._copy else array
+
+    def _infos(self, over: Array) -> dict[str, Any]:
+        summary, success = self._no_summary, self._nowhere
+        if over.any():
+            summary = {name: zeros.copy() for name, zeros in self._no_summary.items()}
+            for one in self.farms.finished():
+                for name, value in summary_of(one).items():
+                    summary[name][one["farm"]] = value
+            success = summary["success"]
+        infos = {"action_mask": spaces.action_mask(self._legal),
+                 "outcome": self._outcomes.astype(np.int64),
+                 "reason": self._reasons.astype(np.int64), "is_success": success,
+                 "started": self._started.copy(), "summary": summary}
+        infos.update(self._more_infos())
+        infos.update({f"_{name}": self._everywhere for name in infos})
+        infos["_summary"] = over
+        return infos
+
+    def _more_infos(self) -> dict[str, Any]:
+        return {}
+
+    def _repr_html_(self) -> str:
+        if not hasattr(self.farms, "text"):
+            return html_of(repr(self))
+        shown = min(self.num_envs, 4)
+        return "".join(html_of(self.farms.text(i)) for i in range(shown)) + (
+            f"<p>{shown} of {self.num_envs} farms</p>")
+
+    def __getstate__(self) -> dict[str, Any]:
+        kept = ("_own_sequences", "_begun", "_mode", "_copy", "_episodes", "_np_random",
+                "_np_random_seed")
+        return {name: value for name, value in self.__dict__.items()
+                if not name.startswith("_") or name in kept}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._attach()
+
+    def __eq__(self, other: object) -> bool:
+        return (type(self) is type(other) and isinstance(other, VectorBase)
+                and (self.observation, self._mode) == (other.observation, other._mode)
+                and self._episodes == other._episodes and bool(self.farms == other.farms))
+
+    def __hash__(self) -> int:
+        return hash((type(self), self.observation, self.farms))
+
+
+class FarmVectorEnv(VectorBase):
+    """N farms with one ship each, stepped together in this process (or behind ROS, by `farms`).
+
+    A farm whose episode is over starts its next one as autoreset_mode says (names or values of
+    gymnasium.vector.AutoresetMode): in the next step, whose action it ignores (the default), in the
+    same step, or only by reset with a reset_mask. With copy=False observations and rewards are the
+    arrays that the farms write, overwritten by the next step. infos has the same keys at every
+    step: those of FarmEnv as arrays [N, …], and `started`, each with its mask `_action_mask` …;
+    `summary` counts where `_summary` is True and is 0 elsewhere. In the mode SameStep `final_obs`
+    and `final_info` join them when an episode ends.
+    """
+
+    def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
+                 observation: str = "features", copy: bool = True, threads: int = 1,
+                 farms: Any = None, render_mode: str | None = None,
+                 autoreset_mode: Any = NEXT_STEP) -> None:
+        farms = one_agent(farms or LocalFarms(scenario, num_envs, observation, threads=threads))
+        self.single_action_space = spaces.action_space()
+        self.single_observation_space = spaces.observation_space(farms, observation)
+        self.action_space = batch_space(self.single_action_space, farms.farms)
+        self.observation_space = batch_space(self.single_observation_space, farms.farms)
+        super().__init__(farms, observation, copy, render_mode, autoreset_mode)
+
+    def _agents_of(self, array: Array) -> Array:
+        return array[:, 0]
+
+    def _rewards(self) -> Array:
+        return self._out(self._all_rewards[:, 0])
+
+
+class TeamVectorEnv(VectorBase):
+    """N farms with S ships each as joint steps: actions [N, S], observations [N, S, …].
+
+    The reward is the sum over the agents; infos["agent_rewards"] float32 [N, S] holds each agent's
+    own, infos["in_play"] bool [N, S] is False for a self-propelled device that is delivered. The
+    rest is as in FarmVectorEnv, with S entries per farm.
+    """
+
+    def __init__(self, num_envs: int = 1,
+                 scenario: core.Scenario | str | pathlib.Path = "two_squads",
+                 observation: str = "features", copy: bool = True, threads: int = 1,
+                 farms: Any = None, render_mode: str | None = None,
+                 autoreset_mode: Any = NEXT_STEP) -> None:
+        farms = farms or LocalFarms(scenario, num_envs, observation, threads=threads)
+        own = spaces.observation_space(farms, observation)
+        agents = farms.agents
+        self.single_action_space = gymnasium.spaces.MultiDiscrete([spaces.N_ACTIONS] * agents)
+        self.single_observation_space = batch_space(own, agents)
+        self.action_space = batch_space(self.single_action_space, farms.farms)
+        self.observation_space = batch_space(self.single_observation_space, farms.farms)
+        super().__init__(farms, observation, copy, render_mode, autoreset_mode)
+
+    def _agents_of(self, array: Array) -> Array:
+        return array
+
+    def _rewards(self) -> Array:
+        return np.asarray(self._all_rewards.sum(axis=1))
+
+    def _more_infos(self) -> dict[str, Any]:
+        return {"agent_rewards": self._all_rewards.copy(),
+                "in_play": self.farms.buffers["in_play"].astype(bool)}

@@ -1,14 +1,20 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """The Python module aquafarm_core: what it writes, where it writes it, and what it refuses."""
+import copy
+import os
 import pathlib
+import pickle
+import signal
 import threading
 import time
+import types
 import unittest
 
 import aquafarm_core as core
 import numpy as np
-import rostest
+from aquafarm_core import _abi, _native
+from venv_tools import run_tests
 
 DATA = pathlib.Path(__file__).resolve().parent / "data"
 PAPER = core.Scenario.load(f"{core.SCENARIO_FOLDER}/paper.yaml")
@@ -64,8 +70,18 @@ class CoreTest(unittest.TestCase):
         self.assertEqual(batch.save(), core_after_reset(2))
 
     def test_other_faults_have_their_line(self):
-        with self.assertRaisesRegex(ValueError, "^farms: got 0, expected at least 1$"):
-            core.FarmBatch(PAPER, 0)
+        for call, words in (
+                (lambda: core.FarmBatch(PAPER, 0), "farms: got 0, expected a whole number in "
+                 r"\[1, 1048576\]; pass the number of farms to step together$"),
+                (lambda: core.FarmBatch(PAPER, 2**31), "farms: got 2147483648, expected"),
+                (lambda: core.FarmBatch(PAPER, 1.5), "farms: got 1.5, expected a whole number"),
+                (lambda: core.FarmBatch(PAPER, threads=-3), "threads: got -3, expected a whole "
+                 r"number in \[1, 1024\]; "),
+                (lambda: core.FarmBatch(PAPER).reset(2**64), "seed: got 18446744073709551616, "),
+                (lambda: core.FarmBatch(PAPER).reset(1, -1), "episode: got -1, expected"),
+                (lambda: core.FarmBatch(PAPER, 2).text(2), r"farm: got 2, expected .* \[0, 1\]")):
+            with self.assertRaisesRegex(ValueError, f"^FarmBatch: {words}"):
+                call()
         with self.assertRaisesRegex(ValueError, "^x:1: name: missing"):
             core.Scenario.parse("grid: {}", "x")
         with self.assertRaisesRegex(ValueError, "^state: "):
@@ -83,6 +99,78 @@ class CoreTest(unittest.TestCase):
             other.step(joint)
             for name, array in batch.buffers.items():
                 np.testing.assert_array_equal(array, other.buffers[name])
+
+    def test_copies_and_pickles_hold_every_buffer_and_continue_bit_for_bit(self):
+        for path in sorted(pathlib.Path(core.SCENARIO_FOLDER).glob("*.yaml")):
+            scenario = core.Scenario.load(str(path))
+            again = pickle.loads(pickle.dumps(scenario))
+            self.assertEqual((scenario, hash(scenario), scenario.yaml),
+                             (again, hash(again), again.yaml))
+            self.assertNotEqual(scenario, core.Scenario.load(str(DATA / "reef.yaml")))
+            batch = core.FarmBatch(scenario, 2, ["rewards", "terms", "outcomes", "legal", "in_play",
+                                                 "reasons", "started", "hashes", "features"])
+            self.assertEqual(batch, copy.deepcopy(batch))
+            batch.reset(5)
+            batch.start(np.array([False, True]), [0, 9], [0, 3], 1)
+            for joint in actions_of(1, batch, 20):
+                batch.step(joint)
+            other = pickle.loads(pickle.dumps(batch))
+            self.assertEqual(batch, other)
+            for _ in range(2):
+                for name, array in batch.buffers.items():
+                    np.testing.assert_array_equal(array, other.buffers[name], f"{path}: {name}")
+                for one in (batch, other):
+                    one.start_next(np.ones(2, bool))
+            other.step(actions_of(2, batch, 1)[0])
+            self.assertNotEqual(batch, other)
+
+    def test_an_array_in_use_cannot_be_resized(self):
+        batch = core.FarmBatch(PAPER, 4)
+        own, replay = np.zeros((4, 1), np.float32), np.zeros((2, 4, 1, 7), np.float32)
+        batch.bind("rewards", own)
+        batch.bind("terms", replay[1])
+        for array in (own, replay, batch.buffers["reasons"]):
+            with self.assertRaisesRegex(ValueError, "cannot resize an array that references"):
+                array.resize((1 << 20,), refcheck=False)
+        batch.bind("rewards", np.zeros((4, 1), np.float32))
+        own.resize((1 << 20,), refcheck=False)  # no longer in use
+        batch.reset(1)
+
+    def test_a_fork_after_a_step_with_threads_steps_on(self):
+        batch = core.FarmBatch(PAPER, 8, ["hashes"], threads=2)
+        batch.reset(1)
+        batch.step(np.zeros((8, 1), np.uint8))
+        expected = copy.deepcopy(batch)
+        expected.step(np.ones((8, 1), np.uint8))
+        child = os.fork()
+        if child == 0:
+            signal.alarm(20)  # ends a child that waits for threads it does not have
+            batch.step(np.ones((8, 1), np.uint8))
+            os._exit(0 if (batch.buffers["hashes"] == expected.buffers["hashes"]).all() else 1)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+
+    def test_a_numpy_that_the_module_misreads_is_refused_at_import(self):
+        self.assertEqual(_abi.numpy_fault(_native, np), "")
+        old = types.SimpleNamespace(PYBIND11=(2, 10), _made_array=_native._made_array,
+                                    _write_last=_native._write_last)
+        new_numpy = types.SimpleNamespace(__version__="2.4.6", zeros=np.zeros, uint8=np.uint8,
+                                          count_nonzero=np.count_nonzero)
+        self.assertRegex(_abi.numpy_fault(old, new_numpy), "^aquafarm_core: got numpy 2.4.6 with a "
+                         r"module built with pybind11 2.10, expected numpy < 2; install the wheel")
+        flat = types.SimpleNamespace(
+            PYBIND11=(2, 12), _write_last=_native._write_last,
+            _made_array=lambda dtype, shape: np.lib.stride_tricks.as_strided(
+                np.zeros(shape, dtype), strides=(0, 0)))
+        self.assertRegex(_abi.numpy_fault(flat, np), r"^aquafarm_core: got bool arrays with strides "
+                         r"\(0, 0\) from numpy .*, expected \(3, 1\); install")
+
+        def write_all(array, value):
+            array.view(np.uint8)[:] = value
+
+        aliased = types.SimpleNamespace(PYBIND11=(2, 12), _made_array=_native._made_array,
+                                        _write_last=write_all)
+        self.assertRegex(_abi.numpy_fault(aliased, np),
+                         "^aquafarm_core: got bool entries that share memory from numpy ")
 
     def test_rewards_are_the_sum_of_their_terms_and_finished_episodes_add_up(self):
         reef = core.Scenario.load(str(DATA / "reef.yaml"))
@@ -133,10 +221,10 @@ class CoreTest(unittest.TestCase):
         actions = actions_of(1, batch, 64)
         rates = []
         for _ in range(5):
-            start = time.perf_counter()
+            start = time.process_time()  # of this process: others may have the machine
             for joint in actions:
                 batch.step(joint)
-            rates.append(actions.size / (time.perf_counter() - start))
+            rates.append(actions.size / (time.process_time() - start))
         print(f"farm_steps_python {np.median(rates):.3g} steps/s")
         self.assertGreater(max(rates), 5e6 if core.OPTIMISED else 1e5)
 
@@ -149,4 +237,4 @@ def core_after_reset(farms):
 
 
 if __name__ == "__main__":
-    rostest.rosrun("aquafarm_gym", "core_python", CoreTest)
+    run_tests("core_python", CoreTest, "")

@@ -1,0 +1,312 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The Python environments without ROS: seeds, infos, autoreset, copies, rendering, refusals.
+
+Runs in the virtual environment that --venv names (venv_tools.py), or in the Python that starts it.
+"""
+import copy
+import importlib.util
+import pathlib
+import pickle
+import sys
+import unittest
+
+from venv_tools import enter_venv, run_tests
+
+WHY_NOT = enter_venv()
+
+if not WHY_NOT:
+    import aquafarm_core as core
+    import aquafarm_gym
+    import gymnasium
+    import numpy as np
+    from aquafarm_gym import (ActionMaskInObservation, FarmEnv, FarmParallelEnv, FarmVectorEnv,
+                              TeamVectorEnv, VectorActionMaskInObservation)
+    from gymnasium.utils.env_checker import data_equivalence
+
+REEF = str(pathlib.Path(__file__).resolve().parent / "data" / "reef.yaml")
+SHORT = 60  # step limit of the farms whose episodes end often
+MODES = ("NextStep", "SameStep", "Disabled")
+
+
+def short_paper():
+    """paper.yaml with episodes of SHORT steps."""
+    text = core.Scenario.load(f"{core.SCENARIO_FOLDER}/paper.yaml").yaml
+    return core.Scenario.parse(text.replace("step_limit: 5000", f"step_limit: {SHORT}"), "short")
+
+
+def has(name):
+    """Whether a package is installed."""
+    return importlib.util.find_spec(name) is not None
+
+
+@unittest.skipIf(WHY_NOT, WHY_NOT)
+class EnvTest(unittest.TestCase):
+    def assert_same(self, one, other):
+        self.assertTrue(data_equivalence(one, other, exact=True), f"{one}\n{other}")
+
+    def test_drawn_seeds_fit_a_signed_64_bit_number(self):
+        for _ in range(20):  # numpy draws 128 bits: without a limit one in two is too large
+            for env in (FarmEnv(), FarmVectorEnv(2), FarmParallelEnv()):
+                env.reset()
+                self.assertTrue(0 <= env._episodes.seed < 2**63, env._episodes.seed)
+
+    def test_unseeded_vectors_of_single_environments_play_past_an_episodes_end(self):
+        envs = gymnasium.vector.SyncVectorEnv([lambda: FarmEnv(short_paper())] * 8)
+        envs.reset()
+        ended = 0
+        for _ in range(2 * SHORT):
+            infos = envs.step(envs.action_space.sample())[4]
+            seeds = infos["summary"]["seed"]
+            self.assertEqual(seeds.dtype, np.int64)
+            ended += np.count_nonzero(infos["reason"])
+        self.assertGreaterEqual(ended, 8)
+
+    def test_every_observation_lies_within_its_space_and_the_bounds_are_finite(self):
+        for path in sorted(pathlib.Path(core.SCENARIO_FOLDER).glob("*.yaml")):
+            for observation in ("features", "planes"):
+                env = TeamVectorEnv(4, str(path), observation)
+                self.assertTrue(np.isfinite(env.observation_space.low).all())
+                self.assertTrue(np.isfinite(env.observation_space.high).all())
+                env.reset(seed=1)
+                env.action_space.seed(1)
+                for _ in range(200):
+                    seen = env.step(env.action_space.sample())[0]
+                    self.assertTrue(env.observation_space.contains(seen), path)
+
+    def test_infos_have_the_same_keys_and_numbers_at_every_step(self):
+        env = FarmEnv(short_paper())
+        _, info = env.reset(seed=3)
+        keys, summary = list(info), list(info["summary"])
+        over = False
+        while not over:
+            *_, terminated, truncated, info = env.step(env.action_space.sample())
+            over = terminated or truncated
+            self.assertEqual((keys, summary), (list(info), list(info["summary"])))
+            for value in (*info.values(), *info["summary"].values()):
+                self.assertIsInstance(value, (int, float, np.ndarray, dict))
+            self.assertEqual(info["summary"]["seed"], 3 if over else 0)
+        self.assertEqual(info["summary"]["reason"], info["reason"])
+        self.assertGreater(info["summary"]["steps"], 0)
+        envs = FarmVectorEnv(4, short_paper())
+        keys = list(envs.reset(seed=3)[1])
+        for _ in range(2 * SHORT):
+            infos = envs.step(envs.action_space.sample())[4]
+            self.assertEqual(keys, list(infos))
+            for name, value in infos.items():
+                if name != "summary":
+                    self.assertIn(value.dtype.kind, "iufb")
+            self.assertTrue(all(one.dtype.kind in "iufb" for one in infos["summary"].values()))
+
+    @unittest.skipUnless(not WHY_NOT and hasattr(gymnasium.vector, "AutoresetMode"),
+                         "autoreset modes need gymnasium >= 1.1")
+    def test_each_autoreset_mode_equals_gymnasiums_own_vector_of_single_environments(self):
+        for name in MODES:
+            mode = gymnasium.vector.AutoresetMode(name)
+            ours = FarmVectorEnv(5, short_paper(), autoreset_mode=mode)
+            theirs = gymnasium.vector.SyncVectorEnv([lambda: FarmEnv(short_paper())] * 5,
+                                                    autoreset_mode=mode)
+            self.assertEqual(ours.metadata["autoreset_mode"], mode)
+            seeds = [11, 5, 7, 2**62, 0]
+            self.check_step(ours.reset(seed=seeds), theirs.reset(seed=seeds))
+            chance = np.random.default_rng(1)
+            ended = 0
+            for _ in range(3 * SHORT):
+                actions = chance.integers(0, 10, 5)
+                one, other = ours.step(actions), theirs.step(actions)
+                for mine, yours in zip(one[1:4], other[1:4]):
+                    np.testing.assert_array_equal(mine, yours)
+                self.check_step((one[0], one[4]), (other[0], other[4]))
+                over = one[2] | one[3]
+                ended += np.count_nonzero(over)
+                if name == "Disabled" and over.any():
+                    self.check_step(ours.reset(options={"reset_mask": over.copy()}),
+                                    theirs.reset(options={"reset_mask": over.copy()}), over)
+            self.assertGreaterEqual(ended, 10)
+
+    def check_step(self, ours, theirs, where=slice(None)):
+        """Compares (observations, infos) of both."""
+        np.testing.assert_array_equal(ours[0], theirs[0])
+        for key in ("action_mask", "outcome", "reason", "is_success"):
+            np.testing.assert_array_equal(ours[1][key][where], theirs[1][key][where], key)
+        for key in ours[1]["summary"]:
+            np.testing.assert_array_equal(ours[1]["summary"][key][where],
+                                          theirs[1]["summary"][key][where], key)
+        self.assertEqual("final_obs" in ours[1], "final_obs" in theirs[1])
+        if "final_obs" in ours[1]:
+            over = ours[1]["_final_obs"]
+            np.testing.assert_array_equal(over, theirs[1]["_final_obs"])
+            for i in np.flatnonzero(over):
+                np.testing.assert_array_equal(ours[1]["final_obs"][i], theirs[1]["final_obs"][i])
+            for key in ("reason", "action_mask"):
+                np.testing.assert_array_equal(ours[1]["final_info"][key][over],
+                                              theirs[1]["final_info"][key][over])
+
+    def test_a_masked_reset_leaves_the_other_farms_as_they_are(self):
+        env = FarmVectorEnv(3, "paper", autoreset_mode="Disabled")
+        env.reset(seed=4)
+        before = env.step(np.array([0, 1, 2]))[0]
+        mask = np.array([False, True, False])
+        after, infos = env.reset(seed=9, options={"reset_mask": mask, "episode": 20})
+        np.testing.assert_array_equal(after[~mask], before[~mask])
+        np.testing.assert_array_equal(infos["started"], mask)
+        alone = FarmEnv()
+        expected = alone.reset(seed=9, options={"episode": 21})[0]
+        np.testing.assert_array_equal(after[1], expected)
+
+    def test_copies_and_pickles_continue_bit_for_bit_and_are_equal(self):
+        for make, actions in ((FarmEnv, 3), (lambda: FarmVectorEnv(3), np.array([1, 2, 3])),
+                              (FarmParallelEnv, {"ship_0": 1, "ship_1": 2}),
+                              (lambda: TeamVectorEnv(2), np.array([[1, 2], [3, 4]]))):
+            env = make()
+            env.reset(seed=2)
+            env.step(actions)
+            for other in (copy.deepcopy(env), pickle.loads(pickle.dumps(env))):
+                self.assertEqual(env, other)
+                self.assertEqual(hash(env), hash(other))
+                self.assert_same(other.step(actions), pickle.loads(pickle.dumps(env)).step(actions))
+                self.assertNotEqual(env, other)
+                self.assert_same(other.reset(), pickle.loads(pickle.dumps(env)).reset())
+
+    def test_an_id_round_trips_through_json(self):
+        spec = gymnasium.make("aquafarm/Paper-v1", observation="index").spec
+        again = gymnasium.envs.registration.EnvSpec.from_json(spec.to_json())
+        self.assertIsInstance(again.entry_point, str)
+        env = gymnasium.make(again)
+        self.assertEqual(env.unwrapped.observation, "index")
+        self.assertEqual(gymnasium.make("aquafarm/RedTide-v1").unwrapped.farms.name, "red_tide")
+
+    def test_render_shows_the_farm_as_text(self):
+        env = FarmEnv(render_mode="ansi")
+        env.reset(seed=1)
+        lines = env.render().splitlines()
+        self.assertRegex(lines[0], "^paper  step 0 of ")
+        self.assertEqual([len(line) for line in lines[1:]], [25] * 25)
+        self.assertEqual("".join(lines[1:]).count("0"), 1)
+        self.assertIn("<pre", env._repr_html_())
+        self.assertEqual(len(FarmVectorEnv(3, render_mode="ansi").render()), 3)
+        self.assertIn("4 of 9 farms", FarmVectorEnv(9)._repr_html_())
+
+    def test_masks_join_the_observation(self):
+        env = ActionMaskInObservation(FarmEnv())
+        seen, info = env.reset(seed=1)
+        self.assertTrue(env.observation_space.contains(seen))
+        np.testing.assert_array_equal(seen["action_mask"], info["action_mask"])
+        envs = VectorActionMaskInObservation(FarmVectorEnv(4, short_paper(),
+                                                           autoreset_mode="SameStep"))
+        envs.reset(seed=1)
+        lasts = 0
+        for _ in range(SHORT + 1):
+            seen, *_, infos = envs.step(envs.action_space.sample())
+            self.assertTrue(envs.observation_space.contains(seen))
+            for last in infos.get("final_obs", ()):
+                lasts += last is not None and envs.single_observation_space.contains(last)
+        self.assertGreaterEqual(lasts, 4)
+        team = VectorActionMaskInObservation(TeamVectorEnv(2))
+        self.assertTrue(team.observation_space.contains(team.reset(seed=1)[0]))
+
+    def test_a_mask_has_the_bits_of_the_legal_actions(self):
+        legal = np.array([[0b1000000001, 0b1], [0b1111111111, 0]], np.uint16)
+        expected = [[[(int(bits) >> k) & 1 for k in range(10)] for bits in row] for row in legal]
+        np.testing.assert_array_equal(aquafarm_gym.spaces.action_mask(legal), expected)
+        np.testing.assert_array_equal(aquafarm_gym.spaces.action_mask(legal[:, 0]),
+                                      [row[0] for row in expected])
+
+    def test_a_state_holds_the_observations_of_all_agents(self):
+        for observation in ("features", "planes", "index"):
+            env = FarmParallelEnv("two_squads", observation)
+            seen = env.reset(seed=1)[0]
+            state = env.state()
+            self.assertTrue(env.state_space.contains(state))
+            parts = [np.atleast_1d(seen[agent]) for agent in env.possible_agents]
+            np.testing.assert_array_equal(state, np.concatenate(parts))
+
+    def test_joint_steps_of_many_teams_equal_those_of_one(self):
+        envs = TeamVectorEnv(3, REEF)
+        one = FarmParallelEnv(REEF)
+        seen = envs.reset(seed=6)[0]
+        alone = one.reset(seed=6, options={"episode": 1})[0]
+        chance = np.random.default_rng(1)
+        for _ in range(50):
+            if not one.agents:
+                break
+            actions = chance.integers(0, 10, (3, 3))
+            seen, rewards, terminated, truncated, infos = envs.step(actions)
+            alone, alone_rewards, *_ = one.step(
+                {agent: actions[1, one._number[agent]] for agent in one.agents})
+            self.assertEqual(infos["agent_rewards"][1].sum(), rewards[1])
+            for agent, observation in alone.items():
+                k = one._number[agent]
+                np.testing.assert_array_equal(seen[1, k], observation)
+                self.assertEqual(infos["agent_rewards"][1, k], alone_rewards[agent])
+
+    def test_everything_that_star_imports_is_there(self):
+        names = {}
+        exec("from aquafarm_gym import *", names)  # as a user without ROS does
+        self.assertIn("FarmEnv", names)
+        self.assertEqual("RosFarms" in names, has("rospy"))
+        self.assertEqual("FarmVecEnv" in names, has("stable_baselines3"))
+        self.assertEqual(aquafarm_gym.__version__, core.VERSION)
+
+    def test_what_does_not_fit_is_refused_in_one_line(self):
+        masked = FarmVectorEnv(2, autoreset_mode="Disabled")
+        mask = np.array([True, False])
+        for call, words in (
+                (lambda: FarmEnv(3), "scenario: got 3, expected an aquafarm_core.Scenario, a file"),
+                (lambda: FarmEnv(render_mode="rgb_array"), "render_mode: got 'rgb_array', expected "
+                 "ansi or None; "),
+                (lambda: FarmEnv().reset(seed=2**63), "reset: seed: got 9223372036854775808, "
+                 r"expected a whole number in \[0, 2\*\*63\); pass a smaller"),
+                (lambda: FarmParallelEnv().reset(seed=2**64), "reset: seed: got 184467440737095516"),
+                (lambda: FarmEnv().reset(options={"episode": -1}), r"reset: options\['episode'\]: "
+                 r"got -1, expected a whole number in \[0, 2\*\*62\); number the"),
+                (lambda: FarmEnv().reset(options={"epsiode": 1}), "reset: options: got 'epsiode', "
+                 "expected one of: episode; correct"),
+                (lambda: FarmVectorEnv(2, threads=-3), "FarmBatch: threads: got -3, expected a "),
+                (lambda: FarmVectorEnv(2**31), "FarmBatch: farms: got 2147483648, expected a "),
+                (lambda: FarmVectorEnv(2, autoreset_mode="Never"), "autoreset_mode: got 'Never', "),
+                (lambda: FarmVectorEnv(2).reset(seed=[1, 2, 3]), "reset: seed: got 3 seeds, "
+                 "expected 2; pass one per farm"),
+                (lambda: masked.reset(options={"reset_mask": mask}), "reset: got a reset_mask "
+                 "before the first reset"),
+                (lambda: masked.reset(options={"reset_mask": np.array([1, 0])}),
+                 r"reset: options\['reset_mask'\]: got array\(\[1, 0\]\), expected a bool array")):
+            with self.assertRaisesRegex(ValueError, f"^{words}"):
+                call()
+
+    def test_a_farm_that_is_over_is_not_stepped_without_autoreset(self):
+        env = FarmVectorEnv(2, short_paper(), autoreset_mode="Disabled")
+        env.reset(seed=1)
+        with self.assertRaisesRegex(gymnasium.error.ResetNeeded, "^step: the episodes of farms "
+                                    r"\[.*\] are over; reset them with options="):
+            for _ in range(SHORT + 1):
+                env.step(np.zeros(2, int))
+
+    @unittest.skipUnless(has("stable_baselines3"), "there is no stable_baselines3")
+    def test_stable_baselines3_steps_many_farms(self):
+        from aquafarm_gym import FarmVecEnv
+        from stable_baselines3.common.vec_env import VecMonitor
+        envs, one = FarmVecEnv(4, short_paper()), FarmEnv(short_paper())
+        envs.seed(3)
+        np.testing.assert_array_equal(envs.reset()[0], one.reset(seed=3)[0])
+        ended, total = 0, 0.0
+        for action in np.random.default_rng(2).integers(0, 10, 2 * SHORT + 20):
+            seen, rewards, dones, infos = envs.step(np.full(4, action))
+            alone, reward, terminated, truncated, _ = one.step(action)
+            total += reward
+            self.assertEqual((rewards[0], dones[0]), (reward, terminated or truncated))
+            if dones[0]:
+                ended += 1
+                np.testing.assert_array_equal(infos[0]["terminal_observation"], alone)
+                self.assertEqual(infos[0]["TimeLimit.truncated"], truncated)
+                self.assertAlmostEqual(infos[0]["episode"]["r"], total, delta=0.01)
+                total = 0.0
+                alone = one.reset(options={"episode": one._episodes.episode + 4})[0]
+            np.testing.assert_array_equal(seen[0], alone)
+            np.testing.assert_array_equal(envs.env_method("action_masks")[0], one.action_masks())
+        self.assertGreaterEqual(ended, 2)
+        self.assertEqual(VecMonitor(envs).reset().shape, (4, *envs.observation_space.shape))
+
+
+if __name__ == "__main__":
+    run_tests("env", EnvTest, WHY_NOT)

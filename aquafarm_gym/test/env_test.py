@@ -4,8 +4,10 @@
 
 Runs in the virtual environment that --venv names (venv_tools.py), or in the Python that starts it.
 """
+import contextlib
 import copy
 import importlib.util
+import io
 import pathlib
 import pickle
 import sys
@@ -184,6 +186,9 @@ class EnvTest(unittest.TestCase):
         self.assertEqual([len(line) for line in lines[1:]], [25] * 25)
         self.assertEqual("".join(lines[1:]).count("0"), 1)
         self.assertIn("<pre", env._repr_html_())
+        with contextlib.redirect_stdout(io.StringIO()) as shown:
+            FarmEnv(render_mode="human").reset(seed=1)
+        self.assertEqual(shown.getvalue(), env.render() + "\n")
         self.assertEqual(len(FarmVectorEnv(3, render_mode="ansi").render()), 3)
         self.assertIn("4 of 9 farms", FarmVectorEnv(9)._repr_html_())
 
@@ -244,7 +249,7 @@ class EnvTest(unittest.TestCase):
         names = {}
         exec("from aquafarm_gym import *", names)  # as a user without ROS does
         self.assertIn("FarmEnv", names)
-        self.assertEqual("RosFarms" in names, has("rospy"))
+        self.assertEqual("RosFarms" in names, has("rospy") and has("aquafarm_msgs"))
         self.assertEqual("FarmVecEnv" in names, has("stable_baselines3"))
         self.assertEqual(aquafarm_gym.__version__, core.VERSION)
 
@@ -254,7 +259,9 @@ class EnvTest(unittest.TestCase):
         for call, words in (
                 (lambda: FarmEnv(3), "scenario: got 3, expected an aquafarm_core.Scenario, a file"),
                 (lambda: FarmEnv(render_mode="rgb_array"), "render_mode: got 'rgb_array', expected "
-                 "ansi or None; "),
+                 "ansi, human or None; "),
+                (lambda: FarmVectorEnv(2, render_mode="human"), "render_mode: got 'human' for many "
+                 "farms, expected ansi or None; "),
                 (lambda: FarmEnv().reset(seed=2**63), "reset: seed: got 9223372036854775808, "
                  r"expected a whole number in \[0, 2\*\*63\); pass a smaller"),
                 (lambda: FarmParallelEnv().reset(seed=2**64), "reset: seed: got 184467440737095516"),

@@ -29,12 +29,14 @@ if TYPE_CHECKING:
     from aquafarm_gym.sb3 import FarmVecEnv as FarmVecEnv
 
 # Imported when asked for: each needs a package that not every installation has.
-_OPTIONAL = {"FarmParallelEnv": ("parallel_env", "pettingzoo"), "RosFarms": ("ros", "rospy"),
-             "FarmVecEnv": ("sb3", "stable_baselines3")}
+_OPTIONAL = {"FarmParallelEnv": ("parallel_env", ["pettingzoo"]),
+             "FarmVecEnv": ("sb3", ["stable_baselines3"]),
+             "RosFarms": ("ros", ["rospy", "aquafarm_msgs"])}
 
 __all__ = ["ActionMaskInObservation", "FarmEnv", "FarmVectorEnv", "LocalFarms", "TeamVectorEnv",
            "VectorActionMaskInObservation", "find_scenario", "register_envs"]
-__all__ += [name for name, (_, needs) in _OPTIONAL.items() if importlib.util.find_spec(needs)]
+__all__ += [name for name, (_, needs) in _OPTIONAL.items()
+            if all(map(importlib.util.find_spec, needs))]
 
 register_envs()
 

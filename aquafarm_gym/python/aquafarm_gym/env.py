@@ -35,9 +35,9 @@ def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
 
 def check_render_mode(render_mode: str | None, farms: Any) -> str | None:
     """Refuses an unknown mode, and farms that cannot be drawn."""
-    if render_mode not in (None, "ansi"):
-        raise ValueError(f"render_mode: got '{render_mode}', expected ansi or None; pictures are "
-                         "drawn by './aquafarm render'")
+    if render_mode not in (None, "ansi", "human"):
+        raise ValueError(f"render_mode: got '{render_mode}', expected ansi, human or None; "
+                         "pictures are drawn by './aquafarm render'")
     if render_mode is not None and not hasattr(farms, "text"):
         raise ValueError(f"render_mode: got '{render_mode}' for farms behind ROS, expected None; "
                          "watch them in rviz")
@@ -60,7 +60,7 @@ class FarmEnv(gymnasium.Env[Any, Any]):
     Copies and pickles of farms in this process continue bit for bit.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["ansi"], "render_fps": 4}
+    metadata: dict[str, Any] = {"render_modes": ["ansi", "human"], "render_fps": 4}
 
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper",
                  observation: str = "features", farms: Any = None,
@@ -87,6 +87,7 @@ class FarmEnv(gymnasium.Env[Any, Any]):
             seed = check_seed(seed)
         super().reset(seed=seed)
         self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed))
+        self._show()
         return self._observe(), self._info()
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
@@ -96,19 +97,23 @@ class FarmEnv(gymnasium.Env[Any, Any]):
             raise gymnasium.error.ResetNeeded("step: the episode is over; reset first")
         self._actions[0, 0] = action
         self.farms.step(self._actions)
+        self._show()
         reason = int(self._buffers["reasons"][0])
         truncated = reason == core.STEP_LIMIT
         return (self._observe(), float(self._buffers["rewards"][0, 0]),
                 reason != 0 and not truncated, truncated, self._info())
 
-    def render(self) -> str | None:  # type: ignore[override]
-        """The farm as text in the mode `ansi` (marks: aquafarm/farm_text.h)."""
+    def render(self) -> str | None:
+        """The farm as text in the mode `ansi` (marks: aquafarm/farm_text.h); the mode `human` prints
+        it at each reset and step."""
         if self.render_mode is None:
             gymnasium.logger.warn("render: got render_mode None, expected ansi; pass "
                                   "render_mode='ansi' to the constructor")
-            return None
-        text: str = self.farms.text(0)
-        return text
+        return str(self.farms.text(0)) if self.render_mode == "ansi" else None
+
+    def _show(self) -> None:
+        if self.render_mode == "human":
+            print(self.farms.text(0))
 
     def action_masks(self) -> npt.NDArray[np.bool_]:
         """Legal actions as sb3_contrib's MaskablePPO asks for them."""

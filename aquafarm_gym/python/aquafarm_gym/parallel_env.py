@@ -19,7 +19,7 @@ from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, summary_o
 from aquafarm_gym.farms import LocalFarms
 
 
-class FarmParallelEnv(ParallelEnv[str, Any, Any]):
+class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]
     """One farm with several agents, named ship_0, ship_1, … as in ROS; those that are
     self-propelled devices come last and terminate when they are delivered.
 
@@ -27,7 +27,8 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):
     agents in one array (`state_space`), as centralized critics read it.
     """
 
-    metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": ["ansi"], "render_fps": 4,
+    metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": ["ansi", "human"],
+                                "render_fps": 4,
                                 "is_parallelizable": True}
 
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "two_squads",
@@ -99,11 +100,15 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):
     def state(self) -> npt.NDArray[Any]:
         """The observations of all agents, also of those that are done: features [S · F], planes
         [S · P, H, W], index [S]."""
-        return self._observation[0].astype(self.state_space.dtype).reshape(self.state_space.shape)
+        joint = self._observation[0].astype(self.state_space.dtype)
+        return np.asarray(joint.reshape(self.state_space.shape))
 
     def render(self) -> str | None:
-        """The farm as text in the mode `ansi` (marks: aquafarm/farm_text.h)."""
-        return None if self.render_mode is None else self.farms.text(0)
+        """The farm as text in the mode `ansi` (marks: aquafarm/farm_text.h); the mode `human` prints
+        it."""
+        if self.render_mode == "human":
+            print(self.farms.text(0))
+        return str(self.farms.text(0)) if self.render_mode == "ansi" else None
 
     def close(self) -> None:
         self.farms.close()

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Farms behind a sim node's services, as arrays; the same numbers as LocalFarms, bit for bit."""
+from __future__ import annotations
+
 import itertools
 import os
 import socket
 import threading
 import time
+from typing import Any
 
 import aquafarm_core as core
 import numpy as np
+import numpy.typing as npt
 import rosgraph
 import rospy
 from aquafarm_msgs.msg import Outcome, StepResult
@@ -21,7 +25,7 @@ MASTER_LIMIT_S = 5.0
 BITS = {"index": StepResult.INDEX, "features": StepResult.FEATURES, "planes": StepResult.PLANES}
 
 
-def check_master(limit_s):
+def check_master(limit_s: float) -> None:
     """Raises ConnectionError where no master listens, for which rospy would wait for ever."""
     uri = rosgraph.get_master_uri()
     try:
@@ -31,14 +35,15 @@ def check_master(limit_s):
         raise ConnectionError(f"no ROS master at {uri}: {error}") from error
 
 
-class Service(rospy.ServiceProxy):
+class Service(rospy.ServiceProxy):  # type: ignore[misc]
     """A persistent service whose every call has a limit, which rospy's own lacks."""
 
-    def __init__(self, name, kind, limit_s):
+    def __init__(self, name: str, kind: Any, limit_s: float) -> None:
         super().__init__(name, kind, persistent=True)
         self._limit_s = limit_s
+        self.transport: Any
 
-    def call(self, request):
+    def call(self, request: Any) -> Any:
         """Calls; raises rospy.ServiceException when there is no answer within the limit."""
         try:
             if self.transport is None:
@@ -49,7 +54,7 @@ class Service(rospy.ServiceProxy):
             self.transport = None
             raise rospy.ServiceException(str(error)) from error
 
-    def _connect(self, request):
+    def _connect(self, request: Any) -> None:
         uri = self._get_service_uri(request)
         transport = TCPROSTransport(self.protocol, self.resolved_name)
         transport.buff_size = self.buff_size
@@ -73,8 +78,9 @@ class RosFarms:
     than wait_limit_s, is a ConnectionError.
     """
 
-    def __init__(self, namespace="/aquafarm", farms=1, observation="features", hashes=False,
-                 wait_limit_s=20.0, call_limit_s=30.0):
+    def __init__(self, namespace: str = "/aquafarm", farms: int = 1,
+                 observation: str = "features", hashes: bool = False, wait_limit_s: float = 20.0,
+                 call_limit_s: float = 30.0) -> None:
         if not rospy.core.is_initialized():
             check_master(min(wait_limit_s, MASTER_LIMIT_S))
             rospy.init_node("aquafarm_gym", anonymous=True, disable_signals=True)
@@ -93,13 +99,14 @@ class RosFarms:
         self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
         # Different from those of an earlier client of this node.
         self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)
-        self._turn = None  # of the last answer; None: to be reset
-        self._finished = []
+        self._turn: int | None = None  # of the last answer; None: to be reset
+        self._finished: list[dict[str, Any]] = []
         entries = (farms, self.agents)
-        shape = {"index": (*entries,), "features": (*entries, self.feature_count),
+        shape: tuple[int, ...] = {"index": (*entries,), "features": (*entries, self.feature_count),
                  "planes": (*entries, self.plane_count, self.height, self.width)}[observation]
-        dtype = {"index": np.uint32, "features": np.float32, "planes": np.uint8}[observation]
-        self.buffers = {"rewards": np.zeros(entries, np.float32),
+        dtype: Any = {"index": np.uint32, "features": np.float32, "planes": np.uint8}[observation]
+        self.buffers: dict[str, npt.NDArray[Any]] = {
+            "rewards": np.zeros(entries, np.float32),
                         "outcomes": np.zeros(entries, np.uint8),
                         "legal": np.zeros(entries, np.uint16),
                         "in_play": np.zeros(entries, np.uint8),
@@ -108,7 +115,7 @@ class RosFarms:
         if hashes:
             self.buffers["hashes"] = np.zeros(farms, np.uint64)
 
-    def reset(self, seed, first_episode=0):
+    def reset(self, seed: int, first_episode: int = 0) -> None:
         """As FarmBatch.reset."""
         self._turn = None
         answer = self._call("reset", has_seed=True, seed=seed, has_episode=True,
@@ -116,7 +123,7 @@ class RosFarms:
                             sequence=next(self._sequence))
         self._take(answer.result)
 
-    def step(self, actions):
+    def step(self, actions: npt.NDArray[np.uint8]) -> None:
         """As FarmBatch.step."""
         if self._turn is None:
             raise ValueError("step: got no reset before, expected one")
@@ -124,16 +131,16 @@ class RosFarms:
                             encodings=self._encodings, turn=self._turn)
         self._take(answer.result)
 
-    def finished(self):
+    def finished(self) -> list[dict[str, Any]]:
         """As FarmBatch.finished."""
         return self._finished
 
-    def close(self):
+    def close(self) -> None:
         """Ends the connections."""
         for service in self._services.values():
             service.close()
 
-    def _take(self, result):
+    def _take(self, result: Any) -> None:
         for name, array in self.buffers.items():
             got = getattr(result, name)
             flat = np.frombuffer(got, np.uint8) if isinstance(got, bytes) else got
@@ -146,7 +153,7 @@ class RosFarms:
              "reason": core.REASONS[one.reason], "success": bool(one.success)}
             for one in result.finished]
 
-    def _call(self, name, **fields):
+    def _call(self, name: str, **fields: Any) -> Any:
         service = self._services[name]
         end = time.monotonic() + self._limit_s
         while True:

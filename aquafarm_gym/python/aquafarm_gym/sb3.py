@@ -18,7 +18,7 @@ from aquafarm_gym.episodes import Episodes, summary_of
 from aquafarm_gym.farms import LocalFarms
 
 
-class FarmVecEnv(VecEnv):
+class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
     """N farms with one ship each as a Stable-Baselines3 VecEnv.
 
     A farm whose episode is over starts its next one in the same step; its info then holds
@@ -51,7 +51,7 @@ class FarmVecEnv(VecEnv):
             self.farms.reset(*self._episodes.next(seed, {}, lambda: int(drawn)))
         self._reset_seeds()
         self._reset_options()
-        self.reset_infos = [{} for _ in range(self.num_envs)]
+        self.reset_infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
         return self._observation.astype(self._dtype)
 
     def step_async(self, actions: npt.NDArray[Any]) -> None:

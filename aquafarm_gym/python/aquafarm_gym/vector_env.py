@@ -43,6 +43,9 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self.farms = farms
         self.num_envs = self.farms.farms
         self.observation = observation
+        if render_mode == "human":
+            raise ValueError("render_mode: got 'human' for many farms, expected ansi or None; show "
+                             "one farm with FarmEnv")
         self.render_mode = check_render_mode(render_mode, farms)
         self._mode = autoreset_name(autoreset_mode, farms)
         if hasattr(gymnasium.vector, "AutoresetMode"):  # since Gymnasium 1.1
@@ -87,19 +90,20 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         options = check_options(options, ("episode", "reset_mask"))
         mask = self._mask_of(options)
         seeds = self._seeds_of(seed)
-        super().reset(seed=seed if seeds is None else None)
+        one_seed: Any = seed if seeds is None else None
+        super().reset(seed=one_seed)
         if seeds is not None:
             self._start_each(mask, seeds, int(options.get("episode", 0)))
         elif mask is None and not (self._own_sequences and seed is None and not options):
-            self._start_all(seed, options)
+            self._start_all(one_seed, options)
         elif seed is None and "episode" not in options:
             self._start_next(self._everywhere if mask is None else mask)
         else:
-            self._start_masked(mask, seed, int(options.get("episode", 0)))
+            self._start_masked(mask, one_seed, int(options.get("episode", 0)))
         return self._out(self._observation), self._infos(self._reasons != 0)
 
     def _mask_of(self, options: dict[str, Any]) -> Array | None:
-        mask = options.get("reset_mask")
+        mask: Array | None = options.get("reset_mask")
         if mask is None:
             return None
         fits = isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
@@ -199,12 +203,13 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
     def render(self) -> tuple[str, ...] | None:
         """Each farm as text in the mode `ansi`."""
-        if self.render_mode is None:
+        if self.render_mode != "ansi":
             return None
         return tuple(self.farms.text(i) for i in range(self.num_envs))
 
     def close_extras(self, **kwargs: Any) -> None:
-        self.farms.close()
+        if "farms" in self.__dict__:  # not where the constructor has failed
+            self.farms.close()
 
     def _out(self, array: Array) -> Array:
         return array.copy() if self._copy else array

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""pyright --verifytypes: at least 95 % of the public symbols of both packages have known types."""
+import json
+import subprocess
+import sys
+
+WANTED = 0.95
+
+for package in ("aquafarm_core", "aquafarm_gym"):
+    done = subprocess.run([sys.executable, "-m", "pyright", "--pythonpath", sys.executable,
+                           "--ignoreexternal", "--outputjson", "--verifytypes", package],
+                          capture_output=True, text=True, check=False)
+    report = json.loads(done.stdout)["typeCompleteness"]
+    print(f"{package}: {report['completenessScore']:.3f}")
+    for symbol in report["symbols"]:
+        if symbol["isExported"] and not symbol["isTypeKnown"]:
+            print("  unknown:", symbol["name"])
+    if report["completenessScore"] < WANTED:
+        sys.exit(f"{package}: got {report['completenessScore']:.3f}, expected {WANTED}")

@@ -29,9 +29,10 @@ if TYPE_CHECKING:
     from aquafarm_gym.sb3 import FarmVecEnv as FarmVecEnv
 
 # Imported when asked for: each needs a package that not every installation has.
-_OPTIONAL = {"FarmParallelEnv": ("parallel_env", ["pettingzoo"]),
-             "FarmVecEnv": ("sb3", ["stable_baselines3"]),
-             "RosFarms": ("ros", ["rospy", "aquafarm_msgs"])}
+_OPTIONAL: dict[str, tuple[str, list[str]]] = {
+    "FarmParallelEnv": ("parallel_env", ["pettingzoo"]),
+    "FarmVecEnv": ("sb3", ["stable_baselines3"]),
+    "RosFarms": ("ros", ["rospy", "aquafarm_msgs"])}
 
 __all__ = ["ActionMaskInObservation", "FarmEnv", "FarmVectorEnv", "LocalFarms", "TeamVectorEnv",
            "VectorActionMaskInObservation", "find_scenario", "register_envs"]

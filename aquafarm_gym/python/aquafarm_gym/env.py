@@ -61,6 +61,11 @@ class FarmEnv(gymnasium.Env[Any, Any]):
     """
 
     metadata: dict[str, Any] = {"render_modes": ["ansi", "human"], "render_fps": 4}
+    farms: Any
+    observation: str
+    render_mode: str | None
+    action_space: gymnasium.Space[Any]
+    observation_space: gymnasium.Space[Any]
 
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper",
                  observation: str = "features", farms: Any = None,

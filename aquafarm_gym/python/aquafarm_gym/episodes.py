@@ -9,10 +9,10 @@ from typing import Any
 import aquafarm_core as core
 
 # int64 arrays and C longs must hold every seed.
-SEED_LIMIT = 1 << 63
-EPISODE_LIMIT = 1 << 62
+SEED_LIMIT: int = 1 << 63
+EPISODE_LIMIT: int = 1 << 62
 
-REASON_CODES = {name: code for code, name in enumerate(core.REASONS)}
+REASON_CODES: dict[str, int] = {name: code for code, name in enumerate(core.REASONS)}
 # Entries of info["summary"] while an episode runs; the types are those of a finished one.
 NO_SUMMARY: dict[str, Any] = {
     "seed": 0, "episode": 0, "steps": 0, "episode_return": 0.0, "devices": 0, "delivered": 0,
@@ -60,9 +60,11 @@ def summary_of(finished: dict[str, Any]) -> dict[str, Any]:
 class Episodes:
     """Position in the sequence of episodes: a seed starts one, a reset without a seed continues."""
 
+    seed: int | None
+    episode: int
+
     def __init__(self) -> None:
-        self.seed: int | None = None
-        self.episode = 0
+        self.seed, self.episode = None, 0
 
     def next(self, seed: Any, options: dict[str, Any], drawn_seed: Callable[[], int | None],
              by: int = 1) -> tuple[int, int]:
@@ -81,4 +83,5 @@ class Episodes:
         return (isinstance(other, Episodes)
                 and (self.seed, self.episode) == (other.seed, other.episode))
 
-    __hash__ = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash(Episodes)  # the position changes as episodes start

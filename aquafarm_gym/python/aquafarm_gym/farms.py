@@ -16,8 +16,8 @@ import aquafarm_core as core
 import numpy as np
 import numpy.typing as npt
 
-ENCODINGS = ("index", "features", "planes")
-ALWAYS = ("rewards", "outcomes", "legal", "in_play", "reasons", "started")
+ENCODINGS: tuple[str, ...] = ("index", "features", "planes")
+ALWAYS: tuple[str, ...] = ("rewards", "outcomes", "legal", "in_play", "reasons", "started")
 
 
 def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario:
@@ -48,6 +48,18 @@ def check_encoding(encoding: str, state_count: int, name: str) -> None:
 
 class LocalFarms:
     """Farms in this process. Copies and pickles continue bit for bit."""
+
+    scenario: core.Scenario
+    batch: core.FarmBatch
+    name: str
+    farms: int
+    agents: int
+    state_count: int
+    feature_names: list[str]
+    feature_count: int
+    plane_count: int
+    height: int
+    width: int
 
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper", farms: int = 1,
                  observation: str = "features", hashes: bool = False, threads: int = 1) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import aquafarm_core as core
+import gymnasium
 import numpy as np
 import numpy.typing as npt
 from gymnasium.utils import seeding
@@ -30,6 +31,14 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
     metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": ["ansi", "human"],
                                 "render_fps": 4,
                                 "is_parallelizable": True}
+    farms: Any
+    observation: str
+    render_mode: str | None
+    possible_agents: list[str]
+    agents: list[str]
+    observation_spaces: dict[str, Any]
+    action_spaces: dict[str, Any]
+    state_space: gymnasium.Space[Any]
 
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "two_squads",
                  observation: str = "features", farms: Any = None,
@@ -39,11 +48,10 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
         self.observation = observation
         self.render_mode = check_render_mode(render_mode, self.farms)
         self.possible_agents = [f"ship_{i}" for i in range(self.farms.agents)]
-        self.agents: list[str] = []
+        self.agents = []
         self.observation_spaces = {agent: spaces.observation_space(self.farms, observation)
                                    for agent in self.possible_agents}
-        self.action_spaces: dict[str, Any] = {agent: spaces.action_space()
-                                              for agent in self.possible_agents}
+        self.action_spaces = {agent: spaces.action_space() for agent in self.possible_agents}
         self.state_space = spaces.state_space(self.farms, observation)
         self._episodes = Episodes()
         self._number = {agent: i for i, agent in enumerate(self.possible_agents)}

@@ -20,9 +20,9 @@ from rospy.impl.tcpros_base import TCPROSTransport
 
 from aquafarm_gym.farms import check_encoding
 
-RETRY_PERIOD_S = 0.1
-MASTER_LIMIT_S = 5.0
-BITS = {"index": StepResult.INDEX, "features": StepResult.FEATURES, "planes": StepResult.PLANES}
+RETRY_PERIOD_S: float = 0.1
+MASTER_LIMIT_S: float = 5.0
+BITS: dict[str, int] = {"index": StepResult.INDEX, "features": StepResult.FEATURES, "planes": StepResult.PLANES}
 
 
 def check_master(limit_s: float) -> None:
@@ -78,6 +78,17 @@ class RosFarms:
     than wait_limit_s, is a ConnectionError.
     """
 
+    name: str
+    yaml: str
+    farms: int
+    agents: int
+    state_count: int
+    feature_names: list[str]
+    feature_count: int
+    plane_count: int
+    height: int
+    width: int
+
     def __init__(self, namespace: str = "/aquafarm", farms: int = 1,
                  observation: str = "features", hashes: bool = False, wait_limit_s: float = 20.0,
                  call_limit_s: float = 30.0) -> None:
@@ -102,16 +113,17 @@ class RosFarms:
         self._turn: int | None = None  # of the last answer; None: to be reset
         self._finished: list[dict[str, Any]] = []
         entries = (farms, self.agents)
-        shape: tuple[int, ...] = {"index": (*entries,), "features": (*entries, self.feature_count),
-                 "planes": (*entries, self.plane_count, self.height, self.width)}[observation]
+        shape: tuple[int, ...] = {
+            "index": entries, "features": (*entries, self.feature_count),
+            "planes": (*entries, self.plane_count, self.height, self.width)}[observation]
         dtype: Any = {"index": np.uint32, "features": np.float32, "planes": np.uint8}[observation]
         self.buffers: dict[str, npt.NDArray[Any]] = {
             "rewards": np.zeros(entries, np.float32),
-                        "outcomes": np.zeros(entries, np.uint8),
-                        "legal": np.zeros(entries, np.uint16),
-                        "in_play": np.zeros(entries, np.uint8),
-                        "reasons": np.zeros(farms, np.uint8),
-                        "started": np.zeros(farms, np.uint8), observation: np.zeros(shape, dtype)}
+            "outcomes": np.zeros(entries, np.uint8),
+            "legal": np.zeros(entries, np.uint16),
+            "in_play": np.zeros(entries, np.uint8),
+            "reasons": np.zeros(farms, np.uint8),
+            "started": np.zeros(farms, np.uint8), observation: np.zeros(shape, dtype)}
         if hashes:
             self.buffers["hashes"] = np.zeros(farms, np.uint64)
 

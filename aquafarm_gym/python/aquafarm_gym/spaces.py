@@ -7,18 +7,18 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-N_ACTIONS = len(core.ACTIONS)
+N_ACTIONS: int = len(core.ACTIONS)
 
 # Bounds of the features by the last part of their names (FarmBatch.feature_names). Lengths are in
 # units of the map's longer side; a storm's centre and reach may lie far outside of the map.
-FAR = 1e4
-BOUNDS = {
+FAR: float = 1e4
+BOUNDS: dict[str, tuple[float, float]] = {
     "x": (-1, 1), "y": (-1, 1), "time_left": (-1, 1), "free_capacity": (0, 1),
     "risk_here": (-1, 0), "deployed": (0, 1), "aboard": (0, 1), "worth": (0, 100),
     "known": (0, 1), "motion_east": (-FAR, FAR), "motion_north": (-FAR, FAR), "reach": (0, FAR),
     "age": (0, FAR), "visible": (0, 1), "self": (0, 1), "way_east": (-1, 1), "way_north": (-1, 1),
-    "way_steps": (0, 4), "stay": (-1, 0)}
-GROUP_BOUNDS = {"blocked": (0, 1), "risk": (-1, 0), "course": (-1, 0)}
+    "way_steps": (0, 4)}
+GROUP_BOUNDS: dict[str, tuple[float, float]] = {"blocked": (0, 1), "risk": (-1, 0), "course": (-1, 0)}
 
 
 def feature_bounds(name: str) -> tuple[float, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeAlias
 
 import aquafarm_core as core
 import gymnasium
@@ -17,8 +17,11 @@ from aquafarm_gym.env import check_render_mode, html_of, observation_of, one_age
 from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, check_seed, summary_of
 from aquafarm_gym.farms import LocalFarms
 
-NEXT_STEP, SAME_STEP, DISABLED = AUTORESET_MODES = ("NextStep", "SameStep", "Disabled")
-Array = npt.NDArray[Any]
+NEXT_STEP: str = "NextStep"
+SAME_STEP: str = "SameStep"
+DISABLED: str = "Disabled"
+AUTORESET_MODES: tuple[str, ...] = (NEXT_STEP, SAME_STEP, DISABLED)
+Array: TypeAlias = npt.NDArray[Any]
 
 
 def autoreset_name(mode: Any, farms: Any) -> str:
@@ -37,10 +40,22 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
     """N farms, stepped together: what the two classes below share."""
 
     metadata: dict[str, Any] = {"render_modes": ["ansi"], "render_fps": 4}
+    farms: Any
+    num_envs: int
+    observation: str
+    render_mode: str | None
+    action_space: gymnasium.Space[Any]
+    observation_space: gymnasium.Space[Any]
+    single_action_space: gymnasium.Space[Any]
+    single_observation_space: gymnasium.Space[Any]
 
     def __init__(self, farms: Any, observation: str, copy: bool, render_mode: str | None,
-                 autoreset_mode: Any) -> None:
+                 autoreset_mode: Any, action_space: gymnasium.Space[Any],
+                 observation_space: gymnasium.Space[Any]) -> None:
         self.farms = farms
+        self.single_action_space, self.single_observation_space = action_space, observation_space
+        self.action_space = batch_space(action_space, farms.farms)
+        self.observation_space = batch_space(observation_space, farms.farms)
         self.num_envs = self.farms.farms
         self.observation = observation
         if render_mode == "human":
@@ -277,11 +292,8 @@ class FarmVectorEnv(VectorBase):
                  farms: Any = None, render_mode: str | None = None,
                  autoreset_mode: Any = NEXT_STEP) -> None:
         farms = one_agent(farms or LocalFarms(scenario, num_envs, observation, threads=threads))
-        self.single_action_space = spaces.action_space()
-        self.single_observation_space = spaces.observation_space(farms, observation)
-        self.action_space = batch_space(self.single_action_space, farms.farms)
-        self.observation_space = batch_space(self.single_observation_space, farms.farms)
-        super().__init__(farms, observation, copy, render_mode, autoreset_mode)
+        super().__init__(farms, observation, copy, render_mode, autoreset_mode,
+                         spaces.action_space(), spaces.observation_space(farms, observation))
 
     def _agents_of(self, array: Array) -> Array:
         return array[:, 0]
@@ -304,13 +316,9 @@ class TeamVectorEnv(VectorBase):
                  farms: Any = None, render_mode: str | None = None,
                  autoreset_mode: Any = NEXT_STEP) -> None:
         farms = farms or LocalFarms(scenario, num_envs, observation, threads=threads)
-        own = spaces.observation_space(farms, observation)
-        agents = farms.agents
-        self.single_action_space = gymnasium.spaces.MultiDiscrete([spaces.N_ACTIONS] * agents)
-        self.single_observation_space = batch_space(own, agents)
-        self.action_space = batch_space(self.single_action_space, farms.farms)
-        self.observation_space = batch_space(self.single_observation_space, farms.farms)
-        super().__init__(farms, observation, copy, render_mode, autoreset_mode)
+        super().__init__(farms, observation, copy, render_mode, autoreset_mode,
+                         gymnasium.spaces.MultiDiscrete([spaces.N_ACTIONS] * farms.agents),
+                         batch_space(spaces.observation_space(farms, observation), farms.agents))
 
     def _agents_of(self, array: Array) -> Array:
         return array

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "aquafarm/scenario/validate.h"
 #include "tiny_farms.h"
 
 namespace aquafarm {

@@ -6,6 +6,8 @@ import os
 import pathlib
 import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 import types
@@ -171,6 +173,17 @@ class CoreTest(unittest.TestCase):
                                         _write_last=write_all)
         self.assertRegex(_abi.numpy_fault(aliased, np),
                          "^aquafarm_core: got bool entries that share memory from numpy ")
+
+    def test_sources_without_a_native_module_say_how_to_build_it(self):
+        folder = pathlib.Path(__file__).resolve().parents[1] / "python"
+        done = subprocess.run([sys.executable, "-c", "import aquafarm_core"], capture_output=True,
+                              text=True, check=False, cwd="/",
+                              env={"PATH": "/usr/bin:/bin", "PYTHONPATH": str(folder),
+                                   "PYTHONNOUSERSITE": "1"})
+        if done.returncode == 0:
+            self.skipTest("this Python has the module installed")
+        self.assertRegex(done.stderr, r"ImportError: aquafarm_core: got no native module for this "
+                         r"Python from \[.*\] \(.*\), expected one; pip install ./aquafarm_gym, or")
 
     def test_rewards_are_the_sum_of_their_terms_and_finished_episodes_add_up(self):
         reef = core.Scenario.load(str(DATA / "reef.yaml"))

@@ -2,6 +2,7 @@
 """Stable-Baselines3: check_env, PPO over FarmVecEnv, and MaskablePPO where sb3_contrib is there."""
 import importlib.util
 
+import aquafarm_core
 import aquafarm_gym
 from stable_baselines3 import DQN, PPO
 from stable_baselines3.common.env_checker import check_env
@@ -9,7 +10,10 @@ from stable_baselines3.common.evaluation import evaluate_policy
 
 for observation in ("features", "index"):
     check_env(aquafarm_gym.FarmEnv(observation=observation))
-envs = aquafarm_gym.FarmVecEnv(16)
+paper = aquafarm_gym.find_scenario("paper")
+short = aquafarm_core.Scenario.parse(
+    paper.yaml.replace(f"step_limit: {paper.step_limit}", "step_limit: 50"), "short")
+envs = aquafarm_gym.FarmVecEnv(16, short)
 model = PPO("MlpPolicy", envs, n_steps=64, batch_size=256, seed=1).learn(4096)
 evaluate_policy(model, envs, 2, deterministic=False)
 DQN("MlpPolicy", envs, learning_starts=100, buffer_size=5000, seed=1).learn(1000)

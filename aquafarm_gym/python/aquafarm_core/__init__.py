@@ -14,7 +14,12 @@ import numpy
 # A CMake build folder and a catkin devel space hold the native module apart from the sources.
 __path__ = pkgutil.extend_path(__path__, __name__)
 
-from aquafarm_core import _native  # noqa: E402
+try:
+    from aquafarm_core import _native  # noqa: E402
+except ImportError as error:
+    raise ImportError(
+        f"aquafarm_core: got no native module for this Python from {list(__path__)} ({error}), "
+        "expected one; pip install ./aquafarm_gym, or build it as docs/python.md says") from error
 from aquafarm_core._abi import numpy_fault  # noqa: E402
 
 _fault = numpy_fault(_native, numpy)

@@ -18,8 +18,8 @@ FEATURES, FARMS = 43, 16  # of paper.yaml, without water distances and lookahead
 
 
 def taxi_steps_per_second():
-    """Steps the newest of Gymnasium's Taxi under random actions drawn beforehand; returns steps a second."""
-    import gymnasium  # in the environment of this reference alone
+    """Steps the newest Taxi of Gymnasium with precomputed random actions; returns steps per second."""
+    import gymnasium  # installed only for this reference
     newest = max(name for name in gymnasium.registry if name.startswith("Taxi-v"))
     env = gymnasium.make(newest)
     env.reset(seed=1)

@@ -18,7 +18,7 @@ FEATURES, FARMS = 43, 16  # of paper.yaml, without water distances and lookahead
 
 
 def taxi_steps_per_second():
-    """Steps the newest Taxi of Gymnasium with precomputed random actions; returns steps per second."""
+    """Steps Gymnasium's newest Taxi with precomputed random actions; returns steps per second."""
     import gymnasium  # installed only for this reference
     newest = max(name for name in gymnasium.registry if name.startswith("Taxi-v"))
     env = gymnasium.make(newest)

@@ -163,8 +163,8 @@ class CoreTest(unittest.TestCase):
             PYBIND11=(2, 12), _write_last=_native._write_last,
             _made_array=lambda dtype, shape: np.lib.stride_tricks.as_strided(
                 np.zeros(shape, dtype), strides=(0, 0)))
-        self.assertRegex(_abi.numpy_fault(flat, np), r"^aquafarm_core: got bool arrays with strides "
-                         r"\(0, 0\) from numpy .*, expected \(3, 1\); install")
+        self.assertRegex(_abi.numpy_fault(flat, np), r"^aquafarm_core: got bool arrays with "
+                         r"strides \(0, 0\) from numpy .*, expected \(3, 1\); install")
 
         def write_all(array, value):
             array.view(np.uint8)[:] = value

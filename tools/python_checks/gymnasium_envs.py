@@ -19,7 +19,8 @@ for name in ids:
         spec = gymnasium.envs.registration.EnvSpec.from_json(env.spec.to_json())
         assert gymnasium.make(spec).spec == env.spec, name
 
-env = wrappers.RescaleObservation(gymnasium.make("aquafarm/Paper-v1"), np.float32(-1), np.float32(1))
+env = gymnasium.make("aquafarm/Paper-v1")
+env = wrappers.RescaleObservation(env, np.float32(-1), np.float32(1))
 env = wrappers.RecordEpisodeStatistics(wrappers.NormalizeReward(wrappers.FrameStackObservation(
     wrappers.TimeLimit(env, 50), 2)))
 env.reset(seed=1)

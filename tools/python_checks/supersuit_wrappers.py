@@ -5,14 +5,15 @@ import numpy as np
 import supersuit
 
 env = aquafarm_gym.FarmParallelEnv("two_squads")
-# Not agent_indicator_v0: SuperSuit 3.11 bounds its entries by the least upper bound of the space and
-# writes the greatest, so that no space with differing bounds contains them.
+# Not agent_indicator_v0: SuperSuit 3.11 bounds its entries by the least upper bound of the space
+# and writes the greatest, so that no space with differing bounds contains them.
 for wrap in (lambda e: supersuit.black_death_v3(e), lambda e: supersuit.pad_observations_v0(e),
              lambda e: supersuit.dtype_v0(e, np.float64), lambda e: supersuit.frame_stack_v2(e, 3)):
     wrapped = wrap(aquafarm_gym.FarmParallelEnv("two_squads"))
     observations = wrapped.reset(seed=1)[0]
     for _ in range(20):
-        observations, *_ = wrapped.step({a: wrapped.action_space(a).sample() for a in wrapped.agents})
+        actions = {a: wrapped.action_space(a).sample() for a in wrapped.agents}
+        observations, *_ = wrapped.step(actions)
     assert all(wrapped.observation_space(a).contains(o) for a, o in observations.items()), wrapped
 single = supersuit.pettingzoo_env_to_vec_env_v1(supersuit.black_death_v3(env))
 envs = supersuit.concat_vec_envs_v1(single, 3, num_cpus=0, base_class="gymnasium")

@@ -6,7 +6,8 @@ so all entries alias the first, without any error.
 """
 from typing import Any
 
-NEXT = "install the wheel (pip install ./aquafarm_gym), build with pybind11 >= 2.12, or use numpy < 2"
+NEXT = ("install the wheel (pip install ./aquafarm_gym), build with pybind11 >= 2.12, or use "
+        "numpy < 2")
 DTYPES = ("bool", "uint8", "uint16", "float32", "uint32", "uint64")
 
 

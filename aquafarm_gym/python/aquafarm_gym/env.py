@@ -109,8 +109,7 @@ class FarmEnv(gymnasium.Env[Any, Any]):
                 reason != 0 and not truncated, truncated, self._info())
 
     def render(self) -> str | None:
-        """The farm as text in the mode `ansi` (marks: aquafarm/farm_text.h); the mode `human` prints
-        it at each reset and step."""
+        """The farm as text in the mode `ansi` (marks: farm_text.h); the mode `human` prints it at each reset and step."""
         if self.render_mode is None:
             gymnasium.logger.warn("render: got render_mode None, expected ansi; pass "
                                   "render_mode='ansi' to the constructor")

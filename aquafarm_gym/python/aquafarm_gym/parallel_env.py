@@ -112,8 +112,7 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
         return np.asarray(joint.reshape(self.state_space.shape))
 
     def render(self) -> str | None:
-        """The farm as text in the mode `ansi` (marks: aquafarm/farm_text.h); the mode `human` prints
-        it."""
+        """The farm as text in the mode `ansi` (marks: farm_text.h); the mode `human` prints it."""
         if self.render_mode == "human":
             print(self.farms.text(0))
         return str(self.farms.text(0)) if self.render_mode == "ansi" else None

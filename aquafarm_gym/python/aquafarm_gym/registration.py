@@ -6,10 +6,10 @@ from __future__ import annotations
 import gymnasium
 
 # Farms of one ship that are shipped; each has an id of its own.
-SCENARIOS: dict[str, str] = {"Paper": "paper", "PaperPartial": "paper_partial", "Partial": "partial",
-             "Procedural": "procedural", "RedTide": "red_tide",
-             "ZhoushanDanas2019": "zhoushan_danas_2019", "ZhoushanInfa2021": "zhoushan_infa_2021",
-             "ZhoushanMitag2019": "zhoushan_mitag_2019"}
+SCENARIOS: dict[str, str] = {
+    "Paper": "paper", "PaperPartial": "paper_partial", "Partial": "partial", "Procedural": "procedural",
+    "RedTide": "red_tide", "ZhoushanDanas2019": "zhoushan_danas_2019",
+    "ZhoushanInfa2021": "zhoushan_infa_2021", "ZhoushanMitag2019": "zhoushan_mitag_2019"}
 VERSION: int = 1
 
 

@@ -22,7 +22,8 @@ from aquafarm_gym.farms import check_encoding
 
 RETRY_PERIOD_S: float = 0.1
 MASTER_LIMIT_S: float = 5.0
-BITS: dict[str, int] = {"index": StepResult.INDEX, "features": StepResult.FEATURES, "planes": StepResult.PLANES}
+BITS: dict[str, int] = {
+    "index": StepResult.INDEX, "features": StepResult.FEATURES, "planes": StepResult.PLANES}
 
 
 def check_master(limit_s: float) -> None:

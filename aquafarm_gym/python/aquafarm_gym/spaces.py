@@ -18,7 +18,8 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "known": (0, 1), "motion_east": (-FAR, FAR), "motion_north": (-FAR, FAR), "reach": (0, FAR),
     "age": (0, FAR), "visible": (0, 1), "self": (0, 1), "way_east": (-1, 1), "way_north": (-1, 1),
     "way_steps": (0, 4)}
-GROUP_BOUNDS: dict[str, tuple[float, float]] = {"blocked": (0, 1), "risk": (-1, 0), "course": (-1, 0)}
+GROUP_BOUNDS: dict[str, tuple[float, float]] = {
+    "blocked": (0, 1), "risk": (-1, 0), "course": (-1, 0)}
 
 
 def feature_bounds(name: str) -> tuple[float, float]:

@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What §4.2 measures, against numbers worked out by hand."""
 import math
+import pathlib
 import sys
 import unittest
+import unittest.mock
 
 import numpy as np
 import rosunit
 
-from aquafarm_benchmark import measures, results
-from aquafarm_benchmark.protocol import CONTESTANTS
+from aquafarm_benchmark import cli, measures, results
+from aquafarm_benchmark.protocol import CONTESTANTS, PAPER_TABLE, PROFILES
+
+PAPER = pathlib.Path(__file__).resolve().parents[3] / "shared/paper/paper.txt"
 
 
 class MeasuresTest(unittest.TestCase):
@@ -89,12 +93,89 @@ class MeasuresTest(unittest.TestCase):
             self.assertIn(f"learning_rate=harmonic:0.0005:{last_rate}:1", given.options)
 
     def test_ea_is_equation_16(self):
-        # LSTM-DQN's row of Table 1.
-        self.assertAlmostEqual(1.67, measures.ea_paper(1.67, 1.0, 4, 1.0), places=2)
-        # RANDOM's, of which the paper prints -0.7: -10 a step, no success, last, never stable.
-        self.assertAlmostEqual(-0.80, measures.ea_paper(-10.0, 0.0, 1, 0.0))
         self.assertAlmostEqual(0.1 * -3.0 + 0.3 * 0.5 + 0.2 * 2 + 0.4 * 0.25,
                                measures.ea_paper(-3.0, 0.5, 2, 0.25))
+
+    def test_table_1_is_as_printed_and_eq_16_gives_its_ea_of_three_rows(self):
+        self.assertEqual({"lstm_dqn": (1.67, 1.0, 4, 1.0), "sarsa": (-1.0, 0.9, 2, 0.9),
+                          "q_learning": (-1.21, 0.7, 3, 0.7), "random": (-10.0, 0.0, 1, 0.0)},
+                         {name: row.terms() for name, row in PAPER_TABLE.items()})
+        self.assertEqual({"lstm_dqn": "1.67", "sarsa": "0.93", "q_learning": "0.97",
+                          "random": "−0.7"}, {name: row.ea for name, row in PAPER_TABLE.items()})
+        computed = {name: f"{measures.ea_paper(*row.terms()):.2f}"
+                    for name, row in PAPER_TABLE.items()}
+        self.assertEqual({"lstm_dqn": "1.67", "sarsa": "0.93", "q_learning": "0.97",
+                          "random": "-0.80"}, computed, "the paper prints -0.7 for RANDOM")
+
+    def test_table_1_agrees_with_the_papers_text(self):
+        if not PAPER.exists():
+            self.skipTest(f"{PAPER} is absent")
+        printed = [line.split("\t") for line in PAPER.read_text(encoding="utf-8").splitlines()
+                   if line.count("\t") == 5]
+        names = {"DQN with LSTM": "lstm_dqn", "SARSA": "sarsa", "Q-Learning": "q_learning",
+                 "RANDOM": "random"}
+        self.assertEqual({names[cells[0]]: tuple(cells[1:]) for cells in printed[1:]},
+                         {name: (row.average_return, row.success, row.convergence, row.stability,
+                                 row.ea) for name, row in PAPER_TABLE.items()})
+
+    def test_a_proportion_has_its_wilson_interval(self):
+        # z²/n is 0.38415: (0.8 + 0.19207 ± 1.96 · √(0.016 + 0.0096)) / 1.38415.
+        low, high = measures.wilson_interval(8, 10)
+        self.assertAlmostEqual(0.4902, low, places=4)
+        self.assertAlmostEqual(0.9433, high, places=4)
+        self.assertAlmostEqual(1.0, measures.wilson_interval(10, 10)[1])
+
+    def test_the_paper_profile_compares_printed_tuned_and_ablated_rows(self):
+        profile = PROFILES["paper"]
+        self.assertEqual((10, 2000, 5000), (profile.runs, profile.episodes, profile.max_steps))
+        rows = {one.name: one.for_episodes(profile.episodes) for one in profile.contestants}
+        self.assertEqual(len(rows), len(profile.contestants), "each row has a name of its own")
+        printed = {name: one for name, one in rows.items() if one.paper_row}
+        self.assertEqual({"random", "q_learning_printed", "sarsa_printed", "lstm_dqn_printed"},
+                         set(printed))
+        for name in (*printed, "dqn_printed"):
+            self.assertEqual("paper_plain", rows[name].scenario, name)
+            self.assertFalse([option for option in rows[name].options if "mask" in option], name)
+        for name in ("dqn_printed", "lstm_dqn_printed"):
+            self.assertIn("preset=paper", rows[name].options)
+        for name in ("dqn", "lstm_dqn"):
+            self.assertEqual("", rows[name].scenario, "the benchmark's own scenario")
+            self.assertEqual(rows[name].options, rows[f"{name}_no_routes"].options)
+            self.assertEqual("paper_plain", rows[f"{name}_no_routes"].scenario)
+            self.assertIn("mask_blocked=false", rows[f"{name}_no_masks"].options)
+            self.assertIn("priority=0", rows[f"{name}_paper_replay"].options)
+        for one in rows.values():
+            keys = [option.split("=", 1)[0] for option in one.options]
+            self.assertEqual(len(keys), len(set(keys)), f"{one.name} gives an option twice")
+
+    def test_each_row_is_trained_by_its_algorithm_on_its_scenario(self):
+        options = cli.parse(["--profile", "paper", "--runs", "2", "--programs", "/bin"])
+        self.assertEqual(5000, options.max_steps)
+        profile = PROFILES["paper"]
+        with unittest.mock.patch.object(cli, "find_program", lambda name, folder: name):
+            jobs = {job.name: job for job in cli.make_jobs(options, profile.contestants,
+                                                           pathlib.Path("/nowhere"))}
+        train, evaluate = jobs["lstm_dqn_printed 2"].commands
+        self.assertEqual(["aquafarm_train", "paper_plain", "--max-steps", "5000", "--algorithm",
+                          "lstm_dqn"], train[:6])
+        self.assertEqual(["aquafarm_evaluate", "/nowhere/runs/lstm_dqn_printed/seed_2",
+                          "paper_plain"], evaluate[:3])
+        self.assertEqual("paper", jobs["lstm_dqn 1"].commands[0][1])
+        # RANDOM's evaluations differ by run, since each has a seed of its own.
+        seeds = [evaluate[evaluate.index("--policy-seed") + 1]
+                 for evaluate in (jobs[f"random {seed}"].commands[1] for seed in (1, 2))]
+        self.assertEqual(["1", "2"], seeds)
+
+    def test_all_rows_of_a_profile_but_those_by_name_alone(self):
+        self.assertEqual(["random", "q_learning", "sarsa", "dqn", "lstm_dqn", "planner"],
+                         cli.parse([]).algorithms)
+        self.assertEqual(["random_all"], cli.parse(["--algorithms", "random_all"]).algorithms)
+        actions = {one.name: one.options for one in CONTESTANTS if "random" in one.name}
+        self.assertEqual({"random": ("actions=reachable",), "random_all": ("actions=all",)},
+                         actions)
+        with self.assertRaisesRegex(cli.BadInput, "scenario: got 'partial' with profile paper, "
+                                    "expected paper"):
+            cli.parse(["partial", "--profile", "paper"])
 
     def test_the_normalised_ea_lies_between_nothing_and_one(self):
         self.assertEqual(0.0, measures.ea_normalised(-5.0, 0.0, None, 0.0, 100))
@@ -102,8 +183,8 @@ class MeasuresTest(unittest.TestCase):
         self.assertAlmostEqual(0.1 * 0.5 + 0.3 * 0.9 + 0.2 * 0.75 + 0.4 * 0.8,
                                measures.ea_normalised(0.5, 0.9, 25, 0.8, 100))
 
-    def test_the_table_shows_the_papers_rows_beneath_ours(self):
-        row = {"name": "lstm_dqn", "label": "LSTM-DQN", "return_per_step": 4.5,
+    def test_the_table_shows_the_papers_rows_as_printed(self):
+        row = {"name": "mine", "paper_row": "lstm_dqn", "label": "LSTM-DQN", "return_per_step": 4.5,
                "success_rate": 1.0, "convergence": 420.0, "stability": 0.9, "settled": 280.0,
                "stability_settled": 1.0, "ea_paper": 1.95,
                "ea_normalised": 0.97, "return_iqm": 265.0, "return_interval": [260.0, 270.0],
@@ -111,8 +192,10 @@ class MeasuresTest(unittest.TestCase):
         lines = results.table([row]).splitlines()
         self.assertEqual("| LSTM-DQN | 4.50 | 1.000 | 420 | 0.9 | 280 (1.0) | 1.95 | 0.97 | 265.0 "
                          "(260.0 … 270.0) | 0.955 |", lines[2])
-        self.assertEqual("| *LSTM-DQN, paper* | 1.67 | 1.0 | 300 | 1.0 | – | 1.67 | – | – | – |",
-                         lines[3])
+        self.assertEqual("| *LSTM-DQN, paper* | 1.67 per step | 1 | ≤300 timesteps (4) | 1 | – | "
+                         "1.67 | – | – | – |", lines[3])
+        without = results.table([dict(row, paper_row="")]).splitlines()
+        self.assertEqual(lines[:3], without)
 
 
 if __name__ == "__main__":

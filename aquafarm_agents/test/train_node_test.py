@@ -148,7 +148,7 @@ class TrainNodeTest(unittest.TestCase):
         start_sim(self, self.namespace, TINY)
         run = self.train("run", "_algorithm:=auto", "_steps:=200", "_options:=hidden=8")
         self.assertEqual(0, run.code(), run.words())
-        self.assertIn("auto: one rescue ship decides, so a single-agent learner: lstm_dqn",
+        self.assertIn("auto: one rescue squad decides, so a single-agent learner: lstm_dqn",
                       run.words())
         self.assertIn('"algorithm": "lstm_dqn"', (self.folder / "run/run.json").read_text())
 

@@ -164,7 +164,7 @@ class GymTest(unittest.TestCase):
     def test_what_does_not_fit_is_refused_in_one_line(self):
         for call, words in (
                 (lambda: FarmEnv("papre"), "scenario: got 'papre', expected an "
-                 "aquafarm_core.Scenario, a file or one of: .*paper, paper_partial, partial, "),
+                 "aquafarm_core.Scenario, a file or one of: .*paper, paper_partial, paper_plain, partial, "),
                 (lambda: FarmEnv("two_squads"), "scenario two_squads: got 2 agents, expected 1"),
                 (lambda: FarmEnv(observation="pixels"), "observation: got 'pixels', expected one"),
                 (lambda: FarmEnv(observation="planes", farms=LocalFarms()), "observation: got "

@@ -2,6 +2,7 @@
 // Plays a saved policy greedily in this process, without ROS.
 
 #include <cstdio>
+#include <optional>
 
 #include "app.h"
 #include "aquafarm/agents/base/exit_code.h"
@@ -9,6 +10,7 @@
 #include "aquafarm/agents/evaluation/evaluation.h"
 #include "aquafarm/agents/evaluation/rollout_values.h"
 #include "aquafarm/agents/evaluation/route.h"
+#include "aquafarm/agents/evaluation/tabular_model.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/planning/team_bound.h"
 #include "aquafarm/agents/training/saved_policy.h"
@@ -25,8 +27,12 @@ struct Arguments {
   std::uint64_t route_episode{};
   std::string values;
   std::int32_t values_episodes{1};
+  double values_discount{1.0};
+  std::string matrices;
+  std::string matrix_policy{"epsilon_greedy:0"};
   bool bound{};
   std::uint64_t seed{1000};
+  std::optional<std::uint64_t> policy_seed;
   std::int32_t episodes{1000};
   EnvironmentOptions environment{64, 0, false, 1};
 };
@@ -66,12 +72,13 @@ ExitCode Run(Arguments arguments) {
   if (arguments.bound) TeamBound(Farm(scenario));  // fails early if the scenario has no bound
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
-  Evaluation evaluation =
-      Evaluate(environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
-               [&arguments](std::size_t over) {
-                 std::printf("%zu of %d episodes played\n", over, arguments.episodes);
-                 std::fflush(stdout);
-               });
+  Evaluation evaluation = Evaluate(
+      environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
+      [&arguments](std::size_t over) {
+        std::printf("%zu of %d episodes played\n", over, arguments.episodes);
+        std::fflush(stdout);
+      },
+      arguments.policy_seed);
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
   std::fflush(stdout);  // before steps that may still fail
@@ -90,9 +97,13 @@ ExitCode Run(Arguments arguments) {
     };
     const PlayedValues values =
         PlayValues(scenario, saved.encodings, make_policy, arguments.seed, arguments.route_episode,
-                   arguments.values_episodes, &stop_requested);
+                   arguments.values_episodes, &stop_requested, arguments.values_discount);
     if (stop_requested) return ExitCode::kInterrupted;
     WriteValues(arguments.values, values, saved.path, *scenario);
+  }
+  if (!arguments.matrices.empty() && evaluation.complete) {
+    WriteMatrices(arguments.matrices, *scenario, saved.checkpoint, arguments.matrix_policy,
+                  arguments.values_discount);
   }
   // The evaluation is written last: if it exists, all files exist.
   if (!arguments.route.empty() && evaluation.complete) {
@@ -126,6 +137,9 @@ int Main(int argc, char** argv) {
                  "scenario file or name; empty: the one in the policy's run folder");
   app.add_option("-e,--episodes", arguments.episodes, "episodes")->check(CLI::Range(1, 10000000));
   app.add_option("-s,--seed", arguments.seed, "seed of the episodes");
+  app.add_option("--policy-seed", arguments.policy_seed,
+                 "seed of a policy that draws its actions, such as RANDOM; default: that of the "
+                 "episodes");
   app.add_option("-f,--farms", arguments.environment.farms, "farms stepped together")
       ->check(CLI::Range(1, kMaxFarms));
   app.add_option("-w,--write", arguments.output,
@@ -142,6 +156,14 @@ int Main(int argc, char** argv) {
       "to this JSON file; empty: nothing");
   app.add_option("--values-episodes", arguments.values_episodes, "episodes that --values averages")
       ->check(CLI::Range(1, 10000));
+  app.add_option("--values-discount", arguments.values_discount,
+                 "discount γ of --values (Eq. 10); 1: undiscounted")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--matrices", arguments.matrices,
+                 "write <this>_policy.mtx (Eq. 9), <this>_transitions.mtx (Eq. 4) and "
+                 "<this>_states.csv with V* (Eq. 11) of a tabular policy; empty: nothing");
+  app.add_option("--matrix-policy", arguments.matrix_policy,
+                 "policy of --matrices: epsilon_greedy:ε (0 is greedy) or boltzmann:T");
   app.add_flag("--bound", arguments.bound,
                "say what share this is of an upper bound: each device by its best ship, no "
                "conflicts, the disasters known");

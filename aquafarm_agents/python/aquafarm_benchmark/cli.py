@@ -14,7 +14,7 @@ import tempfile
 import time
 
 from aquafarm_benchmark import results, runs
-from aquafarm_benchmark.protocol import CONTESTANTS, FARMS, OPTIMUM, PROFILES
+from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES
 
 _OK, _FAILED, _BAD_INPUT, _STORAGE, _INTERRUPTED = 0, 1, 2, 3, 130
 _EPILOG = """exit codes: 0 all is there, 1 some runs failed (the others are kept), 2 bad argument,
@@ -36,7 +36,6 @@ class _Parser(argparse.ArgumentParser):
 
 def parse(arguments):
     """Arguments with the profile's numbers filled in."""
-    names = [one.name for one in CONTESTANTS]
     parser = _Parser(
         prog="aquafarm_benchmark", epilog=_EPILOG,
         description="Trains every learner several times, measures them as the paper's §4.2 does, "
@@ -47,10 +46,11 @@ def parse(arguments):
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("benchmark"),
                         help="folder of runs, tables and figures (default: ./benchmark)")
     parser.add_argument("--profile", default="full",
-                        help="full: the whole protocol; quick: minutes (default: full)")
+                        help="full: the whole protocol; quick: minutes; paper: learners as "
+                        "printed, tuned ones and an ablation, many hours (default: full)")
     parser.add_argument("--algorithms", default="all",
-                        help="who takes part, separated by commas (default: all, which are "
-                        f"{','.join(names)})")
+                        help="rows that take part, separated by commas (default: all those of "
+                        f"the profile; full has {','.join(_default_names(PROFILES['full']))})")
     parser.add_argument("--runs", type=int, default=0,
                         help="trainings of each, with seeds 1, 2, … (default: the profile's)")
     parser.add_argument("--episodes", type=int, default=0,
@@ -58,7 +58,8 @@ def parse(arguments):
     parser.add_argument("--evaluation-episodes", type=int, default=0,
                         help="greedy episodes never trained on (default: the profile's)")
     parser.add_argument("--max-steps", type=int, default=0,
-                        help="step limit of an episode (default: the scenario's own)")
+                        help="step limit of an episode (default: the profile's; 0: the "
+                        "scenario's)")
     parser.add_argument("--evaluation-seed", type=int, default=1000,
                         help="seed of those episodes, the same for all (default: 1000)")
     parser.add_argument("--jobs", type=int, default=0,
@@ -71,7 +72,8 @@ def parse(arguments):
         raise BadInput(f"profile: got '{options.profile}', expected one of: "
                        + ", ".join(PROFILES))
     profile = PROFILES[options.profile]
-    for name in ("runs", "episodes", "evaluation_episodes"):
+    _require_paper(options)
+    for name in ("runs", "episodes", "evaluation_episodes", "max_steps"):
         if getattr(options, name) == 0:
             setattr(options, name, getattr(profile, name))
     options.jobs = options.jobs or len(os.sched_getaffinity(0))
@@ -79,7 +81,8 @@ def parse(arguments):
                         ("max_steps", 0), ("evaluation_seed", 0)):
         if getattr(options, name) < least:
             raise BadInput(f"{name}: got {getattr(options, name)}, expected {least} or more")
-    options.algorithms = (names if options.algorithms == "all" else
+    names = [one.name for one in profile.contestants]
+    options.algorithms = (_default_names(profile) if options.algorithms == "all" else
                           [name for name in options.algorithms.split(",") if name])
     for name in options.algorithms:
         if name not in names:
@@ -87,6 +90,18 @@ def parse(arguments):
     if not options.algorithms:
         raise BadInput(f"algorithms: got none, expected some of: {', '.join(names)}")
     return options
+
+
+def _default_names(profile):
+    return [one.name for one in profile.contestants if not one.named_only]
+
+
+def _require_paper(options):
+    """The profile names the scenario of each row, so another one has no effect."""
+    if options.profile == "paper" and options.scenario != "paper":
+        raise BadInput(f"scenario: got '{options.scenario}' with profile paper, expected paper, "
+                       "whose rows have scenarios of their own; use profile full for another "
+                       "scenario")
 
 
 def find_program(name, folder):
@@ -108,9 +123,9 @@ def make_jobs(options, contestants, folder):
     """All runs: a job a seed, one for those whom another seed teaches nothing else."""
     train = find_program("aquafarm_train", options.programs)
     evaluate = find_program("aquafarm_evaluate", options.programs)
-    farm = [options.scenario, "--max-steps", str(options.max_steps)]
     jobs = []
     for one in contestants:
+        farm = [one.scenario or options.scenario, "--max-steps", str(options.max_steps)]
         for seed in range(1, options.runs + 1) if one.repeats else (1,):
             resumes = False
             run = folder / "runs" / one.name / f"seed_{seed}"
@@ -118,7 +133,8 @@ def make_jobs(options, contestants, folder):
             if one.learns:
                 resumes = _has_begun(run)
                 commands.append([
-                    train, *farm, "--algorithm", one.name, "--episodes", str(options.episodes),
+                    train, *farm, "--algorithm", one.algorithm_name,
+                    "--episodes", str(options.episodes),
                     "--seed", str(seed), "--run-dir", str(run), "--evaluate", "0", "--random", "0",
                     "--farms", str(FARMS), "--checkpoint-period", "120",
                     *(["--exploration", one.exploration] if one.exploration else []),
@@ -127,8 +143,9 @@ def make_jobs(options, contestants, folder):
             episodes = options.evaluation_episodes
             episodes = min(episodes, one.episodes) if one.episodes else episodes
             commands.append([
-                evaluate, str(run) if one.learns else one.name, *farm, "--episodes", str(episodes),
-                "--seed", str(options.evaluation_seed), "--write", str(run / "evaluation"),
+                evaluate, str(run) if one.learns else one.algorithm_name, *farm,
+                "--episodes", str(episodes), "--seed", str(options.evaluation_seed),
+                "--policy-seed", str(seed), "--write", str(run / "evaluation"),
                 *(["--route", str(run / "route.json")] if seed == 1 else [])])
             jobs.append(runs.Job(one.name, f"{one.name} {seed}" if one.repeats else one.name, run,
                                  run / "evaluation.json", commands, one.cost, resumes))
@@ -144,8 +161,16 @@ def settings_of(options, contestants, farm):
     return {**farm, "runs": options.runs, "episodes": options.episodes,
             "evaluation_episodes": options.evaluation_episodes, "max_steps": options.max_steps,
             "evaluation_seed": options.evaluation_seed, "farms": FARMS,
-            "learners": {one.name: {"exploration": one.exploration, "options": list(one.options)}
-                         for one in contestants}}
+            "learners": {one.name: _settings_of_one(one) for one in contestants}}
+
+
+def _settings_of_one(one):
+    settings = {"exploration": one.exploration, "options": list(one.options)}
+    if one.algorithm:
+        settings["algorithm"] = one.algorithm
+    if one.scenario:
+        settings["scenario"] = one.scenario
+    return settings
 
 
 def claim(folder, settings):
@@ -224,7 +249,8 @@ def _require_alike(name, of_one):
 
 def run(options):
     """The whole protocol: trains, measures, writes and draws."""
-    contestants = [one.for_episodes(options.episodes) for one in CONTESTANTS
+    contestants = [one.for_episodes(options.episodes)
+                   for one in PROFILES[options.profile].contestants
                    if one.name in options.algorithms]
     folder = options.output.resolve()
     settings = settings_of(options, contestants, look_at_farm(options))
@@ -277,7 +303,8 @@ def _conclude(folder, contestants, found, settings, episodes):
         figures.draw_average_rewards(pictures / "average_rewards.png", trained, found)
         figures.draw_square_error(pictures / "mean_square_error.png", trained, found)
         figures.draw_repeated(pictures / "repeated_trainings.png", trained, found, optimum)
-    figures.draw_mean_score(pictures / "mean_score.png", everyone, rows)
+        figures.draw_mean_score(pictures / "mean_score.png", trained, found)
+    figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
     for one in everyone:
         figures.draw_route(pictures / f"route_{one.name}.png", one.label,
                            folder / "runs" / one.name / "seed_1" / "route.json")

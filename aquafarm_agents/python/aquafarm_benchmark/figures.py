@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pictures of §4 from what results.py read, as PNG."""
+"""The figures of §4 from what results.py read, as PNG.
+
+Each plot_… draws on axes; each draw_… makes the figure of one or more of them and saves it.
+"""
 import json
 
 import matplotlib
@@ -35,11 +38,15 @@ def _save(figure, path):
 
 def _axes(title, ylabel, xlabel="episode"):
     figure, axes = plt.subplots(figsize=(8, 4.5))
+    _label(axes, title, ylabel, xlabel)
+    return figure, axes
+
+
+def _label(axes, title, ylabel, xlabel="episode"):
     axes.set_title(title)
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
     axes.grid(alpha=0.3)
-    return figure, axes
 
 
 def _smooth(values):
@@ -60,9 +67,22 @@ def _show_returns(axes, curves, optimum=None):
     axes.axhline(0.0, color="black", linewidth=0.5)
 
 
-def draw_rewards(path, contestants, runs, optimum):
+def plot_rewards_by_steps(axes, contestants, runs, optimum):
+    """Fig. 12a: 50-episode mean return of the first run by time steps taken so far."""
+    curves = []
+    for one in contestants:
+        curve = runs[one.name][0]["curve"]
+        episodes, means = _smooth(curve["return"])
+        axes.plot(np.cumsum(curve["steps"])[episodes - 1], means, color=one.colour,
+                  label=one.label)
+        curves.append(means)
+    axes.set_xscale("log")
+    _show_returns(axes, curves, optimum)
+    axes.legend(loc="best")
+
+
+def plot_rewards_by_episodes(axes, contestants, runs, optimum):
     """Return of every episode of the first run, and its 50-episode mean."""
-    figure, axes = _axes("Return by episode, first run", "return of an episode")
     curves = []
     for one in contestants:
         curve = runs[one.name][0]["curve"]["return"]
@@ -71,12 +91,29 @@ def draw_rewards(path, contestants, runs, optimum):
         curves.append(curve)
     _show_returns(axes, curves, optimum)
     axes.legend(loc="best")
+
+
+def draw_rewards(path, contestants, runs, optimum):
+    """Fig. 12a by time steps, next to the same by episodes."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(13, 4.5), layout="constrained")
+    _label(left, "Rewards by time steps, first run (Fig. 12a)", "50-episode mean return",
+           "time steps so far")
+    plot_rewards_by_steps(left, contestants, runs, optimum)
+    _label(right, "Return by episode, first run", "return of an episode")
+    plot_rewards_by_episodes(right, contestants, runs, optimum)
     _save(figure, path)
 
 
 def draw_average_rewards(path, contestants, runs):
-    """Mean return of all episodes so far, over all runs."""
-    figure, axes = _axes("Average return so far, all runs", "mean return of all episodes so far")
+    """Fig. 12b: mean return of all episodes so far, over all runs."""
+    figure, axes = _axes("Average rewards, all runs (Fig. 12b)",
+                         "mean return of all episodes so far")
+    plot_average_rewards(axes, contestants, runs)
+    _save(figure, path)
+
+
+def plot_average_rewards(axes, contestants, runs):
+    """Mean over the runs of each one's mean return of all episodes so far."""
     curves = []
     for one in contestants:
         curve = _curves(runs[one.name], "return").mean(axis=0)
@@ -85,12 +122,17 @@ def draw_average_rewards(path, contestants, runs):
         curves.append(curve)
     _show_returns(axes, curves)
     axes.legend(loc="best")
-    _save(figure, path)
 
 
 def draw_square_error(path, contestants, runs):
-    """Fig. 12: mean square error of what learners expect, over all runs."""
-    figure, axes = _axes("Mean square error (Fig. 12)", "mean square error [reward²]")
+    """Fig. 12c: mean square error of what learners expect, over all runs."""
+    figure, axes = _axes("Mean square error (Fig. 12c)", "mean square error [reward²]")
+    plot_square_error(axes, contestants, runs)
+    _save(figure, path)
+
+
+def plot_square_error(axes, contestants, runs):
+    """Mean over the runs of the squared TD error by episode; nothing for RANDOM."""
     for one in contestants:
         losses = _curves(runs[one.name], "loss")
         known = np.isfinite(losses).any(axis=0)
@@ -100,14 +142,44 @@ def draw_square_error(path, contestants, runs):
         axes.plot(episodes, np.nanmean(losses[:, known], axis=0), color=one.colour,
                   label=one.label)
     axes.set_yscale("log")
-    axes.legend(loc="upper right")
+    if axes.lines:
+        axes.legend(loc="upper right")
+
+
+def draw_mean_score(path, contestants, runs):
+    """Fig. 13: mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all learners."""
+    panels = [[one for one in contestants if one.algorithm_name == name]
+              for name in ("lstm_dqn", "sarsa")] + [contestants]
+    titles = [(title, panel) for title, panel in zip("abc", panels) if panel]
+    figure, all_axes = plt.subplots(1, len(titles), figsize=(6.0 * len(titles), 4.5),
+                                    squeeze=False, layout="constrained")
+    for axes, (title, panel) in zip(all_axes[0], titles):
+        _label(axes, f"Mean score (Fig. 13{title})", "mean_score: return per step")
+        plot_mean_score(axes, panel, runs)
     _save(figure, path)
 
 
-def draw_mean_score(path, contestants, rows):
-    """Fig. 13: greedy mean score per contestant, with its 95 % interval."""
-    figure, axes = _axes("Mean score on episodes never trained on (Fig. 13)",
-                         "return of an episode", "")
+def plot_mean_score(axes, contestants, runs):
+    """50-episode mean return per step, mean over the runs, shaded by a standard deviation."""
+    for one in contestants:
+        returns, steps = _curves(runs[one.name], "return"), _curves(runs[one.name], "steps")
+        window = min(measures.WINDOW, returns.shape[1])
+        scores = np.array([measures.return_per_step(*pair, window)
+                           for pair in zip(returns, steps)])
+        _plot_shaded(axes, np.arange(window, returns.shape[1] + 1), scores, one, one.label)
+    axes.axhline(0.0, color="black", linewidth=0.5)
+    axes.legend(loc="best")
+
+
+def draw_evaluation(path, contestants, rows):
+    """Mean return of greedy episodes never trained on, with its 95 % interval."""
+    figure, axes = _axes("Return on episodes never trained on", "return of an episode", "")
+    plot_evaluation(axes, contestants, rows)
+    _save(figure, path)
+
+
+def plot_evaluation(axes, contestants, rows):
+    """A bar for each row: the interquartile mean of the runs and its interval."""
     by_name = {row["name"]: row for row in rows}
     for place, one in enumerate(contestants):
         row = by_name[one.name]
@@ -121,26 +193,34 @@ def draw_mean_score(path, contestants, rows):
     axes.set_yscale("symlog", linthresh=100.0)
     axes.margins(y=0.15)
     axes.set_xticks(range(len(contestants)), [one.label for one in contestants], rotation=15)
-    _save(figure, path)
 
 
 def draw_repeated(path, contestants, runs, optimum):
     """Fig. 14: 50-episode means over all runs, shaded by a standard deviation to either side."""
     figure, axes = _axes("Repeated trainings (Fig. 14): mean and standard deviation",
                          "50-episode mean return")
+    plot_repeated(axes, contestants, runs, optimum)
+    _save(figure, path)
+
+
+def plot_repeated(axes, contestants, runs, optimum):
+    """Mean over the runs of their 50-episode means, shaded by a standard deviation."""
     curves = []
     for one in contestants:
         smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
-        episodes = smooth[0][0]
         values = np.array([curve for _, curve in smooth])
-        mean, spread = values.mean(axis=0), values.std(axis=0)
-        axes.plot(episodes, mean, color=one.colour, label=f"{one.label}, {len(values)} runs")
-        axes.fill_between(episodes, mean - spread, mean + spread, color=one.colour, alpha=0.2,
-                          linewidth=0)
-        curves.append(mean)
+        _plot_shaded(axes, smooth[0][0], values, one, f"{one.label}, {len(values)} runs")
+        curves.append(values.mean(axis=0))
     _show_returns(axes, curves, optimum)
     axes.legend(loc="best")
-    _save(figure, path)
+
+
+def _plot_shaded(axes, episodes, values, one, label):
+    """The mean of values [runs, episodes], shaded by a standard deviation to either side."""
+    mean, spread = values.mean(axis=0), values.std(axis=0)
+    axes.plot(episodes, mean, color=one.colour, label=label)
+    axes.fill_between(episodes, mean - spread, mean + spread, color=one.colour, alpha=0.2,
+                      linewidth=0)
 
 
 def draw_route(path, label, route_file):

@@ -75,6 +75,19 @@ def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2
     return (float(low), float(high))
 
 
+def wilson_interval(hits, count, z=1.959964):
+    """95 % interval of a proportion (Wilson 1927): (low, high)."""
+    share, slack = hits / count, z * z / count
+    middle = (share + slack / 2.0) / (1.0 + slack)
+    half = z * math.sqrt(share * (1.0 - share) / count + slack / count / 4.0) / (1.0 + slack)
+    return (max(0.0, middle - half), min(1.0, middle + half))
+
+
+def return_per_step(returns, steps, window=WINDOW):
+    """Mean return per step of `window` episodes each: [n - window + 1], as moving_mean."""
+    return moving_mean(returns, window) / moving_mean(steps, window)
+
+
 def median_convergence(episodes):
     """Median over runs, in which one that never converges (None) counts as endless; None when
     that is the median."""

@@ -1,22 +1,62 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which learners a benchmark compares, with which settings, and what the paper printed."""
+"""Which learners a benchmark compares, with which settings, and Table 1 as the paper prints it."""
 import dataclasses
+import re
 import typing
 
 
 @dataclasses.dataclass(frozen=True)
+class PrintedRow:
+    """A row of the paper's Table 1: the text of each cell as printed (CC BY, Song et al. 2023)."""
+    average_return: str
+    success: str
+    convergence: str  # with the rank of Eq. 16 in brackets
+    stability: str
+    ea: str
+
+    def terms(self):
+        """The four terms of Eq. 16: return per step, success, rank and stability."""
+        rank = int(re.search(r"\((\d+)\)", self.convergence).group(1))
+        return (_number(self.average_return), _number(self.success), rank,
+                _number(self.stability))
+
+
+def _number(text):
+    return float(text.split()[0].replace("−", "-"))
+
+
+# Table 1 by row name. The column "Convergence Speed" has the unit timesteps in the first row only;
+# the protocol (§4.2) counts episodes.
+PAPER_TABLE = {
+    "lstm_dqn": PrintedRow("1.67 per step", "1", "≤300 timesteps (4)", "1", "1.67"),
+    "sarsa": PrintedRow("−1", "0.9", "≤700 (2)", "0.9", "0.93"),
+    "q_learning": PrintedRow("−1.21", "0.7", "≤500 (3)", "0.7", "0.97"),
+    "random": PrintedRow("−10", "0", "Failed (1)", "0", "−0.7"),
+}
+
+
+@dataclasses.dataclass(frozen=True)
 class Contestant:
-    """Who takes part. Its settings may name {explored}, the share of the training in which networks
-    explore, and {last_rate}, their learning rate in the end."""
-    name: str  # of the algorithm, as --algorithm and policy take it
+    """A row of the benchmark: an algorithm with its settings. Settings may name {explored}, the
+    fraction of the training in which networks explore, and {last_rate}, their final learning
+    rate."""
+    name: str  # of the row and of its folder
     label: str  # for tables and figures
     colour: str
+    algorithm: str = ""  # as --algorithm and policy take it; empty: the row's name
     learns: bool = True
-    exploration: str = ""  # empty: the algorithm's own
+    exploration: str = ""  # empty: the algorithm's default
     options: typing.Tuple[str, ...] = ()
-    cost: float = 1.0  # of a training beside the others', until one is over
-    episodes: int = 0  # of evaluation at most; 0: as many as asked for
-    repeats: bool = True  # False: one run, since another seed would learn nothing else
+    cost: float = 1.0  # estimated duration of a training relative to the others
+    episodes: int = 0  # maximum number of evaluation episodes; 0: as many as requested
+    repeats: bool = True  # False: one run, since the result does not depend on the seed
+    scenario: str = ""  # empty: the benchmark's
+    paper_row: str = ""  # key of PAPER_TABLE; empty: Table 1 has no such row
+    named_only: bool = False  # True: takes part only if --algorithms names it
+
+    @property
+    def algorithm_name(self):
+        return self.algorithm or self.name
 
     def for_episodes(self, episodes):
         """The same with the settings of a training of so many episodes."""
@@ -27,55 +67,113 @@ class Contestant:
             options=tuple(option.format(**numbers) for option in self.options))
 
 
-# Of a training, as §4.2 counts episodes: one after the other. With many farms at a time the first
-# episodes are all of chance, and those that end soon come first.
+# Episodes of a training run one after the other, as §4.2 counts them. With many farms at a time the
+# first episodes are all exploration, and short episodes come first.
 FARMS = 1
 
-# Trainings run side by side, a core each, hence device=cpu. Why these numbers:
-# docs/decisions/settling_early.md. Settings are by episodes, so that a shorter or longer benchmark
-# has the same beginning.
-_EXPLORED = 100  # episodes until the temperature is a point of reward
+# Trainings run in parallel, one per core, hence device=cpu. Reasons for these numbers:
+# docs/decisions/settling_early.md. Settings count episodes, so that a shorter or longer benchmark
+# starts in the same way.
+_EXPLORED = 100  # episodes until the temperature is one unit of reward
 _COOLING = "boltzmann:harmonic:20:1:{explored}"
 _FIRST_RATE = 5e-4
-_SLOWING = 49 / 2000  # an episode; the rate is that of the first over 1 + this times the episodes
+_SLOWING = 49 / 2000  # per episode: the rate is _FIRST_RATE / (1 + _SLOWING · episode)
 _NETWORK = ("device=cpu", "mask_blocked=true", "target_period=25", "average_rate=0.002",
             "replay=300000", "action_gap=0.5", "repetition_penalty=10",
             f"learning_rate=harmonic:{_FIRST_RATE}:{{last_rate}}:1")
+_TABLE_EXPLORATION = "epsilon_greedy:linear:1:0.01:0.5"
+
+_RANDOM = Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, options=("actions=reachable",),
+                     paper_row="random")
+_Q_LEARNING = Contestant("q_learning", "Q-learning", "#1f77b4", cost=0.02,
+                         exploration=_TABLE_EXPLORATION, options=("mask_illegal=true",),
+                         paper_row="q_learning")
+_SARSA = Contestant("sarsa", "SARSA", "#17becf", cost=0.02, exploration=_TABLE_EXPLORATION,
+                    options=("mask_illegal=true",), paper_row="sarsa")
+_DQN = Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING,
+                  options=_NETWORK + ("steps_per_update=1",))
+_LSTM_DQN = Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
+                       options=_NETWORK + ("hidden=64", "batch=64"), paper_row="lstm_dqn")
 
 CONTESTANTS = (
-    Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, repeats=False),
-    Contestant("q_learning", "Q-learning", "#1f77b4", cost=0.02,
-               exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
-    Contestant("sarsa", "SARSA", "#17becf", cost=0.02,
-               exploration="epsilon_greedy:linear:1:0.01:0.5", options=("mask_illegal=true",)),
-    Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING,
-               options=_NETWORK + ("steps_per_update=1",)),
-    Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
-               options=_NETWORK + ("hidden=64", "batch=64")),
+    _RANDOM,
+    Contestant("random_all", "RANDOM (all actions)", "#bcbd22", algorithm="random", cost=0.05,
+               options=("actions=all",), named_only=True),
+    _Q_LEARNING,
+    _SARSA,
+    _DQN,
+    _LSTM_DQN,
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )
 OPTIMUM = Contestant("clairvoyant", "clairvoyant", "#000000", learns=False, cost=0.2, repeats=False)
 
+# The farm of `paper` with the plain observation: no precomputed routes, no lookahead risk.
+PLAIN_SCENARIO = "paper_plain"
+
+
+def _printed(one, colour, options, cost):
+    """A row with the settings that the paper prints, on the plain observation."""
+    return dataclasses.replace(one, name=f"{one.name}_printed", algorithm=one.algorithm_name,
+                               label=f"{one.label}, printed", colour=colour, options=options,
+                               exploration="", cost=cost, scenario=PLAIN_SCENARIO)
+
+
+def _changed(one, suffix, label, colour, changes=(), scenario=""):
+    """A tuned row with some options changed: one part of the ablation."""
+    keys = {change.split("=", 1)[0] for change in changes}
+    kept = tuple(option for option in one.options if option.split("=", 1)[0] not in keys)
+    return dataclasses.replace(one, name=f"{one.name}_{suffix}", algorithm=one.algorithm_name,
+                               label=f"{one.label}, {label}", colour=colour, paper_row="",
+                               options=kept + tuple(changes), scenario=scenario)
+
+
+def _tuned(one):
+    return dataclasses.replace(one, label=f"{one.label}, tuned", paper_row="")
+
+
+# The paper's DQN settings where the tuned ones differ; see preset=paper in docs/algorithms.md.
+_PAPER_REPLAY = ("priority=0", "loss=mse", "gradient_limit=0", "double_q=false", "action_gap=0",
+                 "average_rate=0", "reward_scale=1", "discount=0.99", "target_period=250",
+                 "replay=100000", "learning_rate=linear:0.0005:0.00001:1")
+
+_PAPER_CONTESTANTS = (
+    dataclasses.replace(_RANDOM, scenario=PLAIN_SCENARIO),
+    _printed(_Q_LEARNING, "#aec7e8", ("discount=0.99",), cost=0.02),
+    _printed(_SARSA, "#9edae5", ("discount=0.99",), cost=0.02),
+    _printed(_DQN, "#98df8a", ("preset=paper", "device=cpu"), cost=2.0),
+    _printed(_LSTM_DQN, "#9467bd", ("preset=paper", "device=cpu"), cost=4.0),
+    _tuned(_Q_LEARNING),
+    _tuned(_SARSA),
+    _tuned(_DQN),
+    _tuned(_LSTM_DQN),
+    _changed(_DQN, "no_routes", "tuned, plain observation", "#ffbb78", scenario=PLAIN_SCENARIO),
+    _changed(_DQN, "no_masks", "tuned, no masks", "#c49c94",
+             ("mask_illegal=false", "mask_blocked=false")),
+    _changed(_DQN, "paper_replay", "tuned, the paper's replay and optimiser", "#8c564b",
+             _PAPER_REPLAY),
+    _changed(_LSTM_DQN, "no_routes", "tuned, plain observation", "#ff9896",
+             scenario=PLAIN_SCENARIO),
+    _changed(_LSTM_DQN, "no_masks", "tuned, no masks", "#f7b6d2",
+             ("mask_illegal=false", "mask_blocked=false")),
+    _changed(_LSTM_DQN, "paper_replay", "tuned, the paper's replay and optimiser", "#e377c2",
+             _PAPER_REPLAY),
+)
+
 
 @dataclasses.dataclass(frozen=True)
 class Profile:
-    """How much of it."""
+    """Size of a benchmark, and its rows."""
     runs: int
     episodes: int
     evaluation_episodes: int
+    max_steps: int = 0  # 0: the scenario's step limit
+    contestants: typing.Tuple[Contestant, ...] = CONTESTANTS
 
 
 PROFILES = {
     "full": Profile(runs=10, episodes=2000, evaluation_episodes=1000),
     "quick": Profile(runs=2, episodes=800, evaluation_episodes=200),
-}
-
-# Table 1 as far as we know it; None: not known to us.
-PAPER_TABLE = {
-    "random": {"return_per_step": None, "success": 0.0, "stability": 0.0, "ea_paper": -0.7},
-    "q_learning": {"return_per_step": None, "success": 0.7, "stability": 0.7, "ea_paper": 0.93},
-    "sarsa": {"return_per_step": None, "success": 0.9, "stability": 0.9, "ea_paper": 0.97},
-    "lstm_dqn": {"return_per_step": 1.67, "success": 1.0, "stability": 1.0, "ea_paper": 1.67,
-                 "convergence": 300},
+    "paper": Profile(runs=10, episodes=2000, evaluation_episodes=1000, max_steps=5000,
+                     contestants=_PAPER_CONTESTANTS),
 }

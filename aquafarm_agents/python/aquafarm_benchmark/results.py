@@ -23,7 +23,7 @@ def write_atomically(path, text):
 
 def read_curve(metrics):
     """Columns of a training's metrics.csv: dict of arrays over episodes."""
-    columns = {"return": [], "success": [], "loss": []}
+    columns = {"return": [], "steps": [], "success": [], "loss": []}
     with open(metrics, newline="") as file:
         for row in csv.DictReader(file):
             for name, values in columns.items():
@@ -72,23 +72,28 @@ def summarise(contestant, runs, optimum, training_episodes):
         return np.array([run[name] for run in runs], dtype=float)
 
     returns = column("return_per_episode")
-    row = {"name": contestant.name, "label": contestant.label, "runs": len(runs)}
+    row = {"name": contestant.name, "label": contestant.label, "runs": len(runs),
+           "paper_row": contestant.paper_row}
     for name in _EVALUATED:
         row[name] = float(column(name).mean())
     row["success_worst"] = float(column("success_rate").min())
     row["return_iqm"] = measures.interquartile_mean(returns)
     row["return_interval"] = _interval(returns)
     row["return_per_step_interval"] = _interval(column("return_per_step"))
+    row["success_interval"] = _interval(column("success_rate"))
     row["share_of_optimum"] = None
     if optimum is not None and optimum > 0.0:  # of a loss there is no share
         row["share_of_optimum"] = row["return_per_episode"] / optimum
-    row["stability"] = row["stability_settled"] = None
+    row["stability"] = row["stability_settled"] = row["stability_interval"] = None
     for name, stability in (("convergence", "stability"), ("settled", "stability_settled")):
         episodes = [run[name] for run in runs]
         row[name] = measures.median_convergence(episodes)
         row[name + "_runs"] = episodes
         if contestant.learns:
             row[stability] = sum(one is not None for one in episodes) / len(episodes)
+    if contestant.learns:
+        converged = sum(one is not None for one in row["convergence_runs"])
+        row["stability_interval"] = list(measures.wilson_interval(converged, len(runs)))
     row["training_steps"] = float(np.mean([run["evaluation"]["training_steps"] for run in runs]))
     row["episodes"] = training_episodes
     return row
@@ -128,7 +133,7 @@ def table(rows):
              "EA in [0, 1] | return per episode, 95 % interval | share of the optimum |",
              "| --- " * 10 + "|"]
     for row in rows:
-        printed = PAPER_TABLE.get(row["name"])
+        printed = PAPER_TABLE.get(row.get("paper_row"))
         low, high = row["return_interval"]
         interval = "" if math.isnan(low) else f" ({low:.1f} … {high:.1f})"
         settled = _text(row["settled"], "{:.0f}")
@@ -141,24 +146,31 @@ def table(rows):
             f"{row['return_iqm']:.1f}{interval}", _share(row["share_of_optimum"]))) + " |")
         if printed:
             lines.append("| " + " | ".join((
-                f"*{row['label']}, paper*", _text(printed["return_per_step"]),
-                _text(printed["success"], "{:.1f}"), _text(printed.get("convergence"), "{:.0f}"),
-                _text(printed["stability"], "{:.1f}"), "–", _text(printed["ea_paper"]), "–", "–",
-                "–")) + " |")
+                f"*{row['label']}, paper*", printed.average_return, printed.success,
+                printed.convergence, printed.stability, "–", printed.ea, "–", "–", "–")) + " |")
     return "\n".join(lines) + "\n"
+
+
+_TABLE_NOTES = """
+Rows in italics: Table 1 of the paper as printed, with the rank of Eq. 16 in brackets. Its unit of
+convergence is timesteps; the paper's protocol (§4.2) counts episodes, and so do the other rows.
+Eq. 16 gives the printed EA of three rows, and −0.80 for RANDOM, where the paper prints −0.7.
+"""
 
 
 def write(folder, settings, rows, runs):
     """results.json (everything), table.csv and runs.csv (a line each), table.md."""
-    columns = ["name", "runs", "return_per_step", "success_rate", "success_worst", "convergence",
-               "stability", "settled", "stability_settled", "rank", "ea_paper", "ea_normalised",
+    columns = ["name", "runs", "return_per_step", "return_per_step_low", "return_per_step_high",
+               "success_rate", "success_low", "success_high", "success_worst", "convergence",
+               "stability", "stability_low", "stability_high", "settled", "stability_settled", "rank", "ea_paper", "ea_normalised",
                "return_per_episode", "return_iqm", "return_low", "return_high",
                "share_of_optimum", "steps_per_episode", "crashes_per_episode",
                "steps_in_disaster_per_episode", "training_steps"]
     lines = [",".join(columns)]
     for row in rows:
-        low, high = row["return_interval"]
-        flat = dict(row, return_low=low, return_high=high)
+        flat = dict(row)
+        for name in ("return", "return_per_step", "success", "stability"):
+            flat[f"{name}_low"], flat[f"{name}_high"] = row[f"{name}_interval"] or (None, None)
         lines.append(",".join("" if flat[name] is None else str(flat[name]) for name in columns))
     write_atomically(folder / "table.csv", "\n".join(lines) + "\n")
 
@@ -175,7 +187,8 @@ def write(folder, settings, rows, runs):
                            for name, of_one in runs.items()}}
     text = json.dumps(_without_nan(everything), indent=2, allow_nan=False)
     write_atomically(folder / "results.json", text + "\n")
-    write_atomically(folder / "table.md", table(rows))
+    notes = _TABLE_NOTES if any(row["paper_row"] for row in rows) else ""
+    write_atomically(folder / "table.md", table(rows) + notes)
 
 
 def _without(run, *names):

@@ -18,8 +18,8 @@ namespace {
 
 std::shared_ptr<RecurrentNetwork> MakeRecurrent(const EnvironmentSpec& spec,
                                                 const DeepOptions& options, std::uint64_t seed) {
-  auto network =
-      std::make_shared<RecurrentNetwork>(spec.feature_count, options.hidden, options.dueling);
+  auto network = std::make_shared<RecurrentNetwork>(spec.feature_count, options.hidden,
+                                                    options.dueling, options.skip_connection);
   DrawWeights(*network, seed, 0);
   return network;
 }
@@ -148,6 +148,9 @@ class RecurrentDqnLearner final : public Learner {
   void Update();
   void Draw();
   RecurrentNetwork::State WarmState(RecurrentNetwork& network);
+  torch::Tensor ValuesAlong(RecurrentNetwork& network, const torch::Tensor& observations);
+  torch::Tensor Targets(const torch::Tensor& observations, const torch::Tensor& actions,
+                        const torch::Tensor& values);
   void Reprioritise(const torch::Tensor& errors);
 
   const EnvironmentSpec spec_;
@@ -240,6 +243,42 @@ RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network
           torch::where(warms_up, state.second, stored.second)};
 }
 
+// [T + 1, B, kActionCount]. Algorithm 2 looks at either end of a tuple with the state stored there;
+// a sequence is stepped through from the state at its beginning.
+torch::Tensor RecurrentDqnLearner::ValuesAlong(RecurrentNetwork& network,
+                                               const torch::Tensor& observations) {
+  RecurrentNetwork::State state = WarmState(network);
+  if (!options_.paper_tuple) return network.Forward(observations, state);
+  const torch::Tensor before = network.Forward(observations.narrow(0, 0, 1), state);
+  RecurrentNetwork::State after =
+      Carry::StateOf(batch_.carry_after.data(), static_cast<std::int64_t>(batch_.size()),
+                     options_.hidden, device_);
+  return torch::cat({before, network.Forward(observations.narrow(0, 1, 1), after)});
+}
+
+// [T, B] of Algorithm 2, line 20. `values` are the online network's.
+torch::Tensor RecurrentDqnLearner::Targets(const torch::Tensor& observations,
+                                           const torch::Tensor& actions,
+                                           const torch::Tensor& values) {
+  const torch::NoGradGuard no_grad;
+  const auto count = static_cast<std::int64_t>(batch_.size());
+  const std::int64_t steps = options_.sequence;
+  const torch::Tensor told = ValuesAlong(*target_, observations);
+  const torch::Tensor forbidden = ToDevice(batch_.forbidden, {steps + 1, count, kActionCount});
+  torch::Tensor next =
+      options_.double_q
+          ? told.gather(2, (values.detach() + forbidden).argmax(2, /*keepdim=*/true)).squeeze(2)
+          : (told + forbidden).amax(2);
+  next = next.gather(0, ToDevice(batch_.next, {steps, count}));
+  torch::Tensor targets =
+      ToDevice(batch_.rewards, {steps, count}) + ToDevice(batch_.discounts, {steps, count}) * next;
+  if (options_.action_gap > 0.0) {
+    targets -= options_.action_gap *
+               Shortfall(told.narrow(0, 0, steps), forbidden.narrow(0, 0, steps), actions);
+  }
+  return targets;
+}
+
 void RecurrentDqnLearner::Update() {
   const auto longest = static_cast<std::size_t>(options_.burn_in + options_.sequence);
   if (replay_.size() < 2 + longest || !sampler_.IsReady()) return;
@@ -250,26 +289,8 @@ void RecurrentDqnLearner::Update() {
   const torch::Tensor observations =
       ToDevice(batch_.observations, {steps + 1, count, spec_.feature_count});
   const torch::Tensor actions = ToDevice(batch_.actions, {steps, count, 1});
-  RecurrentNetwork::State state = WarmState(*online_);
-  const torch::Tensor values = online_->Forward(observations, state);
-  torch::Tensor targets;
-  {
-    const torch::NoGradGuard no_grad;
-    RecurrentNetwork::State target_state = WarmState(*target_);
-    const torch::Tensor told = target_->Forward(observations, target_state);
-    const torch::Tensor forbidden = ToDevice(batch_.forbidden, {steps + 1, count, kActionCount});
-    torch::Tensor next =
-        options_.double_q
-            ? told.gather(2, (values.detach() + forbidden).argmax(2, /*keepdim=*/true)).squeeze(2)
-            : (told + forbidden).amax(2);
-    next = next.gather(0, ToDevice(batch_.next, {steps, count}));
-    targets = ToDevice(batch_.rewards, {steps, count}) +
-              ToDevice(batch_.discounts, {steps, count}) * next;
-    if (options_.action_gap > 0.0) {
-      targets -= options_.action_gap *
-                 Shortfall(told.narrow(0, 0, steps), forbidden.narrow(0, 0, steps), actions);
-    }
-  }
+  const torch::Tensor values = ValuesAlong(*online_, observations);
+  const torch::Tensor targets = Targets(observations, actions, values);
   const torch::Tensor predicted = values.narrow(0, 0, steps).gather(2, actions).squeeze(2);
   optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {steps, count}), origin);
   if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());

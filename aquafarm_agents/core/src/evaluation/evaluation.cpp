@@ -66,17 +66,19 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
 
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop,
-                    const std::function<void(std::size_t over)>& on_progress) {
+                    const std::function<void(std::size_t over)>& on_progress,
+                    std::optional<std::uint64_t> policy_seed) {
   AQUAFARM_CHECK_GE(episodes, 1);
   const auto start = std::chrono::steady_clock::now();
   auto told = start;
   const auto count = static_cast<std::size_t>(episodes);
   Evaluation evaluation;
   evaluation.seed = EvaluationSeed(seed);
+  const std::uint64_t chance = policy_seed.value_or(evaluation.seed);
   std::vector<EpisodeResult> results(count);
   std::vector<std::uint8_t> is_over(count);
   std::size_t over = 0;
-  policy.Begin(evaluation.seed, environment.spec().farms);
+  policy.Begin(chance, environment.spec().farms);
   std::vector<std::uint8_t> actions;
   const Results* now = &environment.Reset(evaluation.seed);
   while (over < count && (stop == nullptr || !*stop)) {
@@ -94,7 +96,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
       on_progress(over);
     }
     if (environment.TakeRestarted()) {  // new farms; finished episodes are kept
-      policy.Begin(evaluation.seed, environment.spec().farms);
+      policy.Begin(chance, environment.spec().farms);
       now = &environment.Reset(evaluation.seed);
     }
   }

@@ -47,24 +47,39 @@ class Starts {
   std::vector<std::int32_t> cells_;
 };
 
+// The reward of all agents of a farm in the last step.
+double RewardOf(const Results& results, const EnvironmentSpec& spec, std::size_t farm) {
+  const auto agents = static_cast<std::size_t>(spec.agents);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < agents; ++i) {
+    sum += static_cast<double>(results.rewards[farm * agents + i]);
+  }
+  return spec.team_reward ? sum / static_cast<double>(agents) : sum;  // each agent receives the sum
+}
+
 // Plays all farms to the end of their current episodes. @returns the return of each farm
 std::vector<double> PlayOut(LocalEnvironment& environment, const std::string& farms, Policy& policy,
-                            std::uint64_t seed, const std::atomic<bool>* stop) {
+                            std::uint64_t seed, double discount, const std::atomic<bool>* stop) {
   const std::int32_t count = environment.spec().farms;
   std::vector<double> returns(static_cast<std::size_t>(count));
   std::vector<bool> over(returns.size());
   std::int32_t left = count;
+  double weight = 1.0;  // of the reward of the next step
   policy.Begin(seed, count);
   const Results* results = &environment.Load(farms);
   std::vector<std::uint8_t> actions;
   while (left > 0 && !IsStopped(stop)) {
     policy.Act(*results, actions);
     results = &environment.Step(actions);
+    for (std::size_t farm = 0; discount < 1.0 && farm < returns.size(); ++farm) {
+      if (!over[farm]) returns[farm] += weight * RewardOf(*results, environment.spec(), farm);
+    }
+    weight *= discount;
     for (const EpisodeResult& ended : results->finished) {
       const auto farm = static_cast<std::size_t>(ended.farm);
       if (over[farm]) continue;  // this is a later episode of the farm
       over[farm] = true;
-      returns[farm] = static_cast<double>(ended.episode_return);
+      if (discount >= 1.0) returns[farm] = static_cast<double>(ended.episode_return);
       --left;
     }
   }
@@ -93,7 +108,7 @@ json ToRows(const std::vector<T>& values, std::int32_t width) {
 
 PlayedValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
                         const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
-                        std::int32_t episodes, const std::atomic<bool>* stop) {
+                        std::int32_t episodes, const std::atomic<bool>* stop, double discount) {
   if (scenario->CellCount() > kMaxCells) {
     throw InputError("values: got a farm of " + std::to_string(scenario->CellCount()) +
                      " cells, expected at most " + std::to_string(kMaxCells));
@@ -104,8 +119,8 @@ PlayedValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::ui
         std::to_string(episodes) + " episodes");
   }
   const auto cells = static_cast<std::size_t>(scenario->CellCount());
-  PlayedValues values{scenario->width, scenario->height, EvaluationSeed(seed),
-                      episode,         episodes,         {}};
+  PlayedValues values{
+      scenario->width, scenario->height, EvaluationSeed(seed), episode, episodes, {}, discount};
   values.value.assign(cells, 0.0);
   Farm farm(scenario);
   for (std::int32_t k = 0; k < episodes && !IsStopped(stop); ++k) {
@@ -120,7 +135,7 @@ PlayedValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::ui
       }
       LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
       const std::unique_ptr<Policy> policy = make_policy(environment.spec());
-      const auto returns = PlayOut(environment, farms.Save(), *policy, values.seed, stop);
+      const auto returns = PlayOut(environment, farms.Save(), *policy, values.seed, discount, stop);
       for (std::size_t i = 0; i < count; ++i) {
         here[static_cast<std::size_t>(starts.cells()[first + i])] = returns[i];
       }
@@ -140,16 +155,20 @@ void WriteValues(const std::string& path, const PlayedValues& values, const std:
                         {"values", ToRows(layer.values, values.width)}});
     }
   }
-  const json text{{"scenario", scenario.name},
-                  {"scenario_hash", scenario.hash},
-                  {"policy", policy},
-                  {"cell_size_m", scenario.cell_size_m},
-                  {"farm_seed", values.seed},
-                  {"episode", values.episode},
-                  {"episodes", values.episodes},
-                  {"what", "undiscounted return of the episode when ship 0 starts in the cell"},
-                  {"values", ToRows(values.value, values.width)},
-                  {"seas", layers}};
+  const json text{
+      {"scenario", scenario.name},
+      {"scenario_hash", scenario.hash},
+      {"policy", policy},
+      {"cell_size_m", scenario.cell_size_m},
+      {"farm_seed", values.seed},
+      {"episode", values.episode},
+      {"episodes", values.episodes},
+      {"discount", values.discount},
+      {"what", values.discount < 1.0
+                   ? "discounted return of the episode when ship 0 starts in the cell"
+                   : "undiscounted return of the episode when ship 0 starts in the cell"},
+      {"values", ToRows(values.value, values.width)},
+      {"seas", layers}};
   WriteFileAtomically(path, text.dump() + "\n");
 }
 

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/learning/checkpoint.h"
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
@@ -54,11 +59,27 @@ nlohmann::json ToIndex(const Checkpoint& c) {
           {"sections", sections}};
 }
 
+// Adds the value that an option had before it existed, where the recorded options lack it.
+std::string CompleteOptions(const std::string& algorithm, const std::string& recorded) {
+  constexpr std::string_view kAdded = "skip_connection";
+  if (algorithm.find("lstm_dqn") == std::string::npos || recorded.empty() ||
+      recorded.find(std::string(kAdded) + '=') != std::string::npos) {
+    return recorded;
+  }
+  std::istringstream words(recorded);
+  std::vector<std::string> options{std::istream_iterator<std::string>(words), {}};
+  options.push_back(std::string(kAdded) + "=true");
+  std::sort(options.begin(), options.end());
+  std::string completed;
+  for (const std::string& option : options) completed += (completed.empty() ? "" : " ") + option;
+  return completed;
+}
+
 Checkpoint FromIndex(const nlohmann::json& index) {
   Checkpoint c;
   index.at("kind").get_to(c.kind);
   index.at("algorithm").get_to(c.algorithm);
-  index.at("options").get_to(c.options);
+  c.options = CompleteOptions(c.algorithm, index.at("options").get<std::string>());
   index.at("version").get_to(c.version);
   index.at("seed").get_to(c.seed);
   index.at("steps").get_to(c.steps);

@@ -123,7 +123,7 @@ std::uint8_t Explorer::ChooseBoltzmann(const float* values, ActionMask allowed, 
   return chosen;
 }
 
-std::uint8_t Explorer::Pick(ActionMask allowed, RandomStream& stream) {
+std::uint8_t DrawAction(ActionMask allowed, RandomStream& stream) {
   std::array<std::uint8_t, kActionCount> actions{};
   std::uint32_t count = 0;
   for (std::uint8_t a = 0; a < kActionCount; ++a) {

@@ -20,9 +20,20 @@ DeepOptions Tuned(bool recurrent) {
   return options;
 }
 
-// Sets only the values printed in §3.4.3 and Algorithm 2. The others keep the tuned defaults.
+// The discount that §2.3 calls usual.
+constexpr double kPaperDiscount = 0.99;
+// τ of Algorithm 2, line 22, which gives [0, 1]; the value of Haarnoja et al. 2018.
+constexpr double kPaperTargetRate = 0.005;
+
+// Sets only the values printed in Eq. 15 and Algorithm 2. The others keep the tuned defaults.
 DeepOptions Paper(bool recurrent) {
   DeepOptions options = Tuned(recurrent);
+  options.discount = kPaperDiscount;
+  if (recurrent) {
+    options.target_rate = kPaperTargetRate;                     // line 22
+    options.steps_per_update = {ScheduleKind::kConstant, 1.0};  // lines 12 to 23
+    options.skip_connection = false;                            // line 4
+  }
   options.loss = LossKind::kMse;
   options.gradient_limit = 0.0;
   options.double_q = false;
@@ -41,6 +52,8 @@ void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
   const Replayed replayed = ReadWord(
       reader, "replayed", is_paper ? Replayed::kPaperTuple : Replayed::kSequences, kReplayed);
   const bool is_tuple = replayed == Replayed::kPaperTuple;
+  options.paper_tuple = is_tuple;
+  options.skip_connection = reader.Flag("skip_connection", options.skip_connection);
   if (is_tuple) {
     options.sequence = 1;
     options.burn_in = 0;

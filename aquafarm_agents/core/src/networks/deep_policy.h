@@ -16,6 +16,7 @@
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/agents/learning/checkpoint.h"
 #include "aquafarm/agents/networks/deep_options.h"
+#include "learning/action_mask.h"
 
 namespace aquafarm::agents {
 
@@ -26,27 +27,6 @@ inline std::string PlayingDevice(const std::string& trained_on) {
 
 inline std::size_t EntryCount(const EnvironmentSpec& spec) {
   return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
-}
-
-/// Mask of the allowed actions: all actions, or the legal ones.
-inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
-  return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
-}
-
-/// Mask of the allowed actions. With mask_blocked it also excludes moves that do not lead into open
-/// water, unless no move does.
-/// @param features of the ship, a row of Results::features
-/// @tparam Options DeepOptions or MaddpgOptions
-template <typename Options>
-ActionMask Allowed(ActionMask legal, const float* features, const Options& options) {
-  const ActionMask allowed = Allowed(legal, options.mask_illegal);
-  if (!options.mask_blocked) return allowed;
-  auto open = allowed;
-  for (int move = 0; move < kMoveCount; ++move) {
-    if (features[kFirstBlockedFeature + move] == 0.0F) continue;
-    open = static_cast<ActionMask>(open & ~(1U << static_cast<unsigned>(move)));
-  }
-  return (open & kMoveMask) != 0 ? open : allowed;
 }
 
 /// Mask of the allowed actions for planes. DeepOptions rejects mask_blocked with planes, which lack

@@ -88,17 +88,22 @@ std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOpt
   return network;
 }
 
-RecurrentNetwork::RecurrentNetwork(std::int64_t features, std::int64_t hidden, bool dueling)
-    : input_(register_module("input", nn::Linear(features, hidden))),
-      lstm_(register_module("lstm", nn::LSTM(hidden, hidden))),
-      second_(register_module("second", nn::Linear(2 * hidden, 2 * hidden))),
-      head_(register_module("head", Head(2 * hidden, dueling))) {}
+RecurrentNetwork::RecurrentNetwork(std::int64_t features, std::int64_t hidden, bool dueling,
+                                   bool skip_connection)
+    : skip_connection_(skip_connection),
+      input_(register_module("input", nn::Linear(features, hidden))),
+      lstm_(register_module("lstm", nn::LSTM(hidden, hidden))) {
+  const std::int64_t width = skip_connection ? 2 * hidden : hidden;
+  second_ = register_module("second", nn::Linear(width, width));
+  head_ = register_module("head", Head(width, dueling));
+}
 
 torch::Tensor RecurrentNetwork::Forward(const torch::Tensor& input, State& state) {
   const torch::Tensor seen = input_(input).relu_();
   auto [output, after] = lstm_(seen, std::make_tuple(state.first, state.second));
   std::tie(state.first, state.second) = after;
-  return head_(second_(torch::cat({output, seen}, -1)).relu_());
+  const torch::Tensor joined = skip_connection_ ? torch::cat({output, seen}, -1) : output;
+  return head_(second_(joined).relu_());
 }
 
 void RecurrentNetwork::WarmUp(const torch::Tensor& input, State& state) {

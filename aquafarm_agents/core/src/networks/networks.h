@@ -44,13 +44,15 @@ class QNetwork : public torch::nn::Module {
 std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOptions& options,
                                       std::uint64_t seed);
 
-/// Recurrent network with a skip connection around the LSTM, which learns several times as fast:
+/// An LSTM between two hidden layers. With the skip connection, which the paper does not have, it
+/// learns several times as fast:
 ///
 ///   Linear - ReLU --+-- LSTM --+-- Linear - ReLU - head
-///                   +----------+
+///                   +----------+   skip connection
 class RecurrentNetwork : public torch::nn::Module {
  public:
-  RecurrentNetwork(std::int64_t features, std::int64_t hidden, bool dueling);
+  RecurrentNetwork(std::int64_t features, std::int64_t hidden, bool dueling,
+                   bool skip_connection = true);
 
   using State = std::pair<torch::Tensor, torch::Tensor>;  ///< h, c, each [1, B, hidden]
   /// @param input [T, B, F]
@@ -61,6 +63,7 @@ class RecurrentNetwork : public torch::nn::Module {
   void WarmUp(const torch::Tensor& input, State& state);
 
  private:
+  bool skip_connection_;
   torch::nn::Linear input_{nullptr};
   torch::nn::LSTM lstm_{nullptr};
   torch::nn::Linear second_{nullptr};

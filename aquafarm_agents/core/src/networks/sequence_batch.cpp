@@ -17,6 +17,7 @@ SequenceBatch::SequenceBatch(const DeepOptions& options, std::size_t features,
   warm_up.resize(burn_in_ * count * features);
   observations.resize((steps_ + 1) * count * features);
   carry.resize(count * carry_size);
+  if (options.paper_tuple) carry_after.resize(count * carry_size);
   warms_up.resize(count);
   actions.resize(steps_ * count);
   rewards.resize(steps_ * count);
@@ -49,6 +50,10 @@ void SequenceBatch::FillRun(std::size_t b, const Replay<float>& replay, const Mo
   const auto [age, entry] = first;
   std::size_t last = 0;  // time step at which the run ends
   while (last < steps_ && replay.Begins(age + last, entry, 1)) ++last;
+  if (options.paper_tuple) {
+    const std::size_t row = replay.Row(age + last, entry);
+    std::copy_n(replay.carry(row), carry_size_, carry_after.data() + b * carry_size_);
+  }
   for (std::size_t t = 0; t <= steps_; ++t) {
     const std::size_t row = replay.Row(age + std::min(t, last), entry);
     std::copy_n(replay.observation(row), features_,

@@ -19,6 +19,7 @@ struct SequenceBatch {
   std::vector<float> warm_up;         ///< [burn_in, B, F]
   std::vector<float> observations;    ///< [T + 1, B, F]
   std::vector<float> carry;           ///< [B, 2, hidden] before the first time step of warm_up
+  std::vector<float> carry_after;     ///< [B, 2, hidden] stored at time step 1; paper_tuple only
   std::vector<float> warms_up;        ///< [B] 0 if carry is already the state before time step 0
   std::vector<std::int64_t> actions;  ///< [T, B]
   std::vector<float> rewards;         ///< [T, B] summed over the steps to `next`

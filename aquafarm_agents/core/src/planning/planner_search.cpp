@@ -88,8 +88,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
     const auto to = static_cast<std::size_t>(option.to);
     const float risk = risk_.data()[to];
     double reward = static_cast<double>(option.reward) + static_cast<double>(risk);
-    if (option.reward == 0.0F && risk == 0.0F)
-      reward += static_cast<double>(scenario_.rewards.step);
+    if (!option.triggers && risk == 0.0F) reward += static_cast<double>(scenario_.rewards.step);
     const float crash = crash_hurts_ ? option.damage : 0.0F;
     reward -= Loss(set, crash) + Loss(set, -exposure * risk);
     if (!IsInTheWay(step, to)) {

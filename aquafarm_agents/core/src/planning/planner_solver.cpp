@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <queue>
 #include <string>
 #include <utility>
@@ -18,10 +19,12 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
       cells_(static_cast<std::size_t>(scenario.CellCount())),
       devices_(static_cast<std::size_t>(slots > 0 ? slots : scenario.devices.Total())) {
   constexpr std::size_t kMostDevices = 12;
-  if (scenario.rewards.step > 0.0F) {
-    throw InputError(
-        "planner: rewards.step: got more than 0, expected at most 0: there would be "
-        "no end to what dawdling earns");
+  for (const auto& [name, value] :
+       {std::pair{"step", scenario.rewards.step}, std::pair{"illegal", scenario.rewards.illegal}}) {
+    if (value <= 0.0F) continue;
+    throw InputError("planner: rewards." + std::string(name) +
+                     ": got more than 0, expected at most 0, since a ship earns without end by "
+                     "waiting; evaluate a learner instead");
   }
   if (devices_ > kMostDevices) {
     throw InputError("planner: got " + std::to_string(devices_) + " devices, expected at most " +
@@ -61,26 +64,28 @@ void PlannerSolver::ListOptions(const Farm& farm) {
       std::vector<Option>& options = options_[static_cast<std::size_t>(here)];
       options.clear();
       if ((layout_->bits({x, y}) & kBlockedBits) != 0) continue;
-      // Standing still: of all ways to stay without a crash, the cheapest. Of the two that do
-      // nothing here, not the one that might pick up a device, or drop one off.
-      const bool at_port = (layout_->bits({x, y}) & kPortBit) != 0;
-      Option stay{here, scenario_.rewards.illegal, 0.0F,
-                  static_cast<std::uint8_t>(at_port ? Action::kPickup : Action::kDropOff)};
+      std::optional<Option> edge;  // standing still by a move off the map
       for (std::uint8_t action = 0; action < kMoveCount; ++action) {
         const Cell to{x + kMoves[action].x, y + kMoves[action].y};
         const bool on_map =
             to.x >= 0 && to.y >= 0 && to.x < scenario_.width && to.y < scenario_.height;
         if (!on_map) {
-          stay = {here, 0.0F, 0.0F, action};
+          edge = {here, 0.0F, 0.0F, action, false};
         } else if ((layout_->bits(to) & kBlockedBits) != 0) {
           const float reward = layout_->crash_reward(to.y, to.x);
           options.push_back(
-              {here, reward, CrashDamage(scenario_, layout_->bits(to), reward), action});
+              {here, reward, CrashDamage(scenario_, layout_->bits(to), reward), action, true});
         } else {
-          options.push_back({LinearIndex(to, scenario_.width), 0.0F, 0.0F, action});
+          options.push_back({LinearIndex(to, scenario_.width), 0.0F, 0.0F, action, false});
         }
       }
-      options.push_back(stay);
+      if (edge) options.push_back(*edge);
+      // Standing still by an illegal action, which replaces the step reward: not by the one that
+      // might pick up a device here, or drop one off.
+      const bool at_port = (layout_->bits({x, y}) & kPortBit) != 0;
+      options.push_back({here, scenario_.rewards.illegal, 0.0F,
+                         static_cast<std::uint8_t>(at_port ? Action::kPickup : Action::kDropOff),
+                         true});
     }
   }
 }

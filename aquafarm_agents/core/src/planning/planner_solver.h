@@ -29,6 +29,7 @@ struct Option {
   float reward{};  // crash, illegal; 0 for a quiet move
   float damage{};  // health lost aboard in a crash
   std::uint8_t action{};
+  bool triggers{};  // a crash or an illegal action, which replaces the step reward, even if it is 0
 };
 
 class PlannerSolver {

@@ -28,13 +28,15 @@ class Trip {
         empty_(to_port.size(), kNever),
         laden_(to_port.size(), kNever),
         bare_(to_port.size(), kNever),
-        next_(to_port.size()) {
+        next_(to_port.size()),
+        wait_(to_port.size()) {
     shares_way_ = scenario_.ships.capacity > 1 && !device_.self_propelled;
     move_ = shares_way_ ? 0.0 : static_cast<double>(scenario_.rewards.step);
     if (device_.self_propelled) {
       laden_[site_] = worth();
       bare_[site_] = 0.0;
     }
+    ListWaits(farm.ships().size() > 1);
   }
 
   /// Goes on by a step. @param risk [H, W] in it
@@ -77,6 +79,34 @@ class Trip {
   double worth() const { return static_cast<double>(health_) * static_cast<double>(device_.value); }
   double drop_off() const { return static_cast<double>(scenario_.rewards.drop_off); }
 
+  // The most that a step of standing still pays in quiet water, by cell: a crash, a collision or an
+  // illegal action replaces the step reward (Farm::Reward). What a crash damages is left out.
+  void ListWaits(bool has_others) {
+    const RewardSpec& rewards = scenario_.rewards;
+    const float anywhere =
+        std::max({rewards.step, rewards.illegal, has_others ? rewards.collision : rewards.illegal});
+    for (std::int32_t y = 0; y < scenario_.height; ++y) {
+      for (std::int32_t x = 0; x < scenario_.width; ++x) {
+        float most = anywhere;
+        ForEachNeighbour({x, y}, [&](Cell to) {
+          if ((layout_.bits(to) & kBlockedBits) == 0) return;
+          most = std::max(most, layout_.crash_reward(to.y, to.x));
+        });
+        wait_[Index({x, y})] = shares_way_ ? 0.0 : static_cast<double>(most);
+      }
+    }
+  }
+
+  template <typename Visit>
+  void ForEachNeighbour(Cell at, const Visit& visit) const {
+    for (const Cell by : kMoves) {
+      const Cell to{at.x + by.x, at.y + by.y};
+      const bool on_map =
+          to.x >= 0 && to.y >= 0 && to.x < scenario_.width && to.y < scenario_.height;
+      if (on_map) visit(to);
+    }
+  }
+
   void StartTrips() {
     if (device_.self_propelled) return;
     for (const Cell port : layout_.ports) empty_[Index(port)] = std::max(empty_[Index(port)], 0.0);
@@ -105,21 +135,20 @@ class Trip {
       for (std::int32_t x = 0; x < scenario_.width; ++x) {
         const double value = values[Index({x, y})];
         if (value == kNever) continue;
-        Raise({x, y}, value);
-        for (const Cell by : kMoves) {
-          const Cell to{x + by.x, y + by.y};
-          const bool on_map =
-              to.x >= 0 && to.y >= 0 && to.x < scenario_.width && to.y < scenario_.height;
-          if (on_map && (layout_.bits(to) & kBlockedBits) == 0) Raise(to, value);
-        }
+        const double here = Price(risk, {x, y}, value_per_risk, wait_[Index({x, y})]);
+        Raise({x, y}, value + here);
+        ForEachNeighbour({x, y}, [&](Cell to) {
+          if ((layout_.bits(to) & kBlockedBits) != 0) return;
+          Raise(to, value + Price(risk, to, value_per_risk, move_));
+        });
       }
     }
-    for (std::size_t cell = 0; cell < next_.size(); ++cell) {
-      if (next_[cell] == kNever) continue;
-      const auto here = static_cast<double>(risk.data()[cell]);
-      next_[cell] += here < 0.0 ? Risk(here) + here * value_per_risk : move_;
-    }
     values.swap(next_);
+  }
+  // What a step that ends in `to` pays. @param quiet in quiet water
+  double Price(const Grid<float>& risk, Cell to, double value_per_risk, double quiet) const {
+    const auto here = static_cast<double>(risk(to.y, to.x));
+    return here < 0.0 ? Risk(here) + here * value_per_risk : quiet;
   }
   // What a ship pays for a risk; one that has others aboard as well pays it once for all.
   double Risk(double here) const { return shares_way_ ? 0.0 : here; }
@@ -141,6 +170,7 @@ class Trip {
   std::vector<double> laden_;  // the same with it, its worth paid in, wear paid as it comes
   std::vector<double> bare_;   // the same with it, for nothing: wear takes no more than its worth
   std::vector<double> next_;
+  std::vector<double> wait_;            // reward of standing still in quiet water, by cell
   double picked_up_for_value_{kNever};  // in this step
   double picked_up_bare_{kNever};
 };

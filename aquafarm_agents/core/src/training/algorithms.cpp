@@ -32,8 +32,9 @@ std::unique_ptr<Policy> MakePlannerPolicy(const Checkpoint&, const EnvironmentSp
   return std::make_unique<PlannerPolicy>(spec, foresight);
 }
 
-std::unique_ptr<Policy> MakeRandomPolicy(const Checkpoint&, const EnvironmentSpec& spec) {
-  return std::make_unique<RandomPolicy>(spec.agents);
+std::unique_ptr<Policy> MakeRandomPolicy(const Checkpoint& checkpoint,
+                                         const EnvironmentSpec& spec) {
+  return std::make_unique<RandomPolicy>(spec, ParseRandomActions(checkpoint.options));
 }
 
 template <std::uint8_t bits>
@@ -88,25 +89,23 @@ std::unique_ptr<Policy> MakeEachPolicy(const Checkpoint& checkpoint, const Envir
   return MakeIndependentPolicy(checkpoint, spec, make);
 }
 
-// "one rescue ship decides", "4 self-propelled devices decide"
-std::string DescribeDeciders(const EnvironmentSpec& spec) {
-  const Scenario scenario = ParseScenario(spec.scenario_yaml, spec.scenario_name);
-  const auto ships = scenario.ships.count;
-  const auto devices = spec.agents - ships;
+// "one rescue squad decides", "4 networked self-propelled devices decide"
+std::string DescribeDeciders(std::int32_t ships, std::int32_t devices, bool networked) {
   const auto count = [](std::int32_t n, const std::string& one) {
     return n == 1 ? "one " + one : std::to_string(n) + " " + one + "s";
   };
-  std::string text = ships > 0 ? count(ships, "rescue ship") : "";
-  if (devices > 0) text += (text.empty() ? "" : " and ") + count(devices, "self-propelled device");
-  return text + (spec.agents == 1 ? " decides" : " decide");
+  std::string text = ships > 0 ? count(ships, "rescue squad") : "";
+  const std::string kind = networked ? "networked self-propelled device" : "self-propelled device";
+  if (devices > 0) text += (text.empty() ? "" : " and ") + count(devices, kind);
+  return text + (ships + devices == 1 ? " decides" : " decide");
 }
 
 }  // namespace
 
 const std::vector<Algorithm>& Algorithms() {
   static const std::vector<Algorithm> algorithms{
-      {"random", "any action at any time; the yardstick (§4)", false, 100000, WithoutOptions<0>,
-       Make<RandomLearner>, MakeRandomPolicy},
+      {"random", "draws among all or reachable actions; the baseline (§4.2)", false, 100000,
+       RandomEncodings, Make<RandomLearner>, MakeRandomPolicy},
       {"q_learning", "tabular Q-learning (Eq. 12)", true, 4000000, WithCuriosityToo<Tabular>,
        MakeExplorer<Make<TabularLearner<QLearningRule>>>, MakeTabularPolicy},
       {"sarsa", "tabular SARSA (Eq. 14)", true, 8000000, WithCuriosityToo<Tabular>,
@@ -154,14 +153,16 @@ std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& sp
 }
 
 Choice ChooseAlgorithm(const EnvironmentSpec& spec) {
-  if (spec.agents == 1) {
-    return {"lstm_dqn", DescribeDeciders(spec) + ", so a single-agent learner"};
+  const Scenario scenario = ParseScenario(spec.scenario_yaml, spec.scenario_name);
+  const std::int32_t squads = scenario.ships.count;
+  const std::int32_t devices = spec.agents - squads;
+  const bool networked = devices > 0 && scenario.view.shared_sight;
+  const std::string deciders = DescribeDeciders(squads, devices, networked);
+  if (spec.agents == 1) return {"lstm_dqn", deciders + ", so a single-agent learner"};
+  if (squads > 1 || networked) {
+    return {"vdn", deciders + " and need coordination, so a multi-agent learner"};
   }
-  if (!spec.team_reward) {
-    return {"independent_dqn",
-            DescribeDeciders(spec) + ", each for its own reward, so independent learners"};
-  }
-  return {"vdn", DescribeDeciders(spec) + " for a shared reward, so a multi-agent learner"};
+  return {"independent_dqn", deciders + ", so a single-agent learner for each"};
 }
 
 }  // namespace aquafarm::agents

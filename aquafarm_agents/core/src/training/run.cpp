@@ -247,7 +247,7 @@ void Run::Evaluate(Environment& environment, const Learner& learner, const RunFo
   if (options_.random_episodes > 0) {
     context.policy = context.algorithm = "random";
     context.training_steps = 0;
-    RandomPolicy random(environment.spec().agents);
+    RandomPolicy random(environment.spec());
     report_.random =
         agents::Evaluate(environment, random, options_.seed, options_.random_episodes, stop_);
     WriteEvaluation(folder.path() + "/evaluation_random", report_.random, context);

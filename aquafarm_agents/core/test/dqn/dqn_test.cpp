@@ -230,8 +230,39 @@ TEST(Dqn, PaperModeTurnsEverySwitchOff) {
   EXPECT_FALSE(paper.mask_illegal);
   EXPECT_FALSE(paper.mask_blocked);
   EXPECT_EQ(paper.loss, LossKind::kMse);
+  EXPECT_EQ(paper.gradient_limit, 0.0);
+  EXPECT_EQ(paper.discount, 0.99) << "§2.3";
+  EXPECT_EQ(paper.target_rate, 0.0) << "§3.4.3: a copy, now and then";
   EXPECT_TRUE(DeepOptions::Parse("preset=paper double_q=true", false, resolved).double_q);
   EXPECT_CONTAINS(resolved, "preset=paper");
+}
+
+TEST(RecurrentDqn, PaperModeIsAlgorithm2) {
+  std::string resolved;
+  const DeepOptions paper = DeepOptions::Parse("preset=paper", true, resolved);
+  EXPECT_EQ(paper.discount, 0.99) << "§2.3";
+  EXPECT_GT(paper.target_rate, 0.0) << "line 22";
+  EXPECT_LE(paper.target_rate, 1.0);
+  EXPECT_EQ(paper.steps_per_update.kind, ScheduleKind::kConstant);
+  EXPECT_EQ(paper.steps_per_update.start, 1.0) << "lines 12 to 23";
+  EXPECT_FALSE(paper.skip_connection);
+  EXPECT_TRUE(paper.paper_tuple) << "line 19";
+  EXPECT_FALSE(paper.double_q) << "line 20";
+  EXPECT_EQ(paper.loss, LossKind::kMse) << "line 21";
+  EXPECT_EQ(paper.exploration.kind, ExplorationKind::kEpsilonGreedy) << "line 13";
+  EXPECT_FALSE(paper.mask_illegal) << "line 13: random among all actions";
+  EXPECT_CONTAINS(resolved, "skip_connection=false");
+  EXPECT_TRUE(DeepOptions::Parse("", true, resolved).skip_connection);
+  EXPECT_CONTAINS(resolved, "skip_connection=true");
+}
+
+TEST(RecurrentDqn, HasTheMemoryAloneBelowItsHeadWithoutTheSkipConnection) {
+  RecurrentNetwork network(3, 4, /*dueling=*/false, /*skip_connection=*/false);
+  const auto size = [&network](const char* name) {
+    return network.named_parameters()[name].sizes();
+  };
+  EXPECT_EQ(size("second.weight"), (std::vector<std::int64_t>{4, 4}));
+  EXPECT_EQ(size("head.advantage.weight"), (std::vector<std::int64_t>{kActionCount, 4}));
 }
 
 TEST(Dqn, WrongOptionsAreAnsweredWithWhatIsAllowed) {

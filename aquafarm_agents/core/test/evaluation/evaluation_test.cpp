@@ -78,9 +78,20 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfFarms) {
 
 TEST(Evaluate, StopsWhenAsked) {
   LocalEnvironment environment(TinyFarm(), {1, 0, false, 1});
-  RandomPolicy policy(1);
+  RandomPolicy policy(environment.spec());
   const std::atomic<bool> stop{true};
   EXPECT_FALSE(Evaluate(environment, policy, 1, 10, &stop).complete);
+}
+
+TEST(Evaluate, DrawsActionsFromASeedOfTheirOwnIfGiven) {
+  const auto mean = [](std::optional<std::uint64_t> policy_seed) {
+    LocalEnvironment environment(TinyFarm(), {2, 0, false, 1});
+    RandomPolicy policy(environment.spec());
+    return Evaluate(environment, policy, 1, 10, nullptr, {}, policy_seed).mean_return;
+  };
+  EXPECT_EQ(mean(7), mean(7));
+  EXPECT_NE(mean(7), mean(8));
+  EXPECT_EQ(mean(std::nullopt), mean(EvaluationSeed(1)));
 }
 
 using EvaluationFiles = FolderTest;

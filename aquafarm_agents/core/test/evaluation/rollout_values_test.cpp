@@ -31,6 +31,24 @@ TEST(PlayedValues, AreWhatTheEpisodePaysFromEachCell) {
   EXPECT_TRUE(std::isnan(at(3, 3))) << "a rock";
 }
 
+// Eq. 10 on a farm without chance: the sum of γ^t r_t from each cell.
+TEST(PlayedValues, AreDiscountedByStep) {
+  const PlayedValues values = PlayValues(TinyFarm(), kStatesBit, Plan, 3, 0, 1, nullptr, 0.5);
+  const auto at = [&](int x, int y) { return values.value[static_cast<std::size_t>(5 * y + x)]; };
+  // Pick up for 20, two steps of -1, drop off for 100.
+  const double laden = 20.0 - 0.5 - 0.25 + 0.125 * 100.0;
+  EXPECT_NEAR(at(2, 2), laden, 1e-9);
+  EXPECT_NEAR(at(2, 1), -1.0 + 0.5 * laden, 1e-9);
+  EXPECT_NEAR(at(2, 0), -1.0 - 0.5 + 0.25 * laden, 1e-9);
+  EXPECT_EQ(PlayValues(TinyFarm(), kStatesBit, Plan, 3, 0, 1, nullptr, 0.0).value[12], 20.0)
+      << "the immediate reward alone (Eq. 3)";
+  Scenario team = aquafarm::test::TinyScenario();
+  team.step_limit = 60;
+  team.rewards.sharing = RewardSharing::kTeam;
+  EXPECT_EQ(PlayValues(Share(team), kStatesBit, Plan, 3, 0, 1, nullptr, 0.5).value[12],
+            values.value[12]);
+}
+
 TEST(PlayedValues, AreTheMeanOfEpisodes) {
   EXPECT_EQ(OfPlanner(TinyFarm(), 3).value[12], OfPlanner(TinyFarm()).value[12]);
   Scenario scenario = aquafarm::test::TinyScenario();

@@ -46,6 +46,20 @@ TEST_F(CheckpointFile, ReadsBackToTheSame) {
   EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
 }
 
+// Its options are those of a version that had no other LSTM.
+TEST_F(CheckpointFile, OfAnLstmDqnFromBeforeHasTheSkipConnection) {
+  const std::string path = folder_ + "/a.ckpt";
+  Checkpoint old = Example();
+  old.algorithm = "lstm_dqn";
+  old.options = "preset=paper sequence=1 start=5000";
+  WriteCheckpoint(path, old);
+  EXPECT_EQ(ReadCheckpoint(path).options,
+            "preset=paper sequence=1 skip_connection=true start=5000");
+  old.options = "preset=paper skip_connection=false";
+  WriteCheckpoint(path, old);
+  EXPECT_EQ(ReadCheckpoint(path).options, "preset=paper skip_connection=false");
+}
+
 TEST_F(CheckpointFile, EveryCutIsRefused) {
   const std::string path = folder_ + "/a.ckpt";
   WriteCheckpoint(path, Example());

@@ -188,5 +188,92 @@ TEST(Tabular, IllegalActionsAreNeverTriedWhenMasked) {
   }
 }
 
+/// The same farms, but a truncated episode is reported as a terminated one.
+class TruncationTerminates final : public Environment {
+ public:
+  explicit TruncationTerminates(Environment& farms) : farms_(farms) {}
+  const EnvironmentSpec& spec() const override { return farms_.spec(); }
+  const Results& Reset(std::uint64_t seed, std::uint64_t first_episode) override {
+    return Change(farms_.Reset(seed, first_episode));
+  }
+  const Results& Step(const std::vector<std::uint8_t>& actions) override {
+    return Change(farms_.Step(actions));
+  }
+  std::string Save() override { return farms_.Save(); }
+  const Results& Load(const std::string& bytes) override { return Change(farms_.Load(bytes)); }
+  int truncated() const { return truncated_; }
+
+ private:
+  const Results& Change(const Results& results) {
+    results_ = results;
+    for (std::uint8_t& reason : results_.reasons) {
+      if (!IsTruncated(static_cast<EndReason>(reason))) continue;
+      reason = static_cast<std::uint8_t>(EndReason::kDisasterEnded);
+      ++truncated_;
+    }
+    return results_;
+  }
+  Environment& farms_;
+  Results results_;
+  int truncated_{};
+};
+
+std::shared_ptr<const Scenario> Shipped(const std::string& name) {
+  return std::make_shared<const Scenario>(
+      LoadScenario(std::string(AQUAFARM_SCENARIO_DIR) + "/" + name + ".yaml"));
+}
+
+constexpr int kFarms = 8;
+
+/// The table of a learner that always draws its action, so that it learns the values of RANDOM.
+template <typename Rule>
+std::vector<float> TableOfRandom(Environment& environment, std::uint64_t steps) {
+  TabularLearner<Rule> learner(environment.spec(), 1,
+                               "exploration=epsilon_greedy:1 learning_rate=linear:0.5:0.02:1");
+  TrainerOptions trainer;
+  trainer.steps = steps;
+  EXPECT_EQ(Trainer(environment, learner, trainer).Run(), TrainingEnd::kDone);
+  return learner.table().values;
+}
+
+// The mean value of a table's entries that all tables know, of states with nothing aboard.
+double MeanValue(const std::vector<float>& values, const std::vector<std::size_t>& known) {
+  double sum = 0.0;
+  for (const std::size_t entry : known) sum += static_cast<double>(values[entry]);
+  return sum / static_cast<double>(known.size());
+}
+
+// `paper` is the same farm, where no episode is truncated. A learner that bootstraps at truncation
+// finds its values; one that takes truncation for an end thinks that the future costs less.
+TEST(Truncated, BootstrappingFindsTheValuesOfEpisodesThatAreNotCutOff) {
+  constexpr std::uint64_t kSteps = 3000000;
+  constexpr std::size_t kNothingAboard = std::size_t{25} * 25 * kActionCount;
+  LocalEnvironment whole(Shipped("paper"), {kFarms, kIndexBit, false, 1});
+  LocalEnvironment cut(Shipped("truncated"), {kFarms, kIndexBit, false, 1});
+  LocalEnvironment ended(Shipped("truncated"), {kFarms, kIndexBit, false, 1});
+  TruncationTerminates terminates(ended);
+  const auto reference = TableOfRandom<SarsaRule>(whole, kSteps);
+  const auto bootstrapped = TableOfRandom<SarsaRule>(cut, kSteps);
+  const auto stopped = TableOfRandom<SarsaRule>(terminates, kSteps);
+  EXPECT_GT(terminates.truncated(), 10000);
+  std::vector<std::size_t> known;
+  for (std::size_t i = 0; i < kNothingAboard; ++i) {
+    if (reference[i] != 0.0F && bootstrapped[i] != 0.0F && stopped[i] != 0.0F) known.push_back(i);
+  }
+  ASSERT_GT(known.size(), 1000U);
+  const double expected = MeanValue(reference, known);
+  EXPECT_NEAR(MeanValue(bootstrapped, known), expected, 0.1 * std::abs(expected));
+  EXPECT_GT(MeanValue(stopped, known), expected + 0.15 * std::abs(expected));
+}
+
+TEST(Truncated, IsLearntByATable) {
+  LocalEnvironment environment(Shipped("truncated"), {kFarms, kIndexBit, false, 1});
+  TabularLearner<QLearningRule> learner(environment.spec(), 1, "");
+  TrainerOptions trainer;
+  trainer.steps = 2000000;
+  EXPECT_EQ(Trainer(environment, learner, trainer).Run(), TrainingEnd::kDone);
+  EXPECT_GE(Evaluate(environment, *learner.GreedyPolicy(), 1, 200).success_rate, 0.98);
+}
+
 }  // namespace
 }  // namespace aquafarm::agents::test

@@ -144,6 +144,48 @@ TEST(Clairvoyant, EqualsBruteForceWhereAStepCostsMoreThanARisk) {
   }
 }
 
+// A device that drives itself waits until the storm has left its port: next to a rock, in a farm
+// where a step costs 9.
+Scenario WaitingScenario(float illegal, float rock) {
+  Scenario scenario = TinyScenario(5, 0.0F, 1);
+  scenario.ships.count = 0;
+  scenario.devices.sites = {{{3, 2}, DeviceKind::kMonitoring, 60.0F, true}};
+  scenario.damage.crash_probability = 0.0F;
+  scenario.rewards.step = -9.0F;
+  scenario.rewards.illegal = illegal;
+  scenario.rocks.reward = {rock, rock};
+  DisasterSpec over_port = aquafarm::test::StillDisaster(1.0F, 0.0F, {0.5F}, {-20.0F});
+  over_port.duration = 5;
+  DisasterSpec elsewhere = aquafarm::test::StillDisaster(0.0F, 2.0F, {0.5F}, {-5.0F});
+  elsewhere.duration = 12;
+  scenario.disasters = {over_port, elsewhere};
+  return scenario;
+}
+
+// A crash or an illegal action replaces the step reward, even if its own is 0 (Farm::Reward).
+TEST(Clairvoyant, EqualsBruteForceWhereAnIllegalActionOrACrashIsFree) {
+  ExpectBruteForce(WaitingScenario(0.0F, -5.0F), 1);
+  ExpectBruteForce(WaitingScenario(-10.0F, 0.0F), 1);
+  Scenario lenient = TinyScenario(6, 0.0F, 1);
+  lenient.rewards.illegal = 0.0F;
+  ExpectBruteForce(lenient, 3);
+}
+
+TEST(TeamBound, HoldsWhereWaitingOnTheWayIsCheaperThanAStep) {
+  for (const auto& [illegal, rock] : {std::pair{-10.0F, -1.0F}, std::pair{-0.5F, -5.0F}}) {
+    SCOPED_TRACE(std::to_string(illegal) + " and " + std::to_string(rock));
+    ExpectBruteForce(WaitingScenario(illegal, rock), 1);
+  }
+}
+
+TEST(Planner, RefusesAScenarioThatPaysForWaiting) {
+  Scenario generous = TinyScenario(9, 0.0F, 1);
+  generous.rewards.illegal = 1.0F;
+  EXPECT_EQ(test::MessageOf<InputError>([&] { Planner{generous}; }),
+            "planner: rewards.illegal: got more than 0, expected at most 0, since a ship earns "
+            "without end by waiting; evaluate a learner instead");
+}
+
 TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {
   Scenario tracked = TinyScenario(40, 0.0F, 1);
   DisasterSpec& storm = tracked.disasters[0];

@@ -2,6 +2,7 @@
 #include "aquafarm/agents/training/algorithms.h"
 
 #include "agents_fixture.h"
+#include "aquafarm/agents/evaluation/evaluation.h"
 #include "aquafarm/agents/learning/random_policy.h"
 
 namespace aquafarm::agents::test {
@@ -91,26 +92,56 @@ TEST(Algorithms, EachContinuesBitForBit) {
   }
 }
 
-TEST(Algorithms, AutoChoosesByThoseWhoDecideAndSaysWhy) {
+// Each sentence of the caption of Fig. 6, whatever the reward sharing.
+TEST(Algorithms, AutoChoosesAsFig6Does) {
   const auto choose = [](Scenario scenario) {
     return ChooseAlgorithm(LocalEnvironment(Share(std::move(scenario)), {}).spec());
   };
   const Choice single = choose(aquafarm::test::TinyScenario());
   EXPECT_EQ(single.algorithm, "lstm_dqn");
-  EXPECT_EQ(single.reason, "one rescue ship decides, so a single-agent learner");
-  Scenario several = aquafarm::test::TinyScenario();
-  several.ships.count = 2;
-  EXPECT_EQ(choose(several).algorithm, "independent_dqn");
-  EXPECT_EQ(choose(several).reason,
-            "2 rescue ships decide, each for its own reward, so independent learners");
-  several.rewards.sharing = RewardSharing::kTeam;
-  EXPECT_EQ(choose(several).algorithm, "vdn");
-  EXPECT_EQ(choose(several).reason,
-            "2 rescue ships decide for a shared reward, so a multi-agent learner");
+  EXPECT_EQ(single.reason, "one rescue squad decides, so a single-agent learner");
+  for (const RewardSharing sharing : {RewardSharing::kIndividual, RewardSharing::kTeam}) {
+    Scenario squads = aquafarm::test::TinyScenario();
+    squads.rewards.sharing = sharing;
+    squads.ships.count = 2;
+    EXPECT_EQ(choose(squads).algorithm, "vdn");
+    EXPECT_EQ(choose(squads).reason,
+              "2 rescue squads decide and need coordination, so a multi-agent learner");
+
+    Scenario devices = aquafarm::test::TinyScenario();
+    devices.rewards.sharing = sharing;
+    devices.ships.count = 0;
+    devices.devices.sites = {{{2, 2}, DeviceKind::kMonitoring, 80.0F, true},
+                             {{4, 2}, DeviceKind::kMonitoring, 80.0F, true}};
+    EXPECT_EQ(choose(devices).algorithm, "independent_dqn");
+    EXPECT_EQ(choose(devices).reason,
+              "2 self-propelled devices decide, so a single-agent learner for each");
+    devices.view.mode = ViewMode::kPartial;
+    devices.view.shared_sight = true;
+    EXPECT_EQ(choose(devices).algorithm, "vdn");
+    EXPECT_EQ(choose(devices).reason,
+              "2 networked self-propelled devices decide and need coordination, so a multi-agent "
+              "learner");
+    devices.devices.sites.pop_back();
+    EXPECT_EQ(choose(devices).algorithm, "lstm_dqn") << "a network of one needs no coordination";
+  }
+}
+
+TEST(Algorithms, AutoChoosesForTheShippedScenarios) {
+  for (const auto& [name, algorithm] :
+       {std::pair{"paper", "lstm_dqn"}, std::pair{"two_squads", "vdn"},
+        std::pair{"four_squads", "vdn"}, std::pair{"smart_devices", "independent_dqn"},
+        std::pair{"networked_devices", "vdn"}}) {
+    const Scenario scenario =
+        LoadScenario(std::string(AQUAFARM_SCENARIO_DIR) + "/" + name + ".yaml");
+    EXPECT_EQ(ChooseAlgorithm(LocalEnvironment(Share(scenario), {}).spec()).algorithm, algorithm)
+        << name;
+  }
 }
 
 TEST(RandomPolicy, TakesEveryActionAlikeAndReproduces) {
-  RandomPolicy policy(1);
+  LocalEnvironment environment(TinyFarm(), {10, 0, false, 1});
+  RandomPolicy policy(environment.spec());
   std::array<int, kActionCount> counts{};
   std::vector<std::uint8_t> actions;
   std::vector<std::uint8_t> first;
@@ -124,6 +155,55 @@ TEST(RandomPolicy, TakesEveryActionAlikeAndReproduces) {
   policy.Begin(3, 10);
   policy.Act({}, actions);
   EXPECT_EQ(actions, first);
+}
+
+// "Each action within the choice reachable (for example, except reefs, islands, etc.)", §4.2.
+TEST(RandomPolicy, DrawsEachReachableActionAlike) {
+  const std::string options = "actions=reachable";
+  const Algorithm& random = FindAlgorithm("random");
+  EXPECT_EQ(random.encodings(options), kFeaturesBit);
+  LocalEnvironment environment(TinyFarm(), {1, random.encodings(options), false, 1});
+  const auto learner = random.make(environment.spec(), 1, options);
+  EXPECT_EQ(learner->options(), options);
+  Checkpoint checkpoint;
+  checkpoint.options = learner->options();
+  const auto policy = random.make_policy(checkpoint, environment.spec());
+  policy->Begin(3, 1);
+  // At the port (2, 0): the map ends in the south, and islands are to the west and north-west.
+  const Results& results = environment.Reset(1);
+  std::array<int, kActionCount> counts{};
+  std::vector<std::uint8_t> actions;
+  for (int i = 0; i < 3000; ++i) {
+    policy->Act(results, actions);
+    ++counts[actions[0]];
+  }
+  for (std::size_t a = 0; a < kActionCount; ++a) {
+    const auto action = static_cast<Action>(a);
+    const bool reachable =
+        action == Action::kNorth || action == Action::kEast || action == Action::kNorthEast;
+    EXPECT_NEAR(counts[a], reachable ? 1000 : 0, reachable ? 130 : 0) << a;
+  }
+}
+
+TEST(RandomPolicy, NeverCrashesNorActsIllegallyAmongReachableActions) {
+  for (const bool reachable : {false, true}) {
+    Checkpoint checkpoint;
+    checkpoint.options = reachable ? "actions=reachable" : "";
+    LocalEnvironment environment(Paper(), {4, kFeaturesBit, false, 1});
+    const auto policy = FindAlgorithm("random").make_policy(checkpoint, environment.spec());
+    const Evaluation evaluation = Evaluate(environment, *policy, 1, 8);
+    EXPECT_EQ(evaluation.mean_crashes == 0.0, reachable);
+    EXPECT_GT(evaluation.return_per_step, reachable ? -2.5 : -5.0);
+    EXPECT_LT(evaluation.return_per_step, reachable ? -1.0 : -2.5);
+  }
+}
+
+TEST(RandomPolicy, RefusesAnotherSetOfActions) {
+  EXPECT_EQ(MessageOf<InputError>([] { ParseRandomActions("actions=legal"); }),
+            "actions: got 'legal', expected one of: all, reachable");
+  LocalEnvironment environment(TinyFarm(), {1, 0, false, 1});
+  EXPECT_EQ(FindAlgorithm("random").make(environment.spec(), 1, "actions=all")->options(), "")
+      << "as in checkpoints from before the option existed";
 }
 
 }  // namespace

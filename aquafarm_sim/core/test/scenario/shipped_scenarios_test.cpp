@@ -34,10 +34,10 @@ Scenario Load(const std::string& name) {
 
 TEST(Shipped, AreThese) {
   EXPECT_EQ(ShippedNames(),
-            (std::vector<std::string>{"four_squads", "networked_devices", "paper", "paper_partial",
-                                      "partial", "procedural", "red_tide", "smart_devices",
-                                      "two_squads", "zhoushan_danas_2019", "zhoushan_infa_2021",
-                                      "zhoushan_mitag_2019"}));
+            (std::vector<std::string>{
+                "four_squads", "networked_devices", "paper", "paper_partial", "paper_plain",
+                "partial", "procedural", "red_tide", "smart_devices", "truncated", "two_squads",
+                "zhoushan_danas_2019", "zhoushan_infa_2021", "zhoushan_mitag_2019"}));
 }
 
 class Shipped : public testing::TestWithParam<std::string> {};
@@ -86,6 +86,29 @@ TEST_P(Shipped, HasALayoutThatAFarmCanTakeInEveryEpisode) {
 
 INSTANTIATE_TEST_SUITE_P(All, Shipped, testing::ValuesIn(ShippedNames()),
                          [](const auto& test) { return test.param; });
+
+TEST(Truncated, IsTruncatedBeforeItsDisasterEnds) {
+  const auto scenario = std::make_shared<const Scenario>(Load("truncated"));
+  Farm farm(scenario);
+  const std::uint8_t stay = static_cast<std::uint8_t>(Action::kDropOff);
+  farm.Reset(1, 0);
+  while (!farm.over()) farm.Step(&stay);
+  EXPECT_EQ(farm.reason(), EndReason::kStepLimit);
+  EXPECT_EQ(farm.step(), 150);
+  EXPECT_TRUE(farm.disasters()[0].active());
+}
+
+// The same episodes as `paper`, so that one clairvoyant optimum serves both.
+TEST(PaperPlain, DiffersFromPaperInItsViewAlone) {
+  Scenario plain = Load("paper_plain");
+  const Scenario paper = Load("paper");
+  EXPECT_FALSE(plain.view.waterways);
+  EXPECT_FALSE(plain.view.courses);
+  plain.view = paper.view;
+  plain.name = paper.name;
+  plain.description = paper.description;
+  EXPECT_EQ(ToYaml(plain), ToYaml(paper));
+}
 
 TEST(Paper, IsTheFarmOfThePaper) {
   const Scenario scenario = Load("paper");

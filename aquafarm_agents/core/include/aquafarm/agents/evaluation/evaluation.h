@@ -42,9 +42,11 @@ struct Evaluation {
 /// between batch sizes.
 /// @param stop may be set by a signal handler; null if the evaluation cannot be stopped
 /// @param on_progress called periodically with the number of finished episodes
+/// @param policy_seed of the policy's random numbers; by default the seed of the episodes
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
-                    const std::function<void(std::size_t over)>& on_progress = {});
+                    const std::function<void(std::size_t over)>& on_progress = {},
+                    std::optional<std::uint64_t> policy_seed = std::nullopt);
 
 /// Inputs of an evaluation. WriteEvaluation stores them so that it can be repeated.
 struct EvaluationContext {

@@ -76,6 +76,10 @@ inline Best BestOf(const float* values, ActionMask allowed) {
   return best;
 }
 
+/// Draws one of the allowed actions, each with the same probability.
+/// @param allowed at least one bit of kAllActions
+std::uint8_t DrawAction(ActionMask allowed, RandomStream& stream);
+
 /// Action probabilities of Eq. 8, numerically stable for finite values and temperature > 0;
 /// forbidden actions have probability 0.
 std::array<double, kActionCount> BoltzmannProbabilities(const float* values, ActionMask allowed,
@@ -102,7 +106,7 @@ class Explorer {
     RandomStream& stream = streams_[entry];
     if (stream.Unit() >= epsilon_) return best.action;
     if (allowed == kAllActions) return static_cast<std::uint8_t>(stream.Below(kActionCount));
-    return Pick(allowed, stream);
+    return DrawAction(allowed, stream);
   }
 
   void Save(Checkpoint& checkpoint) const { streams_.Save(checkpoint); }
@@ -111,7 +115,6 @@ class Explorer {
 
  private:
   std::uint8_t ChooseBoltzmann(const float* values, ActionMask allowed, std::size_t entry);
-  static std::uint8_t Pick(ActionMask allowed, RandomStream& stream);
 
   ExplorationKind kind_;
   Schedule schedule_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "aquafarm/agents/learning/agent_rng.h"
@@ -8,11 +9,25 @@
 
 namespace aquafarm::agents {
 
-/// RANDOM of §4: a uniform choice among all actions, legal or not, independent of the observation.
+/// Which actions RANDOM draws from.
+enum class RandomActions : std::uint8_t {
+  kAll,        ///< every action, legal or not
+  kReachable,  ///< legal actions, without moves onto rocks, islands or off the map (§4.2)
+};
+inline constexpr int kRandomActionsCount = 2;
+std::string_view ToString(RandomActions value);
+
+/// Reads RANDOM's options: "actions=all" (default) or "actions=reachable". @throws InputError
+RandomActions ParseRandomActions(const std::string& options);
+/// EncodingBits that RANDOM reads with these options. @throws InputError
+std::uint8_t RandomEncodings(const std::string& options);
+
+/// RANDOM of §4.2: draws each action of its set with the same probability.
 class RandomPolicy final : public Policy {
  public:
-  explicit RandomPolicy(std::int32_t agents) : agents_(agents) {}
-  std::uint8_t encodings() const override { return 0; }
+  explicit RandomPolicy(const EnvironmentSpec& spec, RandomActions actions = RandomActions::kAll)
+      : agents_(spec.agents), features_(spec.feature_count), actions_(actions) {}
+  std::uint8_t encodings() const override;
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
 
@@ -21,16 +36,19 @@ class RandomPolicy final : public Policy {
 
  private:
   std::int32_t agents_;
+  std::int32_t features_;
+  RandomActions actions_;
   EntryStreams streams_;
 };
 
-/// RANDOM behind the Learner interface. It acts uniformly and does not learn.
+/// RANDOM behind the Learner interface. It draws its actions and does not learn.
 class RandomLearner final : public Learner {
  public:
-  /// @throws InputError unless `options` is empty
+  /// @throws InputError on an unknown option or value
   RandomLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
-  std::uint8_t encodings() const override { return 0; }
-  std::string options() const override { return ""; }
+  std::uint8_t encodings() const override { return policy_.encodings(); }
+  /// Empty for `all`, as in checkpoints from before the option existed.
+  std::string options() const override;
   void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override;
   std::unique_ptr<Policy> GreedyPolicy() const override;
@@ -39,7 +57,8 @@ class RandomLearner final : public Learner {
   void Load(const Checkpoint& checkpoint) override;
 
  private:
-  std::int32_t agents_;
+  EnvironmentSpec spec_;
+  RandomActions actions_;
   RandomPolicy policy_;
 };
 

@@ -23,7 +23,8 @@ inline constexpr int kLossKindCount = 2;
 std::string_view ToString(LossKind value);
 
 /// Hyperparameters of DQN and LSTM-DQN. Two presets define the defaults: *tuned*, with values tuned
-/// on the shipped farms, and *paper*, §3.4.3 as printed with every extension disabled.
+/// on the shipped farms, and *paper*, Eq. 15 and Algorithm 2 as printed, with every extension
+/// disabled.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
   std::int32_t hidden{256};  ///< units of a hidden layer; of the LSTM when recurrent
@@ -61,8 +62,11 @@ struct DeepOptions {
   bool mask_blocked{false};  ///< also mask moves onto a charted rock, an island or off the map
 
   // Recurrent networks only (R2D2: Kapturowski et al. 2019).
-  std::int32_t sequence{4};  ///< training steps per sequence; replayed=paper_tuple: 1, burn_in 0
-  std::int32_t burn_in{2};   ///< steps before them that only warm up the recurrent state
+  std::int32_t sequence{4};    ///< training steps per sequence; replayed=paper_tuple: 1, burn_in 0
+  std::int32_t burn_in{2};     ///< steps before them that only warm up the recurrent state
+  bool skip_connection{true};  ///< around the LSTM; the paper has none
+  /// Replays single tuples with the stored state of either end, as Algorithm 2 prints it.
+  bool paper_tuple{};
 
   /// Learn the sum of all agents' values instead of each individually (VDN); set by the algorithm.
   bool joint{};

@@ -29,8 +29,9 @@ class Planner {
  public:
   /// @param scenario must outlive the planner
   /// @param slots most devices of a task; 0: all of the scenario's
-  /// @throws InputError when the scenario pays for dawdling, or the states do not fit a table
-  ///         (kMaxStates)
+  /// @throws InputError when the scenario pays for steps or illegal actions, or the states do not
+  /// fit a
+  ///         table (kMaxStates)
   explicit Planner(const Scenario& scenario, std::int32_t slots = 0);
   ~Planner();
   Planner(Planner&&) noexcept;

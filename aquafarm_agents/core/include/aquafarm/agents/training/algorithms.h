@@ -43,7 +43,13 @@ struct Choice {
   std::string reason;  ///< one line for people
 };
 
-/// Chooses by kind and number of those who decide (Fig. 6).
+/// Chooses by device intelligence, network and number of squads, as Fig. 6 of the paper does:
+///
+///   non-intelligent devices, one squad        a single-agent learner
+///   several squads, or networked devices      a multi-agent learner
+///   intelligent devices without a network     a single-agent learner for each
+///
+/// A device is intelligent if it is self-propelled, and networked if view.shared_sight is set.
 Choice ChooseAlgorithm(const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

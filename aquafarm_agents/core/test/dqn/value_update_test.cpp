@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One update of DQN, VDN and LSTM-DQN (Eq. 15; Algorithm 2, lines 19 to 22): target, loss,
+// gradient, step and target network, against the oracles of value_oracle.h.
+#include <algorithm>
+#include <cmath>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/networks/deep_options.h"
+#include "aquafarm/agents/training/algorithms.h"
+#include "networks/replay_sampler.h"
+#include "value_oracle.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+constexpr std::size_t kHidden = 4;
+constexpr std::size_t kMoments = 41;
+constexpr int kAdamStep = 5;  // steps of Adam before the update
+constexpr double kTau = 0.25;
+
+const char* const kCommon =
+    "hidden=4 start=1000000 replay=400 steps_per_update=1 learning_rate=0.01 "
+    "target_rate=0.25 exploration=epsilon_greedy:1 discount=0.9 reward_scale=0.25 threads=1 ";
+
+/// One tiny farm whose episodes are truncated, and one whose disaster ends them.
+std::shared_ptr<const Scenario> Farm(bool truncates, std::int32_t ships, bool team) {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.ships.count = ships;
+  scenario.step_limit = truncates ? 7 : 100;
+  if (team) scenario.rewards.sharing = RewardSharing::kTeam;
+  DisasterSpec storm = aquafarm::test::StillDisaster(4.0F, 0.0F, {1.5F}, {-7.0F});
+  storm.duration = truncates ? 100 : 7;
+  scenario.disasters = {storm};
+  return Share(scenario);
+}
+
+/// A learner that has seen kMoments moments and never updated, and what an oracle needs of them.
+struct Update {
+  DeepOptions options;
+  EnvironmentSpec spec;
+  bool recurrent{};
+  std::vector<Results> log;                        // by moment
+  std::vector<std::vector<std::uint8_t>> actions;  // by moment
+  Checkpoint before;
+  Checkpoint after;
+  double progress{0.25};
+
+  std::size_t agents() const { return static_cast<std::size_t>(spec.agents); }
+  Values Seen(std::size_t moment, std::size_t entry) const {
+    const auto features = static_cast<std::size_t>(spec.feature_count);
+    const auto begin = log[moment].features.begin() + static_cast<std::ptrdiff_t>(entry * features);
+    return {begin, begin + static_cast<std::ptrdiff_t>(features)};
+  }
+  bool IsStarted(std::size_t moment, std::size_t entry) const {
+    return log[moment].started[entry / agents()] != 0;
+  }
+  EndReason Reason(std::size_t moment, std::size_t entry) const {
+    return static_cast<EndReason>(log[moment].reasons[entry / agents()]);
+  }
+  double Reward(std::size_t moment, std::size_t entry) const {
+    return static_cast<double>(log[moment].rewards[entry]);
+  }
+};
+
+Values Doubles(const Checkpoint& checkpoint, const std::string& name) {
+  std::vector<float> values;
+  checkpoint.GetArray(name, checkpoint.Section(name).size() / sizeof(float), values);
+  return {values.begin(), values.end()};
+}
+
+// Another target network, and an Adam that has taken steps, so that each of them shows.
+void Disturb(Checkpoint& checkpoint) {
+  RandomStream chance({77, 0, Purpose::kLearner, 9});
+  std::vector<float> target;
+  const std::size_t size = checkpoint.Section("weights").size() / sizeof(float);
+  checkpoint.GetArray("target_weights", size, target);
+  std::vector<float> mean(size);
+  std::vector<float> square(size);
+  for (std::size_t i = 0; i < size; ++i) {
+    target[i] += chance.Uniform(-0.5F, 0.5F);
+    mean[i] = chance.Uniform(-1.0F, 1.0F);
+    square[i] = chance.Uniform(0.5F, 2.0F);
+  }
+  checkpoint.SetArray("target_weights", target);
+  checkpoint.SetArray("adam.mean", mean);
+  checkpoint.SetArray("adam.square", square);
+  checkpoint.SetArray("adam", std::vector<std::int64_t>{kAdamStep});
+  std::vector<double> numbers;
+  checkpoint.GetArray("optimizer.numbers", 5, numbers);
+  numbers[0] = 1.0;  // one update is due
+  checkpoint.SetArray("optimizer.numbers", numbers);
+}
+
+Update MakeUpdate(const std::string& algorithm, const std::string& options,
+                  std::shared_ptr<const Scenario> scenario) {
+  const std::string text = kCommon + options;
+  const Algorithm& entry = FindAlgorithm(algorithm);
+  LocalEnvironment environment(std::move(scenario), {2, entry.encodings(text), false, 1});
+  const auto learner = entry.make(environment.spec(), 3, text);
+  Update update;
+  update.recurrent = algorithm == "lstm_dqn";
+  std::string resolved;
+  update.options = DeepOptions::Parse(text, update.recurrent, resolved);
+  update.spec = environment.spec();
+  const Results* results = &environment.Reset(1);
+  for (std::size_t moment = 0; moment < kMoments; ++moment) {
+    update.log.push_back(*results);
+    update.actions.emplace_back();
+    if (moment + 1 == kMoments) {
+      learner->Save(update.before);
+      Disturb(update.before);
+      learner->Load(update.before);
+    }
+    learner->Step(*results, update.progress, update.actions.back());
+    results = &environment.Step(update.actions.back());
+  }
+  learner->Save(update.after);
+  return update;
+}
+
+struct Batch {
+  std::vector<Moment> moments;
+  std::vector<double> weights;  // importance, the largest 1
+};
+
+// The moments that the learner drew, from its own random stream.
+Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
+  const auto& spec = update.spec;
+  const std::size_t carry = update.recurrent ? 2 * kHidden : 0;
+  Replay<float> replay({static_cast<std::size_t>(update.options.replay),
+                        static_cast<std::size_t>(spec.farms) * update.agents(), spec.agents,
+                        static_cast<std::size_t>(spec.feature_count), carry});
+  MomentSampler<float> sampler(replay, update.options, steps, group);
+  replay.Load(update.before);
+  sampler.Load(update.before);
+  const std::vector<float> no_carry(carry * replay.entries());
+  replay.Add(update.log.back(), update.log.back().features.data(), no_carry.data());
+  sampler.Remember();
+  std::vector<std::uint64_t> position;
+  update.before.GetArray("chance", 1, position);
+  RandomStream chance({3, 0, Purpose::kLearner, 1});
+  chance.Seek(position[0]);
+  Batch batch;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(update.options.batch); ++i) {
+    batch.moments.push_back(sampler.Draw(chance, i));
+  }
+  const std::vector<float>& weights = sampler.Weigh(update.progress);
+  batch.weights.assign(weights.begin(), weights.end());
+  return batch;
+}
+
+/// One term of a loss: (y − Σ Q(s, a))² of a sample, weighted.
+struct Term {
+  double target{};
+  double weight{};
+};
+
+double LossOf(LossKind kind, double error) {
+  if (kind == LossKind::kMse) return error * error;
+  const double size = std::abs(error);
+  return size < 1.0 ? 0.5 * size * size : size - 0.5;  // Huber 1964
+}
+
+std::size_t BestOf(const Update& update, const Values& values, std::size_t moment,
+                   std::size_t entry) {
+  std::size_t best = kActionCount;
+  for (std::size_t a = 0; a < kActionCount; ++a) {
+    const bool legal = ((update.log[moment].legal[entry] >> a) & 1U) != 0;
+    if (update.options.mask_illegal && !legal) continue;
+    if (best == kActionCount || values[a] > values[best]) best = a;
+  }
+  return best;
+}
+
+/// The sum of rewards over n steps at most, where it ends, and what the value there counts.
+struct Return {
+  double reward{};
+  double discount{1.0};
+  std::size_t to{};
+};
+
+Return SumRewards(const Update& update, std::size_t moment, std::size_t entry, std::size_t steps) {
+  Return sum;
+  for (std::size_t k = 1; k <= steps; ++k) {
+    sum.to = moment + k;
+    sum.reward += sum.discount * update.Reward(sum.to, entry);
+    sum.discount *= update.options.discount;
+    if (update.Reason(sum.to, entry) == EndReason::kNone) continue;
+    if (update.Reason(sum.to, entry) != EndReason::kStepLimit) sum.discount = 0.0;
+    break;
+  }
+  sum.reward *= update.options.reward_scale;
+  return sum;
+}
+
+/// Compares what the learner did with terms whose predictions `predict` gives.
+void ExpectUpdate(const Update& update, const std::vector<Term>& terms,
+                  const std::function<Values(const Values& parameters)>& predict) {
+  const Values online = Doubles(update.before, "weights");
+  const auto loss = [&](const Values& parameters) {
+    const Values predicted = predict(parameters);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      sum += terms[i].weight * LossOf(update.options.loss, predicted[i] - terms[i].target);
+    }
+    return sum;
+  };
+  const Values predicted = predict(online);
+  double square = 0.0;
+  double weights = 0.0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    square += terms[i].weight * std::pow(predicted[i] - terms[i].target, 2);
+    weights += terms[i].weight;
+  }
+  std::vector<double> numbers;
+  update.after.GetArray("optimizer.numbers", 5, numbers);
+  const double scale = update.options.reward_scale * update.options.reward_scale;
+  EXPECT_NEAR(numbers[4], square / weights / scale, 1e-4 * square / weights / scale) << "the loss";
+
+  Values gradient = Differences(online, loss);
+  double norm = 0.0;
+  for (const double one : gradient) norm += one * one;
+  norm = std::sqrt(norm);
+  const double limit = update.options.gradient_limit;
+  for (double& one : gradient) one *= limit > 0.0 && norm > limit ? limit / norm : 1.0;
+  const Values mean = Doubles(update.before, "adam.mean");
+  const Values expected = AdamOracle(online, gradient, mean, Doubles(update.before, "adam.square"),
+                                     kAdamStep + 1, 0.01);
+  const Values found = Doubles(update.after, "weights");
+  const Values found_mean = Doubles(update.after, "adam.mean");
+  const Values target = Doubles(update.before, "target_weights");
+  const Values found_target = Doubles(update.after, "target_weights");
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_NEAR((found_mean[i] - 0.9 * mean[i]) / 0.1, gradient[i], 2e-5 * (1.0 + norm))
+        << "gradient of parameter " << i;
+    ASSERT_NEAR(found[i], expected[i], 2e-6) << "parameter " << i;
+    ASSERT_NEAR(found_target[i], kTau * expected[i] + (1.0 - kTau) * target[i], 2e-6)
+        << "parameter " << i << " of the target network";
+  }
+}
+
+// How samples of a batch ended, so that no case is left untested.
+void ExpectEnds(const Update& update, const Batch& batch, bool truncates) {
+  int ended = 0;
+  for (const Moment& moment : batch.moments) {
+    const EndReason reason = update.Reason(moment.age + 1, moment.entry);
+    if (reason == EndReason::kNone) continue;
+    EXPECT_EQ(reason == EndReason::kStepLimit, truncates);
+    ++ended;
+  }
+  EXPECT_GT(ended, 2) << "of " << batch.moments.size();
+}
+
+void ExpectDqn(const std::string& options, bool truncates) {
+  SCOPED_TRACE(options + (truncates ? " truncated" : " terminated"));
+  const Update update = MakeUpdate("dqn", options, Farm(truncates, 1, false));
+  const auto steps = static_cast<std::size_t>(update.options.n_step);
+  const Batch batch = Draw(update, steps, 1);
+  ExpectEnds(update, batch, truncates);
+  const Values online = Doubles(update.before, "weights");
+  const Values target = Doubles(update.before, "target_weights");
+  std::vector<Term> terms;
+  for (std::size_t i = 0; i < batch.moments.size(); ++i) {
+    const Moment& moment = batch.moments[i];
+    const Return sum = SumRewards(update, moment.age, moment.entry, steps);
+    const Values seen = update.Seen(sum.to, moment.entry);
+    const Values values = MlpOracle(target, seen, kHidden);
+    const Values chooses = update.options.double_q ? MlpOracle(online, seen, kHidden) : values;
+    const double next = values[BestOf(update, chooses, sum.to, moment.entry)];
+    terms.push_back({sum.reward + sum.discount * next,
+                     batch.weights[i] / static_cast<double>(batch.moments.size())});
+  }
+  ExpectUpdate(update, terms, [&](const Values& parameters) {
+    Values predicted;
+    for (const auto& [age, entry] : batch.moments) {
+      predicted.push_back(
+          MlpOracle(parameters, update.Seen(age, entry), kHidden)[update.actions[age][entry]]);
+    }
+    return predicted;
+  });
+}
+
+TEST(DqnUpdate, IsEquation15) {
+  for (const bool truncates : {false, true}) ExpectDqn("preset=paper ", truncates);
+}
+
+TEST(DqnUpdate, IsThatOfEachSwitch) {
+  const std::string plain = "preset=paper ";
+  for (const char* change :
+       {"double_q=true", "n_step=3", "loss=huber", "gradient_limit=0.01", "mask_illegal=true",
+        "priority=0.6", "double_q=true n_step=2 loss=huber mask_illegal=true priority=0.6"}) {
+    for (const bool truncates : {false, true}) ExpectDqn(plain + change, truncates);
+  }
+}
+
+// VDN: the team's value is the sum of its agents' (Sunehag et al. 2018).
+void ExpectVdn(const std::string& options, bool team) {
+  SCOPED_TRACE(options + (team ? " team" : " individual"));
+  const Update update = MakeUpdate("vdn", options, Farm(false, 2, team));
+  const std::size_t agents = update.agents();
+  const Batch batch = Draw(update, 1, agents);
+  const Values online = Doubles(update.before, "weights");
+  const Values target = Doubles(update.before, "target_weights");
+  std::vector<Term> terms;
+  for (const auto& [age, first] : batch.moments) {
+    Term term{0.0, 1.0 / static_cast<double>(batch.moments.size())};
+    for (std::size_t agent = first; agent < first + agents; ++agent) {
+      const Return sum = SumRewards(update, age, agent, 1);
+      const Values seen = update.Seen(sum.to, agent);
+      const Values values = MlpOracle(target, seen, kHidden);
+      const Values chooses = update.options.double_q ? MlpOracle(online, seen, kHidden) : values;
+      // A shared reward is the team's already, given to each agent.
+      term.target += sum.reward / (team ? static_cast<double>(agents) : 1.0) +
+                     sum.discount * values[BestOf(update, chooses, sum.to, agent)];
+    }
+    terms.push_back(term);
+  }
+  ExpectUpdate(update, terms, [&](const Values& parameters) {
+    Values predicted;
+    for (const auto& [age, first] : batch.moments) {
+      predicted.push_back(0.0);
+      for (std::size_t agent = first; agent < first + agents; ++agent) {
+        predicted.back() +=
+            MlpOracle(parameters, update.Seen(age, agent), kHidden)[update.actions[age][agent]];
+      }
+    }
+    return predicted;
+  });
+}
+
+TEST(VdnUpdate, FitsTheSumOfTheAgentsValues) {
+  for (const bool team : {false, true}) {
+    ExpectVdn("preset=paper", team);
+    ExpectVdn("preset=paper double_q=true mask_illegal=true", team);
+  }
+}
+
+Memory Empty() { return {Values(kHidden), Values(kHidden)}; }
+
+// What the agent carried into a moment, stepped from its episode's start by the acting network.
+Memory CarriedInto(const Update& update, const Values& parameters, std::size_t moment,
+                   std::size_t entry) {
+  std::size_t first = moment;
+  while (!update.IsStarted(first, entry)) --first;
+  Memory memory = Empty();
+  for (std::size_t m = first; m < moment; ++m) {
+    LstmOracle(parameters, update.Seen(m, entry), kHidden, update.options.skip_connection, memory);
+  }
+  return memory;
+}
+
+TEST(LstmDqnUpdate, IsAlgorithm2) {
+  for (const bool truncates : {false, true}) {
+    SCOPED_TRACE(truncates);
+    const Update update = MakeUpdate("lstm_dqn", "preset=paper", Farm(truncates, 1, false));
+    const Batch batch = Draw(update, 1, 1);
+    ExpectEnds(update, batch, truncates);
+    const Values online = Doubles(update.before, "weights");
+    const Values target = Doubles(update.before, "target_weights");
+    std::vector<Term> terms;
+    for (const auto& [age, entry] : batch.moments) {
+      const Return sum = SumRewards(update, age, entry, 1);
+      // Q of the target network at s_{j+1} with c_j and h_j as the agent had them (line 20).
+      Memory carried = CarriedInto(update, online, age + 1, entry);
+      const Values values =
+          LstmOracle(target, update.Seen(age + 1, entry), kHidden, false, carried);
+      terms.push_back({sum.reward + sum.discount * *std::max_element(values.begin(), values.end()),
+                       1.0 / static_cast<double>(batch.moments.size())});
+    }
+    std::vector<Memory> stored;
+    for (const auto& [age, entry] : batch.moments) {
+      stored.push_back(CarriedInto(update, online, age, entry));
+    }
+    ExpectUpdate(update, terms, [&](const Values& parameters) {
+      Values predicted;
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        const auto& [age, entry] = batch.moments[i];
+        Memory memory = stored[i];
+        predicted.push_back(LstmOracle(parameters, update.Seen(age, entry), kHidden, false,
+                                       memory)[update.actions[age][entry]]);
+      }
+      return predicted;
+    });
+  }
+}
+
+/// A run of steps that LSTM-DQN learns from.
+struct Run {
+  std::size_t entry{};
+  std::size_t warm_from{};  // first moment of the burn-in; `first` without a burn-in
+  std::size_t first{};
+  std::size_t last{};  // moment after the last that is learnt from
+};
+
+Run RunOf(const Update& update, const Moment& moment) {
+  const auto burn_in = static_cast<std::size_t>(update.options.burn_in);
+  Run run{moment.entry, moment.age, moment.age, moment.age};
+  while (moment.age - run.warm_from < burn_in && !update.IsStarted(run.warm_from, run.entry)) {
+    --run.warm_from;
+  }
+  // Near its episode's start a run begins there, with the empty state.
+  if (update.IsStarted(run.warm_from, run.entry)) run.first = run.warm_from;
+  run.last = run.first;
+  while (run.last - run.first < static_cast<std::size_t>(update.options.sequence) &&
+         run.last + 1 < kMoments && update.Reason(run.last, run.entry) == EndReason::kNone) {
+    ++run.last;
+  }
+  return run;
+}
+
+// Values of a network along a run, from the state that the acting network stored.
+std::vector<Values> Along(const Update& update, const Run& run, const Values& acting,
+                          const Values& warming, const Values& parameters) {
+  const bool skip = update.options.skip_connection;
+  Memory memory = CarriedInto(update, acting, run.warm_from, run.entry);
+  for (std::size_t m = run.warm_from; m < run.first; ++m) {
+    LstmOracle(warming, update.Seen(m, run.entry), kHidden, skip, memory);
+  }
+  std::vector<Values> values;
+  for (std::size_t m = run.first; m <= run.last; ++m) {
+    values.push_back(LstmOracle(parameters, update.Seen(m, run.entry), kHidden, skip, memory));
+  }
+  return values;
+}
+
+void ExpectSequences(const std::string& options, bool truncates) {
+  SCOPED_TRACE(options + (truncates ? " truncated" : " terminated"));
+  const Update update = MakeUpdate("lstm_dqn", options, Farm(truncates, 1, false));
+  const Batch batch = Draw(update, 1, 1);
+  const Values online = Doubles(update.before, "weights");
+  const Values target = Doubles(update.before, "target_weights");
+  std::vector<Run> runs;
+  std::vector<Term> terms;
+  double learnt = 0.0;
+  for (std::size_t i = 0; i < batch.moments.size(); ++i) {
+    const Run run = RunOf(update, batch.moments[i]);
+    const auto values = Along(update, run, online, target, target);
+    const auto chooses =
+        update.options.double_q ? Along(update, run, online, online, online) : values;
+    for (std::size_t m = run.first; m < run.last; ++m) {
+      const std::size_t reach =
+          std::min(static_cast<std::size_t>(update.options.n_step), run.last - m);
+      const Return sum = SumRewards(update, m, run.entry, reach);
+      const std::size_t best = BestOf(update, chooses[sum.to - run.first], sum.to, run.entry);
+      terms.push_back(
+          {sum.reward + sum.discount * values[sum.to - run.first][best], batch.weights[i]});
+      learnt += 1.0;
+    }
+    runs.push_back(run);
+  }
+  for (Term& term : terms) term.weight /= learnt;
+  ExpectUpdate(update, terms, [&](const Values& parameters) {
+    Values predicted;
+    for (const Run& run : runs) {
+      // The burn-in has no gradient: it is stepped with the weights as they were.
+      const auto values = Along(update, run, online, online, parameters);
+      for (std::size_t m = run.first; m < run.last; ++m) {
+        predicted.push_back(values[m - run.first][update.actions[m][run.entry]]);
+      }
+    }
+    return predicted;
+  });
+}
+
+TEST(LstmDqnUpdate, IsThatOfItsSequences) {
+  const std::string plain = "preset=paper replayed=sequences ";
+  for (const char* change :
+       {"sequence=3 burn_in=0", "sequence=3 burn_in=2", "sequence=4 burn_in=2 n_step=2",
+        "sequence=3 burn_in=1 double_q=true mask_illegal=true skip_connection=true loss=huber"}) {
+    for (const bool truncates : {false, true}) ExpectSequences(plain + change, truncates);
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -1,0 +1,121 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The data that the figures of §4 plot, against numbers computed from each episode."""
+import sys
+import unittest
+import unittest.mock
+
+import numpy as np
+import rosunit
+
+from aquafarm_benchmark import figures
+from aquafarm_benchmark.protocol import CONTESTANTS
+
+WINDOW = 50
+
+
+def by_name(name):
+    return next(one for one in CONTESTANTS if one.name == name)
+
+
+def make_run(seed, episodes):
+    """A run as results.read_run gives it, with returns, steps and losses drawn from a seed."""
+    chance = np.random.Generator(np.random.PCG64(seed))
+    return {"curve": {"return": chance.normal(10.0 * seed, 5.0, episodes),
+                      "steps": chance.integers(1, 100, episodes).astype(float),
+                      "success": np.ones(episodes),
+                      "loss": np.abs(chance.normal(2.0, 1.0, episodes))}}
+
+
+class FiguresTest(unittest.TestCase):
+
+    def setUp(self):
+        self.contestants = [by_name("sarsa"), by_name("lstm_dqn")]
+        # Runs of the same learner may differ by an episode or two.
+        self.runs = {"sarsa": [make_run(1, 120), make_run(2, 121)],
+                     "lstm_dqn": [make_run(3, 120), make_run(4, 120)]}
+        _, self.axes = figures.plt.subplots()
+        self.addCleanup(figures.plt.close, "all")
+
+    def lines(self, axes=None):
+        """{label: (x, y)} of the curves that have a label."""
+        return {line.get_label(): (np.asarray(line.get_xdata()), np.asarray(line.get_ydata()))
+                for line in (axes or self.axes).lines if not line.get_label().startswith("_")}
+
+    def test_fig_12a_shows_rewards_by_time_steps(self):
+        figures.plot_rewards_by_steps(self.axes, self.contestants, self.runs, 90.0)
+        x, y = self.lines()["SARSA"]
+        curve = self.runs["sarsa"][0]["curve"]
+        self.assertEqual(71, len(x))
+        for place, last in enumerate(range(WINDOW - 1, 120)):
+            self.assertAlmostEqual(sum(curve["steps"][:last + 1]), x[place])
+            self.assertAlmostEqual(sum(curve["return"][last - WINDOW + 1:last + 1]) / WINDOW,
+                                   y[place])
+        np.testing.assert_array_equal([90.0, 90.0], self.lines()["clairvoyant"][1])
+
+    def test_fig_12b_shows_the_mean_of_all_episodes_so_far(self):
+        figures.plot_average_rewards(self.axes, self.contestants, self.runs)
+        x, y = self.lines()["SARSA"]
+        first, second = (run["curve"]["return"] for run in self.runs["sarsa"])
+        np.testing.assert_array_equal(np.arange(1, 121), x)
+        for episode in (1, 2, 60, 120):
+            expected = (sum(first[:episode]) + sum(second[:episode])) / (2.0 * episode)
+            self.assertAlmostEqual(expected, y[episode - 1])
+
+    def test_fig_12c_shows_the_mean_square_error(self):
+        for run in self.runs["sarsa"]:
+            run["curve"]["loss"][:10] = np.nan  # before the first update
+        self.runs["lstm_dqn"][0]["curve"]["loss"][:] = np.nan
+        figures.plot_square_error(self.axes, self.contestants, self.runs)
+        x, y = self.lines()["SARSA"]
+        self.assertEqual([11, 120], [x[0], x[-1]])
+        pair = [run["curve"]["loss"][10] for run in self.runs["sarsa"]]
+        self.assertAlmostEqual(sum(pair) / 2.0, y[0])
+        np.testing.assert_allclose(self.runs["lstm_dqn"][1]["curve"]["loss"],
+                                   self.lines()["LSTM-DQN"][1])
+
+    def test_fig_13_shows_the_return_per_step(self):
+        figures.plot_mean_score(self.axes, self.contestants, self.runs)
+        x, y = self.lines()["SARSA"]
+        np.testing.assert_array_equal(np.arange(WINDOW, 121), x)
+        for place in (0, 33, 70):
+            scores = []
+            for run in self.runs["sarsa"]:
+                part = slice(place, place + WINDOW)
+                scores.append(sum(run["curve"]["return"][part]) /
+                              sum(run["curve"]["steps"][part]))
+            self.assertAlmostEqual(sum(scores) / 2.0, y[place])
+
+    def test_fig_13_has_a_panel_of_lstm_dqn_one_of_sarsa_and_one_of_all(self):
+        panels = []
+
+        def keep(figure, _):
+            panels.extend(set(self.lines(axes)) for axes in figure.axes)
+
+        with unittest.mock.patch.object(figures, "_save", keep):
+            figures.draw_mean_score("nowhere", self.contestants, self.runs)
+        self.assertEqual([{"LSTM-DQN"}, {"SARSA"}, {"SARSA", "LSTM-DQN"}], panels)
+
+    def test_fig_14_shades_a_standard_deviation_of_the_runs(self):
+        figures.plot_repeated(self.axes, self.contestants, self.runs, None)
+        _, y = self.lines()["SARSA, 2 runs"]
+        means = [sum(run["curve"]["return"][:WINDOW]) / WINDOW for run in self.runs["sarsa"]]
+        self.assertAlmostEqual(sum(means) / 2.0, y[0])
+        edge = self.axes.collections[0].get_paths()[0].vertices
+        at_start = edge[edge[:, 0] == WINDOW][:, 1]
+        spread = abs(means[0] - means[1]) / 2.0
+        self.assertAlmostEqual(y[0] - spread, at_start.min())
+        self.assertAlmostEqual(y[0] + spread, at_start.max())
+
+    def test_bars_show_the_interquartile_mean_and_its_interval(self):
+        rows = [{"name": "sarsa", "return_iqm": 230.0, "return_interval": [200.0, 250.0]},
+                {"name": "lstm_dqn", "return_iqm": -5.0, "return_interval": [np.nan, np.nan]}]
+        figures.plot_evaluation(self.axes, self.contestants, rows)
+        self.assertEqual([230.0, -5.0], [bar.get_height() for bar in self.axes.patches])
+        _, _, bars = self.axes.containers[0].lines
+        segment = bars[0].get_segments()[0]
+        self.assertEqual([200.0, 250.0], [segment[0][1], segment[1][1]])
+
+
+if __name__ == "__main__":
+    rosunit.unitrun("aquafarm_agents", "figures", FiguresTest, sys.argv)

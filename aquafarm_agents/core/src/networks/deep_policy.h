@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What the deep learners and their policies do alike around a network: read observations, and
-/// compare a saved network with the farms it shall play on.
+/// What the deep learners and their policies share around a libtorch network: observations as
+/// tensors, masks of values.
 
 #include <torch/torch.h>
 
@@ -16,41 +16,13 @@
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/agents/learning/checkpoint.h"
 #include "aquafarm/agents/networks/deep_options.h"
+#include "networks/farm_rows.h"
 
 namespace aquafarm::agents {
 
 /// Where a saved policy plays: what learnt on CUDA need not find it again.
 inline std::string PlayingDevice(const std::string& trained_on) {
   return trained_on == "cuda" ? "auto" : trained_on;
-}
-
-inline std::size_t EntryCount(const EnvironmentSpec& spec) {
-  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
-}
-
-/// What learners may do now: all actions, or the legal ones.
-inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
-  return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
-}
-
-/// The same, and where mask_blocked is set, of the moves only those into open water; all of them
-/// for a ship that has none around it. @param features of the ship, a row of Results::features
-/// @tparam Options DeepOptions or MaddpgOptions
-template <typename Options>
-ActionMask Allowed(ActionMask legal, const float* features, const Options& options) {
-  const ActionMask allowed = Allowed(legal, options.mask_illegal);
-  if (!options.mask_blocked) return allowed;
-  auto open = allowed;
-  for (int move = 0; move < kMoveCount; ++move) {
-    if (features[kFirstBlockedFeature + move] == 0.0F) continue;
-    open = static_cast<ActionMask>(open & ~(1U << static_cast<unsigned>(move)));
-  }
-  return (open & kMoveMask) != 0 ? open : allowed;
-}
-
-/// Planes have no such features, and DeepOptions refuses mask_blocked with them.
-inline ActionMask Allowed(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
-  return Allowed(legal, options.mask_illegal);
 }
 
 /// Marks what must not be chosen: 0, or a number far below any value, and finite, so that nothing
@@ -67,12 +39,6 @@ inline void MarkForbidden(ActionMask allowed, float* out) {
 inline torch::Tensor Shortfall(const torch::Tensor& values, const torch::Tensor& forbidden,
                                const torch::Tensor& actions) {
   return (values + forbidden).amax(-1) - values.gather(-1, actions).squeeze(-1);
-}
-
-/// Farms that took a step; the others began an episode.
-inline std::uint64_t FarmSteps(const Results& results) {
-  return static_cast<std::uint64_t>(
-      std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
 }
 
 /// How the network sees: float features, or bytes of planes (255 stands for 1).
@@ -117,8 +83,5 @@ inline std::vector<std::int64_t> WithCount(std::size_t count, std::vector<std::i
   rest.insert(rest.begin(), static_cast<std::int64_t>(count));
   return rest;
 }
-
-/// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
-void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
 
 }  // namespace aquafarm::agents

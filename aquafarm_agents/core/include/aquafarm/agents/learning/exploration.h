@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// How a learner that knows action values tries others (Fig. 7).
+/// How a learner tries other actions than the best known (Fig. 7).
 ///
 ///   ε-greedy (Eq. 7)   with probability ε any action, else the best known
 ///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. T counts in units of
 ///                      reward. The paper prints no temperature, which is T = 1 here
-///   curiosity            either of them, paid besides for what could not be foreseen; curiosity.h
+///   entropy            a learner of policies samples its own policy and adds c · H(π) to what it
+///                      maximizes; c follows the schedule
+///   curiosity            any of them, paid besides for what could not be foreseen; curiosity.h
 ///
 /// ε and T follow a Schedule. Every agent of every farm draws from a stream of its own.
 
@@ -26,13 +28,14 @@ namespace aquafarm::agents {
 /// Every action of the learners' action space.
 inline constexpr ActionMask kAllActions = (1U << kActionCount) - 1;
 
-enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann };
-inline constexpr int kExplorationKindCount = 2;
+enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann, kEntropy };
+inline constexpr int kExplorationKindCount = 3;
 std::string_view ToString(ExplorationKind value);
 
 struct ExplorationOptions {
   ExplorationKind kind{ExplorationKind::kEpsilonGreedy};
-  Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε, or the temperature
+  /// ε, the temperature, or the coefficient of the entropy.
+  Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};
   /// Mean reward that curiosity pays for a step [reward]; 0: not curious.
   Schedule curiosity{ScheduleKind::kConstant, 0.0};
   bool is_curious() const {
@@ -41,11 +44,21 @@ struct ExplorationOptions {
   }
 };
 
+/// Which learners an exploration is for.
+enum class ExplorationOf : std::uint8_t {
+  kValues,    ///< learners of action values: epsilon_greedy, boltzmann
+  kPolicies,  ///< learners of policies: entropy
+  kAny,
+};
+
 /// Reads "epsilon_greedy" or "boltzmann", alone or with a schedule: "epsilon_greedy:0.1",
 /// "boltzmann:exponential:10:0.5:0.5". "icm" before them and a plus makes it curious, alone or with
 /// a schedule of its weight: "icm+epsilon_greedy:0.1", "icm:linear:2:0:0.5+boltzmann".
+/// "entropy" works in the same way for learners of policies: "entropy:linear:0.02:0:1",
+/// "icm+entropy:0.01".
 /// @throws InputError with what is allowed
-ExplorationOptions ParseExploration(const std::string& text);
+ExplorationOptions ParseExploration(const std::string& text,
+                                    ExplorationOf learners = ExplorationOf::kValues);
 std::string ToString(const ExplorationOptions& options);
 
 /// The best action and its value; the lowest number among equals.

@@ -27,6 +27,10 @@ std::string ListAlgorithms() {
   return text;
 }
 
+std::int32_t DefaultFarms(const std::string& algorithm) {
+  return algorithm == kAutoAlgorithm ? kDefaultFarms : FindAlgorithm(algorithm).default_farms;
+}
+
 void Print(const RunStatus& status) {
   if (!status.message.empty() && status.phase != RunPhase::kEnded) {
     std::printf("%s\n", status.message.c_str());
@@ -42,7 +46,7 @@ int Main(int argc, char** argv) {
   ScenarioChoice scenario;
   std::vector<std::string> settings;
   EnvironmentOptions environment;
-  environment.farms = 16;
+  environment.farms = 0;
   CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume goes on.");
   app.footer(ListAlgorithms() +
              "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 130 "
@@ -55,8 +59,10 @@ int Main(int argc, char** argv) {
                  "limit of farm steps; 0: none, or without any limit the algorithm's own, and "
                  "eight a state of a large table");
   app.add_option("-s,--seed", options.seed, "seed of episodes and exploration");
-  app.add_option("-f,--farms", environment.farms, "farms stepped together")
-      ->check(CLI::Range(1, kMaxFarms));
+  app.add_option(
+         "-f,--farms", environment.farms,
+         "number of parallel farms; 0: the algorithm's default, 256 for ppo and 16 for others")
+      ->check(CLI::Range(0, kMaxFarms));
   app.add_option("-t,--threads", environment.threads, "threads that step them")
       ->check(CLI::Range(1, 256));
   app.add_option("-d,--run-dir", options.run_dir, "run folder; empty: a new one under ./runs");
@@ -88,6 +94,7 @@ int Main(int argc, char** argv) {
       options,
       [&](std::uint8_t encodings) {
         environment.encodings = encodings;
+        if (environment.farms == 0) environment.farms = DefaultFarms(options.algorithm);
         return std::make_unique<LocalEnvironment>(scenario.Load(), environment);
       },
       Print, &stop_requested);

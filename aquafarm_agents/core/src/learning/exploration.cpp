@@ -22,7 +22,16 @@ const Schedule kCuriosityDefault{ScheduleKind::kLinear, 1.0, 0.0, 0.5};
 constexpr double kMaxCuriosity = 1e6;
 constexpr std::string_view kCuriosity = "icm";
 
-[[noreturn]] void RefuseExploration(const std::string& text) {
+constexpr double kMaxEntropy = 1e3;
+const Schedule kEntropyDefault{ScheduleKind::kLinear, 0.02, 0.0, 1.0};
+
+[[noreturn]] void RefuseExploration(const std::string& text, ExplorationOf learners) {
+  if (learners == ExplorationOf::kPolicies) {
+    throw InputError("exploration: got '" + text +
+                     "', expected entropy for a learner that samples its own policy, alone or with "
+                     "a schedule such as entropy:linear:0.02:0:1, and icm before it to be curious: "
+                     "icm+entropy:0.01");
+  }
   throw InputError("exploration: got '" + text +
                    "', expected epsilon_greedy or boltzmann, alone or with a schedule such as "
                    "epsilon_greedy:linear:1:0.05:0.5, and icm before them to be curious: "
@@ -37,20 +46,25 @@ std::string_view ToString(ExplorationKind value) {
       return "epsilon_greedy";
     case ExplorationKind::kBoltzmann:
       return "boltzmann";
+    case ExplorationKind::kEntropy:
+      return "entropy";
   }
   return "?";
 }
 
-ExplorationOptions ParseExploration(const std::string& text) {
+ExplorationOptions ParseExploration(const std::string& text, ExplorationOf learners) {
   ExplorationOptions options;
   if (text.rfind(kCuriosity, 0) == 0) {
     const std::size_t plus = text.find('+');
     const std::string own = text.substr(0, plus);
-    if (plus != std::string::npos) options = ParseExploration(text.substr(plus + 1));
-    if (options.is_curious()) RefuseExploration(text);
+    if (plus != std::string::npos) options = ParseExploration(text.substr(plus + 1), learners);
+    if (plus == std::string::npos && learners == ExplorationOf::kPolicies) {
+      options = ParseExploration("entropy", learners);
+    }
+    if (options.is_curious()) RefuseExploration(text, learners);
     options.curiosity = kCuriosityDefault;
     if (own != kCuriosity) {
-      if (own[kCuriosity.size()] != ':') RefuseExploration(text);
+      if (own[kCuriosity.size()] != ':') RefuseExploration(text, learners);
       options.curiosity =
           ParseSchedule(own.substr(kCuriosity.size() + 1), "exploration: icm", 0.0, kMaxCuriosity);
     }
@@ -60,13 +74,20 @@ ExplorationOptions ParseExploration(const std::string& text) {
   const std::string name = text.substr(0, colon);
   double min = 0.0;
   double max = 1.0;
-  if (name == ToString(ExplorationKind::kBoltzmann)) {
+  const bool is_entropy = name == ToString(ExplorationKind::kEntropy);
+  const auto refused = is_entropy ? ExplorationOf::kValues : ExplorationOf::kPolicies;
+  if (learners == refused) RefuseExploration(text, learners);
+  if (is_entropy) {
+    options.kind = ExplorationKind::kEntropy;
+    options.level = kEntropyDefault;
+    max = kMaxEntropy;
+  } else if (name == ToString(ExplorationKind::kBoltzmann)) {
     options.kind = ExplorationKind::kBoltzmann;
     options.level = kBoltzmannDefault;
     min = kMinTemperature;
     max = kMaxTemperature;
   } else if (name != ToString(ExplorationKind::kEpsilonGreedy)) {
-    RefuseExploration(text);
+    RefuseExploration(text, learners);
   }
   if (colon != std::string::npos) {
     options.level = ParseSchedule(text.substr(colon + 1), "exploration", min, max);

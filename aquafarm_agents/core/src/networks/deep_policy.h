@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Helpers shared by the deep learners and their policies: reading observations and checking a
-/// saved network against the farms of a run.
+/// Helpers shared by the deep learners and their policies around libtorch: observations as tensors
+/// and masks of values.
 
 #include <torch/torch.h>
 
@@ -16,23 +16,13 @@
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/agents/learning/checkpoint.h"
 #include "aquafarm/agents/networks/deep_options.h"
-#include "learning/action_mask.h"
+#include "networks/farm_rows.h"
 
 namespace aquafarm::agents {
 
 /// Device for playing a saved policy: a policy trained on CUDA also plays without it.
 inline std::string PlayingDevice(const std::string& trained_on) {
   return trained_on == "cuda" ? "auto" : trained_on;
-}
-
-inline std::size_t EntryCount(const EnvironmentSpec& spec) {
-  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
-}
-
-/// Mask of the allowed actions for planes. DeepOptions rejects mask_blocked with planes, which lack
-/// the required features.
-inline ActionMask Allowed(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
-  return Allowed(legal, options.mask_illegal);
 }
 
 /// Writes an additive mask: 0 for allowed actions, −1e9 for forbidden ones. The mask is finite, so
@@ -52,12 +42,6 @@ inline void MarkForbidden(ActionMask allowed, float* out) {
 inline torch::Tensor Shortfall(const torch::Tensor& values, const torch::Tensor& forbidden,
                                const torch::Tensor& actions) {
   return (values + forbidden).amax(-1) - values.gather(-1, actions).squeeze(-1);
-}
-
-/// Number of farms that took a step; the others began an episode.
-inline std::uint64_t FarmSteps(const Results& results) {
-  return static_cast<std::uint64_t>(
-      std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
 }
 
 /// Observation traits of a network: float features, or bytes of planes (255 represents 1).
@@ -102,9 +86,5 @@ inline std::vector<std::int64_t> WithCount(std::size_t count, std::vector<std::i
   rest.insert(rest.begin(), static_cast<std::int64_t>(count));
   return rest;
 }
-
-/// Checks that a policy fits farms of `spec`.
-/// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
-void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
 
 }  // namespace aquafarm::agents

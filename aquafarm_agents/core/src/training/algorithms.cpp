@@ -13,9 +13,9 @@
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/planning/planner_policy.h"
 #include "aquafarm/agents/planning/team_planner.h"
+#include "aquafarm/agents/ppo/ppo.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
-#include "networks/networks.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -54,20 +54,21 @@ using MakeLearner = std::unique_ptr<Learner> (*)(const EnvironmentSpec&, std::ui
                                                  const std::string&);
 
 // The exploration that learner options ask for, whatever else they say.
-ExplorationOptions ExplorationOf(const std::string& options) {
-  return ParseExploration(OptionReader(options).Text("exploration", "epsilon_greedy"));
+ExplorationOptions ExplorationIn(const std::string& options) {
+  return ParseExploration(OptionReader(options).Text("exploration", "epsilon_greedy"),
+                          ExplorationOf::kAny);
 }
 
 template <Encodings encodings>
 std::uint8_t WithCuriosityToo(const std::string& options) {
   const std::uint8_t bits = encodings(options);
-  return ExplorationOf(options).is_curious() ? bits | kFeaturesBit : bits;
+  return ExplorationIn(options).is_curious() ? bits | kFeaturesBit : bits;
 }
 
 template <MakeLearner make>
 std::unique_ptr<Learner> MakeExplorer(const EnvironmentSpec& spec, std::uint64_t seed,
                                       const std::string& options) {
-  const ExplorationOptions exploration = ExplorationOf(options);
+  const ExplorationOptions exploration = ExplorationIn(options);
   if (!exploration.is_curious()) return make(spec, seed, options);
   PrepareTorch(1);  // a deep learner sets its own number of threads
   return WithCuriosity(make(spec, seed, options), spec, seed, exploration);
@@ -124,6 +125,9 @@ const std::vector<Algorithm>& Algorithms() {
        WithCuriosityToo<DqnEncodings>, MakeExplorer<MakeVdn>, MakeDqnPolicy},
       {"maddpg", "an actor for each agent, a critic that sees all of them (§3.3)", true, 800000,
        WithCuriosityToo<MaddpgEncodings>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
+      {"ppo", "proximal policy optimization: an actor-critic that learns from its own steps", true,
+       3000000, WithCuriosityToo<PpoEncodings>, MakeExplorer<MakePpo>, MakePpoPolicy,
+       /*default_farms=*/256},
       {"planner",
        "plans on the forecast that disasters hold their heading; several agents cooperate", false,
        0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kHeadingHolds>},

@@ -117,6 +117,25 @@ TEST(Exploration, TextReadsBackAndRefusalsSayWhatIsAllowed) {
   EXPECT_CONTAINS(refuse("boltzmann:0"), "got 0, expected [1e-06, 1e+06]");
 }
 
+TEST(Exploration, LearnersOfPoliciesTakeEntropyAndOthersDoNot) {
+  const auto parse = [](const std::string& text) {
+    return ParseExploration(text, ExplorationOf::kPolicies);
+  };
+  for (const std::string text : {"entropy:0.01", "icm:2+entropy:linear:0.02:0:1"}) {
+    EXPECT_EQ(ToString(parse(text)), text);
+    EXPECT_EQ(ToString(ParseExploration(text, ExplorationOf::kAny)), text);
+  }
+  EXPECT_EQ(ToString(parse("icm")), "icm:linear:1:0:0.5+entropy:linear:0.02:0:1");
+  for (const char* text : {"boltzmann", "epsilon_greedy:0.1", "icm+boltzmann:1", "entropic"}) {
+    EXPECT_CONTAINS(MessageOf<InputError>([&] { parse(text); }),
+                    "expected entropy for a learner that samples its own policy");
+  }
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { parse("entropy:-1"); }),
+                  "got -1, expected [0, 1000]");
+  EXPECT_CONTAINS(MessageOf<InputError>([] { ParseExploration("entropy:0.01"); }),
+                  "exploration: got 'entropy:0.01', expected epsilon_greedy or boltzmann");
+}
+
 TEST(Exploration, EachKindHasAName) {
   for (int i = 0; i < kExplorationKindCount; ++i) {
     EXPECT_NE(ToString(static_cast<ExplorationKind>(i)), "?");

@@ -12,7 +12,7 @@ TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
   EXPECT_EQ(MessageOf<InputError>([] { FindAlgorithm("dqm"); }),
             "algorithm: got 'dqm', expected one of: random, q_learning, sarsa, dqn, "
             "lstm_dqn, independent_dqn, independent_lstm_dqn, vdn, "
-            "maddpg, planner, clairvoyant");
+            "maddpg, ppo, planner, clairvoyant");
 }
 
 TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
@@ -47,6 +47,7 @@ std::string Lively(const Algorithm& algorithm) {
   const std::string small = "hidden=8 batch=8 start=20 replay=300 priority=0.5";
   if (name.find("lstm_dqn") != std::string::npos) return small + " sequence=4 burn_in=2";
   if (name == "maddpg") return "hidden=8 batch=8 start=20 replay=300 recurrent=true";
+  if (name == "ppo") return "hidden_size=8 rollout_size=90 batch_size=32";
   return name == "dqn" || name == "independent_dqn" || name == "vdn" ? small : "";
 }
 
@@ -84,8 +85,13 @@ TEST(Algorithms, EachContinuesBitForBit) {
     if (algorithm.make == nullptr) continue;
     ExpectContinues(algorithm, Lively(algorithm));
     if (!algorithm.learns) continue;
-    ExpectContinues(algorithm, Lively(algorithm) + " exploration=icm:1+boltzmann:5");
+    const bool samples = std::string(algorithm.name) == "ppo";
+    const std::string explored = samples ? "entropy:0.01" : "boltzmann:5";
+    ExpectContinues(algorithm, Lively(algorithm) + " exploration=icm:1+" + explored);
   }
+  // In the middle of a rollout and of a sequence.
+  ExpectContinues(FindAlgorithm("ppo"),
+                  "hidden_size=8 rollout_size=90 batch_size=32 recurrent=true sequence_length=7");
   for (const char* name : {"dqn", "lstm_dqn"}) {
     const Algorithm& algorithm = FindAlgorithm(name);
     ExpectContinues(algorithm, Lively(algorithm) + " average_rate=0.02 repetition_penalty=2");

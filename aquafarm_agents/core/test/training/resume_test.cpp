@@ -52,7 +52,7 @@ class Resume : public FolderTest {
     std::vector<std::string> command{AQUAFARM_TRAIN,
                                      "paper",
                                      "--steps",
-                                     "8000000",
+                                     run.rfind("ppo", 0) == 0 ? "400000" : "8000000",
                                      "--farms",
                                      "8",
                                      "--run-dir",
@@ -102,7 +102,7 @@ TEST_F(Resume, WorksForLimitsByEpisodes) {
 }
 
 TEST_F(Resume, KilledEqualsNeverStopped) {
-  for (const std::string name : {"q_learning", "sarsa"}) {
+  for (const std::string name : {"q_learning", "sarsa", "ppo"}) {
     const std::string whole = name + ".whole";
     const std::string parts = name + ".parts";
     Process uninterrupted(Command(whole, false), Output(whole));

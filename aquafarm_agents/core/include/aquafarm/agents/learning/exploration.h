@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Exploration strategies of value-based learners (Fig. 7).
+/// Exploration strategies of learners (Fig. 7).
 ///
 ///   ε-greedy (Eq. 7)   a uniform action with probability ε, else the greedy action
 ///   Boltzmann (Eq. 8)  P(a) ∝ exp(Q(a) / T); T → 0 is greedy, T → ∞ uniform. T has the unit of the
 ///                      reward. The paper's equation has no temperature, which is T = 1 here
-///   curiosity          either of them, with an intrinsic reward for prediction errors; curiosity.h
+///   entropy            a policy learner samples its own policy and maximizes the return plus
+///                      c · H(π); c follows the schedule
+///   curiosity          any of them, with an intrinsic reward for prediction errors; curiosity.h
 ///
 /// ε and T follow a Schedule. Every agent of every farm has its own random stream.
 
@@ -26,13 +28,13 @@ namespace aquafarm::agents {
 /// Mask of all actions of the action space.
 inline constexpr ActionMask kAllActions = (1U << kActionCount) - 1;
 
-enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann };
-inline constexpr int kExplorationKindCount = 2;
+enum class ExplorationKind : std::uint8_t { kEpsilonGreedy, kBoltzmann, kEntropy };
+inline constexpr int kExplorationKindCount = 3;
 std::string_view ToString(ExplorationKind value);
 
 struct ExplorationOptions {
   ExplorationKind kind{ExplorationKind::kEpsilonGreedy};
-  Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε or temperature
+  Schedule level{ScheduleKind::kLinear, 1.0, 0.05, 0.5};  ///< ε, temperature or entropy coefficient
   /// Mean intrinsic reward of a step [reward]; 0 disables curiosity.
   Schedule curiosity{ScheduleKind::kConstant, 0.0};
   bool is_curious() const {
@@ -41,11 +43,20 @@ struct ExplorationOptions {
   }
 };
 
+/// Which learners an exploration is for.
+enum class ExplorationOf : std::uint8_t {
+  kValues,    ///< learners of action values: epsilon_greedy, boltzmann
+  kPolicies,  ///< learners of policies: entropy
+  kAny,
+};
+
 /// Reads "epsilon_greedy" or "boltzmann", alone or with a schedule: "epsilon_greedy:0.1",
 /// "boltzmann:exponential:10:0.5:0.5". The prefix "icm+" adds curiosity, optionally with a schedule
-/// of its weight: "icm+epsilon_greedy:0.1", "icm:linear:2:0:0.5+boltzmann".
+/// of its weight: "icm+epsilon_greedy:0.1", "icm:linear:2:0:0.5+boltzmann". "entropy" is for policy
+/// learners: "entropy:linear:0.02:0:1", "icm+entropy:0.01".
 /// @throws InputError listing the allowed forms
-ExplorationOptions ParseExploration(const std::string& text);
+ExplorationOptions ParseExploration(const std::string& text,
+                                    ExplorationOf learners = ExplorationOf::kValues);
 std::string ToString(const ExplorationOptions& options);
 
 /// Greedy action and its value. Ties go to the lowest action number.

@@ -9,6 +9,9 @@
 
 namespace aquafarm::agents {
 
+/// Farms that aquafarm_train steps together for most learners.
+inline constexpr std::int32_t kDefaultFarms = 16;
+
 /// A learner that can be asked for by name.
 struct Algorithm {
   const char* name;
@@ -22,6 +25,7 @@ struct Algorithm {
                                    const std::string& options);
   /// Makes what it learnt play on farms of `spec`. @throws InputError when it does not fit
   std::unique_ptr<Policy> (*make_policy)(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
+  std::int32_t default_farms{kDefaultFarms};  ///< stepped together by aquafarm_train
 };
 
 /// All of them, in the order in which they are listed.

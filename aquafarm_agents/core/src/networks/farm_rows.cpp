@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "networks/deep_policy.h"
+#include "networks/farm_rows.h"
 
 #include <algorithm>
 

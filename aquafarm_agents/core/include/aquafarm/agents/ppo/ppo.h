@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Proximal policy optimization (PPO, Schulman et al. 2017): an actor-critic network learns from
+/// the steps of its own current policy.
+///
+///   collect T steps in all farms with π_old
+///   δ_t = r_t + γ V(s_{t+1}) − V(s_t),   A_t = Σ_l (γλ)^l δ_{t+l}        (GAE, Schulman 2016)
+///   ρ_t = π(a_t | s_t) / π_old(a_t | s_t)
+///   minimize  −min(ρ_t A_t, clip(ρ_t, 1 − ε, 1 + ε) A_t) + c_v (V(s_t) − V_target)² / 2 − c_e H(π)
+///
+/// Only termination stops bootstrapping. A truncated episode is bootstrapped with the value of its
+/// last observation. Masked actions have probability 0 in π and π_old.
+
+#include <memory>
+#include <string>
+
+#include "aquafarm/agents/learning/learner.h"
+
+namespace aquafarm::agents {
+
+/// Observation types (EncodingBits) that PPO reads. @throws InputError if an option is wrong
+std::uint8_t PpoEncodings(const std::string& options);
+/// @throws InputError if an option is wrong
+std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
+                                 const std::string& options);
+/// @throws InputError if the policy does not fit farms of `spec`; the message names the difference
+std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "aquafarm/agents/base/schedule.h"
+#include "aquafarm/agents/learning/exploration.h"
+
+namespace aquafarm::agents {
+
+/// How a trained policy chooses its actions.
+enum class PolicyMode : std::uint8_t {
+  kGreedy,   ///< the most probable action
+  kSampled,  ///< an action drawn from the policy's probabilities
+};
+inline constexpr int kPolicyModeCount = 2;
+std::string_view ToString(PolicyMode value);
+
+/// Options of PPO. Two presets give the defaults: *tuned* for a fixed layout, *large* for layouts
+/// that change in each episode. docs/algorithms.md has the measurements.
+struct PpoOptions {
+  std::int32_t hidden_size{128};     ///< units of each hidden layer; of the LSTM if recurrent
+  bool recurrent{false};             ///< an LSTM instead of the second hidden layer
+  std::int32_t sequence_length{16};  ///< steps of back-propagation through time; recurrent only
+  Schedule learning_rate{ScheduleKind::kLinear, 1e-3, 0.0, 1.0};  ///< of Adam
+  double gamma{0.98};                                             ///< discount per step
+  double gae_lambda{0.95};                            ///< λ of generalized advantage estimation
+  std::int32_t rollout_size{16384};                   ///< agent steps collected between two updates
+  std::int32_t batch_size{512};                       ///< agent steps of one gradient step
+  std::int32_t epochs{2};                             ///< passes over each rollout
+  Schedule clip_range{ScheduleKind::kConstant, 0.2};  ///< ε of the clipped probability ratio
+  double value_clip_range{0.0};     ///< largest change of a value per update; 0: not limited
+  double value_coef{0.5};           ///< weight of the value loss
+  double max_grad_norm{0.5};        ///< 0: not limited
+  double reward_scale{0.05};        ///< factor on all rewards
+  bool normalize_advantages{true};  ///< to mean 0 and deviation 1 in each minibatch
+  bool mask_illegal{true};          ///< probability 0 for actions that would be ILLEGAL
+  bool mask_blocked{
+      true};  ///< probability 0 for moves onto a charted rock, an island or off the map
+  /// The coefficient of the entropy bonus is the level; icm adds curiosity.
+  ExplorationOptions exploration{
+      ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
+  PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy plays
+  std::int32_t threads{1};                 ///< of the matrix library
+
+  /// Steps per agent that one rollout holds. @param entries farms × agents
+  std::int32_t Horizon(std::size_t entries) const;
+
+  /// Reads "key=value …". @param resolved receives all options with their values in force
+  /// @throws InputError if a key is unknown or a value is out of range
+  static PpoOptions Parse(const std::string& text, std::string& resolved);
+};
+
+}  // namespace aquafarm::agents

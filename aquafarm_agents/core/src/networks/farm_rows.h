@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Helpers of learners on features or planes that need no network library: counts, masks for
+/// planes, and the check of a saved network against the farms of a run.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/learning/checkpoint.h"
+#include "aquafarm/agents/networks/deep_options.h"
+#include "aquafarm/grid/action.h"
+#include "learning/action_mask.h"
+
+namespace aquafarm::agents {
+
+inline std::size_t EntryCount(const EnvironmentSpec& spec) {
+  return static_cast<std::size_t>(spec.farms) * static_cast<std::size_t>(spec.agents);
+}
+
+/// Mask of the allowed actions for planes. DeepOptions rejects mask_blocked with planes, which lack
+/// the required features.
+inline ActionMask Allowed(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
+  return Allowed(legal, options.mask_illegal);
+}
+
+/// Number of farms that took a step; the others began an episode.
+inline std::uint64_t FarmSteps(const Results& results) {
+  return static_cast<std::uint64_t>(
+      std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
+}
+
+/// Checks that a policy fits farms of `spec`.
+/// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
+void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ppo/actor.h"
+
+#include "networks/farm_rows.h"
+
+namespace aquafarm::agents {
+
+Actor::Actor(const EnvironmentSpec& spec, const PpoOptions& options, std::size_t state_size)
+    : options_(options),
+      agents_(static_cast<std::size_t>(spec.agents)),
+      features_(static_cast<std::size_t>(spec.feature_count)),
+      state_size_(state_size) {
+  Begin(static_cast<std::size_t>(spec.farms));
+}
+
+void Actor::Begin(std::size_t farms) {
+  const std::size_t entries = farms * agents_;
+  masks_.assign(entries, kAllActions);
+  values_.assign(entries, 0.0F);
+  started_.assign(entries, 0);
+  state_.assign(entries * state_size_, 0.0F);
+  state_before_ = state_;
+}
+
+void Actor::Observe(ActorCritic& network, const Results& results) {
+  const float* seen = results.features.data();
+  for (std::size_t i = 0; i < entries(); ++i, seen += features_) {
+    masks_[i] = Allowed(results.legal[i], seen, options_);
+    started_[i] = results.started[i / agents_];
+  }
+  state_before_ = state_;
+  SequenceRows rows;
+  rows.sequences = entries();
+  rows.features = results.features.data();
+  rows.state = state_before_.data();
+  rows.started = started_.data();
+  const float* const outputs = network.Forward(rows, state_size_ == 0 ? nullptr : state_.data());
+  distribution_.Compute(outputs, masks_.data(), entries());
+  for (std::size_t i = 0; i < entries(); ++i) {
+    values_[i] = outputs[i * kActorCriticOutputs + kActionCount];
+  }
+}
+
+void Actor::Sample(EntryStreams& rng, std::vector<std::uint8_t>& actions) const {
+  actions.resize(entries());
+  for (std::size_t i = 0; i < entries(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    float left = rng[i].Unit();
+    for (std::uint8_t a = 0; a < kActionCount; ++a) {
+      const float prob = distribution_.probs(row, a);
+      if (prob <= 0.0F) continue;
+      actions[i] = a;  // the last possible action if rounding leaves a rest
+      left -= prob;
+      if (left < 0.0F) break;
+    }
+  }
+}
+
+void Actor::TakeBest(std::vector<std::uint8_t>& actions) const {
+  actions.resize(entries());
+  for (std::size_t i = 0; i < entries(); ++i) {
+    Eigen::Index best = 0;
+    distribution_.probs.row(static_cast<Eigen::Index>(i)).maxCoeff(&best);
+    actions[i] = static_cast<std::uint8_t>(best);
+  }
+}
+
+}  // namespace aquafarm::agents

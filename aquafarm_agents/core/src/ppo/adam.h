@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/learning/checkpoint.h"
+
+namespace aquafarm::agents {
+
+/// Adam (Kingma and Ba 2015) on a flat parameter vector, with gradient clipping by norm.
+class Adam {
+ public:
+  explicit Adam(std::size_t size) : mean_(size), square_(size) {}
+
+  /// Takes one step against `gradient`, scaled so that its norm is at most `max_norm`.
+  /// @param max_norm 0: not limited
+  /// @returns false if the gradient is not finite; the weights are then unchanged
+  [[nodiscard]] bool Step(const std::vector<float>& gradient, double learning_rate, double max_norm,
+                          std::vector<float>& weights);
+  std::uint64_t steps() const { return steps_; }
+
+  /// Adds sections `adam.mean`, `adam.square` and `adam`.
+  void Save(Checkpoint& checkpoint) const;
+  /// @throws InputError if they are missing or have another size; it is then unchanged
+  void Load(const Checkpoint& checkpoint);
+
+ private:
+  std::vector<float> mean_;    // of the gradient
+  std::vector<float> square_;  // mean of its square
+  std::uint64_t steps_{};
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ppo/lstm_actor_critic.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "ppo/ppo_loss.h"
+#include "ppo/weight_drawer.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr std::size_t kGates = 4;  // in the order i, f, g, o
+constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
+constexpr float kForgetBias = 1.0F;  // of initial weights: remembers at first
+
+using Row = Eigen::Map<Eigen::ArrayXf>;
+using ConstRow = Eigen::Map<const Eigen::ArrayXf>;
+
+Row At(std::vector<float>& values, std::size_t begin, std::size_t size) {
+  return {values.data() + begin, static_cast<Eigen::Index>(size)};
+}
+ConstRow At(const float* values, std::size_t size) {
+  return {values, static_cast<Eigen::Index>(size)};
+}
+
+}  // namespace
+
+LstmActorCritic::LstmActorCritic(std::size_t features, std::size_t hidden, std::uint64_t seed)
+    : hidden_(hidden),
+      first_{0, features, hidden},
+      gates_{first_.end(), hidden, kGates * hidden},
+      recurrent_{gates_.end(), hidden, kGates * hidden},
+      head_{recurrent_.bias(), 2 * hidden, kOutputs} {
+  weights_.resize(std::max(head_.end(), recurrent_.end()));
+  WeightDrawer drawer(seed);
+  for (const Linear* layer : {&first_, &gates_, &recurrent_}) drawer.Draw(*layer, weights_);
+  weights_.resize(head_.end());  // the recurrent matrix has no bias
+  drawer.DrawHead(head_, weights_);
+  for (std::size_t i = 0; i < hidden; ++i) weights_[gates_.bias() + hidden + i] += kForgetBias;
+  gradient_.resize(weights_.size());
+}
+
+void LstmActorCritic::Reserve(const SequenceRows& rows) {
+  const std::size_t count = rows.rows();
+  if (outputs_.size() < count * kOutputs) {
+    outputs_.resize(count * kOutputs);
+    for (auto* one : {&seen_, &hidden_before_, &cell_before_, &cell_tanh_, &seen_slopes_}) {
+      one->resize(count * hidden_);
+    }
+    for (auto* one : {&gate_values_, &gate_slopes_}) one->resize(count * kGates * hidden_);
+    for (auto* one : {&joined_, &joined_slopes_}) one->resize(count * 2 * hidden_);
+  }
+  for (auto* one : {&hidden_now_, &cell_now_, &hidden_slopes_, &cell_slopes_}) {
+    one->resize(rows.sequences * hidden_);
+  }
+}
+
+void LstmActorCritic::LoadState(const SequenceRows& rows) {
+  for (std::size_t s = 0; s < rows.sequences; ++s) {
+    const float* const state = rows.state + s * state_size();
+    std::copy_n(state, hidden_, hidden_now_.data() + s * hidden_);
+    std::copy_n(state + hidden_, hidden_, cell_now_.data() + s * hidden_);
+  }
+}
+
+void LstmActorCritic::StepForward(const SequenceRows& rows, std::size_t step) {
+  const std::size_t first = step * rows.sequences;
+  for (std::size_t s = 0; s < rows.sequences; ++s) {
+    if (rows.started[first + s] == 0) continue;
+    At(hidden_now_, s * hidden_, hidden_) = 0.0F;
+    At(cell_now_, s * hidden_, hidden_) = 0.0F;
+  }
+  const std::size_t size = rows.sequences * hidden_;
+  std::copy_n(hidden_now_.data(), size, hidden_before_.data() + first * hidden_);
+  std::copy_n(cell_now_.data(), size, cell_before_.data() + first * hidden_);
+  float* const gates = gate_values_.data() + first * kGates * hidden_;
+  Multiply(rows.sequences, kGates * hidden_, hidden_, hidden_now_.data(),
+           weights_.data() + recurrent_.begin, 1.0F, gates);
+  for (std::size_t s = 0; s < rows.sequences; ++s) {
+    const std::size_t row = first + s;
+    const std::size_t begin = row * kGates * hidden_;
+    auto input = At(gate_values_, begin, hidden_);
+    auto forget = At(gate_values_, begin + hidden_, hidden_);
+    auto added = At(gate_values_, begin + 2 * hidden_, hidden_);
+    auto output = At(gate_values_, begin + 3 * hidden_, hidden_);
+    input = input.logistic();
+    forget = forget.logistic();
+    added = added.tanh();
+    output = output.logistic();
+    auto cell = At(cell_now_, s * hidden_, hidden_);
+    auto cell_tanh = At(cell_tanh_, row * hidden_, hidden_);
+    cell = forget * cell + input * added;
+    cell_tanh = cell.tanh();
+    At(hidden_now_, s * hidden_, hidden_) = output * cell_tanh;
+    std::copy_n(hidden_now_.data() + s * hidden_, hidden_, joined_.data() + row * 2 * hidden_);
+    std::copy_n(seen_.data() + row * hidden_, hidden_,
+                joined_.data() + row * 2 * hidden_ + hidden_);
+  }
+}
+
+const float* LstmActorCritic::Forward(const SequenceRows& rows, float* state_after) {
+  Reserve(rows);
+  LoadState(rows);
+  first_.ForwardRelu(weights_, rows.rows(), rows.features, seen_.data());
+  gates_.Forward(weights_, rows.rows(), seen_.data(), gate_values_.data());
+  for (std::size_t step = 0; step < rows.steps; ++step) StepForward(rows, step);
+  head_.Forward(weights_, rows.rows(), joined_.data(), outputs_.data());
+  if (state_after == nullptr) return outputs_.data();
+  for (std::size_t s = 0; s < rows.sequences; ++s) {
+    float* const state = state_after + s * state_size();
+    std::copy_n(hidden_now_.data() + s * hidden_, hidden_, state);
+    std::copy_n(cell_now_.data() + s * hidden_, hidden_, state + hidden_);
+  }
+  return outputs_.data();
+}
+
+void LstmActorCritic::StepBackward(const SequenceRows& rows, std::size_t step) {
+  const std::size_t first = step * rows.sequences;
+  for (std::size_t s = 0; s < rows.sequences; ++s) {
+    const std::size_t row = first + s;
+    const std::size_t begin = row * kGates * hidden_;
+    const auto input = At(gate_values_, begin, hidden_);
+    const auto forget = At(gate_values_, begin + hidden_, hidden_);
+    const auto added = At(gate_values_, begin + 2 * hidden_, hidden_);
+    const auto output = At(gate_values_, begin + 3 * hidden_, hidden_);
+    const auto cell_tanh = At(cell_tanh_, row * hidden_, hidden_);
+    auto hidden_slope = At(hidden_slopes_, s * hidden_, hidden_);
+    auto cell_slope = At(cell_slopes_, s * hidden_, hidden_);
+    hidden_slope += At(joined_slopes_.data() + row * 2 * hidden_, hidden_);
+    cell_slope += hidden_slope * output * (1.0F - cell_tanh.square());
+    At(gate_slopes_, begin, hidden_) = cell_slope * added * input * (1.0F - input);
+    At(gate_slopes_, begin + hidden_, hidden_) =
+        cell_slope * At(cell_before_, row * hidden_, hidden_) * forget * (1.0F - forget);
+    At(gate_slopes_, begin + 2 * hidden_, hidden_) = cell_slope * input * (1.0F - added.square());
+    At(gate_slopes_, begin + 3 * hidden_, hidden_) =
+        hidden_slope * cell_tanh * output * (1.0F - output);
+    cell_slope *= forget;
+  }
+  MultiplyByTransposed(rows.sequences, hidden_, kGates * hidden_,
+                       gate_slopes_.data() + first * kGates * hidden_,
+                       weights_.data() + recurrent_.begin, 0.0F, hidden_slopes_.data());
+  for (std::size_t s = 0; s < rows.sequences; ++s) {
+    if (rows.started[first + s] == 0) continue;
+    At(hidden_slopes_, s * hidden_, hidden_) = 0.0F;
+    At(cell_slopes_, s * hidden_, hidden_) = 0.0F;
+  }
+}
+
+void LstmActorCritic::Backward(const SequenceRows& rows, const float* slopes) {
+  const std::size_t count = rows.rows();
+  head_.AddGradient(count, joined_.data(), slopes, gradient_);
+  head_.BackwardInput(weights_, count, slopes, joined_slopes_.data());
+  std::fill(hidden_slopes_.begin(), hidden_slopes_.end(), 0.0F);
+  std::fill(cell_slopes_.begin(), cell_slopes_.end(), 0.0F);
+  for (std::size_t step = rows.steps; step-- > 0;) StepBackward(rows, step);
+  MultiplyTransposed(hidden_, kGates * hidden_, count, hidden_before_.data(), gate_slopes_.data(),
+                     1.0F, gradient_.data() + recurrent_.begin);
+  gates_.AddGradient(count, seen_.data(), gate_slopes_.data(), gradient_);
+  gates_.BackwardInput(weights_, count, gate_slopes_.data(), seen_slopes_.data());
+  for (std::size_t row = 0; row < count; ++row) {
+    At(seen_slopes_, row * hidden_, hidden_) +=
+        At(joined_slopes_.data() + row * 2 * hidden_ + hidden_, hidden_);
+  }
+  BackwardRelu(count * hidden_, seen_.data(), seen_slopes_.data());
+  first_.AddGradient(count, rows.features, seen_slopes_.data(), gradient_);
+}
+
+}  // namespace aquafarm::agents

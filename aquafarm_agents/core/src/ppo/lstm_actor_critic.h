@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "ppo/actor_critic.h"
+#include "ppo/linear.h"
+
+namespace aquafarm::agents {
+
+/// The recurrent ActorCritic. The LSTM has forget gates (Gers et al. 2000):
+///
+///   x = ReLU(Linear(features))
+///   i, f, g, o = x · W_in + h · W_rec + b         sigmoid, but tanh for g
+///   c' = f c + i g,   h' = o tanh(c')
+///   outputs = Linear([h', x])
+///
+/// The state of an agent is h, then c. Gradients pass through the steps of a sequence, not through
+/// the start of an episode.
+class LstmActorCritic final : public ActorCritic {
+ public:
+  LstmActorCritic(std::size_t features, std::size_t hidden, std::uint64_t seed);
+
+  std::size_t state_size() const override { return 2 * hidden_; }
+  std::size_t chunk_rows() const override { return 512; }
+  const float* Forward(const SequenceRows& rows, float* state_after) override;
+  void Backward(const SequenceRows& rows, const float* slopes) override;
+
+ private:
+  void Reserve(const SequenceRows& rows);
+  void LoadState(const SequenceRows& rows);
+  void StepForward(const SequenceRows& rows, std::size_t step);
+  void StepBackward(const SequenceRows& rows, std::size_t step);
+
+  const std::size_t hidden_;
+  const Linear first_;
+  const Linear gates_;      // of x; its bias is that of the gates
+  const Linear recurrent_;  // of h; without a bias
+  const Linear head_;       // of [h, x]
+
+  // [steps, sequences, …]
+  std::vector<float> seen_;           // [hidden] x
+  std::vector<float> gate_values_;    // [4 hidden] after the nonlinearity
+  std::vector<float> hidden_before_;  // [hidden] h, cleared where an episode started
+  std::vector<float> cell_before_;    // [hidden] c, likewise
+  std::vector<float> cell_tanh_;      // [hidden] of c'
+  std::vector<float> joined_;         // [2 hidden]
+  std::vector<float> outputs_;
+  std::vector<float> joined_slopes_;
+  std::vector<float> gate_slopes_;
+  std::vector<float> seen_slopes_;
+  // [sequences, hidden]
+  std::vector<float> hidden_now_;
+  std::vector<float> cell_now_;
+  std::vector<float> hidden_slopes_;
+  std::vector<float> cell_slopes_;
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ppo/ppo_policy.h"
+
+#include "aquafarm/base/check.h"
+#include "ppo/make_actor_critic.h"
+
+namespace aquafarm::agents {
+
+PpoPolicy::PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
+                     const std::vector<float>& weights)
+    : options_(options),
+      network_(MakeActorCritic(static_cast<std::size_t>(spec.feature_count),
+                               static_cast<std::size_t>(options.hidden_size), options.recurrent,
+                               0)),
+      actor_(spec, options, network_->state_size()) {
+  if (weights.size() != network_->weights().size()) {
+    throw InputError("weights: got " + std::to_string(weights.size()) + " numbers, expected " +
+                     std::to_string(network_->weights().size()) +
+                     " for this network: damaged, use another checkpoint");
+  }
+  network_->weights() = weights;
+}
+
+void PpoPolicy::Begin(std::uint64_t seed, std::int32_t farms) {
+  actor_.Begin(static_cast<std::size_t>(farms));
+  rng_ = EntryStreams(seed, actor_.entries());
+}
+
+void PpoPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+  actor_.Observe(*network_, results);
+  if (options_.policy == PolicyMode::kSampled) {
+    actor_.Sample(rng_, actions);
+  } else {
+    actor_.TakeBest(actions);
+  }
+  values_.resize(actions.size());
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    const bool is_active = results.in_play[i] != 0;
+    if (!is_active) actions[i] = 0;
+    values_[i] = is_active ? actor_.values()[i] / static_cast<float>(options_.reward_scale) : 0.0F;
+  }
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "aquafarm/agents/environment/policy.h"
+#include "aquafarm/agents/ppo/ppo_options.h"
+#include "ppo/actor.h"
+#include "ppo/actor_critic.h"
+
+namespace aquafarm::agents {
+
+/// Plays the weights of an ActorCritic, greedily or by sampling (PpoOptions::policy). Its values
+/// are V(s) in units of reward; an agent that is out of play gets action 0 and value 0.
+class PpoPolicy final : public Policy {
+ public:
+  /// @throws InputError if `weights` has not the size of the network
+  PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
+            const std::vector<float>& weights);
+
+  std::uint8_t encodings() const override { return kFeaturesBit; }
+  void Begin(std::uint64_t seed, std::int32_t farms) override;
+  void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
+
+ private:
+  const PpoOptions options_;
+  std::unique_ptr<ActorCritic> network_;
+  Actor actor_;
+  EntryStreams rng_;
+};
+
+}  // namespace aquafarm::agents

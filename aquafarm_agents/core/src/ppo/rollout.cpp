@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ppo/rollout.h"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+
+Rollout::Rollout(const Shape& shape)
+    : shape_(shape),
+      features_(slots() * shape.features),
+      states_((shape.steps + shape.sequence_length - 1) / shape.sequence_length * shape.entries *
+              shape.state_size),
+      masks_(slots()),
+      actions_(slots()),
+      started_(slots()),
+      log_probs_(slots()),
+      values_(slots() + shape.entries),
+      rewards_(slots()),
+      ends_(slots(), StepEnd::kNoTransition) {}
+
+void Rollout::Complete(const Results& results, float reward_scale) {
+  if (!is_open_) return;
+  is_open_ = false;
+  const std::size_t first = (steps_ - 1) * shape_.entries;
+  for (std::size_t entry = 0; entry < shape_.entries; ++entry) {
+    const std::size_t farm = entry / shape_.agents;
+    StepEnd& end = ends_[first + entry];
+    rewards_[first + entry] = results.rewards[entry] * reward_scale;
+    if (end == StepEnd::kNoTransition) continue;
+    if (results.started[farm] != 0) {
+      end = StepEnd::kNoTransition;  // the farm was lost and replaced
+    } else if (results.IsDone(entry, farm)) {
+      end = StepEnd::kTerminated;
+    } else if (static_cast<EndReason>(results.reasons[farm]) != EndReason::kNone) {
+      end = StepEnd::kTruncated;
+    }
+  }
+}
+
+void Rollout::Add(const Results& results, const std::vector<ActionMask>& masks,
+                  const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,
+                  const std::vector<float>& values, const std::vector<float>& state) {
+  AQUAFARM_CHECK_LT(steps_, shape_.steps);
+  const std::size_t first = steps_ * shape_.entries;
+  const auto at = static_cast<std::ptrdiff_t>(first);
+  std::copy_n(results.features.begin(), shape_.entries * shape_.features,
+              features_.begin() + at * static_cast<std::ptrdiff_t>(shape_.features));
+  std::copy(masks.begin(), masks.end(), masks_.begin() + at);
+  std::copy(actions.begin(), actions.end(), actions_.begin() + at);
+  std::copy(log_probs.begin(), log_probs.end(), log_probs_.begin() + at);
+  std::copy(values.begin(), values.end(), values_.begin() + at);
+  if (steps_ % shape_.sequence_length == 0) {
+    const std::size_t block = steps_ / shape_.sequence_length * state.size();
+    std::copy(state.begin(), state.end(), states_.begin() + static_cast<std::ptrdiff_t>(block));
+  }
+  for (std::size_t entry = 0; entry < shape_.entries; ++entry) {
+    const std::size_t farm = entry / shape_.agents;
+    const bool is_active = results.in_play[entry] != 0 &&
+                           static_cast<EndReason>(results.reasons[farm]) == EndReason::kNone;
+    ends_[first + entry] = is_active ? StepEnd::kContinues : StepEnd::kNoTransition;
+    started_[first + entry] = results.started[farm];
+  }
+  ++steps_;
+  is_open_ = true;
+}
+
+void Rollout::Finish(const std::vector<float>& last_values, float gamma, float lambda) {
+  AQUAFARM_CHECK_EQ(last_values.size(), shape_.entries);
+  std::copy(last_values.begin(), last_values.end(),
+            values_.begin() + static_cast<std::ptrdiff_t>(slots()));
+  EstimateAdvantages(rewards_, values_, ends_, shape_.entries, gamma, lambda, advantages_);
+}
+
+const float* Rollout::state(std::size_t slot) const {
+  const std::size_t step = slot / shape_.entries;
+  AQUAFARM_CHECK_EQ(step % shape_.sequence_length, 0U);
+  const std::size_t block = step / shape_.sequence_length * shape_.entries + slot % shape_.entries;
+  return states_.data() + block * shape_.state_size;
+}
+
+void Rollout::Save(Checkpoint& checkpoint) const {
+  const std::size_t used = steps_ * shape_.entries;
+  const auto save = [&](const char* name, const auto& values, std::size_t each) {
+    const auto count = static_cast<std::ptrdiff_t>(used * each);
+    checkpoint.SetArray(std::string("rollout.") + name,
+                        std::vector(values.begin(), values.begin() + count));
+  };
+  checkpoint.SetArray("rollout", std::vector<std::uint64_t>{steps_, is_open_ ? 1U : 0U});
+  save("features", features_, shape_.features);
+  save("masks", masks_, 1);
+  save("actions", actions_, 1);
+  save("started", started_, 1);
+  save("log_probs", log_probs_, 1);
+  save("values", values_, 1);
+  save("rewards", rewards_, 1);
+  save("ends", ends_, 1);
+  checkpoint.SetArray("rollout.states", states_);
+}
+
+void Rollout::Load(const Checkpoint& checkpoint) {
+  std::vector<std::uint64_t> numbers;
+  checkpoint.GetArray("rollout", 2, numbers);
+  if (numbers[0] > shape_.steps) {
+    throw InputError("rollout: got " + std::to_string(numbers[0]) + " steps, expected at most " +
+                     std::to_string(shape_.steps) + ": damaged, resume from another checkpoint");
+  }
+  Rollout loaded(shape_);
+  const std::size_t used = static_cast<std::size_t>(numbers[0]) * shape_.entries;
+  const auto load = [&](const char* name, auto& values, std::size_t each) {
+    std::remove_reference_t<decltype(values)> got;
+    checkpoint.GetArray(std::string("rollout.") + name, used * each, got);
+    std::copy(got.begin(), got.end(), values.begin());
+  };
+  load("features", loaded.features_, shape_.features);
+  load("masks", loaded.masks_, 1);
+  load("actions", loaded.actions_, 1);
+  load("started", loaded.started_, 1);
+  load("log_probs", loaded.log_probs_, 1);
+  load("values", loaded.values_, 1);
+  load("rewards", loaded.rewards_, 1);
+  load("ends", loaded.ends_, 1);
+  checkpoint.GetArray("rollout.states", loaded.states_.size(), loaded.states_);
+  loaded.steps_ = static_cast<std::size_t>(numbers[0]);
+  loaded.is_open_ = numbers[1] != 0;
+  *this = std::move(loaded);
+}
+
+}  // namespace aquafarm::agents

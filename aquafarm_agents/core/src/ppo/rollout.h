@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/learning/checkpoint.h"
+#include "ppo/gae.h"
+
+namespace aquafarm::agents {
+
+/// T steps of E agents (farms × agents of each), time-major: slot t · E + e. A slot holds what an
+/// agent saw, what it chose and what followed.
+class Rollout {
+ public:
+  struct Shape {
+    std::size_t steps{};
+    std::size_t entries{};  ///< E
+    std::size_t agents{};   ///< of one farm
+    std::size_t features{};
+    std::size_t state_size{};
+    std::size_t sequence_length{1};  ///< the state is kept at every sequence_length-th step
+  };
+  explicit Rollout(const Shape& shape);
+
+  const Shape& shape() const { return shape_; }
+  std::size_t slots() const { return shape_.steps * shape_.entries; }
+  bool IsFull() const { return steps_ == shape_.steps && !is_open_; }
+
+  /// Records what followed the last decisions; does nothing if there are none.
+  void Complete(const Results& results, float reward_scale);
+  /// Records decisions, all [E]. @param state [E, state_size] before them
+  void Add(const Results& results, const std::vector<ActionMask>& masks,
+           const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,
+           const std::vector<float>& values, const std::vector<float>& state);
+  /// Computes advantages and value targets of a full rollout.
+  /// @param last_values [E] of the observations that follow the last step
+  void Finish(const std::vector<float>& last_values, float gamma, float lambda);
+  void Clear() { steps_ = 0; }
+
+  bool IsValid(std::size_t slot) const { return ends_[slot] != StepEnd::kNoTransition; }
+  const float* features(std::size_t slot) const {
+    return features_.data() + slot * shape_.features;
+  }
+  /// @param slot at a step that is a multiple of sequence_length
+  const float* state(std::size_t slot) const;
+  bool started(std::size_t slot) const { return started_[slot] != 0; }
+  ActionMask mask(std::size_t slot) const { return masks_[slot]; }
+  std::uint8_t action(std::size_t slot) const { return actions_[slot]; }
+  float log_prob(std::size_t slot) const { return log_probs_[slot]; }
+  float value(std::size_t slot) const { return values_[slot]; }
+  float advantage(std::size_t slot) const { return advantages_[slot]; }
+  float target(std::size_t slot) const { return advantages_[slot] + values_[slot]; }
+
+  void Save(Checkpoint& checkpoint) const;
+  /// @throws InputError if sections are missing or have another size
+  void Load(const Checkpoint& checkpoint);
+
+ private:
+  Shape shape_;
+  std::size_t steps_{};  // recorded
+  bool is_open_{};       // the last step waits for its results
+  std::vector<float> features_;
+  std::vector<float> states_;  // [T / sequence_length, E, state_size]
+  std::vector<ActionMask> masks_;
+  std::vector<std::uint8_t> actions_;
+  std::vector<std::uint8_t> started_;
+  std::vector<float> log_probs_;
+  std::vector<float> values_;  // [T + 1, E]
+  std::vector<float> rewards_;
+  std::vector<StepEnd> ends_;
+  std::vector<float> advantages_;
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Outputs and gradients of both networks against plain loops and complex-step derivatives (Squire
+// and Trapp 1998), which use no back-propagation.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "aquafarm/base/rng.h"
+#include "ppo/make_actor_critic.h"
+#include "ppo/ppo_loss.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+using Complex = std::complex<double>;
+using Vector = std::vector<Complex>;
+
+constexpr std::size_t kFeatures = 5;
+constexpr std::size_t kHidden = 6;
+constexpr std::size_t kWidth = kActorCriticOutputs;
+
+Complex Relu(Complex x) { return x.real() > 0.0 ? x : Complex(0.0); }
+Complex Sigmoid(Complex x) { return 1.0 / (1.0 + std::exp(-x)); }
+
+/// Reads layers from a flat vector in their order.
+class Layers {
+ public:
+  explicit Layers(const Vector& weights) : next_(weights.data()) {}
+  /// out = in · W (+ b)
+  Vector Apply(const Vector& in, std::size_t outputs, bool has_bias = true) {
+    Vector out(outputs);
+    for (std::size_t i = 0; i < in.size(); ++i) {
+      for (std::size_t o = 0; o < outputs; ++o) out[o] += in[i] * next_[i * outputs + o];
+    }
+    next_ += in.size() * outputs;
+    if (!has_bias) return out;
+    for (std::size_t o = 0; o < outputs; ++o) out[o] += next_[o];
+    next_ += outputs;
+    return out;
+  }
+
+ private:
+  const Complex* next_;
+};
+
+Vector ReluOf(Vector values) {
+  for (Complex& value : values) value = Relu(value);
+  return values;
+}
+
+Vector FeedForwardOutputs(const Vector& weights, const Vector& features) {
+  Layers layers(weights);
+  const Vector first = ReluOf(layers.Apply(features, kHidden));
+  const Vector second = ReluOf(layers.Apply(first, kHidden));
+  return layers.Apply(second, kWidth);
+}
+
+/// Advances h and c.
+Vector LstmOutputs(const Vector& weights, const Vector& features, Vector& h, Vector& c) {
+  Layers layers(weights);
+  const Vector seen = ReluOf(layers.Apply(features, kHidden));
+  Vector gates = layers.Apply(seen, 4 * kHidden);
+  const Vector recurrent = layers.Apply(h, 4 * kHidden, /*has_bias=*/false);
+  Vector joined;
+  for (std::size_t i = 0; i < gates.size(); ++i) gates[i] += recurrent[i];
+  for (std::size_t i = 0; i < kHidden; ++i) {
+    c[i] =
+        Sigmoid(gates[kHidden + i]) * c[i] + Sigmoid(gates[i]) * std::tanh(gates[2 * kHidden + i]);
+    h[i] = Sigmoid(gates[3 * kHidden + i]) * std::tanh(c[i]);
+  }
+  joined = h;
+  joined.insert(joined.end(), seen.begin(), seen.end());
+  return layers.Apply(joined, kWidth);
+}
+
+struct Batch {
+  std::size_t steps{};
+  std::size_t sequences{};
+  std::vector<float> features;
+  std::vector<float> state;
+  std::vector<std::uint8_t> started;
+  std::vector<float> slopes;  // the loss is Σ slopes · outputs
+  SequenceRows rows() const {
+    return {steps, sequences, features.data(), state.data(), started.data()};
+  }
+};
+
+Batch MakeBatch(std::size_t steps, std::size_t sequences, std::size_t state_size) {
+  RandomStream rng({5, 0, Purpose::kLearner, 0});
+  Batch batch{steps, sequences, {}, {}, {}, {}};
+  const auto fill = [&](std::vector<float>& values, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) values.push_back(rng.Uniform(-1.0F, 1.0F));
+  };
+  fill(batch.features, steps * sequences * kFeatures);
+  fill(batch.state, sequences * state_size);
+  fill(batch.slopes, steps * sequences * kWidth);
+  batch.started.resize(steps * sequences);
+  if (steps > 3) batch.started[2 * sequences] = 1;  // an episode starts in sequence 0
+  return batch;
+}
+
+Complex DefinedLoss(const Vector& weights, const Batch& batch, bool recurrent,
+                    std::vector<double>* outputs = nullptr) {
+  Complex loss = 0.0;
+  if (outputs != nullptr) outputs->resize(batch.slopes.size());
+  for (std::size_t s = 0; s < batch.sequences; ++s) {
+    Vector h(kHidden);
+    Vector c(kHidden);
+    for (std::size_t i = 0; recurrent && i < kHidden; ++i) {
+      h[i] = static_cast<double>(batch.state[s * 2 * kHidden + i]);
+      c[i] = static_cast<double>(batch.state[s * 2 * kHidden + kHidden + i]);
+    }
+    for (std::size_t t = 0; t < batch.steps; ++t) {
+      const std::size_t row = t * batch.sequences + s;
+      if (batch.started[row] != 0) {
+        h.assign(kHidden, 0.0);
+        c.assign(kHidden, 0.0);
+      }
+      const auto* const seen = batch.features.data() + row * kFeatures;
+      const Vector features(seen, seen + kFeatures);
+      const Vector out =
+          recurrent ? LstmOutputs(weights, features, h, c) : FeedForwardOutputs(weights, features);
+      for (std::size_t i = 0; i < kWidth; ++i) {
+        loss += out[i] * static_cast<double>(batch.slopes[row * kWidth + i]);
+        if (outputs != nullptr) (*outputs)[row * kWidth + i] = out[i].real();
+      }
+    }
+  }
+  return loss;
+}
+
+void ExpectAgrees(bool recurrent, std::size_t steps, std::size_t sequences) {
+  const auto network = MakeActorCritic(kFeatures, kHidden, recurrent, 9);
+  for (float& weight : network->weights()) weight *= 3.0F;  // so that saturation matters
+  const Batch batch = MakeBatch(steps, sequences, network->state_size());
+  Vector weights(network->weights().begin(), network->weights().end());
+  const float* const outputs = network->Forward(batch.rows(), nullptr);
+  std::vector<double> expected;
+  DefinedLoss(weights, batch, recurrent, &expected);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    ASSERT_NEAR(static_cast<double>(outputs[i]), expected[i], 1e-4) << "output " << i;
+  }
+  network->Backward(batch.rows(), batch.slopes.data());
+  constexpr double kTiny = 1e-30;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    const Complex kept = weights[k];
+    weights[k] += Complex(0.0, kTiny);
+    const double slope = DefinedLoss(weights, batch, recurrent).imag() / kTiny;
+    weights[k] = kept;
+    ASSERT_NEAR(static_cast<double>(network->gradient()[k]), slope, 2e-4 * (1.0 + std::abs(slope)))
+        << "weight " << k << " of " << weights.size();
+  }
+}
+
+TEST(FeedForward, OutputsAndGradientEqualTheDefinition) { ExpectAgrees(false, 1, 7); }
+
+TEST(Lstm, OutputsAndGradientThroughTimeEqualTheDefinition) { ExpectAgrees(true, 5, 3); }
+
+TEST(ActorCritic, GradientsAddUpOverChunks) {
+  for (const bool recurrent : {false, true}) {
+    const auto network = MakeActorCritic(kFeatures, kHidden, recurrent, 9);
+    const Batch batch = MakeBatch(1, 4, network->state_size());
+    network->Forward(batch.rows(), nullptr);
+    network->Backward(batch.rows(), batch.slopes.data());
+    const std::vector<float> once = network->gradient();
+    network->Forward(batch.rows(), nullptr);
+    network->Backward(batch.rows(), batch.slopes.data());
+    for (std::size_t i = 0; i < once.size(); ++i) {
+      EXPECT_NEAR(network->gradient()[i], 2.0F * once[i], 1e-5F) << i;
+    }
+  }
+}
+
+TEST(Lstm, StepByStepEqualsTheWholeSequence) {
+  const auto network = MakeActorCritic(kFeatures, kHidden, true, 9);
+  const Batch batch = MakeBatch(5, 3, network->state_size());
+  const float* whole = network->Forward(batch.rows(), nullptr);
+  const std::vector<float> expected(whole, whole + batch.slopes.size());
+  std::vector<float> state = batch.state;
+  for (std::size_t t = 0; t < batch.steps; ++t) {
+    const std::size_t row = t * batch.sequences;
+    const std::vector<float> before = state;
+    const SequenceRows rows{1, batch.sequences, batch.features.data() + row * kFeatures,
+                            before.data(), batch.started.data() + row};
+    const float* const outputs = network->Forward(rows, state.data());
+    for (std::size_t i = 0; i < batch.sequences * kWidth; ++i) {
+      ASSERT_NEAR(outputs[i], expected[row * kWidth + i], 1e-5F) << "step " << t;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

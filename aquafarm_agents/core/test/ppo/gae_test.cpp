@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Advantages against their definition as a sum, and what a rollout records of each kind of end.
+#include "ppo/gae.h"
+
+#include <gtest/gtest.h>
+
+#include "aquafarm/base/rng.h"
+#include "aquafarm/grid/action.h"
+#include "ppo/rollout.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+struct Steps {
+  std::vector<float> rewards;
+  std::vector<float> values;
+  std::vector<StepEnd> ends;
+};
+
+// The sum over future errors, in double, for one entry of one column (E = 1).
+double DefinedAdvantage(const Steps& steps, std::size_t t, double gamma, double lambda) {
+  if (steps.ends[t] == StepEnd::kNoTransition) return 0.0;
+  double sum = 0.0;
+  double weight = 1.0;
+  for (; t < steps.ends.size(); ++t) {
+    if (steps.ends[t] == StepEnd::kNoTransition) break;
+    const double next =
+        steps.ends[t] == StepEnd::kTerminated ? 0.0 : static_cast<double>(steps.values[t + 1]);
+    sum += weight * (static_cast<double>(steps.rewards[t]) + gamma * next -
+                     static_cast<double>(steps.values[t]));
+    if (steps.ends[t] != StepEnd::kContinues) break;
+    weight *= gamma * lambda;
+  }
+  return sum;
+}
+
+TEST(Gae, EqualsItsDefinitionForRandomEpisodes) {
+  RandomStream rng({7, 0, Purpose::kLearner, 0});
+  Steps steps;
+  for (int t = 0; t < 200; ++t) {
+    steps.rewards.push_back(rng.Uniform(-5.0F, 5.0F));
+    steps.values.push_back(rng.Uniform(-5.0F, 5.0F));
+    const std::uint32_t draw = rng.Below(10);
+    steps.ends.push_back(draw < 7 ? StepEnd::kContinues : static_cast<StepEnd>(draw - 6));
+  }
+  steps.values.push_back(2.0F);
+  std::vector<float> advantages;
+  EstimateAdvantages(steps.rewards, steps.values, steps.ends, 1, 0.9F, 0.8F, advantages);
+  ASSERT_EQ(advantages.size(), steps.ends.size());
+  for (std::size_t t = 0; t < advantages.size(); ++t) {
+    EXPECT_NEAR(advantages[t],
+                DefinedAdvantage(steps, t, static_cast<double>(0.9F), static_cast<double>(0.8F)),
+                1e-4)
+        << t;
+  }
+}
+
+TEST(Gae, BootstrapsAtTruncationAndNotAtTermination) {
+  const std::vector<float> rewards{1.0F, 1.0F};
+  const std::vector<float> values{10.0F, 20.0F, 30.0F, 40.0F};  // two entries, one step
+  std::vector<float> advantages;
+  EstimateAdvantages(rewards, values, {StepEnd::kTruncated, StepEnd::kTerminated}, 2, 0.5F, 1.0F,
+                     advantages);
+  EXPECT_FLOAT_EQ(advantages[0], 1.0F + 0.5F * 30.0F - 10.0F);
+  EXPECT_FLOAT_EQ(advantages[1], 1.0F - 20.0F);
+}
+
+TEST(Gae, DoesNotMixEntries) {
+  // Entry 0 earns nothing; entry 1 earns 8 in the second step.
+  const std::vector<float> rewards{0, 0, 0, 8};
+  const std::vector<float> values(6, 0.0F);
+  const std::vector<StepEnd> ends(4, StepEnd::kContinues);
+  std::vector<float> advantages;
+  EstimateAdvantages(rewards, values, ends, 2, 0.5F, 0.5F, advantages);
+  EXPECT_EQ(advantages, (std::vector<float>{0, 2, 0, 8}));
+}
+
+// One farm of two agents; each call is the results of one step.
+Results Outcome(EndReason reason, bool started, std::vector<std::uint8_t> in_play) {
+  Results results;
+  results.rewards = {2.0F, 4.0F};
+  results.in_play = std::move(in_play);
+  results.reasons = {static_cast<std::uint8_t>(reason)};
+  results.started = {static_cast<std::uint8_t>(started)};
+  results.features = {1.0F, 2.0F};
+  return results;
+}
+
+// Records one decision after `before` and what followed it.
+Rollout Recorded(const Results& before, const Results& after) {
+  Rollout rollout({1, 2, 2, 1, 0, 1});
+  rollout.Complete(before, 1.0F);  // nothing waits for its results yet
+  rollout.Add(before, {1, 1}, {0, 0}, {0, 0}, {10, 20}, {});
+  EXPECT_FALSE(rollout.IsFull());
+  rollout.Complete(after, 0.5F);
+  EXPECT_TRUE(rollout.IsFull());
+  rollout.Finish({100, 200}, 1.0F, 1.0F);
+  return rollout;
+}
+
+TEST(Rollout, LearnsFromStepsOfActiveAgentsOnly) {
+  const Results going = Outcome(EndReason::kNone, false, {1, 1});
+  Rollout rollout = Recorded(going, going);
+  EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F + 100.0F - 10.0F) << "reward 2, scaled by 0.5";
+  EXPECT_FLOAT_EQ(rollout.target(1), 2.0F + 200.0F);
+  // Agent 1 is done by this step; its value does not count.
+  rollout = Recorded(going, Outcome(EndReason::kNone, false, {1, 0}));
+  EXPECT_FLOAT_EQ(rollout.advantage(1), 2.0F - 20.0F);
+  EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F + 100.0F - 10.0F);
+  // It was done before.
+  rollout = Recorded(Outcome(EndReason::kNone, false, {1, 0}), going);
+  EXPECT_TRUE(rollout.IsValid(0));
+  EXPECT_FALSE(rollout.IsValid(1));
+  rollout = Recorded(going, Outcome(EndReason::kAllRetrieved, false, {1, 1}));
+  EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F - 10.0F) << "terminated";
+  rollout = Recorded(going, Outcome(EndReason::kStepLimit, false, {1, 1}));
+  EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F + 100.0F - 10.0F) << "truncated";
+  // The episode was over: the environment ignores the action and starts the next episode.
+  rollout = Recorded(Outcome(EndReason::kAllRetrieved, false, {1, 1}),
+                     Outcome(EndReason::kNone, true, {1, 1}));
+  EXPECT_FALSE(rollout.IsValid(0));
+  // The farm was lost in mid-episode and came back with another one.
+  rollout = Recorded(going, Outcome(EndReason::kNone, true, {1, 1}));
+  EXPECT_FALSE(rollout.IsValid(0));
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -12,6 +12,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/storms/reader.h"
+#include "aquafarm/storms/to_disaster.h"
 #include "aquafarm_sim/convert/conversions.h"
 #include "aquafarm_sim/names.h"
 #include "aquafarm_sim/node/bulletin_folder.h"
@@ -119,7 +120,21 @@ class BulletinNode {
     }
     const auto& response = call->message.response;
     if (!response.ok) throw aquafarm::InputError(path + ": refused: " + response.message);
-    ROS_INFO("%s: %s is now disaster %d", path.c_str(), name.c_str(), params_.id);
+    Report(path, name, storm);
+  }
+
+  // What the ranch has now: how much of it is recorded and how much is forecast.
+  void Report(const std::string& path, const std::string& name,
+              const aquafarm::HazardTrack& storm) const {
+    const aquafarm::StormKnowledge known = aquafarm::KnowledgeOf(
+        storm, aquafarm::WithForecast(storm, aquafarm::NoForecast::kPersist));
+    const std::string text = path + ": " + name + " is now disaster " +
+                             std::to_string(params_.id) + "; " + aquafarm::Describe(known);
+    if (known.issued == 0) {
+      ROS_WARN("%s", text.c_str());
+    } else {
+      ROS_INFO("%s", text.c_str());
+    }
   }
 
   const BulletinParams params_;

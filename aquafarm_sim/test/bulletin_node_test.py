@@ -100,18 +100,39 @@ class BulletinNodeTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
         with open(os.path.join(folder, "old.json"), "w", encoding="utf-8") as file:
             file.write(storm(30.0, 50.0).replace("2021-07-24", "1949-07-24"))
-        node = self.start(folder)
+        words = "old.json: In-Fa: got positions of before 1970, expected later ones"
+        self.assertIn(words, self.read_until(self.start(folder), words))
+
+    def read_until(self, node, words):
+        """What a node writes to its log until it contains the words or the time is over."""
         os.set_blocking(node.stderr.fileno(), False)
-        words, said, end = "In-Fa: got positions of before 1970", b"", time.monotonic() + LIMIT_S
-        while words not in said.decode() and time.monotonic() < end:
+        text, end = b"", time.monotonic() + LIMIT_S
+        while words not in text.decode(errors="replace") and time.monotonic() < end:
             try:
-                said += os.read(node.stderr.fileno(), 4096)
+                text += os.read(node.stderr.fileno(), 4096)
             except BlockingIOError:
                 time.sleep(0.05)
         node.terminate()
         node.wait(LIMIT_S)
         node.stderr.close()
-        self.assertIn("old.json: " + words + ", expected later ones", said.decode())
+        return text.decode(errors="replace")
+
+    def test_the_log_separates_what_is_recorded_from_what_is_forecast(self):
+        folder = tempfile.mkdtemp(prefix="bulletins.")
+        self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
+        bulletin = os.path.join(folder, "one.json")
+        with open(bulletin, "w", encoding="utf-8") as file:
+            file.write(storm(30.0, 50.0))
+        words = ("In-Fa is now disaster 0; known until 2021-07-24T00:00:00Z only; no forecast: it is "
+                 "assumed to keep its motion, wind and rings until 2021-07-25T00:00:00Z")
+        self.assertIn(words, self.read_until(self.start(folder), words))
+        ahead = [{"sets": "CMA", "points": [
+            {"time": "2021-07-25T20:00:00", "lat": 30.2, "lng": 122.7, "speed": 45}]}]
+        with open(bulletin, "w", encoding="utf-8") as file:
+            file.write(storm(30.0, 50.0, ahead))
+        words = ("In-Fa is now disaster 0; recorded until 2021-07-24T00:00:00Z, then forecast until "
+                 "2021-07-25T12:00:00Z (issued 2021-07-24T00:00:00Z by CMA)")
+        self.assertIn(words, self.read_until(self.start(folder), words))
 
     def test_a_ranch_that_is_away_or_hangs_gets_the_bulletin_later(self):
         calls = []

@@ -141,8 +141,9 @@ TEST(Storms, ReachTheFarmsForWhichTheyAreNotOver) {
   const auto late = Tell(*ranch, North());
   EXPECT_FALSE(late.ok);
   EXPECT_EQ(late.message,
-            "bulletin: is over: got a last position before step 72, expected one of a storm that "
-            "goes on");
+            "bulletin: got a storm recorded until 2021-07-24T00:00:00Z, then forecast until "
+            "2021-07-24T12:00:00Z (issued 2021-07-24T00:00:00Z), expected one that is known after "
+            "step 72 (2021-07-24T12:00:00Z); send a newer bulletin");
 }
 
 TEST(Storms, ThatAreWrongChangeNothing) {
@@ -185,8 +186,9 @@ TEST(Storms, ThatAreWrongChangeNothing) {
               s.fixes[0].stamp.sec -= 100 * 3600;
               s.forecast.clear();
             }),
-            "bulletin: is over: got a last position before step 0, expected one of a storm that "
-            "goes on");
+            "bulletin: got a storm known until 2021-07-19T20:00:00Z only; no forecast: it is "
+            "assumed to keep its motion, wind and rings until 2021-07-20T20:00:00Z, expected one "
+            "that is known after step 0 (2021-07-24T00:00:00Z); send a newer bulletin");
   const auto nowhere = test::MakeRanch(aquafarm::test::TinyScenario());
   EXPECT_EQ(Tell(*nowhere, North()).message,
             "bulletin: needs a ranch with grid.origin and time.start");

@@ -46,11 +46,11 @@ std::pair<double, double> Pair(const std::string& name, const std::string& text,
 
 GeoPoint Place(const std::string& name, const std::string& text) {
   const auto [latitude, longitude] = Pair(name, text, ',', "LATITUDE,LONGITUDE in degrees");
-  if (latitude >= -90.0 && latitude <= 90.0 && longitude >= -180.0 && longitude <= 180.0) {
-    return {latitude, longitude};
+  if (latitude >= -90.0 && latitude <= 90.0 && longitude >= -180.0 && longitude <= 360.0) {
+    return {latitude, longitude > 180.0 ? longitude - 360.0 : longitude};
   }
   throw InputError(name + ": got '" + text +
-                   "', expected a latitude in [-90, 90] and a longitude in [-180, 180]");
+                   "', expected a latitude in [-90, 90] and a longitude in [-180, 360]");
 }
 
 // "200m" or "0.2km".

@@ -121,6 +121,19 @@ bool AsciiGrid::IsGeographic() const {
   return cell_size < 1.0 && std::abs(west) <= 720.0 && std::abs(south) <= 180.0;
 }
 
+std::array<long, 2> AsciiGrid::Nearest(GeoPoint place) const {
+  // Relative to the middle column, so that longitudes from -180 and from 0 both fit.
+  const double middle = static_cast<double>(value.cols() - 1) / 2.0;
+  const double east = std::remainder(place.longitude - (west + middle * cell_size), 360.0);
+  return {std::lround(middle + east / cell_size),
+          std::lround((place.latitude - south) / cell_size)};
+}
+
+bool AsciiGrid::Covers(GeoPoint place) const {
+  const auto [column, row] = Nearest(place);
+  return column >= 0 && column < value.cols() && row >= 0 && row < value.rows();
+}
+
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name) {
   std::vector<std::string> unused;
   HazardPlace place(origin_name, unused);
@@ -192,11 +205,8 @@ LandShare ShareOfLand(const AsciiGrid& grid, const GeoFrame& frame, std::int32_t
       for (int k = 0; k < kSamples * kSamples; ++k) {
         const GeoPoint point = frame.ToGeo(x + (k % kSamples + 0.5) / kSamples - 0.5,
                                            y + (k / kSamples + 0.5) / kSamples - 0.5);
-        const auto column = std::lround((point.longitude - grid.west) / grid.cell_size);
-        const auto row = std::lround((point.latitude - grid.south) / grid.cell_size);
-        const bool inside =
-            column >= 0 && column < grid.value.cols() && row >= 0 && row < grid.value.rows();
-        share(y, x) += inside ? LandAt(grid.value(row, column), sea_level) : 1.0F;
+        const auto [column, row] = grid.Nearest(point);
+        share(y, x) += grid.Covers(point) ? LandAt(grid.value(row, column), sea_level) : 1.0F;
       }
       share(y, x) /= kSamples * kSamples;
     }

@@ -142,7 +142,7 @@ class CoastReader {
           point.is_array() && point.size() >= 2 && point[0].is_number() && point[1].is_number();
       const double longitude = numbers ? point[0].get<double>() : 1000.0;
       const double latitude = numbers ? point[1].get<double>() : 1000.0;
-      if (!(std::abs(longitude) <= 180.0) || !(std::abs(latitude) <= 90.0)) {
+      if (!(longitude >= -180.0 && longitude <= 360.0) || !(std::abs(latitude) <= 90.0)) {
         place_.RefuseValue(At(path, i), "got " + internal::Quoted(point.dump()) +
                                             ", expected [longitude, latitude] in degrees");
       }

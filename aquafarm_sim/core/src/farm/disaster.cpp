@@ -102,12 +102,19 @@ void EnterLeg(ObservableDisaster& disaster, const std::vector<Waypoint>& track,
   }
 }
 
-// Reflects position and heading at the borders of [low, high].
-void Bounce(float& position, float low, float high, std::int32_t mirror, Disaster& disaster) {
+// Reflects position and heading at the borders of [low, high]. A disaster that was set outside
+// moves in on its heading; if it moves away, it turns and stays for this step.
+void Bounce(float& position, float before, float low, float high, std::int32_t mirror,
+            Disaster& disaster) {
   const bool below = position < low;
   if (!below && position <= high) return;
-  position = below ? low + (low - position) : high - (position - high);
-  position = std::min(std::max(position, low), high);
+  if (before < low || before > high) {
+    if (below ? position >= before : position <= before) return;
+    position = before;
+  } else {
+    position = below ? low + (low - position) : high - (position - high);
+    position = std::min(std::max(position, low), high);
+  }
   disaster.heading_deg = (mirror - disaster.heading_deg + 720) % 360;
   SetMotion(disaster);
 }
@@ -118,7 +125,8 @@ float Wrapped(float position, float low, float high) {
   return position;
 }
 
-void MeetBorder(Disaster& disaster, std::int32_t width, std::int32_t height) {
+void MeetBorder(Disaster& disaster, float x_before, float y_before, std::int32_t width,
+                std::int32_t height) {
   if (disaster.border == Border::kLeave) return;
   const float low = -0.5F - disaster.margin;
   const float high_x = static_cast<float>(width) - 0.5F + disaster.margin;
@@ -128,8 +136,8 @@ void MeetBorder(Disaster& disaster, std::int32_t width, std::int32_t height) {
     disaster.y = Wrapped(disaster.y, low, high_y);
     return;
   }
-  Bounce(disaster.x, low, high_x, 360, disaster);
-  Bounce(disaster.y, low, high_y, 180, disaster);
+  Bounce(disaster.x, x_before, low, high_x, 360, disaster);
+  Bounce(disaster.y, y_before, low, high_y, 180, disaster);
 }
 
 void Turn(Disaster& disaster, const StreamKey& turn_key, std::int32_t step) {
@@ -228,9 +236,11 @@ void MoveDisaster(Disaster& disaster, const Track& track, const StreamKey& turn_
     return;
   }
   Turn(disaster, turn_key, step);
+  const float x_before = disaster.x;
+  const float y_before = disaster.y;
   disaster.x += disaster.dx;
   disaster.y += disaster.dy;
-  MeetBorder(disaster, width, height);
+  MeetBorder(disaster, x_before, y_before, width, height);
   GrowRings(disaster, disaster.radius_growth);
 }
 

@@ -256,6 +256,20 @@ std::int32_t LineOfJson(const std::string& text, const std::string& path) {
              : LineAt(text, static_cast<std::size_t>(found - text.data() - 1));
 }
 
+namespace {
+
+// Names an error of a time or a position as such.
+template <typename Read>
+auto OfFix(Read read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw FixError(error.what());
+  }
+}
+
+}  // namespace
+
 JsonObject::JsonObject(const Json& value, std::string path, HazardPlace& place)
     : value_(value), path_(std::move(path)), place_(place) {
   if (value.is_object()) return;
@@ -308,14 +322,41 @@ std::string JsonObject::Text(Keys keys) const {
   return value->get<std::string>();
 }
 
+template <typename Read>
+auto JsonObject::Try(Keys keys, Read read) const -> decltype(read()) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    place_.WarnOnce(KeyOf(keys), error, kIgnored);
+    return {};
+  }
+}
+
+std::optional<double> JsonObject::TryNumber(Keys keys, double min, double max) const {
+  return Try(keys, [&] { return Number(keys, min, max); });
+}
+
+std::string JsonObject::TryText(Keys keys) const {
+  return Try(keys, [&] { return Text(keys); });
+}
+
+const Json* JsonObject::TryList(Keys keys) const {
+  return Try(keys, [&] { return List(keys); });
+}
+
 std::int64_t JsonObject::NeedTime(Keys keys, std::int64_t zone_s) const {
-  const std::optional<std::int64_t> time = ParseDateTime(Text(keys), zone_s);
-  if (!time) Refuse(keys, Find(keys), "a time as 2021-07-25T14:00:00");
-  return *time;
+  return OfFix([&] {
+    const std::optional<std::int64_t> time = ParseDateTime(Text(keys), zone_s);
+    if (!time) Refuse(keys, Find(keys), "a time as 2021-07-25T14:00:00");
+    return *time;
+  });
 }
 
 GeoPoint JsonObject::NeedPosition(Keys latitude, Keys longitude) const {
-  return {NeedNumber(latitude, -90.0, 90.0), NormalLongitude(NeedNumber(longitude, -180.0, 360.0))};
+  return OfFix([&]() -> GeoPoint {
+    return {NeedNumber(latitude, -90.0, 90.0),
+            NormalLongitude(NeedNumber(longitude, -180.0, 360.0))};
+  });
 }
 
 const Json* JsonObject::List(Keys keys) const {

@@ -53,18 +53,27 @@ class JsonObject {
   /// Returns a number; nullopt if it is missing. @throws InputError if it is not in [min, max]
   std::optional<double> Number(Keys keys, double min, double max) const;
   double NeedNumber(Keys keys, double min, double max) const;
+  /// As Number; an invalid value is ignored with one warning per key and file.
+  std::optional<double> TryNumber(Keys keys, double min, double max) const;
   /// Returns a text, or a number as text; "" if it is missing. @throws InputError
   std::string Text(Keys keys) const;
-  /// Returns UTC seconds; `zone_s` applies if the text has no zone. @throws InputError
+  /// As Text; anything else is ignored with one warning per key and file.
+  std::string TryText(Keys keys) const;
+  /// Returns UTC seconds; `zone_s` applies if the text has no zone. @throws FixError
   std::int64_t NeedTime(Keys keys, std::int64_t zone_s) const;
+  /// @throws FixError
   GeoPoint NeedPosition(Keys latitude, Keys longitude) const;
   /// Returns a list, or nullptr if it is missing. @throws InputError if it is not a list
   const nlohmann::json* List(Keys keys) const;
+  /// As List; anything else is ignored with one warning per key and file.
+  const nlohmann::json* TryList(Keys keys) const;
   /// Sets the parse position to this object, for an error or a warning, and returns it.
   HazardPlace& Here() const;
   const std::string& path() const { return path_; }
 
  private:
+  template <typename Read>
+  auto Try(Keys keys, Read read) const -> decltype(read());
   [[noreturn]] void Refuse(Keys keys, const nlohmann::json* got, const std::string& expected) const;
   const nlohmann::json& value_;
   std::string path_;

@@ -14,33 +14,72 @@ namespace {
 
 constexpr std::size_t kMostWarnings = 100;  // protects against files designed to fill the memory
 
-[[noreturn]] void RefuseNumber(std::string_view text, const char* name, const char* kind,
-                               const std::string& min, const std::string& max,
-                               const HazardPlace& place) {
-  place.Refuse(std::string(name) + ": got " + Quoted(text) + ", expected a " + kind + " in [" +
-               min + ", " + max + "]");
+template <typename T>
+std::string NotInRange(std::string_view text, const char* name, T min, T max) {
+  return std::string(name) + ": got " + Quoted(text) + ", expected a " +
+         (std::is_integral_v<T> ? "whole number" : "number") + " in [" + Format(min) + ", " +
+         Format(max) + "]";
 }
 
 }  // namespace
 
+std::string HazardPlace::Located(const std::string& value_path) const {
+  // Each search reads the file again: after many the line is left out.
+  constexpr int kMostSearches = 200;
+  if (!locate) return file_ + ":" + std::to_string(line) + ": ";
+  if (++searches_ > kMostSearches) return file_ + ": ";
+  return file_ + ":" + std::to_string(locate(value_path)) + ": ";
+}
 std::string HazardPlace::At(const std::string& what) const {
-  const std::int32_t where = line == 0 && locate ? locate(path) : line;
-  return file_ + ":" + std::to_string(where) + ": " + Join(path, what);
+  const bool known = line != 0 || !locate;
+  return (known ? file_ + ":" + std::to_string(line) + ": " : Located(path)) + Join(path, what);
 }
 void HazardPlace::Refuse(const std::string& what) const { throw InputError(At(what)); }
 std::string HazardPlace::AtValue(const std::string& value_path, const std::string& what) const {
-  const std::int32_t where = locate ? locate(value_path) : line;
-  return file_ + ":" + std::to_string(where) + ": " +
-         (value_path.empty() ? what : value_path + ": " + what);
+  return Located(value_path) + (value_path.empty() ? what : value_path + ": " + what);
 }
 void HazardPlace::RefuseValue(const std::string& value_path, const std::string& what) const {
   throw InputError(AtValue(value_path, what));
+}
+void HazardPlace::RefuseFix(const std::string& what) const { throw FixError(At(what)); }
+void HazardPlace::RefuseFixValue(const std::string& value_path, const std::string& what) const {
+  throw FixError(AtValue(value_path, what));
 }
 void HazardPlace::Warn(const std::string& what) {
   if (warnings_.size() < kMostWarnings) warnings_.push_back(At(what));
 }
 void HazardPlace::WarnValue(const std::string& value_path, const std::string& what) {
   if (warnings_.size() < kMostWarnings) warnings_.push_back(AtValue(value_path, what));
+}
+bool HazardPlace::IsRepeated(const std::string& kind) {
+  const auto found = repeated_.find(kind);
+  if (found == repeated_.end()) return false;
+  Repeated& first = found->second;
+  ++first.more;
+  if (first.index < warnings_.size()) {
+    warnings_[first.index] =
+        first.text + " (and " + std::to_string(first.more) + " more of this kind in the file)";
+  }
+  return true;
+}
+void HazardPlace::AddFirst(const std::string& kind, std::string text) {
+  repeated_[kind] = {warnings_.size(), 0, text};
+  if (warnings_.size() < kMostWarnings) warnings_.push_back(std::move(text));
+}
+void HazardPlace::WarnOnce(const std::string& kind, const std::string& what) {
+  if (!IsRepeated(kind)) AddFirst(kind, At(what));
+}
+void HazardPlace::WarnValueOnce(const std::string& kind, const std::string& value_path,
+                                const std::string& what) {
+  if (!IsRepeated(kind)) AddFirst(kind, AtValue(value_path, what));
+}
+void HazardPlace::LeaveOut(const FixError& error, LeftOut& left_out) {
+  if (left_out.count++ == 0) left_out.first = error.what();
+  WarnOnce("point", error, "; the point is left out");
+}
+void HazardPlace::WarnOnce(const std::string& kind, const InputError& error,
+                           const std::string& end) {
+  if (!IsRepeated(kind)) AddFirst(kind, error.what() + end);
 }
 
 bool LineReader::Next(std::string_view& line) {
@@ -58,14 +97,14 @@ std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min
   text = Trim(text);
   const std::optional<std::int32_t> value = ParseWhole(text);
   if (value && *value >= min && *value <= max) return *value;
-  RefuseNumber(text, name, "whole number", Format(min), Format(max), place);
+  place.Refuse(NotInRange(text, name, min, max));
 }
 
 double ReadNumber(std::string_view text, const char* name, double min, double max,
                   const HazardPlace& place) {
   const std::optional<double> value = ParseNumber(text);
-  if (value && *value >= min && *value <= max) return *value;  // false for NaN
-  RefuseNumber(text, name, "number", Format(min), Format(max), place);
+  if (value && *value >= min && *value <= max) return *value;  // false for nan
+  place.Refuse(NotInRange(text, name, min, max));
 }
 
 std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* name,
@@ -75,10 +114,36 @@ std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* 
   return ReadWhole(text, name, min, max, place);
 }
 
+std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, std::int32_t min,
+                                     std::int32_t max, HazardPlace& place) {
+  text = Trim(text);
+  if (text.empty()) return std::nullopt;
+  const std::optional<std::int32_t> value = ParseWhole(text);
+  if (value && *value >= min && *value <= max) return value;
+  place.WarnOnce(name, NotInRange(text, name, min, max) + kIgnored);
+  return std::nullopt;
+}
+
+std::optional<double> TryNumber(std::string_view text, const char* name, double min, double max,
+                                HazardPlace& place) {
+  if (Trim(text).empty()) return std::nullopt;
+  const std::optional<double> value = ParseNumber(text);
+  if (value && *value >= min && *value <= max) return value;  // false for nan
+  place.WarnOnce(name, NotInRange(text, name, min, max) + kIgnored);
+  return std::nullopt;
+}
+
+std::int32_t ReadFixNumber(std::string_view text, const char* name, std::int32_t min,
+                           std::int32_t max, const HazardPlace& place) {
+  const std::optional<std::int32_t> value = ParseWhole(Trim(text));
+  if (value && *value >= min && *value <= max) return *value;
+  place.RefuseFix(NotInRange(text, name, min, max));
+}
+
 std::int64_t ReadHour(std::string_view text, const HazardPlace& place) {
   const std::optional<std::int64_t> time = ParseHour(text);
   if (time) return *time;
-  place.Refuse("time: got " + Quoted(text) + ", expected an hour of UTC as YYYYMMDDHH");
+  place.RefuseFix("time: got " + Quoted(text) + ", expected an hour of UTC as YYYYMMDDHH");
 }
 
 }  // namespace aquafarm::internal

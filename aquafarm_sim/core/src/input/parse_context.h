@@ -5,12 +5,28 @@
 /// position for errors and warnings.
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "aquafarm/base/check.h"
+
 namespace aquafarm::internal {
+
+/// Thrown when the time or the position of a point is invalid: the reader leaves out that point and
+/// keeps the storm.
+class FixError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// The points of one storm that were left out.
+struct LeftOut {
+  std::size_t count{};
+  std::string first;  ///< the message of the first
+};
 
 /// Position of a parser. Reports errors and warnings with the file and the line.
 class HazardPlace {
@@ -26,15 +42,51 @@ class HazardPlace {
   [[noreturn]] void Refuse(const std::string& what) const;
   /// @throws InputError "file:line: value_path: what", with the line of that value
   [[noreturn]] void RefuseValue(const std::string& value_path, const std::string& what) const;
+  /// @throws FixError with the words of Refuse
+  [[noreturn]] void RefuseFix(const std::string& what) const;
+  /// @throws FixError with the words of RefuseValue
+  [[noreturn]] void RefuseFixValue(const std::string& value_path, const std::string& what) const;
   void Warn(const std::string& what);
   void WarnValue(const std::string& value_path, const std::string& what);
+  /// Adds one warning per `kind`: the first with its line, then the number of later ones.
+  void WarnOnce(const std::string& kind, const std::string& what);
+  void WarnValueOnce(const std::string& kind, const std::string& value_path,
+                     const std::string& what);
+  /// The same with the words of a refusal; `end` says what is done instead.
+  void WarnOnce(const std::string& kind, const InputError& error, const std::string& end);
+  /// Counts a point that is left out and warns of the first one.
+  void LeaveOut(const FixError& error, LeftOut& left_out);
 
  private:
+  struct Repeated {
+    std::size_t index{};  // of the warning
+    std::size_t more{};   // of its kind after the first
+    std::string text;
+  };
+  // True for the second and later ones of a kind, which are counted.
+  bool IsRepeated(const std::string& kind);
+  void AddFirst(const std::string& kind, std::string text);
+  // "file:line: ", with the line of a value in JSON.
+  std::string Located(const std::string& value_path) const;
   std::string At(const std::string& what) const;
   std::string AtValue(const std::string& value_path, const std::string& what) const;
   const std::string& file_;
   std::vector<std::string>& warnings_;
+  std::map<std::string, Repeated> repeated_;
+  mutable int searches_{};
 };
+
+/// Reads one point by `read()`. @returns false when its time or position is invalid: it is left out
+template <typename Read>
+bool TryFix(Read read, LeftOut& left_out, HazardPlace& place) {
+  try {
+    read();
+    return true;
+  } catch (const FixError& error) {
+    place.LeaveOut(error, left_out);
+    return false;
+  }
+}
 
 /// Iterates over the lines of a text, without CR and LF.
 class LineReader {
@@ -62,7 +114,20 @@ std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* 
                                              std::int32_t min, std::int32_t max,
                                              const HazardPlace& place);
 
-/// Parses YYYYMMDDHH to UTC seconds. @throws InputError for an invalid date
+/// As ReadWholeOrBlank; an invalid value is ignored with one warning per name and file.
+std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, std::int32_t min,
+                                     std::int32_t max, HazardPlace& place);
+/// As TryWhole, of a decimal number.
+std::optional<double> TryNumber(std::string_view text, const char* name, double min, double max,
+                                HazardPlace& place);
+/// Ends the warning about a value that is not used.
+inline constexpr const char* kIgnored = "; the value is ignored";
+
+/// A whole number of a time or a position. @throws FixError
+std::int32_t ReadFixNumber(std::string_view text, const char* name, std::int32_t min,
+                           std::int32_t max, const HazardPlace& place);
+
+/// UTC seconds of YYYYMMDDHH. @throws FixError for a date that does not exist
 std::int64_t ReadHour(std::string_view text, const HazardPlace& place);
 
 }  // namespace aquafarm::internal

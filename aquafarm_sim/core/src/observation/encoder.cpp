@@ -132,7 +132,8 @@ void Encoder::Features(const View& view, float* out) const {
   const auto north = [=](Cell cell) { return static_cast<float>(cell.y - self.y) * scale; };
   out[0] = 2.0F * static_cast<float>(self.x) * scale - 1.0F;
   out[1] = 2.0F * static_cast<float>(self.y) * scale - 1.0F;
-  out[2] = 1.0F - static_cast<float>(view.step) / horizon_;
+  // A disaster that is set in play may last longer than the scenario's own.
+  out[2] = std::max(0.0F, 1.0F - static_cast<float>(view.step) / horizon_);
   out[3] = static_cast<float>(view.capacity - view.aboard) / static_cast<float>(view.capacity);
   out[4] = KnownRiskAt(view, self) * kRiskScale;
   out = Blocked(layout, self, out + kFirstBlockedFeature);

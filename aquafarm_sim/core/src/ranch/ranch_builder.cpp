@@ -24,6 +24,8 @@
 #include "base/text.h"
 #include "base/time.h"
 #include "input/file_type.h"
+#include "ranch/ranch_fit.h"
+#include "ranch/ranch_storm.h"
 #include "ranch/ranch_text.h"
 #include "scenario/domains.h"
 
@@ -102,6 +104,11 @@ class Builder {
     ranch_.warnings.insert(ranch_.warnings.end(), warnings.begin(), warnings.end());
   }
 
+  void KeepOne(const std::string& warning) {
+    if (!warning.empty()) ranch_.warnings.push_back(warning);
+  }
+  internal::RanchArea Area() { return {Frame(), width(), height()}; }
+
   void Resize(Eigen::Index rows, Eigen::Index columns, double cell_size_m) {
     plan_.width = static_cast<std::int32_t>(columns);
     plan_.height = static_cast<std::int32_t>(rows);
@@ -147,6 +154,7 @@ class Builder {
       case internal::FileKind::kAsciiGrid: {
         const AsciiGrid grid = ParseAsciiGrid(text, request_.chart);
         if (grid.IsGeographic()) {
+          KeepOne(internal::NeedCover(grid, Area(), request_.chart));
           return ShareOfLand(grid, Frame(), width(), height(), request_.sea_level);
         }
         Resize(grid.value.rows(), grid.value.cols(), grid.cell_size);
@@ -155,6 +163,7 @@ class Builder {
       case internal::FileKind::kGeoJson: {
         const Coast coast = ParseCoast(text, request_.chart);
         Keep(coast.warnings);
+        internal::NeedCover(coast, Area(), request_.chart);
         return ShareOfLand(coast, Frame(), width(), height());
       }
       default:
@@ -188,6 +197,7 @@ class Builder {
     } else {
       const GeoFrame frame = Frame();
       for (const GeoPoint& place : request_.port_places) {
+        KeepOne(internal::CheckPort(place, Area()));
         const std::array<double, 2> wanted = frame.ToGrid(place);
         const Cell cell{static_cast<std::int32_t>(std::lround(wanted[0])),
                         static_cast<std::int32_t>(std::lround(wanted[1]))};
@@ -197,42 +207,6 @@ class Builder {
       }
     }
     if (ports.empty()) Say(Text("ports: no shore, so %d drawn at the edge", request_.ports));
-  }
-
-  // The storm of a track in another file, at the same time.
-  static const HazardTrack& SameStorm(const char* option, const HazardFile& file,
-                                      const HazardTrack& track) {
-    const HazardTrack& same = OfThatName(option, file, track);
-    const std::int64_t first = same.fixes.front().time;
-    const std::int64_t last = same.fixes.back().time;
-    if (first <= track.fixes.back().time && last >= track.fixes.front().time) return same;
-    throw InputError(std::string(option) + ": got " + (same.name.empty() ? same.id : same.name) +
-                     " from " + FormatTime(first) + " to " + FormatTime(last) +
-                     ", expected the storm from " + FormatTime(track.fixes.front().time) + " to " +
-                     FormatTime(track.fixes.back().time));
-  }
-
-  // By id, else by name.
-  static const HazardTrack& OfThatName(const char* option, const HazardFile& file,
-                                       const HazardTrack& track) {
-    const auto letters = [](const std::string& name) {
-      std::string bare = internal::Upper(name);
-      bare.erase(std::remove(bare.begin(), bare.end(), '-'), bare.end());
-      return bare;
-    };
-    const HazardTrack& first = file.tracks.front();
-    const bool unnamed = first.name.empty() || track.name.empty();
-    if (file.tracks.size() == 1 && (unnamed || letters(first.name) == letters(track.name))) {
-      return first;
-    }
-    for (const HazardTrack& other : file.tracks) {
-      if (other.id == track.id) return other;
-    }
-    try {
-      return FindTrack(file, track.name.empty() ? track.id : track.name);
-    } catch (const InputError& error) {
-      throw InputError(std::string(option) + ": " + error.what());
-    }
   }
 
   // In the name of a fix of the track's file; JSON has no lines here.
@@ -254,6 +228,22 @@ class Builder {
     }
   }
 
+  // The recorded track and its newest forecast: its own, or one of --forecasts unless the track is
+  // a best track, which is complete.
+  HazardTrack Continued(HazardTrack recorded, HazardFormat format) {
+    const bool complete = format == HazardFormat::kCma || format == HazardFormat::kJma;
+    if (!request_.forecasts.empty()) {
+      forecasts_ = LoadHazardFile(request_.forecasts);
+      Keep(forecasts_.warnings);
+      if (NewestForecast(recorded) == nullptr && !complete) {
+        recorded.forecasts = internal::SameStorm("forecasts", forecasts_, recorded).forecasts;
+      }
+    }
+    HazardTrack whole = WithForecast(recorded, NoForecast::kEnd);
+    plan_.knowledge = KnowledgeOf(recorded, whole);
+    return whole;
+  }
+
   HazardTrack ReadTrack() {
     const auto only = [](const HazardFile& file, const std::string& storm) {
       return storm.empty() && file.tracks.size() == 1 ? file.tracks[0] : FindTrack(file, storm);
@@ -261,17 +251,20 @@ class Builder {
     const HazardFile file = LoadHazardFile(request_.track);
     Keep(file.warnings);
     HazardTrack track = only(file, request_.storm);
-    if (track.fixes.size() == 1) {
-      Refuse(track.fixes[0], "got the only point of " +
-                                 (track.name.empty() ? track.id : track.name) +
-                                 ", expected two or more to know how the storm moves");
-    }
+    const auto recorded = static_cast<int>(track.fixes.size());
     std::string radii;
     if (!request_.radii.empty()) {
       const HazardFile other = LoadHazardFile(request_.radii);
       Keep(other.warnings);
-      radii = Text("; radii of %d from %s", BorrowRings(SameStorm("radii", other, track), track),
+      radii = Text("; radii of %d from %s",
+                   BorrowRings(internal::SameStorm("radii", other, track), track),
                    FileName(request_.radii).c_str());
+    }
+    track = Continued(track, file.format);
+    if (track.fixes.size() == 1) {
+      Refuse(track.fixes[0], "got the only point of " +
+                                 (track.name.empty() ? track.id : track.name) +
+                                 ", expected two or more to know how the storm moves");
     }
     plan_.storm = ToRings(track, request_.reduction);
     const bool blank = file.format == HazardFormat::kIbtracs && plan_.storm.estimated > 0;
@@ -279,8 +272,7 @@ class Builder {
     plan_.storm_text = (track.name.empty() ? track.id : track.name + " (" + track.id + ")") + ", " +
                        std::string(ToString(file.format)) + " " + FileName(request_.track);
     Say("storm: " + plan_.storm_text +
-        Text(", %d fixes, winds of %d minutes", static_cast<int>(track.fixes.size()), averaging) +
-        radii +
+        Text(", %d fixes, winds of %d minutes", recorded, averaging) + radii +
         Text("; radii estimated at %d%s, unknown at %d", plan_.storm.estimated,
              blank ? ", where quadrants are blank" : "", plan_.storm.silent));
     return track;
@@ -297,14 +289,10 @@ class Builder {
     const double half_diagonal_km =
         std::hypot(width(), height()) / 2.0 * plan_.cell_size_m / 1000.0;
     const Passage passage = PassOver(plan_.storm, *request_.center, half_diagonal_km);
-    const std::int32_t widest_kt = plan_.storm.wind_kt.back();
+    const internal::PassageReport report = internal::Report(plan_.storm, passage, plan_.knowledge);
+    for (const std::string& line : report.lines) Say(line);
+    Keep(report.warnings);
     const bool reaches = passage.worst_wind_kt > 0;
-    Say(Text("nearest: %.0f km at %s", passage.nearest_km,
-             FormatTime(passage.nearest_time).c_str()));
-    Say(reaches ? Text("%d kt over the ranch for %.1f h, from %s to %s; strongest ring %d kt",
-                       widest_kt, passage.widest_h, FormatTime(passage.first).c_str(),
-                       FormatTime(passage.last).c_str(), passage.worst_wind_kt)
-                : Text("%d kt never come over the ranch", widest_kt));
     constexpr std::int64_t kHour_s = 3600;
     const std::int64_t half_day_s = 12 * kHour_s;
     const auto lead_s = static_cast<std::int64_t>(request_.lead_h * kHour_s);
@@ -315,14 +303,13 @@ class Builder {
         request_.start.value_or(std::max(hour_before(first), plan_.storm.waypoints.front().time));
     const std::int64_t end =
         std::min(hour_before(last) + 2 * kHour_s, plan_.storm.waypoints.back().time);
-    if (end <= plan_.start) {
-      throw InputError("start: got " + FormatTime(plan_.start) + ", expected a time before " +
-                       FormatTime(end) + ", when the storm is over");
-    }
+    KeepOne(internal::CheckStart(plan_.start, end, plan_.storm, passage));
     duration_ = StepsToCover(static_cast<double>(end - plan_.start), plan_.step_s);
     plan_.storm_steps = duration_;
-    Say(Text("time: %g s a step, from %s, over after %d steps", plan_.step_s,
-             FormatTime(plan_.start).c_str(), duration_));
+    ends_unknown_ =
+        end == plan_.storm.waypoints.back().time && (passage.over_at_end || passage.nearest_at_end);
+    Say(Text("time: %g s a step, from %s, ", plan_.step_s, FormatTime(plan_.start).c_str()) +
+        Text(ends_unknown_ ? "known for %d steps only" : "over after %d steps", duration_));
     Trim(end);
     CheckReach(track);
     ReadForecasts(track, end);
@@ -331,10 +318,8 @@ class Builder {
   // From the newest issued by the start on, of the agency that each bulletin names first.
   void ReadForecasts(const HazardTrack& track, std::int64_t end) {
     if (request_.forecasts.empty()) return;
-    const HazardFile file = LoadHazardFile(request_.forecasts);
-    Keep(file.warnings);
     std::vector<HazardForecast>& kept = plan_.forecasts;
-    for (HazardForecast forecast : SameStorm("forecasts", file, track).forecasts) {
+    for (HazardForecast forecast : internal::SameStorm("forecasts", forecasts_, track).forecasts) {
       auto& fixes = forecast.fixes;
       fixes.erase(std::remove_if(fixes.begin(), fixes.end(),
                                  [&](const HazardFix& fix) { return fix.time <= forecast.issued; }),
@@ -373,7 +358,10 @@ class Builder {
   }
 
   // Once all disasters are known.
-  std::int32_t StepLimit() const { return duration_ > 0 ? duration_ + 100 : 5000; }
+  std::int32_t StepLimit() const {
+    if (ends_unknown_ && duration_ == plan_.storm_steps) return duration_;
+    return duration_ > 0 ? duration_ + 100 : 5000;
+  }
 
   // Those that are in force during the episode, or all where it has no time.
   void SayNotices() {
@@ -406,9 +394,8 @@ class Builder {
     });
     const Layer known = layer.layer.isNaN().select(Layer::Zero(height(), width()), layer.layer);
     const auto cells = static_cast<float>((!layer.layer.isNaN()).count());
-    if (cells == 0.0F) {
-      throw InputError(sea.file + ": " + field.name + ": has no value on this ranch");
-    }
+    internal::NeedValues(field, layer.layer, Area(), sea.file);
+    KeepOne(internal::CheckTime(field, time, sea.file));
     Say(sea.name + ": " + field.name + " of " + FileName(sea.file) +
         (field.time ? " at " + FormatTime(*field.time) : "") +
         Text(", mean %.4g %s, on %.0f of %d cells", static_cast<double>(known.sum() / cells),
@@ -474,7 +461,9 @@ class Builder {
   Ranch ranch_;
   internal::RanchPlan plan_;
   Layer value_;              // of a device, by cell
+  HazardFile forecasts_;     // of --forecasts
   std::int32_t duration_{};  // of all disasters
+  bool ends_unknown_{};      // the storm is near where its known track ends: no calm follows
 };
 
 }  // namespace

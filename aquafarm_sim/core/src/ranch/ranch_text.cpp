@@ -33,8 +33,9 @@ class Writer {
     Line("description: " +
          InQuotes("A ranch" +
                   (request_.chart.empty() ? "" : " on the chart " + FileName(request_.chart)) +
-                  (request_.track.empty() ? " in calm weather."
-                                          : " while " + plan_.storm_text + " passes.")));
+                  (request_.track.empty()
+                       ? " in calm weather."
+                       : " while " + plan_.storm_text + " passes." + ForecastNote())));
     Line("grid:");
     Line(Text("  width: %d\n  height: %d", plan_.width, plan_.height));
     Line("  cell_size_m: " + Format(plan_.cell_size_m));
@@ -58,6 +59,14 @@ class Writer {
   }
 
  private:
+  // Where the written track leaves what was recorded.
+  std::string ForecastNote() const {
+    const auto& all = plan_.storm.waypoints;
+    const bool forecast =
+        std::any_of(all.begin(), all.end(), [](const StormWaypoint& one) { return one.forecast; });
+    return forecast ? " The storm is " + Describe(plan_.knowledge) + "." : "";
+  }
+
   void Line(const std::string& line) { yaml_ += line + "\n"; }
 
   // As numbers, so that the file needs no other.
@@ -155,9 +164,15 @@ class Writer {
       Line(Text("         grade: %d", DisasterGrade(waypoint.grade)) +
            (waypoint.pressure_hpa ? ", pressure_hpa: " + Short(*waypoint.pressure_hpa, 1) : "") +
            (waypoint.wind_mps ? ", wind_mps: " + Short(*waypoint.wind_mps, 1) : "") + "}" +
-           (waypoint.estimated ? "  # radii estimated" : ""));
+           NoteOn(waypoint));
     }
     if (!plan_.forecasts.empty()) WriteForecasts();
+  }
+
+  static std::string NoteOn(const StormWaypoint& waypoint) {
+    if (waypoint.forecast)
+      return waypoint.estimated ? "  # forecast, radii estimated" : "  # forecast";
+    return waypoint.estimated ? "  # radii estimated" : "";
   }
 
   void WriteForecasts() {

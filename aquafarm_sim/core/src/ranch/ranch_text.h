@@ -28,6 +28,7 @@ struct RanchPlan {
   std::vector<Cell> ports;  ///< empty: drawn
   StormRings storm;         ///< without waypoints: calm
   std::string storm_text;   ///< what it is, for people
+  StormKnowledge knowledge;
   std::int32_t storm_steps{};
   std::vector<HazardForecast> forecasts;  ///< of the storm, in order of issue
   std::vector<DisasterSpec> presets;

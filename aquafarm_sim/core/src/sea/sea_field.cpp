@@ -334,11 +334,17 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
     } else if (d.axis == Axis::kLatitude) {
       along_latitude = i;
       span = Window(d.at, extent.south, extent.north);
+      const auto [south, north] = std::minmax_element(d.at.begin(), d.at.end());
+      field.extent[0] = *south;
+      field.extent[1] = *north;
     } else if (d.axis == Axis::kLongitude) {
       along_longitude = i;
       const double turn = TurnOf(d.at, (extent.west + extent.east) / 2.0);
       for (double& at : d.at) at += turn;
       span = Window(d.at, extent.west, extent.east);
+      const auto [west, east] = std::minmax_element(d.at.begin(), d.at.end());
+      field.extent[2] = *west;
+      field.extent[3] = *east;
     }
     first[i] = span.first;
     count[i] = span.count;

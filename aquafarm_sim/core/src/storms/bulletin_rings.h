@@ -13,7 +13,7 @@ namespace aquafarm::internal {
 inline constexpr double kMostRadius_km = 3000.0;
 
 /// The radii of an object by the keys of its quadrants, north-east first and in either case. Those
-/// that it leaves out beside others are as `otherwise`, with a warning.
+/// that it leaves out, or that are invalid, are as `otherwise`, with a warning.
 std::array<double, kQuadrantCount> ReadQuadrants(
     const nlohmann::json& value, const std::string& path,
     const std::array<const char*, kQuadrantCount>& keys, std::int32_t wind_kt,

@@ -9,6 +9,7 @@
 #include "aquafarm/base/check.h"
 #include "base/name_of.h"
 #include "base/text.h"
+#include "base/time.h"
 #include "grid/longitude.h"
 
 namespace aquafarm {
@@ -104,14 +105,25 @@ StormRings ToRings(const HazardTrack& track, RingReduction reduction) {
   StormRings storm;
   storm.wind_kt = WindsOf(track);
   for (HazardFix fix : track.fixes) {
-    StormWaypoint waypoint{fix.time, fix.position, fix.grade,        {},
-                           false,    {},           fix.pressure_hpa, fix.wind_mps};
+    StormWaypoint waypoint;
+    waypoint.time = fix.time;
+    waypoint.position = fix.position;
+    waypoint.grade = fix.grade;
+    waypoint.pressure_hpa = fix.pressure_hpa;
+    waypoint.wind_mps = fix.wind_mps;
+    waypoint.forecast = fix.forecast;
+    // A storm of a grade has at least the lowest wind of it; one below TS has no ring.
+    if (!fix.wind_mps && fix.grade >= StormGrade::kTropicalStorm) {
+      fix.wind_mps = LowestWindOf(fix.grade);
+    }
+    const bool weak = fix.wind_below_mps || fix.grade == StormGrade::kTropicalDepression;
     Quadrants outer{};
-    bool silent = true;
+    waypoint.silent = !weak;
     for (auto wind = storm.wind_kt.rbegin(); wind != storm.wind_kt.rend(); ++wind) {
       waypoint.estimated = EstimateRing(fix, *wind) || waypoint.estimated;
       const WindRing* ring = fix.Ring(*wind);
-      silent = silent && ring == nullptr;
+      waypoint.silent = waypoint.silent && ring == nullptr;
+      waypoint.estimated = waypoint.estimated || (ring != nullptr && ring->estimated);
       Quadrants radii = ring == nullptr ? Quadrants{} : Reduced(*ring, reduction);
       for (std::size_t q = 0; q < radii.size() && !waypoint.radii_km.empty(); ++q) {
         radii[q] = std::min(radii[q], outer[q]);
@@ -124,7 +136,7 @@ StormRings ToRings(const HazardTrack& track, RingReduction reduction) {
     std::reverse(waypoint.quadrants_km.begin(), waypoint.quadrants_km.end());
     if (reduction != RingReduction::kQuadrants) waypoint.quadrants_km.clear();
     storm.estimated += waypoint.estimated ? 1 : 0;
-    storm.silent += silent ? 1 : 0;
+    storm.silent += waypoint.silent ? 1 : 0;
     storm.waypoints.push_back(std::move(waypoint));
   }
   return storm;
@@ -143,6 +155,8 @@ std::optional<StormWaypoint> StormRings::At(std::int64_t time) const {
   StormWaypoint now = from;
   now.time = time;
   now.position = Between(from.position, next->position, part);
+  now.forecast = from.forecast || (part > 0.0 && next->forecast);
+  now.silent = from.silent || (part > 0.0 && next->silent);
   for (std::size_t k = 0; k < now.radii_km.size(); ++k) {
     now.radii_km[k] = Between(from.radii_km[k], next->radii_km[k], part);
     if (now.quadrants_km.empty()) continue;
@@ -227,34 +241,76 @@ DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const 
 
 const HazardForecast* NewestForecast(const HazardTrack& track) {
   AQUAFARM_CHECK_GE(track.fixes.size(), 1U);
+  constexpr std::int64_t kStale_s = 24 * 3600;
   const HazardFix& now = track.fixes.back();
   const HazardForecast* newest = nullptr;
   for (const HazardForecast& forecast : track.forecasts) {
-    if (forecast.fixes.back().time <= now.time) continue;
+    if (forecast.fixes.back().time <= now.time || forecast.issued + kStale_s < now.time) continue;
     if (newest == nullptr || forecast.issued > newest->issued) newest = &forecast;
   }
   return newest;
 }
 
-HazardTrack WithForecast(const HazardTrack& track) {
+HazardTrack WithForecast(const HazardTrack& track, NoForecast otherwise) {
   HazardTrack whole = track;
   const HazardForecast* const newest = NewestForecast(track);
   const HazardFix& now = track.fixes.back();
   if (newest != nullptr) {
-    std::copy_if(newest->fixes.begin(), newest->fixes.end(), std::back_inserter(whole.fixes),
-                 [&now](const HazardFix& fix) { return fix.time > now.time; });
+    for (HazardFix fix : newest->fixes) {
+      if (fix.time <= now.time) continue;
+      const HazardFix& before = whole.fixes.back();
+      if (!fix.wind_mps && fix.rings.empty()) {
+        fix.wind_mps = before.wind_mps;
+        fix.rings = before.rings;
+        for (WindRing& ring : fix.rings) ring.estimated = true;
+        if (fix.grade == StormGrade::kUnknown) fix.grade = before.grade;
+      }
+      fix.forecast = true;
+      whole.fixes.push_back(std::move(fix));
+    }
     return whole;
   }
-  if (!now.heading_deg || !now.speed_kmh) return whole;
+  if (otherwise == NoForecast::kEnd) return whole;
   constexpr std::int64_t kAhead_s = 24 * 3600;
   HazardFix later = now;
   later.time += kAhead_s;
-  GeographicLib::Geodesic::WGS84().Direct(now.position.latitude, now.position.longitude,
-                                          *now.heading_deg,
-                                          *now.speed_kmh * static_cast<double>(kAhead_s) / 3.6,
-                                          later.position.latitude, later.position.longitude);
+  later.forecast = true;
+  if (now.heading_deg && now.speed_kmh) {
+    GeographicLib::Geodesic::WGS84().Direct(now.position.latitude, now.position.longitude,
+                                            *now.heading_deg,
+                                            *now.speed_kmh * static_cast<double>(kAhead_s) / 3.6,
+                                            later.position.latitude, later.position.longitude);
+  }
   whole.fixes.push_back(std::move(later));
   return whole;
+}
+
+StormKnowledge KnowledgeOf(const HazardTrack& recorded, const HazardTrack& whole) {
+  StormKnowledge knowledge;
+  for (const HazardFix& fix : recorded.fixes) {
+    if (!fix.forecast) knowledge.recorded_until = fix.time;
+  }
+  knowledge.known_until = whole.fixes.back().time;
+  if (const HazardForecast* newest = NewestForecast(recorded)) {
+    knowledge.issued = newest->issued;
+    knowledge.agency = newest->agency;
+  }
+  return knowledge;
+}
+
+std::string Describe(const StormKnowledge& knowledge) {
+  using internal::FormatTime;
+  const std::string recorded = FormatTime(knowledge.recorded_until);
+  const std::string until = FormatTime(knowledge.known_until);
+  if (knowledge.recorded_until == 0) return "not recorded, forecast until " + until;
+  if (knowledge.known_until == knowledge.recorded_until) return "known until " + recorded + " only";
+  if (knowledge.issued == 0) {
+    return "known until " + recorded +
+           " only; no forecast: it is assumed to keep its motion, wind and rings until " + until;
+  }
+  return "recorded until " + recorded + ", then forecast until " + until + " (issued " +
+         FormatTime(knowledge.issued) + (knowledge.agency.empty() ? "" : " by ") +
+         knowledge.agency + ")";
 }
 
 DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, std::int32_t id,
@@ -267,16 +323,20 @@ DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, s
   auto model = all.begin() + std::min(id, static_cast<std::int32_t>(all.size()));
   const bool by_quadrant = model != all.end() && !model->quadrants.empty();
   if (model == all.end() || !graded(*model)) model = std::find_if(all.begin(), all.end(), graded);
-  const StormRings storm = ToRings(
-      WithForecast(bulletin), by_quadrant ? RingReduction::kQuadrants : RingReduction::kEqualArea);
+  const HazardTrack whole = WithForecast(bulletin, NoForecast::kPersist);
+  const StormRings storm =
+      ToRings(whole, by_quadrant ? RingReduction::kQuadrants : RingReduction::kEqualArea);
   DisasterSpec disaster =
       ToDisaster(storm, model == all.end() ? DefaultGradeRisks() : model->grade_risks,
                  GeoFrame(*scenario.origin, scenario.cell_size_m), scenario.cell_size_m,
                  scenario.step_duration_s, *scenario.start_time);
   const double left = std::ceil(static_cast<double>(disaster.track.back().step)) - step_now;
   if (left <= 0.0) {
-    throw InputError("bulletin: is over: got a last position before step " +
-                     std::to_string(step_now) + ", expected one of a storm that goes on");
+    const auto now_s = static_cast<std::int64_t>(step_now * scenario.step_duration_s);
+    throw InputError("bulletin: got a storm " + Describe(KnowledgeOf(bulletin, whole)) +
+                     ", expected one that is known after step " + std::to_string(step_now) + " (" +
+                     internal::FormatTime(*scenario.start_time + now_s) +
+                     "); send a newer bulletin");
   }
   disaster.duration = StepsToCover(left, 1.0);
   return disaster;
@@ -287,18 +347,27 @@ Passage PassOver(const StormRings& storm, GeoPoint place, double margin_km) {
   Passage passage;
   passage.nearest_km = 1.0e9;
   if (storm.waypoints.empty()) return passage;
-  for (std::int64_t time = storm.waypoints.front().time; time <= storm.waypoints.back().time;
-       time += kStep_s) {
+  const std::int64_t start = storm.waypoints.front().time;
+  const std::int64_t end = storm.waypoints.back().time;
+  for (std::int64_t step = 0; step * kStep_s < end - start + kStep_s; ++step) {
+    const std::int64_t time = std::min(start + step * kStep_s, end);
     const StormWaypoint now = *storm.At(time);
     const auto [distance, quadrant] = From(now.position, place);
     if (distance < passage.nearest_km) {
       passage.nearest_km = distance;
       passage.nearest_time = time;
+      passage.nearest_forecast = now.forecast;
+    }
+    if (now.silent && distance <= kLargestGale_km + margin_km) {
+      if (passage.unknown[0] == 0) passage.unknown[0] = time;
+      passage.unknown[1] = time;
     }
     for (std::size_t k = 0; k < now.radii_km.size(); ++k) {
       const double radius_km =
           now.quadrants_km.empty() ? now.radii_km[k] : now.quadrants_km[k][quadrant];
       if (radius_km <= 0.0 || distance > radius_km + margin_km) continue;
+      passage.over_at_start = passage.over_at_start || time == start;
+      passage.over_at_end = time == end;
       passage.worst_wind_kt = std::max(passage.worst_wind_kt, storm.wind_kt[k]);
       if (passage.first == 0) passage.first = time;
       passage.last = time;
@@ -306,6 +375,7 @@ Passage PassOver(const StormRings& storm, GeoPoint place, double margin_km) {
       break;
     }
   }
+  passage.nearest_at_end = passage.nearest_time == end;
   return passage;
 }
 

@@ -89,6 +89,11 @@ StormGrade GradeOfWind(double wind_mps) {
   return static_cast<StormGrade>(reached - kLowestWind_mps.begin());
 }
 
+double LowestWindOf(StormGrade grade) {
+  if (grade == StormGrade::kUnknown) return 0.0;
+  return kLowestWind_mps[static_cast<std::size_t>(grade) - 1];
+}
+
 const WindRing* HazardFix::Ring(std::int32_t wind_kt) const {
   for (const WindRing& ring : rings) {
     if (ring.wind_kt == wind_kt) return &ring;

@@ -34,12 +34,12 @@ constexpr std::pair<std::string_view, double> kDirections[]{
 }  // namespace
 
 double ReadLatitudeTenths(std::string_view text, const HazardPlace& place) {
-  return ReadWhole(text, "latitude in tenths of a degree", -900, 900, place) / 10.0;
+  return ReadFixNumber(text, "latitude in tenths of a degree", -900, 900, place) / 10.0;
 }
 
 double ReadLongitudeTenths(std::string_view text, const HazardPlace& place) {
-  return NormalLongitude(ReadWhole(text, "longitude in tenths of a degree", -1800, 3600, place) /
-                         10.0);
+  return NormalLongitude(
+      ReadFixNumber(text, "longitude in tenths of a degree", -1800, 3600, place) / 10.0);
 }
 
 void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place) {
@@ -47,38 +47,33 @@ void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place)
   if (fixes.size() >= kMaxFixes) {
     place.Refuse("got more than " + std::to_string(kMaxFixes) + " points of one storm");
   }
-  if (fix.pressure_hpa && *fix.pressure_hpa < kLeastPressure_hpa) {
-    place.Refuse("pressure: got " + Format(*fix.pressure_hpa) +
-                 " hPa, expected [800, 1100], or 0 where it is not known");
-  }
   if (!fixes.empty() && fix.time == fixes.back().time) {
-    place.Warn("time: " + FormatTime(fix.time) + " is there twice, the second is left out");
+    place.WarnOnce("twice",
+                   "time: " + FormatTime(fix.time) + " is there twice, the second is left out");
     return;
-  }
-  if (!fixes.empty() && fix.time < fixes.back().time) {
-    place.Refuse("time: got " + FormatTime(fix.time) + ", expected one after " +
-                 FormatTime(fixes.back().time) + " of the point before");
   }
   fixes.push_back(std::move(fix));
 }
 
-void FinishTrack(HazardTrack& track, const HazardPlace& place) {
-  if (track.fixes.empty()) place.Refuse("points: got none, expected at least one");
-  constexpr std::int64_t kDay_s = 86400;
-  const std::int64_t days = (track.fixes.back().time - track.fixes.front().time) / kDay_s;
-  if (days > 366) {
-    place.Refuse("points: got " + std::to_string(days) +
-                 " days of one storm, expected at most 366");
+std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
+                                      const std::string& value_path, HazardPlace& place) {
+  if (!pressure_hpa || *pressure_hpa <= 0.0) return std::nullopt;
+  if (*pressure_hpa >= kLeastPressure_hpa) return pressure_hpa;
+  const std::string what = "got " + Format(*pressure_hpa) +
+                           " hPa, expected [800, 1100], or 0 where it is not known" + kIgnored;
+  if (place.locate) {
+    place.WarnValueOnce("pressure", value_path, what);
+  } else {
+    place.WarnOnce("pressure", value_path + ": " + what);
   }
-  ComputeMotion(track.fixes);
-  for (HazardForecast& forecast : track.forecasts) ComputeMotion(forecast.fixes);
+  return std::nullopt;
 }
 
 std::vector<HazardTrack> ReadBestTracks(std::string_view text, HazardPlace& place,
                                         BestTrackHeader (*read_header)(std::string_view line,
-                                                                       const HazardPlace& place),
+                                                                       HazardPlace& place),
                                         HazardFix (*read_point)(std::string_view line,
-                                                                const HazardPlace& place)) {
+                                                                HazardPlace& place)) {
   std::vector<HazardTrack> tracks;
   LineReader lines(text, place);
   std::string_view line;
@@ -93,13 +88,15 @@ std::vector<HazardTrack> ReadBestTracks(std::string_view text, HazardPlace& plac
     header.track.line = place.line;
     const std::string promised = std::to_string(header.points) + " points of the header on line " +
                                  std::to_string(place.line);
+    LeftOut left_out;
     for (std::int32_t i = 0; i < header.points; ++i) {
       if (!lines.Next(line) || is_header(line) || Trim(line).empty()) {
         place.Refuse("got " + std::to_string(i) + " points, expected the " + promised);
       }
-      AppendFix(read_point(line, place), header.track.fixes, place);
+      TryFix([&] { AppendFix(read_point(line, place), header.track.fixes, place); }, left_out,
+             place);
     }
-    FinishTrack(header.track, place);
+    FinishTrack(header.track, left_out, place);
     tracks.push_back(std::move(header.track));
   }
   return tracks;

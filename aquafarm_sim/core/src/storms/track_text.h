@@ -19,18 +19,26 @@ inline constexpr std::size_t kMaxFixes = 10000;
 /// No storm's was ever below 870.
 inline constexpr double kLeastPressure_hpa = 800.0;
 
-/// Tenths of a degree, at most 90 either way. @throws InputError
+/// Tenths of a degree in [-900, 900]. @throws FixError
 double ReadLatitudeTenths(std::string_view text, const HazardPlace& place);
 
-/// Tenths of a degree up to 3600, brought to (-180, 180]. @throws InputError
+/// Tenths of a degree in [-1800, 3600], brought to (-180, 180]. @throws FixError
 double ReadLongitudeTenths(std::string_view text, const HazardPlace& place);
 
-/// Adds a fix after the ones there. A time that is there already is left out with a warning.
-/// @throws InputError for a time before the last, or too many fixes
+/// The pressure of a storm; 0 and less mean unknown. Values below 800 hPa are ignored with a
+/// warning.
+std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
+                                      const std::string& value_path, HazardPlace& place);
+
+/// Appends a fix. One with the time of the last is left out with a warning.
+/// @throws InputError for too many fixes
 void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place);
 
-/// Ends a track: checks that it has fixes, computes what motion the source does not give.
-void FinishTrack(HazardTrack& track, const HazardPlace& place);
+/// Ends a track: leaves out points that break the order of time, warns of jumps, and computes
+/// motion that the source does not give.
+/// @throws InputError without points, when more points were left out than kept, or when they span
+///   more than 366 days
+void FinishTrack(HazardTrack& track, LeftOut left_out, HazardPlace& place);
 
 /// "NE", "ENE", "西北", … as a compass bearing; none: no direction.
 std::optional<double> ParseDirection(std::string_view text);
@@ -44,8 +52,8 @@ struct BestTrackHeader {
 /// Storms of a header, 66666 …, and as many points as it promises, each on a line of its own.
 std::vector<HazardTrack> ReadBestTracks(std::string_view text, HazardPlace& place,
                                         BestTrackHeader (*read_header)(std::string_view line,
-                                                                       const HazardPlace& place),
+                                                                       HazardPlace& place),
                                         HazardFix (*read_point)(std::string_view line,
-                                                                const HazardPlace& place));
+                                                                HazardPlace& place));
 
 }  // namespace aquafarm::internal

@@ -121,6 +121,27 @@ TEST(Motion, ReflectsAtTheEnlargedBorder) {
   EXPECT_GT(disaster.y, 10.0F);
 }
 
+TEST(Motion, OfOneSetFarOutsideComesInWithoutAJump) {
+  DisasterSpec spec = StillDisaster(-300, 12, {2}, {-20});
+  spec.speed = 1.5F;
+  spec.heading_deg = 90;
+  Disaster inwards = Spawned(spec);
+  for (int step = 1; step <= 4; ++step) {
+    Move(inwards, step);
+    EXPECT_EQ(inwards.x, -300.0F + 1.5F * static_cast<float>(step));
+    EXPECT_EQ(inwards.heading_deg, 90);
+  }
+  for (int step = 5; step <= 205; ++step) Move(inwards, step);
+  EXPECT_EQ(inwards.x, -300.0F + 1.5F * 205.0F) << "on the map";
+  spec.heading_deg = 270;
+  Disaster away = Spawned(spec);
+  Move(away, 1);
+  EXPECT_EQ(away.x, -300.0F) << "turned";
+  EXPECT_EQ(away.heading_deg, 90);
+  Move(away, 2);
+  EXPECT_EQ(away.x, -298.5F);
+}
+
 TEST(Motion, WrapsOrLeavesWhenAsked) {
   DisasterSpec spec = StillDisaster(26.0F, 10.0F, {2}, {-5});
   spec.speed = 1.0F;

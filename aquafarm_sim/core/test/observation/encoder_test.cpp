@@ -127,6 +127,23 @@ TEST(Features, AreAsManyAsNamedOnEveryFarm) {
   EXPECT_EQ(FeaturesOf(crowded, 4).size(), 5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 4 + 5);
 }
 
+TEST(Features, HaveNoNegativeTimeLeftUnderALongerDisasterSetInPlay) {
+  Scenario scenario = TinyScenario();
+  scenario.disasters = {StillDisaster(20, 20, {1}, {-5})};
+  scenario.disasters[0].duration = 2;
+  Farm farm = MakeFarm(scenario);
+  DisasterSpec longer = scenario.disasters[0];
+  longer.duration = 50;
+  farm.SetDisaster(0, longer);
+  for (int step = 0; step < 6; ++step) {
+    EXPECT_EQ(Feature(farm, "time_left", 0),
+              step < 2 ? 1.0F - static_cast<float>(step) / 2.0F : 0.0F)
+        << step;
+    StepOne(farm, Action::kHold);
+  }
+  EXPECT_FALSE(farm.over()) << "the longer disaster keeps the episode going";
+}
+
 TEST(Features, TellSeveralAgentsApartAndWhatTheOthersCarry) {
   Scenario scenario = TinyScenario();
   scenario.ships.count = 2;

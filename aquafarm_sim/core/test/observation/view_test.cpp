@@ -94,6 +94,32 @@ TEST(PartialView, OutOfSightRingsAreThoseOfTheBulletin) {
   }
 }
 
+// Setting a disaster announces it; where it is now stays unknown out of sight.
+TEST(PartialView, OutOfSightAReplacementIsAnnouncedButNotItsPlace) {
+  Scenario scenario = PartialScenario();
+  scenario.view.bulletin_period = 10;
+  DisasterSpec first = StillDisaster(20, 20, {2}, {-5});
+  scenario.disasters = {first};
+  Farm farm = MakeFarm(scenario);
+  for (int step = 0; step < 3; ++step) StepOne(farm, Action::kHold);
+  DisasterSpec other = StillDisaster(18, 22, {4}, {-20});
+  other.grade = 4;
+  other.duration = 77;
+  other.radius_growth = 0.5F;
+  farm.SetDisaster(0, other);
+  StepOne(farm, Action::kHold);
+  View view;
+  Observe(farm, 0, view);
+  const KnownDisaster& known = view.disasters[0];
+  ASSERT_FALSE(known.visible);
+  EXPECT_EQ(known.belief.radius[0], 4.0F) << "as announced, without its growth since";
+  EXPECT_EQ(known.belief.grade, 4);
+  EXPECT_EQ(known.belief.steps_left, 76);
+  EXPECT_EQ(known.belief.x, 20.0F) << "of the last bulletin";
+  EXPECT_EQ(known.belief.y, 20.0F);
+  EXPECT_EQ(known.age, 4);
+}
+
 TEST(PartialView, OutOfSightRingsThatShrankToNothingAreStillThoseOfTheBulletin) {
   Scenario scenario = PartialScenario();
   scenario.view.bulletin_period = 10;

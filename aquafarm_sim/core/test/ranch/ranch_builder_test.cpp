@@ -121,8 +121,8 @@ TEST(Ranch, IsRefusedWithTheReason) {
   request = Request();
   request.start = kMidnight + 24 * kHour_s;
   EXPECT_EQ(Refused(request),
-            "start: got 2021-07-26T00:00:00Z, expected a time before 2021-07-25T06:00:00Z, when "
-            "the storm is over");
+            "start: got 2021-07-26T00:00:00Z, expected a time before 2021-07-25T06:00:00Z, until "
+            "when the storm is known");
   request = Request();
   request.center = GeoPoint{30.01, 122.01};
   request.width = request.height = 3;
@@ -186,8 +186,10 @@ TEST(Ranch, CountsNoticesAfterItsLastStepAsOfOtherTimes) {
                         << from << R"(", "endTime": ")" << to << "\"}]}";
     return BuildRanch(request).decided;
   };
-  // 189 steps of 243 s from midnight, so to 12:45.
-  EXPECT_TRUE(Says(warn("2021-07-25T12:00+00:00", "2021-07-26T12:00+00:00"), "notice: gale of x"));
+  // 89 steps of 243 s from midnight, so to 06:00: the storm is not known after that.
+  EXPECT_TRUE(Says(warn("2021-07-25T06:00+00:00", "2021-07-26T12:00+00:00"), "notice: gale of x"));
+  EXPECT_TRUE(Says(warn("2021-07-25T06:01+00:00", "2021-07-26T12:00+00:00"),
+                   "notices: 1 more at other times"));
   EXPECT_TRUE(Says(warn("2021-07-26T12:45+00:00", "2021-07-27T12:00+00:00"),
                    "notices: 1 more at other times"));
   request.disasters = {"wave:height_m=4,radius_km=5,duration_h=48"};

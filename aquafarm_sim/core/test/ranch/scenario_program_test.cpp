@@ -60,7 +60,7 @@ TEST(Program, MakesAFileAndSaysWhatItDecided) {
 TEST(Program, RefusesWrongArguments) {
   const std::vector<std::pair<const char*, const char*>> cases{
       {"--center 30", "center: got '30', expected LATITUDE,LONGITUDE in degrees"},
-      {"--center 95,120", "expected a latitude in [-90, 90] and a longitude in [-180, 180]"},
+      {"--center 95,120", "expected a latitude in [-90, 90] and a longitude in [-180, 360]"},
       {"--size 25", "size: got '25', expected WIDTHxHEIGHT in cells"},
       {"--size 1x25", "size: got '1x25', expected whole numbers in [2, 4096]"},
       {"--cell 20furlongs", "cell: got '20furlongs', expected a length as 200m or 0.2km"},

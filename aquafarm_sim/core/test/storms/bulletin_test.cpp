@@ -36,22 +36,30 @@ TEST(Bulletin, OfZhejiangIsRefusedWithItsLine) {
   const auto refused = [](const std::string& from, const std::string& to) {
     return Refusal(With(Sample("zhejiang.js"), from, to));
   };
-  EXPECT_EQ(refused("300|200|190|250", "300|200|190"),
-            "x:9: [0].points[0].radius7: got '300|200|190', expected four numbers in [0, 3000] as "
-            "250|220|200|180");
-  EXPECT_EQ(refused("300|200|190|250", "300|-2|190|250|"),
-            "x:9: [0].points[0].radius7: got '300|-2|190|250|', expected four numbers in [0, 3000] "
-            "as 250|220|200|180");
-  EXPECT_EQ(refused("\"30.4\"", "\"95\""),
+  const auto warned = [](const std::string& from, const std::string& to) {
+    return Warnings(With(Sample("zhejiang.js"), from, to));
+  };
+  const std::string four =
+      "', expected four numbers in [0, 3000] as 250|220|200|180; the value is "
+      "ignored\n";
+  EXPECT_EQ(warned("300|200|190|250", "300|200|190"),
+            "x:9: [0].points[0].radius7: got '300|200|190" + four);
+  EXPECT_EQ(warned("300|200|190|250", "300|-2|190|250|"),
+            "x:9: [0].points[0].radius7: got '300|-2|190|250|" + four);
+  EXPECT_EQ(warned("\"30.4\"", "\"95\""),
             "x:16: [0].points[0].forecast[1].forecastpoints[0].lat: got '95', expected a number in "
-            "[-90, 90]");
-  EXPECT_EQ(refused("radius7\": \"300|200|190|250\"", "r7\": \"300|200|190\""),
-            "x:9: [0].points[0].r7: got '300|200|190', expected four numbers in [0, 3000] as "
-            "250|220|200|180");
-  EXPECT_EQ(refused("radius12\": \"\"", "r12Quad\": {\"ne\": -1}"),
-            "x:9: [0].points[0].r12Quad.ne: got -1, expected a number in [0, 3000]");
-  EXPECT_EQ(refused("\"29.7\"", "\"95\""),
-            "x:7: [0].points[0].lat: got '95', expected a number in [-90, 90]");
+            "[-90, 90]; the point is left out\n"
+            "x:15: [0].points[0].forecast[1]: got no points after its issue, the forecast is left "
+            "out\n");
+  EXPECT_EQ(warned("radius7\": \"300|200|190|250\"", "r7\": \"300|200|190\""),
+            "x:9: [0].points[0].r7: got '300|200|190" + four);
+  EXPECT_EQ(warned("radius12\": \"\"", "r12Quad\": {\"ne\": -1}"),
+            "x:9: [0].points[0].r12Quad.ne: got -1, expected a number in [0, 3000]; the value is "
+            "ignored\n"
+            "x:9: [0].points[0].r12Quad: 64 kt: has none of the quadrants ne, se, sw and nw\n");
+  EXPECT_EQ(warned("\"29.7\"", "\"95\""),
+            "x:7: [0].points[0].lat: got '95', expected a number in [-90, 90]; the point is left "
+            "out\n");
   EXPECT_NE(refused("];", "").find(": got no valid JSON: "), std::string::npos);
   EXPECT_EQ(refused("let typhoons =", "typhoons").substr(0, 26), "x:3: got no valid JSON: la");
 }
@@ -81,8 +89,9 @@ TEST(Bulletin, KnowsBothSpellingsAndWhatIsUnknown) {
   EXPECT_EQ(bare.pressure_hpa, std::nullopt);
   EXPECT_EQ(bare.grade, StormGrade::kUnknown);
   ExpectRadii(bare, 34, {200, 200, 200, 200});
-  EXPECT_EQ(file.warnings, std::vector<std::string>{"b.json:17: [0].points[1].moveDir: '中' is no "
-                                                    "direction known here"});
+  EXPECT_EQ(file.warnings,
+            std::vector<std::string>{"b.json:18: [0].points[1].moveDir: '中' is not a "
+                                     "known direction"});
   const HazardFix& weak = storm.fixes[2];
   EXPECT_EQ(weak.grade, StormGrade::kTropicalStorm) << "by its wind";
   EXPECT_EQ(weak.Ring(34), nullptr) << "18 m/s blow somewhere";
@@ -122,14 +131,17 @@ TEST(Bulletin, LeavesOutWhatAForecastSaysOfBefore) {
       << Warnings(late);
 }
 
-TEST(Bulletin, RefusesForecastsOfAnotherTime) {
-  const auto refused = [](const std::string& time) {
-    return Refusal(With(Sample("bulletin.json"), "2021-07-26T08:00:00", time));
+TEST(Bulletin, LeavesOutForecastPointsOfAnotherTime) {
+  const auto with = [](const std::string& time) {
+    return With(Sample("bulletin.json"), "2021-07-26T08:00:00", time);
   };
-  EXPECT_EQ(refused("2021-08-09T08:00:00"), "was read") << "15 days";
-  EXPECT_EQ(refused("2021-08-09T08:01:00"),
-            "x:15: [0].points[0].forecast[0].points[1].time: got 2021-08-09T00:01:00Z, expected a "
-            "forecast's within 15 days after 2021-07-25T00:00:00Z");
+  EXPECT_EQ(Warnings(with("2021-08-09T08:00:00")).find("15 days"), std::string::npos);
+  const std::string late = with("2021-08-09T08:01:00");
+  EXPECT_EQ(
+      Warnings(late).substr(0, 171),
+      "x:15: [0].points[0].forecast[0].points[1].time: got 2021-08-09T00:01:00Z, expected a "
+      "forecast's within 15 days after 2021-07-25T00:00:00Z; the point is left out\nx:18: [0].");
+  EXPECT_EQ(ParseHazardFile(late, "x").tracks[0].forecasts.at(0).fixes.size(), 1U);
 }
 
 TEST(Bulletin, KeepsForecastsAndLandfallsInOrder) {
@@ -170,10 +182,29 @@ TEST(WeatherService, MayAnswerWithAForecastAlone) {
     {"fxTime": "2021-07-27T20:00+08:00", "lat": "31.7", "lon": "118.4", "type": "TS",
      "windSpeed": "18", "moveDir": ""},
     {"fxTime": "2021-07-28T20:00+08:00", "lat": "95", "lon": "117.2"}]})";
-  EXPECT_EQ(Refusal(answer), "x:5: forecast[1].lat: got '95', expected a number in [-90, 90]");
+  EXPECT_EQ(Warnings(answer),
+            "x:5: forecast[1].lat: got '95', expected a number in [-90, 90]; the point is left "
+            "out\n");
   const HazardFile file = ParseHazardFile(With(answer, "\"95\"", "\"33\""), "x");
   EXPECT_TRUE(file.warnings.empty());
-  EXPECT_EQ(file.tracks.at(0).fixes.size(), 2U);
+  ASSERT_EQ(file.tracks.at(0).fixes.size(), 2U);
+  EXPECT_TRUE(file.tracks[0].fixes[0].forecast) << "not recorded";
+}
+
+TEST(WeatherService, ReadsTheForecastNextToTheTrackOrThePresentPosition) {
+  const std::string forecast = R"(, "forecast": [
+    {"fxTime": "2021-07-25T02:00+08:00", "lat": "29", "lon": "123"},
+    {"fxTime": "2021-07-25T14:00+08:00", "lat": "31", "lon": "122", "windSpeed": "30"}]})";
+  const std::string now = R"({"pubTime": "2021-07-25T08:00+08:00", "lat": "30", "lon": "122"})";
+  for (const std::string& recorded : {"{\"track\": [" + now + "]", "{\"now\": " + now}) {
+    const HazardTrack track = ParseHazardFile(recorded + forecast, "x").tracks.at(0);
+    ASSERT_EQ(track.fixes.size(), 1U) << recorded;
+    EXPECT_FALSE(track.fixes[0].forecast);
+    ASSERT_EQ(track.forecasts.size(), 1U);
+    EXPECT_EQ(track.forecasts[0].issued, kInFaNoon - 6 * 3600);
+    ASSERT_EQ(track.forecasts[0].fixes.size(), 1U) << "the first is before the last position";
+    EXPECT_EQ(track.forecasts[0].fixes[0].position.latitude, 31.0);
+  }
 }
 
 TEST(WeatherService, SaysWhatItDoesNotRead) {
@@ -181,8 +212,7 @@ TEST(WeatherService, SaysWhatItDoesNotRead) {
     "lon": "122"}])";
   const std::string forecast = R"("forecast": [{"fxTime": "2021-07-25T14:00+08:00", "lat": "31",
     "lon": "122"}])";
-  EXPECT_EQ(Warnings("{\"code\": \"200\", \"refer\": {},\n" + track + ",\n" + forecast + "}"),
-            "x:4: forecast: is not read\n");
+  EXPECT_EQ(Warnings("{\"code\": \"200\", \"refer\": {},\n" + track + ",\n" + forecast + "}"), "");
   EXPECT_EQ(Warnings("{" + track + ",\n\"alerts\": [{\"id\": 1}], \"gusts\": null}"),
             "x:3: alerts: is not read\n");
   for (const char* none : {"null", "\"\"", "[]"}) {

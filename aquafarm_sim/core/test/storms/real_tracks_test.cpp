@@ -60,6 +60,16 @@ TEST_F(RealFiles, OfCmaHaveEveryStorm) {
   EXPECT_EQ(Fixes(other), 1003U);
 }
 
+TEST_F(RealFiles, OfCmaWithABlankNameHaveEveryStorm) {
+  const fs::path path = SharedData() / "tracks" / "cma_archive" / "CH1997BST.txt";
+  if (!fs::exists(path)) GTEST_SKIP() << "no " << path;
+  const HazardFile year = LoadHazardFile(path.string());
+  EXPECT_EQ(year.tracks.size(), 30U);
+  EXPECT_EQ(year.warnings.at(0), path.string() +
+                                     ":849: name: got nothing, expected a name or (nameless); the "
+                                     "storm is 9725 without a name");
+}
+
 TEST_F(RealFiles, OfCmaTakeAtMostTwentyMillisecondsAYear) {
   double least_ms = 1e9;
   for (int i = 0; i < 10; ++i) {  // the best of some: others use the machine too

@@ -63,10 +63,12 @@ TEST(ToRings, EstimatesWhatIsNotSaidAndNeverBeyondAWeakerWind) {
   track.fixes[1].rings = {Ring(34, {30, 30, 30, 30})};  // smaller than any estimate
   track.fixes[2].rings.clear();
   track.fixes[2].wind_mps.reset();
+  track.fixes[2].grade = StormGrade::kUnknown;
   const StormRings storm = ToRings(track, RingReduction::kEqualArea);
   EXPECT_EQ(storm.estimated, 1);
   EXPECT_EQ(storm.silent, 1);
   EXPECT_TRUE(storm.waypoints[1].estimated);
+  EXPECT_TRUE(storm.waypoints[2].silent);
   EXPECT_EQ(storm.waypoints[1].radii_km, (std::vector<double>{30.0, 30.0, 30.0}));
   EXPECT_EQ(storm.waypoints[2].radii_km, (std::vector<double>{0.0, 0.0, 0.0}));
 }
@@ -126,7 +128,7 @@ TEST(Bulletins, GoOnWithTheNewestForecast) {
   fresh.issued = kStart + 20 * kHour_s;
   fresh.fixes = {Fix(20, 120.0, 30.0), Fix(26, 119.5, 25.0), Fix(44, 118.0, 18.0)};
   track.forecasts = {old, fresh};
-  const HazardTrack whole = WithForecast(track);
+  const HazardTrack whole = WithForecast(track, NoForecast::kEnd);
   ASSERT_EQ(whole.fixes.size(), 5U);
   EXPECT_EQ(whole.fixes[4].time, kStart + 44 * kHour_s);
 }
@@ -135,7 +137,8 @@ TEST(Bulletins, GoOnAsTheStormMovesWithoutAForecast) {
   HazardTrack track = WestGoing();
   track.fixes.back().heading_deg = 0.0;
   track.fixes.back().speed_kmh = 10.0;
-  const HazardTrack whole = WithForecast(track);
+  EXPECT_EQ(WithForecast(track, NoForecast::kEnd).fixes.size(), 3U);
+  const HazardTrack whole = WithForecast(track, NoForecast::kPersist);
   ASSERT_EQ(whole.fixes.size(), 4U);
   EXPECT_EQ(whole.fixes[3].time, kStart + 44 * kHour_s);
   EXPECT_NEAR(whole.fixes[3].position.latitude, 30.0 + 240.0 / 110.9, 0.01);
@@ -159,8 +162,9 @@ TEST(Bulletins, LastFromNowToTheirEnd) {
     FAIL() << "long over";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "bulletin: is over: got a last position before step 1000, expected one of a storm "
-                 "that goes on");
+                 "bulletin: got a storm known until 2021-07-26T02:00:00Z only; no forecast: it is "
+                 "assumed to keep its motion, wind and rings until 2021-07-27T02:00:00Z, expected "
+                 "one that is known after step 1000 (2021-09-04T22:00:00Z); send a newer bulletin");
   }
 }
 

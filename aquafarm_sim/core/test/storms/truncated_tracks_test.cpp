@@ -75,12 +75,15 @@ TEST(Jma, APointThatIsShorterThanItsHeaderIsSaid) {
   }
 }
 
-TEST(Jma, WhatContradictsItselfIsRefused) {
+TEST(Jma, WhatContradictsItselfIsIgnoredWithAWarning) {
   const std::string text = Sample("jma.txt");
-  EXPECT_EQ(Refusal(With(text, "0011 2106", "0011 9999")),
-            "x:1: number: got '2106' and '9999', expected the same twice");
-  EXPECT_EQ(Refusal(With(text, "90240", "00240")),
-            "x:4: direction of the longest radius: got 0, which is none, with a radius of 30 kt");
+  EXPECT_EQ(Warnings(With(text, "0011 2106", "0011 9999")),
+            "x:1: number: got '2106' and '9999', expected the same twice; '2106' is used\n");
+  const std::string direction = With(text, "90240", "00240");
+  EXPECT_EQ(Warnings(direction),
+            "x:4: direction of the longest radius: got 0, expected 1 to 9 with a radius of 30 kt; "
+            "the radii are ignored\n");
+  EXPECT_EQ(ParseHazardFile(direction, "x").tracks[0].fixes[2].Ring(30), nullptr);
 }
 
 TEST(Atcf, ARowThatEndsWithinItsRadiiIsRefused) {

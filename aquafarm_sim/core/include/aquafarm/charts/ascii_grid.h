@@ -5,6 +5,7 @@
 /// xllcenter (or xlower), the same keys for y, cellsize and NODATA_value. The values follow row by
 /// row from the north, with any number of values per line.
 
+#include <array>
 #include <string>
 
 #include "aquafarm/charts/chart.h"
@@ -20,6 +21,11 @@ struct AsciiGrid {
   /// Returns whether coordinates are in degrees: cells are smaller than 1 and the corner is within
   /// twice the range of degrees, so that typing errors are detected. If false, they are in metres.
   bool IsGeographic() const;
+  /// Whether a grid in degrees has a value at a place; longitudes are equal modulo 360.
+  bool Covers(GeoPoint place) const;
+  /// The column and row of the value nearest to a place; outside the grid: beyond its columns or
+  /// rows.
+  std::array<long, 2> Nearest(GeoPoint place) const;
 };
 
 /// @throws InputError "bay.asc:3: cellsize: got '0', expected …"

@@ -11,6 +11,7 @@
 /// may be -180 … 180 or 0 … 360, and depth may be positive down or up. Curvilinear grids are
 /// rejected.
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ struct SeaField {
   std::vector<double> latitude;      ///< ascending [degrees]
   std::vector<double> longitude;     ///< ascending [degrees], shifted to the ranch's range
   Grid<float> value;                 ///< [latitude, longitude]; NaN: land or unknown
+  /// South, north, west and east of the whole file [degrees], longitudes as above
+  std::array<double, 4> extent{};
 };
 
 /// A field on the cells of a ranch, [H, W]; NaN where the field has no value nearby.

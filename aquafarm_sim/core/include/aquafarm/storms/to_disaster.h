@@ -37,6 +37,8 @@ struct StormWaypoint {
   std::vector<std::array<double, 4>> quadrants_km;
   std::optional<double> pressure_hpa;
   std::optional<double> wind_mps;
+  bool forecast{};  ///< predicted, not observed; between two waypoints: one of them is
+  bool silent{};    ///< neither radii nor wind are known: radii_km are 0; between two: of one
 };
 
 /// A storm as rings of wind.
@@ -44,13 +46,15 @@ struct StormRings {
   std::vector<std::int32_t> wind_kt;  ///< the strongest first; as many as each waypoint has radii
   std::vector<StormWaypoint> waypoints;
   std::int32_t estimated{};  ///< waypoints with an estimated radius
-  std::int32_t silent{};     ///< waypoints of which neither radii nor wind are known: 0 there
+  std::int32_t silent{};     ///< waypoints of which neither radii, wind nor grade are known
 
   /// The storm at a time, between two waypoints as Farm interpolates; none outside of the track.
   std::optional<StormWaypoint> At(std::int64_t time) const;
 };
 
-/// Reduces a track to rings. A stronger wind never reaches beyond a weaker one.
+/// Reduces a track to rings. A stronger wind never reaches beyond a weaker one. Radii that are not
+/// given are estimated from the wind, or from the lowest wind of the grade where the wind is
+/// unknown.
 StormRings ToRings(const HazardTrack& track, RingReduction reduction);
 
 /// Gives the fixes of a track that say nothing of radii those of another track of the same storm at
@@ -72,21 +76,41 @@ std::int32_t StepsToCover(double span_s, double step_duration_s);
 DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const GeoFrame& frame,
                         double cell_size_m, double step_duration_s, std::int64_t start_time);
 
-/// The forecast of a track that was issued last and goes beyond its fixes, of the agency named
-/// first; null: none.
+/// The newest forecast of a track that extends beyond its fixes, of the agency named first; nullptr
+/// without such a forecast, or if it was issued more than 24 hours before the last fix.
 const HazardForecast* NewestForecast(const HazardTrack& track);
 
-/// A storm as a bulletin leaves it: the fixes so far, then the newest forecast that was issued with
-/// one, of the agency named first. Without a forecast it goes on for 24 hours as it moves now, with
-/// the wind and rings it has now (persistence).
-HazardTrack WithForecast(const HazardTrack& track);
+/// What continues a track without a forecast.
+enum class NoForecast : std::uint8_t {
+  kEnd,      ///< nothing: the storm is known until its last fix only
+  kPersist,  ///< 24 hours with the motion, wind and rings of the last fix; without a motion the
+             ///< storm stands still
+};
+
+/// The recorded fixes of a track, then the newest forecast, marked as HazardFix::forecast. A
+/// forecast point without wind and radii keeps those of the point before.
+HazardTrack WithForecast(const HazardTrack& track, NoForecast otherwise);
+
+/// Until when a storm is known.
+struct StormKnowledge {
+  std::int64_t recorded_until{};  ///< UTC of the last recorded fix [s since 1970]; 0: none is
+  std::int64_t known_until{};     ///< UTC of the last fix; later than recorded_until: a forecast
+  std::int64_t issued{};          ///< UTC of the forecast; 0 without one
+  std::string agency;             ///< of the forecast; may be empty
+};
+/// Reads it from a track that WithForecast made of `recorded`.
+StormKnowledge KnowledgeOf(const HazardTrack& recorded, const HazardTrack& whole);
+/// "recorded until …, then forecast until … (issued … by 中国)", "known until … only", or with
+/// persistence "… ; no forecast: it is assumed to keep its motion until …".
+std::string Describe(const StormKnowledge& knowledge);
 
 /// The disaster that a bulletin announces to a running episode: with the grade_risks of the
 /// disaster that it replaces, or else of the scenario's first that has some, or the default ones;
 /// by quadrants where that disaster is.
 /// @param id of the disaster that it replaces or adds
 /// @param step_now of the episode: the disaster lasts from it to the last waypoint, at least a step
-/// @throws InputError for a scenario without grid.origin or time.start
+/// @throws InputError for a scenario without grid.origin or time.start, or a bulletin that is known
+///   until a time before step_now only
 DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, std::int32_t id,
                         std::int32_t step_now);
 
@@ -98,9 +122,22 @@ struct Passage {
   std::int64_t first{};          ///< when it first was; 0 with widest_h == 0
   std::int64_t last{};           ///< and last
   std::int32_t worst_wind_kt{};  ///< of the strongest ring that came over it; 0: none
+  bool nearest_forecast{};       ///< nearest_time lies in the forecast part of the track
+  bool nearest_at_end{};         ///< nearest_time is the last known time: it may come nearer
+  bool over_at_start{};          ///< the widest ring is over the place at the first known time
+  bool over_at_end{};            ///< and at the last known time
+  /// First and last time at which wind and radii are unknown and the centre is so near that the
+  /// largest known storm has its gale over the place; 0: never
+  std::array<std::int64_t, 2> unknown{};
 };
 
-/// Follows a storm past a place, ten minutes a step.
+/// Distance of the centre within which a storm concerns a place.
+inline constexpr double kStormConcern_km = 500.0;
+/// Radius of 34 kt of the largest storm known, Tip 1979 (Dunnavan and Diercks 1980, Mon. Wea. Rev.
+/// 108, 1915-1923).
+inline constexpr double kLargestGale_km = 1110.0;
+
+/// Follows a storm past a place from its first to its last known time, every ten minutes.
 /// @param margin_km by which rings count as wider: the half-diagonal of a ranch
 Passage PassOver(const StormRings& storm, GeoPoint place, double margin_km);
 

@@ -41,6 +41,9 @@ std::string_view ToString(StormGrade value);
 /// it stands.
 StormGrade GradeOfWind(double wind_mps);
 
+/// The lower limit of a grade [m/s]; 0 for kUnknown.
+double LowestWindOf(StormGrade grade);
+
 /// Quadrants of a ring, in this order everywhere.
 enum Quadrant : std::uint8_t {
   kNorthEastQuadrant,
@@ -75,6 +78,7 @@ struct HazardFix {
   bool motion_computed{};  ///< from the fixes around it, not said by the source
   bool interpolated{};     ///< the source says that it filled in the place
   bool landfall{};         ///< the source marks a landfall or passage at this hour
+  bool forecast{};         ///< predicted, not observed
   std::int32_t line{};     ///< of the file; 0 in JSON
 
   /// The ring of a wind; null: none was said.

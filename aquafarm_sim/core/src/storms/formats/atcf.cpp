@@ -48,19 +48,19 @@ double ReadAngle(std::string_view text, char positive, char negative, std::int32
                  const char* name, const HazardPlace& place) {
   const char side = text.empty() ? ' ' : text.back();
   if (side != positive && side != negative) {
-    place.Refuse(std::string(name) + ": got " + Quoted(text) +
-                 ", expected tenths of a degree and " + positive + " or " + negative);
+    place.RefuseFix(std::string(name) + ": got " + Quoted(text) +
+                    ", expected tenths of a degree and " + positive + " or " + negative);
   }
-  const double tenths = ReadWhole(text.substr(0, text.size() - 1), name, 0, most, place);
+  const double tenths = ReadFixNumber(text.substr(0, text.size() - 1), name, 0, most, place);
   return (side == positive ? tenths : -tenths) / 10.0;
 }
 
 // AAA is a circle; NEQ and the like start there and go clockwise; a semicircle, such as NES, has
 // two radii, its own and that of the other half. Each eighth of the circle is given its radius, a
 // quadrant the root of the mean square of its two eighths, which keeps the area.
-std::array<double, kQuadrantCount> Quadrants(std::string_view code,
-                                             const std::array<double, 4>& radius,
-                                             const HazardPlace& place) {
+// nullopt for an unknown code.
+std::optional<std::array<double, kQuadrantCount>> Quadrants(std::string_view code,
+                                                            const std::array<double, 4>& radius) {
   constexpr std::array<std::string_view, 8> kTowards{"NN", "NE", "EE", "SE",
                                                      "SS", "SW", "WW", "NW"};
   std::array<double, kQuadrantCount> quadrants{};
@@ -72,8 +72,7 @@ std::array<double, kQuadrantCount> Quadrants(std::string_view code,
   const auto towards = std::find(kTowards.begin(), kTowards.end(), code.substr(0, 2));
   const bool quadrant = kind == 'Q';
   if (towards == kTowards.end() || (!quadrant && kind != 'S')) {
-    place.Refuse("radius code: got " + Quoted(code) +
-                 ", expected AAA, a quadrant as NEQ or a semicircle as NES");
+    return std::nullopt;
   }
   std::array<double, 8> eighths{};  // clockwise from the one between north and north-east
   const std::size_t width = quadrant ? 2 : 4;
@@ -90,35 +89,45 @@ std::array<double, kQuadrantCount> Quadrants(std::string_view code,
 
 void ReadRing(const Fields& fields, HazardFix& fix, HazardPlace& place) {
   const std::int32_t wind_kt =
-      ReadWholeOrBlank(At(fields, kRadiusWind), "wind of the radii", 0, 100, place).value_or(0);
+      TryWhole(At(fields, kRadiusWind), "wind of the radii", 0, 100, place).value_or(0);
   const std::string_view code = At(fields, kRadiusCode);
   if (wind_kt == 0 || code.empty()) return;
   const std::size_t said = code == "AAA" ? 1 : code.back() == 'S' ? 2 : 4;
   std::array<double, 4> radius{};
   for (std::size_t i = 0; i < said; ++i) {
-    radius[i] = kKmPerNauticalMile *
-                ReadWhole(At(fields, static_cast<Field>(kRadius1 + i)), "radius", 0, 1500, place);
+    const std::string_view field = At(fields, static_cast<Field>(kRadius1 + i));
+    if (field.empty()) ReadWhole(field, "radius", 0, 1500, place);  // refuses a row that was cut
+    const auto value = TryWhole(field, "radius", 0, 1500, place);
+    if (!value) return;
+    radius[i] = kKmPerNauticalMile * *value;
   }
-  if (AddRing({wind_kt, Quadrants(code, radius, place), false}, fix.rings)) return;
+  const auto quadrants = Quadrants(code, radius);
+  if (!quadrants) {
+    place.WarnOnce("radius code", "radius code: got " + Quoted(code) +
+                                      ", expected AAA, a quadrant as NEQ or a semicircle as NES; "
+                                      "the radii are ignored");
+    return;
+  }
+  if (AddRing({wind_kt, *quadrants, false}, fix.rings)) return;
   place.Warn("the radii of " + std::to_string(wind_kt) + " kt are there twice, the second are " +
              "left out");
 }
 
-HazardFix ReadFix(const Fields& fields, const HazardPlace& place) {
+HazardFix ReadFix(const Fields& fields, HazardPlace& place) {
   HazardFix fix;
-  fix.time = ReadHour(At(fields, kTime), place) +
-             60 * ReadWholeOrBlank(At(fields, kMinute), "minutes", 0, 59, place).value_or(0);
+  fix.time = ReadHour(At(fields, kTime), place);
+  const std::string_view minute = At(fields, kMinute);
+  if (!minute.empty()) fix.time += 60 * ReadFixNumber(minute, "minutes", 0, 59, place);
   fix.position.latitude = ReadAngle(At(fields, kLatitude), 'N', 'S', 900, "latitude", place);
   fix.position.longitude =
       NormalLongitude(ReadAngle(At(fields, kLongitude), 'E', 'W', 1800, "longitude", place));
   const auto above_zero = [&](Field field, const char* name, std::int32_t max) {
-    const std::int32_t value =
-        ReadWholeOrBlank(At(fields, field), name, -999, max, place).value_or(0);
+    const std::int32_t value = TryWhole(At(fields, field), name, -999, max, place).value_or(0);
     return value > 0 ? std::optional<double>(value) : std::nullopt;
   };
   if (const auto wind_kt = above_zero(kWind, "wind", 250)) fix.wind_mps = *wind_kt * kMpsPerKnot;
   fix.averaging_min = kAveraging_min;
-  fix.pressure_hpa = above_zero(kPressure, "pressure", 1100);
+  fix.pressure_hpa = CheckedPressure(above_zero(kPressure, "pressure", 1100), "pressure", place);
   if (const auto radius = above_zero(kMaxWindRadius, "radius of the greatest wind", 999)) {
     fix.max_wind_radius_km = *radius * kKmPerNauticalMile;
   }
@@ -127,8 +136,11 @@ HazardFix ReadFix(const Fields& fields, const HazardPlace& place) {
   if (fix.wind_mps) fix.grade = GradeOfWind(*fix.wind_mps);
   // Best tracks leave direction and speed at 0: then they are computed.
   if (const auto speed_kt = above_zero(kSpeed, "speed", 200)) {
-    fix.speed_kmh = *speed_kt * kKmPerNauticalMile;
-    fix.heading_deg = ReadWhole(At(fields, kDirection), "direction", 0, 360, place) % 360;
+    const auto direction = TryWhole(At(fields, kDirection), "direction", 0, 360, place);
+    if (direction) {
+      fix.speed_kmh = *speed_kt * kKmPerNauticalMile;
+      fix.heading_deg = *direction % 360;
+    }
   }
   return fix;
 }
@@ -140,6 +152,29 @@ bool IsSame(const HazardFix& fix, const HazardFix& known) {
          fix.pressure_hpa == known.pressure_hpa;
 }
 
+// Fields of a row through its last radius, and through the radius of the greatest wind.
+constexpr std::size_t kThroughRadii = kRadius4 + 2;
+constexpr std::size_t kThroughMaxWind = kMaxWindRadius + 2;
+
+// The line and the number of fields of a row that ends before the radius of the greatest wind.
+using NarrowRow = std::pair<std::int32_t, std::size_t>;
+
+// A row that ends before the last radius, in a deck whose others do not, was cut; one that ends
+// before the radius of the greatest wind may have been. @param widest most fields of a row
+void CheckNarrowRows(const std::vector<NarrowRow>& narrow, std::size_t widest, HazardPlace& place) {
+  for (const auto& [number, size] : narrow) {
+    place.line = number;
+    if (size < kThroughRadii && widest >= kThroughRadii) {
+      place.Refuse("got " + std::to_string(size) + " fields, expected " +
+                   std::to_string(kThroughRadii) + " or more, to a comma after the radii, as " +
+                   "other rows have");
+    }
+    if (widest < kThroughMaxWind) continue;
+    place.Warn("got " + std::to_string(size) + " fields, the file's others have up to " +
+               std::to_string(widest) + ": was it cut off?");
+  }
+}
+
 }  // namespace
 
 std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
@@ -148,12 +183,9 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
   Fields fields;
   std::string_view line;
   std::string current;
-  // A row that ends before the last radius, in a deck whose others do not, was cut; one that ends
-  // before the radius of the greatest wind may have been.
-  constexpr std::size_t kThroughRadii = kRadius4 + 2;
-  constexpr std::size_t kThroughMaxWind = kMaxWindRadius + 2;
   std::size_t widest = 0;
-  std::vector<std::pair<std::int32_t, std::size_t>> narrow;
+  std::vector<NarrowRow> narrow;
+  LeftOut left_out;
   while (lines.Next(line)) {
     if (Trim(line).empty()) continue;
     SplitFields(line, fields);
@@ -171,11 +203,11 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
       place.Refuse("technique: got " + Quoted(fields[kTechnique]) + ", expected BEST: a b-deck");
     }
     ReadWholeOrBlank(fields[kHours], "TAU of a best track", 0, 0, place);
-    HazardFix fix = ReadFix(fields, place);
     const std::string storm = std::string(fields[kBasin]) + std::string(fields[kCyclone]);
     if (storm != current) {
       current = storm;
-      if (!tracks.empty()) FinishTrack(tracks.back(), place);
+      if (!tracks.empty()) FinishTrack(tracks.back(), left_out, place);
+      left_out = {};
       HazardTrack track;
       track.id = storm + std::string(fields[kTime].substr(0, 4));
       track.agency = "ATCF";
@@ -184,23 +216,17 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
     }
     HazardTrack& track = tracks.back();
     if (!At(fields, kName).empty()) track.name = At(fields, kName);
-    if (track.fixes.empty() || !IsSame(fix, track.fixes.back())) {
-      AppendFix(std::move(fix), track.fixes, place);
-    }
-    ReadRing(fields, track.fixes.back(), place);
+    const auto read = [&] {
+      HazardFix fix = ReadFix(fields, place);
+      if (track.fixes.empty() || !IsSame(fix, track.fixes.back())) {
+        AppendFix(std::move(fix), track.fixes, place);
+      }
+      ReadRing(fields, track.fixes.back(), place);
+    };
+    TryFix(read, left_out, place);
   }
-  if (!tracks.empty()) FinishTrack(tracks.back(), place);
-  for (const auto& [number, size] : narrow) {
-    place.line = number;
-    if (size < kThroughRadii && widest >= kThroughRadii) {
-      place.Refuse("got " + std::to_string(size) + " fields, expected " +
-                   std::to_string(kThroughRadii) + " or more, to a comma after the radii, as " +
-                   "other rows have");
-    }
-    if (widest < kThroughMaxWind) continue;
-    place.Warn("got " + std::to_string(size) + " fields, the file's others have up to " +
-               std::to_string(widest) + ": was it cut off?");
-  }
+  if (!tracks.empty()) FinishTrack(tracks.back(), left_out, place);
+  CheckNarrowRows(narrow, widest, place);
   return tracks;
 }
 

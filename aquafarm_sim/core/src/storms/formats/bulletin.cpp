@@ -48,14 +48,17 @@ StormGrade GradeOfText(const std::string& text) {
       ->second;
 }
 
-// "250|220|200|180", or one number for all.
-std::array<double, kQuadrantCount> ParseRadii(const JsonObject& point, JsonObject::Keys keys,
-                                              HazardPlace& place) {
+// "250|220|200|180", or one number for all; nullopt with a warning for anything else.
+std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& point,
+                                                             JsonObject::Keys keys,
+                                                             HazardPlace& place) {
   std::array<double, kQuadrantCount> radius{};
   const Json* value = point.Find(keys);
   const std::string text = value != nullptr && value->is_string() ? value->get<std::string>() : "";
   if (text.find('|') == std::string::npos) {
-    radius.fill(point.Number(keys, 0.0, kMostRadius_km).value_or(0.0));
+    const std::optional<double> all = point.TryNumber(keys, 0.0, kMostRadius_km);
+    if (!all && value != nullptr) return std::nullopt;
+    radius.fill(all.value_or(0.0));
     return radius;
   }
   std::string_view rest = text;
@@ -70,104 +73,130 @@ std::array<double, kQuadrantCount> ParseRadii(const JsonObject& point, JsonObjec
     rest.remove_prefix(bar == std::string_view::npos ? rest.size() : bar + 1);
   }
   if (fits) return radius;
-  place.RefuseValue(
-      Join(point.path(), point.KeyOf(keys)),
-      "got " + Quoted(text) + ", expected four numbers in [0, 3000] as " + "250|220|200|180");
+  place.WarnValueOnce(
+      point.KeyOf(keys), Join(point.path(), point.KeyOf(keys)),
+      "got " + Quoted(text) + ", expected four numbers in [0, 3000] as 250|220|200|180" + kIgnored);
+  return std::nullopt;
 }
 
 void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys whole,
               JsonObject::Keys quadrants, HazardFix& fix, HazardPlace& place) {
-  std::array<double, kQuadrantCount> radius = ParseRadii(point, whole, place);
-  if (const Json* value = point.Find(quadrants)) {
+  const auto said = ParseRadii(point, whole, place);
+  std::array<double, kQuadrantCount> radius = said.value_or(std::array<double, kQuadrantCount>{});
+  bool valid = said.has_value();
+  const Json* value = point.Find(quadrants);
+  if (value != nullptr && value->is_object()) {
     const auto each = ReadQuadrants(*value, Join(point.path(), point.KeyOf(quadrants)),
                                     {"ne", "se", "sw", "nw"}, wind_kt, radius, place);
-    if (*std::max_element(each.begin(), each.end()) > 0.0) radius = each;
+    if (*std::max_element(each.begin(), each.end()) > 0.0) {
+      radius = each;
+      valid = true;
+    }
+  } else if (value != nullptr) {
+    place.WarnValueOnce(
+        point.KeyOf(quadrants), Join(point.path(), point.KeyOf(quadrants)),
+        std::string("got no object, expected radii as {\"ne\": 250, …}") + kIgnored);
   }
-  AddSaidRing(wind_kt, radius, fix);
+  if (valid) AddSaidRing(wind_kt, radius, fix);  // else unknown, so estimated
 }
 
 HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
   HazardFix fix;
   fix.time = point.NeedTime({"time"}, kBeijing_s);
   fix.position = point.NeedPosition({"lat"}, {"lng", "lon"});
-  const double wind = point.Number({"speed"}, 0.0, 150.0).value_or(0.0);
+  const double wind = point.TryNumber({"speed"}, 0.0, 150.0).value_or(0.0);
   if (wind > 0.0) fix.wind_mps = wind;  // 0: of old storms, not known
   fix.averaging_min = kAveraging_min;
-  const double pressure = point.Number({"pressure"}, 0.0, 1100.0).value_or(0.0);
-  if (pressure > 0.0) fix.pressure_hpa = pressure;
-  const std::string strong = point.Text({"strong"});
+  fix.pressure_hpa = CheckedPressure(point.TryNumber({"pressure"}, 0.0, 1100.0),
+                                     Join(point.path(), "pressure"), place);
+  const std::string strong = point.TryText({"strong"});
   fix.grade = GradeOfText(strong);
   if (fix.grade == StormGrade::kUnknown) {
     if (fix.wind_mps) fix.grade = GradeOfWind(*fix.wind_mps);
-    if (!strong.empty()) point.Here().Warn("strong: " + Quoted(strong) + " is no grade known here");
+    if (!strong.empty()) {
+      place.WarnValueOnce("strong", Join(point.path(), "strong"),
+                          Quoted(strong) + " is not a known grade");
+    }
   }
   ReadRing(point, 34, {"radius7", "r7"}, {"radius7_quad", "r7Quad", "radius7Quad"}, fix, place);
   ReadRing(point, 50, {"radius10", "r10"}, {"radius10_quad", "r10Quad", "radius10Quad"}, fix,
            place);
   ReadRing(point, 64, {"radius12", "r12"}, {"radius12_quad", "r12Quad", "radius12Quad"}, fix,
            place);
-  fix.speed_kmh = point.Number({"move_speed", "moveSpeed", "movespeed"}, 0.0, 300.0);
+  fix.speed_kmh = point.TryNumber({"move_speed", "moveSpeed", "movespeed"}, 0.0, 300.0);
   if (fix.speed_kmh == 0.0) fix.speed_kmh.reset();  // not said; a storm at rest is computed
   const JsonObject::Keys way{"move_dir", "moveDir", "movedirection"};
-  const std::string direction = point.Text(way);
+  const std::string direction = point.TryText(way);
   fix.heading_deg = ParseDirection(direction);
   if (!fix.heading_deg && !direction.empty()) {
-    point.Here().Warn(point.KeyOf(way) + ": " + Quoted(direction) + " is no direction known here");
+    place.WarnValueOnce(point.KeyOf(way), Join(point.path(), point.KeyOf(way)),
+                        Quoted(direction) + " is not a known direction");
   }
   return fix;
 }
 
 // Whether a forecast's point is after the observed one that it hangs on, which for some agencies is
-// later than their own issue. @throws InputError when it is too far ahead for a forecast
+// later than their own issue. @throws FixError when it is too far ahead for a forecast
 bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
              HazardPlace& place) {
   constexpr std::int64_t kMostDays = 15;
   if (time - observed > kMostDays * 86400) {
-    place.RefuseValue(path, "got " + FormatTime(time) + ", expected a forecast's within " +
-                                std::to_string(kMostDays) + " days after " + FormatTime(observed));
+    place.RefuseFixValue(path, "got " + FormatTime(time) + ", expected a forecast's within " +
+                                   std::to_string(kMostDays) + " days after " +
+                                   FormatTime(observed));
   }
   if (time < observed) {
-    place.WarnValue(path, "got " + FormatTime(time) + ", before " + FormatTime(observed) +
-                              ", whose forecast it is; left out");
+    place.WarnValueOnce("forecast before", path,
+                        "got " + FormatTime(time) + ", before " + FormatTime(observed) +
+                            ", whose forecast it is; left out");
   }
   return time >= observed;
 }
 
 void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& track,
                    HazardPlace& place) {
-  const Json* forecasts = point.List({"forecast"});
+  const Json* forecasts = point.TryList({"forecast"});
   for (std::size_t i = 0; forecasts != nullptr && i < forecasts->size(); ++i) {
     const JsonObject one((*forecasts)[i], At(Join(point.path(), "forecast"), i), place);
     HazardForecast forecast;
-    forecast.agency = one.Text({"sets", "tm"});
+    forecast.agency = one.TryText({"sets", "tm"});
     forecast.issued = issued;
     const JsonObject::Keys keys{"points", "forecastpoints"};
-    const Json* points = one.List(keys);
+    const Json* points = one.TryList(keys);
+    LeftOut unused;
     for (std::size_t k = 0; points != nullptr && k < points->size(); ++k) {
       const JsonObject entry((*points)[k], At(Join(one.path(), one.KeyOf(keys)), k), place);
-      HazardFix fix = ReadPoint(entry, place);
-      if (IsAhead(fix.time, issued, Join(entry.path(), "time"), place)) {
-        AppendFix(std::move(fix), forecast.fixes, entry.Here());
-      }
+      const auto read = [&] {
+        HazardFix fix = ReadPoint(entry, place);
+        if (IsAhead(fix.time, issued, Join(entry.path(), "time"), place)) {
+          AppendFix(std::move(fix), forecast.fixes, entry.Here());
+        }
+      };
+      TryFix(read, unused, place);
     }
     if (!forecast.fixes.empty() && forecast.fixes.back().time > issued) {
       track.forecasts.push_back(std::move(forecast));
     } else {
-      place.WarnValue(one.path(), "got no points after its issue, the forecast is left out");
+      place.WarnValueOnce("no forecast", one.path(),
+                          "got no points after its issue, the forecast is left out");
     }
   }
 }
 
 void ReadLandfalls(const JsonObject& storm, HazardTrack& track, HazardPlace& place) {
-  const Json* land = storm.List({"land"});
+  const Json* land = storm.TryList({"land"});
   for (std::size_t i = 0; land != nullptr && i < land->size(); ++i) {
     const Json& each = (*land)[i];
     const bool zhejiangs = each.contains("landtime");  // which names more than landfalls
     if (zhejiangs || IsBlank(each)) continue;
-    const JsonObject entry(each, At(Join(storm.path(), "land"), i), place);
-    track.landfalls.push_back({entry.NeedTime({"land_time", "landTime"}, kBeijing_s),
-                               entry.NeedPosition({"lat"}, {"lng", "lon"}),
-                               entry.Text({"position"})});
+    try {
+      const JsonObject entry(each, At(Join(storm.path(), "land"), i), place);
+      track.landfalls.push_back({entry.NeedTime({"land_time", "landTime", "time"}, kBeijing_s),
+                                 entry.NeedPosition({"lat"}, {"lng", "lon"}),
+                                 entry.TryText({"position", "landaddress"})});
+    } catch (const InputError& error) {
+      place.WarnOnce("land", error, "; the landfall is left out");
+    }
   }
   std::stable_sort(track.landfalls.begin(), track.landfalls.end(),
                    [](const Landfall& a, const Landfall& b) { return a.time < b.time; });
@@ -178,19 +207,23 @@ HazardTrack ReadStorm(const JsonObject& storm, HazardPlace& place) {
   track.id = storm.Text({"tfbh", "ident", "tfid"});
   if (track.id.empty()) storm.Here().Refuse("tfbh: got nothing, expected a storm's number");
   const auto named = [](const std::string& text) { return text == "-" ? std::string() : text; };
-  track.name = named(storm.Text({"ename", "enname"}));
-  track.local_name = named(storm.Text({"name"}));
+  track.name = named(storm.TryText({"ename", "enname"}));
+  track.local_name = named(storm.TryText({"name"}));
   track.agency = "bulletin";
   const Json* points = storm.List({"points"});
+  LeftOut left_out;
   for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
     const JsonObject point((*points)[i], At(Join(storm.path(), "points"), i), place);
-    HazardFix fix = ReadPoint(point, place);
-    const std::int64_t time = fix.time;
-    AppendFix(std::move(fix), track.fixes, point.Here());
-    ReadForecasts(point, time, track, place);
+    const auto read = [&] {
+      HazardFix fix = ReadPoint(point, place);
+      const std::int64_t time = fix.time;
+      AppendFix(std::move(fix), track.fixes, point.Here());
+      ReadForecasts(point, time, track, place);
+    };
+    TryFix(read, left_out, place);
   }
   ReadLandfalls(storm, track, place);
-  FinishTrack(track, storm.Here());
+  FinishTrack(track, left_out, storm.Here());
   return track;
 }
 

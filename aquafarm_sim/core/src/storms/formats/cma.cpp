@@ -15,10 +15,14 @@ constexpr std::int32_t kAveraging_min = 2;
 
 // 66666 BBBB CCC DDDD EEEE F G name date. BBBB is 0000 for every storm before 2017 and EEEE may be
 // two numbers, "7127,7128"; the serial DDDD is in every file once.
-BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
+BestTrackHeader ReadHeader(std::string_view line, HazardPlace& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   constexpr std::size_t kBeforeName = 7;
-  if (words.size() < kBeforeName + 2) {
+  const auto is_date = [](std::string_view word) {
+    return word.size() == 8 && word.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  const bool blank_name = words.size() == kBeforeName + 1 && is_date(words.back());
+  if (words.size() < kBeforeName + 2 && !blank_name) {
     place.Refuse("got " + std::to_string(words.size()) +
                  " words, expected a header: 66666, numbers, points, serial, number, end, hours, "
                  "name, date");
@@ -30,18 +34,22 @@ BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
   header.track.id = number == "0000" ? "CMA" + std::to_string(serial) : std::string(number);
   header.track.agency = "CMA";
   const std::string_view date = words.back();
-  if (date.size() != 8 || date.find_first_not_of("0123456789") != std::string_view::npos) {
+  if (!is_date(date)) {
     place.Refuse("date: got " + Quoted(date) + " at the end, expected YYYYMMDD: was it cut off?");
   }
   for (std::size_t i = kBeforeName; i + 1 < words.size(); ++i) {
     header.track.name += (i > kBeforeName ? " " : "") + std::string(words[i]);
   }
   if (header.track.name == "(nameless)") header.track.name.clear();
+  if (blank_name) {
+    place.WarnOnce("name", "name: got nothing, expected a name or (nameless); the storm is " +
+                               header.track.id + " without a name");
+  }
   return header;
 }
 
 // YYYYMMDDHH I LAT LONG PRES WND [OWD]
-HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
+HazardFix ReadPoint(std::string_view line, HazardPlace& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   if (words.size() != 6 && words.size() != 7) {
     place.Refuse("got " + std::to_string(words.size()) +
@@ -49,28 +57,32 @@ HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
   }
   HazardFix fix;
   fix.time = ReadHour(words[0], place);
-  const std::int32_t grade = ReadWhole(words[1], "grade", 0, 9, place);
-  if (grade == 7 || grade == 8) {
-    place.Refuse("grade: got " + std::to_string(grade) + ", expected one of 0 to 6 or 9");
-  }
   fix.position = {ReadLatitudeTenths(words[2], place), ReadLongitudeTenths(words[3], place)};
-  const std::int32_t pressure = ReadWhole(words[4], "pressure", 0, 1100, place);
-  if (pressure > 0) fix.pressure_hpa = pressure;
+  constexpr std::int32_t kNoGrade = -1;
+  std::int32_t grade = TryWhole(words[1], "grade", 0, 9, place).value_or(kNoGrade);
+  if (grade == 7 || grade == 8) {
+    place.WarnOnce("grade", "grade: got " + std::to_string(grade) +
+                                ", expected one of 0 to 6 or 9" + kIgnored);
+    grade = kNoGrade;
+  }
+  fix.pressure_hpa =
+      CheckedPressure(TryWhole(words[4], "pressure", 0, 1100, place), "pressure", place);
   fix.averaging_min = kAveraging_min;
-  const std::int32_t wind = ReadWhole(words[5], "wind", 0, 150, place);
+  const std::int32_t wind = TryWhole(words[5], "wind", 0, 150, place).value_or(0);
   constexpr std::int32_t kBelowTen = 9;
   if (wind == kBelowTen) fix.wind_below_mps = 10.0;
   if (wind > 0 && wind != kBelowTen) fix.wind_mps = wind;
   if (words.size() == 7) {
-    const std::int32_t second = ReadWhole(words[6], "second wind", 0, 150, place);
-    if (second > 0) fix.second_wind_mps = second;
+    const auto second = TryWhole(words[6], "second wind", 0, 150, place);
+    if (second.value_or(0) > 0) fix.second_wind_mps = second;
   }
   constexpr std::int32_t kExtratropical = 9;
   fix.extratropical = grade == kExtratropical;
-  if (!fix.extratropical)
+  if (grade != kNoGrade && !fix.extratropical) {
     fix.grade = static_cast<StormGrade>(grade);
-  else if (fix.wind_mps)
+  } else if (fix.wind_mps) {
     fix.grade = GradeOfWind(*fix.wind_mps);
+  }
   return fix;
 }
 

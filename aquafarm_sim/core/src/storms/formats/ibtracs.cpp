@@ -47,14 +47,20 @@ class Columns {
 };
 
 std::optional<double> Number(std::string_view text, const char* name, double max,
-                             const HazardPlace& place) {
-  if (text.empty()) return std::nullopt;
-  return ReadNumber(text, name, 0.0, max, place);
+                             HazardPlace& place) {
+  return TryNumber(text, name, 0.0, max, place);
+}
+
+double Degrees(std::string_view text, const char* name, double min, double max,
+               const HazardPlace& place) {
+  const std::optional<double> value = ParseNumber(text);
+  if (value && *value >= min && *value <= max) return *value;  // false for nan
+  place.RefuseFix(std::string(name) + ": got " + Quoted(text) + ", expected a number in [" +
+                  Format(min) + ", " + Format(max) + "]");
 }
 
 // The first agency with any radius of a wind gives all four quadrants.
-void ReadRings(const Columns& columns, const Fields& fields, HazardFix& fix,
-               const HazardPlace& place) {
+void ReadRings(const Columns& columns, const Fields& fields, HazardFix& fix, HazardPlace& place) {
   constexpr std::array<const char*, kQuadrantCount> kQuadrants{"NE", "SE", "SW", "NW"};
   for (const std::int32_t wind_kt : {34, 50, 64}) {
     for (const char* agency : {"USA", "BOM", "REUNION"}) {
@@ -75,7 +81,7 @@ void ReadRings(const Columns& columns, const Fields& fields, HazardFix& fix,
 
 // WMO_WIND is the responsible agency's; where it is blank, as in provisional tracks, the USA's.
 void ReadStrength(const Columns& columns, const Fields& fields, HazardFix& fix,
-                  const HazardPlace& place) {
+                  HazardPlace& place) {
   auto wind_kt = Number(columns.Get(fields, "WMO_WIND"), "WMO_WIND", 250.0, place);
   fix.averaging_min = wind_kt ? AveragingOf(columns.Get(fields, "WMO_AGENCY")) : 0;
   if (!wind_kt) {
@@ -89,23 +95,23 @@ void ReadStrength(const Columns& columns, const Fields& fields, HazardFix& fix,
   for (const char* key : {"WMO_PRES", "USA_PRES"}) {
     const std::string_view pressure = columns.Get(fields, key);
     if (fix.pressure_hpa || pressure.empty()) continue;
-    fix.pressure_hpa = ReadNumber(pressure, key, kLeastPressure_hpa, 1100.0, place);
+    fix.pressure_hpa = TryNumber(pressure, key, kLeastPressure_hpa, 1100.0, place);
   }
   const auto radius = Number(columns.Get(fields, "USA_RMW"), "USA_RMW", 999.0, place);
   if (radius) fix.max_wind_radius_km = *radius * kKmPerNauticalMile;
 }
 
-HazardFix ReadFix(const Columns& columns, const Fields& fields, const HazardPlace& place) {
+HazardFix ReadFix(const Columns& columns, const Fields& fields, HazardPlace& place) {
   HazardFix fix;
   const std::string_view time = columns.Get(fields, "ISO_TIME");
   const std::optional<std::int64_t> utc = ParseDateTime(time, 0);
   if (!utc) {
-    place.Refuse("ISO_TIME: got " + Quoted(time) + ", expected UTC as YYYY-MM-DD HH:MM:SS");
+    place.RefuseFix("ISO_TIME: got " + Quoted(time) + ", expected UTC as YYYY-MM-DD HH:MM:SS");
   }
   fix.time = *utc;
-  fix.position.latitude = ReadNumber(columns.Get(fields, "LAT"), "LAT", -90.0, 90.0, place);
+  fix.position.latitude = Degrees(columns.Get(fields, "LAT"), "LAT", -90.0, 90.0, place);
   fix.position.longitude =
-      NormalLongitude(ReadNumber(columns.Get(fields, "LON"), "LON", -180.0, 360.0, place));
+      NormalLongitude(Degrees(columns.Get(fields, "LON"), "LON", -180.0, 360.0, place));
   ReadStrength(columns, fields, fix, place);
   ReadRings(columns, fields, fix, place);
   fix.extratropical = columns.Get(fields, "NATURE") == "ET";
@@ -129,6 +135,7 @@ std::vector<HazardTrack> ReadIbtracs(std::string_view text, HazardPlace& place) 
   SplitFields(line, fields);
   const Columns columns(fields, place);
   std::map<std::string, bool> seen;
+  LeftOut left_out;
   while (lines.Next(line)) {
     if (Trim(line).empty()) continue;
     SplitFields(line, fields);
@@ -147,7 +154,8 @@ std::vector<HazardTrack> ReadIbtracs(std::string_view text, HazardPlace& place) 
       if (!seen.emplace(id, true).second) {
         place.Refuse("SID: got " + Quoted(id) + " again, expected its rows one after another");
       }
-      if (!tracks.empty()) FinishTrack(tracks.back(), place);
+      if (!tracks.empty()) FinishTrack(tracks.back(), left_out, place);
+      left_out = {};
       HazardTrack track;
       track.id = id;
       track.name = columns.Get(fields, "NAME");
@@ -157,10 +165,11 @@ std::vector<HazardTrack> ReadIbtracs(std::string_view text, HazardPlace& place) 
       track.line = place.line;
       tracks.push_back(std::move(track));
     }
-    AppendFix(ReadFix(columns, fields, place), tracks.back().fixes, place);
+    TryFix([&] { AppendFix(ReadFix(columns, fields, place), tracks.back().fixes, place); },
+           left_out, place);
   }
   if (tracks.empty()) place.Refuse("got no storm, expected rows of fixes");
-  FinishTrack(tracks.back(), place);
+  FinishTrack(tracks.back(), left_out, place);
   return tracks;
 }
 

@@ -11,6 +11,7 @@ namespace aquafarm::internal {
 namespace {
 
 constexpr std::int32_t kAveraging_min = 10;
+constexpr std::int32_t kUnknownGrade = 7;  // "just entering the region": the wind decides
 // Lines end here or are filled up to 80 columns.
 constexpr std::size_t kThroughHeader = 72;
 constexpr std::size_t kThroughWind = 36;
@@ -41,7 +42,7 @@ std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double long
 
 // Blank: not said. All zero: no such wind. A line that ends within was cut.
 void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, HazardFix& fix,
-              const HazardPlace& place) {
+              HazardPlace& place) {
   const std::string_view direction = Columns(line, at, at + 1);
   const std::string_view longest = Columns(line, at + 1, at + 5);
   if (Trim(direction).empty() && Trim(longest).empty()) return;
@@ -51,22 +52,26 @@ void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, Hazar
                  std::to_string(at + kWidth) + " or more where there are radii of " +
                  std::to_string(wind_kt) + " kt");
   }
-  const std::int32_t code = ReadWhole(direction, "direction of the longest radius", 0, 9, place);
-  const double far = ReadWhole(longest, "longest radius", 0, 2000, place) * kKmPerNauticalMile;
-  const double near = ReadWhole(Columns(line, at + 6, at + 10), "shortest radius", 0, 2000, place) *
-                      kKmPerNauticalMile;
-  if (code == 0 && far > 0.0) {
-    place.Refuse("direction of the longest radius: got 0, which is none, with a radius of " +
-                 std::to_string(wind_kt) + " kt");
+  const auto code = TryWhole(direction, "direction of the longest radius", 0, 9, place);
+  const auto far = TryWhole(longest, "longest radius", 0, 2000, place);
+  const auto near = TryWhole(Columns(line, at + 6, at + 10), "shortest radius", 0, 2000, place);
+  if (!code || !far || !near) return;
+  const std::string of_wind = " of " + std::to_string(wind_kt) + " kt; the radii are ignored";
+  if (*code == 0 && *far > 0) {
+    place.WarnOnce(
+        "radii", "direction of the longest radius: got 0, expected 1 to 9 with a radius" + of_wind);
+  } else if (*near > *far) {
+    place.WarnOnce("radii", "shortest radius: got " + std::to_string(*near) +
+                                ", expected at most the longest, " + std::to_string(*far) + "," +
+                                of_wind);
+  } else {
+    AddRing(
+        {wind_kt, Quadrants(*code, *far * kKmPerNauticalMile, *near * kKmPerNauticalMile), false},
+        fix.rings);
   }
-  if (near > far) {
-    place.Refuse("shortest radius: got one longer than the longest, of " + std::to_string(wind_kt) +
-                 " kt");
-  }
-  AddRing({wind_kt, Quadrants(code, far, near), false}, fix.rings);
 }
 
-BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
+BestTrackHeader ReadHeader(std::string_view line, HazardPlace& place) {
   if (line.size() < kThroughHeader) {
     place.Refuse("got a header of " + std::to_string(line.size()) + " columns, expected " +
                  std::to_string(kThroughHeader) + " or more, to its date");
@@ -77,8 +82,8 @@ BestTrackHeader ReadHeader(std::string_view line, const HazardPlace& place) {
   ReadWhole(number, "number", 0, 9999, place);
   const std::string_view again = Trim(Columns(line, 21, 25));
   if (!again.empty() && again != number) {
-    place.Refuse("number: got " + Quoted(number) + " and " + Quoted(again) +
-                 ", expected the same twice");
+    place.WarnOnce("number", "number: got " + Quoted(number) + " and " + Quoted(again) +
+                                 ", expected the same twice; " + Quoted(number) + " is used");
   }
   header.track.id = number;
   header.track.name = Trim(Columns(line, 30, 50));
@@ -100,7 +105,7 @@ StormGrade Grade(std::int32_t code, const std::optional<double>& wind_mps) {
   }
 }
 
-HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
+HazardFix ReadPoint(std::string_view line, HazardPlace& place) {
   if (Columns(line, 9, 12) != "002") {
     place.Refuse("got " + Quoted(line) + ", expected a point: yymmddhh 002 …");
   }
@@ -112,14 +117,16 @@ HazardFix ReadPoint(std::string_view line, const HazardPlace& place) {
   HazardFix fix;
   // The file starts in 1951.
   fix.time = ReadHour((hour < "51" ? "20" : "19") + std::string(hour), place);
-  const std::int32_t code = ReadWhole(Columns(line, 13, 14), "grade", 2, 9, place);
-  if (code == 8) place.Refuse("grade: got 8, expected one of 2 to 7 or 9");
+  std::int32_t code = TryWhole(Columns(line, 13, 14), "grade", 2, 9, place).value_or(kUnknownGrade);
+  if (code == 8) {
+    place.WarnOnce("grade", std::string("grade: got 8, expected one of 2 to 7 or 9") + kIgnored);
+    code = kUnknownGrade;
+  }
   fix.position = {ReadLatitudeTenths(Columns(line, 15, 18), place),
                   ReadLongitudeTenths(Columns(line, 19, 23), place)};
-  const std::int32_t pressure = ReadWhole(Columns(line, 24, 28), "pressure", 0, 1100, place);
-  if (pressure > 0) fix.pressure_hpa = pressure;
-  const std::int32_t wind_kt =
-      ReadWholeOrBlank(Columns(line, 33, 36), "wind", 0, 250, place).value_or(0);
+  fix.pressure_hpa = CheckedPressure(TryWhole(Columns(line, 24, 28), "pressure", 0, 1100, place),
+                                     "pressure", place);
+  const std::int32_t wind_kt = TryWhole(Columns(line, 33, 36), "wind", 0, 250, place).value_or(0);
   if (wind_kt > 0) fix.wind_mps = wind_kt * kMpsPerKnot;
   fix.averaging_min = kAveraging_min;
   fix.extratropical = code == 6;

@@ -27,7 +27,9 @@ StormGrade Grade(const JsonObject& point, const std::string& type,
       return static_cast<StormGrade>(i);
     }
   }
-  if (!type.empty()) point.Here().Warn("type: " + Quoted(type) + " is no grade known here");
+  if (!type.empty()) {
+    point.Here().WarnOnce("type", "type: " + Quoted(type) + " is not a known grade");
+  }
   return wind_mps ? GradeOfWind(*wind_mps) : StormGrade::kUnknown;
 }
 
@@ -35,31 +37,38 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
   HazardFix fix;
   fix.time = point.NeedTime({"time", "pubTime", "fxTime"}, kBeijing_s);
   fix.position = point.NeedPosition({"lat"}, {"lon"});
-  const double wind = point.Number({"windSpeed"}, 0.0, 150.0).value_or(0.0);
+  const double wind = point.TryNumber({"windSpeed"}, 0.0, 150.0).value_or(0.0);
   if (wind > 0.0) fix.wind_mps = wind;
   fix.averaging_min = kAveraging_min;
-  const double pressure = point.Number({"pressure"}, 0.0, 1100.0).value_or(0.0);
-  if (pressure > 0.0) fix.pressure_hpa = pressure;
-  fix.grade = Grade(point, point.Text({"type"}), fix.wind_mps);
+  fix.pressure_hpa = CheckedPressure(point.TryNumber({"pressure"}, 0.0, 1100.0),
+                                     Join(point.path(), "pressure"), place);
+  fix.grade = Grade(point, point.TryText({"type"}), fix.wind_mps);
   constexpr std::array<std::pair<const char*, std::int32_t>, 3> kRings{
       {{"windRadius30", 34}, {"windRadius50", 50}, {"windRadius64", 64}}};
   for (const auto& [key, wind_kt] : kRings) {
     std::array<double, kQuadrantCount> radius{};
-    if (const Json* value = point.Find({key})) {
+    const Json* value = point.Find({key});
+    if (value != nullptr && !value->is_object()) {
+      place.WarnValueOnce(
+          key, Join(point.path(), key),
+          std::string("got no object, expected radii as {\"neRadius\": …}") + kIgnored);
+      continue;
+    }
+    if (value != nullptr) {
       radius =
           ReadQuadrants(*value, Join(point.path(), key),
                         {"neRadius", "seRadius", "swRadius", "nwRadius"}, wind_kt, radius, place);
     }
     AddSaidRing(wind_kt, radius, fix);
   }
-  fix.speed_kmh = point.Number({"moveSpeed"}, 0.0, 300.0);
+  fix.speed_kmh = point.TryNumber({"moveSpeed"}, 0.0, 300.0);
   if (fix.speed_kmh == 0.0) fix.speed_kmh.reset();  // not said; a storm at rest is computed
-  fix.heading_deg = point.Number({"move360"}, 0.0, 360.0);
+  fix.heading_deg = point.TryNumber({"move360"}, 0.0, 360.0);
   if (fix.heading_deg == 360.0) fix.heading_deg = 0.0;
-  const std::string direction = point.Text({"moveDir"});
+  const std::string direction = point.TryText({"moveDir"});
   if (!fix.heading_deg) fix.heading_deg = ParseDirection(direction);
   if (!fix.heading_deg && !direction.empty()) {
-    point.Here().Warn("moveDir: " + Quoted(direction) + " is no direction known here");
+    point.Here().WarnOnce("moveDir", "moveDir: " + Quoted(direction) + " is not a known direction");
   }
   return fix;
 }
@@ -70,19 +79,46 @@ const char* KeyOfPoints(const JsonObject& answer) {
   return track == nullptr || track->empty() ? "forecast" : "track";
 }
 
-// Sections that an answer may have besides its points, and a forecast beside the track.
-void WarnOfUnread(const Json& document, std::string_view points, HazardPlace& place) {
-  constexpr std::array<std::string_view, 10> kKnown{
-      "code", "updateTime", "fxLink", "isActive", "now", "track", "refer", "id", "stormid", "name"};
+// Sections that an answer may have in addition to its points.
+void WarnOfUnread(const Json& document, HazardPlace& place) {
+  constexpr std::array<std::string_view, 11> kKnown{"code", "updateTime", "fxLink",  "isActive",
+                                                    "now",  "track",      "refer",   "id",
+                                                    "name", "stormid",    "forecast"};
   for (const auto& [key, value] : document.items()) {
-    const bool known =
-        std::find(kKnown.begin(), kKnown.end(), key) != kKnown.end() || key == points;
+    const bool known = std::find(kKnown.begin(), kKnown.end(), key) != kKnown.end();
     if (!known && !IsBlank(value)) place.WarnValue(key, "is not read");
   }
 }
 
 // A point of type DL marks a landfall and says nothing else.
-bool IsLandfall(const JsonObject& point) { return point.Text({"type"}) == "DL"; }
+bool IsLandfall(const JsonObject& point) { return point.TryText({"type"}) == "DL"; }
+
+// A forecast next to the track is taken as issued with the last fix.
+void ReadForecast(const JsonObject& answer, HazardTrack& track, HazardPlace& place) {
+  const Json* points = answer.TryList({"forecast"});
+  if (points == nullptr || points->empty() || track.fixes.empty()) return;
+  HazardForecast forecast;
+  forecast.issued = track.fixes.back().time;
+  LeftOut unused;
+  for (std::size_t i = 0; i < points->size(); ++i) {
+    const JsonObject point((*points)[i], At("forecast", i), place);
+    const auto read = [&] {
+      HazardFix fix = ReadPoint(point, place);
+      if (fix.time > forecast.issued) AppendFix(std::move(fix), forecast.fixes, point.Here());
+    };
+    if (!IsLandfall(point)) TryFix(read, unused, place);
+  }
+  if (!forecast.fixes.empty()) track.forecasts.push_back(std::move(forecast));
+}
+
+void ReadLandfall(const JsonObject& point, HazardTrack& track, HazardPlace& place) {
+  try {
+    track.landfalls.push_back(
+        {point.NeedTime({"time"}, kBeijing_s), point.NeedPosition({"lat"}, {"lon"}), ""});
+  } catch (const FixError& error) {
+    place.WarnOnce("land", error, "; the landfall is left out");
+  }
+}
 
 }  // namespace
 
@@ -94,31 +130,38 @@ std::vector<HazardTrack> ReadWeatherService(const std::string& text, HazardPlace
     answer.Here().Refuse("code: got " + Quoted(code) + ", expected '200'");
   }
   const char* key = KeyOfPoints(answer);
-  WarnOfUnread(document, key, place);
+  WarnOfUnread(document, place);
+  const Json* now = answer.Find({"now"});
+  const bool alone = std::string_view(key) == "forecast" && now == nullptr;
   HazardTrack track;
   track.id = answer.Text({"id", "stormid"});
   if (track.id.empty()) track.id = "storm";
-  track.name = answer.Text({"name"});
+  track.name = answer.TryText({"name"});
   track.agency = "weather service";
-  const Json* points = answer.List({key});
+  const Json* points = std::string_view(key) == "track" || alone ? answer.List({key}) : nullptr;
+  LeftOut left_out;
   for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
     const JsonObject point((*points)[i], At(key, i), place);
     if (IsLandfall(point)) {
-      track.landfalls.push_back(
-          {point.NeedTime({"time"}, kBeijing_s), point.NeedPosition({"lat"}, {"lon"}), ""});
-      continue;
+      ReadLandfall(point, track, place);
+    } else {
+      TryFix([&] { AppendFix(ReadPoint(point, place), track.fixes, point.Here()); }, left_out,
+             place);
     }
-    HazardFix fix = ReadPoint(point, place);
-    AppendFix(std::move(fix), track.fixes, point.Here());
   }
-  if (const Json* now = answer.Find({"now"})) {
+  if (now != nullptr) {
     const JsonObject point(*now, "now", place);
-    HazardFix fix = ReadPoint(point, place);
-    if (track.fixes.empty() || fix.time > track.fixes.back().time) {
-      AppendFix(std::move(fix), track.fixes, point.Here());
-    }
+    const auto read = [&] {
+      HazardFix fix = ReadPoint(point, place);
+      if (track.fixes.empty() || fix.time > track.fixes.back().time) {
+        AppendFix(std::move(fix), track.fixes, point.Here());
+      }
+    };
+    TryFix(read, left_out, place);
   }
-  FinishTrack(track, answer.Here());
+  if (!alone) ReadForecast(answer, track, place);
+  for (HazardFix& fix : track.fixes) fix.forecast = alone;
+  FinishTrack(track, left_out, answer.Here());
   std::vector<HazardTrack> tracks;
   tracks.push_back(std::move(track));
   return tracks;

@@ -39,7 +39,7 @@ LocalEnvironment InProcess(const EnvironmentSpec& spec, std::uint8_t encodings) 
           {spec.farms, encodings, true, 1}};
 }
 
-void ExpectSameFinished(const Results& a, const Results& b) {
+void ExpectSameFinished(const StepResults& a, const StepResults& b) {
   ASSERT_EQ(a.finished.size(), b.finished.size());
   for (std::size_t i = 0; i < a.finished.size(); ++i) {
     EXPECT_EQ(a.finished[i].farm, b.finished[i].farm);
@@ -60,8 +60,8 @@ std::size_t ExpectSameTransitions(Environment& ros, Environment& local, int step
   ExpectSame(ros.Reset(23, 4), local.Reset(23, 4));
   for (int step = 0; step < steps && !::testing::Test::HasFailure(); ++step) {
     const auto actions = random.Next(Entries(local.spec()));
-    const Results& got = ros.Step(actions);
-    const Results& expected = local.Step(actions);
+    const StepResults& got = ros.Step(actions);
+    const StepResults& expected = local.Step(actions);
     ExpectSame(got, expected);
     ExpectSameFinished(got, expected);
     ended += expected.finished.size();
@@ -141,7 +141,7 @@ TEST(ShipServices, ThousandCommandsAreThoseOfThisProcess) {
     } else {
       result = Send<aquafarm_msgs::DropOff>(drop_off, meant_for);
     }
-    const Results& expected = local.Step(actions);
+    const StepResults& expected = local.Step(actions);
     ASSERT_TRUE(result.ok) << result.message;
     ASSERT_EQ(result.hash, expected.hashes[0]) << "step " << step;
     ASSERT_EQ(result.reward, expected.rewards[0]);
@@ -202,12 +202,12 @@ TEST(RosEnvironment, StartsAfreshWhenAnotherHasMovedOrResetTheFarms) {
   for (std::size_t i = 0; i < others.size(); ++i) {
     others[i]();
     EXPECT_TRUE(step()) << "no transition leads from one episode into another";
-    EXPECT_TRUE(environment.TakeRestarted());
+    EXPECT_TRUE(environment.ConsumeRestart());
     ASSERT_EQ(i + 1, notices.size());
     EXPECT_CONTAINS(notices.back(), "another has moved or reset them, or the node is new");
     EXPECT_CONTAINS(notices.back(), "fresh episodes from number " + std::to_string(13 + 3 * i));
     EXPECT_FALSE(step());
-    EXPECT_FALSE(environment.TakeRestarted());
+    EXPECT_FALSE(environment.ConsumeRestart());
   }
 }
 

@@ -92,11 +92,11 @@ class BulletinNode {
   }
 
   void Send(const std::string& path) {
-    const aquafarm::HazardFile file = aquafarm::LoadHazardFile(path);
+    const aquafarm::StormFile file = aquafarm::LoadStormFile(path);
     for (const std::string& warning : file.warnings) ROS_WARN("%s", warning.c_str());
-    const aquafarm::HazardTrack& storm = params_.storm.empty() && file.tracks.size() == 1
-                                             ? file.tracks[0]
-                                             : aquafarm::FindTrack(file, params_.storm);
+    const aquafarm::StormTrack& storm = params_.storm.empty() && file.tracks.size() == 1
+                                            ? file.tracks[0]
+                                            : aquafarm::FindTrack(file, params_.storm);
     const std::string name = storm.name.empty() ? storm.id : storm.name;
     if (storm.fixes.front().time < 0) {
       throw aquafarm::InputError(path + ": " + name + ": got positions of before 1970, expected " +
@@ -125,11 +125,11 @@ class BulletinNode {
 
   // What the ranch has now: how much of it is recorded and how much is forecast.
   void Report(const std::string& path, const std::string& name,
-              const aquafarm::HazardTrack& storm) const {
-    const aquafarm::StormKnowledge known = aquafarm::KnowledgeOf(
-        storm, aquafarm::WithForecast(storm, aquafarm::NoForecast::kPersist));
-    const std::string text = path + ": " + name + " is now disaster " +
-                             std::to_string(params_.id) + "; " + aquafarm::Describe(known);
+              const aquafarm::StormTrack& storm) const {
+    const aquafarm::StormKnowledge known =
+        aquafarm::KnowledgeOf(storm, aquafarm::WithForecast(storm, aquafarm::NoForecast::kPersist));
+    const std::string text = path + ": " + name + " is now disaster " + std::to_string(params_.id) +
+                             "; " + aquafarm::Describe(known);
     if (known.issued == 0) {
       ROS_WARN("%s", text.c_str());
     } else {

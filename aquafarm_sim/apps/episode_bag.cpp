@@ -22,7 +22,7 @@ void Write(const std::string& scenario_path, const std::string& route_path,
       std::make_shared<const aquafarm::Scenario>(aquafarm::LoadScenario(scenario_path));
   std::ifstream file(route_path);
   if (!file) throw InputError(route_path + ": cannot be read");
-  aquafarm_sim::EpisodeTape tape;
+  aquafarm_sim::EpisodeLog tape;
   std::uint64_t hash = 0;
   try {
     const nlohmann::json route = nlohmann::json::parse(file);

@@ -156,7 +156,7 @@ class ShipDriver {
   Client<aquafarm_msgs::Move> move_;
   Client<aquafarm_msgs::Reset> reset_;
   aquafarm_msgs::Move call_;
-  aquafarm::RandomStream random_{{1, 0, aquafarm::Purpose::kExploration, 0}};
+  aquafarm::RandomStream random_{{1, 0, aquafarm::RngStream::kExploration, 0}};
 };
 
 /// Steps many farms at once at random, with tabular indices.
@@ -184,7 +184,7 @@ class FarmsDriver {
   Client<aquafarm_msgs::Step> step_;
   Client<aquafarm_msgs::Reset> reset_;
   aquafarm_msgs::Step call_;
-  aquafarm::RandomStream random_{{2, 0, aquafarm::Purpose::kExploration, 0}};
+  aquafarm::RandomStream random_{{2, 0, aquafarm::RngStream::kExploration, 0}};
 };
 
 void Measure() {

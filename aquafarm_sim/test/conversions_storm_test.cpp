@@ -62,8 +62,8 @@ aquafarm_msgs::Storm North() {
   return storm;
 }
 
-aquafarm_msgs::SetDisaster::Response Tell(Ranch& ranch, const aquafarm_msgs::Storm& storm,
-                                          std::int32_t id = 0) {
+aquafarm_msgs::SetDisaster::Response Notify(FarmServer& ranch, const aquafarm_msgs::Storm& storm,
+                                            std::int32_t id = 0) {
   aquafarm_msgs::SetDisaster call;
   call.request.farm = -1;
   call.request.id = id;
@@ -74,7 +74,7 @@ aquafarm_msgs::SetDisaster::Response Tell(Ranch& ranch, const aquafarm_msgs::Sto
 
 TEST(Storms, BecomeDisastersOfTheRunningEpisode) {
   const auto ranch = test::MakeRanch(Placed(), 2);
-  const auto answer = Tell(*ranch, North());
+  const auto answer = Notify(*ranch, North());
   ASSERT_TRUE(answer.ok) << answer.message;
   const auto disaster = test::StateOf(*ranch, 1).disasters[0];
   EXPECT_EQ(disaster.grade, 3) << "of 38 m/s";
@@ -95,7 +95,7 @@ TEST(Storms, StayByQuadrantsWhereTheScenarioIs) {
   storm.quadrants[1][2] = storm.quadrants[2][2] = 1.0F;
   storm.track[0].quadrants = storm.quadrants;
   const auto ranch = test::MakeRanch(scenario);
-  const auto answer = Tell(*ranch, North());
+  const auto answer = Notify(*ranch, North());
   ASSERT_TRUE(answer.ok) << answer.message;
   const auto disaster = test::StateOf(*ranch).disasters[0];
   ASSERT_EQ(disaster.quadrants.size(), 12U);
@@ -106,7 +106,7 @@ TEST(Storms, StayByQuadrantsWhereTheScenarioIs) {
 
 TEST(Storms, MayComeOnTop) {
   const auto ranch = test::MakeRanch(Placed());
-  ASSERT_TRUE(Tell(*ranch, North(), 1).ok);
+  ASSERT_TRUE(Notify(*ranch, North(), 1).ok);
   EXPECT_EQ(test::StateOf(*ranch).disasters[1].risks, (std::vector<float>{-19, -9, -6}))
       << "with the table of the disaster that has one";
 }
@@ -132,13 +132,13 @@ TEST(Storms, ReachTheFarmsForWhichTheyAreNotOver) {
   };
   play_to({30, 80, 10});
   const std::uint64_t over = test::StateOf(*ranch, 1).hash;
-  const auto answer = Tell(*ranch, North());
+  const auto answer = Notify(*ranch, North());
   ASSERT_TRUE(answer.ok) << answer.message;
   EXPECT_EQ(test::StateOf(*ranch, 0).disasters[0].steps_left, 42);
   EXPECT_EQ(test::StateOf(*ranch, 1).hash, over) << "72 steps are over there";
   EXPECT_EQ(test::StateOf(*ranch, 2).disasters[0].steps_left, 62);
   play_to({72, 80, 73});
-  const auto late = Tell(*ranch, North());
+  const auto late = Notify(*ranch, North());
   EXPECT_FALSE(late.ok);
   EXPECT_EQ(late.message,
             "bulletin: got a storm recorded until 2021-07-24T00:00:00Z, then forecast until "
@@ -152,7 +152,7 @@ TEST(Storms, ThatAreWrongChangeNothing) {
   const auto refused = [&](const auto& change) {
     aquafarm_msgs::Storm storm = North();
     change(storm);
-    const auto answer = Tell(*ranch, storm);
+    const auto answer = Notify(*ranch, storm);
     EXPECT_FALSE(answer.ok);
     EXPECT_EQ(answer.code, aquafarm_msgs::Outcome::BAD_VALUE);
     EXPECT_EQ(test::StateOf(*ranch).hash, before);
@@ -190,12 +190,12 @@ TEST(Storms, ThatAreWrongChangeNothing) {
             "assumed to keep its motion, wind and rings until 2021-07-20T20:00:00Z, expected one "
             "that is known after step 0 (2021-07-24T00:00:00Z); send a newer bulletin");
   const auto nowhere = test::MakeRanch(aquafarm::test::TinyScenario());
-  EXPECT_EQ(Tell(*nowhere, North()).message,
+  EXPECT_EQ(Notify(*nowhere, North()).message,
             "bulletin: needs a ranch with grid.origin and time.start");
 }
 
 TEST(Storms, AreTheSameThereAndBack) {
-  const aquafarm::HazardTrack track = FromMsg(North());
+  const aquafarm::StormTrack track = FromMsg(North());
   EXPECT_EQ(track.fixes[0].rings[0].wind_kt, 34) << "the weakest first";
   const aquafarm_msgs::Storm again = ToMsg(track);
   EXPECT_EQ(again.name, "IN-FA");
@@ -212,7 +212,7 @@ void ExpectNear(const std::vector<float>& a, const std::vector<float>& b) {
     EXPECT_NEAR(a[i], b[i], 1e-5F * (1.0F + std::abs(b[i])));
 }
 
-void ExpectTheSameThroughAMessage(const aquafarm::HazardTrack& track) {
+void ExpectTheSameThroughAMessage(const aquafarm::StormTrack& track) {
   Scenario scenario = Placed();
   scenario.origin = track.fixes[0].position;
   scenario.start_time = track.fixes[0].time;
@@ -232,12 +232,11 @@ void ExpectTheSameThroughAMessage(const aquafarm::HazardTrack& track) {
 }
 
 TEST(Storms, MakeTheSameDisasterThroughAMessage) {
-  const aquafarm::HazardFile file =
-      aquafarm::LoadHazardFile(AQUAFARM_CORE_DIR "/test/data/atcf.dat");
+  const aquafarm::StormFile file = aquafarm::LoadStormFile(AQUAFARM_CORE_DIR "/test/data/atcf.dat");
   ASSERT_TRUE(file.tracks[0].fixes[0].max_wind_radius_km);
-  for (aquafarm::HazardTrack track : file.tracks) {
+  for (aquafarm::StormTrack track : file.tracks) {
     ExpectTheSameThroughAMessage(track);
-    for (aquafarm::HazardFix& fix : track.fixes) fix.rings.clear();  // all rings are then estimated
+    for (aquafarm::StormFix& fix : track.fixes) fix.rings.clear();  // all rings are then estimated
     ExpectTheSameThroughAMessage(track);
   }
 }

@@ -48,7 +48,7 @@ class EpisodeBag : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  std::unique_ptr<EpisodeRecorder> Record(Ranch& ranch, const std::string& keep,
+  std::unique_ptr<EpisodeRecorder> Record(FarmServer& ranch, const std::string& keep,
                                           RecorderLimits limits = {}) {
     auto recorder =
         std::make_unique<EpisodeRecorder>(ranch.shared_scenario(), ParseKeep(keep), folder_,
@@ -58,8 +58,8 @@ class EpisodeBag : public testing::Test {
   }
 
   // Takes random joint steps, the same in every call.
-  static void Play(Ranch& ranch, std::int32_t farms, int steps) {
-    aquafarm::RandomStream chance({3, 0, aquafarm::Purpose::kExploration, 0});
+  static void Play(FarmServer& ranch, std::int32_t farms, int steps) {
+    aquafarm::RandomStream chance({3, 0, aquafarm::RngStream::kExploration, 0});
     aquafarm_msgs::Step::Request request;
     for (int i = 0; i < steps; ++i) {
       request.actions.clear();
@@ -88,7 +88,7 @@ class EpisodeBag : public testing::Test {
     return Bags().front();
   }
 
-  static void SendStorm(Ranch& ranch) {
+  static void SendStorm(FarmServer& ranch) {
     aquafarm_msgs::SetDisaster storm;
     storm.request.id = 0;
     storm.request.info.kind = 0;

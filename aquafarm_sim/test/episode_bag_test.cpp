@@ -142,10 +142,10 @@ TEST_F(EpisodeBag, AnEpisodeLoadedAtItsStartBeginsAsItWasSaved) {
   EXPECT_EQ(std::vector<std::uint64_t>{0}, check.changed_at);
 }
 
-EpisodeTape HeldTape(const std::shared_ptr<const aquafarm::Scenario>& scenario) {
+EpisodeLog HeldTape(const std::shared_ptr<const aquafarm::Scenario>& scenario) {
   aquafarm::Farm farm(scenario);
   farm.Reset(5, 0);
-  EpisodeTape tape;
+  EpisodeLog tape;
   tape.seed = 5;
   const std::vector<std::uint8_t> hold(farm.ships().size(),
                                        static_cast<std::uint8_t>(aquafarm::Action::kHold));
@@ -159,7 +159,7 @@ EpisodeTape HeldTape(const std::shared_ptr<const aquafarm::Scenario>& scenario) 
 
 TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
   const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
-  const EpisodeTape tape = HeldTape(scenario);
+  const EpisodeLog tape = HeldTape(scenario);
   const BagFormat format{"/ranch/", "map", 10, 1};
   const std::string path = folder_ + "/x.bag";
   EpisodeBagWriter writer(scenario, format);
@@ -189,7 +189,7 @@ TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
 
 TEST_F(EpisodeBag, ATapeThatDoesNotGiveItsResultLeavesNothing) {
   const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
-  EpisodeTape tape = HeldTape(scenario);
+  EpisodeLog tape = HeldTape(scenario);
   tape.record.episode_return += 1.0F;
   EXPECT_THROW(EpisodeBagWriter(scenario, {}).Write(tape, folder_ + "/x.bag"), TapeError);
   EXPECT_TRUE(Bags().empty());

@@ -21,14 +21,15 @@ inline constexpr std::uint8_t kPickup = 8;
 inline constexpr std::uint8_t kHold = 10;
 
 /// Creates a ranch of the tiny farm of core/test, in lockstep with a short barrier timeout.
-inline std::unique_ptr<Ranch> MakeRanchOf(const aquafarm::Scenario& scenario,
-                                          const RanchOptions& options) {
+inline std::unique_ptr<FarmServer> MakeRanchOf(const aquafarm::Scenario& scenario,
+                                               const RanchOptions& options) {
   aquafarm::ValidateScenario(scenario);
-  return std::make_unique<Ranch>(std::make_shared<const aquafarm::Scenario>(scenario), options);
+  return std::make_unique<FarmServer>(std::make_shared<const aquafarm::Scenario>(scenario),
+                                      options);
 }
 
-inline std::unique_ptr<Ranch> MakeRanch(const aquafarm::Scenario& scenario, std::int32_t farms = 1,
-                                        bool paced = false) {
+inline std::unique_ptr<FarmServer> MakeRanch(const aquafarm::Scenario& scenario,
+                                             std::int32_t farms = 1, bool paced = false) {
   RanchOptions options;
   options.farms = farms;
   options.seed = 5;
@@ -44,14 +45,14 @@ inline aquafarm::Scenario TwoShips() {
 }
 
 /// Returns the state of a farm as a message.
-inline aquafarm_msgs::FarmState StateOf(Ranch& ranch, std::int32_t farm = 0) {
+inline aquafarm_msgs::FarmState StateOf(FarmServer& ranch, std::int32_t farm = 0) {
   aquafarm_msgs::GetState call;
   call.request.farm = farm;
   ranch.GetState(call.request, call.response);
   return call.response.state;
 }
 
-inline aquafarm_msgs::Reset::Response ResetTo(Ranch& ranch, std::uint64_t seed) {
+inline aquafarm_msgs::Reset::Response ResetTo(FarmServer& ranch, std::uint64_t seed) {
   aquafarm_msgs::Reset call;
   call.request.has_seed = true;
   call.request.seed = seed;

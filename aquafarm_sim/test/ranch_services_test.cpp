@@ -15,7 +15,7 @@ namespace {
 using namespace test;  // NOLINT: the fixture
 using aquafarm_msgs::StepResult;
 
-aquafarm_msgs::Step::Response StepAll(Ranch& ranch, const std::vector<std::uint8_t>& actions,
+aquafarm_msgs::Step::Response StepAll(FarmServer& ranch, const std::vector<std::uint8_t>& actions,
                                       std::uint8_t encodings = 0, std::uint64_t sequence = 0) {
   aquafarm_msgs::Step::Request request;
   request.actions = actions;
@@ -25,8 +25,9 @@ aquafarm_msgs::Step::Response StepAll(Ranch& ranch, const std::vector<std::uint8
 }
 
 /// Takes joint steps with random actions. Returns the hashes of all farms after each step.
-std::vector<std::uint64_t> Play(Ranch& ranch, std::size_t actions, int steps, std::uint64_t seed) {
-  aquafarm::RandomStream random({seed, 0, aquafarm::Purpose::kExploration, 0});
+std::vector<std::uint64_t> Play(FarmServer& ranch, std::size_t actions, int steps,
+                                std::uint64_t seed) {
+  aquafarm::RandomStream random({seed, 0, aquafarm::RngStream::kExploration, 0});
   std::vector<std::uint64_t> hashes;
   for (int i = 0; i < steps; ++i) {
     std::vector<std::uint8_t> joint(actions);
@@ -44,7 +45,7 @@ TEST(RanchServices, AJointStepEqualsTheBatchInProcess) {
   aquafarm::FarmBatch batch(std::make_shared<const aquafarm::Scenario>(scenario), 5);
   batch.Reset(5, 0, {});
   const std::size_t entries = 5 * static_cast<std::size_t>(scenario.AgentCount());
-  aquafarm::RandomStream random({1, 0, aquafarm::Purpose::kExploration, 0});
+  aquafarm::RandomStream random({1, 0, aquafarm::RngStream::kExploration, 0});
   const auto features = static_cast<std::size_t>(batch.encoder().feature_count());
   std::vector<float> rewards(entries);
   std::vector<float> vectors(entries * features);

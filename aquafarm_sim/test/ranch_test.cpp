@@ -14,7 +14,7 @@ namespace {
 using namespace test;  // NOLINT: the fixture
 using std::chrono::milliseconds;
 
-TEST(Ranch, ACommandMovesTheShipAndTellsTheNextStep) {
+TEST(FarmServer, ACommandMovesTheShipAndTellsTheNextStep) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   const CommandResult result = ranch->Command({0, kNorth, 0, 0, 1});
   EXPECT_TRUE(result.ok);
@@ -26,7 +26,7 @@ TEST(Ranch, ACommandMovesTheShipAndTellsTheNextStep) {
   EXPECT_EQ(1, StateOf(*ranch).ships[0].y);
 }
 
-TEST(Ranch, RepeatingTheLastAcceptedCommandMovesNothing) {
+TEST(FarmServer, RepeatingTheLastAcceptedCommandMovesNothing) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   ranch->Command({0, kNorth, 0, 0, 1});
   const CommandResult first = ranch->Command({0, kNorth, 0, 1, 0});
@@ -35,21 +35,21 @@ TEST(Ranch, RepeatingTheLastAcceptedCommandMovesNothing) {
   EXPECT_EQ(2U, StateOf(*ranch).step);
 }
 
-TEST(Ranch, ATokenTellsARepeatOfTheVeryFirstCommand) {
+TEST(FarmServer, ATokenTellsARepeatOfTheVeryFirstCommand) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   const CommandResult first = ranch->Command({0, kNorth, 0, 0, 77});
   EXPECT_EQ(first, ranch->Command({0, kNorth, 0, 0, 77}));
   EXPECT_EQ(1U, StateOf(*ranch).step);
 }
 
-TEST(Ranch, WithoutNumbersEachCommandCounts) {
+TEST(FarmServer, WithoutNumbersEachCommandCounts) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   ranch->Command({0, kNorth, 0, 0, 0});
   ranch->Command({0, kNorth, 0, 0, 0});
   EXPECT_EQ(2, StateOf(*ranch).ships[0].y);
 }
 
-TEST(Ranch, AnotherStepOrEpisodeIsStale) {
+TEST(FarmServer, AnotherStepOrEpisodeIsStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   ranch->Command({0, kNorth, 0, 0, 0});
   ranch->Command({0, kNorth, 0, 0, 0});
@@ -62,7 +62,7 @@ TEST(Ranch, AnotherStepOrEpisodeIsStale) {
   EXPECT_EQ(hash, StateOf(*ranch).hash);
 }
 
-TEST(Ranch, UnknownShipsDirectionsAndActionsAreRefused) {
+TEST(FarmServer, UnknownShipsDirectionsAndActionsAreRefused) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   const std::uint64_t hash = StateOf(*ranch).hash;
   EXPECT_EQ(Outcome::UNKNOWN_SHIP, ranch->Command({1, kNorth, 0, 0, 0}).code);
@@ -75,7 +75,7 @@ TEST(Ranch, UnknownShipsDirectionsAndActionsAreRefused) {
   EXPECT_EQ(hash, StateOf(*ranch).hash);
 }
 
-TEST(Ranch, AfterTheEndCommandsAreAnsweredEpisodeOver) {
+TEST(FarmServer, AfterTheEndCommandsAreAnsweredEpisodeOver) {
   aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 1;
   const auto ranch = MakeRanch(scenario);
@@ -87,7 +87,7 @@ TEST(Ranch, AfterTheEndCommandsAreAnsweredEpisodeOver) {
   EXPECT_EQ(1U, StateOf(*ranch).step);
 }
 
-TEST(Ranch, TheBarrierStepsWhenTheLastShipHasSpoken) {
+TEST(FarmServer, TheBarrierStepsWhenTheLastShipHasSpoken) {
   const auto ranch = MakeRanch(TwoShips());
   auto first = std::async(std::launch::async, [&] { return ranch->Command({0, kNorth, 0, 0, 1}); });
   std::this_thread::sleep_for(milliseconds(50));
@@ -100,7 +100,7 @@ TEST(Ranch, TheBarrierStepsWhenTheLastShipHasSpoken) {
   EXPECT_EQ(second.hash, waited.hash);
 }
 
-TEST(Ranch, ALoneCommandTimesOutAndIsTakenBack) {
+TEST(FarmServer, ALoneCommandTimesOutAndIsTakenBack) {
   const auto ranch = MakeRanch(TwoShips());
   const std::uint64_t hash = StateOf(*ranch).hash;
   const CommandResult lone = ranch->Command({0, kNorth, 0, 0, 1});
@@ -112,7 +112,7 @@ TEST(Ranch, ALoneCommandTimesOutAndIsTakenBack) {
   EXPECT_EQ(2U, ranch->counters().barrier_timeouts);
 }
 
-TEST(Ranch, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
+TEST(FarmServer, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   RanchOptions options;
   options.barrier_timeout_s = 0.2;
   options.late_ships_hold = true;
@@ -137,7 +137,7 @@ TEST(Ranch, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   EXPECT_TRUE(ranch->counters().absent.empty());
 }
 
-TEST(Ranch, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
+TEST(FarmServer, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
   RanchOptions options;
   options.barrier_timeout_s = 0.2;
   options.late_ships_hold = true;
@@ -152,7 +152,7 @@ TEST(Ranch, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
   EXPECT_EQ(2U, waiting.get().step);
 }
 
-TEST(Ranch, APausedFarmDoesNotGoOnWithoutTheLate) {
+TEST(FarmServer, APausedFarmDoesNotGoOnWithoutTheLate) {
   RanchOptions options;
   options.barrier_timeout_s = 0.2;
   options.late_ships_hold = true;
@@ -169,7 +169,7 @@ TEST(Ranch, APausedFarmDoesNotGoOnWithoutTheLate) {
   EXPECT_EQ(0U, StateOf(*ranch).step);
 }
 
-TEST(Ranch, AClaimedShipObeysItsHolderAlone) {
+TEST(FarmServer, AClaimedShipObeysItsHolderAlone) {
   RanchOptions options;
   options.claim_timeout_s = 0.2;
   const auto ranch = MakeRanchOf(aquafarm::test::TinyScenario(), options);
@@ -196,7 +196,7 @@ TEST(Ranch, AClaimedShipObeysItsHolderAlone) {
   EXPECT_TRUE(claim("/three", false).ok);
 }
 
-TEST(Ranch, ANewerCommandOfTheSameShipSupersedesTheWaitingOne) {
+TEST(FarmServer, ANewerCommandOfTheSameShipSupersedesTheWaitingOne) {
   const auto ranch = MakeRanch(TwoShips());
   auto old = std::async(std::launch::async, [&] { return ranch->Command({0, kNorth, 0, 0, 1}); });
   std::this_thread::sleep_for(milliseconds(50));
@@ -216,7 +216,7 @@ class SlowRecorder : public RanchRecorder {
   void OnIntervention(const aquafarm::Farm&, std::int32_t) override {}
 };
 
-TEST(Ranch, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
+TEST(FarmServer, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
   SlowRecorder recorder;
   const auto ranch = MakeRanch(TwoShips());
   ranch->SetRecorder(&recorder);
@@ -242,7 +242,7 @@ TEST(Ranch, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
   ranch->SetRecorder(nullptr);
 }
 
-TEST(Ranch, AStepThatCannotBeToldStandsForAllShips) {
+TEST(FarmServer, AStepThatCannotBeToldStandsForAllShips) {
   struct Deaf final : RanchListener {
     void OnChange(const RanchView& view) override {
       if (view.batch.farm(0).step() > 0) throw std::runtime_error("no memory");
@@ -267,7 +267,7 @@ TEST(Ranch, AStepThatCannotBeToldStandsForAllShips) {
   ranch->SetListener(nullptr);
 }
 
-TEST(Ranch, AResetReleasesThoseWhoWait) {
+TEST(FarmServer, AResetReleasesThoseWhoWait) {
   const auto ranch = MakeRanch(TwoShips());
   auto waiting = std::async(std::launch::async, [&] {
     return ranch->Command({0, kNorth, 0, 0, 1});
@@ -277,7 +277,7 @@ TEST(Ranch, AResetReleasesThoseWhoWait) {
   EXPECT_EQ(Outcome::STALE, waiting.get().code);
 }
 
-TEST(Ranch, ShutdownReleasesThoseWhoWait) {
+TEST(FarmServer, ShutdownReleasesThoseWhoWait) {
   const auto ranch = MakeRanch(TwoShips());
   auto waiting = std::async(std::launch::async, [&] {
     return ranch->Command({0, kNorth, 0, 0, 1});
@@ -288,7 +288,7 @@ TEST(Ranch, ShutdownReleasesThoseWhoWait) {
   EXPECT_EQ(Outcome::SHUTTING_DOWN, ranch->Command({1, kNorth, 0, 0, 1}).code);
 }
 
-TEST(Ranch, ManyThreadsMoveEachShipOnceAStep) {
+TEST(FarmServer, ManyThreadsMoveEachShipOnceAStep) {
   const auto ranch = MakeRanch(TwoShips());
   constexpr std::uint64_t kSteps = 500;
   const auto drive = [&](std::int32_t ship) {
@@ -305,7 +305,7 @@ TEST(Ranch, ManyThreadsMoveEachShipOnceAStep) {
   EXPECT_EQ(kSteps, StateOf(*ranch).step);
 }
 
-TEST(Ranch, PacedCommandsAreAcceptedAndCarriedOutByTheTick) {
+TEST(FarmServer, PacedCommandsAreAcceptedAndCarriedOutByTheTick) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 1, true);
   const CommandResult accepted = ranch->Command({0, kNorth, 0, 0, 1});
   EXPECT_EQ(Outcome::ACCEPTED, accepted.code);
@@ -315,7 +315,7 @@ TEST(Ranch, PacedCommandsAreAcceptedAndCarriedOutByTheTick) {
   EXPECT_EQ(1, StateOf(*ranch).ships[0].y);
 }
 
-TEST(Ranch, APacedShipWithoutACommandHolds) {
+TEST(FarmServer, APacedShipWithoutACommandHolds) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 1, true);
   ranch->Tick();
   const auto state = StateOf(*ranch);
@@ -325,7 +325,7 @@ TEST(Ranch, APacedShipWithoutACommandHolds) {
   EXPECT_EQ(1U, ranch->counters().late_ships);
 }
 
-TEST(Ranch, APacedFarmBeginsTheNextEpisodeByItself) {
+TEST(FarmServer, APacedFarmBeginsTheNextEpisodeByItself) {
   aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 1;
   const auto ranch = MakeRanch(scenario, 1, true);
@@ -337,11 +337,12 @@ TEST(Ranch, APacedFarmBeginsTheNextEpisodeByItself) {
   EXPECT_EQ(0U, StateOf(*ranch).step);
 }
 
-TEST(Ranch, PacedRunningTakesStepsOnTime) {
+TEST(FarmServer, PacedRunningTakesStepsOnTime) {
   RanchOptions options;
   options.paced = true;
   options.rate_hz = 100.0;
-  Ranch ranch(std::make_shared<const aquafarm::Scenario>(aquafarm::test::TinyScenario()), options);
+  FarmServer ranch(std::make_shared<const aquafarm::Scenario>(aquafarm::test::TinyScenario()),
+                   options);
   std::thread pacer([&] { ranch.RunPaced(); });
   std::this_thread::sleep_for(milliseconds(500));
   aquafarm_msgs::Pause pause;
@@ -356,7 +357,7 @@ TEST(Ranch, PacedRunningTakesStepsOnTime) {
   pacer.join();
 }
 
-TEST(Ranch, APauseMayComeAfterSoManySteps) {
+TEST(FarmServer, APauseMayComeAfterSoManySteps) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Pause pause;
   pause.request.paused = true;
@@ -370,7 +371,7 @@ TEST(Ranch, APauseMayComeAfterSoManySteps) {
   EXPECT_EQ(Outcome::PAUSED, ranch->Command({0, kNorth, 0, 0, 0}).code);
 }
 
-TEST(Ranch, WhilePausedCommandsAreAnsweredPaused) {
+TEST(FarmServer, WhilePausedCommandsAreAnsweredPaused) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Pause pause;
   pause.request.paused = true;

@@ -141,7 +141,7 @@ std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
 struct Scene {
   const aquafarm_msgs::FarmSpec& spec;
   const FarmState& state;
-  aquafarm_viz::Extras extras;
+  aquafarm_viz::Overlays overlays;
 };
 
 /// Calls `look` for each state of the bag (of the requested episode).
@@ -154,8 +154,8 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
   rosbag::View view(bag, rosbag::TopicQuery({prefix + kSpec, prefix + kState, prefix + kTraining,
                                              prefix + kValuePoints, prefix + kChoice}));
   aquafarm_viz::Pairing pairing;
-  aquafarm_viz::Wake wake;
-  aquafarm_viz::Wake route(aquafarm_viz::Wake::kWhole);
+  aquafarm_viz::Trail trail;
+  aquafarm_viz::Trail route(aquafarm_viz::Trail::kWhole);
   aquafarm_msgs::TrainingStatusConstPtr training;
   std::optional<aquafarm_viz::Values> values;
   sensor_msgs::PointCloud2ConstPtr cloud;  // not yet read, because its spec may follow it
@@ -184,7 +184,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
     if (state == nullptr) continue;
     expect_none(pairing.AddState(state));
     if (pairing.shown().state != state) continue;
-    wake.Update(*state);
+    trail.Update(*state);
     route.Update(*state);
     if (found.states > 0 && state->episode == found.last_episode && state->step > last_step + 1) {
       found.gaps += state->step - last_step - 1;
@@ -199,7 +199,7 @@ Found ForEachScene(const Request& request, const std::function<bool(const Scene&
     if (values) values->Pair(*state);
     if (!look({spec,
                *state,
-               {&wake, training.get(), &route, request.layers, values ? &*values : nullptr,
+               {&trail, training.get(), &route, request.layers, values ? &*values : nullptr,
                 choice.get()}})) {
       break;
     }
@@ -256,7 +256,7 @@ void RenderPicture(const Request& request) {
         if (!request.at_end) gaps[i].See(scene.state);
         continue;
       }
-      pictures[i] = painter.Draw(scene.spec, scene.state, scene.extras).clone();
+      pictures[i] = painter.Draw(scene.spec, scene.state, scene.overlays).clone();
       gaps[i] = {};
       episode = scene.state.episode;
       --missing;
@@ -297,7 +297,7 @@ void RenderFilm(Request request) {
     episode = scene.state.episode;
     const bool over = scene.state.terminated || scene.state.truncated;
     if (scene.state.step % request.every != 0 && !over) return true;
-    const cv::Mat& picture = painter.Draw(scene.spec, scene.state, scene.extras);
+    const cv::Mat& picture = painter.Draw(scene.spec, scene.state, scene.overlays);
     if (film == nullptr)
       film = aquafarm_viz::Film::Open(request.output, picture.size(), request.rate_hz);
     film->Add(picture);

@@ -18,7 +18,7 @@ void BM_Frame(benchmark::State& bench) {
   const int side = static_cast<int>(bench.range(0));
   const auto spec = test::MakeSpec(side);
   auto state = test::MakeState(side);
-  Wake wake;
+  Trail trail;
   FarmPainter painter({640, 640});
   aquafarm_msgs::TrainingStatus training;
   training.algorithm = "q_learning";
@@ -27,8 +27,8 @@ void BM_Frame(benchmark::State& bench) {
     auto& disaster = state.disasters.front();
     disaster.x = static_cast<float>(state.step % 100) * 0.01F * static_cast<float>(side);
     state.ships.front().x = static_cast<int>(state.step) % side;
-    wake.Update(state);
-    benchmark::DoNotOptimize(painter.Draw(spec, state, {&wake, &training}).data);
+    trail.Update(state);
+    benchmark::DoNotOptimize(painter.Draw(spec, state, {&trail, &training}).data);
   }
   bench.SetItemsProcessed(bench.iterations());
 }
@@ -54,18 +54,18 @@ void BM_FrameWith(benchmark::State& bench, const char* names, bool learns = fals
   auto state = test::MakeState(side);
   Values values = ReadValues(test::MakeCloud(side), spec);
   const auto choice = test::MakeChoice();
-  Wake wake;
-  Wake route(Wake::kWhole);
+  Trail trail;
+  Trail route(Trail::kWhole);
   FarmPainter painter({640, 640});
   const Layers layers = ParseLayers(names);
   for (auto _ : bench) {
     state.step = (state.step + 1) % 500;  // restarts the route after 500 steps
     state.ships.front().x = static_cast<int>(state.step) % side;
     if (learns) values.values.front() = static_cast<float>(state.step % 2);
-    wake.Update(state);
+    trail.Update(state);
     route.Update(state);
     benchmark::DoNotOptimize(
-        painter.Draw(spec, state, {&wake, nullptr, &route, layers, &values, &choice}).data);
+        painter.Draw(spec, state, {&trail, nullptr, &route, layers, &values, &choice}).data);
   }
   bench.SetItemsProcessed(bench.iterations());
 }

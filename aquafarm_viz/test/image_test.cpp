@@ -328,9 +328,9 @@ TEST(Image, SurvivesWhatAnObservationOrAnAttackerMaySend) {
   training.phase = 99;
   training.steps_per_second = std::numeric_limits<float>::infinity();
   training.time_left_s = -std::numeric_limits<double>::infinity();
-  Wake wake;
-  wake.Update(state);
-  EXPECT_NO_THROW(DrawFarm(spec, state, kSize, {&wake, &training}));
+  Trail trail;
+  trail.Update(state);
+  EXPECT_NO_THROW(DrawFarm(spec, state, kSize, {&trail, &training}));
 }
 
 // Returns the number of pixels that a layer changes.
@@ -339,19 +339,19 @@ int Changed(const char* layers, const char* others) {
   spec.view_mode = aquafarm_msgs::FarmSpec::PARTIAL;
   spec.sensor_radius = 5.0F;
   auto state = test::MakeState();
-  Wake wake;
-  Wake route(Wake::kWhole);
+  Trail trail;
+  Trail route(Trail::kWhole);
   for (int i = 0; i < 60; ++i) {
     state.ships.front().x = 2 + (i < 18 ? i : 18);
     state.ships.front().y = 2 + (i < 18 ? 0 : i % 18);
     state.ships.front().action = 3;
     ++state.step;
-    wake.Update(state);
+    trail.Update(state);
     route.Update(state);
   }
   const Values values = ReadValues(test::MakeCloud(), spec);
   const auto draw = [&](const char* names) {
-    return DrawFarm(spec, state, kSize, {&wake, nullptr, &route, ParseLayers(names), &values});
+    return DrawFarm(spec, state, kSize, {&trail, nullptr, &route, ParseLayers(names), &values});
   };
   const cv::Mat one = draw(layers);
   const cv::Mat other = draw(others);
@@ -372,10 +372,10 @@ TEST(Image, ShowsTheChoiceOfAnotherPolicyInItsStateAlone) {
   const auto spec = test::MakeSpec();
   const auto state = test::MakeState();
   auto choice = test::MakeChoice();
-  Extras extras;
-  extras.choice = &choice;
+  Overlays overlays;
+  overlays.choice = &choice;
   const auto pink = [&] {
-    const cv::Mat picture = DrawFarm(spec, state, kSize, extras);
+    const cv::Mat picture = DrawFarm(spec, state, kSize, overlays);
     cv::Mat found;
     cv::inRange(picture, Bgr(kChoiceColor), Bgr(kChoiceColor), found);
     return cv::countNonZero(found);
@@ -390,11 +390,11 @@ TEST(Image, ShowsTheChoiceOfAnotherPolicyInItsStateAlone) {
 TEST(Image, ValuesOfAnotherFarmAreLeftOut) {
   const auto spec = test::MakeSpec(10);
   const Values values = ReadValues(test::MakeCloud(), test::MakeSpec());
-  Extras extras;
-  extras.layers = ParseLayers("values,moves");
-  const cv::Mat without = DrawFarm(spec, test::MakeState(10), kSize, extras);
-  extras.values = &values;
-  EXPECT_EQ(cv::norm(without, DrawFarm(spec, test::MakeState(10), kSize, extras), cv::NORM_INF),
+  Overlays overlays;
+  overlays.layers = ParseLayers("values,moves");
+  const cv::Mat without = DrawFarm(spec, test::MakeState(10), kSize, overlays);
+  overlays.values = &values;
+  EXPECT_EQ(cv::norm(without, DrawFarm(spec, test::MakeState(10), kSize, overlays), cv::NORM_INF),
             0.0);
 }
 

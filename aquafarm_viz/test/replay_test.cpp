@@ -117,9 +117,9 @@ TEST_F(Replay, AJumpBringsTheSpecTheWholeWayAndTheStepLast) {
 TEST_F(Replay, WakesAndRoutesAfterAJumpAreThoseOfPlayingThrough) {
   const ReplayTape tape(MakeBag());
   const auto step = *tape.Find(tape.steps().front(), 14, 60);
-  Wake played[2]{Wake(), Wake(Wake::kWhole)};
-  Wake jumped[2]{Wake(), Wake(Wake::kWhole)};
-  const auto take = [&](Wake* ways, std::size_t position) {
+  Trail played[2]{Trail(), Trail(Trail::kWhole)};
+  Trail jumped[2]{Trail(), Trail(Trail::kWhole)};
+  const auto take = [&](Trail* ways, std::size_t position) {
     const auto& message = tape.messages()[position];
     if (message.getTopic() != "/aquafarm/state") return;
     const auto state = message.instantiate<aquafarm_msgs::FarmState>();
@@ -131,7 +131,7 @@ TEST_F(Replay, WakesAndRoutesAfterAJumpAreThoseOfPlayingThrough) {
     EXPECT_EQ(jumped[i].Find(0)->places, played[i].Find(0)->places);
     EXPECT_EQ(jumped[i].Find(0)->bearing_deg, played[i].Find(0)->bearing_deg);
   }
-  EXPECT_EQ(played[0].Find(0)->places.size(), Wake::kLength);
+  EXPECT_EQ(played[0].Find(0)->places.size(), Trail::kLength);
   EXPECT_EQ(played[1].Find(0)->places.size(), 31U);
 }
 

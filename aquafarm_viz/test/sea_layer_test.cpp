@@ -44,10 +44,10 @@ cv::Vec3b At(const cv::Mat& picture, double x, double y) {
   return picture.at<cv::Vec3b>(place.map.y + cvRound(pixel.y), place.map.x + cvRound(pixel.x));
 }
 
-Extras With(const std::string& layers) {
-  Extras extras;
-  extras.layers = ParseLayers(layers);
-  return extras;
+Overlays With(const std::string& layers) {
+  Overlays overlays;
+  overlays.layers = ParseLayers(layers);
+  return overlays;
 }
 
 TEST(SeaLayer, IsPaintedFromDarkToBrightBelowTheFarm) {

@@ -95,7 +95,7 @@ ExitCode Run(Arguments arguments) {
     const auto make_policy = [&saved](const EnvironmentSpec& spec) {
       return MakePolicy(saved, spec);
     };
-    const PlayedValues values =
+    const RolloutValues values =
         PlayValues(scenario, saved.encodings, make_policy, arguments.seed, arguments.route_episode,
                    arguments.values_episodes, &stop_requested, arguments.values_discount);
     if (stop_requested) return ExitCode::kInterrupted;

@@ -43,7 +43,7 @@ struct Training {
   }
   LocalEnvironment environment;
   std::unique_ptr<Learner> learner;
-  const Results* results;
+  const StepResults* results;
   std::vector<std::uint8_t> actions;
 };
 

@@ -23,7 +23,7 @@ void Clairvoyant(benchmark::State& state) {
   std::uint64_t episode = 0;
   for (auto _ : state) {
     farm.Reset(1, episode++);
-    benchmark::DoNotOptimize(planner.Solve(farm, Foresight::kClairvoyant).expected_return);
+    benchmark::DoNotOptimize(planner.Solve(farm, Foresight::kOracle).expected_return);
   }
   state.SetItemsProcessed(state.iterations());
 }
@@ -34,7 +34,7 @@ void RecedingHorizon(benchmark::State& state) {
   std::uint64_t episode = 0;
   farm.Reset(1, episode);
   for (auto _ : state) {
-    const std::uint8_t action = planner.Solve(farm, Foresight::kHeadingHolds).actions.at(0);
+    const std::uint8_t action = planner.Solve(farm, Foresight::kPersistence).actions.at(0);
     farm.Step(&action);
     if (farm.over()) farm.Reset(1, ++episode);
   }

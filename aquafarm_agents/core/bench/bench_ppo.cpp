@@ -37,7 +37,7 @@ struct Training {
   }
   LocalEnvironment environment;
   std::unique_ptr<Learner> learner;
-  const Results* results;
+  const StepResults* results;
   std::vector<std::uint8_t> actions;
 };
 

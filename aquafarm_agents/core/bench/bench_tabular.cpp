@@ -33,7 +33,7 @@ void TrainSteps(benchmark::State& state, const char* algorithm, const char* opti
   LocalEnvironment environment = Paper();
   const Algorithm& entry = FindAlgorithm(algorithm);
   const auto learner = entry.make(environment.spec(), 1, options);
-  const Results* results = &environment.Reset(1);
+  const StepResults* results = &environment.Reset(1);
   std::vector<std::uint8_t> actions;
   std::uint64_t steps = 0;
   for (auto _ : state) {

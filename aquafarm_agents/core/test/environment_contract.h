@@ -20,7 +20,7 @@ namespace aquafarm::agents::test {
 class RandomActions {
  public:
   explicit RandomActions(std::uint64_t seed)
-      : stream_(StreamKey{seed, 0, Purpose::kExploration, 0}) {}
+      : stream_(StreamKey{seed, 0, RngStream::kExploration, 0}) {}
   std::vector<std::uint8_t> Next(std::size_t entries) {
     std::vector<std::uint8_t> actions(entries);
     for (auto& action : actions) action = static_cast<std::uint8_t>(stream_.Below(kActionCount));
@@ -36,7 +36,7 @@ inline std::size_t Entries(const EnvironmentSpec& spec) {
 }
 
 /// Compares all fields except `finished`.
-inline void ExpectSame(const Results& a, const Results& b) {
+inline void ExpectSame(const StepResults& a, const StepResults& b) {
   EXPECT_EQ(a.rewards, b.rewards);
   EXPECT_EQ(a.outcomes, b.outcomes);
   EXPECT_EQ(a.legal, b.legal);
@@ -49,7 +49,7 @@ inline void ExpectSame(const Results& a, const Results& b) {
   EXPECT_EQ(a.planes, b.planes);
 }
 
-inline void ExpectFirstObservations(const EnvironmentSpec& spec, const Results& results) {
+inline void ExpectFirstObservations(const EnvironmentSpec& spec, const StepResults& results) {
   const auto farms = static_cast<std::size_t>(spec.farms);
   EXPECT_EQ(results.started, std::vector<std::uint8_t>(farms, 1));
   EXPECT_EQ(results.reasons, std::vector<std::uint8_t>(farms, 0));
@@ -75,14 +75,14 @@ inline void ExpectStepsKeepTheRules(Environment& environment, std::uint64_t seed
   const EnvironmentSpec& spec = environment.spec();
   const auto farms = static_cast<std::uint64_t>(spec.farms);
   RandomActions random(seed);
-  Results last = environment.Reset(seed);
+  StepResults last = environment.Reset(seed);
   ExpectFirstObservations(spec, last);
   std::map<std::int32_t, std::uint64_t> next_episode;
   std::vector<double> returns(farms, 0.0);
   std::vector<std::int32_t> length(farms, 0);
   for (int step = 0; step < steps; ++step) {
     const auto actions = random.Next(Entries(spec));
-    const Results& now = environment.Step(actions);
+    const StepResults& now = environment.Step(actions);
     std::size_t ended = 0;
     for (std::size_t farm = 0; farm < farms; ++farm) {
       EXPECT_EQ(now.started[farm] != 0, last.reasons[farm] != 0) << "next-step reset";
@@ -149,10 +149,10 @@ inline void ExpectSaveAndLoadContinue(Environment& environment, int steps) {
   environment.Reset(5);
   const std::size_t entries = Entries(environment.spec());
   for (int i = 0; i < steps; ++i) environment.Step(random.Next(entries));
-  const Results standing = environment.Step(random.Next(entries));
+  const StepResults standing = environment.Step(random.Next(entries));
   const std::string saved = environment.Save();
   std::vector<std::vector<std::uint8_t>> actions;
-  std::vector<Results> expected;
+  std::vector<StepResults> expected;
   for (int i = 0; i < steps; ++i) {
     actions.push_back(random.Next(entries));
     expected.push_back(environment.Step(actions.back()));
@@ -171,7 +171,7 @@ inline void ExpectBadBytesAreRefused(Environment& environment) {
   EXPECT_THROW(environment.Load("no farm at all"), InputError);
   EXPECT_THROW(environment.Load(saved.substr(0, saved.size() / 2)), InputError);
   const std::vector<std::uint8_t> actions(Entries(environment.spec()), 0);
-  const Results after = environment.Step(actions);
+  const StepResults after = environment.Step(actions);
   environment.Reset(5);
   ExpectSame(environment.Step(actions), after);
 }
@@ -197,7 +197,7 @@ inline void RunEnvironmentContract(Environment& environment, int steps = 600,
   EXPECT_THROW(environment.Step(too_few), LogicError);
   EXPECT_THROW(environment.Step(std::vector<std::uint8_t>(Entries(spec), kActionCount)),
                LogicError);
-  EXPECT_FALSE(environment.TakeRestarted());
+  EXPECT_FALSE(environment.ConsumeRestart());
 }
 
 }  // namespace aquafarm::agents::test

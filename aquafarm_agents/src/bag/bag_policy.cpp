@@ -55,13 +55,13 @@ std::shared_ptr<const aquafarm::Scenario> ScenarioOf(const FarmSpec& spec,
 }
 
 /// Replays a recorded farm and queries a policy at each state.
-class Companion {
+class PolicyProbe {
  public:
   /// @param path of the bag, for error messages
   /// @param rewinds true if states may be changed from outside; earlier states are then stored
   /// @throws InputError if the spec contains no valid scenario, or the policy does not fit it
-  Companion(const FarmSpec& spec, const std::string& path, const agents::SavedPolicy& saved,
-            bool rewinds)
+  PolicyProbe(const FarmSpec& spec, const std::string& path, const agents::SavedPolicy& saved,
+              bool rewinds)
       : rewinds_(rewinds),
         name_(saved.checkpoint.algorithm),
         scenario_(ScenarioOf(spec, path)),
@@ -138,8 +138,8 @@ class Companion {
     return choice_;
   }
 
-  std::vector<agents::BestMove> Moves() {
-    return agents::BestMoves(farms_.farm(0), elsewhere_->encodings(), *elsewhere_);
+  std::vector<agents::GreedyAction> Moves() {
+    return agents::GreedyActions(farms_.farm(0), elsewhere_->encodings(), *elsewhere_);
   }
 
   EpisodeChoices Summary() const {
@@ -224,12 +224,12 @@ class Output {
         bag_->setCompression(rosbag::compression::LZ4);
       });
     } catch (...) {
-      Abandon();
+      CloseAfterError();
       throw;
     }
   }
   ~Output() {
-    if (!done_) Abandon();
+    if (!done_) CloseAfterError();
   }
   void Copy(const rosbag::MessageInstance& message) {
     Guard([&] {
@@ -252,7 +252,7 @@ class Output {
   }
 
  private:
-  void Abandon() {
+  void CloseAfterError() {
     aquafarm_sim::AbandonBag(std::move(bag_));
     std::error_code ignored;
     fs::remove(beside_, ignored);
@@ -320,7 +320,7 @@ class Walk {
     if (topic == ranch_ + names::kSavedState) {
       if (const auto saved = aquafarm_sim::Instantiate<SavedState>(message)) {
         Enter({saved->seed, saved->episode}, saved->step);
-        goes_on = Holds(saved->step, companion_->Load(*saved));
+        goes_on = Holds(saved->step, probe_->Load(*saved));
       }
     } else if (topic == ranch_ + names::kState) {
       if (const auto state = aquafarm_sim::Instantiate<FarmState>(message)) {
@@ -346,15 +346,15 @@ class Walk {
  private:
   bool TakeState(const FarmState& state, const ros::Time& time) {
     Enter({state.seed, state.episode}, state.step);
-    if (!Holds(state.step, companion_->Follow(state))) return false;
-    if (companion_->over()) return true;
-    const bool is_new = !companion_->HasAsked(state);
-    const PolicyChoice& choice = companion_->Ask(state);
+    if (!Holds(state.step, probe_->Follow(state))) return false;
+    if (probe_->over()) return true;
+    const bool is_new = !probe_->HasAsked(state);
+    const PolicyChoice& choice = probe_->Ask(state);
     if (!output_) return true;
     output_->Add(ranch_ + names::kChoice, time, choice);
     if (is_new && IsMapWanted(state.step)) {
-      const auto moves = companion_->Moves();
-      const aquafarm::Scenario& scenario = companion_->scenario();
+      const auto moves = probe_->Moves();
+      const aquafarm::Scenario& scenario = probe_->scenario();
       output_->Add(ranch_ + names::kValues, time, ValuesToGrid(moves, scenario, state.header));
       output_->Add(ranch_ + names::kValuePoints, time,
                    ValuesToPoints(moves, scenario, state.header));
@@ -375,12 +375,12 @@ class Walk {
                                   ? options_.values_every > 0 && step % options_.values_every == 0
                                   : options_.values_at.count(step) != 0;
     if (!is_asked_for) return false;
-    result_.no_maps = WhyNoMaps(saved_, companion_->scenario());
+    result_.no_maps = WhyNoMaps(saved_, probe_->scenario());
     return result_.no_maps.empty();
   }
 
   void Enter(const Key& key, std::uint64_t step) {
-    if (companion_ && key == key_ && (step != 0 || companion_->Summary().steps == 0)) return;
+    if (probe_ && key == key_ && (step != 0 || probe_->Summary().steps == 0)) return;
     EndEpisode();
     const auto spec = specs_.find(key);
     if (spec == specs_.end()) {
@@ -388,12 +388,12 @@ class Walk {
                        ": the bag holds no spec of it");
     }
     key_ = key;
-    companion_.emplace(spec->second, path_, saved_, rewinds_);
+    probe_.emplace(spec->second, path_, saved_, rewinds_);
   }
 
   void EndEpisode() {
-    if (companion_) result_.episodes.push_back(companion_->Summary());
-    companion_.reset();
+    if (probe_) result_.episodes.push_back(probe_->Summary());
+    probe_.reset();
   }
 
   const std::map<Key, FarmSpec> specs_;
@@ -403,7 +403,7 @@ class Walk {
   const std::string path_;
   const bool rewinds_;
   std::optional<Output> output_;
-  std::optional<Companion> companion_;
+  std::optional<PolicyProbe> probe_;
   Key key_;
   BagChoices result_;
 };

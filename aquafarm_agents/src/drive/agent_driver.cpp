@@ -249,7 +249,7 @@ class AgentDriver::Impl {
   std::unique_ptr<aquafarm::Encoder> encoder_;
   EnvironmentSpec spec_;
   aquafarm::View view_;
-  Results results_;  // of one farm; only this ship's entries are filled
+  StepResults results_;  // of one farm; only this ship's entries are filled
   std::vector<std::uint8_t> actions_;
   FarmState::ConstPtr newest_;
   std::vector<FarmState::ConstPtr> over_;  // last states of ended, unprocessed episodes

@@ -74,7 +74,7 @@ class ShipDriver::Impl {
     policy.Begin(seed, spec().farms);
     while (!Stopped() && (episodes == 0 || ended.size() < static_cast<std::size_t>(episodes))) {
       if (claim_) claim_->RenewWhenDue();
-      const Results& results = Look();
+      const StepResults& results = Look();
       const aquafarm::Farm& farm = mirror_->batch().farm(0);
       const bool is_new = !seen_ || seen_->first != farm.episode() ||
                           seen_->second != static_cast<std::uint64_t>(farm.step());
@@ -101,7 +101,7 @@ class ShipDriver::Impl {
  private:
   bool Stopped() const { return !ros::ok() || (options_.stop != nullptr && *options_.stop); }
 
-  const Results& Look() {
+  const StepResults& Look() {
     aquafarm_msgs::SaveState save;
     save_.Call(names::kSaveState, save);
     if (!save.response.ok) throw EnvironmentLost("sim node: save_state: " + save.response.message);

@@ -21,7 +21,7 @@ using aquafarm::InputError;
 using aquafarm::agents::EnvironmentLost;
 using aquafarm::agents::EnvironmentSpec;
 using aquafarm::agents::EpisodeResult;
-using aquafarm::agents::Results;
+using aquafarm::agents::StepResults;
 using aquafarm_msgs::Outcome;
 using aquafarm_msgs::StepResult;
 
@@ -109,7 +109,7 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
   if (now.spec.farms != spec_.farms) Reset(now.state.seed);
 }
 
-const Results& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
+const StepResults& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
   aquafarm_msgs::Reset reset;
   reset.request.has_seed = true;
   reset.request.seed = seed;
@@ -131,7 +131,7 @@ const Results& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first_epi
   return results_;
 }
 
-const Results& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
+const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
   AQUAFARM_CHECK_EQ(actions.size(),
                     static_cast<std::size_t>(spec_.farms) * static_cast<std::size_t>(spec_.agents));
   AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), aquafarm::kActionCount);
@@ -193,7 +193,7 @@ std::string RosEnvironment::Save() {
   return {save.response.data.begin(), save.response.data.end()};
 }
 
-const Results& RosEnvironment::Load(const std::string& bytes) {
+const StepResults& RosEnvironment::Load(const std::string& bytes) {
   aquafarm_msgs::LoadState load;
   load.request.data.assign(bytes.begin(), bytes.end());
   load.request.encodings = encodings_;
@@ -205,7 +205,7 @@ const Results& RosEnvironment::Load(const std::string& bytes) {
   return results_;
 }
 
-bool RosEnvironment::TakeRestarted() { return std::exchange(restarted_, false); }
+bool RosEnvironment::ConsumeRestart() { return std::exchange(restarted_, false); }
 
 void RosEnvironment::ReadProgress() {
   for (std::int32_t farm = spec_.farms - 1; farm >= 0; --farm) {

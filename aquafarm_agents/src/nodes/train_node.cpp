@@ -113,13 +113,13 @@ TrainingStatus ToMsg(const agents::RunStatus& status, const agents::RunOptions& 
 }
 
 /// Reports the status: always on a topic, periodically on the console.
-class Herald {
+class StatusReporter {
  public:
-  Herald(ros::NodeHandle& node, agents::RunOptions options)
+  StatusReporter(ros::NodeHandle& node, agents::RunOptions options)
       : options_(std::move(options)),
         publisher_(node.advertise<TrainingStatus>(aquafarm_sim::names::kTraining, 10, true)) {}
 
-  void Tell(const agents::RunStatus& status) {
+  void Notify(const agents::RunStatus& status) {
     last_ = status;
     Publish(ToMsg(status, options_, ExitCode::kOk));
     if (!status.message.empty()) ROS_INFO("%s", status.message.c_str());
@@ -153,23 +153,23 @@ class Herald {
 };
 
 agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {
-  Herald herald(node, params.run);
+  StatusReporter reporter(node, params.run);
   ValuesPublisher values(node, params.values_period_s);
   params.environment.stop = &stop_requested;
-  params.environment.on_notice = [&herald](const std::string& text) { herald.Warn(text); };
+  params.environment.on_notice = [&reporter](const std::string& text) { reporter.Warn(text); };
   agents::RunReport report = agents::Train(
       params.run,
       [&](std::uint8_t encodings) {
         params.environment.encodings = encodings;
         return std::make_unique<RosEnvironment>(node, params.environment);
       },
-      [&herald, &values](const agents::RunStatus& status) {
-        if (status.phase != RunPhase::kEnded) herald.Tell(status);
+      [&reporter, &values](const agents::RunStatus& status) {
+        if (status.phase != RunPhase::kEnded) reporter.Notify(status);
         if (status.learner == nullptr) return;
         values.Refresh([&status] { return status.learner->GreedyPolicy(); });
       },
       &stop_requested);
-  herald.End(report);
+  reporter.End(report);
   return report;
 }
 

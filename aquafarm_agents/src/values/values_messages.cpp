@@ -9,14 +9,14 @@
 
 namespace aquafarm_agents {
 
-using aquafarm::agents::BestMove;
+using aquafarm::agents::GreedyAction;
 
-nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<BestMove>& moves,
+nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<GreedyAction>& moves,
                                      const aquafarm::Scenario& scenario,
                                      const std_msgs::Header& header) {
   float lowest = std::numeric_limits<float>::infinity();
   float highest = -lowest;
-  for (const BestMove& move : moves) {
+  for (const GreedyAction& move : moves) {
     if (!std::isfinite(move.value)) continue;
     lowest = std::min(lowest, move.value);
     highest = std::max(highest, move.value);
@@ -31,7 +31,7 @@ nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<BestMove>& moves,
   grid.info.origin.orientation.w = 1.0;
   grid.data.assign(static_cast<std::size_t>(scenario.width) * grid.info.height, -1);
   const float range = std::max(highest - lowest, std::numeric_limits<float>::min());
-  for (const BestMove& move : moves) {
+  for (const GreedyAction& move : moves) {
     if (!std::isfinite(move.value)) continue;
     const auto share = std::lround(100.0F * (move.value - lowest) / range);
     grid.data[static_cast<std::size_t>(move.cell.y * scenario.width + move.cell.x)] =
@@ -40,7 +40,7 @@ nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<BestMove>& moves,
   return grid;
 }
 
-sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<BestMove>& moves,
+sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<GreedyAction>& moves,
                                         const aquafarm::Scenario& scenario,
                                         const std_msgs::Header& header) {
   using sensor_msgs::PointField;
@@ -54,7 +54,7 @@ sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<BestMove>& moves,
   sensor_msgs::PointCloud2Iterator<float> at(cloud, "x");
   sensor_msgs::PointCloud2Iterator<float> value(cloud, "value");
   sensor_msgs::PointCloud2Iterator<std::uint8_t> action(cloud, "action");
-  for (const BestMove& move : moves) {
+  for (const GreedyAction& move : moves) {
     at[0] = static_cast<float>(move.cell.x * scenario.cell_size_m);
     at[1] = static_cast<float>(move.cell.y * scenario.cell_size_m);
     at[2] = 0.0F;

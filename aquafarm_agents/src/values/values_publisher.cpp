@@ -118,7 +118,7 @@ void ValuesPublisher::Look(Policy& policy) {
   call(names::kSaveState, save);
   farms_->Load({save.response.data.begin(), save.response.data.end()});
   const auto moves =
-      aquafarm::agents::BestMoves(farms_->farm(0), policy.encodings(), policy, &ending_);
+      aquafarm::agents::GreedyActions(farms_->farm(0), policy.encodings(), policy, &ending_);
   if (ending_) return;
   std_msgs::Header header;
   header.stamp = ros::Time::now();

@@ -145,12 +145,12 @@ std::string Learner(const Scenario& made) {
 }
 
 void Run(const Arguments& arguments) {
-  const Ranch ranch = BuildRanch(Finished(arguments));
+  const BuiltRanch ranch = BuildRanch(Finished(arguments));
   for (const std::string& warning : ranch.warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
   RefuseUnused(arguments, ranch.scenario);
-  if (ranch.scenario.width <= 200) std::printf("%s\n", Sketch(ranch.scenario).c_str());
+  if (ranch.scenario.width <= 200) std::printf("%s\n", RenderAscii(ranch.scenario).c_str());
   for (const std::string& line : ranch.decided) std::printf("%s\n", line.c_str());
   if (!arguments.map.empty()) SaveMap(ToMap(ranch.scenario), arguments.map);
   if (arguments.output.empty()) return;

@@ -36,7 +36,7 @@ std::string YearOfCma() {
 
 void CmaYear(benchmark::State& state) {
   const std::string text = YearOfCma();
-  for (auto _ : state) benchmark::DoNotOptimize(ParseHazardFile(text, "year"));
+  for (auto _ : state) benchmark::DoNotOptimize(ParseStormFile(text, "year"));
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(CmaYear);

@@ -49,9 +49,9 @@ void StepFarms(benchmark::State& state, Scenario scenario, Wanted wanted,
   // synchronizing.
   constexpr std::size_t kDrawn = 257;
   std::vector<std::uint8_t> actions(kDrawn * agents);
-  RandomStream chance({1, 0, Purpose::kExploration, 0});
+  RandomStream rng({1, 0, RngStream::kExploration, 0});
   for (std::uint8_t& action : actions) {
-    action = static_cast<std::uint8_t>(chance.Below(kActionCount));
+    action = static_cast<std::uint8_t>(rng.Below(kActionCount));
   }
   batch.Reset(1, 0, output);
   std::size_t step = 0;

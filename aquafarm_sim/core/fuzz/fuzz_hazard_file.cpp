@@ -17,8 +17,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const InputError&) {  // expected for invalid input; any other failure is a bug
   }
   try {
-    const HazardFile file = ParseHazardFile(bytes, "fuzz");
-    for (const HazardTrack& track : file.tracks) ToRings(track, RingReduction::kEqualArea);
+    const StormFile file = ParseStormFile(bytes, "fuzz");
+    for (const StormTrack& track : file.tracks) ToRings(track, RingReduction::kEqualArea);
   } catch (const InputError&) {  // expected for invalid input; any other failure is a bug
   }
   return 0;

@@ -24,22 +24,22 @@ void Feed(const std::string& bytes) {
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
-std::size_t Below(aquafarm::RandomStream& chance, std::size_t end) {
-  return chance.Below(static_cast<std::uint32_t>(end));
+std::size_t Below(aquafarm::RandomStream& rng, std::size_t end) {
+  return rng.Below(static_cast<std::uint32_t>(end));
 }
 
 // Applies one mutation: overwrites, removes, duplicates or cuts off bytes, or inserts a token with
 // a meaning for parsers.
-void Mutate(aquafarm::RandomStream& chance, std::string& bytes) {
+void Mutate(aquafarm::RandomStream& rng, std::string& bytes) {
   static const std::vector<std::string> kMinded{
       "",   "-1", "1e999",        "nan",   "99999999999", "null", "[",    "{",  "\"",
       "\n", "\r", "\xef\xbb\xbf", "66666", ",",           "#",    "\xff", "0x1"};
   if (bytes.empty()) bytes = " ";
-  const std::size_t at = Below(chance, bytes.size());
-  const std::size_t length = 1 + Below(chance, std::min<std::size_t>(bytes.size() - at, 24));
-  switch (Below(chance, 6)) {
+  const std::size_t at = Below(rng, bytes.size());
+  const std::size_t length = 1 + Below(rng, std::min<std::size_t>(bytes.size() - at, 24));
+  switch (Below(rng, 6)) {
     case 0:
-      bytes[at] = static_cast<char>(chance.Below(256));
+      bytes[at] = static_cast<char>(rng.Below(256));
       break;
     case 1:
       bytes.erase(at, length);
@@ -51,10 +51,10 @@ void Mutate(aquafarm::RandomStream& chance, std::string& bytes) {
       bytes.resize(at);
       break;
     case 4:
-      bytes[at] = static_cast<char>('0' + Below(chance, 10));
+      bytes[at] = static_cast<char>('0' + Below(rng, 10));
       break;
     default:
-      bytes.replace(at, std::min<std::size_t>(length, 4), kMinded[Below(chance, kMinded.size())]);
+      bytes.replace(at, std::min<std::size_t>(length, 4), kMinded[Below(rng, kMinded.size())]);
   }
 }
 
@@ -76,12 +76,12 @@ int main(int argc, char** argv) {
   // Keeps the duration of a run independent of the number of samples.
   const auto changes =
       std::atoi(argv[1]) * 6 / static_cast<int>(std::max<std::size_t>(samples.size(), 1));
-  aquafarm::RandomStream chance({1, 0, aquafarm::Purpose::kExploration, 0});
+  aquafarm::RandomStream rng({1, 0, aquafarm::RngStream::kExploration, 0});
   for (const std::string& sample : samples) {
     Feed(sample);
     for (int i = 0; i < changes; ++i) {
       std::string changed = sample;
-      for (std::size_t k = 1 + Below(chance, 3); k > 0; --k) Mutate(chance, changed);
+      for (std::size_t k = 1 + Below(rng, 3); k > 0; --k) Mutate(rng, changed);
       Feed(changed);
     }
   }

@@ -161,7 +161,7 @@ class OracleFarm {
       std::vector<std::size_t> hurt = ship.hold;
       if (ship.is_device) hurt.push_back(*ship.is_device);
       const auto draws =
-          Draw({after.seed(), after.episode(), Purpose::kDamage, static_cast<std::uint32_t>(i)},
+          Draw({after.seed(), after.episode(), RngStream::kDamage, static_cast<std::uint32_t>(i)},
                static_cast<std::uint32_t>(steps));
       if (ToUnit(draws[0]) >= scenario_.damage.crash_probability) return;
       for (std::size_t d : hurt) devices[d].health = std::max(0.0F, devices[d].health - loss);

@@ -24,7 +24,7 @@ inline std::string Sample(const std::string& name) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-inline HazardFile Load(const std::string& name) { return LoadHazardFile((kData / name).string()); }
+inline StormFile Load(const std::string& name) { return LoadStormFile((kData / name).string()); }
 
 /// Replaces one part of a text. @throws std::invalid_argument if the part is missing
 inline std::string With(std::string text, const std::string& from, const std::string& to) {
@@ -36,7 +36,7 @@ inline std::string With(std::string text, const std::string& from, const std::st
 /// Returns the error of parsing a text as file "x", or "was read".
 inline std::string Refusal(const std::string& text) {
   try {
-    ParseHazardFile(text, "x");
+    ParseStormFile(text, "x");
   } catch (const InputError& error) {
     return error.what();
   }
@@ -46,7 +46,7 @@ inline std::string Refusal(const std::string& text) {
 /// Returns the warnings of parsing a text as file "x", one per line.
 inline std::string Warnings(const std::string& text) {
   std::string all;
-  for (const std::string& warning : ParseHazardFile(text, "x").warnings) all += warning + "\n";
+  for (const std::string& warning : ParseStormFile(text, "x").warnings) all += warning + "\n";
   return all;
 }
 
@@ -54,7 +54,7 @@ constexpr std::int64_t kInFaNoon = 1627192800;  // 2021-07-25 06:00 UTC
 
 using Radii = std::array<double, kQuadrantCount>;
 
-inline void ExpectRadii(const HazardFix& fix, std::int32_t wind_kt, const Radii& expected) {
+inline void ExpectRadii(const StormFix& fix, std::int32_t wind_kt, const Radii& expected) {
   const WindRing* ring = fix.Ring(wind_kt);
   ASSERT_NE(ring, nullptr) << wind_kt;
   for (std::size_t q = 0; q < expected.size(); ++q) {

@@ -97,11 +97,11 @@ inline const Ship& StepOne(Farm& farm, Action action) {
 
 /// Executes up to `steps` steps with random actions of all ships, until the episode ends.
 inline void RandomSteps(Farm& farm, int steps, std::uint64_t seed) {
-  RandomStream chance({seed, 0, Purpose::kExploration, 1});
+  RandomStream rng({seed, 0, RngStream::kExploration, 1});
   std::vector<std::uint8_t> codes(farm.ships().size());
   for (int i = 0; i < steps; ++i) {
     for (std::uint8_t& code : codes) {
-      code = static_cast<std::uint8_t>(chance.Below(kActionCount));
+      code = static_cast<std::uint8_t>(rng.Below(kActionCount));
     }
     if (!farm.over()) farm.Step(codes.data());
   }

@@ -25,7 +25,7 @@ constexpr std::int32_t kMoment_ns = 1000;
 /// Creates and writes the messages of one episode during its simulation.
 class Messages {
  public:
-  Messages(ChunkedBag& bag, const EpisodeTape& tape, const BagFormat& format)
+  Messages(ChunkedBag& bag, const EpisodeLog& tape, const BagFormat& format)
       : bag_(bag), format_(format) {
     context_.map_frame = format.map_frame;
     context_.paced = tape.paced;
@@ -61,7 +61,7 @@ class Messages {
     Write(names::kRisk, risk_);
   }
 
-  void End(const EpisodeTape& tape) {
+  void End(const EpisodeLog& tape) {
     Write(names::kEpisode, ToMsg(tape.record, tape.farm, context_));
   }
 
@@ -88,7 +88,7 @@ class Messages {
   nav_msgs::OccupancyGrid risk_;
 };
 
-void Play(Farm& farm, const EpisodeTape& tape, Messages& messages) {
+void Play(Farm& farm, const EpisodeLog& tape, Messages& messages) {
   auto change = tape.changes.begin();
   const auto take_changes = [&] {
     for (; change != tape.changes.end() && change->step == farm.step(); ++change) {
@@ -119,7 +119,7 @@ void Play(Farm& farm, const EpisodeTape& tape, Messages& messages) {
 
 }  // namespace
 
-std::string BagName(const EpisodeTape& tape) {
+std::string BagName(const EpisodeLog& tape) {
   char name[120];
   std::snprintf(name, sizeof(name), "episode_%08llu_seed_%llu_return_%+.1f.bag",
                 static_cast<unsigned long long>(tape.episode),
@@ -135,7 +135,7 @@ EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> sce
       encoder_(farm_.scenario()),
       yaml_(aquafarm::ToYaml(farm_.scenario())) {}
 
-void EpisodeBagWriter::Write(const EpisodeTape& tape, const std::string& path) {
+void EpisodeBagWriter::Write(const EpisodeLog& tape, const std::string& path) {
   const std::string active = path + ".active";
   std::error_code error;
   try {

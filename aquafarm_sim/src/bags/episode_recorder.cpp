@@ -90,7 +90,7 @@ void EpisodeRecorder::OnStart(const aquafarm::Farm& farm, std::int32_t number,
                               const MessageContext& context) {
   const auto i = static_cast<std::size_t>(number);
   if (tapes_.size() <= i) tapes_.resize(i + 1);
-  EpisodeTape tape;
+  EpisodeLog tape;
   tape.farm = number;
   tape.seed = farm.seed();
   tape.episode = farm.episode();
@@ -103,7 +103,7 @@ void EpisodeRecorder::OnStart(const aquafarm::Farm& farm, std::int32_t number,
 
 void EpisodeRecorder::OnStep(const aquafarm::Farm& farm, std::int32_t number,
                              const std::uint8_t* actions) {
-  EpisodeTape& tape = tapes_[static_cast<std::size_t>(number)];
+  EpisodeLog& tape = tapes_[static_cast<std::size_t>(number)];
   tape.actions.insert(tape.actions.end(), actions, actions + farm.ships().size());
   if (!farm.over()) return;
   tape.record = farm.record();
@@ -116,7 +116,7 @@ void EpisodeRecorder::OnIntervention(const aquafarm::Farm& farm, std::int32_t nu
   changes.back() = {farm.step(), farm.Save()};  // only the last change before a step counts
 }
 
-bool EpisodeRecorder::Wants(const EpisodeTape& tape) {
+bool EpisodeRecorder::Wants(const EpisodeLog& tape) {
   const float value = tape.record.episode_return;
   switch (keep_.which) {
     case Keep::Which::kAll:
@@ -137,11 +137,11 @@ bool EpisodeRecorder::Wants(const EpisodeTape& tape) {
   return false;
 }
 
-void EpisodeRecorder::Enqueue(EpisodeTape tape) {
+void EpisodeRecorder::Enqueue(EpisodeLog tape) {
   std::unique_lock<std::mutex> lock(mutex_);
   if (!fault_.empty()) return;
   if (keep_.which == Keep::Which::kBest || keep_.which == Keep::Which::kWorst) {
-    for (const EpisodeTape& overtaken : queue_) waiting_bytes_ -= overtaken.actions.size();
+    for (const EpisodeLog& overtaken : queue_) waiting_bytes_ -= overtaken.actions.size();
     queue_.clear();
   }
   const bool follows = changed_.wait_for(lock, limits_.wait, [this] {
@@ -163,7 +163,7 @@ void EpisodeRecorder::Run() {
   while (true) {
     changed_.wait(lock, [this] { return ending_ || !queue_.empty(); });
     if (queue_.empty()) return;
-    const EpisodeTape tape = std::move(queue_.front());
+    const EpisodeLog tape = std::move(queue_.front());
     queue_.pop_front();
     lock.unlock();
     std::string fault;
@@ -189,7 +189,7 @@ void EpisodeRecorder::Run() {
   }
 }
 
-void EpisodeRecorder::Write(const EpisodeTape& tape) {
+void EpisodeRecorder::Write(const EpisodeLog& tape) {
   const std::string name = BagName(tape);
   std::string path = folder_ + "/" + name;
   // A file of the same name belongs to another farm, a load_state or an earlier run.

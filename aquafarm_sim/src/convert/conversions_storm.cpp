@@ -31,7 +31,7 @@ std::optional<double> IfSaid(float value) {
   return value > 0.0F ? std::optional<double>(static_cast<double>(value)) : std::nullopt;
 }
 
-aquafarm::HazardFix FixFrom(const aquafarm_msgs::StormFix& message, const std::string& name) {
+aquafarm::StormFix FixFrom(const aquafarm_msgs::StormFix& message, const std::string& name) {
   CheckNumber(name + ".latitude_deg", message.latitude_deg, -90.0, 90.0);
   CheckNumber(name + ".longitude_deg", message.longitude_deg, -180.0, 180.0);
   CheckNumber(name + ".grade", message.grade, 0.0, aquafarm_msgs::StormFix::SUPER_TY);
@@ -40,7 +40,7 @@ aquafarm::HazardFix FixFrom(const aquafarm_msgs::StormFix& message, const std::s
   CheckNumber(name + ".max_wind_radius_km", static_cast<double>(message.max_wind_radius_km), 0.0,
               5000.0);
   CheckCount(name + ".rings", message.rings.size(), kMostRings);
-  aquafarm::HazardFix fix;
+  aquafarm::StormFix fix;
   fix.time = message.stamp.sec;
   fix.position = {message.latitude_deg, message.longitude_deg};
   fix.wind_mps = IfSaid(message.wind_mps);
@@ -78,10 +78,10 @@ aquafarm::HazardFix FixFrom(const aquafarm_msgs::StormFix& message, const std::s
 }
 
 // @param after the first fix must be later than this time
-std::vector<aquafarm::HazardFix> FixesFrom(const std::vector<aquafarm_msgs::StormFix>& messages,
-                                           const std::string& name, std::int64_t after) {
+std::vector<aquafarm::StormFix> FixesFrom(const std::vector<aquafarm_msgs::StormFix>& messages,
+                                          const std::string& name, std::int64_t after) {
   CheckCount(name, messages.size(), kMaxFixes);
-  std::vector<aquafarm::HazardFix> fixes;
+  std::vector<aquafarm::StormFix> fixes;
   for (std::size_t i = 0; i < messages.size(); ++i) {
     const std::string here = name + "[" + std::to_string(i) + "]";
     fixes.push_back(FixFrom(messages[i], here));
@@ -94,7 +94,7 @@ std::vector<aquafarm::HazardFix> FixesFrom(const std::vector<aquafarm_msgs::Stor
   return fixes;
 }
 
-aquafarm_msgs::StormFix FixTo(const aquafarm::HazardFix& fix) {
+aquafarm_msgs::StormFix FixTo(const aquafarm::StormFix& fix) {
   aquafarm_msgs::StormFix message;
   message.stamp.sec = static_cast<std::uint32_t>(std::max<std::int64_t>(fix.time, 0));
   message.latitude_deg = fix.position.latitude;
@@ -118,8 +118,8 @@ aquafarm_msgs::StormFix FixTo(const aquafarm::HazardFix& fix) {
 
 }  // namespace
 
-aquafarm::HazardTrack FromMsg(const aquafarm_msgs::Storm& message) {
-  aquafarm::HazardTrack track;
+aquafarm::StormTrack FromMsg(const aquafarm_msgs::Storm& message) {
+  aquafarm::StormTrack track;
   track.name = message.name;
   track.fixes = FixesFrom(message.fixes, "storm.fixes", -1);
   if (track.fixes.empty()) {
@@ -132,12 +132,12 @@ aquafarm::HazardTrack FromMsg(const aquafarm_msgs::Storm& message) {
   return track;
 }
 
-aquafarm_msgs::Storm ToMsg(const aquafarm::HazardTrack& track) {
+aquafarm_msgs::Storm ToMsg(const aquafarm::StormTrack& track) {
   aquafarm_msgs::Storm message;
   message.name = track.name.empty() ? track.id : track.name;
-  for (const aquafarm::HazardFix& fix : track.fixes) message.fixes.push_back(FixTo(fix));
-  if (const aquafarm::HazardForecast* newest = aquafarm::NewestForecast(track)) {
-    for (const aquafarm::HazardFix& fix : newest->fixes) {
+  for (const aquafarm::StormFix& fix : track.fixes) message.fixes.push_back(FixTo(fix));
+  if (const aquafarm::StormForecast* newest = aquafarm::NewestForecast(track)) {
+    for (const aquafarm::StormFix& fix : newest->fixes) {
       if (fix.time > track.fixes.back().time) message.forecast.push_back(FixTo(fix));
     }
   }

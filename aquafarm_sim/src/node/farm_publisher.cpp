@@ -27,8 +27,8 @@ const ros::WallDuration kRecorderGrace(0.5);
 // A late subscriber gets the last message immediately. The topic is not latched: a latched message
 // is marked in bags, and a slice of such a bag without its start would show an outdated state.
 template <typename Message>
-void RanchPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
-                               Topic<Message>& topic) {
+void FarmPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
+                              Topic<Message>& topic) {
   const ros::SubscriberStatusCallback greet =
       [this, &topic](const ros::SingleSubscriberPublisher& subscriber) {
         const std::lock_guard<std::mutex> lock(message_mutex_);
@@ -41,8 +41,8 @@ void RanchPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
   topic.publisher = node.advertise<Message>(name, params_.record ? kRecordQueue : kQueue, greet);
 }
 
-RanchPublisher::RanchPublisher(const ros::NodeHandle& node_handle, const SimParams& params,
-                               Ranch& ranch)
+FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams& params,
+                             FarmServer& ranch)
     : params_(params), ranch_(ranch) {
   ros::NodeHandle node(node_handle);
   const std::uint32_t queue = params_.record ? kRecordQueue : kQueue;
@@ -79,7 +79,7 @@ RanchPublisher::RanchPublisher(const ros::NodeHandle& node_handle, const SimPara
   thread_ = std::thread([this] { Run(); });
 }
 
-RanchPublisher::~RanchPublisher() {
+FarmPublisher::~FarmPublisher() {
   ranch_.SetListener(nullptr);
   {
     const std::lock_guard<std::mutex> lock(queue_mutex_);
@@ -89,7 +89,7 @@ RanchPublisher::~RanchPublisher() {
   thread_.join();
 }
 
-bool RanchPublisher::WaitForRecorder(double limit_s) {
+bool FarmPublisher::WaitForRecorder(double limit_s) {
   const ros::WallTime end = ros::WallTime::now() + ros::WallDuration(limit_s);
   std::uint32_t connected = 0;
   ros::WallTime changed_at = ros::WallTime::now();
@@ -106,7 +106,7 @@ bool RanchPublisher::WaitForRecorder(double limit_s) {
   }
 }
 
-std::uint32_t RanchPublisher::CountSubscribers() const {
+std::uint32_t FarmPublisher::CountSubscribers() const {
   std::uint32_t count = spec_.getNumSubscribers() + chart_.getNumSubscribers() +
                         episode_.getNumSubscribers() + state_.publisher.getNumSubscribers() +
                         risk_.publisher.getNumSubscribers();
@@ -114,7 +114,7 @@ std::uint32_t RanchPublisher::CountSubscribers() const {
   return count;
 }
 
-void RanchPublisher::OnChange(const RanchView& view) {
+void FarmPublisher::OnChange(const RanchView& view) {
   if (!view.joint) PublishObservations(view);
   if (params_.record) {
     const std::lock_guard<std::mutex> lock(message_mutex_);
@@ -127,13 +127,13 @@ void RanchPublisher::OnChange(const RanchView& view) {
   Wake();
 }
 
-void RanchPublisher::Wake() {
+void FarmPublisher::Wake() {
   if (dirty_.exchange(true) || !idle_) return;
   const std::lock_guard<std::mutex> lock(queue_mutex_);
   wake_.notify_all();
 }
 
-void RanchPublisher::OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) {
+void FarmPublisher::OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) {
   const std::lock_guard<std::mutex> lock(queue_mutex_);
   if (summaries_.size() >= kMaxSummaries) {
     ++dropped_summaries_;
@@ -143,7 +143,7 @@ void RanchPublisher::OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) 
   if (idle_) wake_.notify_all();
 }
 
-void RanchPublisher::Run() {
+void FarmPublisher::Run() {
   using Clock = std::chrono::steady_clock;
   const auto period = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(1.0 / (params_.publish_hz > 0.0 ? params_.publish_hz : 10.0)));
@@ -174,7 +174,7 @@ void RanchPublisher::Run() {
   }
 }
 
-void RanchPublisher::Fill(const RanchView& view) {
+void FarmPublisher::Fill(const RanchView& view) {
   const aquafarm::Farm& farm = view.batch.farm(0);
   context_ = view.context;
   episode_is_new_ = view.episode_count != published_episode_;
@@ -186,7 +186,7 @@ void RanchPublisher::Fill(const RanchView& view) {
 }
 
 // A node that drives a ship by its observations must receive every step; other nodes need not.
-void RanchPublisher::PublishObservations(const RanchView& view) {
+void FarmPublisher::PublishObservations(const RanchView& view) {
   const std::lock_guard<std::mutex> lock(observation_mutex_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
     const ros::Publisher& publisher = observations_[static_cast<std::size_t>(ship)].publisher;
@@ -194,8 +194,8 @@ void RanchPublisher::PublishObservations(const RanchView& view) {
   }
 }
 
-const aquafarm_msgs::FarmState& RanchPublisher::ObservationOf(const RanchView& view,
-                                                              std::int32_t ship) {
+const aquafarm_msgs::FarmState& FarmPublisher::ObservationOf(const RanchView& view,
+                                                             std::int32_t ship) {
   const aquafarm::Farm& farm = view.batch.farm(0);
   aquafarm_msgs::FarmState& message = observations_[static_cast<std::size_t>(ship)].message;
   aquafarm::Observe(farm, ship, view_);
@@ -203,7 +203,7 @@ const aquafarm_msgs::FarmState& RanchPublisher::ObservationOf(const RanchView& v
   return message;
 }
 
-void RanchPublisher::FillEpisode(const RanchView& view) {
+void FarmPublisher::FillEpisode(const RanchView& view) {
   const aquafarm::Farm& farm = view.batch.farm(0);
   published_episode_ = view.episode_count;
   ToMsg(farm, view.batch.encoder(), view.batch.farms(), view.yaml, context_, spec_message_);
@@ -211,7 +211,7 @@ void RanchPublisher::FillEpisode(const RanchView& view) {
   bearings_.assign(bearings_.size(), 0);
 }
 
-void RanchPublisher::FillFrames(const RanchView& view) {
+void FarmPublisher::FillFrames(const RanchView& view) {
   const aquafarm::Farm& farm = view.batch.farm(0);
   const aquafarm::Scenario& scenario = farm.scenario();
   frame_messages_.clear();
@@ -230,7 +230,7 @@ void RanchPublisher::FillFrames(const RanchView& view) {
   }
 }
 
-void RanchPublisher::Send() {
+void FarmPublisher::Send() {
   if (params_.publish_clock) {
     rosgraph_msgs::Clock clock;
     clock.clock = context_.stamp;
@@ -259,7 +259,7 @@ void RanchPublisher::Send() {
 
 // Sea layers are constant. They are sent again at each episode's start so that a slice of a bag
 // from there contains them.
-void RanchPublisher::SendSeas() {
+void FarmPublisher::SendSeas() {
   const aquafarm::Scenario& scenario = ranch_.scenario();
   for (std::size_t i = 0; i < seas_.size(); ++i) {
     const aquafarm::SeaLayer& layer = scenario.seas->layers[i];

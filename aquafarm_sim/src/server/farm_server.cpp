@@ -21,7 +21,8 @@ std::string Numbers(std::uint64_t episode, std::uint64_t step) {
 
 }  // namespace
 
-Ranch::Ranch(std::shared_ptr<const aquafarm::Scenario> scenario, const RanchOptions& options)
+FarmServer::FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario,
+                       const RanchOptions& options)
     : scenario_(std::move(scenario)),
       yaml_(aquafarm::ToYaml(*scenario_)),
       options_(options),
@@ -38,19 +39,19 @@ Ranch::Ranch(std::shared_ptr<const aquafarm::Scenario> scenario, const RanchOpti
   EpisodeBegan();
 }
 
-void Ranch::SetListener(RanchListener* listener) {
+void FarmServer::SetListener(RanchListener* listener) {
   const Lock lock(mutex_);
   listener_ = listener;
   if (listener_ != nullptr) listener_->OnChange(View());
 }
 
-void Ranch::SetRecorder(RanchRecorder* recorder) {
+void FarmServer::SetRecorder(RanchRecorder* recorder) {
   const Lock lock(mutex_);
   recorder_ = recorder;
   RecordStarts();
 }
 
-void Ranch::RecordStarts() {
+void FarmServer::RecordStarts() {
   if (recorder_ == nullptr) return;
   for (std::int32_t i = 0; i < batch_->farms(); ++i)
     recorder_->OnStart(batch_->farm(i), i, context_);
@@ -58,14 +59,14 @@ void Ranch::RecordStarts() {
 
 // --- commands of single ships -------------------------------------------------------------------
 
-aquafarm_msgs::CommandResult Ranch::Command(const ShipCommand& command) {
+aquafarm_msgs::CommandResult FarmServer::Command(const ShipCommand& command) {
   Lock lock(mutex_);
   try {
     if (command.ship >= 0 && command.ship < agents_ && !command.anonymous()) {
       const Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
       if (slot.last && *slot.last == command) return slot.answer;
     }
-    if (const auto refusal = Hear(command))
+    if (const auto refusal = MarkPresent(command))
       return Refuse(command.ship, refusal->code, refusal->message);
     if (const auto refusal = Check(command))
       return Refuse(command.ship, refusal->code, refusal->message);
@@ -81,14 +82,14 @@ aquafarm_msgs::CommandResult Ranch::Command(const ShipCommand& command) {
   }
 }
 
-aquafarm_msgs::CommandResult Ranch::MoveShip(const ShipCommand& command) {
+aquafarm_msgs::CommandResult FarmServer::MoveShip(const ShipCommand& command) {
   if (command.action < aquafarm::kMoveCount) return Command(command);
   const Lock lock(mutex_);
   return Refuse(command.ship, Outcome::BAD_DIRECTION,
                 "direction: got " + std::to_string(command.action) + ", expected [0, 7]");
 }
 
-std::optional<Ranch::Refusal> Ranch::Check(const ShipCommand& command) const {
+std::optional<FarmServer::Refusal> FarmServer::Check(const ShipCommand& command) const {
   if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is ending"};
   if (command.ship < 0 || command.ship >= agents_) {
     return Refusal{Outcome::UNKNOWN_SHIP, "ship: got " + std::to_string(command.ship) +
@@ -114,8 +115,8 @@ std::optional<Ranch::Refusal> Ranch::Check(const ShipCommand& command) const {
   return std::nullopt;
 }
 
-aquafarm_msgs::CommandResult Ranch::Refuse(std::int32_t ship, std::uint8_t code,
-                                           const std::string& message) {
+aquafarm_msgs::CommandResult FarmServer::Refuse(std::int32_t ship, std::uint8_t code,
+                                                const std::string& message) {
   ++counters_.refused;
   CommandResult result;
   Describe(ship >= 0 && ship < agents_ ? ship : aquafarm::kNone, result);
@@ -128,7 +129,7 @@ aquafarm_msgs::CommandResult Ranch::Refuse(std::int32_t ship, std::uint8_t code,
 
 // A paced farm whose episode has ended starts the next episode at its next tick. Until then there
 // is no step that a command could be for.
-aquafarm_msgs::CommandResult Ranch::AcceptPaced(const ShipCommand& command) {
+aquafarm_msgs::CommandResult FarmServer::AcceptPaced(const ShipCommand& command) {
   if (batch_->farm(0).over()) {
     return Refuse(command.ship, Outcome::EPISODE_OVER,
                   "the episode is over; the next begins by itself");
@@ -149,7 +150,7 @@ aquafarm_msgs::CommandResult Ranch::AcceptPaced(const ShipCommand& command) {
   return slot.answer;
 }
 
-aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lock& lock) {
+aquafarm_msgs::CommandResult FarmServer::WaitForOthers(const ShipCommand& command, Lock& lock) {
   Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
   std::optional<CommandResult> reply;
   slot.pending = command;
@@ -175,7 +176,7 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
   }
   slot.heard_at = Clock::now();  // the client was connected while it waited
   if (!woken && !ending_ && options_.late_ships_hold && !context_.paused && !context_.paced) {
-    GoOnWithoutTheLate();
+    StepWithoutAbsent();
     return *reply;
   }
   const std::string missing = MissingShips();
@@ -194,19 +195,19 @@ aquafarm_msgs::CommandResult Ranch::WaitForOthers(const ShipCommand& command, Lo
 }
 
 // Returns true if the farm waits for a command of the ship.
-bool Ranch::IsMissing(std::int32_t ship) const {
+bool FarmServer::IsMissing(std::int32_t ship) const {
   const auto i = static_cast<std::size_t>(ship);
   return batch_->farm(0).ships()[i].in_play && !slots_[i]->is_absent && !slots_[i]->pending;
 }
 
-bool Ranch::EveryShipHasACommand() const {
+bool FarmServer::EveryShipHasACommand() const {
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (IsMissing(ship)) return false;
   }
   return true;
 }
 
-std::string Ranch::MissingShips() const {
+std::string FarmServer::MissingShips() const {
   std::string names;
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (IsMissing(ship)) names += (names.empty() ? "" : ", ") + std::to_string(ship);
@@ -215,7 +216,7 @@ std::string Ranch::MissingShips() const {
 }
 
 // A ship whose node has died or is late holds. The farm ignores it until its next command.
-void Ranch::GoOnWithoutTheLate() {
+void FarmServer::StepWithoutAbsent() {
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (!IsMissing(ship)) continue;
     slots_[static_cast<std::size_t>(ship)]->is_absent = true;
@@ -224,7 +225,7 @@ void Ranch::GoOnWithoutTheLate() {
   StepPublishedFarm();
 }
 
-bool Ranch::IsHeldByAnother(Slot& slot, const std::string& caller) {
+bool FarmServer::IsHeldByAnother(Slot& slot, const std::string& caller) {
   if (slot.holder.empty() || slot.holder == caller) return false;
   const std::chrono::duration<double> silence = Clock::now() - slot.heard_at;
   // A holder whose command waits for the other ships is present.
@@ -234,14 +235,15 @@ bool Ranch::IsHeldByAnother(Slot& slot, const std::string& caller) {
   return false;
 }
 
-std::optional<Ranch::Refusal> Ranch::CheckHolder(std::int32_t ship, const std::string& caller) {
+std::optional<FarmServer::Refusal> FarmServer::CheckHolder(std::int32_t ship,
+                                                           const std::string& caller) {
   Slot& slot = *slots_[static_cast<std::size_t>(ship)];
   if (!IsHeldByAnother(slot, caller)) return std::nullopt;
   return Refusal{Outcome::CLAIMED, "ship " + std::to_string(ship) + " is held by " + slot.holder};
 }
 
 // A client that may command a ship is present if it sends a command, even a late one.
-std::optional<Ranch::Refusal> Ranch::Hear(const ShipCommand& command) {
+std::optional<FarmServer::Refusal> FarmServer::MarkPresent(const ShipCommand& command) {
   if (command.ship < 0 || command.ship >= agents_) return std::nullopt;
   if (auto refusal = CheckHolder(command.ship, command.caller)) return refusal;
   Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
@@ -250,8 +252,8 @@ std::optional<Ranch::Refusal> Ranch::Hear(const ShipCommand& command) {
   return std::nullopt;
 }
 
-void Ranch::Claim(std::int32_t ship, const std::string& caller, bool release,
-                  aquafarm_msgs::Claim::Response& response) {
+void FarmServer::Claim(std::int32_t ship, const std::string& caller, bool release,
+                       aquafarm_msgs::Claim::Response& response) {
   const Lock lock(mutex_);
   Slot& slot = *slots_[static_cast<std::size_t>(ship)];
   const auto refusal = CheckHolder(ship, caller);
@@ -267,7 +269,7 @@ void Ranch::Claim(std::int32_t ship, const std::string& caller, bool release,
   response.holder = slot.holder;
 }
 
-void Ranch::StepPublishedFarm() {
+void FarmServer::StepPublishedFarm() {
   aquafarm::Farm& farm = batch_->farm(0);
   for (std::size_t ship = 0; ship < slots_.size(); ++ship) {
     const auto& pending = slots_[ship]->pending;
@@ -288,7 +290,7 @@ void Ranch::StepPublishedFarm() {
   }
   Changed();
   if (farm.over()) {
-    Tell(
+    Notify(
         [&](RanchListener& listener) { listener.OnEpisodeEnd(ToMsg(farm.record(), 0, context_)); });
   }
   for (const auto& slot : slots_)
@@ -296,7 +298,7 @@ void Ranch::StepPublishedFarm() {
 }
 
 // Waiting commands return STALE.
-void Ranch::DropPending() {
+void FarmServer::DropPending() {
   for (const auto& slot : slots_) {
     if (!slot->pending) continue;
     slot->pending.reset();
@@ -306,12 +308,12 @@ void Ranch::DropPending() {
 }
 
 // Also drops the last responses, because step numbers may repeat.
-void Ranch::DropCommands() {
+void FarmServer::DropCommands() {
   DropPending();
   for (const auto& slot : slots_) slot->last.reset();
 }
 
-void Ranch::Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) const {
+void FarmServer::Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) const {
   const aquafarm::Farm& farm = batch_->farm(0);
   result.episode = farm.episode();
   result.step = static_cast<std::uint64_t>(farm.step());
@@ -326,7 +328,7 @@ void Ranch::Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) co
   result.legal_actions = farm.LegalActions(ship);
 }
 
-aquafarm_msgs::CommandResult Ranch::AnswerOf(std::int32_t ship) const {
+aquafarm_msgs::CommandResult FarmServer::AnswerOf(std::int32_t ship) const {
   CommandResult result;
   Describe(ship, result);
   result.ok = true;
@@ -337,7 +339,7 @@ aquafarm_msgs::CommandResult Ranch::AnswerOf(std::int32_t ship) const {
 
 // --- time ---------------------------------------------------------------------------------------
 
-void Ranch::Tick() {
+void FarmServer::Tick() {
   const Lock lock(mutex_);
   try {
     if (ending_ || context_.paused) return;
@@ -361,7 +363,7 @@ void Ranch::Tick() {
   }
 }
 
-void Ranch::RunPaced() {
+void FarmServer::RunPaced() {
   Lock lock(mutex_);
   Clock::time_point due = Clock::now();
   while (!ending_) {
@@ -386,14 +388,14 @@ void Ranch::RunPaced() {
   }
 }
 
-void Ranch::Shutdown() {
+void FarmServer::Shutdown() {
   const Lock lock(mutex_);
   ending_ = true;
   pace_changed_.notify_all();
   for (const auto& slot : slots_) slot->changed.notify_all();
 }
 
-void Ranch::Advance() {
+void FarmServer::Advance() {
   ++turn_;
   clock_ns_ += static_cast<std::uint64_t>(1e9 / context_.rate_hz);
   context_.stamp.fromNSec(clock_ns_);
@@ -401,20 +403,20 @@ void Ranch::Advance() {
 }
 
 // The start of an episode has a separate tick, so that its stamp differs from that of the last end.
-void Ranch::EpisodeBegan(bool by_joint_step) {
+void FarmServer::EpisodeBegan(bool by_joint_step) {
   ++episode_count_;
   Advance();
   Changed(by_joint_step);
 }
 
-void Ranch::Changed(bool by_joint_step) {
+void FarmServer::Changed(bool by_joint_step) {
   changed_jointly_ = by_joint_step;
   ++version_;
-  Tell([this](RanchListener& listener) { listener.OnChange(View()); });
+  Notify([this](RanchListener& listener) { listener.OnChange(View()); });
 }
 
 // The step is kept even if notifying the listener fails.
-void Ranch::Tell(const std::function<void(RanchListener&)>& telling) {
+void FarmServer::Notify(const std::function<void(RanchListener&)>& telling) {
   if (listener_ == nullptr) return;
   try {
     telling(*listener_);
@@ -424,16 +426,16 @@ void Ranch::Tell(const std::function<void(RanchListener&)>& telling) {
   }
 }
 
-RanchView Ranch::View() const {
+RanchView FarmServer::View() const {
   return {*batch_, yaml_, context_, episode_count_, version_, changed_jointly_};
 }
 
-void Ranch::Inspect(const std::function<void(const RanchView&)>& look) {
+void FarmServer::Inspect(const std::function<void(const RanchView&)>& look) {
   const Lock lock(mutex_);
   look(View());
 }
 
-RanchCounters Ranch::counters() {
+RanchCounters FarmServer::counters() {
   const Lock lock(mutex_);
   RanchCounters counters = counters_;
   if (joint_step_at_ != Clock::time_point{}) {

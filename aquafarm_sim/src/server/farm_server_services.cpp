@@ -41,7 +41,7 @@ T* Sized(bool wanted, std::size_t size, std::vector<T>& entries) {
 }  // namespace
 
 template <typename Response>
-void Ranch::Answer(std::uint8_t code, const std::string& message, Response& response) {
+void FarmServer::Answer(std::uint8_t code, const std::string& message, Response& response) {
   response.ok = code == Outcome::OK;
   response.code = code;
   response.message = message;
@@ -50,7 +50,7 @@ void Ranch::Answer(std::uint8_t code, const std::string& message, Response& resp
 
 /// Runs a request and converts exceptions to codes. @param bad_input code of an InputError
 template <typename Response, typename Request>
-void Ranch::Guarded(std::uint8_t bad_input, Response& response, Request&& request) {
+void FarmServer::Guarded(std::uint8_t bad_input, Response& response, Request&& request) {
   try {
     request();
   } catch (const aquafarm::InputError& error) {
@@ -62,8 +62,8 @@ void Ranch::Guarded(std::uint8_t bad_input, Response& response, Request&& reques
 
 // --- joint steps --------------------------------------------------------------------------------
 
-const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Request& request,
-                                                 const std::string& caller) {
+const aquafarm_msgs::Step::Response& FarmServer::Step(const aquafarm_msgs::Step::Request& request,
+                                                      const std::string& caller) {
   const Lock lock(mutex_);
   if (last_step_.IsRepeated(request.sequence, caller)) return step_answer_;
   try {
@@ -87,8 +87,8 @@ const aquafarm_msgs::Step::Response& Ranch::Step(const aquafarm_msgs::Step::Requ
   }
 }
 
-std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& request,
-                                           const std::string& caller) {
+std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::Request& request,
+                                                     const std::string& caller) {
   if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is ending"};
   if (context_.paced) {
     return Refusal{Outcome::WRONG_PACE, "joint steps need pace lockstep; call set_pace"};
@@ -118,8 +118,8 @@ std::optional<Ranch::Refusal> Ranch::Check(const aquafarm_msgs::Step::Request& r
   return CheckAnswerSize(batch_->farms(), request.encodings);
 }
 
-std::optional<Ranch::Refusal> Ranch::CheckAnswerSize(std::int32_t farms,
-                                                     std::uint8_t encodings) const {
+std::optional<FarmServer::Refusal> FarmServer::CheckAnswerSize(std::int32_t farms,
+                                                               std::uint8_t encodings) const {
   if (encodings > kAllEncodings) {
     return Refusal{Outcome::BAD_VALUE, OutOfRange("encodings", encodings, 0, kAllEncodings)};
   }
@@ -139,7 +139,7 @@ std::optional<Ranch::Refusal> Ranch::CheckAnswerSize(std::int32_t farms,
                                          std::to_string(kMaxAnswerBytes) + "; use fewer farms"};
 }
 
-aquafarm::BatchOutput Ranch::Prepare(std::uint8_t encodings, StepResult& result) const {
+aquafarm::BatchOutput FarmServer::Prepare(std::uint8_t encodings, StepResult& result) const {
   const aquafarm::Encoder& encoder = batch_->encoder();
   const auto farms = static_cast<std::size_t>(batch_->farms());
   const std::size_t entries = farms * slots_.size();
@@ -167,7 +167,7 @@ aquafarm::BatchOutput Ranch::Prepare(std::uint8_t encodings, StepResult& result)
   return output;
 }
 
-void Ranch::Describe(StepResult& result) const {
+void FarmServer::Describe(StepResult& result) const {
   result.turn = turn_;
   for (std::size_t i = 0; i < result.reasons.size(); ++i) {
     const auto reason = static_cast<aquafarm::EndReason>(result.reasons[i]);
@@ -176,7 +176,7 @@ void Ranch::Describe(StepResult& result) const {
   }
 }
 
-void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
+void FarmServer::Complete(const std::uint8_t* actions, StepResult& result) {
   constexpr bool kByJointStep = true;
   for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
     if (result.started[static_cast<std::size_t>(i)] != 0) {
@@ -197,13 +197,13 @@ void Ranch::Complete(const std::uint8_t* actions, StepResult& result) {
     if (result.reasons[i] == 0) continue;
     const auto farm = static_cast<std::int32_t>(i);
     result.finished.push_back(ToMsg(batch_->farm(farm).record(), farm, context_));
-    Tell([&](RanchListener& listener) { listener.OnEpisodeEnd(result.finished.back()); });
+    Notify([&](RanchListener& listener) { listener.OnEpisodeEnd(result.finished.back()); });
   }
 }
 
 // --- episodes -----------------------------------------------------------------------------------
 
-std::uint64_t Ranch::NextEpisode() const {
+std::uint64_t FarmServer::NextEpisode() const {
   std::uint64_t latest = 0;
   for (std::int32_t i = 0; i < batch_->farms(); ++i) {
     latest = std::max(latest, static_cast<const aquafarm::FarmBatch&>(*batch_).farm(i).episode());
@@ -211,8 +211,8 @@ std::uint64_t Ranch::NextEpisode() const {
   return latest + 1;
 }
 
-void Ranch::Reset(const aquafarm_msgs::Reset::Request& request,
-                  aquafarm_msgs::Reset::Response& response, const std::string& caller) {
+void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
+                       aquafarm_msgs::Reset::Response& response, const std::string& caller) {
   const Lock lock(mutex_);
   if (last_reset_.IsRepeated(request.sequence, caller)) {
     response = reset_answer_;
@@ -255,7 +255,7 @@ void Ranch::Reset(const aquafarm_msgs::Reset::Request& request,
 }
 
 // If a layout cannot be generated, the current episodes must stay unchanged.
-void Ranch::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first) {
+void FarmServer::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first) {
   if (farms != batch_->farms() || scenario_->layout == aquafarm::LayoutMode::kPerEpisode) {
     auto fresh = std::make_unique<aquafarm::FarmBatch>(scenario_, farms, options_.threads);
     fresh->Reset(seed, first, {});
@@ -268,18 +268,18 @@ void Ranch::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t 
   EpisodeBegan();
 }
 
-void Ranch::ForgetAnswers() {
+void FarmServer::ForgetAnswers() {
   last_step_.sequence = 0;
   last_reset_.sequence = 0;
   DropCommands();
 }
 
-void Ranch::FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const {
+void FarmServer::FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const {
   ToMsg(batch_->farm(farm), batch_->encoder(), batch_->farms(), yaml_, context_, spec);
 }
 
-void Ranch::GetState(const aquafarm_msgs::GetState::Request& request,
-                     aquafarm_msgs::GetState::Response& response) {
+void FarmServer::GetState(const aquafarm_msgs::GetState::Request& request,
+                          aquafarm_msgs::GetState::Response& response) {
   const Lock lock(mutex_);
   Guarded(Outcome::BAD_VALUE, response, [&] {
     if (request.farm < 0 || request.farm >= batch_->farms()) {
@@ -303,7 +303,7 @@ void Ranch::GetState(const aquafarm_msgs::GetState::Request& request,
   });
 }
 
-void Ranch::SaveState(aquafarm_msgs::SaveState::Response& response) {
+void FarmServer::SaveState(aquafarm_msgs::SaveState::Response& response) {
   const Lock lock(mutex_);
   Guarded(Outcome::BAD_VALUE, response, [&] {
     const std::string bytes = batch_->Save();
@@ -314,8 +314,8 @@ void Ranch::SaveState(aquafarm_msgs::SaveState::Response& response) {
   });
 }
 
-void Ranch::LoadState(const aquafarm_msgs::LoadState::Request& request,
-                      aquafarm_msgs::LoadState::Response& response) {
+void FarmServer::LoadState(const aquafarm_msgs::LoadState::Request& request,
+                           aquafarm_msgs::LoadState::Response& response) {
   const Lock lock(mutex_);
   Guarded(Outcome::BAD_DATA, response, [&] {
     if (const auto refusal = CheckAnswerSize(batch_->farms(), request.encodings)) {
@@ -338,8 +338,8 @@ void Ranch::LoadState(const aquafarm_msgs::LoadState::Request& request,
 
 // --- operating ----------------------------------------------------------------------------------
 
-void Ranch::Pause(const aquafarm_msgs::Pause::Request& request,
-                  aquafarm_msgs::Pause::Response& response) {
+void FarmServer::Pause(const aquafarm_msgs::Pause::Request& request,
+                       aquafarm_msgs::Pause::Response& response) {
   const Lock lock(mutex_);
   steps_to_pause_ = request.paused != 0 ? request.steps : 0;
   context_.paused = request.paused != 0 && request.steps == 0;
@@ -349,8 +349,8 @@ void Ranch::Pause(const aquafarm_msgs::Pause::Request& request,
   Answer(Outcome::OK, "", response);
 }
 
-void Ranch::SetPace(const aquafarm_msgs::SetPace::Request& request,
-                    aquafarm_msgs::SetPace::Response& response) {
+void FarmServer::SetPace(const aquafarm_msgs::SetPace::Request& request,
+                         aquafarm_msgs::SetPace::Response& response) {
   const Lock lock(mutex_);
   const bool known = request.pace.empty() || request.pace == "lockstep" || request.pace == "paced";
   const bool rate_fits = std::isfinite(request.rate_hz) && request.rate_hz >= 0.0 &&
@@ -375,8 +375,8 @@ void Ranch::SetPace(const aquafarm_msgs::SetPace::Request& request,
   response.rate_hz = context_.rate_hz;
 }
 
-void Ranch::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
-                        aquafarm_msgs::SetDisaster::Response& response) {
+void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
+                             aquafarm_msgs::SetDisaster::Response& response) {
   const Lock lock(mutex_);
   Guarded(Outcome::BAD_VALUE, response, [&] {
     if (request.farm < -1 || request.farm >= batch_->farms()) {

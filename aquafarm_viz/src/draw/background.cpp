@@ -93,7 +93,7 @@ void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px) {
                                               {0.4F, 0.55F},    {0.9F, -0.1F},  {0.8F, -0.6F}};
   static const std::vector<cv::Point2f> kShade{{-0.1F, 0.8F}, {0.4F, 0.55F},  {0.9F, -0.1F},
                                                {0.8F, -0.6F}, {0.1F, -0.55F}, {0.15F, 0.1F}};
-  const Placing placing{at, radius_px, 0.0};
+  const Pose2 placing{at, radius_px, 0.0};
   FillShape(image, kBody, placing, Bgr(kRock));
   FillShape(image, kShade, placing, Bgr(Mix(kRock, kRockDark, 0.55)));
   if (radius_px >= 4.0) StrokeShape(image, kBody, placing, Bgr(kRockDark), 1);
@@ -148,7 +148,7 @@ void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_
 void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fonts& fonts) {
   static const std::vector<cv::Point2f> kWest{{0.0F, 1.0F}, {0.0F, -0.45F}, {-0.55F, -0.85F}};
   static const std::vector<cv::Point2f> kEast{{0.0F, 1.0F}, {0.55F, -0.85F}, {0.0F, -0.45F}};
-  const Placing placing{at, 11.0 * layout.unit, 0.0};
+  const Pose2 placing{at, 11.0 * layout.unit, 0.0};
   FillShape(image, kWest, placing, Bgr(kWords));
   FillShape(image, kEast, placing, Bgr(kFaint));
   fonts.bold.Draw(image, "N", {at.x - fonts.bold.Width("N") / 2, at.y - layout.Px(14)},

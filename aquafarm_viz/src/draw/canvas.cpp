@@ -17,7 +17,7 @@ cv::Point Fixed(cv::Point2d point) {
           cvRound(std::clamp(point.y, -kFar, kFar) * (1 << kShift))};
 }
 
-std::vector<cv::Point> Placed(const std::vector<cv::Point2f>& outline, const Placing& placing) {
+std::vector<cv::Point> Placed(const std::vector<cv::Point2f>& outline, const Pose2& placing) {
   std::vector<cv::Point> points;
   points.reserve(outline.size());
   for (const auto& point : outline) points.push_back(Fixed(Place(point, placing)));
@@ -26,19 +26,19 @@ std::vector<cv::Point> Placed(const std::vector<cv::Point2f>& outline, const Pla
 
 }  // namespace
 
-cv::Point2d Place(cv::Point2d point, const Placing& placing) {
+cv::Point2d Place(cv::Point2d point, const Pose2& placing) {
   const double bearing = placing.bearing_deg * CV_PI / 180.0;
   const double east = point.x * std::cos(bearing) + point.y * std::sin(bearing);
   const double north = -point.x * std::sin(bearing) + point.y * std::cos(bearing);
   return placing.at + cv::Point2d(east, -north) * placing.size_px;
 }
 
-void FillShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Placing& placing,
+void FillShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Pose2& placing,
                const cv::Scalar& color) {
   cv::fillPoly(image, Placed(outline, placing), color, cv::LINE_AA, kShift);
 }
 
-void StrokeShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Placing& placing,
+void StrokeShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Pose2& placing,
                  const cv::Scalar& color, int thickness) {
   cv::polylines(image, Placed(outline, placing), true, color, thickness, cv::LINE_AA, kShift);
 }

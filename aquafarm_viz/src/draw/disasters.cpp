@@ -134,7 +134,7 @@ void DrawArrow(cv::Mat& map, cv::Point2d from, double bearing_deg, double length
   const float neck = length - 11.0F;
   const std::vector<cv::Point2f> outline{{-2.2F, 0.0F},  {2.2F, 0.0F},  {2.2F, neck}, {7.0F, neck},
                                          {0.0F, length}, {-7.0F, neck}, {-2.2F, neck}};
-  const Placing placing{from, layout.unit, bearing_deg};
+  const Pose2 placing{from, layout.unit, bearing_deg};
   StrokeShape(map, outline, placing, Bgr(kInk), layout.Px(2.5));
   FillShape(map, outline, placing, Bgr(kPaper));
 }
@@ -218,7 +218,7 @@ void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, cv::Point2d 
     top = std::min({top, head.y, head.y - way.y});
     foot = std::max({foot, head.y, head.y - way.y});
   }
-  const Placing placing{at, 9.0 * layout.unit, bearing};
+  const Pose2 placing{at, 9.0 * layout.unit, bearing};
   StrokeShape(map, kPointer, placing, Bgr(kPaper), layout.Px(3));
   FillShape(map, kPointer, placing, Bgr(GradeColor(disaster.grade)));
   const MapView& view = layout.view;

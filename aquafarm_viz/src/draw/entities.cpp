@@ -75,7 +75,7 @@ std::map<std::pair<int, int>, int> ShipsPerCell(const FarmState& state) {
 }
 
 void DrawRescueShip(cv::Mat& map, const FarmState& state, const ShipState& ship,
-                    const Placing& placing, const Layout& layout, const Fonts& fonts) {
+                    const Pose2& placing, const Layout& layout, const Fonts& fonts) {
   static const std::vector<cv::Point2f> kDeck{{-0.22F, 0.42F}, {-0.26F, -0.1F}, {-0.22F, -0.68F},
                                               {0.22F, -0.68F}, {0.26F, -0.1F},  {0.22F, 0.42F}};
   StrokeShape(map, HullOutline(), placing, Bgr(kInk), layout.Px(2.4));
@@ -102,11 +102,11 @@ void DrawRescueShip(cv::Mat& map, const FarmState& state, const ShipState& ship,
 }
 
 void DrawSelfPropelled(cv::Mat& map, const FarmState& state, const ShipState& ship,
-                       const Placing& placing, const Layout& layout) {
+                       const Pose2& placing, const Layout& layout) {
   static const std::vector<cv::Point2f> kBow{{0.0F, 1.25F}, {0.45F, 0.7F}, {-0.45F, 0.7F}};
   const double radius = layout.device_radius_px();
   const DeviceState* device = FindDevice(state, ship.own_device);
-  const Placing own{placing.at, radius, placing.bearing_deg};
+  const Pose2 own{placing.at, radius, placing.bearing_deg};
   StrokeShape(map, kBow, own, Bgr(kInk), 2);
   FillShape(map, kBow, own, Bgr(kPaper));
   DrawDeviceSymbol(map, device == nullptr ? 255 : device->kind, {placing.at, radius, 0.0}, 0.0);
@@ -117,7 +117,7 @@ void DrawSelfPropelled(cv::Mat& map, const FarmState& state, const ShipState& sh
 
 }  // namespace
 
-void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Placing& placing, double faded) {
+void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded) {
   const Rgb color = Mix(DeviceColor(kind), kUnknown, faded);
   const auto& outline = DeviceOutline(kind);
   const int rim = placing.size_px >= 14.0 ? 2 : 1;
@@ -129,12 +129,12 @@ void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Placing& placing,
               Bgr(Mix(color, kInk, 0.55)), rim);
 }
 
-void DrawWakes(cv::Mat& map, const FarmState& state, const Wake& wake, const Layout& layout) {
+void DrawTrails(cv::Mat& map, const FarmState& state, const Trail& trail, const Layout& layout) {
   for (const auto& ship : state.ships) {
-    const ShipWake* way = ship.visible ? wake.Find(ship.id) : nullptr;
+    const ShipWake* way = ship.visible ? trail.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
-      const double age = double(way->places.size() - 1 - i) / Wake::kLength;
+      const double age = double(way->places.size() - 1 - i) / Trail::kLength;
       const Rgb color = Mix(Rgb{0xd8, 0xf1, 0xff}, kSeaDeep, 0.15 + 0.75 * age);
       DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
                layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color),
@@ -143,7 +143,7 @@ void DrawWakes(cv::Mat& map, const FarmState& state, const Wake& wake, const Lay
   }
 }
 
-void DrawRoutes(cv::Mat& map, const FarmState& state, const Wake& route, const Layout& layout) {
+void DrawRoutes(cv::Mat& map, const FarmState& state, const Trail& route, const Layout& layout) {
   constexpr Rgb kFirst{0x5c, 0x2d, 0x91};
   constexpr Rgb kMiddle{0xe6, 0x4a, 0x6b};
   constexpr Rgb kLast{0xff, 0xe0, 0x66};
@@ -151,7 +151,7 @@ void DrawRoutes(cv::Mat& map, const FarmState& state, const Wake& route, const L
     const ShipWake* way = ship.visible ? route.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
-      if (Wake::IsGap(way->places[i - 1], way->places[i])) continue;
+      if (Trail::IsGap(way->places[i - 1], way->places[i])) continue;
       const double share = double(i) / double(way->places.size());
       const Rgb color =
           share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share) : Mix(kMiddle, kLast, 2.0 * share - 1.0);
@@ -200,7 +200,7 @@ void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
   }
 }
 
-void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Wake* wake,
+void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                const Layout& layout, const Fonts& fonts) {
   const auto per_cell = ShipsPerCell(state);
   Crowd crowd;
@@ -211,7 +211,7 @@ void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
     const cv::Point2d at =
         layout.view.ToPixel(ship->x, ship->y) +
         crowd.Offset(ship->x, ship->y, per_cell.at({ship->x, ship->y}), 0.75 * radius);
-    const Placing placing{at, radius, double(ShipBearingDeg(*ship, wake))};
+    const Pose2 placing{at, radius, double(ShipBearingDeg(*ship, trail))};
     if (ship->own_device >= 0) {
       DrawSelfPropelled(map, state, *ship, placing, layout);
     } else {

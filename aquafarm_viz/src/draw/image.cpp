@@ -69,9 +69,9 @@ FarmPainter::FarmPainter(FarmPainter&&) noexcept = default;
 FarmPainter& FarmPainter::operator=(FarmPainter&&) noexcept = default;
 
 const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
-                                 const Extras& extras) {
+                                 const Overlays& overlays) {
   Parts& p = *parts_;
-  const std::string& sea = extras.layers.sea;
+  const std::string& sea = overlays.layers.sea;
   const bool same_sea =
       sea == p.sea && (sea.empty() || spec.scenario_yaml == p.drawn.scenario_yaml);
   const bool is_new = p.background.empty() || !SameBackground(spec, p.drawn) || !same_sea;
@@ -88,8 +88,8 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   }
   p.background.copyTo(p.image);
   cv::Mat map = p.image(p.layout.map);
-  const Layers& layers = extras.layers;
-  const Values* values = extras.values;
+  const Layers& layers = overlays.layers;
+  const Values* values = overlays.values;
   if (values != nullptr && (values->width != spec.width || values->height != spec.height)) {
     values = nullptr;
   }
@@ -102,9 +102,9 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
       p.valued.copyTo(map);
     }
   }
-  if (layers.wake && extras.wake != nullptr) DrawWakes(map, state, *extras.wake, p.layout);
+  if (layers.trail && overlays.trail != nullptr) DrawTrails(map, state, *overlays.trail, p.layout);
   if (layers.risk) ShadeDisasters(map, state, p.layout);
-  if (layers.route && extras.route != nullptr) DrawRoutes(map, state, *extras.route, p.layout);
+  if (layers.route && overlays.route != nullptr) DrawRoutes(map, state, *overlays.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
   if (layers.moves && values != nullptr) {
     if (!p.moves) p.moves.emplace(p.layout);
@@ -113,18 +113,18 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
   DrawDisasterSigns(map, spec, state, p.layout, p.fonts);
-  DrawShips(map, spec, state, extras.wake, p.layout, p.fonts);
-  if (extras.choice != nullptr) DrawChoice(map, state, *extras.choice, p.layout, p.fonts);
+  DrawShips(map, spec, state, overlays.trail, p.layout, p.fonts);
+  if (overlays.choice != nullptr) DrawChoice(map, state, *overlays.choice, p.layout, p.fonts);
   if (layers.values && values != nullptr) DrawValueScale(map, *values, p.layout, p.fonts);
-  DrawWords(p.image, spec, state, extras, p.layout, p.fonts);
+  DrawWords(p.image, spec, state, overlays, p.layout, p.fonts);
   return p.image;
 }
 
 cv::Mat DrawFarm(const FarmSpec& spec, const FarmState& state, ImageSize size,
-                 const Extras& extras) {
+                 const Overlays& overlays) {
   if (const auto fault = CheckSpec(spec); !fault.empty()) throw std::invalid_argument(fault);
   if (const auto fault = CheckState(state); !fault.empty()) throw std::invalid_argument(fault);
-  return FarmPainter(size).Draw(spec, state, extras).clone();
+  return FarmPainter(size).Draw(spec, state, overlays).clone();
 }
 
 }  // namespace aquafarm_viz

@@ -222,7 +222,7 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
     if (ship.own_device >= 0) {
       StrokeCircle(panel.image(), panel.SymbolAt(), 5.0 * layout.unit, Bgr(kPaper), layout.Px(2));
     } else {
-      const Placing placing{panel.SymbolAt(), 7.5 * layout.unit, 0.0};
+      const Pose2 placing{panel.SymbolAt(), 7.5 * layout.unit, 0.0};
       FillShape(panel.image(), HullOutline(), placing, Bgr(kPaper));
       FillShape(panel.image(), HullOutline(), {placing.at, 4.5 * layout.unit, 0.0},
                 Bgr(ShipColor(ship.id)));
@@ -260,13 +260,13 @@ void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const
 
 }  // namespace
 
-void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Extras& extras,
-               const Layout& layout, const Fonts& fonts) {
+void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
+               const Overlays& overlays, const Layout& layout, const Fonts& fonts) {
   DrawEnd(image, state, layout, fonts);
   if (layout.panel.empty()) return;
   DrawTop(image, spec, state, layout, fonts);
   DrawRewardLine(image, state, layout, fonts);
-  if (extras.training != nullptr) DrawTrainingLine(image, *extras.training, layout, fonts);
+  if (overlays.training != nullptr) DrawTrainingLine(image, *overlays.training, layout, fonts);
   Panel panel(image, layout, fonts);
   ListDevices(panel, state, layout);
   ListDisasters(panel, state, layout, std::max(3, panel.RowsLeft() - 7));

@@ -20,7 +20,7 @@ cv::Mat Colors(const cv::Mat& shares) {
 
 void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px,
                const cv::Scalar& color, int thickness) {
-  const Placing placing{middle, size_px, double(bearing_deg)};
+  const Pose2 placing{middle, size_px, double(bearing_deg)};
   const cv::Point2d tip = Place({0.0, 0.40}, placing);
   DrawLine(map, Place({0.0, -0.36}, placing), tip, color, thickness);
   DrawLine(map, Place({-0.20, 0.12}, placing), tip, color, thickness);
@@ -158,7 +158,7 @@ void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
       StrokeCircle(map, at, 1.5 * radius, Bgr(kChoiceColor), layout.Px(2.5));
       continue;
     }
-    const Placing placing{at, radius, double(bearing)};
+    const Pose2 placing{at, radius, double(bearing)};
     DrawArrow(map, Place({0.0, 2.0}, placing), bearing, 2.4 * radius, Bgr(kInk), layout.Px(5));
     DrawArrow(map, Place({0.0, 2.0}, placing), bearing, 2.4 * radius, Bgr(kChoiceColor),
               layout.Px(2.5));

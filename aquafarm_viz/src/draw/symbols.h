@@ -70,11 +70,11 @@ void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                        const Fonts& fonts);
 
 /// Draws the recent trails of the ships.
-void DrawWakes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Wake& wake,
-               const Layout& layout);
+void DrawTrails(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& trail,
+                const Layout& layout);
 
 /// Draws the trails of the ships since the start of the episode, from violet over red to yellow.
-void DrawRoutes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Wake& route,
+void DrawRoutes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& route,
                 const Layout& layout);
 
 /// Blends the colours of V_π over the map.
@@ -146,16 +146,16 @@ void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 
 /// Draws ships with the devices aboard, and self-propelled devices.
 void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-               const aquafarm_msgs::FarmState& state, const Wake* wake, const Layout& layout,
+               const aquafarm_msgs::FarmState& state, const Trail* trail, const Layout& layout,
                const Fonts& fonts);
 
 /// Draws the symbol of a device with a dark rim.
-void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Placing& placing, double faded);
+void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded);
 
 /// Draws the text above and below the map, the lists of the panel and the end of the episode.
 void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
-               const aquafarm_msgs::FarmState& state, const Extras& extras, const Layout& layout,
-               const Fonts& fonts);
+               const aquafarm_msgs::FarmState& state, const Overlays& overlays,
+               const Layout& layout, const Fonts& fonts);
 
 inline constexpr Rgb kPanel{0x10, 0x1d, 0x2a};  ///< background of text
 inline constexpr Rgb kRule{0x2b, 0x3d, 0x4f};   ///< thin lines between parts

@@ -26,20 +26,20 @@ std::string Ending(const std::string& path) {
 }
 
 /// Path of the temporary file of a video. It keeps the extension, which selects the format.
-std::string Beside(const std::string& path) {
+std::string TempPath(const std::string& path) {
   return (fs::path(path).parent_path() / (fs::path(path).stem().string() + ".part" + Ending(path)))
       .string();
 }
 
 void MoveToItsPlace(const std::string& path) {
   std::error_code error;
-  fs::rename(Beside(path), path, error);
+  fs::rename(TempPath(path), path, error);
   if (error) throw StorageError(path + ": could not be written: " + error.message());
 }
 
 void RemoveUnfinished(const std::string& path) {
   std::error_code ignored;
-  fs::remove(Beside(path), ignored);
+  fs::remove(TempPath(path), ignored);
 }
 
 /// Writes videos with the codecs that OpenCV finds on this machine.
@@ -54,7 +54,7 @@ class VideoFilm final : public Film {
     std::string tried;
     for (const std::string& codec : codecs) {
       const int code = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
-      if (writer_.open(Beside(path), cv::CAP_FFMPEG, code, rate_hz, size)) return;
+      if (writer_.open(TempPath(path), cv::CAP_FFMPEG, code, rate_hz, size)) return;
       tried += (tried.empty() ? "" : ", ") + codec;
     }
     RemoveUnfinished(path);
@@ -83,7 +83,7 @@ class VideoFilm final : public Film {
 
  private:
   int Pictures() const {
-    cv::VideoCapture film(Beside(path_), cv::CAP_FFMPEG);
+    cv::VideoCapture film(TempPath(path_), cv::CAP_FFMPEG);
     int pictures = 0;
     while (film.grab()) ++pictures;
     return pictures;
@@ -130,7 +130,7 @@ class GifFilm final : public Film {
       : path_(path), size_(size), pause_(std::max(2, cvRound(100.0 / rate_hz))) {
     int error = 0;
     // giflib's open function creates a file that other users cannot read.
-    const int handle = open(Beside(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    const int handle = open(TempPath(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (handle >= 0) file_ = EGifOpenFileHandle(handle, &error);
     if (file_ == nullptr) throw StorageError(path + ": could not be written");
     EGifSetGifVersion(file_, true);

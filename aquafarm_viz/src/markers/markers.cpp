@@ -265,11 +265,11 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
   }
 }
 
-void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, const Wake* wake) {
+void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, const Trail* trail) {
   static const std::vector<cv::Point2f> kBow{{0.0F, 1.25F}, {-0.5F, 0.6F}, {0.5F, 0.6F}};
   static const std::vector<cv::Point2f> kDeck{{-0.22F, 0.42F}, {-0.26F, -0.1F}, {-0.22F, -0.68F},
                                               {0.22F, -0.68F}, {0.26F, -0.1F},  {0.22F, 0.42F}};
-  const auto turned = Turned(ShipBearingDeg(ship, wake), kShapeNorthDeg);
+  const auto turned = Turned(ShipBearingDeg(ship, trail), kShapeNorthDeg);
   const bool own = ship.own_device >= 0;
   Marker hull = maker.Shape("ship", ship.id, kShipLayer, ship.x, ship.y, own ? kBow : HullOutline(),
                             (own ? 0.42 : 0.62) * maker.thing_m(), kPaper);
@@ -286,10 +286,10 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cons
 }
 
 void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const FarmState& state,
-              const Wake* wake) {
+              const Trail* trail) {
   for (const auto& ship : state.ships) {
     if (ship.visible && ship.active && InGrid(spec, ship.x, ship.y)) {
-      AddShip(array, maker, ship, wake);
+      AddShip(array, maker, ship, trail);
       continue;
     }
     array.markers.push_back(maker.Delete("ship", ship.id));
@@ -431,12 +431,12 @@ MarkerArray SpecMarkers(const FarmSpec& spec, bool clear) {
   return array;
 }
 
-MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Wake* wake) {
+MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Trail* trail) {
   const Maker maker(spec, state.header);
   MarkerArray array;
   AddDisasters(array, maker, state);
   AddDevices(array, maker, spec, state);
-  AddShips(array, maker, spec, state, wake);
+  AddShips(array, maker, spec, state, trail);
   array.markers.push_back(Status(maker, spec, state));
   return array;
 }

@@ -85,7 +85,7 @@ void VizNode::OnState(const aquafarm_msgs::FarmStateConstPtr& state) {
     ROS_WARN_THROTTLE(kWarnEvery_s, "state refused: %s", fault.c_str());
     return;
   }
-  wake_.Update(*state);
+  trail_.Update(*state);
   route_.Update(*state);
   if (values_) values_->Pair(*state);
   stamps_.emplace_back(state->header.stamp, state->step);
@@ -102,7 +102,7 @@ void VizNode::OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscribe
   const Shown& shown = pairing_.shown();
   if (shown.spec == nullptr) return;
   subscriber.publish(
-      Joined(SpecMarkers(*shown.spec, false), StateMarkers(*shown.spec, *shown.state, &wake_)));
+      Joined(SpecMarkers(*shown.spec, false), StateMarkers(*shown.spec, *shown.state, &trail_)));
 }
 
 void VizNode::FollowValues() {
@@ -153,7 +153,7 @@ void VizNode::Draw() {
 
 void VizNode::PublishMarkers(const Shown& shown) {
   if (markers_.getNumSubscribers() == 0) return;
-  auto array = StateMarkers(*shown.spec, *shown.state, &wake_);
+  auto array = StateMarkers(*shown.spec, *shown.state, &trail_);
   if (marked_episode_.spec != shown.spec) array = Joined(SpecMarkers(*shown.spec, true), array);
   if (choice_ != nullptr) {
     array = Joined(array, ChoiceMarkers(*choice_, *shown.spec, *shown.state));
@@ -195,7 +195,7 @@ void VizNode::PublishImages(const Shown& shown) {
   if (!raw && !compressed) return;
   const cv::Mat& picture = painter_.Draw(
       *shown.spec, *shown.state,
-      {&wake_, training_.get(), &route_, layers_, values_ ? &*values_ : nullptr, choice_.get()});
+      {&trail_, training_.get(), &route_, layers_, values_ ? &*values_ : nullptr, choice_.get()});
   std_msgs::Header header = shown.state->header;
   header.frame_id = names::kMapFrame;
   if (raw) image_.publish(cv_bridge::CvImage(header, "bgr8", picture).toImageMsg());

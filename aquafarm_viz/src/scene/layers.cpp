@@ -12,7 +12,7 @@ namespace aquafarm_viz {
 namespace {
 
 constexpr std::pair<const char*, bool Layers::*> kNames[]{
-    {"wake", &Layers::wake},   {"risk", &Layers::risk},     {"route", &Layers::route},
+    {"wake", &Layers::trail},  {"risk", &Layers::risk},     {"route", &Layers::route},
     {"sight", &Layers::sight}, {"values", &Layers::values}, {"moves", &Layers::moves}};
 
 }  // namespace

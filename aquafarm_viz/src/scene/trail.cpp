@@ -7,7 +7,7 @@
 
 namespace aquafarm_viz {
 
-void Wake::Update(const aquafarm_msgs::FarmState& state) {
+void Trail::Update(const aquafarm_msgs::FarmState& state) {
   if (state.seed != seed_ || state.episode != episode_ || state.step < step_) ships_.clear();
   seed_ = state.seed;
   episode_ = state.episode;
@@ -17,37 +17,37 @@ void Wake::Update(const aquafarm_msgs::FarmState& state) {
       ships_.erase(ship.id);
       continue;
     }
-    ShipWake& wake = ships_[ship.id];
-    if (const int bearing = MoveBearingDeg(ship.action); bearing >= 0) wake.bearing_deg = bearing;
+    ShipWake& trail = ships_[ship.id];
+    if (const int bearing = MoveBearingDeg(ship.action); bearing >= 0) trail.bearing_deg = bearing;
     const cv::Point place(ship.x, ship.y);
-    if (!wake.places.empty()) {
-      const cv::Point last = wake.places.back();
+    if (!trail.places.empty()) {
+      const cv::Point last = trail.places.back();
       if (last == place) continue;
-      if (IsGap(last, place) && length_ < kWhole) wake.places.clear();
+      if (IsGap(last, place) && length_ < kWhole) trail.places.clear();
     }
-    wake.places.push_back(place);
-    if (wake.places.size() > length_) wake.places.pop_front();
+    trail.places.push_back(place);
+    if (trail.places.size() > length_) trail.places.pop_front();
   }
 }
 
-bool Wake::IsGap(cv::Point from, cv::Point to) {
+bool Trail::IsGap(cv::Point from, cv::Point to) {
   return std::abs(double(from.x) - to.x) > kMaxJump || std::abs(double(from.y) - to.y) > kMaxJump;
 }
 
 std::size_t ShipWake::UnbrokenFrom() const {
   std::size_t first = places.empty() ? 0 : places.size() - 1;
-  while (first > 0 && !Wake::IsGap(places[first - 1], places[first])) --first;
+  while (first > 0 && !Trail::IsGap(places[first - 1], places[first])) --first;
   return first;
 }
 
-const ShipWake* Wake::Find(std::int32_t ship) const {
+const ShipWake* Trail::Find(std::int32_t ship) const {
   const auto found = ships_.find(ship);
   return found == ships_.end() ? nullptr : &found->second;
 }
 
-int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Wake* wake) {
+int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Trail* trail) {
   if (const int bearing = MoveBearingDeg(ship.action); bearing >= 0) return bearing;
-  const ShipWake* known = wake == nullptr ? nullptr : wake->Find(ship.id);
+  const ShipWake* known = trail == nullptr ? nullptr : trail->Find(ship.id);
   return known == nullptr ? 0 : known->bearing_deg;
 }
 

@@ -25,7 +25,8 @@ class CuriousLearner final : public Learner {
 
   std::uint8_t encodings() const override { return learner_->encodings() | kFeaturesBit; }
   std::string options() const override { return learner_->options(); }
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override { return learner_->status(); }
   std::unique_ptr<Policy> GreedyPolicy() const override { return learner_->GreedyPolicy(); }
   void SavePolicy(Checkpoint& checkpoint) const override { learner_->SavePolicy(checkpoint); }
@@ -33,14 +34,14 @@ class CuriousLearner final : public Learner {
   void Load(const Checkpoint& checkpoint) override;
 
  private:
-  void Pay(const Results& results, float weight);
+  void AddIntrinsicReward(const StepResults& results, float weight);
 
   std::unique_ptr<Learner> learner_;
   const std::size_t features_;
   const std::size_t agents_;
   const Schedule weight_;
   CuriosityModule module_;
-  Results paid_;                           // results with the intrinsic reward added
+  StepResults paid_;                       // results with the intrinsic reward added
   std::vector<float> seen_;                // [N, S, F] at the last step; empty before it
   std::vector<std::uint8_t> taken_;        // [N, S] there
   std::vector<std::uint8_t> was_in_play_;  // [N, S] there
@@ -54,12 +55,12 @@ class CuriousLearner final : public Learner {
   std::vector<float> errors_;
 };
 
-void CuriousLearner::Step(const Results& results, double progress,
+void CuriousLearner::Step(const StepResults& results, double progress,
                           std::vector<std::uint8_t>& actions) {
   const auto weight = static_cast<float>(weight_.At(progress));
   steps_ += FarmSteps(results);
   if (weight > 0.0F && !seen_.empty()) {
-    Pay(results, weight);
+    AddIntrinsicReward(results, weight);
     learner_->Step(paid_, progress, actions);
   } else {
     learner_->Step(results, progress, actions);
@@ -69,7 +70,7 @@ void CuriousLearner::Step(const Results& results, double progress,
   was_in_play_ = results.in_play;
 }
 
-void CuriousLearner::Pay(const Results& results, float weight) {
+void CuriousLearner::AddIntrinsicReward(const StepResults& results, float weight) {
   from_.clear();
   to_.clear();
   actions_.clear();

@@ -31,7 +31,7 @@ class GreedyDqnPolicy final : public Policy {
   GreedyDqnPolicy(const EnvironmentSpec& spec, const DeepOptions& options,
                   const std::vector<float>& weights)
       : device_(FindDevice(options.device)),
-        shape_(Sight<Scalar>::Shape(spec)),
+        shape_(ObservationTraits<Scalar>::Shape(spec)),
         size_(ElementCount(shape_)),
         options_(options),
         network_(MakeNetwork(spec, options, 0)),
@@ -45,7 +45,7 @@ class GreedyDqnPolicy final : public Policy {
   void Begin(std::uint64_t, std::int32_t) override {}
   /// An agent who is done gets action 0 and value 0; the network sees the rows from the first to
   /// the last who is in play.
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     const auto is_in_play = [](std::uint8_t flag) { return flag != 0; };
     const auto& flags = results.in_play;
     const auto first = static_cast<std::size_t>(
@@ -55,11 +55,11 @@ class GreedyDqnPolicy final : public Policy {
     actions.assign(results.legal.size(), 0);
     values_.assign(results.legal.size(), 0.0F);
     if (first >= end) return;
-    const Scalar* seen = Sight<Scalar>::Of(results) + first * size_;
+    const Scalar* seen = ObservationTraits<Scalar>::Of(results) + first * size_;
     const float* row = Values(seen, end - first);
     for (std::size_t i = first; i < end; ++i, row += kActionCount, seen += size_) {
       if (flags[i] == 0) continue;
-      const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
+      const Best best = BestOf(row, LegalMask(results.legal[i], seen, options_));
       actions[i] = best.action;
       values_[i] = best.value;
     }
@@ -73,7 +73,9 @@ class GreedyDqnPolicy final : public Policy {
     }
     const torch::InferenceMode inference;
     computed_ =
-        network_->Forward(Sight<Scalar>::ToInput(seen, WithCount(count, shape_), device_)).cpu();
+        network_
+            ->Forward(ObservationTraits<Scalar>::ToInput(seen, WithCount(count, shape_), device_))
+            .cpu();
     return computed_.template data_ptr<float>();
   }
 
@@ -97,7 +99,7 @@ struct Batch {
   std::vector<float> present;        // [R] 1: in play, 0: done before
   std::vector<float> rewards;        // [B]
   std::vector<float> discounts;      // [R] of the value at `to`
-  std::vector<float> forbidden;      // [R, kActionCount] by MarkForbidden, of the next actions
+  std::vector<float> forbidden;      // [R, kActionCount] by MaskLogits, of the next actions
   std::vector<float> forbidden_now;  // likewise, of those among which the action was chosen
   std::vector<float> weights;        // [B]
   std::vector<std::size_t> drawn;    // [B] row of the replay
@@ -123,7 +125,8 @@ class DqnLearner final : public Learner {
 
   std::uint8_t encodings() const override { return EncodingOf(options_.network); }
   std::string options() const override { return resolved_; }
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
   std::unique_ptr<Policy> GreedyPolicy() const override {
     return std::make_unique<GreedyDqnPolicy<Scalar>>(spec_, options_,
@@ -140,17 +143,17 @@ class DqnLearner final : public Learner {
   std::size_t group() const { return options_.joint ? static_cast<std::size_t>(spec_.agents) : 1; }
   std::size_t rows() const { return size() * group(); }
   torch::Tensor ToInput(const Scalar* rows, std::size_t count) const {
-    return Sight<Scalar>::ToInput(rows, WithCount(count, shape_), device_);
+    return ObservationTraits<Scalar>::ToInput(rows, WithCount(count, shape_), device_);
   }
   template <typename T>
   torch::Tensor ToDevice(std::vector<T>& values, std::vector<std::int64_t> shape) const {
     return torch::from_blob(values.data(), shape, torch::CppTypeToScalarType<T>::value).to(device_);
   }
-  void Choose(const Results& results, std::vector<std::uint8_t>& actions);
+  void Choose(const StepResults& results, std::vector<std::uint8_t>& actions);
   void Update();
   void Draw();
-  void DrawAlone(std::size_t i, const Moment& moment);
-  void DrawJoint(std::size_t i, const Moment& moment);
+  void DrawAlone(std::size_t i, const TransitionIndex& moment);
+  void DrawJoint(std::size_t i, const TransitionIndex& moment);
   void Fill(std::size_t k, std::size_t from, std::size_t to, float discount);
   torch::Tensor SumOfGroups(const torch::Tensor& values) const;
   torch::Tensor Targets(const torch::Tensor& from, const torch::Tensor& actions);
@@ -168,10 +171,10 @@ class DqnLearner final : public Learner {
   std::shared_ptr<QNetwork> acting_;  // online_ itself, unless it acts by an average
   ValueOptimizer optimizer_;
   Explorer explorer_;
-  Repetitions repetitions_;
-  RandomStream chance_;
+  RepetitionPenalty repetitions_;
+  RandomStream rng_;
   Replay<Scalar> replay_;
-  MomentSampler<Scalar> sampler_;
+  ReplaySampler<Scalar> sampler_;
   double progress_{};
   Batch<Scalar> batch_;
   std::vector<float> team_rewards_;  // scratch, [agents]
@@ -185,7 +188,7 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       options_(options),
       resolved_(std::move(resolved)),
       device_(FindDevice(options.device)),
-      shape_(Sight<Scalar>::Shape(spec)),
+      shape_(ObservationTraits<Scalar>::Shape(spec)),
       observation_size_(ElementCount(shape_)),
       online_(MakeNetwork(spec, options, seed)),
       target_(MakeNetwork(spec, options, seed)),
@@ -193,7 +196,7 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       optimizer_(options, *online_, *target_, *acting_, device_),
       explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
       repetitions_(spec, options.repetition_penalty * options.reward_scale),
-      chance_({seed, 0, Purpose::kLearner, 1}),
+      rng_({seed, 0, RngStream::kLearner, 1}),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents,
                observation_size_, 0}),
       sampler_(replay_, options, static_cast<std::size_t>(options.n_step), group()),
@@ -201,11 +204,11 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       team_rewards_(static_cast<std::size_t>(spec.agents)) {}
 
 template <typename Scalar>
-void DqnLearner<Scalar>::Step(const Results& results, double progress,
+void DqnLearner<Scalar>::Step(const StepResults& results, double progress,
                               std::vector<std::uint8_t>& actions) {
   progress_ = progress;
-  replay_.Add(results, Sight<Scalar>::Of(results));
-  sampler_.Remember();
+  replay_.Add(results, ObservationTraits<Scalar>::Of(results));
+  sampler_.Add();
   optimizer_.Count(FarmSteps(results), progress);
   while (optimizer_.TakeDue()) Update();
   Choose(results, actions);
@@ -213,27 +216,27 @@ void DqnLearner<Scalar>::Step(const Results& results, double progress,
 }
 
 template <typename Scalar>
-void DqnLearner<Scalar>::Choose(const Results& results, std::vector<std::uint8_t>& actions) {
+void DqnLearner<Scalar>::Choose(const StepResults& results, std::vector<std::uint8_t>& actions) {
   explorer_.SetProgress(progress_);
   repetitions_.Begin(results);
   actions.resize(results.legal.size());
   const torch::InferenceMode inference;
   const torch::Tensor values =
-      acting_->Forward(ToInput(Sight<Scalar>::Of(results), actions.size())).cpu();
+      acting_->Forward(ToInput(ObservationTraits<Scalar>::Of(results), actions.size())).cpu();
   const float* row = values.template data_ptr<float>();
-  const Scalar* seen = Sight<Scalar>::Of(results);
+  const Scalar* seen = ObservationTraits<Scalar>::Of(results);
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += observation_size_) {
-    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
-    const float* const worth = repetitions_.Discourage(row, seen, i);
+    const ActionMask allowed = LegalMask(results.legal[i], seen, options_);
+    const float* const worth = repetitions_.Penalize(row, seen, i);
     actions[i] = explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
-    repetitions_.Remember(actions[i], i);
+    repetitions_.Add(actions[i], i);
   }
 }
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Draw() {
   for (std::size_t i = 0; i < size(); ++i) {
-    const Moment moment = sampler_.Draw(chance_, i);
+    const TransitionIndex moment = sampler_.Draw(rng_, i);
     batch_.drawn[i] = replay_.Row(moment.age, moment.entry);
     if (options_.joint) {
       DrawJoint(i, moment);
@@ -241,14 +244,14 @@ void DqnLearner<Scalar>::Draw() {
       DrawAlone(i, moment);
     }
   }
-  const std::vector<float>& weights = sampler_.Weigh(progress_);
+  const std::vector<float>& weights = sampler_.ImportanceWeights(progress_);
   for (std::size_t i = 0; i < size(); ++i) {
     batch_.weights[i] = weights[i] / static_cast<float>(size());
   }
 }
 
 template <typename Scalar>
-void DqnLearner<Scalar>::DrawAlone(std::size_t i, const Moment& moment) {
+void DqnLearner<Scalar>::DrawAlone(std::size_t i, const TransitionIndex& moment) {
   const Transition one =
       replay_.At(moment.age, moment.entry, static_cast<std::size_t>(options_.n_step),
                  static_cast<float>(options_.discount));
@@ -258,7 +261,7 @@ void DqnLearner<Scalar>::DrawAlone(std::size_t i, const Moment& moment) {
 
 // An agent that is done adds nothing to the team's value, before or after.
 template <typename Scalar>
-void DqnLearner<Scalar>::DrawJoint(std::size_t i, const Moment& moment) {
+void DqnLearner<Scalar>::DrawJoint(std::size_t i, const TransitionIndex& moment) {
   const std::size_t first = moment.entry;
   const JointTransition all =
       replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
@@ -283,11 +286,11 @@ void DqnLearner<Scalar>::Fill(std::size_t k, std::size_t from, std::size_t to, f
   std::copy_n(replay_.observation(to), observation_size_, batch_.to.data() + k * observation_size_);
   batch_.actions[k] = replay_.action(from);
   batch_.discounts[k] = discount;
-  MarkForbidden(Allowed(replay_.legal(to), replay_.observation(to), options_),
-                batch_.forbidden.data() + k * kActionCount);
+  MaskLogits(LegalMask(replay_.legal(to), replay_.observation(to), options_),
+             batch_.forbidden.data() + k * kActionCount);
   if (options_.action_gap == 0.0) return;
-  MarkForbidden(Allowed(replay_.legal(from), replay_.observation(from), options_),
-                batch_.forbidden_now.data() + k * kActionCount);
+  MaskLogits(LegalMask(replay_.legal(from), replay_.observation(from), options_),
+             batch_.forbidden_now.data() + k * kActionCount);
 }
 
 // [R] → [B]: value decomposition adds up the values of a team (Sunehag et al. 2018).
@@ -314,7 +317,7 @@ torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& from, const torch
   torch::Tensor values = ToDevice(batch_.discounts, {count}) * next;
   if (options_.action_gap > 0.0) {
     const torch::Tensor forbidden_now = ToDevice(batch_.forbidden_now, {count, kActionCount});
-    const torch::Tensor gap = Shortfall(target_->Forward(from), forbidden_now, actions);
+    const torch::Tensor gap = AdvantageGap(target_->Forward(from), forbidden_now, actions);
     values -= options_.action_gap * gap * ToDevice(batch_.present, {count});
   }
   return ToDevice(batch_.rewards, {static_cast<std::int64_t>(size())}) + SumOfGroups(values);
@@ -323,7 +326,7 @@ torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& from, const torch
 template <typename Scalar>
 void DqnLearner<Scalar>::Update() {
   if (!sampler_.IsReady()) return;
-  const BatchOrigin origin{seed_, chance_.position()};
+  const BatchOrigin origin{seed_, rng_.position()};
   Draw();
   const auto count = static_cast<std::int64_t>(rows());
   const torch::Tensor actions = ToDevice(batch_.actions, {count, 1});
@@ -340,7 +343,7 @@ template <typename Scalar>
 void DqnLearner<Scalar>::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor values = errors.cpu();
   const float* error = values.template data_ptr<float>();
-  for (std::size_t i = 0; i < size(); ++i) sampler_.SetError(batch_.drawn[i], error[i]);
+  for (std::size_t i = 0; i < size(); ++i) sampler_.UpdatePriority(batch_.drawn[i], error[i]);
 }
 
 template <typename Scalar>
@@ -349,20 +352,20 @@ void DqnLearner<Scalar>::Save(Checkpoint& checkpoint) const {
   replay_.Save(checkpoint);
   explorer_.Save(checkpoint);
   repetitions_.Save(checkpoint);
-  checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
+  checkpoint.SetArray("chance", std::vector<std::uint64_t>{rng_.position()});
   sampler_.Save(checkpoint);
 }
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> chance;
-  checkpoint.GetArray("chance", 1, chance);
+  std::vector<std::uint64_t> rng;
+  checkpoint.GetArray("chance", 1, rng);
   optimizer_.Load(checkpoint);
   replay_.Load(checkpoint);
   sampler_.Load(checkpoint);
   explorer_.Load(checkpoint);
   repetitions_.Load(checkpoint);
-  chance_.Seek(chance[0]);
+  rng_.Seek(rng[0]);
 }
 
 DeepOptions Parse(const std::string& text, std::string& resolved) {

@@ -35,7 +35,7 @@ class Carry {
   std::vector<float>& values() { return values_; }
   const std::vector<float>& values() const { return values_; }
 
-  void ClearStarted(const Results& results, std::int32_t agents) {
+  void ClearStarted(const StepResults& results, std::int32_t agents) {
     const std::size_t of_farm = static_cast<std::size_t>(agents) * size_of_one();
     for (std::size_t farm = 0; farm < results.started.size(); ++farm) {
       if (results.started[farm] == 0) continue;
@@ -68,12 +68,13 @@ class Carry {
 };
 
 /// One step of all agents: values [entries, kActionCount], the carry moved on.
-torch::Tensor StepNetwork(RecurrentNetwork& network, const Results& results, std::int64_t features,
-                          Carry& carry, torch::Device device) {
+torch::Tensor StepNetwork(RecurrentNetwork& network, const StepResults& results,
+                          std::int64_t features, Carry& carry, torch::Device device) {
   const auto entries = static_cast<std::int64_t>(results.legal.size());
   RecurrentNetwork::State state = carry.ToState(device);
   const torch::Tensor values = network.Forward(
-      Sight<float>::ToInput(results.features.data(), {1, entries, features}, device), state);
+      ObservationTraits<float>::ToInput(results.features.data(), {1, entries, features}, device),
+      state);
   carry.Take(state);
   return values.squeeze(0).cpu().contiguous();
 }
@@ -96,7 +97,7 @@ class RecurrentPolicy final : public Policy {
     carry_ =
         Carry(static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_), options_.hidden);
   }
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     const torch::NoGradGuard no_grad;
     carry_.ClearStarted(results, agents_);
     const torch::Tensor values = StepNetwork(*network_, results, features_, carry_, device_);
@@ -105,7 +106,7 @@ class RecurrentPolicy final : public Policy {
     const float* row = values.data_ptr<float>();
     const float* seen = results.features.data();
     for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features_) {
-      const Best best = BestOf(row, Allowed(results.legal[i], seen, options_));
+      const Best best = BestOf(row, LegalMask(results.legal[i], seen, options_));
       actions[i] = best.action;
       values_[i] = best.value;
     }
@@ -128,7 +129,8 @@ class RecurrentDqnLearner final : public Learner {
 
   std::uint8_t encodings() const override { return kFeaturesBit; }
   std::string options() const override { return resolved_; }
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
   std::unique_ptr<Policy> GreedyPolicy() const override {
     return std::make_unique<RecurrentPolicy>(spec_, options_, optimizer_.acting().ToVector());
@@ -163,11 +165,11 @@ class RecurrentDqnLearner final : public Learner {
   std::shared_ptr<RecurrentNetwork> acting_;  // online_ itself, unless it acts by an average
   ValueOptimizer optimizer_;
   Explorer explorer_;
-  Repetitions repetitions_;
-  RandomStream chance_;
+  RepetitionPenalty repetitions_;
+  RandomStream rng_;
   Carry carry_;
   Replay<float> replay_;
-  MomentSampler<float> sampler_;
+  ReplaySampler<float> sampler_;
   double progress_{};
   SequenceBatch batch_;
 };
@@ -185,19 +187,19 @@ RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint6
       optimizer_(options, *online_, *target_, *acting_, device_),
       explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
       repetitions_(spec, options.repetition_penalty * options.reward_scale),
-      chance_({seed, 0, Purpose::kLearner, 1}),
+      rng_({seed, 0, RngStream::kLearner, 1}),
       carry_(EntryCount(spec), options.hidden),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
                carry_.size_of_one()}),
       sampler_(replay_, options, 1),
       batch_(options, features(), carry_.size_of_one()) {}
 
-void RecurrentDqnLearner::Step(const Results& results, double progress,
+void RecurrentDqnLearner::Step(const StepResults& results, double progress,
                                std::vector<std::uint8_t>& actions) {
   carry_.ClearStarted(results, spec_.agents);
   progress_ = progress;
   replay_.Add(results, results.features.data(), carry_.values().data());
-  sampler_.Remember();
+  sampler_.Add();
   optimizer_.Count(FarmSteps(results), progress);
   while (optimizer_.TakeDue()) Update();
 
@@ -209,19 +211,19 @@ void RecurrentDqnLearner::Step(const Results& results, double progress,
   const float* row = values.data_ptr<float>();
   const float* seen = results.features.data();
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features()) {
-    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
-    const float* const worth = repetitions_.Discourage(row, seen, i);
+    const ActionMask allowed = LegalMask(results.legal[i], seen, options_);
+    const float* const worth = repetitions_.Penalize(row, seen, i);
     actions[i] = explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
-    repetitions_.Remember(actions[i], i);
+    repetitions_.Add(actions[i], i);
   }
   replay_.SetActions(actions);
 }
 
 void RecurrentDqnLearner::Draw() {
   for (std::size_t b = 0; b < batch_.size(); ++b) {
-    batch_.Fill(b, replay_, sampler_.Draw(chance_, b), options_);
+    batch_.Fill(b, replay_, sampler_.Draw(rng_, b), options_);
   }
-  const std::vector<float>& importance = sampler_.Weigh(progress_);
+  const std::vector<float>& importance = sampler_.ImportanceWeights(progress_);
   float sum = 0.0F;
   for (std::size_t i = 0; i < batch_.weights.size(); ++i) {
     sum += batch_.weights[i];
@@ -274,7 +276,7 @@ torch::Tensor RecurrentDqnLearner::Targets(const torch::Tensor& observations,
       ToDevice(batch_.rewards, {steps, count}) + ToDevice(batch_.discounts, {steps, count}) * next;
   if (options_.action_gap > 0.0) {
     targets -= options_.action_gap *
-               Shortfall(told.narrow(0, 0, steps), forbidden.narrow(0, 0, steps), actions);
+               AdvantageGap(told.narrow(0, 0, steps), forbidden.narrow(0, 0, steps), actions);
   }
   return targets;
 }
@@ -282,7 +284,7 @@ torch::Tensor RecurrentDqnLearner::Targets(const torch::Tensor& observations,
 void RecurrentDqnLearner::Update() {
   const auto longest = static_cast<std::size_t>(options_.burn_in + options_.sequence);
   if (replay_.size() < 2 + longest || !sampler_.IsReady()) return;
-  const BatchOrigin origin{seed_, chance_.position()};
+  const BatchOrigin origin{seed_, rng_.position()};
   Draw();
   const auto count = static_cast<std::int64_t>(batch_.size());
   const std::int64_t steps = options_.sequence;
@@ -301,7 +303,7 @@ void RecurrentDqnLearner::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor values = errors.cpu().contiguous();
   const float* const error = values.data_ptr<float>();
   for (std::size_t i = 0; i < batch_.rows.size(); ++i) {
-    if (batch_.weights[i] > 0.0F) sampler_.SetError(batch_.rows[i], error[i]);
+    if (batch_.weights[i] > 0.0F) sampler_.UpdatePriority(batch_.rows[i], error[i]);
   }
 }
 
@@ -311,21 +313,21 @@ void RecurrentDqnLearner::Save(Checkpoint& checkpoint) const {
   sampler_.Save(checkpoint);
   explorer_.Save(checkpoint);
   repetitions_.Save(checkpoint);
-  checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position()});
+  checkpoint.SetArray("chance", std::vector<std::uint64_t>{rng_.position()});
   checkpoint.SetArray("carry", carry_.values());
 }
 
 void RecurrentDqnLearner::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> chance;
+  std::vector<std::uint64_t> rng;
   std::vector<float> carry;
-  checkpoint.GetArray("chance", 1, chance);
+  checkpoint.GetArray("chance", 1, rng);
   checkpoint.GetArray("carry", carry_.values().size(), carry);
   optimizer_.Load(checkpoint);
   replay_.Load(checkpoint);
   sampler_.Load(checkpoint);
   explorer_.Load(checkpoint);
   repetitions_.Load(checkpoint);
-  chance_.Seek(chance[0]);
+  rng_.Seek(rng[0]);
   carry_.values() = std::move(carry);
 }
 

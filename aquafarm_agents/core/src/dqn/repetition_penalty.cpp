@@ -25,7 +25,7 @@ bool TellsSituations(const std::string& name) {
 
 }  // namespace
 
-Repetitions::Repetitions(const EnvironmentSpec& spec, double penalty)
+RepetitionPenalty::RepetitionPenalty(const EnvironmentSpec& spec, double penalty)
     : agents_(static_cast<std::size_t>(spec.agents)), penalty_(static_cast<float>(penalty)) {
   if (penalty == 0.0) return;
   for (std::size_t i = 0; i < spec.feature_names.size(); ++i) {
@@ -36,20 +36,20 @@ Repetitions::Repetitions(const EnvironmentSpec& spec, double penalty)
 }
 
 // A hash, above the bits of an action.
-std::uint64_t Repetitions::SituationOf(const float* features) const {
+std::uint64_t RepetitionPenalty::SituationOf(const float* features) const {
   Hasher situation;
   for (const std::size_t feature : telling_) situation.Add(features[feature], 0.0F);
   return situation.value() << kActionBits;
 }
 
-void Repetitions::Begin(const Results& results) {
+void RepetitionPenalty::Begin(const StepResults& results) {
   for (std::size_t entry = 0; entry < turn_.size(); ++entry) {
     if (results.started[entry / agents_] != 0) turn_[entry] = 0;
   }
 }
 
-const float* Repetitions::Discourage(const float* values, const float* features,
-                                     std::size_t entry) {
+const float* RepetitionPenalty::Penalize(const float* values, const float* features,
+                                         std::size_t entry) {
   if (turn_.empty()) return values;
   situation_ = SituationOf(features);
   std::copy_n(values, kActionCount, values_.begin());
@@ -62,18 +62,18 @@ const float* Repetitions::Discourage(const float* values, const float* features,
   return values_.data();
 }
 
-void Repetitions::Remember(std::uint8_t action, std::size_t entry) {
+void RepetitionPenalty::Add(std::uint8_t action, std::size_t entry) {
   if (turn_.empty()) return;
   done_[entry * kRemembered + turn_[entry]++ % kRemembered] = situation_ | action;
 }
 
-void Repetitions::Save(Checkpoint& checkpoint) const {
+void RepetitionPenalty::Save(Checkpoint& checkpoint) const {
   if (turn_.empty()) return;
   checkpoint.SetArray("repetitions", done_);
   checkpoint.SetArray("repetition_turns", turn_);
 }
 
-void Repetitions::Load(const Checkpoint& checkpoint) {
+void RepetitionPenalty::Load(const Checkpoint& checkpoint) {
   if (turn_.empty()) return;
   checkpoint.GetArray("repetitions", done_.size(), done_);
   checkpoint.GetArray("repetition_turns", turn_.size(), turn_);

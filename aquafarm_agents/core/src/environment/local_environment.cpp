@@ -109,7 +109,7 @@ BatchOutput LocalEnvironment::Output() {
   return output;
 }
 
-const Results& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
+const StepResults& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
   batch_.Reset(seed, first_episode, output_);
   if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
   if (with_states_) results_.states = batch_.Save();
@@ -117,7 +117,7 @@ const Results& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_e
   return results_;
 }
 
-const Results& LocalEnvironment::Step(const std::vector<std::uint8_t>& actions) {
+const StepResults& LocalEnvironment::Step(const std::vector<std::uint8_t>& actions) {
   AQUAFARM_CHECK_EQ(actions.size(), results_.rewards.size());
   AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), kActionCount);
   batch_.Step(actions.data(), output_);
@@ -138,7 +138,7 @@ void LocalEnvironment::CollectFinished() {
 
 std::string LocalEnvironment::Save() { return batch_.Save(); }
 
-const Results& LocalEnvironment::Load(const std::string& bytes) {
+const StepResults& LocalEnvironment::Load(const std::string& bytes) {
   batch_.Load(bytes);
   batch_.Write(output_);
   if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);

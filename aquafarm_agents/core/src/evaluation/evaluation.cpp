@@ -74,13 +74,13 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
   const auto count = static_cast<std::size_t>(episodes);
   Evaluation evaluation;
   evaluation.seed = EvaluationSeed(seed);
-  const std::uint64_t chance = policy_seed.value_or(evaluation.seed);
+  const std::uint64_t rng = policy_seed.value_or(evaluation.seed);
   std::vector<EpisodeResult> results(count);
   std::vector<std::uint8_t> is_over(count);
   std::size_t over = 0;
-  policy.Begin(chance, environment.spec().farms);
+  policy.Begin(rng, environment.spec().farms);
   std::vector<std::uint8_t> actions;
-  const Results* now = &environment.Reset(evaluation.seed);
+  const StepResults* now = &environment.Reset(evaluation.seed);
   while (over < count && (stop == nullptr || !*stop)) {
     policy.Act(*now, actions);
     now = &environment.Step(actions);
@@ -95,8 +95,8 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
       told = present;
       on_progress(over);
     }
-    if (environment.TakeRestarted()) {  // new farms; finished episodes are kept
-      policy.Begin(chance, environment.spec().farms);
+    if (environment.ConsumeRestart()) {  // new farms; finished episodes are kept
+      policy.Begin(rng, environment.spec().farms);
       now = &environment.Reset(evaluation.seed);
     }
   }

@@ -39,13 +39,13 @@ std::string WhyNoBestMoves(const Scenario& scenario) {
 }
 
 // One farm per cell, in batches, so that one call of the policy covers many cells.
-std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy& policy,
-                                const std::atomic<bool>* stop) {
+std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t encodings, Policy& policy,
+                                        const std::atomic<bool>* stop) {
   const auto scenario = std::make_shared<const Scenario>(farm.scenario());
   if (!WhyNoBestMoves(*scenario).empty() || !farm.ships()[0].in_play) return {};
   const std::vector<Cell> cells = FreeCells(farm);
   const std::string state = farm.Save();
-  std::vector<BestMove> moves;
+  std::vector<GreedyAction> moves;
   std::vector<std::uint8_t> actions;
   std::unique_ptr<FarmBatch> farms;  // made again only for the last, smaller batch
   std::unique_ptr<LocalEnvironment> environment;
@@ -66,7 +66,7 @@ std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy
     policy.Act(environment->Load(farms->Save()), actions);
     const auto agents = static_cast<std::size_t>(environment->spec().agents);
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      BestMove move{cells[first + i], actions[i * agents]};
+      GreedyAction move{cells[first + i], actions[i * agents]};
       if (!policy.values().empty()) move.value = policy.values()[i * agents];
       moves.push_back(move);
     }

@@ -48,7 +48,7 @@ class Starts {
 };
 
 // The reward of all agents of a farm in the last step.
-double RewardOf(const Results& results, const EnvironmentSpec& spec, std::size_t farm) {
+double RewardOf(const StepResults& results, const EnvironmentSpec& spec, std::size_t farm) {
   const auto agents = static_cast<std::size_t>(spec.agents);
   double sum = 0.0;
   for (std::size_t i = 0; i < agents; ++i) {
@@ -66,7 +66,7 @@ std::vector<double> PlayOut(LocalEnvironment& environment, const std::string& fa
   std::int32_t left = count;
   double weight = 1.0;  // of the reward of the next step
   policy.Begin(seed, count);
-  const Results* results = &environment.Load(farms);
+  const StepResults* results = &environment.Load(farms);
   std::vector<std::uint8_t> actions;
   while (left > 0 && !IsStopped(stop)) {
     policy.Act(*results, actions);
@@ -106,9 +106,10 @@ json ToRows(const std::vector<T>& values, std::int32_t width) {
 
 }  // namespace
 
-PlayedValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
-                        const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
-                        std::int32_t episodes, const std::atomic<bool>* stop, double discount) {
+RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
+                         const MakePolicyFor& make_policy, std::uint64_t seed,
+                         std::uint64_t episode, std::int32_t episodes,
+                         const std::atomic<bool>* stop, double discount) {
   if (scenario->CellCount() > kMaxCells) {
     throw InputError("values: got a farm of " + std::to_string(scenario->CellCount()) +
                      " cells, expected at most " + std::to_string(kMaxCells));
@@ -119,7 +120,7 @@ PlayedValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::ui
         std::to_string(episodes) + " episodes");
   }
   const auto cells = static_cast<std::size_t>(scenario->CellCount());
-  PlayedValues values{
+  RolloutValues values{
       scenario->width, scenario->height, EvaluationSeed(seed), episode, episodes, {}, discount};
   values.value.assign(cells, 0.0);
   Farm farm(scenario);
@@ -145,7 +146,7 @@ PlayedValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::ui
   return values;
 }
 
-void WriteValues(const std::string& path, const PlayedValues& values, const std::string& policy,
+void WriteValues(const std::string& path, const RolloutValues& values, const std::string& policy,
                  const Scenario& scenario) {
   json layers = json::array();
   if (scenario.seas) {

@@ -17,9 +17,9 @@ bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop;
 
 json ToJson(Cell cell) { return json::array({cell.x, cell.y}); }
 
-json ToJson(const std::vector<BestMove>& moves) {
+json ToJson(const std::vector<GreedyAction>& moves) {
   json list = json::array();
-  for (const BestMove& move : moves) {
+  for (const GreedyAction& move : moves) {
     list.push_back({move.cell.x, move.cell.y, ToString(static_cast<Action>(move.action))});
   }
   return list;
@@ -86,9 +86,9 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
   Route route;
   const Farm& farm = environment.batch().farm(0);
   const std::unique_ptr<Policy> elsewhere = make_policy(environment.spec());
-  const Results* results = &environment.Reset(EvaluationSeed(seed), episode);
+  const StepResults* results = &environment.Reset(EvaluationSeed(seed), episode);
   route.layout = farm.shared_layout();
-  route.at_start = BestMoves(farm, encodings, *elsewhere, stop);
+  route.at_start = GreedyActions(farm, encodings, *elsewhere, stop);
   route.steps.push_back(Look(farm));
   std::vector<std::uint8_t> actions;
   while (!farm.over() && !IsStopped(stop)) {
@@ -98,7 +98,7 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
     results = &environment.Step(actions);
     route.steps.push_back(Look(farm));
     if (route.after_pickup.empty() && farm.ships()[0].aboard > 0 && !farm.over()) {
-      route.after_pickup = BestMoves(farm, encodings, *elsewhere, stop);
+      route.after_pickup = GreedyActions(farm, encodings, *elsewhere, stop);
     }
   }
   route.result = ToResult(farm.record(), 0);

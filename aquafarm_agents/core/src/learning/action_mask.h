@@ -9,7 +9,7 @@
 namespace aquafarm::agents {
 
 /// Mask of the allowed actions: all actions, or the legal ones.
-inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
+inline ActionMask LegalMask(ActionMask legal, bool mask_illegal) {
   return mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
 }
 
@@ -18,8 +18,8 @@ inline ActionMask Allowed(ActionMask legal, bool mask_illegal) {
 /// @param features of the ship, a row of Results::features
 /// @tparam Options DeepOptions, MaddpgOptions or another type with both switches
 template <typename Options>
-ActionMask Allowed(ActionMask legal, const float* features, const Options& options) {
-  const ActionMask allowed = Allowed(legal, options.mask_illegal);
+ActionMask LegalMask(ActionMask legal, const float* features, const Options& options) {
+  const ActionMask allowed = LegalMask(legal, options.mask_illegal);
   if (!options.mask_blocked) return allowed;
   auto open = allowed;
   for (int move = 0; move < kMoveCount; ++move) {

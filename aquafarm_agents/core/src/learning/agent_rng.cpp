@@ -5,21 +5,22 @@
 
 namespace aquafarm::agents {
 
-EntryStreams::EntryStreams(std::uint64_t seed, std::size_t entries) {
+AgentRng::AgentRng(std::uint64_t seed, std::size_t entries) {
   streams_.reserve(entries);
   for (std::size_t i = 0; i < entries; ++i) {
-    streams_.emplace_back(StreamKey{seed, 0, Purpose::kExploration, static_cast<std::uint32_t>(i)});
+    streams_.emplace_back(
+        StreamKey{seed, 0, RngStream::kExploration, static_cast<std::uint32_t>(i)});
   }
 }
 
-void EntryStreams::Save(Checkpoint& checkpoint) const {
+void AgentRng::Save(Checkpoint& checkpoint) const {
   std::vector<std::uint64_t> positions;
   positions.reserve(streams_.size());
   for (const RandomStream& stream : streams_) positions.push_back(stream.position());
   checkpoint.SetArray("streams", positions);
 }
 
-void EntryStreams::Load(const Checkpoint& checkpoint) {
+void AgentRng::Load(const Checkpoint& checkpoint) {
   std::vector<std::uint64_t> positions;
   checkpoint.GetArray("streams", streams_.size(), positions);
   for (std::size_t i = 0; i < streams_.size(); ++i) streams_[i].Seek(positions[i]);

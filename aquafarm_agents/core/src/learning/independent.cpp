@@ -43,7 +43,7 @@ Checkpoint PartOf(const Checkpoint& whole, std::size_t agent) {
 class Share {
  public:
   /// @param agents of one farm
-  const Results& Of(const Results& all, std::size_t agent, std::size_t agents) {
+  const StepResults& Of(const StepResults& all, std::size_t agent, std::size_t agents) {
     Take(all.rewards, agent, agents, all, share_.rewards);
     Take(all.outcomes, agent, agents, all, share_.outcomes);
     Take(all.legal, agent, agents, all, share_.legal);
@@ -60,7 +60,7 @@ class Share {
   // [N, S, size] → [N, size]
   template <typename T>
   static void Take(const std::vector<T>& from, std::size_t agent, std::size_t agents,
-                   const Results& all, std::vector<T>& to) {
+                   const StepResults& all, std::vector<T>& to) {
     const std::size_t farms = all.reasons.size();
     const std::size_t size = from.size() / (farms * agents);
     to.resize(farms * size);
@@ -69,7 +69,7 @@ class Share {
     }
   }
 
-  Results share_;
+  StepResults share_;
 };
 
 template <typename T>
@@ -88,7 +88,7 @@ class IndependentPolicy final : public Policy {
   void Begin(std::uint64_t seed, std::int32_t farms) override {
     for (std::size_t i = 0; i < policies_.size(); ++i) policies_[i]->Begin(SeedOf(seed, i), farms);
   }
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     for (std::size_t i = 0; i < policies_.size(); ++i) {
       policies_[i]->Act(share_.Of(results, i, policies_.size()), own_);
       Spread(own_, i, policies_.size(), actions);
@@ -112,7 +112,8 @@ class IndependentLearner final : public Learner {
   }
   std::uint8_t encodings() const override { return learners_[0]->encodings(); }
   std::string options() const override { return learners_[0]->options(); }
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override {
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override {
     for (std::size_t i = 0; i < learners_.size(); ++i) {
       learners_[i]->Step(share_.Of(results, i, learners_.size()), progress, own_);
       Spread(own_, i, learners_.size(), actions);

@@ -39,10 +39,10 @@ std::uint8_t RandomPolicy::encodings() const {
 }
 
 void RandomPolicy::Begin(std::uint64_t seed, std::int32_t farms) {
-  streams_ = EntryStreams(seed, static_cast<std::size_t>(farms * agents_));
+  streams_ = AgentRng(seed, static_cast<std::size_t>(farms * agents_));
 }
 
-void RandomPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+void RandomPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
   actions.resize(streams_.size());
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     if (actions_ == RandomActions::kAll) {
@@ -50,7 +50,7 @@ void RandomPolicy::Act(const Results& results, std::vector<std::uint8_t>& action
       continue;
     }
     const float* const seen = results.features.data() + i * static_cast<std::size_t>(features_);
-    actions[i] = DrawAction(Allowed(results.legal[i], seen, Reachable{}), streams_[i]);
+    actions[i] = DrawAction(LegalMask(results.legal[i], seen, Reachable{}), streams_[i]);
   }
 }
 
@@ -65,7 +65,7 @@ std::string RandomLearner::options() const {
   return "actions=" + std::string(ToString(actions_));
 }
 
-void RandomLearner::Step(const Results& results, double, std::vector<std::uint8_t>& actions) {
+void RandomLearner::Step(const StepResults& results, double, std::vector<std::uint8_t>& actions) {
   policy_.Act(results, actions);
 }
 

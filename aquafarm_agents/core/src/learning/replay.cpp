@@ -42,7 +42,8 @@ Replay<Scalar>::Replay(const ReplayOptions& options)
 }
 
 template <typename Scalar>
-void Replay<Scalar>::Add(const Results& results, const Scalar* observations, const float* carry) {
+void Replay<Scalar>::Add(const StepResults& results, const Scalar* observations,
+                         const float* carry) {
   if (size_ == moments_) {
     oldest_ = (oldest_ + 1) % moments_;
   } else {

@@ -58,7 +58,7 @@ TabularLearner<Rule>::TabularLearner(const EnvironmentSpec& spec, std::uint64_t 
       loss_(std::nanf("")) {}
 
 template <typename Rule>
-void TabularLearner<Rule>::Step(const Results& results, double progress,
+void TabularLearner<Rule>::Step(const StepResults& results, double progress,
                                 std::vector<std::uint8_t>& actions) {
   explorer_.SetProgress(progress);
   learning_rate_ = static_cast<float>(options_.learning_rate.At(progress));
@@ -142,7 +142,7 @@ void TabularLearner<Rule>::Load(const Checkpoint& checkpoint) {
 template class TabularLearner<QLearningRule>;
 template class TabularLearner<SarsaRule>;
 
-void GreedyTabularPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+void GreedyTabularPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
   actions.resize(results.index.size());
   values_.resize(actions.size());
   std::size_t entry = 0;

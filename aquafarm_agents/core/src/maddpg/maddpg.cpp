@@ -28,9 +28,9 @@ float Sum(const std::vector<float>& numbers) {
   return std::accumulate(numbers.begin(), numbers.end(), 0.0F);
 }
 
-float Gumbel(RandomStream& chance) {
+float Gumbel(RandomStream& rng) {
   // Excludes 0 and 1, for which the result is infinite.
-  const float unit = 0.999998F * chance.Unit() + 1e-6F;
+  const float unit = 0.999998F * rng.Unit() + 1e-6F;
   return -std::log(-std::log(unit));
 }
 
@@ -44,7 +44,7 @@ struct Window {
   std::vector<float> observations;  // [T, B, S, F]
   std::vector<float> keeps;         // [T, B, S]
   std::vector<float> carry;         // [B, S, carry_size] before the first step
-  std::vector<float> forbidden;     // [B, S, kActionCount] by MarkForbidden, at the last step
+  std::vector<float> forbidden;     // [B, S, kActionCount] by MaskLogits, at the last step
   std::vector<float> present;       // [B, S] 1 if in play at the last step
 };
 
@@ -55,7 +55,8 @@ class MaddpgLearner final : public Learner {
 
   std::uint8_t encodings() const override { return kFeaturesBit; }
   std::string options() const override { return resolved_; }
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override {
     return {loss_, static_cast<float>(explorer_.level()),
             static_cast<float>(options_.actor_rate.At(progress_))};
@@ -79,9 +80,9 @@ class MaddpgLearner final : public Learner {
     return torch::from_blob(numbers.data(), shape, torch::kFloat).to(device_);
   }
   Window MakeWindow() const;
-  void Choose(const Results& results, std::vector<std::uint8_t>& actions);
+  void Choose(const StepResults& results, std::vector<std::uint8_t>& actions);
   void Update();
-  Moment DrawMoment(std::size_t i);
+  TransitionIndex DrawMoment(std::size_t i);
   void Draw();
   void Reprioritise(const torch::Tensor& errors);
   void Fill(std::size_t i, std::size_t age, std::size_t first, Window& to);
@@ -107,11 +108,11 @@ class MaddpgLearner final : public Learner {
   FlatParameters actor_target_;
   FlatParameters judge_target_;
   Explorer explorer_;
-  RandomStream chance_;  // for batches and their noise
+  RandomStream rng_;     // for batches and their noise
   RandomStream acting_;  // for exploration
   std::vector<float> carry_;
   Replay<float> replay_;
-  MomentSampler<float> sampler_;
+  ReplaySampler<float> sampler_;
   double progress_{};
   double due_{};
   std::uint64_t steps_{};
@@ -121,7 +122,7 @@ class MaddpgLearner final : public Learner {
   // The minibatch of B time steps.
   Window from_;
   Window to_;
-  std::vector<Moment> drawn_;   // [B]
+  std::vector<TransitionIndex> drawn_;  // [B]
   std::vector<float> taken_;    // [B, S, kActionCount] one-hot; zeros for an agent that is done
   std::vector<float> judged_;   // [B, S, kActionCount] one-hot; action 0 for an agent that is done
   std::vector<float> rewards_;  // [B, S]
@@ -155,8 +156,8 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       actor_target_(target_actors_, device_),
       judge_target_(target_critic_, device_),
       explorer_(options.exploration, seed, EntryCount(spec)),
-      chance_({seed, 0, Purpose::kLearner, kBatchStream}),
-      acting_({seed, 0, Purpose::kLearner, kActingStream}),
+      rng_({seed, 0, RngStream::kLearner, kBatchStream}),
+      acting_({seed, 0, RngStream::kLearner, kActingStream}),
       carry_(EntryCount(spec) * carry_size()),
       replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
                carry_size()}),
@@ -187,12 +188,12 @@ Window MaddpgLearner::MakeWindow() const {
   return made;
 }
 
-void MaddpgLearner::Step(const Results& results, double progress,
+void MaddpgLearner::Step(const StepResults& results, double progress,
                          std::vector<std::uint8_t>& actions) {
   progress_ = progress;
   ClearStarted(results, agents() * carry_size(), carry_);
   replay_.Add(results, results.features.data(), carry_.data());
-  sampler_.Remember();
+  sampler_.Add();
   const std::uint64_t steps = FarmSteps(results);
   steps_ += steps;
   if (steps_ > options_.start) due_ += static_cast<double>(steps) / options_.steps_per_update;
@@ -202,7 +203,7 @@ void MaddpgLearner::Step(const Results& results, double progress,
 }
 
 // The argmax of logits with Gumbel noise is a sample of their softmax.
-void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& actions) {
+void MaddpgLearner::Choose(const StepResults& results, std::vector<std::uint8_t>& actions) {
   const torch::NoGradGuard no_grad;
   explorer_.SetProgress(progress_);
   actions.resize(results.legal.size());
@@ -211,7 +212,7 @@ void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& ac
   const float* seen = results.features.data();
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
     for (std::size_t a = 0; a < kActionCount; ++a) row[a] += Gumbel(acting_);
-    const ActionMask allowed = Allowed(results.legal[i], seen, options_);
+    const ActionMask allowed = LegalMask(results.legal[i], seen, options_);
     seen += spec_.feature_count;
     actions[i] = explorer_.Choose(row, allowed, BestOf(row, allowed), i);
   }
@@ -219,8 +220,8 @@ void MaddpgLearner::Choose(const Results& results, std::vector<std::uint8_t>& ac
 
 // Draws a time step whose complete window, or the start of its episode, is stored. The oldest time
 // steps of the replay may have neither; the first one of the same farm that has replaces them.
-Moment MaddpgLearner::DrawMoment(std::size_t i) {
-  const Moment drawn = sampler_.Draw(chance_, i);
+TransitionIndex MaddpgLearner::DrawMoment(std::size_t i) {
+  const TransitionIndex drawn = sampler_.Draw(rng_, i);
   for (std::size_t back = 0; back <= drawn.age; ++back) {
     if (back + 1 == window()) return drawn;
     if (replay_.started(replay_.Row(drawn.age - back, drawn.entry))) return drawn;
@@ -235,7 +236,7 @@ Moment MaddpgLearner::DrawMoment(std::size_t i) {
 void MaddpgLearner::Draw() {
   const auto scale = static_cast<float>(options_.reward_scale);
   for (std::size_t i = 0; i < batch(); ++i) {
-    const Moment moment = DrawMoment(i);
+    const TransitionIndex moment = DrawMoment(i);
     const std::size_t first = moment.entry;
     drawn_[i] = moment;
     const JointTransition all =
@@ -265,7 +266,7 @@ void MaddpgLearner::Draw() {
       weights_[k] = spec_.team_reward ? 1.0F : from_.present[k];
     }
   }
-  const std::vector<float>& importance = sampler_.Weigh(progress_);
+  const std::vector<float>& importance = sampler_.ImportanceWeights(progress_);
   for (std::size_t k = 0; k < weights_.size(); ++k) weights_[k] *= importance[k / agents()];
 }
 
@@ -277,7 +278,7 @@ void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
       ((errors * learnt).sum(1) / learnt.sum(1).clamp_min(1)).cpu().contiguous();
   const float* error = means.data_ptr<float>();
   for (std::size_t i = 0; i < batch(); ++i) {
-    sampler_.SetError(replay_.Row(drawn_[i].age, drawn_[i].entry), error[i]);
+    sampler_.UpdatePriority(replay_.Row(drawn_[i].age, drawn_[i].entry), error[i]);
   }
 }
 
@@ -303,8 +304,8 @@ void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Wind
   for (std::size_t agent = 0; agent < agents(); ++agent) {
     const std::size_t k = i * agents() + agent;
     to.present[k] = IsTerminated(replay_.reason(row + agent)) ? 0.0F : 1.0F;
-    MarkForbidden(Allowed(replay_.legal(row + agent), replay_.observation(row + agent), options_),
-                  to.forbidden.data() + k * kActionCount);
+    MaskLogits(LegalMask(replay_.legal(row + agent), replay_.observation(row + agent), options_),
+               to.forbidden.data() + k * kActionCount);
   }
 }
 
@@ -324,7 +325,7 @@ torch::Tensor MaddpgLearner::Logits(ActorTeam& actors, Window& window_of) {
 }
 
 torch::Tensor MaddpgLearner::GumbelNoise() {
-  for (float& number : noise_) number = Gumbel(chance_);
+  for (float& number : noise_) number = Gumbel(rng_);
   return ToDevice(noise_, {options_.batch, spec_.agents, kActionCount}).clone();
 }
 
@@ -333,7 +334,7 @@ void MaddpgLearner::Update() {
       !sampler_.IsReady()) {
     return;
   }
-  const std::uint64_t position = chance_.position();
+  const std::uint64_t position = rng_.position();
   Draw();
   const torch::Tensor observations = Observations(from_)[options_.window - 1];
   const torch::Tensor loss = UpdateCritic(observations);
@@ -423,8 +424,8 @@ void MaddpgLearner::Save(Checkpoint& checkpoint) const {
   sampler_.Save(checkpoint);
   checkpoint.SetArray("carry", carry_);
   explorer_.Save(checkpoint);
-  checkpoint.SetArray("chance", std::vector<std::uint64_t>{chance_.position(), acting_.position(),
-                                                           steps_, updates_});
+  checkpoint.SetArray(
+      "chance", std::vector<std::uint64_t>{rng_.position(), acting_.position(), steps_, updates_});
   checkpoint.SetArray("numbers", std::vector<double>{due_, static_cast<double>(loss_)});
 }
 
@@ -432,12 +433,12 @@ void MaddpgLearner::Load(const Checkpoint& checkpoint) {
   std::vector<float> actors;
   std::vector<float> critic;
   std::vector<float> carry;
-  std::vector<std::uint64_t> chance;
+  std::vector<std::uint64_t> rng;
   std::vector<double> numbers;
   checkpoint.GetArray("target.actors", static_cast<std::size_t>(actor_target_.size()), actors);
   checkpoint.GetArray("target.critic", static_cast<std::size_t>(judge_target_.size()), critic);
   checkpoint.GetArray("carry", carry_.size(), carry);
-  checkpoint.GetArray("chance", 4, chance);
+  checkpoint.GetArray("chance", 4, rng);
   checkpoint.GetArray("numbers", 2, numbers);
   explorer_.Load(checkpoint);
   actor_.Load(checkpoint);
@@ -447,10 +448,10 @@ void MaddpgLearner::Load(const Checkpoint& checkpoint) {
   actor_target_.FromVector(actors);
   judge_target_.FromVector(critic);
   carry_ = std::move(carry);
-  chance_.Seek(chance[0]);
-  acting_.Seek(chance[1]);
-  steps_ = chance[2];
-  updates_ = chance[3];
+  rng_.Seek(rng[0]);
+  acting_.Seek(rng[1]);
+  steps_ = rng[2];
+  updates_ = rng[3];
   due_ = numbers[0];
   loss_ = static_cast<float>(numbers[1]);
 }

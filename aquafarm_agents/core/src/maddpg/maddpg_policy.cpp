@@ -24,7 +24,7 @@ class MaddpgPolicy final : public Policy {
   void Begin(std::uint64_t, std::int32_t farms) override {
     carry_.assign(static_cast<std::size_t>(farms * spec_.agents * actors_.carry_size()), 0.0F);
   }
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     const torch::NoGradGuard no_grad;
     ClearStarted(results, static_cast<std::size_t>(spec_.agents * actors_.carry_size()), carry_);
     const torch::Tensor logits = StepActors(actors_, results, spec_, carry_, device_);
@@ -32,7 +32,7 @@ class MaddpgPolicy final : public Policy {
     const float* row = logits.data_ptr<float>();
     const float* seen = results.features.data();
     for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
-      actions[i] = BestOf(row, Allowed(results.legal[i], seen, options_)).action;
+      actions[i] = BestOf(row, LegalMask(results.legal[i], seen, options_)).action;
       seen += spec_.feature_count;
     }
   }
@@ -48,7 +48,7 @@ class MaddpgPolicy final : public Policy {
 
 }  // namespace
 
-void ClearStarted(const Results& results, std::size_t size_of_farm, std::vector<float>& carry) {
+void ClearStarted(const StepResults& results, std::size_t size_of_farm, std::vector<float>& carry) {
   for (std::size_t farm = 0; farm < results.started.size() && !carry.empty(); ++farm) {
     if (results.started[farm] == 0) continue;
     std::fill_n(carry.begin() + static_cast<std::ptrdiff_t>(farm * size_of_farm), size_of_farm,
@@ -56,7 +56,7 @@ void ClearStarted(const Results& results, std::size_t size_of_farm, std::vector<
   }
 }
 
-torch::Tensor StepActors(ActorTeam& actors, const Results& results, const EnvironmentSpec& spec,
+torch::Tensor StepActors(ActorTeam& actors, const StepResults& results, const EnvironmentSpec& spec,
                          std::vector<float>& carry, torch::Device device) {
   const auto entries = static_cast<std::int64_t>(results.legal.size());
   const std::int64_t farms = entries / spec.agents;

@@ -27,7 +27,7 @@ inline std::string PlayingDevice(const std::string& trained_on) {
 
 /// Writes an additive mask: 0 for allowed actions, −1e9 for forbidden ones. The mask is finite, so
 /// that no NaN arises. @param out [kActionCount]
-inline void MarkForbidden(ActionMask allowed, float* out) {
+inline void MaskLogits(ActionMask allowed, float* out) {
   for (std::size_t a = 0; a < kActionCount; ++a) {
     out[a] = ((allowed >> a) & 1U) != 0 ? 0.0F : -1e9F;
   }
@@ -36,24 +36,24 @@ inline void MarkForbidden(ActionMask allowed, float* out) {
 /// Advantage gap max_a Q − Q(s, a) of the taken actions over the allowed ones, for advantage
 /// learning.
 /// @param values [..., kActionCount]
-/// @param forbidden [..., kActionCount] by MarkForbidden
+/// @param forbidden [..., kActionCount] by MaskLogits
 /// @param actions [..., 1]
 /// @returns [...]
-inline torch::Tensor Shortfall(const torch::Tensor& values, const torch::Tensor& forbidden,
-                               const torch::Tensor& actions) {
+inline torch::Tensor AdvantageGap(const torch::Tensor& values, const torch::Tensor& forbidden,
+                                  const torch::Tensor& actions) {
   return (values + forbidden).amax(-1) - values.gather(-1, actions).squeeze(-1);
 }
 
 /// Observation traits of a network: float features, or bytes of planes (255 represents 1).
 template <typename Scalar>
-struct Sight;
+struct ObservationTraits;
 
 template <>
-struct Sight<float> {
+struct ObservationTraits<float> {
   static std::vector<std::int64_t> Shape(const EnvironmentSpec& spec) {
     return {spec.feature_count};
   }
-  static const float* Of(const Results& results) { return results.features.data(); }
+  static const float* Of(const StepResults& results) { return results.features.data(); }
   static torch::Tensor ToInput(const float* rows, std::vector<std::int64_t> shape,
                                torch::Device device) {
     return torch::from_blob(const_cast<float*>(rows), shape, torch::kFloat).to(device);
@@ -61,11 +61,11 @@ struct Sight<float> {
 };
 
 template <>
-struct Sight<std::uint8_t> {
+struct ObservationTraits<std::uint8_t> {
   static std::vector<std::int64_t> Shape(const EnvironmentSpec& spec) {
     return {spec.plane_count, spec.height, spec.width};
   }
-  static const std::uint8_t* Of(const Results& results) { return results.planes.data(); }
+  static const std::uint8_t* Of(const StepResults& results) { return results.planes.data(); }
   static torch::Tensor ToInput(const std::uint8_t* rows, std::vector<std::int64_t> shape,
                                torch::Device device) {
     return torch::from_blob(const_cast<std::uint8_t*>(rows), shape, torch::kByte)

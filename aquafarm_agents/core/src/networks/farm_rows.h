@@ -22,12 +22,12 @@ inline std::size_t EntryCount(const EnvironmentSpec& spec) {
 
 /// Mask of the allowed actions for planes. DeepOptions rejects mask_blocked with planes, which lack
 /// the required features.
-inline ActionMask Allowed(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
-  return Allowed(legal, options.mask_illegal);
+inline ActionMask LegalMask(ActionMask legal, const std::uint8_t*, const DeepOptions& options) {
+  return LegalMask(legal, options.mask_illegal);
 }
 
 /// Number of farms that took a step; the others began an episode.
-inline std::uint64_t FarmSteps(const Results& results) {
+inline std::uint64_t FarmSteps(const StepResults& results) {
   return static_cast<std::uint64_t>(
       std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
 }

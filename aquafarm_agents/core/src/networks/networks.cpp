@@ -144,7 +144,7 @@ void FlatParameters::FromVector(const std::vector<float>& values) {
 
 void DrawWeights(nn::Module& module, std::uint64_t seed, std::uint32_t stream) {
   const torch::NoGradGuard no_grad;
-  RandomStream chance({seed, 0, Purpose::kLearner, stream});
+  RandomStream rng({seed, 0, RngStream::kLearner, stream});
   std::int64_t fan_in = 1;
   for (auto& item : module.named_parameters()) {
     torch::Tensor& weights = item.value();
@@ -153,7 +153,7 @@ void DrawWeights(nn::Module& module, std::uint64_t seed, std::uint32_t stream) {
     if (weights.dim() > 1) fan_in = weights.numel() / weights.size(0);
     const float limit = 1.0F / std::sqrt(static_cast<float>(fan_in));
     float* const values = weights.data_ptr<float>();
-    for (std::int64_t i = 0; i < weights.numel(); ++i) values[i] = chance.Uniform(-limit, limit);
+    for (std::int64_t i = 0; i < weights.numel(); ++i) values[i] = rng.Uniform(-limit, limit);
   }
 }
 

@@ -12,7 +12,7 @@ constexpr float kSmallestPriority = 1e-4F;
 }  // namespace
 
 template <typename Scalar>
-MomentSampler<Scalar>::MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options,
+ReplaySampler<Scalar>::ReplaySampler(const Replay<Scalar>& replay, const DeepOptions& options,
                                      std::size_t steps, std::size_t group)
     : replay_(replay),
       priority_(options.priority),
@@ -25,7 +25,7 @@ MomentSampler<Scalar>::MomentSampler(const Replay<Scalar>& replay, const DeepOpt
 }
 
 template <typename Scalar>
-void MomentSampler<Scalar>::Remember() {
+void ReplaySampler<Scalar>::Add() {
   for (std::size_t entry = 0; entry < replay_.entries(); entry += group_) {
     Mark(replay_.Row(replay_.size() - 1, entry), false);  // clears the overwritten time step
     if (replay_.size() <= steps_) continue;
@@ -35,38 +35,37 @@ void MomentSampler<Scalar>::Remember() {
 }
 
 template <typename Scalar>
-void MomentSampler<Scalar>::Mark(std::size_t row, bool begins) {
+void ReplaySampler<Scalar>::Mark(std::size_t row, bool begins) {
   beginning_count_ += (begins ? 1U : 0U) - beginnings_[row];
   beginnings_[row] = begins ? 1 : 0;
   if (priorities_) priorities_->Set(row, begins ? largest_priority_ : 0.0F);
 }
 
 template <typename Scalar>
-bool MomentSampler<Scalar>::IsReady() const {
+bool ReplaySampler<Scalar>::IsReady() const {
   return beginning_count_ > 0 && (!priorities_ || priorities_->Total() > 0.0F);
 }
 
 template <typename Scalar>
-Moment MomentSampler<Scalar>::Draw(RandomStream& chance, std::size_t i) {
+TransitionIndex ReplaySampler<Scalar>::Draw(RandomStream& rng, std::size_t i) {
   if (priorities_) {
     const float total = priorities_->Total();
-    const float part =
-        (static_cast<float>(i) + chance.Unit()) / static_cast<float>(weights_.size());
+    const float part = (static_cast<float>(i) + rng.Unit()) / static_cast<float>(weights_.size());
     const std::size_t row = priorities_->Find(part * total);
     weights_[i] = priorities_->Get(row) / total;
     return {replay_.Age(row), row % replay_.entries()};
   }
   const auto moments = static_cast<std::uint32_t>(replay_.size() - steps_);
   for (;;) {  // terminates: IsReady holds, and most time steps begin a transition
-    const std::size_t age = chance.Below(moments);
+    const std::size_t age = rng.Below(moments);
     const std::size_t entry =
-        group_ * chance.Below(static_cast<std::uint32_t>(replay_.entries() / group_));
+        group_ * rng.Below(static_cast<std::uint32_t>(replay_.entries() / group_));
     if (Begins(age, entry)) return {age, entry};
   }
 }
 
 template <typename Scalar>
-const std::vector<float>& MomentSampler<Scalar>::Weigh(double progress) {
+const std::vector<float>& ReplaySampler<Scalar>::ImportanceWeights(double progress) {
   if (!priorities_) return weights_;
   const double exponent = importance_ + (1.0 - importance_) * progress;
   float largest = 0.0F;
@@ -79,7 +78,7 @@ const std::vector<float>& MomentSampler<Scalar>::Weigh(double progress) {
 }
 
 template <typename Scalar>
-void MomentSampler<Scalar>::SetError(std::size_t row, float error) {
+void ReplaySampler<Scalar>::UpdatePriority(std::size_t row, float error) {
   if (!priorities_) return;
   const float priority = std::pow(error + kSmallestPriority, static_cast<float>(priority_));
   largest_priority_ = std::max(largest_priority_, priority);
@@ -87,7 +86,7 @@ void MomentSampler<Scalar>::SetError(std::size_t row, float error) {
 }
 
 template <typename Scalar>
-void MomentSampler<Scalar>::Save(Checkpoint& checkpoint) const {
+void ReplaySampler<Scalar>::Save(Checkpoint& checkpoint) const {
   if (!priorities_) return;
   std::vector<float> priorities;
   for (std::size_t row = 0; row < replay_.rows(); ++row) {
@@ -98,7 +97,7 @@ void MomentSampler<Scalar>::Save(Checkpoint& checkpoint) const {
 }
 
 template <typename Scalar>
-void MomentSampler<Scalar>::Load(const Checkpoint& checkpoint) {
+void ReplaySampler<Scalar>::Load(const Checkpoint& checkpoint) {
   std::fill(beginnings_.begin(), beginnings_.end(), std::uint8_t{0});
   beginning_count_ = 0;
   for (std::size_t age = 0; age < replay_.size(); ++age) {
@@ -113,7 +112,7 @@ void MomentSampler<Scalar>::Load(const Checkpoint& checkpoint) {
   largest_priority_ = priorities.back();
 }
 
-template class MomentSampler<float>;
-template class MomentSampler<std::uint8_t>;
+template class ReplaySampler<float>;
+template class ReplaySampler<std::uint8_t>;
 
 }  // namespace aquafarm::agents

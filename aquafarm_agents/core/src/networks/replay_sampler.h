@@ -16,32 +16,32 @@
 namespace aquafarm::agents {
 
 /// Index of a time step of one agent, or of a whole farm, in a replay.
-struct Moment {
+struct TransitionIndex {
   std::size_t age{};
   std::size_t entry{};
 };
 
 template <typename Scalar>
-class MomentSampler {
+class ReplaySampler {
  public:
   /// @param replay must outlive the sampler
   /// @param steps number of later time steps that a drawn time step must have
   /// @param group 1, or the number of agents of a farm to draw whole farms. The entry is then that
   ///        of the farm's first agent, which may be done
-  MomentSampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps,
+  ReplaySampler(const Replay<Scalar>& replay, const DeepOptions& options, std::size_t steps,
                 std::size_t group = 1);
 
   /// Updates the sampler after a time step was added to the replay.
-  void Remember();
+  void Add();
   /// True if a transition can be drawn. Precondition of Draw.
   bool IsReady() const;
   /// Draws the i-th transition of a batch.
-  Moment Draw(RandomStream& chance, std::size_t i);
+  TransitionIndex Draw(RandomStream& rng, std::size_t i);
   /// Importance weights of the last batch, [batch], scaled to a max of 1.
   /// @param progress of the run, [0, 1]; β rises to 1 with it
-  const std::vector<float>& Weigh(double progress);
+  const std::vector<float>& ImportanceWeights(double progress);
   /// Sets the TD error at the row of a drawn transition. No effect with uniform sampling.
-  void SetError(std::size_t row, float error);
+  void UpdatePriority(std::size_t row, float error);
 
   void Save(Checkpoint& checkpoint) const;
   /// Requires a loaded replay. @throws InputError
@@ -66,7 +66,7 @@ class MomentSampler {
   std::vector<float> weights_;  // P(i) until Weigh is called
 };
 
-extern template class MomentSampler<float>;
-extern template class MomentSampler<std::uint8_t>;
+extern template class ReplaySampler<float>;
+extern template class ReplaySampler<std::uint8_t>;
 
 }  // namespace aquafarm::agents

@@ -28,7 +28,7 @@ SequenceBatch::SequenceBatch(const DeepOptions& options, std::size_t features,
   rows.resize(steps_ * count);
 }
 
-void SequenceBatch::Fill(std::size_t b, const Replay<float>& replay, const Moment& moment,
+void SequenceBatch::Fill(std::size_t b, const Replay<float>& replay, const TransitionIndex& moment,
                          const DeepOptions& options) {
   const auto [age, entry] = moment;
   std::size_t back = 0;
@@ -45,8 +45,8 @@ void SequenceBatch::Fill(std::size_t b, const Replay<float>& replay, const Momen
   FillRun(b, replay, {first, entry}, options);
 }
 
-void SequenceBatch::FillRun(std::size_t b, const Replay<float>& replay, const Moment& first,
-                            const DeepOptions& options) {
+void SequenceBatch::FillRun(std::size_t b, const Replay<float>& replay,
+                            const TransitionIndex& first, const DeepOptions& options) {
   const auto [age, entry] = first;
   std::size_t last = 0;  // time step at which the run ends
   while (last < steps_ && replay.Begins(age + last, entry, 1)) ++last;
@@ -58,8 +58,8 @@ void SequenceBatch::FillRun(std::size_t b, const Replay<float>& replay, const Mo
     const std::size_t row = replay.Row(age + std::min(t, last), entry);
     std::copy_n(replay.observation(row), features_,
                 observations.data() + (t * size() + b) * features_);
-    const ActionMask allowed = Allowed(replay.legal(row), replay.observation(row), options);
-    MarkForbidden(allowed, forbidden.data() + (t * size() + b) * kActionCount);
+    const ActionMask allowed = LegalMask(replay.legal(row), replay.observation(row), options);
+    MaskLogits(allowed, forbidden.data() + (t * size() + b) * kActionCount);
   }
   for (std::size_t t = 0; t < steps_; ++t) {
     const std::size_t i = t * size() + b;

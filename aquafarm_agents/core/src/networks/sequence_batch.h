@@ -39,11 +39,11 @@ struct SequenceBatch {
   /// before it, from the state stored at the first of them. A run never crosses an episode start:
   /// near it the run begins at the first time step of the episode, whose state is exactly zero.
   /// If earlier time steps are overwritten, it begins at the oldest one, with its stored state.
-  void Fill(std::size_t b, const Replay<float>& replay, const Moment& moment,
+  void Fill(std::size_t b, const Replay<float>& replay, const TransitionIndex& moment,
             const DeepOptions& options);
 
  private:
-  void FillRun(std::size_t b, const Replay<float>& replay, const Moment& first,
+  void FillRun(std::size_t b, const Replay<float>& replay, const TransitionIndex& first,
                const DeepOptions& options);
   std::size_t burn_in_;
   std::size_t steps_;

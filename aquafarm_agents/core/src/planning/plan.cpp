@@ -12,7 +12,7 @@ namespace aquafarm::agents {
 std::vector<Track> Foresee(const Farm& farm, Foresight foresight,
                            std::vector<Disaster>& disasters) {
   std::vector<Track> tracks = farm.tracks();
-  if (foresight == Foresight::kClairvoyant) return tracks;
+  if (foresight == Foresight::kOracle) return tracks;
   for (std::size_t id = 0; id < disasters.size(); ++id) {
     const auto disaster = static_cast<std::int32_t>(id);
     disasters[id].turn_threshold = 0;

@@ -16,7 +16,7 @@ void PlannerPolicy::Begin(std::uint64_t, std::int32_t farms) {
   courses_.assign(static_cast<std::size_t>(farms), {});
 }
 
-void PlannerPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+void PlannerPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
   farms_->Load(results.states);
   actions.resize(courses_.size());
   for (std::size_t i = 0; i < courses_.size(); ++i) {
@@ -25,8 +25,8 @@ void PlannerPolicy::Act(const Results& results, std::vector<std::uint8_t>& actio
   }
 }
 
-std::uint8_t PlannerPolicy::Follow(const Farm& farm, Course& course) {
-  const bool is_on_course = foresight_ == Foresight::kClairvoyant &&
+std::uint8_t PlannerPolicy::Follow(const Farm& farm, PlanState& course) {
+  const bool is_on_course = foresight_ == Foresight::kOracle &&
                             course.next < course.plan.actions.size() &&
                             course.seed == farm.seed() && course.episode == farm.episode() &&
                             course.step == farm.step() && course.cell == farm.ships()[0].cell;

@@ -19,7 +19,7 @@ std::size_t PlannerSolver::With(std::size_t set, std::size_t device, Fate fate) 
 std::size_t PlannerSolver::Delivered(std::size_t set) const {
   for (std::size_t d = 0; d < devices_; ++d) {
     const Fate fate = FateOf(set, d);
-    if (fate == kForValue || fate == kForNothing) set = With(set, d, kGone);
+    if (fate == kPaid || fate == kUnpaid) set = With(set, d, kGone);
   }
   return set;
 }
@@ -41,7 +41,7 @@ void PlannerSolver::Prepare(const Farm& farm) {
 double PlannerSolver::Loss(std::size_t set, float share) const {
   double loss = 0.0;
   for (std::size_t d = 0; d < devices_ && share > 0.0F; ++d) {
-    if (FateOf(set, d) == kForValue) {
+    if (FateOf(set, d) == kPaid) {
       loss += static_cast<double>(share) * static_cast<double>(value_[d]);
     }
   }
@@ -100,12 +100,12 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   // The farm picks up the lowest id of those that wait in a cell.
   for (std::size_t d = 0; d < devices_; ++d) {
     if (site_[d] != static_cast<std::int32_t>(cell) || FateOf(set, d) != kWaiting) continue;
-    for (const Fate fate : {kForValue, kForNothing}) {
+    for (const Fate fate : {kPaid, kUnpaid}) {
       const std::size_t next = With(set, d, fate);
       if (next == sets_.size()) continue;
       double reward = static_cast<double>(scenario_.rewards.pickup) + static_cast<double>(risk) -
                       Loss(next, -exposure * risk);
-      if (fate == kForValue) {
+      if (fate == kPaid) {
         reward += static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
       }
       Reach(step, state(next, cell), so_far + reward, parent,
@@ -205,8 +205,8 @@ void PlannerSolver::ReachStart(const Farm& farm) {
         continue;
       }
       const double worth = static_cast<double>(device.value) * static_cast<double>(device.health);
-      starts.emplace_back(With(set, d, kForNothing), held);
-      starts[i] = {With(set, d, kForValue), held + worth};
+      starts.emplace_back(With(set, d, kUnpaid), held);
+      starts[i] = {With(set, d, kPaid), held + worth};
     }
   }
   for (const auto& [set, held] : starts) {
@@ -241,7 +241,7 @@ void PlannerSolver::EndOfTime() {
     const Node& node = layers_.back()[index];
     bool broken = false;
     for (std::size_t d = 0; d < task_->devices.size(); ++d) {
-      broken = broken || FateOf(node.state / cells_, d) == kForValue;
+      broken = broken || FateOf(node.state / cells_, d) == kPaid;
     }
     if (!broken) Complete(node.parent, node.action, next_values_[index]);
   }

@@ -36,7 +36,7 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
     std::int32_t aboard = 0;
     for (std::size_t d = 0; d < devices_; ++d) {
       const std::size_t fate = (bits >> (2 * d)) & 3U;
-      aboard += fate == kForValue || fate == kForNothing ? 1 : 0;
+      aboard += fate == kPaid || fate == kUnpaid ? 1 : 0;
     }
     if (aboard > scenario.ships.capacity) continue;
     set_of_bits_[bits] = static_cast<std::int32_t>(sets_.size());
@@ -98,11 +98,11 @@ void PlannerSolver::AddGains(std::size_t set, std::vector<double>& best) const {
   for (std::size_t d = 0; d < devices_; ++d) {
     if (FateOf(set, d) != kWaiting) continue;
     const auto cell = static_cast<std::size_t>(site_[d]);
-    for (const Fate fate : {kForValue, kForNothing}) {
+    for (const Fate fate : {kPaid, kUnpaid}) {
       const std::size_t next = With(set, d, fate);
       if (next == sets_.size()) continue;
       const double worth =
-          fate == kForValue ? static_cast<double>(value_[d]) * static_cast<double>(health_[d]) : 0;
+          fate == kPaid ? static_cast<double>(value_[d]) * static_cast<double>(health_[d]) : 0;
       best[cell] = std::max(
           best[cell], static_cast<double>(scenario_.rewards.pickup) + worth + bound(next, cell));
     }
@@ -172,15 +172,15 @@ void PlannerSolver::FollowDisasters(const Farm& farm, Foresight foresight) {
 
 void PlannerSolver::AdvanceDisasters(const Farm& farm, std::int32_t step) {
   for (std::size_t id = 0; id < disasters_.size(); ++id) {
-    const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
+    const StreamKey key{farm.seed(), farm.episode(), RngStream::kDisasterTurn,
                         static_cast<std::uint32_t>(id)};
     MoveDisaster(disasters_[id], tracks_[id], key, step, scenario_.width, scenario_.height);
   }
   FillRisk(scenario_, disasters_, risk_);
   const float probability = scenario_.damage.crash_probability;
-  const auto draws =
-      Draw({farm.seed(), farm.episode(), Purpose::kDamage, static_cast<std::uint32_t>(task_->ship)},
-           static_cast<std::uint32_t>(step));
+  const auto draws = Draw(
+      {farm.seed(), farm.episode(), RngStream::kDamage, static_cast<std::uint32_t>(task_->ship)},
+      static_cast<std::uint32_t>(step));
   crash_hurts_ = probability >= 1.0F || ToUnit(draws[0]) < probability;
 }
 

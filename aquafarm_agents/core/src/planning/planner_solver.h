@@ -12,7 +12,7 @@
 namespace aquafarm::agents {
 
 /// What has become of a device, as far as a plan goes.
-enum Fate : std::uint8_t { kWaiting, kForValue, kForNothing, kGone };
+enum Fate : std::uint8_t { kWaiting, kPaid, kUnpaid, kGone };
 constexpr std::int32_t kFates = 4;
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();

@@ -196,7 +196,7 @@ double TeamBound(const Farm& farm) {
   bool over = false;
   for (std::int32_t step = 1; step <= scenario.step_limit && !over; ++step) {
     for (std::size_t id = 0; id < disasters.size(); ++id) {
-      const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
+      const StreamKey key{farm.seed(), farm.episode(), RngStream::kDisasterTurn,
                           static_cast<std::uint32_t>(id)};
       MoveDisaster(disasters[id], farm.tracks()[id], key, step, scenario.width, scenario.height);
     }

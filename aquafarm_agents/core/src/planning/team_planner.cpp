@@ -25,9 +25,10 @@ std::int32_t Slots(const Scenario& scenario) {
 }
 
 /// How long ships would take for their shares, in quiet water.
-class Work {
+class TravelCostModel {
  public:
-  explicit Work(const Farm& farm) : farm_(farm), capacity_(farm.scenario().ships.capacity) {
+  explicit TravelCostModel(const Farm& farm)
+      : farm_(farm), capacity_(farm.scenario().ships.capacity) {
     const auto from = [&](const std::vector<Cell>& sources) {
       return WaterDistance(farm.layout(), sources);
     };
@@ -67,7 +68,7 @@ class Work {
 
 using Shares = std::vector<std::vector<std::int32_t>>;
 
-double Cost(const Work& work, const Shares& shares) {
+double Cost(const TravelCostModel& work, const Shares& shares) {
   double last = 0.0;
   double sum = 0.0;
   for (std::size_t ship = 0; ship < shares.size(); ++ship) {
@@ -82,7 +83,7 @@ double Cost(const Work& work, const Shares& shares) {
 class LocalSearch {
  public:
   /// @param room devices that each ship may be given
-  LocalSearch(const Work& work, const std::vector<std::size_t>& room, Shares& shares)
+  LocalSearch(const TravelCostModel& work, const std::vector<std::size_t>& room, Shares& shares)
       : work_(work), room_(room), shares_(shares), cost_(Cost(work, shares)) {}
   void Run() {
     while (Improve()) {
@@ -123,7 +124,7 @@ class LocalSearch {
     return true;
   }
 
-  const Work& work_;
+  const TravelCostModel& work_;
   const std::vector<std::size_t>& room_;
   Shares& shares_;
   double cost_;
@@ -136,7 +137,7 @@ class TeamPlanner::Impl {
   Impl(const Scenario& scenario, Foresight foresight)
       : scenario_(scenario), foresight_(foresight), planner_(scenario, Slots(scenario)) {}
 
-  void Act(const Farm& farm, Course& course, std::uint8_t* actions) {
+  void Act(const Farm& farm, PlanState& course, std::uint8_t* actions) {
     if (!IsOnCourse(farm, course)) MakeCourse(farm, course);
     const auto at = static_cast<std::size_t>(farm.step() - course.start);
     for (std::size_t id = 0; id < course.actions.size(); ++id) {
@@ -145,7 +146,7 @@ class TeamPlanner::Impl {
   }
 
   Shares Assign(const Farm& farm) const {
-    const Work work(farm);
+    const TravelCostModel work(farm);
     const auto slots = static_cast<std::size_t>(Slots(scenario_));
     Shares shares(static_cast<std::size_t>(scenario_.ships.count));
     // Ships may have more aboard than they would be given: whoever drove them before gave it.
@@ -181,8 +182,8 @@ class TeamPlanner::Impl {
   }
 
  private:
-  static void Give(const Work& work, std::int32_t device, const std::vector<std::size_t>& room,
-                   Shares& shares) {
+  static void Give(const TravelCostModel& work, std::int32_t device,
+                   const std::vector<std::size_t>& room, Shares& shares) {
     std::size_t best = shares.size();
     double best_cost = 0.0;
     for (std::size_t ship = 0; ship < shares.size(); ++ship) {
@@ -197,7 +198,7 @@ class TeamPlanner::Impl {
     if (best != shares.size()) shares[best].push_back(device);
   }
 
-  bool IsOnCourse(const Farm& farm, Course& course) const {
+  bool IsOnCourse(const Farm& farm, PlanState& course) const {
     if (course.actions.empty() || course.seed != farm.seed() || course.episode != farm.episode() ||
         farm.step() < course.start) {
       return false;
@@ -213,11 +214,11 @@ class TeamPlanner::Impl {
   }
 
   // A bulletin, or a turn that the forecast did not know of, changes everything.
-  bool AreAsForeseen(const Farm& farm, Course& course) const {
+  bool AreAsForeseen(const Farm& farm, PlanState& course) const {
     if (farm.disasters().size() != course.disasters.size()) return false;
     for (; course.foreseen < farm.step(); ++course.foreseen) {
       for (std::size_t id = 0; id < course.disasters.size(); ++id) {
-        const StreamKey key{farm.seed(), farm.episode(), Purpose::kDisasterTurn,
+        const StreamKey key{farm.seed(), farm.episode(), RngStream::kDisasterTurn,
                             static_cast<std::uint32_t>(id)};
         MoveDisaster(course.disasters[id], course.tracks[id], key, course.foreseen + 1,
                      scenario_.width, scenario_.height);
@@ -235,7 +236,7 @@ class TeamPlanner::Impl {
     return true;
   }
 
-  void MakeCourse(const Farm& farm, Course& course) {
+  void MakeCourse(const Farm& farm, PlanState& course) {
     const Shares shares = Assign(farm);
     const std::size_t agents = farm.ships().size();
     course.seed = farm.seed();
@@ -262,7 +263,7 @@ class TeamPlanner::Impl {
   }
 
   void PlanOne(const Farm& farm, std::int32_t id, const std::vector<std::int32_t>& share,
-               Course& course) {
+               PlanState& course) {
     Task task;
     task.ship = id;
     task.devices = share;
@@ -300,7 +301,7 @@ TeamPlanner::TeamPlanner(const Scenario& scenario, Foresight foresight)
 TeamPlanner::~TeamPlanner() = default;
 TeamPlanner::TeamPlanner(TeamPlanner&&) noexcept = default;
 
-void TeamPlanner::Act(const Farm& farm, Course& course, std::uint8_t* actions) {
+void TeamPlanner::Act(const Farm& farm, PlanState& course, std::uint8_t* actions) {
   impl_->Act(farm, course, actions);
 }
 
@@ -318,7 +319,7 @@ void TeamPlannerPolicy::Begin(std::uint64_t, std::int32_t farms) {
   courses_.assign(static_cast<std::size_t>(farms), {});
 }
 
-void TeamPlannerPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+void TeamPlannerPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
   farms_->Load(results.states);
   const auto agents = static_cast<std::size_t>(farms_->agents());
   actions.assign(courses_.size() * agents, 0);

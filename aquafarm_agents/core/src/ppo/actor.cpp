@@ -22,10 +22,10 @@ void Actor::Begin(std::size_t farms) {
   state_before_ = state_;
 }
 
-void Actor::Observe(ActorCritic& network, const Results& results) {
+void Actor::Observe(ActorCritic& network, const StepResults& results) {
   const float* seen = results.features.data();
   for (std::size_t i = 0; i < entries(); ++i, seen += features_) {
-    masks_[i] = Allowed(results.legal[i], seen, options_);
+    masks_[i] = LegalMask(results.legal[i], seen, options_);
     started_[i] = results.started[i / agents_];
   }
   state_before_ = state_;
@@ -41,7 +41,7 @@ void Actor::Observe(ActorCritic& network, const Results& results) {
   }
 }
 
-void Actor::Sample(EntryStreams& rng, std::vector<std::uint8_t>& actions) const {
+void Actor::Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const {
   actions.resize(entries());
   for (std::size_t i = 0; i < entries(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);

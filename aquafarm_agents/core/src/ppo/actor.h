@@ -22,10 +22,10 @@ class Actor {
   void Begin(std::size_t farms);
   /// Computes masks, probabilities and values for the observations of `results` and advances the
   /// recurrent states of their agents.
-  void Observe(ActorCritic& network, const Results& results);
+  void Observe(ActorCritic& network, const StepResults& results);
 
   /// Draws actions from the probabilities; agent i draws from stream i.
-  void Sample(EntryStreams& rng, std::vector<std::uint8_t>& actions) const;
+  void Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const;
   /// Takes the most probable actions; the lowest number among equals.
   void TakeBest(std::vector<std::uint8_t>& actions) const;
 

@@ -42,11 +42,12 @@ class PpoLearner final : public Learner {
         rollout_(RolloutShape(spec, options, network_->state_size())),
         updater_(options, *network_),
         exploration_(seed, EntryCount(spec)),
-        rng_({seed, 0, Purpose::kLearner, 1}) {}
+        rng_({seed, 0, RngStream::kLearner, 1}) {}
 
   std::uint8_t encodings() const override { return kFeaturesBit; }
   std::string options() const override { return resolved_; }
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override {
     return {updater_.value_error(), entropy_, static_cast<float>(updater_.learning_rate())};
   }
@@ -60,7 +61,7 @@ class PpoLearner final : public Learner {
   void Load(const Checkpoint& checkpoint) override;
 
  private:
-  void Update(const Results& results, double progress);
+  void Update(const StepResults& results, double progress);
 
   const EnvironmentSpec spec_;
   const PpoOptions options_;
@@ -69,14 +70,15 @@ class PpoLearner final : public Learner {
   Actor actor_;
   Rollout rollout_;
   PpoUpdater updater_;
-  EntryStreams exploration_;
+  AgentRng exploration_;
   RandomStream rng_;  // order of the samples
   std::uint64_t farm_steps_{};
   float entropy_{};  // mean of the policy at the last step, nats
   std::vector<float> log_probs_;
 };
 
-void PpoLearner::Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) {
+void PpoLearner::Step(const StepResults& results, double progress,
+                      std::vector<std::uint8_t>& actions) {
   farm_steps_ += FarmSteps(results);
   rollout_.Complete(results, static_cast<float>(options_.reward_scale));
   if (rollout_.IsFull()) Update(results, progress);
@@ -92,7 +94,7 @@ void PpoLearner::Step(const Results& results, double progress, std::vector<std::
                actor_.state_before());
 }
 
-void PpoLearner::Update(const Results& results, double progress) {
+void PpoLearner::Update(const StepResults& results, double progress) {
   // The step is taken again with the new weights, from the same recurrent states.
   const std::vector<float> state = actor_.state();
   actor_.Observe(*network_, results);

@@ -23,10 +23,10 @@ PpoPolicy::PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
 
 void PpoPolicy::Begin(std::uint64_t seed, std::int32_t farms) {
   actor_.Begin(static_cast<std::size_t>(farms));
-  rng_ = EntryStreams(seed, actor_.entries());
+  rng_ = AgentRng(seed, actor_.entries());
 }
 
-void PpoPolicy::Act(const Results& results, std::vector<std::uint8_t>& actions) {
+void PpoPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
   actor_.Observe(*network_, results);
   if (options_.policy == PolicyMode::kSampled) {
     actor_.Sample(rng_, actions);

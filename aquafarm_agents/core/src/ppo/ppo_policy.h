@@ -21,13 +21,13 @@ class PpoPolicy final : public Policy {
 
   std::uint8_t encodings() const override { return kFeaturesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
  private:
   const PpoOptions options_;
   std::unique_ptr<ActorCritic> network_;
   Actor actor_;
-  EntryStreams rng_;
+  AgentRng rng_;
 };
 
 }  // namespace aquafarm::agents

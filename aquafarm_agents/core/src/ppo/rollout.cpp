@@ -22,7 +22,7 @@ Rollout::Rollout(const Shape& shape)
       rewards_(slots()),
       ends_(slots(), StepEnd::kNoTransition) {}
 
-void Rollout::Complete(const Results& results, float reward_scale) {
+void Rollout::Complete(const StepResults& results, float reward_scale) {
   if (!is_open_) return;
   is_open_ = false;
   const std::size_t first = (steps_ - 1) * shape_.entries;
@@ -41,7 +41,7 @@ void Rollout::Complete(const Results& results, float reward_scale) {
   }
 }
 
-void Rollout::Add(const Results& results, const std::vector<ActionMask>& masks,
+void Rollout::Add(const StepResults& results, const std::vector<ActionMask>& masks,
                   const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,
                   const std::vector<float>& values, const std::vector<float>& state) {
   AQUAFARM_CHECK_LT(steps_, shape_.steps);

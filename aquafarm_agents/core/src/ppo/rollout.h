@@ -30,9 +30,9 @@ class Rollout {
   bool IsFull() const { return steps_ == shape_.steps && !is_open_; }
 
   /// Records what followed the last decisions; does nothing if there are none.
-  void Complete(const Results& results, float reward_scale);
+  void Complete(const StepResults& results, float reward_scale);
   /// Records decisions, all [E]. @param state [E, state_size] before them
-  void Add(const Results& results, const std::vector<ActionMask>& masks,
+  void Add(const StepResults& results, const std::vector<ActionMask>& masks,
            const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,
            const std::vector<float>& values, const std::vector<float>& state);
   /// Computes advantages and value targets of a full rollout.

@@ -13,7 +13,7 @@ namespace aquafarm::agents {
 /// Draws initial weights from (seed, learner), uniform in ±1/√fan_in as PyTorch does.
 class WeightDrawer {
  public:
-  explicit WeightDrawer(std::uint64_t seed) : rng_({seed, 0, Purpose::kLearner, 0}) {}
+  explicit WeightDrawer(std::uint64_t seed) : rng_({seed, 0, RngStream::kLearner, 0}) {}
 
   void Draw(const Linear& layer, std::vector<float>& weights) {
     const float limit = 1.0F / std::sqrt(static_cast<float>(layer.inputs));

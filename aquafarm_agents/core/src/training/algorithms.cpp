@@ -130,9 +130,9 @@ const std::vector<Algorithm>& Algorithms() {
        /*default_farms=*/256},
       {"planner",
        "plans on the forecast that disasters hold their heading; several agents cooperate", false,
-       0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kHeadingHolds>},
+       0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kPersistence>},
       {"clairvoyant", "plans with the disasters' true future: for one ship the best there can be",
-       false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kClairvoyant>},
+       false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kOracle>},
   };
   return algorithms;
 }

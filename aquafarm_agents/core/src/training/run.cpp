@@ -58,7 +58,7 @@ class Run {
   RunReport End();
 
  private:
-  void Tell(RunPhase phase, const std::string& message = "") {
+  void Notify(RunPhase phase, const std::string& message = "") {
     report_.status.phase = phase;
     report_.status.message = message;
     if (on_status_) on_status_(report_.status);
@@ -92,15 +92,15 @@ void Run::All(const MakeEnvironment& make_environment) {
   if (options_.episodes == 0 && options_.steps == 0) {
     options_.steps = DefaultSteps(algorithm, environment->spec(), LearnerOptionsOf(options_));
     if (options_.steps > algorithm.default_steps) {
-      Tell(RunPhase::kStarting, "a table of " + std::to_string(environment->spec().state_count) +
-                                    " states is trained for " + std::to_string(options_.steps) +
-                                    " steps; a network may need fewer: algorithm dqn");
+      Notify(RunPhase::kStarting, "a table of " + std::to_string(environment->spec().state_count) +
+                                      " states is trained for " + std::to_string(options_.steps) +
+                                      " steps; a network may need fewer: algorithm dqn");
     }
   }
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
   const std::string warning = TakeTorchWarning();
-  if (!warning.empty()) Tell(RunPhase::kStarting, warning);
+  if (!warning.empty()) Notify(RunPhase::kStarting, warning);
   Train(*environment, *learner, folder);
   if (report_.code != ExitCode::kOk) return;
   SavePolicy(*environment, *learner, folder);
@@ -113,7 +113,7 @@ void Run::All(const MakeEnvironment& make_environment) {
 void Run::Choose(const MakeEnvironment& make_environment) {
   const Choice choice = ChooseAlgorithm(make_environment(0)->spec());
   options_.algorithm = report_.status.algorithm = choice.algorithm;
-  Tell(RunPhase::kStarting, "auto: " + choice.reason + ": " + choice.algorithm);
+  Notify(RunPhase::kStarting, "auto: " + choice.reason + ": " + choice.algorithm);
   CheckRunOptions(options_);
 }
 
@@ -143,9 +143,9 @@ bool Run::Resume(Trainer& trainer, const RunFolder& folder) {
       if (first_damage.empty()) first_damage = error.what();
       continue;
     }
-    if (!first_damage.empty()) Tell(RunPhase::kStarting, first_damage + "; taking an older one");
+    if (!first_damage.empty()) Notify(RunPhase::kStarting, first_damage + "; taking an older one");
     trainer.Resume(checkpoint, path);
-    Tell(RunPhase::kStarting, "resuming from " + path);
+    Notify(RunPhase::kStarting, "resuming from " + path);
     return true;
   }
   if (!first_damage.empty()) throw InputError(first_damage);
@@ -180,16 +180,16 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
   options.progress_period_s = options_.progress_period_s;
   Trainer trainer(environment, learner, options, &folder);
   if (options_.resume && !Resume(trainer, folder)) {
-    Tell(RunPhase::kStarting, folder.path() + ": holds no checkpoint yet; starting anew");
+    Notify(RunPhase::kStarting, folder.path() + ": holds no checkpoint yet; starting anew");
   }
   if (trainer.Done() >= 1.0) {
-    Tell(RunPhase::kStarting, "the run has reached its limit; give steps or episodes beyond it");
+    Notify(RunPhase::kStarting, "the run has reached its limit; give steps or episodes beyond it");
   }
   Describe(environment.spec(), learner, folder);
   const TrainingEnd end = trainer.Run(stop_, [&](const TrainingProgress& progress) {
     report_.status.progress = progress;
     report_.status.learner = &learner;
-    Tell(RunPhase::kTraining, trainer.TakeNotice());
+    Notify(RunPhase::kTraining, trainer.TakeNotice());
     report_.status.learner = nullptr;
   });
   switch (end) {
@@ -225,7 +225,7 @@ void Run::SavePolicy(const Environment& environment, const Learner& learner,
 }
 
 void Run::Evaluate(Environment& environment, const Learner& learner, const RunFolder& folder) {
-  Tell(RunPhase::kEvaluating, "evaluating on episodes never trained on");
+  Notify(RunPhase::kEvaluating, "evaluating on episodes never trained on");
   EvaluationContext context;
   context.policy = report_.policy_path;
   context.algorithm = options_.algorithm;
@@ -235,13 +235,13 @@ void Run::Evaluate(Environment& environment, const Learner& learner, const RunFo
   context.version = environment.spec().version;
   context.farms = environment.spec().farms;
   const std::unique_ptr<Policy> greedy = learner.GreedyPolicy();
-  report_.status.evaluation =
-      agents::Evaluate(environment, *greedy, options_.seed, options_.evaluation_episodes, stop_,
-                       [&](std::size_t over) {
-                         Tell(RunPhase::kEvaluating,
-                              Count(over) + " of " + std::to_string(options_.evaluation_episodes) +
-                                  " episodes played");
-                       });
+  report_.status.evaluation = agents::Evaluate(
+      environment, *greedy, options_.seed, options_.evaluation_episodes, stop_,
+      [&](std::size_t over) {
+        Notify(RunPhase::kEvaluating, Count(over) + " of " +
+                                          std::to_string(options_.evaluation_episodes) +
+                                          " episodes played");
+      });
   report_.status.has_evaluation = true;
   WriteEvaluation(folder.path() + "/evaluation", report_.status.evaluation, context);
   if (options_.random_episodes > 0) {

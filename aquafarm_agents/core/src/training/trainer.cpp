@@ -137,12 +137,12 @@ void Trainer::Train(const std::atomic<bool>* stop, const OnProgress& on_progress
   }
 }
 
-void Trainer::Count(const Results& results) {
+void Trainer::Count(const StepResults& results) {
   std::uint32_t started = 0;
   for (const std::uint8_t flag : results.started) started += flag;
   progress_.steps += results.started.size() - started;
   for (const EpisodeResult& result : results.finished) CountEpisode(result);
-  if (environment_.TakeRestarted()) {
+  if (environment_.ConsumeRestart()) {
     ++progress_.restarts;
     next_episode_ += static_cast<std::uint64_t>(environment_.spec().farms);
     notice_ = "the farms were lost and came back; training goes on with fresh episodes";

@@ -16,11 +16,11 @@ struct Transitions {
   std::vector<std::int64_t> actions;
 };
 
-Transitions Draw(RandomStream& chance, std::size_t count, float second) {
+Transitions Draw(RandomStream& rng, std::size_t count, float second) {
   Transitions drawn;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto action = static_cast<std::int64_t>(chance.Below(2));
-    const float third = chance.Uniform(-1.0F, 1.0F);
+    const auto action = static_cast<std::int64_t>(rng.Below(2));
+    const float third = rng.Uniform(-1.0F, 1.0F);
     drawn.from.insert(drawn.from.end(), {0.0F, second, third});
     drawn.to.insert(drawn.to.end(), {action == 0 ? 1.0F : -1.0F, second, third});
     drawn.actions.push_back(action);
@@ -38,10 +38,10 @@ float MeanError(CuriosityModule& module, Transitions transitions) {
 
 TEST(Curiosity, WhatIsWellKnownSurprisesLessThanWhatIsNew) {
   CuriosityModule module(3, 1);
-  RandomStream chance({4, 0, Purpose::kLearner, 0});
+  RandomStream rng({4, 0, RngStream::kLearner, 0});
   float known = 0.0F;
-  for (int i = 0; i < 1500; ++i) known = MeanError(module, Draw(chance, 16, 0.0F));
-  const float fresh = MeanError(module, Draw(chance, 16, 3.0F));  // unseen features
+  for (int i = 0; i < 1500; ++i) known = MeanError(module, Draw(rng, 16, 0.0F));
+  const float fresh = MeanError(module, Draw(rng, 16, 3.0F));  // unseen features
   EXPECT_GT(known, 0.0F);
   EXPECT_GT(fresh, 20.0F * known);
 }
@@ -66,7 +66,7 @@ class Purse final : public Learner {
   explicit Purse(std::vector<float>& rewards) : rewards_(rewards) {}
   std::uint8_t encodings() const override { return kIndexBit; }
   std::string options() const override { return ""; }
-  void Step(const Results& results, double, std::vector<std::uint8_t>& actions) override {
+  void Step(const StepResults& results, double, std::vector<std::uint8_t>& actions) override {
     rewards_ = results.rewards;
     actions.assign(results.legal.size(), 0);
   }
@@ -87,7 +87,7 @@ TEST(Curiosity, PaysForTransitionsAloneAndNothingOnceItsWeightIsGone) {
                                      ParseExploration("icm:linear:2:0:0.5"));
   EXPECT_EQ(learner->encodings(), kIndexBit | kFeaturesBit);
   std::vector<std::uint8_t> actions;
-  const Results* results = &environment.Reset(1);
+  const StepResults* results = &environment.Reset(1);
   int starts = 0;
   for (int i = 0; i < 30; ++i) {
     const double progress = i < 20 ? 0.1 : 0.5;
@@ -119,7 +119,7 @@ TEST(Curiosity, ALossThatIsNoNumberNamesTheStepAndTheSeed) {
   checkpoint.SetArray("curiosity.steps", std::vector<std::uint64_t>{1000});
   learner->Load(checkpoint);
   std::vector<std::uint8_t> actions;
-  const Results* results = &environment.Reset(1);
+  const StepResults* results = &environment.Reset(1);
   std::int64_t steps = 1000;
   std::string message;
   for (int i = 0; i < 100 && message.empty(); ++i) {

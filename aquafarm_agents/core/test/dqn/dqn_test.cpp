@@ -131,7 +131,7 @@ float Gap(const std::string& algorithm, const std::string& options, std::uint64_
   checkpoint.spec = environment.spec();
   learner->SavePolicy(checkpoint);
   std::vector<float> weights = ActingWeights(checkpoint);
-  const Results& results = environment.Reset(1);
+  const StepResults& results = environment.Reset(1);
   const bool recurrent = algorithm == "lstm_dqn";
   std::string resolved;
   const DeepOptions parsed = DeepOptions::Parse(options, recurrent, resolved);
@@ -152,7 +152,7 @@ float Gap(const std::string& algorithm, const std::string& options, std::uint64_
     values = network->Forward(input);
   }
   std::array<float, kActionCount> forbidden{};
-  MarkForbidden(Allowed(results.legal[0], true), forbidden.data());
+  MaskLogits(Allowed(results.legal[0], true), forbidden.data());
   const torch::Tensor best =
       std::get<0>((values + torch::from_blob(forbidden.data(), {1, kActionCount})).topk(2, 1));
   return (best[0][0] - best[0][1]).item<float>();
@@ -186,7 +186,7 @@ Crashes CrashesIn(const std::string& algorithm, const std::string& options, int 
   std::vector<std::uint8_t> actions;
   const auto count = [&](const auto& act) {
     int crashes = 0;
-    const Results* results = &environment.Reset(1, 0);
+    const StepResults* results = &environment.Reset(1, 0);
     for (int step = 0; step < steps; ++step) {
       act(*results);
       results = &environment.Step(actions);
@@ -194,8 +194,8 @@ Crashes CrashesIn(const std::string& algorithm, const std::string& options, int 
     }
     return crashes;
   };
-  return {count([&](const Results& results) { learner->Step(results, 0.0, actions); }),
-          count([&](const Results& results) { policy->Act(results, actions); })};
+  return {count([&](const StepResults& results) { learner->Step(results, 0.0, actions); }),
+          count([&](const StepResults& results) { policy->Act(results, actions); })};
 }
 
 TEST(Dqn, MaskBlockedKeepsShipsOffRocksIslandsAndTheMapsEdge) {
@@ -355,7 +355,7 @@ std::vector<std::vector<std::uint8_t>> ActionsIn(Environment& environment, Polic
   policy.Begin(1, 1);
   std::vector<std::vector<std::uint8_t>> episodes(1);
   std::vector<std::uint8_t> actions;
-  const Results* results = &environment.Reset(3, first);
+  const StepResults* results = &environment.Reset(3, first);
   while (true) {
     policy.Act(*results, actions);
     if (results->reasons[0] == 0) episodes.back().push_back(actions[0]);

@@ -32,29 +32,29 @@ EnvironmentSpec Spec(std::int32_t farms, std::int32_t agents) {
 
 const EnvironmentSpec kTwoFarmsOfTwo = Spec(2, 2);
 
-Values Discouraged(Repetitions& repetitions, const Features& features, std::size_t entry) {
+Values Discouraged(RepetitionPenalty& repetitions, const Features& features, std::size_t entry) {
   const Values plain{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
   Values values{};
-  std::copy_n(repetitions.Discourage(plain.data(), features.data(), entry), kActionCount,
+  std::copy_n(repetitions.Penalize(plain.data(), features.data(), entry), kActionCount,
               values.begin());
   for (std::size_t a = 0; a < kActionCount; ++a) values[a] -= plain[a];
   return values;
 }
 
-void Do(Repetitions& repetitions, const Features& features, std::uint8_t action,
+void Do(RepetitionPenalty& repetitions, const Features& features, std::uint8_t action,
         std::size_t entry) {
   Discouraged(repetitions, features, entry);
-  repetitions.Remember(action, entry);
+  repetitions.Add(action, entry);
 }
 
-Results Started(std::vector<std::uint8_t> farms) {
-  Results results;
+StepResults Started(std::vector<std::uint8_t> farms) {
+  StepResults results;
   results.started = std::move(farms);
   return results;
 }
 
-TEST(Repetitions, CountAnActionLessForEachTimeItWasTakenFromThere) {
-  Repetitions repetitions(kTwoFarmsOfTwo, 0.5);
+TEST(RepetitionPenalty, CountAnActionLessForEachTimeItWasTakenFromThere) {
+  RepetitionPenalty repetitions(kTwoFarmsOfTwo, 0.5);
   Do(repetitions, kHere, 3, 1);
   Do(repetitions, kNextToIt, 9, 1);
   Do(repetitions, kHereLater, 3, 1);
@@ -65,8 +65,8 @@ TEST(Repetitions, CountAnActionLessForEachTimeItWasTakenFromThere) {
   EXPECT_EQ(Discouraged(repetitions, kHere, 0), Values{}) << "another agent";
 }
 
-TEST(Repetitions, AreForgottenWithTheEpisode) {
-  Repetitions repetitions(kTwoFarmsOfTwo, 0.5);
+TEST(RepetitionPenalty, AreForgottenWithTheEpisode) {
+  RepetitionPenalty repetitions(kTwoFarmsOfTwo, 0.5);
   for (std::size_t entry = 0; entry < 4; ++entry) Do(repetitions, kHere, 3, entry);
   repetitions.Begin(Started({0, 1}));
   EXPECT_EQ(Discouraged(repetitions, kHere, 1), (Values{0, 0, 0, -0.5F}));
@@ -74,8 +74,8 @@ TEST(Repetitions, AreForgottenWithTheEpisode) {
   EXPECT_EQ(Discouraged(repetitions, kHere, 3), Values{});
 }
 
-TEST(Repetitions, AreForgottenAfterAThousandSteps) {
-  Repetitions repetitions(Spec(1, 1), 0.5);
+TEST(RepetitionPenalty, AreForgottenAfterAThousandSteps) {
+  RepetitionPenalty repetitions(Spec(1, 1), 0.5);
   Do(repetitions, kHere, 3, 0);
   for (int step = 0; step < 1023; ++step) Do(repetitions, kNextToIt, 2, 0);
   EXPECT_EQ(Discouraged(repetitions, kHere, 0), (Values{0, 0, 0, -0.5F}));
@@ -83,24 +83,24 @@ TEST(Repetitions, AreForgottenAfterAThousandSteps) {
   EXPECT_EQ(Discouraged(repetitions, kHere, 0), Values{});
 }
 
-TEST(Repetitions, EndGoingToAndFro) {
+TEST(RepetitionPenalty, EndGoingToAndFro) {
   // Values of a network that is wrong by 3: it would rather step aside, and back, than pick up.
   constexpr std::uint8_t kAside = 1;
   constexpr std::uint8_t kBack = 5;
   constexpr auto kPickup = static_cast<std::uint8_t>(Action::kPickup);
   const auto steps_until_pickup = [](double penalty) {
-    Repetitions repetitions(Spec(1, 1), penalty);
+    RepetitionPenalty repetitions(Spec(1, 1), penalty);
     bool is_there = true;
     for (int step = 0; step < 100; ++step) {
       Values values{};
       values[is_there ? kAside : kBack] = 10.0F;
       if (is_there) values[kPickup] = 7.0F;
       const auto& features = is_there ? kHere : kNextToIt;
-      const float* const worth = repetitions.Discourage(values.data(), features.data(), 0);
+      const float* const worth = repetitions.Penalize(values.data(), features.data(), 0);
       const auto action =
           static_cast<std::uint8_t>(std::max_element(worth, worth + kActionCount) - worth);
       if (action == kPickup) return step;
-      repetitions.Remember(action, 0);
+      repetitions.Add(action, 0);
       is_there = !is_there;
     }
     return 100;
@@ -109,21 +109,21 @@ TEST(Repetitions, EndGoingToAndFro) {
   EXPECT_EQ(steps_until_pickup(0.5), 14) << "after seven times aside and back";
 }
 
-TEST(Repetitions, GoOnFromACheckpoint) {
-  Repetitions repetitions(kTwoFarmsOfTwo, 0.5);
+TEST(RepetitionPenalty, GoOnFromACheckpoint) {
+  RepetitionPenalty repetitions(kTwoFarmsOfTwo, 0.5);
   for (std::uint8_t step = 0; step < 200; ++step) Do(repetitions, kHere, step % 7, step % 2);
   Checkpoint checkpoint;
   repetitions.Save(checkpoint);
-  Repetitions loaded(kTwoFarmsOfTwo, 0.5);
+  RepetitionPenalty loaded(kTwoFarmsOfTwo, 0.5);
   loaded.Load(checkpoint);
-  for (Repetitions* one : {&repetitions, &loaded}) Do(*one, kHere, 8, 1);
+  for (RepetitionPenalty* one : {&repetitions, &loaded}) Do(*one, kHere, 8, 1);
   EXPECT_EQ(Discouraged(loaded, kHere, 1), Discouraged(repetitions, kHere, 1));
   EXPECT_LT(Discouraged(loaded, kHere, 1)[8], 0.0F);
-  Repetitions of_fewer(Spec(1, 2), 0.5);
+  RepetitionPenalty of_fewer(Spec(1, 2), 0.5);
   EXPECT_THROW(of_fewer.Load(checkpoint), InputError);
 }
 
-TEST(Repetitions, KnowASituationByFeaturesThatEveryFarmHas) {
+TEST(RepetitionPenalty, KnowASituationByFeaturesThatEveryFarmHas) {
   const LocalEnvironment environment(TinyFarm(), {1, kFeaturesBit, false, 1});
   const std::vector<std::string>& names = environment.spec().feature_names;
   for (const std::string& name : kTwoFarmsOfTwo.feature_names) {
@@ -131,7 +131,7 @@ TEST(Repetitions, KnowASituationByFeaturesThatEveryFarmHas) {
   }
 }
 
-TEST(Repetitions, NeedFeatures) {
+TEST(RepetitionPenalty, NeedFeatures) {
   EXPECT_CONTAINS(
       MessageOf<InputError>([] { DqnEncodings("network=cnn repetition_penalty=0.5"); }),
       "repetition_penalty: got 0.5, expected 0 with network=cnn, which sees no features");

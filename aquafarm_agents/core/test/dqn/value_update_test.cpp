@@ -39,7 +39,7 @@ struct Update {
   DeepOptions options;
   EnvironmentSpec spec;
   bool recurrent{};
-  std::vector<Results> log;                        // by moment
+  std::vector<StepResults> log;                    // by moment
   std::vector<std::vector<std::uint8_t>> actions;  // by moment
   Checkpoint before;
   Checkpoint after;
@@ -70,16 +70,16 @@ Values Doubles(const Checkpoint& checkpoint, const std::string& name) {
 
 // Another target network, and an Adam that has taken steps, so that each of them shows.
 void Disturb(Checkpoint& checkpoint) {
-  RandomStream chance({77, 0, Purpose::kLearner, 9});
+  RandomStream rng({77, 0, RngStream::kLearner, 9});
   std::vector<float> target;
   const std::size_t size = checkpoint.Section("weights").size() / sizeof(float);
   checkpoint.GetArray("target_weights", size, target);
   std::vector<float> mean(size);
   std::vector<float> square(size);
   for (std::size_t i = 0; i < size; ++i) {
-    target[i] += chance.Uniform(-0.5F, 0.5F);
-    mean[i] = chance.Uniform(-1.0F, 1.0F);
-    square[i] = chance.Uniform(0.5F, 2.0F);
+    target[i] += rng.Uniform(-0.5F, 0.5F);
+    mean[i] = rng.Uniform(-1.0F, 1.0F);
+    square[i] = rng.Uniform(0.5F, 2.0F);
   }
   checkpoint.SetArray("target_weights", target);
   checkpoint.SetArray("adam.mean", mean);
@@ -102,7 +102,7 @@ Update MakeUpdate(const std::string& algorithm, const std::string& options,
   std::string resolved;
   update.options = DeepOptions::Parse(text, update.recurrent, resolved);
   update.spec = environment.spec();
-  const Results* results = &environment.Reset(1);
+  const StepResults* results = &environment.Reset(1);
   for (std::size_t moment = 0; moment < kMoments; ++moment) {
     update.log.push_back(*results);
     update.actions.emplace_back();
@@ -119,7 +119,7 @@ Update MakeUpdate(const std::string& algorithm, const std::string& options,
 }
 
 struct Batch {
-  std::vector<Moment> moments;
+  std::vector<TransitionIndex> moments;
   std::vector<double> weights;  // importance, the largest 1
 };
 
@@ -130,21 +130,21 @@ Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   Replay<float> replay({static_cast<std::size_t>(update.options.replay),
                         static_cast<std::size_t>(spec.farms) * update.agents(), spec.agents,
                         static_cast<std::size_t>(spec.feature_count), carry});
-  MomentSampler<float> sampler(replay, update.options, steps, group);
+  ReplaySampler<float> sampler(replay, update.options, steps, group);
   replay.Load(update.before);
   sampler.Load(update.before);
   const std::vector<float> no_carry(carry * replay.entries());
   replay.Add(update.log.back(), update.log.back().features.data(), no_carry.data());
-  sampler.Remember();
+  sampler.Add();
   std::vector<std::uint64_t> position;
   update.before.GetArray("chance", 1, position);
-  RandomStream chance({3, 0, Purpose::kLearner, 1});
-  chance.Seek(position[0]);
+  RandomStream rng({3, 0, RngStream::kLearner, 1});
+  rng.Seek(position[0]);
   Batch batch;
   for (std::size_t i = 0; i < static_cast<std::size_t>(update.options.batch); ++i) {
-    batch.moments.push_back(sampler.Draw(chance, i));
+    batch.moments.push_back(sampler.Draw(rng, i));
   }
-  const std::vector<float>& weights = sampler.Weigh(update.progress);
+  const std::vector<float>& weights = sampler.ImportanceWeights(update.progress);
   batch.weights.assign(weights.begin(), weights.end());
   return batch;
 }
@@ -243,7 +243,7 @@ void ExpectUpdate(const Update& update, const std::vector<Term>& terms,
 // How samples of a batch ended, so that no case is left untested.
 void ExpectEnds(const Update& update, const Batch& batch, bool truncates) {
   int ended = 0;
-  for (const Moment& moment : batch.moments) {
+  for (const TransitionIndex& moment : batch.moments) {
     const EndReason reason = update.Reason(moment.age + 1, moment.entry);
     if (reason == EndReason::kNone) continue;
     EXPECT_EQ(reason == EndReason::kStepLimit, truncates);
@@ -262,7 +262,7 @@ void ExpectDqn(const std::string& options, bool truncates) {
   const Values target = Doubles(update.before, "target_weights");
   std::vector<Term> terms;
   for (std::size_t i = 0; i < batch.moments.size(); ++i) {
-    const Moment& moment = batch.moments[i];
+    const TransitionIndex& moment = batch.moments[i];
     const Return sum = SumRewards(update, moment.age, moment.entry, steps);
     const Values seen = update.Seen(sum.to, moment.entry);
     const Values values = MlpOracle(target, seen, kHidden);
@@ -393,7 +393,7 @@ struct Run {
   std::size_t last{};  // moment after the last that is learnt from
 };
 
-Run RunOf(const Update& update, const Moment& moment) {
+Run RunOf(const Update& update, const TransitionIndex& moment) {
   const auto burn_in = static_cast<std::size_t>(update.options.burn_in);
   Run run{moment.entry, moment.age, moment.age, moment.age};
   while (moment.age - run.warm_from < burn_in && !update.IsStarted(run.warm_from, run.entry)) {

@@ -39,7 +39,7 @@ TEST(LocalEnvironment, ThreadsChangeNothing) {
 
 TEST(LocalEnvironment, GivesOnlyWhatWasAskedFor) {
   LocalEnvironment environment(TinyFarm(), {2, kFeaturesBit, false, 1});
-  const Results& results = environment.Reset(1);
+  const StepResults& results = environment.Reset(1);
   EXPECT_TRUE(results.index.empty());
   EXPECT_TRUE(results.planes.empty());
   EXPECT_TRUE(results.hashes.empty());
@@ -64,7 +64,7 @@ TEST(LocalEnvironment, TellsWhoseTheTeamsRewardIs) {
   bool differ = false;
   for (int i = 0; i < 300; ++i) {
     const auto actions = random.Next(Entries(own.spec()));
-    const Results& results = own.Step(actions);
+    const StepResults& results = own.Step(actions);
     ASSERT_EQ(results.rewards, each.Step(actions).rewards);
     differ = differ || results.rewards != shared.Step(actions).rewards;
   }

@@ -18,7 +18,7 @@ class Scripted final : public Policy {
   void Begin(std::uint64_t, std::int32_t farms) override {
     step_.assign(static_cast<std::size_t>(farms), 0);
   }
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     constexpr std::array<std::uint8_t, 6> kPlan{0, 0, 8, 1, 1, 9};
     actions.assign(step_.size(), 0);
     for (std::size_t i = 0; i < step_.size(); ++i) {
@@ -65,7 +65,7 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfFarms) {
      public:
       std::uint8_t encodings() const override { return 0; }
       void Begin(std::uint64_t, std::int32_t) override {}
-      void Act(const Results& results, std::vector<std::uint8_t>& actions) override {
+      void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
         actions.assign(results.rewards.size(), 5);
       }
     } policy;

@@ -12,16 +12,17 @@ namespace aquafarm::agents::test {
 namespace {
 
 std::unique_ptr<Policy> Plan(const EnvironmentSpec& spec) {
-  return std::make_unique<PlannerPolicy>(spec, Foresight::kClairvoyant);
+  return std::make_unique<PlannerPolicy>(spec, Foresight::kOracle);
 }
 
-PlayedValues OfPlanner(const std::shared_ptr<const Scenario>& scenario, std::int32_t episodes = 1) {
+RolloutValues OfPlanner(const std::shared_ptr<const Scenario>& scenario,
+                        std::int32_t episodes = 1) {
   return PlayValues(scenario, kStatesBit, Plan, 3, 0, episodes);
 }
 
 // The device at (2, 2) has value 80, the port is at (2, 0).
-TEST(PlayedValues, AreWhatTheEpisodePaysFromEachCell) {
-  const PlayedValues values = OfPlanner(TinyFarm());
+TEST(RolloutValues, AreWhatTheEpisodePaysFromEachCell) {
+  const RolloutValues values = OfPlanner(TinyFarm());
   ASSERT_EQ(values.value.size(), 25U);
   const auto at = [&](int x, int y) { return values.value[static_cast<std::size_t>(5 * y + x)]; };
   EXPECT_EQ(at(2, 2), 20.0 - 2.0 + 20.0 + 80.0) << "pick up, two steps, drop off";
@@ -32,8 +33,8 @@ TEST(PlayedValues, AreWhatTheEpisodePaysFromEachCell) {
 }
 
 // Eq. 10 on a farm without chance: the sum of γ^t r_t from each cell.
-TEST(PlayedValues, AreDiscountedByStep) {
-  const PlayedValues values = PlayValues(TinyFarm(), kStatesBit, Plan, 3, 0, 1, nullptr, 0.5);
+TEST(RolloutValues, AreDiscountedByStep) {
+  const RolloutValues values = PlayValues(TinyFarm(), kStatesBit, Plan, 3, 0, 1, nullptr, 0.5);
   const auto at = [&](int x, int y) { return values.value[static_cast<std::size_t>(5 * y + x)]; };
   // Pick up for 20, two steps of -1, drop off for 100.
   const double laden = 20.0 - 0.5 - 0.25 + 0.125 * 100.0;
@@ -49,7 +50,7 @@ TEST(PlayedValues, AreDiscountedByStep) {
             values.value[12]);
 }
 
-TEST(PlayedValues, AreTheMeanOfEpisodes) {
+TEST(RolloutValues, AreTheMeanOfEpisodes) {
   EXPECT_EQ(OfPlanner(TinyFarm(), 3).value[12], OfPlanner(TinyFarm()).value[12]);
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.layout = LayoutMode::kPerEpisode;

@@ -15,7 +15,7 @@ namespace aquafarm::agents::test {
 namespace {
 
 std::unique_ptr<Policy> Plan(const EnvironmentSpec& spec) {
-  return std::make_unique<PlannerPolicy>(spec, Foresight::kClairvoyant);
+  return std::make_unique<PlannerPolicy>(spec, Foresight::kOracle);
 }
 
 // The device is two cells north of the port: pickup and delivery take six steps.
@@ -31,8 +31,8 @@ TEST(Route, IsTheEpisodeAndTheBestMoveOfEveryFreeCell) {
   // 25 cells minus four island cells and a rock.
   ASSERT_EQ(route.at_start.size(), 20U);
   ASSERT_EQ(route.after_pickup.size(), 20U);
-  const auto of = [](const std::vector<BestMove>& moves, Cell cell) {
-    for (const BestMove& move : moves) {
+  const auto of = [](const std::vector<GreedyAction>& moves, Cell cell) {
+    for (const GreedyAction& move : moves) {
       if (move.cell == cell) return static_cast<Action>(move.action);
     }
     return Action::kHold;
@@ -44,7 +44,7 @@ TEST(Route, IsTheEpisodeAndTheBestMoveOfEveryFreeCell) {
   EXPECT_EQ(of(route.after_pickup, {3, 1}), Action::kSouthWest);
 }
 
-TEST(BestMoves, OfATableCarryItsValues) {
+TEST(GreedyActions, OfATableCarryItsValues) {
   LocalEnvironment environment(TinyFarm(), {1, kIndexBit, false, 1});
   QTable table(environment.spec(), -1.0F);
   for (std::uint32_t state = 0; state < table.states; ++state) {
@@ -53,10 +53,10 @@ TEST(BestMoves, OfATableCarryItsValues) {
   GreedyTabularPolicy policy(table, false);
   const std::uint32_t here = environment.Reset(3, 0).index[0];
   const Farm& farm = environment.batch().farm(0);
-  const std::vector<BestMove> moves = BestMoves(farm, kIndexBit, policy);
+  const std::vector<GreedyAction> moves = GreedyActions(farm, kIndexBit, policy);
   ASSERT_EQ(moves.size(), 20U);
   std::set<float> values;
-  for (const BestMove& move : moves) {
+  for (const GreedyAction& move : moves) {
     EXPECT_EQ(static_cast<Action>(move.action), Action::kEast);
     if (move.cell == farm.ships()[0].cell) {
       EXPECT_EQ(move.value, static_cast<float>(here));
@@ -66,14 +66,14 @@ TEST(BestMoves, OfATableCarryItsValues) {
   EXPECT_EQ(values.size(), 20U);  // each cell is a distinct state
 }
 
-TEST(BestMoves, OfAPlannerHaveNoValuesAndMayBeStopped) {
+TEST(GreedyActions, OfAPlannerHaveNoValuesAndMayBeStopped) {
   LocalEnvironment environment(TinyFarm(), {1, kStatesBit, false, 1});
   const auto policy = Plan(environment.spec());
   environment.Reset(3, 0);
   const Farm& farm = environment.batch().farm(0);
-  EXPECT_TRUE(std::isnan(BestMoves(farm, kStatesBit, *policy).front().value));
+  EXPECT_TRUE(std::isnan(GreedyActions(farm, kStatesBit, *policy).front().value));
   const std::atomic<bool> stop{true};
-  EXPECT_TRUE(BestMoves(farm, kStatesBit, *policy, &stop).empty());
+  EXPECT_TRUE(GreedyActions(farm, kStatesBit, *policy, &stop).empty());
 }
 
 using RouteFile = FolderTest;

@@ -23,9 +23,9 @@ Scenario Quiet() {
 }
 
 std::vector<float> Table(const Scenario& scenario) {
-  RandomStream chance({5, 0, Purpose::kLearner, 0});
+  RandomStream rng({5, 0, RngStream::kLearner, 0});
   std::vector<float> table(std::size_t{Encoder(scenario).state_count()} * kActionCount);
-  for (float& value : table) value = chance.Uniform(-3.0F, 3.0F);
+  for (float& value : table) value = rng.Uniform(-3.0F, 3.0F);
   return table;
 }
 
@@ -106,13 +106,13 @@ TEST(TransitionMatrix, PowersAgreeWithSimulatedFrequencies) {
     }
     expected = next;
   }
-  RandomStream chance({6, 0, Purpose::kExploration, 0});
+  RandomStream rng({6, 0, RngStream::kExploration, 0});
   std::vector<int> counts(model.rows());
   const std::string begin = farm.Save();
   for (int episode = 0; episode < kEpisodes; ++episode) {
     farm.Load(begin);
     for (int step = 0; step < kSteps && !farm.over(); ++step) {
-      double left = static_cast<double>(chance.Unit());
+      double left = static_cast<double>(rng.Unit());
       std::uint8_t action = 0;
       const auto& row = policy[model.RowOf(encoder.Index(farm, 0))];
       while (action + 1 < kActionCount && (left -= row[action]) >= 0.0) ++action;
@@ -134,10 +134,10 @@ TEST(OptimalValues, AreThoseOfTheBestPlanFromEachCell) {
   const auto shared = Share(scenario);
   const TabularModel model(scenario);
   const std::vector<double> optimal = model.OptimalValues(1.0);
-  const PlayedValues planned = PlayValues(
+  const RolloutValues planned = PlayValues(
       shared, kStatesBit,
       [](const EnvironmentSpec& spec) {
-        return std::make_unique<PlannerPolicy>(spec, Foresight::kClairvoyant);
+        return std::make_unique<PlannerPolicy>(spec, Foresight::kOracle);
       },
       3, 0, 1);
   const Encoder encoder(*shared);

@@ -167,7 +167,7 @@ TEST_F(SavedPolicyFile, PlaysLikeTheLearnerThatSavedIt) {
   LocalEnvironment environment(TinyFarm(), {2, kIndexBit, false, 1});
   TabularLearner<SarsaRule> learner(environment.spec(), 1, "");
   std::vector<std::uint8_t> actions;
-  const Results* results = &environment.Reset(1);
+  const StepResults* results = &environment.Reset(1);
   for (int i = 0; i < 500; ++i) {
     learner.Step(*results, 0.5, actions);
     results = &environment.Step(actions);

@@ -126,19 +126,19 @@ TEST(Maddpg, AnActorsLossThatIsNoNumberNamesTheBatchItWasDrawnFor) {
   std::fill_n(checkpoint.sections["weights"].begin() + 40, 4, '\xff');  // a NaN
   learner->Load(checkpoint);
   std::vector<std::uint8_t> actions;
-  std::vector<std::uint64_t> chance;
-  const Results* results = &environment.Reset(1);
+  std::vector<std::uint64_t> rng;
+  const StepResults* results = &environment.Reset(1);
   std::string message;
   for (int i = 0; i < 100 && message.empty(); ++i) {
     Checkpoint before;
     learner->Save(before);
-    before.GetArray("chance", 4, chance);
+    before.GetArray("chance", 4, rng);
     message = MessageOf<LearnerFailed>([&] { learner->Step(*results, 0.1, actions); });
     results = &environment.Step(actions);
   }
   EXPECT_CONTAINS(message, "loss of the actors: is not finite at update 1, after ");
   EXPECT_CONTAINS(message, "farm steps, on the batch drawn from seed 1 at position " +
-                               std::to_string(chance[0]) + ";");
+                               std::to_string(rng[0]) + ";");
 }
 
 TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {
@@ -162,7 +162,7 @@ TEST(DoneAgents, LearnNothingMoreFromATable) {
   spec.state_count = 3;
   TabularLearner<QLearningRule> learner(
       spec, 1, "learning_rate=0.5 discount=0.9 exploration=epsilon_greedy:0");
-  Results results;
+  StepResults results;
   results.legal = {kAllActions, kAllActions};
   results.reasons = {0};
   std::vector<std::uint8_t> actions;
@@ -184,7 +184,7 @@ TEST(DoneAgents, LearnNothingMoreFromATable) {
 
 TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
   Replay<float> replay({100, 2, 2, 1, 0});
-  Results results;
+  StepResults results;
   results.legal = {kAllActions, kAllActions};
   const float observations[] = {0.0F, 0.0F};
   for (int t = 0; t < 6; ++t) {
@@ -230,7 +230,7 @@ TEST_P(Saved, LearnersOfSeveralAgentsGoOnBitForBit) {
   const auto other = entry.make(environment.spec(), 1, options);
   std::vector<std::uint8_t> actions;
   std::vector<std::uint8_t> again;
-  const Results* now = &environment.Reset(1);
+  const StepResults* now = &environment.Reset(1);
   for (int i = 0; i < 200; ++i) {
     one->Step(*now, 0.1, actions);
     now = &environment.Step(actions);
@@ -280,9 +280,9 @@ void ExpectTheOwnShareIsEnough(const std::string& algorithm, const std::string& 
   own->Begin(1, 1);
   std::vector<std::uint8_t> actions;
   std::vector<std::uint8_t> own_actions;
-  const Results* all = &environment.Reset(1, 0);
+  const StepResults* all = &environment.Reset(1, 0);
   for (int step = 0; step < 20; ++step) {
-    Results share = *all;
+    StepResults share = *all;
     share.in_play[0] = 0;
     std::fill_n(share.features.begin(), spec.feature_count, 0.0F);
     both->Act(*all, actions);
@@ -322,7 +322,7 @@ TEST_P(Saved, PoliciesTrainedOnCudaPlayWhereThereIsNone) {
   own->Begin(1, 1);
   std::vector<std::uint8_t> actions;
   std::vector<std::uint8_t> own_actions;
-  const Results* results = &environment.Reset(1, 0);
+  const StepResults* results = &environment.Reset(1, 0);
   for (int step = 0; step < 20; ++step) {
     policy->Act(*results, actions);
     own->Act(*results, own_actions);
@@ -338,7 +338,7 @@ TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
   const auto learner = FindAlgorithm("dqn").make(environment.spec(), 1, "hidden=8");
   const Checkpoint checkpoint = PolicyOf(*learner, "dqn", environment.spec());
   const auto policy = FindAlgorithm("dqn").make_policy(checkpoint, environment.spec());
-  Results results = environment.Reset(1, 0);
+  StepResults results = environment.Reset(1, 0);
   std::vector<std::uint8_t> actions;
   policy->Act(results, actions);
   const std::vector<float> values = policy->values();

@@ -16,7 +16,7 @@ class TwoFarms {
 
   /// @param first, second end reasons of the two farms at this time step
   void Add(EndReason first, EndReason second, bool started = false) {
-    Results results;
+    StepResults results;
     const auto t = static_cast<float>(moment_);
     results.rewards = {t, 10 * t};
     results.in_play = {1, 1};

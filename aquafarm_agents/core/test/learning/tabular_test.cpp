@@ -14,7 +14,7 @@ namespace {
 /// A chain of three states with hand-made results.
 struct Chain {
   EnvironmentSpec spec;
-  Results results;
+  StepResults results;
   std::vector<std::uint8_t> actions;
 
   Chain() {
@@ -28,8 +28,8 @@ struct Chain {
     results.index = {0};
   }
   template <typename L>
-  std::uint8_t Tell(L& learner, std::uint32_t state, float reward,
-                    EndReason reason = EndReason::kNone) {
+  std::uint8_t Notify(L& learner, std::uint32_t state, float reward,
+                      EndReason reason = EndReason::kNone) {
     results.index[0] = state;
     results.rewards[0] = reward;
     results.reasons[0] = static_cast<std::uint8_t>(reason);
@@ -44,10 +44,10 @@ constexpr const char* kByHand = "learning_rate=0.5 discount=0.9 exploration=epsi
 TEST(QLearning, UpdatesByEquation12) {
   Chain chain;
   TabularLearner<QLearningRule> learner(chain.spec, 1, kByHand);
-  EXPECT_EQ(chain.Tell(learner, 0, 0.0F), 0);
-  EXPECT_EQ(chain.Tell(learner, 1, 2.0F), 0);
+  EXPECT_EQ(chain.Notify(learner, 0, 0.0F), 0);
+  EXPECT_EQ(chain.Notify(learner, 1, 2.0F), 0);
   EXPECT_FLOAT_EQ(learner.table().values[0], 1.0F);  // 0 + 0.5 (2 + 0.9 · 0 − 0)
-  chain.Tell(learner, 0, 3.0F);
+  chain.Notify(learner, 0, 3.0F);
   EXPECT_FLOAT_EQ(learner.table().values[10], 1.95F);  // 0.5 (3 + 0.9 · 1)
 }
 
@@ -55,8 +55,8 @@ template <typename L>
 float ValueAfterEnd(EndReason reason) {
   Chain chain;
   L learner(chain.spec, 1, std::string(kByHand) + " initial_value=10");
-  chain.Tell(learner, 0, 0.0F);
-  chain.Tell(learner, 2, 4.0F, reason);
+  chain.Notify(learner, 0, 0.0F);
+  chain.Notify(learner, 2, 4.0F, reason);
   return learner.table().values[0];
 }
 
@@ -73,11 +73,11 @@ TEST(Tabular, TerminationStopsBootstrappingAndTruncationDoesNot) {
 TEST(Tabular, TheStartOfAnEpisodeIsNoTransition) {
   Chain chain;
   TabularLearner<QLearningRule> learner(chain.spec, 1, kByHand);
-  chain.Tell(learner, 0, 0.0F);
-  chain.Tell(learner, 1, 5.0F, EndReason::kAllRetrieved);
+  chain.Notify(learner, 0, 0.0F);
+  chain.Notify(learner, 1, 5.0F, EndReason::kAllRetrieved);
   const std::vector<float> before = learner.table().values;
   chain.results.started[0] = 1;
-  chain.Tell(learner, 2, 0.0F);
+  chain.Notify(learner, 2, 0.0F);
   EXPECT_EQ(learner.table().values, before);
 }
 
@@ -107,11 +107,11 @@ void ExpectLikeOracle(bool sarsa) {
   L learner(spec, 9, "learning_rate=0.25 discount=0.75 exploration=epsilon_greedy:0.5");
   Oracle oracle{std::vector<float>(learner.table().values.size()), 0.25F, 0.75F, sarsa};
   std::vector<std::uint8_t> actions;
-  Results results = environment.Reset(3);
+  StepResults results = environment.Reset(3);
   learner.Step(results, 0.0, actions);
   for (int step = 0; step < 2000; ++step) {
     const std::vector<std::uint8_t> taken = actions;
-    const Results before = results;
+    const StepResults before = results;
     results = environment.Step(actions);
     learner.Step(results, 0.0, actions);
     std::size_t k = 0;
@@ -177,7 +177,7 @@ TEST(Tabular, IllegalActionsAreNeverTriedWhenMasked) {
   TabularLearner<QLearningRule> learner(environment.spec(), 1,
                                         "mask_illegal=true exploration=epsilon_greedy:1");
   std::vector<std::uint8_t> actions;
-  const Results* results = &environment.Reset(1);
+  const StepResults* results = &environment.Reset(1);
   for (int i = 0; i < 2000; ++i) {
     learner.Step(*results, 0.0, actions);
     results = &environment.Step(actions);
@@ -193,18 +193,18 @@ class TruncationTerminates final : public Environment {
  public:
   explicit TruncationTerminates(Environment& farms) : farms_(farms) {}
   const EnvironmentSpec& spec() const override { return farms_.spec(); }
-  const Results& Reset(std::uint64_t seed, std::uint64_t first_episode) override {
+  const StepResults& Reset(std::uint64_t seed, std::uint64_t first_episode) override {
     return Change(farms_.Reset(seed, first_episode));
   }
-  const Results& Step(const std::vector<std::uint8_t>& actions) override {
+  const StepResults& Step(const std::vector<std::uint8_t>& actions) override {
     return Change(farms_.Step(actions));
   }
   std::string Save() override { return farms_.Save(); }
-  const Results& Load(const std::string& bytes) override { return Change(farms_.Load(bytes)); }
+  const StepResults& Load(const std::string& bytes) override { return Change(farms_.Load(bytes)); }
   int truncated() const { return truncated_; }
 
  private:
-  const Results& Change(const Results& results) {
+  const StepResults& Change(const StepResults& results) {
     results_ = results;
     for (std::uint8_t& reason : results_.reasons) {
       if (!IsTruncated(static_cast<EndReason>(reason))) continue;
@@ -214,7 +214,7 @@ class TruncationTerminates final : public Environment {
     return results_;
   }
   Environment& farms_;
-  Results results_;
+  StepResults results_;
   int truncated_{};
 };
 

@@ -29,10 +29,10 @@ EnvironmentSpec SmallSpec() {
 }
 
 torch::Tensor Noise(std::vector<std::int64_t> shape, std::uint32_t stream) {
-  RandomStream chance({9, 0, Purpose::kLearner, stream});
+  RandomStream rng({9, 0, RngStream::kLearner, stream});
   torch::Tensor tensor = torch::empty(shape);
   for (std::int64_t i = 0; i < tensor.numel(); ++i) {
-    tensor.data_ptr<float>()[i] = chance.Uniform(-1.0F, 1.0F);
+    tensor.data_ptr<float>()[i] = rng.Uniform(-1.0F, 1.0F);
   }
   return tensor;
 }
@@ -349,15 +349,16 @@ TEST(Allowed, LeavesMovesIntoOpenWaterOrAllWhereThereIsNone) {
   EXPECT_EQ(Allowed(legal, features.data(), options), legal);
 }
 
-TEST(Shortfall, IsOfTheBestActionThatIsAllowed) {
+TEST(AdvantageGap, IsOfTheBestActionThatIsAllowed) {
   std::vector<float> values{1, 2, 9, 3, 0, 0, 0, 0, 0, 0, 5, 4, -7, 0, 0, 0, 0, 0, 0, 6};
   std::vector<float> forbidden(2 * kActionCount);
-  MarkForbidden(kAllActions & ~(1U << 2U), forbidden.data());  // the 9
-  MarkForbidden(kAllActions, forbidden.data() + kActionCount);
+  MaskLogits(kAllActions & ~(1U << 2U), forbidden.data());  // the 9
+  MaskLogits(kAllActions, forbidden.data() + kActionCount);
   std::vector<std::int64_t> taken{1, 2};
-  const torch::Tensor shortfall = Shortfall(torch::from_blob(values.data(), {2, kActionCount}),
-                                            torch::from_blob(forbidden.data(), {2, kActionCount}),
-                                            torch::from_blob(taken.data(), {2, 1}, torch::kLong));
+  const torch::Tensor shortfall =
+      AdvantageGap(torch::from_blob(values.data(), {2, kActionCount}),
+                   torch::from_blob(forbidden.data(), {2, kActionCount}),
+                   torch::from_blob(taken.data(), {2, 1}, torch::kLong));
   ASSERT_EQ(shortfall.sizes(), torch::IntArrayRef({2}));
   EXPECT_EQ(shortfall[0].item<float>(), 3.0F - 2.0F);
   EXPECT_EQ(shortfall[1].item<float>(), 6.0F + 7.0F);

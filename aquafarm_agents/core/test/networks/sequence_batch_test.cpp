@@ -28,7 +28,7 @@ DeepOptions Options(std::int32_t n_step) {
 // One farm with observation {time step, episode} and recurrent state {time step}. Episodes have one
 // to nine steps. Every fourth episode ends because the farm is lost.
 void FillReplay(Replay<float>& replay, int moments) {
-  Results results;
+  StepResults results;
   results.legal = {kAllActions};
   results.in_play = {1};
   int moment = 0;
@@ -101,7 +101,7 @@ TEST(SequenceBatch, NeverCrossesAnEpisode) {
 }
 
 // Two agents; the first is done from the third time step on.
-TEST(MomentSampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
+TEST(ReplaySampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
   constexpr std::size_t kFarms = 2;
   constexpr std::size_t kAgents = 2;
   for (const double priority : {0.0, 0.6}) {
@@ -109,12 +109,12 @@ TEST(MomentSampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
     DeepOptions options = Options(1);
     options.batch = 4;
     options.priority = priority;
-    MomentSampler<float> sampler(replay, options, 1, kAgents);
-    Results results;
+    ReplaySampler<float> sampler(replay, options, 1, kAgents);
+    StepResults results;
     results.rewards = results.features = {0, 0, 0, 0};
     results.legal = {kAllActions, kAllActions, kAllActions, kAllActions};
     std::set<std::size_t> over;  // rows at which the first farm's episodes are over
-    RandomStream chance({1, 0, Purpose::kLearner, 1});
+    RandomStream rng({1, 0, RngStream::kLearner, 1});
     for (int moment = 0; moment < 30; ++moment) {
       const int step = moment % 6;
       const std::uint8_t working = step < 2 ? 1 : 0;
@@ -124,14 +124,14 @@ TEST(MomentSampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
       results.reasons = {static_cast<std::uint8_t>(reason), 0};
       replay.Add(results, results.features.data());
       replay.SetActions({0, 0, 0, 0});
-      sampler.Remember();
+      sampler.Add();
       const std::size_t row = replay.Row(replay.size() - 1, 0);
       over.erase(row);
       if (step == 5) over.insert(row);
       if (!sampler.IsReady()) continue;
       std::set<std::size_t> drawn;
       for (int k = 0; k < 200; ++k) {
-        const Moment one = sampler.Draw(chance, static_cast<std::size_t>(k) % 4);
+        const TransitionIndex one = sampler.Draw(rng, static_cast<std::size_t>(k) % 4);
         EXPECT_EQ(one.entry % kAgents, 0U);
         EXPECT_LT(one.age + 1, replay.size());
         drawn.insert(replay.Row(one.age, one.entry));
@@ -139,7 +139,7 @@ TEST(MomentSampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
       for (const std::size_t at : over) EXPECT_EQ(drawn.count(at), 0U) << "moment " << moment;
       const std::size_t begun = kFarms * (replay.size() - 1) - over.size() + over.count(row);
       EXPECT_EQ(drawn.size(), begun) << "moment " << moment << ", priority " << priority;
-      sampler.SetError(*drawn.begin(), 1.0F);
+      sampler.UpdatePriority(*drawn.begin(), 1.0F);
     }
   }
 }

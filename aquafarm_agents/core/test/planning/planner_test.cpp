@@ -95,7 +95,7 @@ TEST(Clairvoyant, EqualsBruteForceOnTinyFarms) {
         std::map<std::string, double> seen;
         const double expected = BruteForce(farm, seen);
         Planner planner(*scenario);
-        const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+        const Plan plan = planner.Solve(farm, Foresight::kOracle);
         const std::string where = "duration " + std::to_string(duration) + " exposure " +
                                   std::to_string(exposure) + " episode " + std::to_string(episode);
         EXPECT_NEAR(plan.expected_return, expected, 1e-3) << where;
@@ -115,7 +115,7 @@ void ExpectBruteForce(const Scenario& valid, std::uint64_t episodes) {
     farm.Reset(5, episode);
     std::map<std::string, double> seen;
     const double expected = BruteForce(farm, seen);
-    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    const Plan plan = planner.Solve(farm, Foresight::kOracle);
     EXPECT_NEAR(plan.expected_return, expected, 1e-3) << "episode " << episode;
     EXPECT_GE(TeamBound(farm), expected - 1e-3) << "episode " << episode;
     EXPECT_NEAR(Play(farm, plan), expected, 1e-3) << "episode " << episode;
@@ -204,22 +204,22 @@ TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {
     }
     return std::array<float, 2>{disasters[0].x, disasters[0].y};
   };
-  EXPECT_EQ(place(tracked, Foresight::kClairvoyant), (std::array<float, 2>{2.0F, 5.0F}));
+  EXPECT_EQ(place(tracked, Foresight::kOracle), (std::array<float, 2>{2.0F, 5.0F}));
   Farm farm(std::make_shared<const Scenario>(tracked));
   farm.Reset(5, 1);
   const auto forecast = ForecastAt(farm, 0, 0, 30);
-  const auto told = place(tracked, Foresight::kHeadingHolds);
+  const auto told = place(tracked, Foresight::kPersistence);
   EXPECT_NEAR(told[0], forecast[0], 1e-3F);
   EXPECT_NEAR(told[1], forecast[1], 1e-3F);
   EXPECT_NE(told, (std::array<float, 2>{2.0F, 5.0F}));
   tracked.view.forecast_error_km.clear();
-  const auto straight = place(tracked, Foresight::kHeadingHolds);
+  const auto straight = place(tracked, Foresight::kPersistence);
   EXPECT_NEAR(straight[0], 7.0F, 1e-3F) << "on as it moves now";
   EXPECT_NEAR(straight[1], 1.0F, 1e-3F);
   tracked.disasters[0].forecasts = {{0.0F, {{20.0F, 9.0F, 8.0F}}}};
-  const auto said = place(tracked, Foresight::kHeadingHolds);
+  const auto said = place(tracked, Foresight::kPersistence);
   EXPECT_EQ(said, (std::array<float, 2>{9.0F, 8.0F})) << "as the authority said";
-  EXPECT_EQ(place(tracked, Foresight::kClairvoyant), (std::array<float, 2>{2.0F, 5.0F}));
+  EXPECT_EQ(place(tracked, Foresight::kOracle), (std::array<float, 2>{2.0F, 5.0F}));
 }
 
 TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {
@@ -230,7 +230,7 @@ TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {
   double last = 1e9;
   while (!farm.over()) {
     std::map<std::string, double> seen;
-    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    const Plan plan = planner.Solve(farm, Foresight::kOracle);
     EXPECT_NEAR(plan.expected_return, BruteForce(farm, seen), 1e-3) << "step " << farm.step();
     // Following the plan, what is still to come is what was promised.
     if (last < 1e8) {
@@ -249,7 +249,7 @@ TEST(Clairvoyant, BringsEverythingHomeOnThePapersFarm) {
   Farm farm(scenario);
   for (std::uint64_t episode = 0; episode < 20; ++episode) {
     farm.Reset(7, episode);
-    const Plan plan = planner.Solve(farm, Foresight::kClairvoyant);
+    const Plan plan = planner.Solve(farm, Foresight::kOracle);
     EXPECT_NEAR(Play(farm, plan), plan.expected_return, 1e-2);
     EXPECT_EQ(farm.reason(), EndReason::kAllRetrieved);
   }
@@ -264,9 +264,9 @@ TEST(RecedingHorizon, IsNeverBetterThanClairvoyant) {
   double achieved = 0.0;
   for (std::uint64_t episode = 0; episode < 5; ++episode) {
     farm.Reset(11, episode);
-    const double best = planner.Solve(farm, Foresight::kClairvoyant).expected_return;
+    const double best = planner.Solve(farm, Foresight::kOracle).expected_return;
     while (!farm.over()) {
-      const Plan plan = planner.Solve(farm, Foresight::kHeadingHolds);
+      const Plan plan = planner.Solve(farm, Foresight::kPersistence);
       farm.Step(&plan.actions.at(0));
     }
     EXPECT_LE(static_cast<double>(farm.ships()[0].episode_return), best + 1e-2);
@@ -320,7 +320,7 @@ TEST_F(PlannerPolicies, EarnWhatTheClairvoyantPlanPromises) {
   for (const EpisodeResult& result : evaluation.episodes) {
     Farm farm(scenario);
     farm.Reset(result.seed, result.episode);
-    EXPECT_NEAR(planner.Solve(farm, Foresight::kClairvoyant).expected_return,
+    EXPECT_NEAR(planner.Solve(farm, Foresight::kOracle).expected_return,
                 static_cast<double>(result.episode_return), 1e-3)
         << "episode " << result.episode;
   }

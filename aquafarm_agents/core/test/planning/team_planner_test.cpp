@@ -34,7 +34,7 @@ Scenario TinyTeam() {
 
 float Play(Farm& farm, Foresight foresight) {
   TeamPlanner planner(farm.scenario(), foresight);
-  TeamPlanner::Course course;
+  TeamPlanner::PlanState course;
   std::vector<std::uint8_t> actions(farm.ships().size());
   while (!farm.over()) {
     planner.Act(farm, course, actions.data());
@@ -111,7 +111,7 @@ TEST(TeamPlanner, IsBoundedAndNearTheBestThereIs) {
       farm.Reset(3, 1);
       const float best = BestJointReturn(farm);
       const double bound = TeamBound(farm);
-      const float planned = Play(farm, Foresight::kClairvoyant);
+      const float planned = Play(farm, Foresight::kOracle);
       EXPECT_LE(static_cast<double>(best), bound + 1e-3);
       EXPECT_GE(static_cast<double>(best), 0.9 * bound) << "the bound says something";
       EXPECT_LE(planned, best + 1e-3F);
@@ -149,7 +149,7 @@ TEST(TeamBound, ChargesARiskOnceWhereDevicesShareAShip) {
   Farm farm = aquafarm::test::MakeFarm(scenario);
   // Risk is everywhere, so a ship that fetches both at once pays it once, not for each.
   Planner planner(farm.scenario());
-  const double best = planner.Solve(farm, Foresight::kClairvoyant).expected_return;
+  const double best = planner.Solve(farm, Foresight::kOracle).expected_return;
   EXPECT_GT(best, 0.0);
   EXPECT_LE(best, TeamBound(farm));
 }
@@ -163,7 +163,7 @@ TEST(TeamBound, NeverCountsLessThanNothingForADeviceThatIsWornOut) {
   scenario.disasters = {StillDisaster(0.0F, 1.0F, {1.1F}, {-5.0F})};
   Farm farm = aquafarm::test::MakeFarm(scenario);
   Planner planner(farm.scenario());
-  const double best = planner.Solve(farm, Foresight::kClairvoyant).expected_return;
+  const double best = planner.Solve(farm, Foresight::kOracle).expected_return;
   EXPECT_LE(best, TeamBound(farm) + 1e-6);
 }
 
@@ -178,8 +178,8 @@ TEST(TeamPlanner, PlansAnewWhenABulletinArrives) {
   Scenario scenario = TinyTeam();
   scenario.disasters = {StillDisaster(-9.0F, 3.0F, {1.5F}, {-6.0F})};
   Farm farm = aquafarm::test::MakeFarm(scenario);
-  TeamPlanner planner(farm.scenario(), Foresight::kHeadingHolds);
-  TeamPlanner::Course course;
+  TeamPlanner planner(farm.scenario(), Foresight::kPersistence);
+  TeamPlanner::PlanState course;
   std::vector<std::uint8_t> actions(2);
   planner.Act(farm, course, actions.data());
   farm.Step(actions.data());
@@ -197,12 +197,12 @@ TEST(TeamBound, OfADeviceThatDrivesItselfIsItsWayHome) {
   scenario.devices.sites = {{{3, 1}, DeviceKind::kMonitoring, 80.0F, true}};
   Farm farm = aquafarm::test::MakeFarm(scenario);
   EXPECT_DOUBLE_EQ(TeamBound(farm), 80 + 20 - 2);
-  EXPECT_FLOAT_EQ(Play(farm, Foresight::kClairvoyant), 98.0F);
+  EXPECT_FLOAT_EQ(Play(farm, Foresight::kOracle), 98.0F);
 }
 
 TEST(TeamPlanner, SharesOutTheWorkEvenly) {
   const Farm farm = aquafarm::test::MakeFarm(TinyTeam());
-  const TeamPlanner planner(farm.scenario(), Foresight::kHeadingHolds);
+  const TeamPlanner planner(farm.scenario(), Foresight::kPersistence);
   const auto shares = planner.Assign(farm);
   ASSERT_EQ(shares.size(), 2U);
   EXPECT_EQ(shares[0].size(), 1U);
@@ -232,9 +232,9 @@ TEST(TeamPlanner, TakesOverShipsWithAnyLoad) {
     if (x >= 2) farm.Step(pick_up);
   }
   ASSERT_EQ(farm.ships()[0].aboard, 7) << "more than an even share and two";
-  const auto shares = TeamPlanner(scenario, Foresight::kClairvoyant).Assign(farm);
+  const auto shares = TeamPlanner(scenario, Foresight::kOracle).Assign(farm);
   EXPECT_EQ(shares[1], std::vector<std::int32_t>{7}) << "the other ship has room";
-  Play(farm, Foresight::kClairvoyant);
+  Play(farm, Foresight::kOracle);
   EXPECT_TRUE(farm.record().Success());
 }
 
@@ -246,7 +246,7 @@ TEST(TeamPlanner, KeepsShipsOutOfEachOthersWay) {
   Farm farm = aquafarm::test::MakeFarm(scenario);
   for (std::uint64_t episode = 0; episode < 20; ++episode) {
     farm.Reset(5, episode);
-    Play(farm, Foresight::kClairvoyant);
+    Play(farm, Foresight::kOracle);
     EXPECT_TRUE(farm.record().Success()) << "episode " << episode;
     EXPECT_EQ(farm.record().collisions, 0) << "episode " << episode;
   }

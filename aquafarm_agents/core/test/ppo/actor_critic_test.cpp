@@ -87,7 +87,7 @@ struct Batch {
 };
 
 Batch MakeBatch(std::size_t steps, std::size_t sequences, std::size_t state_size) {
-  RandomStream rng({5, 0, Purpose::kLearner, 0});
+  RandomStream rng({5, 0, RngStream::kLearner, 0});
   Batch batch{steps, sequences, {}, {}, {}, {}};
   const auto fill = [&](std::vector<float>& values, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i) values.push_back(rng.Uniform(-1.0F, 1.0F));

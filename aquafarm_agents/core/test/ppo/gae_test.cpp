@@ -35,7 +35,7 @@ double DefinedAdvantage(const Steps& steps, std::size_t t, double gamma, double 
 }
 
 TEST(Gae, EqualsItsDefinitionForRandomEpisodes) {
-  RandomStream rng({7, 0, Purpose::kLearner, 0});
+  RandomStream rng({7, 0, RngStream::kLearner, 0});
   Steps steps;
   for (int t = 0; t < 200; ++t) {
     steps.rewards.push_back(rng.Uniform(-5.0F, 5.0F));
@@ -76,8 +76,8 @@ TEST(Gae, DoesNotMixEntries) {
 }
 
 // One farm of two agents; each call is the results of one step.
-Results Outcome(EndReason reason, bool started, std::vector<std::uint8_t> in_play) {
-  Results results;
+StepResults Outcome(EndReason reason, bool started, std::vector<std::uint8_t> in_play) {
+  StepResults results;
   results.rewards = {2.0F, 4.0F};
   results.in_play = std::move(in_play);
   results.reasons = {static_cast<std::uint8_t>(reason)};
@@ -87,7 +87,7 @@ Results Outcome(EndReason reason, bool started, std::vector<std::uint8_t> in_pla
 }
 
 // Records one decision after `before` and what followed it.
-Rollout Recorded(const Results& before, const Results& after) {
+Rollout Recorded(const StepResults& before, const StepResults& after) {
   Rollout rollout({1, 2, 2, 1, 0, 1});
   rollout.Complete(before, 1.0F);  // nothing waits for its results yet
   rollout.Add(before, {1, 1}, {0, 0}, {0, 0}, {10, 20}, {});
@@ -99,7 +99,7 @@ Rollout Recorded(const Results& before, const Results& after) {
 }
 
 TEST(Rollout, LearnsFromStepsOfActiveAgentsOnly) {
-  const Results going = Outcome(EndReason::kNone, false, {1, 1});
+  const StepResults going = Outcome(EndReason::kNone, false, {1, 1});
   Rollout rollout = Recorded(going, going);
   EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F + 100.0F - 10.0F) << "reward 2, scaled by 0.5";
   EXPECT_FLOAT_EQ(rollout.target(1), 2.0F + 200.0F);

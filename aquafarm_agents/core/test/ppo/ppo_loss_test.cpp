@@ -89,7 +89,7 @@ Case RandomCase(RandomStream& rng) {
 }
 
 TEST(PpoLoss, AndItsGradientEqualTheDefinition) {
-  RandomStream rng({3, 0, Purpose::kLearner, 0});
+  RandomStream rng({3, 0, RngStream::kLearner, 0});
   constexpr double kStep = 1e-5;
   for (const float value_clip : {0.0F, 0.3F}) {
     const PpoCoefficients k{0.2F, value_clip, 0.5F, 0.1F};
@@ -143,7 +143,7 @@ TEST(PpoLoss, StaysFiniteWhereANegativeAdvantageDoesNotClipTheRatio) {
 }
 
 TEST(PpoLoss, IgnoresRowsOfNoWeight) {
-  RandomStream rng({4, 0, Purpose::kLearner, 0});
+  RandomStream rng({4, 0, RngStream::kLearner, 0});
   const Computed computed = Compute(RandomCase(rng), {0.2F, 0.0F, 0.5F, 0.1F}, 0.0F);
   EXPECT_EQ(computed.loss, 0.0);
   EXPECT_EQ(computed.slopes, std::vector<float>(kWidth, 0.0F));

@@ -71,7 +71,7 @@ TEST(Ppo, SamplesOnlyWhatTheMasksAllow) {
   for (const bool is_masked : {false, true}) {
     const std::string options = is_masked ? "" : "mask_blocked=false mask_illegal=false";
     const auto learner = MakePpo(environment.spec(), 1, options);
-    const Results* results = &environment.Reset(1, 0);
+    const StepResults* results = &environment.Reset(1, 0);
     std::vector<std::uint8_t> actions;
     int refused = 0;
     for (int step = 0; step < 300; ++step) {
@@ -92,7 +92,7 @@ TEST(Ppo, SamplesOnlyWhatTheMasksAllow) {
 
 TEST(Ppo, GreedyPoliciesRepeatAndSampledOnesFollowTheirSeed) {
   LocalEnvironment environment(TinyFarm(), {16, kFeaturesBit, false, 1});
-  const Results& results = environment.Reset(1, 0);
+  const StepResults& results = environment.Reset(1, 0);
   const auto actions_of = [&](const std::string& options, std::uint64_t seed) {
     const auto policy = MakePpo(environment.spec(), 1, options)->GreedyPolicy();
     policy->Begin(seed, 16);
@@ -119,9 +119,9 @@ TEST(Ppo, PlaysAShipByItsOwnShareAsAmongAll) {
     own->Begin(1, 1);
     std::vector<std::uint8_t> actions;
     std::vector<std::uint8_t> own_actions;
-    const Results* all = &environment.Reset(1, 0);
+    const StepResults* all = &environment.Reset(1, 0);
     for (int step = 0; step < 20; ++step) {
-      Results share = *all;
+      StepResults share = *all;
       share.in_play[0] = 0;
       std::fill_n(share.features.begin(), environment.spec().feature_count, 0.0F);
       both->Act(*all, actions);

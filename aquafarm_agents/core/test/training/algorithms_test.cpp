@@ -55,7 +55,7 @@ void ExpectContinues(const Algorithm& algorithm, const std::string& options) {
   LocalEnvironment environment(TinyFarm(), {3, algorithm.encodings(options), false, 1});
   const auto learner = algorithm.make(environment.spec(), 1, options);
   std::vector<std::uint8_t> actions;
-  const Results* results = &environment.Reset(1);
+  const StepResults* results = &environment.Reset(1);
   for (int i = 0; i < 100; ++i) {
     learner->Step(*results, 0.3, actions);
     results = &environment.Step(actions);
@@ -176,7 +176,7 @@ TEST(RandomPolicy, DrawsEachReachableActionAlike) {
   const auto policy = random.make_policy(checkpoint, environment.spec());
   policy->Begin(3, 1);
   // At the port (2, 0): the map ends in the south, and islands are to the west and north-west.
-  const Results& results = environment.Reset(1);
+  const StepResults& results = environment.Reset(1);
   std::array<int, kActionCount> counts{};
   std::vector<std::uint8_t> actions;
   for (int i = 0; i < 3000; ++i) {

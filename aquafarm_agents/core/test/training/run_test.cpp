@@ -42,10 +42,10 @@ class LostEnvironment final : public Environment {
   explicit LostEnvironment(int steps)
       : steps_(steps), farms_(TinyFarm(), {2, kIndexBit, false, 1}) {}
   const EnvironmentSpec& spec() const override { return farms_.spec(); }
-  const Results& Reset(std::uint64_t seed, std::uint64_t first) override {
+  const StepResults& Reset(std::uint64_t seed, std::uint64_t first) override {
     return farms_.Reset(seed, first);
   }
-  const Results& Step(const std::vector<std::uint8_t>& actions) override {
+  const StepResults& Step(const std::vector<std::uint8_t>& actions) override {
     Check();
     --steps_;
     return farms_.Step(actions);
@@ -54,7 +54,7 @@ class LostEnvironment final : public Environment {
     Check();
     return farms_.Save();
   }
-  const Results& Load(const std::string& bytes) override { return farms_.Load(bytes); }
+  const StepResults& Load(const std::string& bytes) override { return farms_.Load(bytes); }
 
  private:
   void Check() const {

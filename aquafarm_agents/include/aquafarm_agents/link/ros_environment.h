@@ -33,7 +33,7 @@ struct RosEnvironmentOptions {
 /// Farms behind a sim node's services. Connections are persistent. A lost call is repeated with the
 /// same number, so that no farm steps twice. The farms are reset to new episodes of the same seed
 /// if another client has stepped, reset or loaded them, or if the sim node came back without them;
-/// TakeRestarted() then returns true. Any call throws EnvironmentLost if the sim node is
+/// ConsumeRestart() then returns true. Any call throws EnvironmentLost if the sim node is
 /// unreachable for longer than the limits.
 class RosEnvironment final : public aquafarm::agents::Environment {
  public:
@@ -42,12 +42,12 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOptions options);
 
   const aquafarm::agents::EnvironmentSpec& spec() const override { return spec_; }
-  const aquafarm::agents::Results& Reset(std::uint64_t seed,
-                                         std::uint64_t first_episode = 0) override;
-  const aquafarm::agents::Results& Step(const std::vector<std::uint8_t>& actions) override;
+  const aquafarm::agents::StepResults& Reset(std::uint64_t seed,
+                                             std::uint64_t first_episode = 0) override;
+  const aquafarm::agents::StepResults& Step(const std::vector<std::uint8_t>& actions) override;
   std::string Save() override;
-  const aquafarm::agents::Results& Load(const std::string& bytes) override;
-  bool TakeRestarted() override;
+  const aquafarm::agents::StepResults& Load(const std::string& bytes) override;
+  bool ConsumeRestart() override;
 
  private:
   template <typename Service>
@@ -76,7 +76,7 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   ros::ServiceClient load_client_;
 
   aquafarm::agents::EnvironmentSpec spec_;
-  aquafarm::agents::Results results_;
+  aquafarm::agents::StepResults results_;
   aquafarm_msgs::Step step_;  // reused buffer
   std::uint64_t sequence_;
   bool restarted_{};

@@ -15,13 +15,13 @@ namespace aquafarm_agents {
 
 /// Grid of values scaled from 0 (lowest) to 100 (highest); -1 in cells without a value. All cells
 /// are -1 if the policy has no values.
-nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<aquafarm::agents::BestMove>& moves,
+nav_msgs::OccupancyGrid ValuesToGrid(const std::vector<aquafarm::agents::GreedyAction>& moves,
                                      const aquafarm::Scenario& scenario,
                                      const std_msgs::Header& header);
 
 /// One point per cell: float32 x, y, z [m] of its centre, float32 unscaled value (NaN if there is
 /// none), uint8 action as in FarmState.
-sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<aquafarm::agents::BestMove>& moves,
+sensor_msgs::PointCloud2 ValuesToPoints(const std::vector<aquafarm::agents::GreedyAction>& moves,
                                         const aquafarm::Scenario& scenario,
                                         const std_msgs::Header& header);
 

@@ -16,7 +16,7 @@ namespace aquafarm {
 namespace {
 
 using internal::Format;
-using internal::HazardPlace;
+using internal::ParseContext;
 
 float LandAt(float value, float sea_level) {
   return std::isnan(value) || value > sea_level ? 1.0F : 0.0F;
@@ -43,21 +43,21 @@ struct Header {
 
   bool Has(const std::string& key) const { return entries.count(key) != 0; }
   /// Reports an error on the line of the key.
-  [[noreturn]] void Refuse(const std::string& key, const std::string& what,
-                           HazardPlace place) const {
+  [[noreturn]] void Fail(const std::string& key, const std::string& what,
+                         ParseContext place) const {
     if (Has(key)) place.line = entries.at(key).line;
-    place.Refuse(key + ": got " + (Has(key) ? Format(entries.at(key).number) : "nothing") + what);
+    place.Fail(key + ": got " + (Has(key) ? Format(entries.at(key).number) : "nothing") + what);
   }
-  double Get(const std::string& key, double min, double max, const HazardPlace& place) const {
+  double Get(const std::string& key, double min, double max, const ParseContext& place) const {
     const auto found = entries.find(key);
     if (found != entries.end() && found->second.number >= min && found->second.number <= max) {
       return found->second.number;
     }
-    Refuse(key, ", expected a number in [" + Format(min) + ", " + Format(max) + "]", place);
+    Fail(key, ", expected a number in [" + Format(min) + ", " + Format(max) + "]", place);
   }
   /// Returns the centre of the first cell along an axis, from either key.
   double First(const std::string& center, const std::string& corner, double cell_size,
-               const HazardPlace& place) const {
+               const ParseContext& place) const {
     constexpr double kFar = 1.0e9;
     if (Has(center)) return Get(center, -kFar, kFar, place);
     return Get(corner, -kFar, kFar, place) + cell_size / 2.0;
@@ -66,14 +66,14 @@ struct Header {
   /// tolerance of half a cell permits grids with a node on the edge of this range.
   void NeedDegrees(const std::string& center, const std::string& corner, double first,
                    Eigen::Index count, double most, const AsciiGrid& grid,
-                   const HazardPlace& place) const {
+                   const ParseContext& place) const {
     const double last = first + static_cast<double>(count - 1) * grid.cell_size;
     const double limit = most + grid.cell_size * 0.501;
     if (first >= -limit && last <= limit) return;
-    Refuse(Has(center) ? center : corner,
-           ", cells from " + Format(first) + " to " + Format(last) + ", expected degrees in [" +
-               Format(-most) + ", " + Format(most) + "], as CELLSIZE is below 1",
-           place);
+    Fail(Has(center) ? center : corner,
+         ", cells from " + Format(first) + " to " + Format(last) + ", expected degrees in [" +
+             Format(-most) + ", " + Format(most) + "], as CELLSIZE is below 1",
+         place);
   }
 };
 
@@ -90,7 +90,7 @@ bool IsNoNumber(std::string_view word) {
 
 // Returns whether a line belongs to the header.
 bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
-                    const HazardPlace& place) {
+                    const ParseContext& place) {
   if (words.size() < 2) return false;
   const bool name_first = IsWord(words[0]);
   const std::string_view name = words[name_first ? 0 : 1];
@@ -100,14 +100,14 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
                                                   "XLLCENTER", "YLLCENTER",   "XLLCORNER",
                                                   "YLLCORNER", "NODATA_VALUE"};
   if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
-    place.Refuse(internal::Quoted(name) +
-                 ": is no key of a grid, expected ncols, nrows, cellsize, xllcenter, yllcenter, "
-                 "xllcorner, yllcorner, xlower, ylower or nodata_value");
+    place.Fail(internal::Quoted(name) +
+               ": is no key of a grid, expected ncols, nrows, cellsize, xllcenter, yllcenter, "
+               "xllcorner, yllcorner, xlower, ylower or nodata_value");
   }
-  if (header.Has(key)) place.Refuse(key + ": is there twice");
+  if (header.Has(key)) place.Fail(key + ": is there twice");
   const std::string axis = key.substr(0, 4);  // XLLC or YLLC
   for (const std::string& other : {axis + "ENTER", axis + "ORNER"}) {
-    if (header.Has(other)) place.Refuse(key + ": is there beside " + other + ", expected one");
+    if (header.Has(other)) place.Fail(key + ": is there beside " + other + ", expected one");
   }
   header.entries[key] = {
       internal::ReadNumber(words[name_first ? 1 : 0], key.c_str(), -1.0e9, 1.0e9, place),
@@ -136,7 +136,7 @@ bool AsciiGrid::Covers(GeoPoint place) const {
 
 AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name) {
   std::vector<std::string> unused;
-  HazardPlace place(origin_name, unused);
+  ParseContext place(origin_name, unused);
   internal::LineReader lines(internal::WithoutMark(text), place);
   std::string_view line;
   Header header;
@@ -150,7 +150,7 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
   constexpr double kMost = internal::kMaxMapSide;
   const auto side = [&](const char* key) {
     const double number = header.Get(key, 1.0, kMost, place);
-    if (number != std::floor(number)) header.Refuse(key, ", expected a whole number", place);
+    if (number != std::floor(number)) header.Fail(key, ", expected a whole number", place);
     return static_cast<Eigen::Index>(number);
   };
   const Eigen::Index columns = side("NCOLS");
@@ -167,8 +167,8 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
       header.Has("NODATA_VALUE") ? header.entries["NODATA_VALUE"].number : -9999.0;
   const auto wanted = static_cast<std::size_t>(columns * rows);
   if (text.size() / 2 + 1 < wanted) {  // a value has at least a digit and a blank
-    place.Refuse("got " + std::to_string(text.size()) + " bytes, expected " +
-                 std::to_string(columns) + " x " + std::to_string(rows) + " values");
+    place.Fail("got " + std::to_string(text.size()) + " bytes, expected " +
+               std::to_string(columns) + " x " + std::to_string(rows) + " values");
   }
   grid.value.resize(rows, columns);
   std::size_t count = 0;
@@ -176,7 +176,7 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
     for (const std::string_view word : words) {
       const double value = internal::ReadNumber(word, "value", -1.0e9, 1.0e9, place);
       if (count >= wanted) {
-        place.Refuse("got more than the " + std::to_string(wanted) + " values of the header");
+        place.Fail("got more than the " + std::to_string(wanted) + " values of the header");
       }
       const auto i = static_cast<Eigen::Index>(count++);
       grid.value(rows - 1 - i / columns, i % columns) =
@@ -186,8 +186,8 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
     words = more ? internal::SplitWords(line) : std::vector<std::string_view>();
   }
   if (count < wanted) {
-    place.Refuse("got " + std::to_string(count) + " values, expected the " +
-                 std::to_string(wanted) + " of the header");
+    place.Fail("got " + std::to_string(count) + " values, expected the " + std::to_string(wanted) +
+               " of the header");
   }
   return grid;
 }

@@ -14,8 +14,8 @@ namespace aquafarm {
 namespace {
 
 using internal::At;
-using internal::HazardPlace;
 using internal::Join;
+using internal::ParseContext;
 using Json = nlohmann::json;
 
 constexpr std::size_t kMostPoints = 20U << 20U;
@@ -79,10 +79,10 @@ std::string FaultOf(const CoastRing& ring, std::size_t& left) {
 
 class CoastReader {
  public:
-  CoastReader(Coast& coast, HazardPlace& place) : coast_(coast), place_(place) {}
+  CoastReader(Coast& coast, ParseContext& place) : coast_(coast), place_(place) {}
 
   void ReadObject(const Json& value, const std::string& path, int depth) {
-    if (depth > kMostNested) place_.RefuseValue(path, "got collections nested too deeply");
+    if (depth > kMostNested) place_.FailValue(path, "got collections nested too deeply");
     const internal::JsonObject object(value, path, place_);
     const std::string type = object.Text({"type"});
     if (type == "FeatureCollection") return ReadList(object, "features", depth);
@@ -100,15 +100,15 @@ class CoastReader {
       for (std::size_t i = 0; i < polygons.size(); ++i) ReadPolygon(polygons[i], At(here, i));
     } else if (type.empty() || (type.find("Point") == std::string::npos &&
                                 type.find("LineString") == std::string::npos)) {
-      place_.RefuseValue(Join(path, "type"),
-                         "got " + internal::Quoted(type) + ", expected a type of GeoJSON");
+      place_.FailValue(Join(path, "type"),
+                       "got " + internal::Quoted(type) + ", expected a type of GeoJSON");
     }
   }
 
  private:
   const Json& Need(const internal::JsonObject& object, const char* key, const std::string& path) {
     const Json* list = object.List({key});
-    if (list == nullptr) place_.RefuseValue(path, "got nothing, expected a list");
+    if (list == nullptr) place_.FailValue(path, "got nothing, expected a list");
     return *list;
   }
 
@@ -120,7 +120,7 @@ class CoastReader {
 
   void ReadPolygon(const Json& value, const std::string& path) {
     if (!value.is_array() || value.empty()) {
-      place_.RefuseValue(path, "got no list of rings, expected a polygon");
+      place_.FailValue(path, "got no list of rings, expected a polygon");
     }
     CoastPolygon polygon;
     for (std::size_t i = 0; i < value.size(); ++i)
@@ -130,10 +130,10 @@ class CoastReader {
 
   CoastRing ReadRing(const Json& value, const std::string& path) {
     if (!value.is_array() || value.size() < 4) {
-      place_.RefuseValue(path, "got " +
-                                   (value.is_array() ? std::to_string(value.size()) + " points"
-                                                     : std::string("no list of points")) +
-                                   ", expected a ring of at least 4, the last as the first");
+      place_.FailValue(path, "got " +
+                                 (value.is_array() ? std::to_string(value.size()) + " points"
+                                                   : std::string("no list of points")) +
+                                 ", expected a ring of at least 4, the last as the first");
     }
     CoastRing ring;
     for (std::size_t i = 0; i < value.size(); ++i) {
@@ -143,15 +143,15 @@ class CoastReader {
       const double longitude = numbers ? point[0].get<double>() : 1000.0;
       const double latitude = numbers ? point[1].get<double>() : 1000.0;
       if (!(longitude >= -180.0 && longitude <= 360.0) || !(std::abs(latitude) <= 90.0)) {
-        place_.RefuseValue(At(path, i), "got " + internal::Quoted(point.dump()) +
-                                            ", expected [longitude, latitude] in degrees");
+        place_.FailValue(At(path, i), "got " + internal::Quoted(point.dump()) +
+                                          ", expected [longitude, latitude] in degrees");
       }
-      if (++points_ > kMostPoints) place_.RefuseValue(path, "got too many points for one chart");
+      if (++points_ > kMostPoints) place_.FailValue(path, "got too many points for one chart");
       ring.push_back({latitude, longitude});
     }
     if (ring.front().latitude != ring.back().latitude ||
         ring.front().longitude != ring.back().longitude) {
-      place_.RefuseValue(path, "the ring is open, expected its last point to be its first");
+      place_.FailValue(path, "the ring is open, expected its last point to be its first");
     }
     const std::string fault = FaultOf(ring, comparisons_left_);
     if (!fault.empty()) {
@@ -162,7 +162,7 @@ class CoastReader {
   }
 
   Coast& coast_;
-  HazardPlace& place_;
+  ParseContext& place_;
   std::size_t points_{};
   std::size_t comparisons_left_{kMostComparisons};
 };
@@ -264,14 +264,14 @@ void AddSpans(const std::vector<double>& crossings, std::int32_t y, Grid<std::ui
 Coast ParseCoast(const std::string& text, const std::string& origin_name) {
   Coast coast;
   const std::string clean = internal::CleanJson(text);
-  HazardPlace place(origin_name, coast.warnings);
+  ParseContext place(origin_name, coast.warnings);
   place.locate = [&clean](const std::string& path) { return internal::LineOfJson(clean, path); };
   const Json document = internal::ParseJson(clean, place);
   place.line = 0;
   CoastReader(coast, place).ReadObject(document, "", 0);
   if (coast.polygons.empty()) {
     place.line = 1;
-    place.Refuse("got no polygon, expected a coast");
+    place.Fail("got no polygon, expected a coast");
   }
   return coast;
 }

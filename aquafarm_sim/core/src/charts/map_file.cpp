@@ -36,14 +36,14 @@ MapYaml internal::ParseMapYaml(const std::string& text, const std::string& origi
         using internal::Interval;
         using internal::Need;
         const Interval<double> part{0.0, 1.0};
-        a.Leaf("image", map.image, internal::TextOf{1, 4096}, Need::kRequired);
-        a.Leaf("resolution", map.resolution, Interval<double>{0.01, 1.0e6}, Need::kRequired);
-        a.Leaf("origin", map.origin, internal::ListOf<Interval<double>>{{-1.0e9, 1.0e9}, 3, 3},
-               Need::kRequired);
-        a.Leaf("negate", map.negate, Interval<std::int32_t>{0, 1}, Need::kRequired);
-        a.Leaf("occupied_thresh", map.occupied, part, Need::kRequired);
-        a.Leaf("free_thresh", map.free, part, Need::kRequired);
-        a.Leaf("mode", map.mode, internal::OneOfNames{});
+        a.Field("image", map.image, internal::TextOf{1, 4096}, Need::kRequired);
+        a.Field("resolution", map.resolution, Interval<double>{0.01, 1.0e6}, Need::kRequired);
+        a.Field("origin", map.origin, internal::ListOf<Interval<double>>{{-1.0e9, 1.0e9}, 3, 3},
+                Need::kRequired);
+        a.Field("negate", map.negate, Interval<std::int32_t>{0, 1}, Need::kRequired);
+        a.Field("occupied_thresh", map.occupied, part, Need::kRequired);
+        a.Field("free_thresh", map.free, part, Need::kRequired);
+        a.Field("mode", map.mode, internal::OneOfNames{});
       },
       [&map] {
         if (map.free < map.occupied) return;

@@ -20,7 +20,7 @@ namespace {
 // Reads the words of a PGM header: numbers between blanks, with comments from # to the end of line.
 class PgmHeader {
  public:
-  PgmHeader(const std::string& bytes, HazardPlace& place) : bytes_(bytes), place_(place) {
+  PgmHeader(const std::string& bytes, ParseContext& place) : bytes_(bytes), place_(place) {
     place.line = 1;
   }
 
@@ -36,8 +36,8 @@ class PgmHeader {
     const bool one_more = left == pixels + 2;
     const bool dos = one_more && bytes_.compare(at_, 2, "\r\n") == 0;
     if (left > pixels + 1 && !dos && !(one_more && bytes_.back() == '\n')) {
-      place_.Refuse("got " + std::to_string(left - 1) + " bytes of pixels, expected " +
-                    std::to_string(pixels));
+      place_.Fail("got " + std::to_string(left - 1) + " bytes of pixels, expected " +
+                  std::to_string(pixels));
     }
     at_ += dos ? 2 : 1;
   }
@@ -70,18 +70,18 @@ class PgmHeader {
   }
 
   const std::string& bytes_;
-  HazardPlace& place_;
+  ParseContext& place_;
 };
 
 void CheckSize(std::size_t got, std::size_t width, std::size_t height, std::size_t bytes,
-               const HazardPlace& place) {
+               const ParseContext& place) {
   if (got >= width * height * bytes) return;
-  place.Refuse("got " + std::to_string(got) + " bytes of pixels, expected " +
-               std::to_string(width) + " x " + std::to_string(height) + " of " +
-               std::to_string(bytes) + (bytes == 1 ? " byte" : " bytes"));
+  place.Fail("got " + std::to_string(got) + " bytes of pixels, expected " + std::to_string(width) +
+             " x " + std::to_string(height) + " of " + std::to_string(bytes) +
+             (bytes == 1 ? " byte" : " bytes"));
 }
 
-MapImage ParsePgm(const std::string& bytes, HazardPlace& place) {
+MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
   PgmHeader header(bytes, place);
   const std::int32_t width = header.Next("width", kMaxMapSide);
   const std::int32_t height = header.Next("height", kMaxMapSide);
@@ -107,32 +107,32 @@ MapImage ParsePgm(const std::string& bytes, HazardPlace& place) {
       }
     }
     if (value > white) {
-      place.Refuse("pixel: got " + std::to_string(value) + ", expected one from 0 to " +
-                   std::to_string(white));
+      place.Fail("pixel: got " + std::to_string(value) + ", expected one from 0 to " +
+                 std::to_string(white));
     }
     image.grey.data()[i] = static_cast<std::uint8_t>(white == 255 ? value : value * 255 / white);
   }
-  if (text && header.HasMore()) place.Refuse("got more pixels than its size says");
+  if (text && header.HasMore()) place.Fail("got more pixels than its size says");
   return image;
 }
 
-MapImage ParseWithStb(const std::string& bytes, const HazardPlace& place) {
+MapImage ParseWithStb(const std::string& bytes, const ParseContext& place) {
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(std::min<std::size_t>(bytes.size(), 1U << 30U));
   int width = 0;
   int height = 0;
   int channels = 0;
   const auto refuse = [&place] {
-    place.Refuse(std::string("got no picture that can be read (") + stbi_failure_reason() +
-                 "), expected PGM, PNG or BMP");
+    place.Fail(std::string("got no picture that can be read (") + stbi_failure_reason() +
+               "), expected PGM, PNG or BMP");
   };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse();
   // Even compressed, PNG and BMP need at least one byte per kMostPacking pixels.
   constexpr std::size_t kMostPacking = 2048;
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (width > kMaxMapSide || height > kMaxMapSide || pixels / kMostPacking > bytes.size()) {
-    place.Refuse("got a claim of " + std::to_string(width) + " x " + std::to_string(height) +
-                 " pixels in " + std::to_string(bytes.size()) + " bytes");
+    place.Fail("got a claim of " + std::to_string(width) + " x " + std::to_string(height) +
+               " pixels in " + std::to_string(bytes.size()) + " bytes");
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> loaded(
       stbi_load_from_memory(data, size, &width, &height, &channels, 0), &stbi_image_free);
@@ -156,7 +156,7 @@ MapImage ParseWithStb(const std::string& bytes, const HazardPlace& place) {
 
 MapImage ParseMapImage(const std::string& bytes, const std::string& origin_name) {
   std::vector<std::string> unused;
-  HazardPlace place(origin_name, unused);
+  ParseContext place(origin_name, unused);
   place.line = 1;
   if (bytes.compare(0, 2, "P5") == 0 || bytes.compare(0, 2, "P2") == 0) {
     return ParsePgm(bytes, place);

@@ -210,12 +210,12 @@ Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t 
   disaster.radius_growth = spec.radius_growth;
   disaster.margin = disaster.reach();
   disaster.steps_left = spec.duration;
-  RandomStream chance({seed, episode, Purpose::kDisasterSpawn, static_cast<std::uint32_t>(id)});
+  RandomStream rng({seed, episode, RngStream::kDisasterSpawn, static_cast<std::uint32_t>(id)});
   const float margin = disaster.margin;
   // Always drawn, so that setting one field of a spec does not change the other draws.
-  const float x = chance.Uniform(-0.5F - margin, static_cast<float>(width) - 0.5F + margin);
-  const float y = chance.Uniform(-0.5F - margin, static_cast<float>(height) - 0.5F + margin);
-  const auto heading = static_cast<std::int32_t>(chance.Below(360));
+  const float x = rng.Uniform(-0.5F - margin, static_cast<float>(width) - 0.5F + margin);
+  const float y = rng.Uniform(-0.5F - margin, static_cast<float>(height) - 0.5F + margin);
+  const auto heading = static_cast<std::int32_t>(rng.Below(360));
   disaster.x = spec.start ? (*spec.start)[0] : x;
   disaster.y = spec.start ? (*spec.start)[1] : y;
   disaster.heading_deg = spec.heading_deg.value_or(heading);

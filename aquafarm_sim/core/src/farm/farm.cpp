@@ -85,7 +85,7 @@ void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
   ships_.clear();
   for (std::int32_t id = 0; id < scenario_->ships.count; ++id) {
     Ship ship;
-    const auto draws = Draw({seed, episode, Purpose::kStart, static_cast<std::uint32_t>(id)}, 0);
+    const auto draws = Draw({seed, episode, RngStream::kStart, static_cast<std::uint32_t>(id)}, 0);
     const auto ports = static_cast<std::uint32_t>(layout_->ports.size());
     ship.cell = layout_->ports[ToBelow(draws[0], ports)];
     ships_.push_back(ship);
@@ -129,7 +129,7 @@ void Farm::Step(const std::uint8_t* actions) {
 
 void Farm::MoveDisasters() {
   for (std::size_t id = 0; id < disasters_.size(); ++id) {
-    const StreamKey key{record_.seed, record_.episode, Purpose::kDisasterTurn,
+    const StreamKey key{record_.seed, record_.episode, RngStream::kDisasterTurn,
                         static_cast<std::uint32_t>(id)};
     MoveDisaster(disasters_[id], tracks_[id], key, record_.steps, scenario_->width,
                  scenario_->height);
@@ -144,7 +144,7 @@ void Farm::IssueBulletins() {
   for (std::size_t id = 0; id < disasters_.size(); ++id) {
     Disaster& disaster = disasters_[id];
     const auto draws =
-        Draw({record_.seed, record_.episode, Purpose::kSensors, static_cast<std::uint32_t>(id)},
+        Draw({record_.seed, record_.episode, RngStream::kSensors, static_cast<std::uint32_t>(id)},
              static_cast<std::uint32_t>(record_.steps));
     const float noise = view.bulletin_noise;
     disaster.bulletin.x = disaster.x + noise * (2.0F * ToUnit(draws[0]) - 1.0F);
@@ -152,7 +152,7 @@ void Farm::IssueBulletins() {
     disaster.bulletin.speed = disaster.speed;
     disaster.bulletin.heading_deg = disaster.heading_deg;
     disaster.bulletin.step = record_.steps;
-    disaster.TellRings();
+    disaster.SnapshotRings();
   }
 }
 
@@ -238,7 +238,7 @@ void Farm::CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits) {
   if (ship.aboard == 0 && ship.own_device == kNone) return;
   const float probability = scenario_->damage.crash_probability;
   if (probability < 1.0F) {
-    const StreamKey key{record_.seed, record_.episode, Purpose::kDamage,
+    const StreamKey key{record_.seed, record_.episode, RngStream::kDamage,
                         static_cast<std::uint32_t>(id)};
     const auto draws = Draw(key, static_cast<std::uint32_t>(record_.steps));
     if (ToUnit(draws[0]) >= probability) return;

@@ -203,7 +203,7 @@ Disaster DisasterFromJson(const json& j) {
     }
     if (k < static_cast<std::size_t>(d.rings)) SetRing(d, k, ring);
   }
-  d.TellRings();
+  d.SnapshotRings();
   if (j.contains("bulletin_rings")) {
     j["bulletin_rings"].at(0).get_to(d.bulletin.radius);
     j["bulletin_rings"].at(1).get_to(d.bulletin.quadrant);
@@ -480,15 +480,15 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
       disaster.y = present.y;
     }
     disaster.bulletin = present.bulletin;
-    disaster.TellRings();  // ring sizes of the replaced disaster do not apply to the new one
+    disaster.SnapshotRings();  // ring sizes of the replaced disaster do not apply to the new one
     disasters_[k] = disaster;
     tracks_[k] = std::move(track);
   }
   // Turn draws come in blocks of four steps; the current block is not drawn yet.
   Disaster& placed = disasters_[k];
-  placed.draws =
-      Draw({record_.seed, record_.episode, Purpose::kDisasterTurn, static_cast<std::uint32_t>(id)},
-           static_cast<std::uint32_t>(record_.steps) / 4);
+  placed.draws = Draw(
+      {record_.seed, record_.episode, RngStream::kDisasterTurn, static_cast<std::uint32_t>(id)},
+      static_cast<std::uint32_t>(record_.steps) / 4);
   if (placed.waypoint != kNone) FollowTrack(placed, *tracks_[k], record_.steps);
   tracks_changed_ = true;
 }

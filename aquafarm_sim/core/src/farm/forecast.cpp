@@ -148,7 +148,7 @@ std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episo
                                          std::int32_t disaster) {
   // 1 / mean length of a vector of two such sums; verified by a test.
   constexpr float kScale = 1.3697F;
-  const StreamKey key{seed, episode, Purpose::kForecast, static_cast<std::uint32_t>(disaster)};
+  const StreamKey key{seed, episode, RngStream::kForecast, static_cast<std::uint32_t>(disaster)};
   return {kScale * NearlyNormal(Draw(key, 0)), kScale * NearlyNormal(Draw(key, 1))};
 }
 

@@ -38,12 +38,10 @@ std::int32_t CeilDiv(std::int32_t a, std::int32_t b) { return (a + b - 1) / b; }
 
 // Returns the middle of part i of `parts` equal parts of a side, with a random offset of up to a
 // quarter of a part.
-std::int32_t NearMiddle(RandomStream& chance, std::int32_t i, std::int32_t parts,
-                        std::int32_t side) {
+std::int32_t NearMiddle(RandomStream& rng, std::int32_t i, std::int32_t parts, std::int32_t side) {
   const std::int32_t middle = (2 * i + 1) * side / (2 * parts);
   const std::int32_t slack = side / (4 * parts);
-  const auto off =
-      static_cast<std::int32_t>(chance.Below(static_cast<std::uint32_t>(2 * slack + 1)));
+  const auto off = static_cast<std::int32_t>(rng.Below(static_cast<std::uint32_t>(2 * slack + 1)));
   return std::min(side - 1, std::max(0, middle - slack + off));
 }
 
@@ -83,7 +81,7 @@ bool LayoutGenerator::TryPlace(std::uint64_t seed, std::uint64_t episode, std::u
   layout.rocks.clear();
   layout.devices.clear();
   const auto stream = [&](Part part) {
-    return RandomStream({seed, episode, Purpose::kLayout, attempt * kPartCount + part});
+    return RandomStream({seed, episode, RngStream::kLayout, attempt * kPartCount + part});
   };
   RandomStream ports = stream(kPortPart);
   RandomStream devices = stream(kDevicePart);
@@ -105,13 +103,13 @@ void LayoutGenerator::ChartAllWays(Layout& layout) {
       layout.ports.size() + static_cast<std::size_t>(scenario_.FetchableCount());
   way_queue_.reserve(static_cast<std::size_t>(scenario_.CellCount()));
   layout.ways.resize(static_cast<std::size_t>(scenario_.CellCount()) * places);
-  Way* ways = layout.ways.data();
+  RouteEntry* ways = layout.ways.data();
   for (const Cell port : layout.ports) {
-    ChartWays(layout.cells, port, ways++, places, way_steps_, way_queue_);
+    ComputeRoutes(layout.cells, port, ways++, places, way_steps_, way_queue_);
   }
   for (const PlacedDevice& device : layout.devices) {
     if (device.self_propelled) continue;
-    ChartWays(layout.cells, device.cell, ways++, places, way_steps_, way_queue_);
+    ComputeRoutes(layout.cells, device.cell, ways++, places, way_steps_, way_queue_);
   }
 }
 
@@ -144,7 +142,7 @@ void LayoutGenerator::PlaceExplicit(Layout& layout) const {
   for (const DeviceSite& site : scenario_.devices.sites) AddDevice(site.cell, layout);
 }
 
-bool LayoutGenerator::DrawPorts(RandomStream& chance, Layout& layout) {
+bool LayoutGenerator::DrawPorts(RandomStream& rng, Layout& layout) {
   if (!scenario_.ports.cells.empty()) return true;
   candidates_.clear();
   for (std::int32_t y = 0; y < scenario_.height; ++y) {
@@ -155,22 +153,22 @@ bool LayoutGenerator::DrawPorts(RandomStream& chance, Layout& layout) {
   }
   crowded_ = kPortsKey;
   if (candidates_.size() < static_cast<std::size_t>(scenario_.ports.count)) return false;
-  for (std::int32_t i = 0; i < scenario_.ports.count; ++i) AddPort(TakeCandidate(chance), layout);
+  for (std::int32_t i = 0; i < scenario_.ports.count; ++i) AddPort(TakeCandidate(rng), layout);
   return true;
 }
 
-bool LayoutGenerator::DrawDevices(RandomStream& chance, Layout& layout) {
+bool LayoutGenerator::DrawDevices(RandomStream& rng, Layout& layout) {
   const DeviceSpec& spec = scenario_.devices;
   crowded_ = kDevicesKey;
   switch (spec.placement) {
     case DevicePlacement::kUniform:
-      Spread(chance, layout);
+      Spread(rng, layout);
       break;
     case DevicePlacement::kLinear:
-      LineUp(chance, layout);
+      LineUp(rng, layout);
       break;
     case DevicePlacement::kRandom:
-      Scatter(chance, layout);
+      Scatter(rng, layout);
       break;
     case DevicePlacement::kExplicit:
       break;
@@ -179,7 +177,7 @@ bool LayoutGenerator::DrawDevices(RandomStream& chance, Layout& layout) {
   const auto count = static_cast<std::size_t>(spec.Total());
   for (std::size_t i = 0; i < count; ++i) {
     PlacedDevice& device = layout.devices[i];
-    device.value = chance.Uniform(spec.value.min, spec.value.max);
+    device.value = rng.Uniform(spec.value.min, spec.value.max);
     if (scenario_.seas && !scenario_.seas->device_value.empty()) {
       const std::int32_t cell = LinearIndex(device.cell, scenario_.width);
       const float worth = scenario_.seas->device_value[static_cast<std::size_t>(cell)];
@@ -198,27 +196,27 @@ bool LayoutGenerator::DrawDevices(RandomStream& chance, Layout& layout) {
   return true;
 }
 
-bool LayoutGenerator::DrawRocks(RandomStream& chance, Layout& layout) {
+bool LayoutGenerator::DrawRocks(RandomStream& rng, Layout& layout) {
   const RockSpec& spec = scenario_.rocks;
   if (!spec.cells.empty()) {
     for (const Cell cell : spec.cells) {
-      AddRock(cell, chance.Uniform(spec.reward.min, spec.reward.max), layout);
+      AddRock(cell, rng.Uniform(spec.reward.min, spec.reward.max), layout);
     }
     return true;
   }
   const auto spread = static_cast<std::uint32_t>(spec.count.max - spec.count.min + 1);
-  const std::int32_t count = spec.count.min + static_cast<std::int32_t>(chance.Below(spread));
+  const std::int32_t count = spec.count.min + static_cast<std::int32_t>(rng.Below(spread));
   crowded_ = kRocksKey;
   CollectFree(layout);
   if (candidates_.size() < static_cast<std::size_t>(count)) return false;
   for (std::int32_t i = 0; i < count; ++i) {
-    const Cell cell = TakeCandidate(chance);
-    AddRock(cell, chance.Uniform(spec.reward.min, spec.reward.max), layout);
+    const Cell cell = TakeCandidate(rng);
+    AddRock(cell, rng.Uniform(spec.reward.min, spec.reward.max), layout);
   }
   return true;
 }
 
-void LayoutGenerator::Spread(RandomStream& chance, Layout& layout) {
+void LayoutGenerator::Spread(RandomStream& rng, Layout& layout) {
   const std::int32_t count = scenario_.devices.count;
   // Parts are approximately square: rows² = count · height / width.
   const std::int32_t rows = std::min({count, scenario_.height,
@@ -227,8 +225,8 @@ void LayoutGenerator::Spread(RandomStream& chance, Layout& layout) {
   for (std::int32_t row = 0; row < rows; ++row) {
     const std::int32_t in_row = count * (row + 1) / rows - count * row / rows;
     for (std::int32_t i = 0; i < in_row; ++i) {
-      const std::int32_t x = NearMiddle(chance, i, in_row, scenario_.width);
-      const std::int32_t y = NearMiddle(chance, row, rows, scenario_.height);
+      const std::int32_t x = NearMiddle(rng, i, in_row, scenario_.width);
+      const std::int32_t y = NearMiddle(rng, row, rows, scenario_.height);
       const Cell cell = NearestFree(layout, {x, y});
       if (cell.x == kNone) return;
       AddDevice(cell, layout);
@@ -236,16 +234,16 @@ void LayoutGenerator::Spread(RandomStream& chance, Layout& layout) {
   }
 }
 
-void LayoutGenerator::LineUp(RandomStream& chance, Layout& layout) {
+void LayoutGenerator::LineUp(RandomStream& rng, Layout& layout) {
   const std::int32_t count = scenario_.devices.count;
-  const bool eastward = chance.Below(2) == 0;
+  const bool eastward = rng.Below(2) == 0;
   const std::int32_t along = eastward ? scenario_.width : scenario_.height;
   const std::int32_t across = eastward ? scenario_.height : scenario_.width;
   const std::int32_t longest = std::min(kLongestRow, along);
   const std::int32_t rows = std::min(across, std::max(1, CeilDiv(count, longest)));
   for (std::int32_t row = 0; row < rows; ++row) {
     const std::int32_t in_row = count * (row + 1) / rows - count * row / rows;
-    const std::int32_t b = NearMiddle(chance, row, rows, across);
+    const std::int32_t b = NearMiddle(rng, row, rows, across);
     for (std::int32_t i = 0; i < in_row; ++i) {
       const std::int32_t a = (2 * i + 1) * along / (2 * in_row);
       const Cell cell = NearestFree(layout, eastward ? Cell{a, b} : Cell{b, a});
@@ -255,11 +253,11 @@ void LayoutGenerator::LineUp(RandomStream& chance, Layout& layout) {
   }
 }
 
-void LayoutGenerator::Scatter(RandomStream& chance, Layout& layout) {
+void LayoutGenerator::Scatter(RandomStream& rng, Layout& layout) {
   CollectFree(layout);
   const auto count = static_cast<std::size_t>(scenario_.devices.count);
   while (layout.devices.size() < count && !candidates_.empty()) {
-    AddDevice(TakeCandidate(chance), layout);
+    AddDevice(TakeCandidate(rng), layout);
   }
 }
 
@@ -342,8 +340,8 @@ bool LayoutGenerator::Connected(const Layout& layout, std::uint8_t blocked) {
                      [&](const PlacedDevice& device) { return reached(device.cell); });
 }
 
-Cell LayoutGenerator::TakeCandidate(RandomStream& chance) {
-  const std::uint32_t i = chance.Below(static_cast<std::uint32_t>(candidates_.size()));
+Cell LayoutGenerator::TakeCandidate(RandomStream& rng) {
+  const std::uint32_t i = rng.Below(static_cast<std::uint32_t>(candidates_.size()));
   const std::int32_t cell = candidates_[i];
   candidates_[i] = candidates_.back();
   candidates_.pop_back();

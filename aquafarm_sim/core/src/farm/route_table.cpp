@@ -35,14 +35,14 @@ void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::siz
   }
 }
 
-void ChartWays(const Grid<std::uint8_t>& cells, Cell target, Way* ways, std::size_t stride,
-               Grid<std::int32_t>& steps, std::vector<Cell>& queue) {
+void ComputeRoutes(const Grid<std::uint8_t>& cells, Cell target, RouteEntry* ways,
+                   std::size_t stride, Grid<std::int32_t>& steps, std::vector<Cell>& queue) {
   StepsByWater(cells, &target, 1, steps, queue);
   const auto count = static_cast<std::size_t>(cells.size());
   for (std::size_t cell = 0; cell < count; ++cell) ways[cell * stride] = {};
   const auto width = static_cast<std::int32_t>(cells.cols());
   for (const Cell at : queue) {
-    Way& way = ways[static_cast<std::size_t>(LinearIndex(at, width)) * stride];
+    RouteEntry& way = ways[static_cast<std::size_t>(LinearIndex(at, width)) * stride];
     way.steps = steps(at.y, at.x);
     std::int32_t nearest = std::numeric_limits<std::int32_t>::max();
     for (const Cell by : kMoves) {

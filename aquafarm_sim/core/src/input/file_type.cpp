@@ -35,7 +35,7 @@ std::string OnOneLine(const std::string& text, std::size_t begin) {
   return words;
 }
 
-FileLook LookAtJson(const std::string& text) {
+DetectedFile DetectJsonType(const std::string& text) {
   const bool collected = Has(text, "\"features\"") || Has(text, "\"geometries\"");
   if (Has(text, "\"type\"") && (collected || Has(text, "\"coordinates\""))) {
     return {FileKind::kGeoJson, "GeoJSON"};
@@ -46,7 +46,7 @@ FileLook LookAtJson(const std::string& text) {
 }
 
 // Detects binary formats from their first bytes.
-FileLook LookAtBytes(const std::string& text) {
+DetectedFile DetectBinaryType(const std::string& text) {
   if (Starts(text, "CDF") || Starts(text, "\x89HDF")) return {FileKind::kNetcdf, "a netCDF file"};
   if (Starts(text, "\x89PNG")) return {FileKind::kPicture, "a PNG picture"};
   const bool binary = Has(text, std::string_view("\0", 1));
@@ -60,17 +60,17 @@ FileLook LookAtBytes(const std::string& text) {
 
 }  // namespace
 
-FileLook LookAt(const std::string& text) {
-  const FileLook bytes = LookAtBytes(text);
+DetectedFile DetectFileType(const std::string& text) {
+  const DetectedFile bytes = DetectBinaryType(text);
   if (!bytes.words.empty()) return bytes;
   const std::string clean = CleanJson(text);
   const std::size_t begin = clean.find_first_not_of(" \t\r\n");
   if (begin == std::string::npos) return {FileKind::kUnknown, "an empty file"};
   if (clean[begin] == '{' || clean[begin] == '[') {
-    const FileLook json = LookAtJson(clean);
+    const DetectedFile json = DetectJsonType(clean);
     if (json.kind != FileKind::kUnknown) return json;
   }
-  if (const std::optional<HazardFormat> format = DetectHazardFormat(text)) {
+  if (const std::optional<TrackFormat> format = DetectTrackFormat(text)) {
     return {FileKind::kTracks, "tracks of storms (" + std::string(ToString(*format)) + ")"};
   }
   const std::string_view line =

@@ -18,14 +18,14 @@ enum class FileKind : std::uint8_t {
 };
 
 /// Type of a file, detected from its content.
-struct FileLook {
+struct DetectedFile {
   FileKind kind{};
   std::string words;  ///< description: "a netCDF file", "tracks of storms (CMA best track)", or
                       ///< the quoted first line
 };
 
 /// Detects the type of a file from its content.
-FileLook LookAt(const std::string& text);
+DetectedFile DetectFileType(const std::string& text);
 
 /// Returns the kind of chart that the extension of a file name indicates. Used if the content is
 /// not recognized, so that the reader of that kind reports the error.

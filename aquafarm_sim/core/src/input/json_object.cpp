@@ -126,7 +126,7 @@ class PathFinder : public nlohmann::json_sax<Json> {
 };
 
 // Rejects JSON that is nested deeper than any bulletin or chart.
-void CheckDepth(const std::string& text, HazardPlace& place) {
+void CheckDepth(const std::string& text, ParseContext& place) {
   constexpr int kMostDepth = 64;
   int depth = 0;
   bool quoted = false;
@@ -140,8 +140,8 @@ void CheckDepth(const std::string& text, HazardPlace& place) {
       if (++depth <= kMostDepth) continue;
       place.path.clear();
       place.line = LineAt(text, i);
-      place.Refuse("got JSON nested more deeply than " + std::to_string(kMostDepth) +
-                   " levels, expected a bulletin or a chart");
+      place.Fail("got JSON nested more deeply than " + std::to_string(kMostDepth) +
+                 " levels, expected a bulletin or a chart");
     } else if (!quoted && (c == ']' || c == '}')) {
       --depth;
     }
@@ -205,7 +205,7 @@ std::string CleanJson(const std::string& text) {
   return clean;
 }
 
-Json ParseJson(const std::string& text, HazardPlace& place) {
+Json ParseJson(const std::string& text, ParseContext& place) {
   CheckDepth(text, place);
   const char* read = text.data();
   const char* const end = text.data() + text.size();
@@ -218,7 +218,7 @@ Json ParseJson(const std::string& text, HazardPlace& place) {
     if (keys.back().insert(key).second) return true;
     place.path.clear();
     place.line = LineAt(text, static_cast<std::size_t>(read - text.data()));
-    place.Refuse("got the key " + Quoted(key) + " twice in an object, expected it once");
+    place.Fail("got the key " + Quoted(key) + " twice in an object, expected it once");
   };
   try {
     return Json::parse(ReadingIterator(text.data(), &read), ReadingIterator(end, &read), check);
@@ -227,15 +227,15 @@ Json ParseJson(const std::string& text, HazardPlace& place) {
     place.line = LineAt(text, error.byte == 0 ? 0 : error.byte - 1);
     const std::string what = error.what();
     const std::size_t reason = what.find("; ");  // follows the position as given by the library
-    place.Refuse("got no valid JSON: " +
-                 (reason == std::string::npos ? what : what.substr(reason + 2)));
+    place.Fail("got no valid JSON: " +
+               (reason == std::string::npos ? what : what.substr(reason + 2)));
   } catch (const Json::out_of_range& error) {  // a number is too large; the message contains it
     const std::string what = error.what();
     const std::size_t from = what.find('\'') + 1;
     const std::string number = what.substr(from, what.rfind('\'') - from);
     place.path.clear();
     place.line = LineAt(text, std::min(text.find(number), text.size()));
-    place.Refuse("got " + Quoted(number) + ", expected a number that a double can hold");
+    place.Fail("got " + Quoted(number) + ", expected a number that a double can hold");
   }
 }
 
@@ -270,10 +270,10 @@ auto OfFix(Read read) {
 
 }  // namespace
 
-JsonObject::JsonObject(const Json& value, std::string path, HazardPlace& place)
+JsonObject::JsonObject(const Json& value, std::string path, ParseContext& place)
     : value_(value), path_(std::move(path)), place_(place) {
   if (value.is_object()) return;
-  place_.RefuseValue(path_, "got " + Shown(&value) + ", expected an object");
+  place_.FailValue(path_, "got " + Shown(&value) + ", expected an object");
 }
 
 const Json* JsonObject::Find(Keys keys) const {
@@ -294,8 +294,8 @@ std::string JsonObject::KeyOf(Keys keys) const {
   return *keys.begin();
 }
 
-void JsonObject::Refuse(Keys keys, const Json* got, const std::string& expected) const {
-  place_.RefuseValue(Join(path_, KeyOf(keys)), "got " + Shown(got) + ", expected " + expected);
+void JsonObject::Fail(Keys keys, const Json* got, const std::string& expected) const {
+  place_.FailValue(Join(path_, KeyOf(keys)), "got " + Shown(got) + ", expected " + expected);
 }
 
 std::optional<double> JsonObject::Number(Keys keys, double min, double max) const {
@@ -305,20 +305,20 @@ std::optional<double> JsonObject::Number(Keys keys, double min, double max) cons
   if (value->is_number()) number = value->get<double>();
   if (value->is_string()) number = ParseNumber(value->get_ref<const std::string&>());
   if (number && *number >= min && *number <= max) return number;
-  Refuse(keys, value, InRange(min, max));
+  Fail(keys, value, InRange(min, max));
 }
 
 double JsonObject::NeedNumber(Keys keys, double min, double max) const {
   const std::optional<double> number = Number(keys, min, max);
   if (number) return *number;
-  Refuse(keys, nullptr, InRange(min, max));
+  Fail(keys, nullptr, InRange(min, max));
 }
 
 std::string JsonObject::Text(Keys keys) const {
   const Json* value = Find(keys);
   if (value == nullptr) return "";
   if (value->is_number()) return value->dump();
-  if (!value->is_string()) Refuse(keys, value, "a text");
+  if (!value->is_string()) Fail(keys, value, "a text");
   return value->get<std::string>();
 }
 
@@ -347,7 +347,7 @@ const Json* JsonObject::TryList(Keys keys) const {
 std::int64_t JsonObject::NeedTime(Keys keys, std::int64_t zone_s) const {
   return OfFix([&] {
     const std::optional<std::int64_t> time = ParseDateTime(Text(keys), zone_s);
-    if (!time) Refuse(keys, Find(keys), "a time as 2021-07-25T14:00:00");
+    if (!time) Fail(keys, Find(keys), "a time as 2021-07-25T14:00:00");
     return *time;
   });
 }
@@ -361,11 +361,11 @@ GeoPoint JsonObject::NeedPosition(Keys latitude, Keys longitude) const {
 
 const Json* JsonObject::List(Keys keys) const {
   const Json* value = Find(keys);
-  if (value != nullptr && !value->is_array()) Refuse(keys, value, "a list");
+  if (value != nullptr && !value->is_array()) Fail(keys, value, "a list");
   return value;
 }
 
-HazardPlace& JsonObject::Here() const {
+ParseContext& JsonObject::Here() const {
   place_.line = 0;
   place_.path = path_;
   return place_;

@@ -26,7 +26,7 @@ std::string CleanJson(const std::string& text);
 
 /// Parses JSON. @throws InputError "file:line: got no valid JSON: …", also for a duplicate key in
 /// an object
-nlohmann::json ParseJson(const std::string& text, HazardPlace& place);
+nlohmann::json ParseJson(const std::string& text, ParseContext& place);
 
 /// Returns whether a value is missing: null, a blank text, the text "null", or an object that
 /// contains only such values.
@@ -42,7 +42,7 @@ std::int32_t LineOfJson(const std::string& text, const std::string& path);
 class JsonObject {
  public:
   /// @throws InputError if `value` is not an object
-  JsonObject(const nlohmann::json& value, std::string path, HazardPlace& place);
+  JsonObject(const nlohmann::json& value, std::string path, ParseContext& place);
 
   using Keys = std::initializer_list<const char*>;
   /// Returns the value, or nullptr if it is missing.
@@ -68,16 +68,16 @@ class JsonObject {
   /// As List; anything else is ignored with one warning per key and file.
   const nlohmann::json* TryList(Keys keys) const;
   /// Sets the parse position to this object, for an error or a warning, and returns it.
-  HazardPlace& Here() const;
+  ParseContext& Here() const;
   const std::string& path() const { return path_; }
 
  private:
   template <typename Read>
   auto Try(Keys keys, Read read) const -> decltype(read());
-  [[noreturn]] void Refuse(Keys keys, const nlohmann::json* got, const std::string& expected) const;
+  [[noreturn]] void Fail(Keys keys, const nlohmann::json* got, const std::string& expected) const;
   const nlohmann::json& value_;
   std::string path_;
-  HazardPlace& place_;
+  ParseContext& place_;
 };
 
 }  // namespace aquafarm::internal

@@ -23,35 +23,35 @@ std::string NotInRange(std::string_view text, const char* name, T min, T max) {
 
 }  // namespace
 
-std::string HazardPlace::Located(const std::string& value_path) const {
+std::string ParseContext::Located(const std::string& value_path) const {
   // Each search reads the file again: after many the line is left out.
   constexpr int kMostSearches = 200;
   if (!locate) return file_ + ":" + std::to_string(line) + ": ";
   if (++searches_ > kMostSearches) return file_ + ": ";
   return file_ + ":" + std::to_string(locate(value_path)) + ": ";
 }
-std::string HazardPlace::At(const std::string& what) const {
+std::string ParseContext::At(const std::string& what) const {
   const bool known = line != 0 || !locate;
   return (known ? file_ + ":" + std::to_string(line) + ": " : Located(path)) + Join(path, what);
 }
-void HazardPlace::Refuse(const std::string& what) const { throw InputError(At(what)); }
-std::string HazardPlace::AtValue(const std::string& value_path, const std::string& what) const {
+void ParseContext::Fail(const std::string& what) const { throw InputError(At(what)); }
+std::string ParseContext::AtValue(const std::string& value_path, const std::string& what) const {
   return Located(value_path) + (value_path.empty() ? what : value_path + ": " + what);
 }
-void HazardPlace::RefuseValue(const std::string& value_path, const std::string& what) const {
+void ParseContext::FailValue(const std::string& value_path, const std::string& what) const {
   throw InputError(AtValue(value_path, what));
 }
-void HazardPlace::RefuseFix(const std::string& what) const { throw FixError(At(what)); }
-void HazardPlace::RefuseFixValue(const std::string& value_path, const std::string& what) const {
+void ParseContext::RefuseFix(const std::string& what) const { throw FixError(At(what)); }
+void ParseContext::RefuseFixValue(const std::string& value_path, const std::string& what) const {
   throw FixError(AtValue(value_path, what));
 }
-void HazardPlace::Warn(const std::string& what) {
+void ParseContext::Warn(const std::string& what) {
   if (warnings_.size() < kMostWarnings) warnings_.push_back(At(what));
 }
-void HazardPlace::WarnValue(const std::string& value_path, const std::string& what) {
+void ParseContext::WarnValue(const std::string& value_path, const std::string& what) {
   if (warnings_.size() < kMostWarnings) warnings_.push_back(AtValue(value_path, what));
 }
-bool HazardPlace::IsRepeated(const std::string& kind) {
+bool ParseContext::IsRepeated(const std::string& kind) {
   const auto found = repeated_.find(kind);
   if (found == repeated_.end()) return false;
   Repeated& first = found->second;
@@ -62,23 +62,23 @@ bool HazardPlace::IsRepeated(const std::string& kind) {
   }
   return true;
 }
-void HazardPlace::AddFirst(const std::string& kind, std::string text) {
+void ParseContext::AddFirst(const std::string& kind, std::string text) {
   repeated_[kind] = {warnings_.size(), 0, text};
   if (warnings_.size() < kMostWarnings) warnings_.push_back(std::move(text));
 }
-void HazardPlace::WarnOnce(const std::string& kind, const std::string& what) {
+void ParseContext::WarnOnce(const std::string& kind, const std::string& what) {
   if (!IsRepeated(kind)) AddFirst(kind, At(what));
 }
-void HazardPlace::WarnValueOnce(const std::string& kind, const std::string& value_path,
-                                const std::string& what) {
+void ParseContext::WarnValueOnce(const std::string& kind, const std::string& value_path,
+                                 const std::string& what) {
   if (!IsRepeated(kind)) AddFirst(kind, AtValue(value_path, what));
 }
-void HazardPlace::LeaveOut(const FixError& error, LeftOut& left_out) {
+void ParseContext::LeaveOut(const FixError& error, LeftOut& left_out) {
   if (left_out.count++ == 0) left_out.first = error.what();
   WarnOnce("point", error, "; the point is left out");
 }
-void HazardPlace::WarnOnce(const std::string& kind, const InputError& error,
-                           const std::string& end) {
+void ParseContext::WarnOnce(const std::string& kind, const InputError& error,
+                            const std::string& end) {
   if (!IsRepeated(kind)) AddFirst(kind, error.what() + end);
 }
 
@@ -93,29 +93,29 @@ bool LineReader::Next(std::string_view& line) {
 }
 
 std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min, std::int32_t max,
-                       const HazardPlace& place) {
+                       const ParseContext& place) {
   text = Trim(text);
   const std::optional<std::int32_t> value = ParseWhole(text);
   if (value && *value >= min && *value <= max) return *value;
-  place.Refuse(NotInRange(text, name, min, max));
+  place.Fail(NotInRange(text, name, min, max));
 }
 
 double ReadNumber(std::string_view text, const char* name, double min, double max,
-                  const HazardPlace& place) {
+                  const ParseContext& place) {
   const std::optional<double> value = ParseNumber(text);
   if (value && *value >= min && *value <= max) return *value;  // false for nan
-  place.Refuse(NotInRange(text, name, min, max));
+  place.Fail(NotInRange(text, name, min, max));
 }
 
 std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* name,
                                              std::int32_t min, std::int32_t max,
-                                             const HazardPlace& place) {
+                                             const ParseContext& place) {
   if (Trim(text).empty()) return std::nullopt;
   return ReadWhole(text, name, min, max, place);
 }
 
 std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, std::int32_t min,
-                                     std::int32_t max, HazardPlace& place) {
+                                     std::int32_t max, ParseContext& place) {
   text = Trim(text);
   if (text.empty()) return std::nullopt;
   const std::optional<std::int32_t> value = ParseWhole(text);
@@ -125,7 +125,7 @@ std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, st
 }
 
 std::optional<double> TryNumber(std::string_view text, const char* name, double min, double max,
-                                HazardPlace& place) {
+                                ParseContext& place) {
   if (Trim(text).empty()) return std::nullopt;
   const std::optional<double> value = ParseNumber(text);
   if (value && *value >= min && *value <= max) return value;  // false for nan
@@ -134,13 +134,13 @@ std::optional<double> TryNumber(std::string_view text, const char* name, double 
 }
 
 std::int32_t ReadFixNumber(std::string_view text, const char* name, std::int32_t min,
-                           std::int32_t max, const HazardPlace& place) {
+                           std::int32_t max, const ParseContext& place) {
   const std::optional<std::int32_t> value = ParseWhole(Trim(text));
   if (value && *value >= min && *value <= max) return *value;
   place.RefuseFix(NotInRange(text, name, min, max));
 }
 
-std::int64_t ReadHour(std::string_view text, const HazardPlace& place) {
+std::int64_t ReadHour(std::string_view text, const ParseContext& place) {
   const std::optional<std::int64_t> time = ParseHour(text);
   if (time) return *time;
   place.RefuseFix("time: got " + Quoted(text) + ", expected an hour of UTC as YYYYMMDDHH");

@@ -29,9 +29,9 @@ struct LeftOut {
 };
 
 /// Position of a parser. Reports errors and warnings with the file and the line.
-class HazardPlace {
+class ParseContext {
  public:
-  HazardPlace(const std::string& file, std::vector<std::string>& warnings)
+  ParseContext(const std::string& file, std::vector<std::string>& warnings)
       : file_(file), warnings_(warnings) {}
 
   std::int32_t line{};  ///< 0: `locate` determines it on demand
@@ -39,9 +39,9 @@ class HazardPlace {
   std::function<std::int32_t(const std::string& path)> locate;
 
   /// @throws InputError "file:line: what", with a path "file:line: path.what"
-  [[noreturn]] void Refuse(const std::string& what) const;
+  [[noreturn]] void Fail(const std::string& what) const;
   /// @throws InputError "file:line: value_path: what", with the line of that value
-  [[noreturn]] void RefuseValue(const std::string& value_path, const std::string& what) const;
+  [[noreturn]] void FailValue(const std::string& value_path, const std::string& what) const;
   /// @throws FixError with the words of Refuse
   [[noreturn]] void RefuseFix(const std::string& what) const;
   /// @throws FixError with the words of RefuseValue
@@ -78,7 +78,7 @@ class HazardPlace {
 
 /// Reads one point by `read()`. @returns false when its time or position is invalid: it is left out
 template <typename Read>
-bool TryFix(Read read, LeftOut& left_out, HazardPlace& place) {
+bool TryFix(Read read, LeftOut& left_out, ParseContext& place) {
   try {
     read();
     return true;
@@ -91,7 +91,7 @@ bool TryFix(Read read, LeftOut& left_out, HazardPlace& place) {
 /// Iterates over the lines of a text, without CR and LF.
 class LineReader {
  public:
-  LineReader(std::string_view text, HazardPlace& place) : rest_(text), place_(place) {
+  LineReader(std::string_view text, ParseContext& place) : rest_(text), place_(place) {
     place.line = 0;
   }
   /// Reads the next line and sets place.line to its number; returns false at the end of the text.
@@ -99,35 +99,35 @@ class LineReader {
 
  private:
   std::string_view rest_;
-  HazardPlace& place_;
+  ParseContext& place_;
 };
 
 /// Parses a whole number in [min, max].
 /// @throws InputError "name: got 'x', expected a whole number in …"
 std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min, std::int32_t max,
-                       const HazardPlace& place);
+                       const ParseContext& place);
 /// Parses a decimal number in [min, max]. @throws InputError
 double ReadNumber(std::string_view text, const char* name, double min, double max,
-                  const HazardPlace& place);
+                  const ParseContext& place);
 /// Parses as ReadWhole does; returns nullopt for a blank text.
 std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* name,
                                              std::int32_t min, std::int32_t max,
-                                             const HazardPlace& place);
+                                             const ParseContext& place);
 
 /// As ReadWholeOrBlank; an invalid value is ignored with one warning per name and file.
 std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, std::int32_t min,
-                                     std::int32_t max, HazardPlace& place);
+                                     std::int32_t max, ParseContext& place);
 /// As TryWhole, of a decimal number.
 std::optional<double> TryNumber(std::string_view text, const char* name, double min, double max,
-                                HazardPlace& place);
+                                ParseContext& place);
 /// Ends the warning about a value that is not used.
 inline constexpr const char* kIgnored = "; the value is ignored";
 
 /// A whole number of a time or a position. @throws FixError
 std::int32_t ReadFixNumber(std::string_view text, const char* name, std::int32_t min,
-                           std::int32_t max, const HazardPlace& place);
+                           std::int32_t max, const ParseContext& place);
 
 /// UTC seconds of YYYYMMDDHH. @throws FixError for a date that does not exist
-std::int64_t ReadHour(std::string_view text, const HazardPlace& place);
+std::int64_t ReadHour(std::string_view text, const ParseContext& place);
 
 }  // namespace aquafarm::internal

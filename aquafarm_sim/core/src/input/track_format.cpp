@@ -15,11 +15,11 @@ bool IsDigits(std::string_view text) {
 }
 
 // Distinguishes CMA (times of ten digits) from JMA (times of eight digits).
-std::optional<HazardFormat> DetectBestTrack(std::string_view text) {
+std::optional<TrackFormat> DetectBestTrack(std::string_view text) {
   const std::vector<std::string_view> words = internal::SplitWords(internal::TakeLine(text));
   if (words.empty() || !IsDigits(words[0])) return std::nullopt;
-  if (words[0].size() == 8 && words.size() > 1 && words[1] == "002") return HazardFormat::kJma;
-  return HazardFormat::kCma;
+  if (words[0].size() == 8 && words.size() > 1 && words[1] == "002") return TrackFormat::kJma;
+  return TrackFormat::kCma;
 }
 
 bool HasKey(std::string_view text, std::string_view key) {
@@ -28,32 +28,32 @@ bool HasKey(std::string_view text, std::string_view key) {
 
 }  // namespace
 
-std::string_view ToString(HazardFormat value) {
-  return internal::NameOf(value, std::array<std::string_view, kHazardFormatCount>{
+std::string_view ToString(TrackFormat value) {
+  return internal::NameOf(value, std::array<std::string_view, kTrackFormatCount>{
                                      "CMA best track", "JMA best track", "ATCF b-deck", "IBTrACS",
                                      "bulletin", "weather service track"});
 }
 
-std::optional<HazardFormat> DetectHazardFormat(const std::string& text) {
+std::optional<TrackFormat> DetectTrackFormat(const std::string& text) {
   std::string_view rest = internal::WithoutMark(text);
   const std::string_view whole = rest;
   const std::string_view first = internal::TakeLine(rest);
   if (first.substr(0, 5) == "66666") return DetectBestTrack(rest);
-  if (first.substr(0, 4) == "SID,") return HazardFormat::kIbtracs;
+  if (first.substr(0, 4) == "SID,") return TrackFormat::kIbtracs;
   std::vector<std::string_view> fields;
   internal::SplitFields(first.substr(0, 1000), fields);
   if (fields.size() > 7 && fields[0].size() == 2 && IsDigits(fields[2])) {
-    return HazardFormat::kAtcf;
+    return TrackFormat::kAtcf;
   }
   const bool json = !first.empty() && std::string_view("[{`/").find(first[0]) != first.npos;
   if (!json && !internal::IsAssignment(first)) return std::nullopt;
   if (HasKey(whole, "\"tfbh\"") || HasKey(whole, "\"tfid\"") ||
       (HasKey(whole, "\"points\"") && HasKey(whole, "\"ename\""))) {
-    return HazardFormat::kBulletin;
+    return TrackFormat::kBulletin;
   }
   if (HasKey(whole, "\"track\"") || HasKey(whole, "\"windRadius30\"") ||
       (HasKey(whole, "\"forecast\"") && HasKey(whole, "\"fxTime\""))) {
-    return HazardFormat::kWeatherService;
+    return TrackFormat::kWeatherService;
   }
   return std::nullopt;
 }

@@ -209,7 +209,7 @@ void Encoder::Courses(const View& view, float* out) const {
   CourseRisks risks(scenario_, view.self);
   for (const KnownDisaster& known : view.disasters) {
     if (known.known && known.belief.active()) {
-      risks.Worsen(known.belief, static_cast<float>(known.age));
+      risks.MaxWith(known.belief, static_cast<float>(known.age));
     }
   }
   risks.Write(out, out + kMoveCount);
@@ -219,7 +219,7 @@ void Encoder::Courses(const View& view, float* out) const {
 float* Encoder::Ways(const View& view, float* out) const {
   const Layout& layout = *view.layout;
   const auto cell = static_cast<std::size_t>(LinearIndex(view.self, scenario_.width));
-  const Way* way = layout.ways.data() + cell * layout.way_count();
+  const RouteEntry* way = layout.ways.data() + cell * layout.way_count();
   // Also encodes unreachable targets.
   const std::int32_t farthest = 2 * (scenario_.width + scenario_.height);
   const auto write = [&] {

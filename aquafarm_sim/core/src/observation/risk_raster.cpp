@@ -176,7 +176,7 @@ CourseRisks::CourseRisks(const Scenario& scenario, Cell self) {
   }
 }
 
-void CourseRisks::Worsen(const ObservableDisaster& disaster, float age) {
+void CourseRisks::MaxWith(const ObservableDisaster& disaster, float age) {
   if (disaster.by_quadrant) {
     WorsenByQuadrants(disaster, age, kSteps, x_.data(), y_.data(), risk_.data());
   } else {

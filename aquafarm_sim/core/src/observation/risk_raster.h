@@ -57,7 +57,7 @@ class CourseRisks {
   CourseRisks(const Scenario& scenario, Cell self);
 
   /// Merges a disaster as known `age` steps ago; the worse risk is kept.
-  void Worsen(const ObservableDisaster& disaster, float age);
+  void MaxWith(const ObservableDisaster& disaster, float age);
 
   /// Writes the risks; 1 is the worst risk of §2.1.
   /// @param next [kMoveCount] risk after one step of each move

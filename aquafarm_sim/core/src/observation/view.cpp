@@ -17,28 +17,28 @@ float SquaredDistance(Cell a, float x, float y) {
 }
 
 // Returns whether a point is within `radius` of any sensor.
-bool IsSeen(const std::vector<Cell>& eyes, float x, float y, float radius) {
-  return std::any_of(eyes.begin(), eyes.end(),
+bool IsSeen(const std::vector<Cell>& sensor_positions, float x, float y, float radius) {
+  return std::any_of(sensor_positions.begin(), sensor_positions.end(),
                      [&](Cell eye) { return SquaredDistance(eye, x, y) <= radius * radius; });
 }
 
-bool IsSeen(const std::vector<Cell>& eyes, Cell cell, float radius) {
-  return IsSeen(eyes, static_cast<float>(cell.x), static_cast<float>(cell.y), radius);
+bool IsSeen(const std::vector<Cell>& sensor_positions, Cell cell, float radius) {
+  return IsSeen(sensor_positions, static_cast<float>(cell.x), static_cast<float>(cell.y), radius);
 }
 
-void OpenEyes(const Farm& farm, Cell self, std::vector<Cell>& eyes) {
-  eyes.clear();
-  eyes.push_back(self);
+void CollectSensorPositions(const Farm& farm, Cell self, std::vector<Cell>& sensor_positions) {
+  sensor_positions.clear();
+  sensor_positions.push_back(self);
   if (!farm.scenario().view.shared_sight) return;
   for (const Ship& ship : farm.ships()) {
-    if (ship.in_play) eyes.push_back(ship.cell);
+    if (ship.in_play) sensor_positions.push_back(ship.cell);
   }
 }
 
 // Restores rings, risks and grade to the time of the last bulletin, because later changes are not
 // observable out of sight.
-void TakeBackToBulletin(const std::vector<Waypoint>& track, const Bulletin& told,
-                        ObservableDisaster& belief) {
+void RestoreBulletin(const std::vector<Waypoint>& track, const Bulletin& told,
+                     ObservableDisaster& belief) {
   if (!track.empty()) {
     belief.waypoint = 0;
     FollowTrack(belief, track, 0);
@@ -57,7 +57,7 @@ void TakeBackToBulletin(const std::vector<Waypoint>& track, const Bulletin& told
 }
 
 // Replaces the current motion by the motion of the forecast, if there is one.
-void TellForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
+void ApplyForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
   const auto disaster = static_cast<std::int32_t>(id);
   const std::int32_t issued = farm.step() - known.age;
   if (!HasForecast(farm, disaster, issued)) return;
@@ -67,20 +67,20 @@ void TellForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
   known.belief.dy = (there[1] - known.belief.y) / lead;
 }
 
-void ObserveDisaster(const Farm& farm, std::size_t id, bool full, const std::vector<Cell>& eyes,
-                     KnownDisaster& known) {
+void ObserveDisaster(const Farm& farm, std::size_t id, bool full,
+                     const std::vector<Cell>& sensor_positions, KnownDisaster& known) {
   const Disaster& disaster = farm.disasters()[id];
   const ViewSpec& view = farm.scenario().view;
   known.belief = disaster;
   known.age = 0;
   // A ship observes a disaster if its edge is within sensor range ([decided], see docs/model.md).
   const float range = view.sensor_radius + disaster.reach();
-  known.visible = full || IsSeen(eyes, disaster.x, disaster.y, range);
+  known.visible = full || IsSeen(sensor_positions, disaster.x, disaster.y, range);
   known.known = known.visible || disaster.bulletin.step != kNone;
   if (known.visible || !known.known) return;
   const Bulletin& bulletin = disaster.bulletin;
   known.age = farm.step() - bulletin.step;
-  TakeBackToBulletin(*farm.tracks()[id], bulletin, known.belief);
+  RestoreBulletin(*farm.tracks()[id], bulletin, known.belief);
   known.belief.x = bulletin.x;
   known.belief.y = bulletin.y;
   known.belief.speed = bulletin.speed;
@@ -106,7 +106,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   view.capacity = scenario.ships.capacity;
   view.scenario = &scenario;
   view.layout = &farm.layout();
-  OpenEyes(farm, view.self, view.eyes);
+  CollectSensorPositions(farm, view.self, view.sensor_positions);
 
   view.others.resize(ships.size() - 1);
   for (std::size_t id = 0, k = 0; id < ships.size(); ++id) {
@@ -115,7 +115,8 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     known.id = static_cast<std::int32_t>(id);
     known.cell = ships[id].cell;
     known.aboard = ships[id].aboard;
-    known.visible = ships[id].in_play && (full || IsSeen(view.eyes, known.cell, radius));
+    known.visible =
+        ships[id].in_play && (full || IsSeen(view.sensor_positions, known.cell, radius));
   }
 
   view.devices.resize(farm.devices().size());
@@ -123,7 +124,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     const Device& device = farm.devices()[id];
     KnownDevice& known = view.devices[id];
     const Cell cell = farm.CellOf(static_cast<std::int32_t>(id));
-    const bool visible = full || IsSeen(view.eyes, cell, radius);
+    const bool visible = full || IsSeen(view.sensor_positions, cell, radius);
     // Out of sight only the cell where the device was deployed is known.
     known.cell = visible ? cell : view.layout->devices[id].cell;
     known.status = device.status;
@@ -136,8 +137,8 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
 
   view.disasters.resize(farm.disasters().size());
   for (std::size_t id = 0; id < view.disasters.size(); ++id) {
-    ObserveDisaster(farm, id, full, view.eyes, view.disasters[id]);
-    if (view.disasters[id].known) TellForecast(farm, id, view.disasters[id]);
+    ObserveDisaster(farm, id, full, view.sensor_positions, view.disasters[id]);
+    if (view.disasters[id].known) ApplyForecast(farm, id, view.disasters[id]);
   }
 }
 

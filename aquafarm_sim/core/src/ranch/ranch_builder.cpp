@@ -56,7 +56,7 @@ class Builder {
     }
   }
 
-  Ranch Build() {
+  BuiltRanch Build() {
     PlaceTerrain();
     PlacePorts();
     SetTime();
@@ -143,7 +143,7 @@ class Builder {
   LandShare ReadChart() {
     if (request_.chart.empty()) return LandShare::Zero(height(), width());
     const std::string text = internal::ReadTextFile(request_.chart);
-    const internal::FileLook look = internal::LookAt(text);
+    const internal::DetectedFile look = internal::DetectFileType(text);
     const bool unknown = look.kind == internal::FileKind::kUnknown;
     switch (unknown ? internal::KindByName(request_.chart) : look.kind) {
       case internal::FileKind::kMapYaml: {
@@ -210,51 +210,51 @@ class Builder {
   }
 
   // In the name of a fix of the track's file; JSON has no lines here.
-  [[noreturn]] void Refuse(const HazardFix& fix, const std::string& what) const {
+  [[noreturn]] void Fail(const StormFix& fix, const std::string& what) const {
     throw InputError(request_.track + ":" + (fix.line > 0 ? std::to_string(fix.line) + ":" : "") +
                      " " + FormatTime(fix.time) + ": " + what);
   }
 
   // The scenario's reader says the same of the line that is written here.
-  void CheckReach(const HazardTrack& track) {
+  void CheckReach(const StormTrack& track) {
     const GeoFrame frame = Frame();
-    for (const HazardFix& fix : track.fixes) {
+    for (const StormFix& fix : track.fixes) {
       const bool kept = fix.time >= plan_.storm.waypoints.front().time &&
                         fix.time <= plan_.storm.waypoints.back().time;
       if (!kept || frame.Faces(fix.position)) continue;
-      Refuse(fix, Text("got latitude %g, longitude %g, expected a place within 60 degrees of the "
-                       "ranch",
-                       fix.position.latitude, fix.position.longitude));
+      Fail(fix, Text("got latitude %g, longitude %g, expected a place within 60 degrees of the "
+                     "ranch",
+                     fix.position.latitude, fix.position.longitude));
     }
   }
 
   // The recorded track and its newest forecast: its own, or one of --forecasts unless the track is
   // a best track, which is complete.
-  HazardTrack Continued(HazardTrack recorded, HazardFormat format) {
-    const bool complete = format == HazardFormat::kCma || format == HazardFormat::kJma;
+  StormTrack Continued(StormTrack recorded, TrackFormat format) {
+    const bool complete = format == TrackFormat::kCma || format == TrackFormat::kJma;
     if (!request_.forecasts.empty()) {
-      forecasts_ = LoadHazardFile(request_.forecasts);
+      forecasts_ = LoadStormFile(request_.forecasts);
       Keep(forecasts_.warnings);
       if (NewestForecast(recorded) == nullptr && !complete) {
         recorded.forecasts = internal::SameStorm("forecasts", forecasts_, recorded).forecasts;
       }
     }
-    HazardTrack whole = WithForecast(recorded, NoForecast::kEnd);
+    StormTrack whole = WithForecast(recorded, NoForecast::kEnd);
     plan_.knowledge = KnowledgeOf(recorded, whole);
     return whole;
   }
 
-  HazardTrack ReadTrack() {
-    const auto only = [](const HazardFile& file, const std::string& storm) {
+  StormTrack ReadTrack() {
+    const auto only = [](const StormFile& file, const std::string& storm) {
       return storm.empty() && file.tracks.size() == 1 ? file.tracks[0] : FindTrack(file, storm);
     };
-    const HazardFile file = LoadHazardFile(request_.track);
+    const StormFile file = LoadStormFile(request_.track);
     Keep(file.warnings);
-    HazardTrack track = only(file, request_.storm);
+    StormTrack track = only(file, request_.storm);
     const auto recorded = static_cast<int>(track.fixes.size());
     std::string radii;
     if (!request_.radii.empty()) {
-      const HazardFile other = LoadHazardFile(request_.radii);
+      const StormFile other = LoadStormFile(request_.radii);
       Keep(other.warnings);
       radii = Text("; radii of %d from %s",
                    BorrowRings(internal::SameStorm("radii", other, track), track),
@@ -262,12 +262,11 @@ class Builder {
     }
     track = Continued(track, file.format);
     if (track.fixes.size() == 1) {
-      Refuse(track.fixes[0], "got the only point of " +
-                                 (track.name.empty() ? track.id : track.name) +
-                                 ", expected two or more to know how the storm moves");
+      Fail(track.fixes[0], "got the only point of " + (track.name.empty() ? track.id : track.name) +
+                               ", expected two or more to know how the storm moves");
     }
     plan_.storm = ToRings(track, request_.reduction);
-    const bool blank = file.format == HazardFormat::kIbtracs && plan_.storm.estimated > 0;
+    const bool blank = file.format == TrackFormat::kIbtracs && plan_.storm.estimated > 0;
     const std::int32_t averaging = track.fixes.front().averaging_min;
     plan_.storm_text = (track.name.empty() ? track.id : track.name + " (" + track.id + ")") + ", " +
                        std::string(ToString(file.format)) + " " + FileName(request_.track);
@@ -285,10 +284,10 @@ class Builder {
     internal::Check("step", plan_.step_s, internal::Interval<double>{0.001, 1.0e6});
     plan_.start = request_.start.value_or(0);
     if (request_.track.empty()) return Say(Text("time: %g s a step; no storm", plan_.step_s));
-    const HazardTrack track = ReadTrack();
+    const StormTrack track = ReadTrack();
     const double half_diagonal_km =
         std::hypot(width(), height()) / 2.0 * plan_.cell_size_m / 1000.0;
-    const Passage passage = PassOver(plan_.storm, *request_.center, half_diagonal_km);
+    const Passage passage = ClosestApproach(plan_.storm, *request_.center, half_diagonal_km);
     const internal::PassageReport report = internal::Report(plan_.storm, passage, plan_.knowledge);
     for (const std::string& line : report.lines) Say(line);
     Keep(report.warnings);
@@ -316,20 +315,20 @@ class Builder {
   }
 
   // From the newest issued by the start on, of the agency that each bulletin names first.
-  void ReadForecasts(const HazardTrack& track, std::int64_t end) {
+  void ReadForecasts(const StormTrack& track, std::int64_t end) {
     if (request_.forecasts.empty()) return;
-    std::vector<HazardForecast>& kept = plan_.forecasts;
-    for (HazardForecast forecast : internal::SameStorm("forecasts", forecasts_, track).forecasts) {
+    std::vector<StormForecast>& kept = plan_.forecasts;
+    for (StormForecast forecast : internal::SameStorm("forecasts", forecasts_, track).forecasts) {
       auto& fixes = forecast.fixes;
       fixes.erase(std::remove_if(fixes.begin(), fixes.end(),
-                                 [&](const HazardFix& fix) { return fix.time <= forecast.issued; }),
+                                 [&](const StormFix& fix) { return fix.time <= forecast.issued; }),
                   fixes.end());
       const bool second = !kept.empty() && kept.back().issued == forecast.issued;
       if (second || fixes.empty() || forecast.issued >= end) continue;
       if (forecast.issued <= plan_.start) kept.clear();
       kept.push_back(std::move(forecast));
     }
-    const auto ends = [](const HazardForecast& one) { return one.fixes.back().time; };
+    const auto ends = [](const StormForecast& one) { return one.fixes.back().time; };
     if (!kept.empty() && ends(kept.front()) <= plan_.start) {
       ranch_.warnings.push_back("forecasts: that of " + FormatTime(kept.front().issued) +
                                 " ends at " + FormatTime(ends(kept.front())) +
@@ -458,25 +457,25 @@ class Builder {
   }
 
   const RanchRequest& request_;
-  Ranch ranch_;
+  BuiltRanch ranch_;
   internal::RanchPlan plan_;
   Layer value_;              // of a device, by cell
-  HazardFile forecasts_;     // of --forecasts
+  StormFile forecasts_;      // of --forecasts
   std::int32_t duration_{};  // of all disasters
   bool ends_unknown_{};      // the storm is near where its known track ends: no calm follows
 };
 
 }  // namespace
 
-Ranch BuildRanch(const RanchRequest& request) {
-  Ranch ranch = Builder(request).Build();
+BuiltRanch BuildRanch(const RanchRequest& request) {
+  BuiltRanch ranch = Builder(request).Build();
   LayoutGenerator generator(ranch.scenario);
   Layout layout;
   generator.Generate(0, 0, layout);  // refuses what does not fit on the water there is
   return ranch;
 }
 
-std::string Sketch(const Scenario& scenario) {
+std::string RenderAscii(const Scenario& scenario) {
   LayoutGenerator generator(scenario);
   Layout layout;
   generator.Generate(scenario.layout_seed, 0, layout);

@@ -11,23 +11,23 @@
 namespace aquafarm::internal {
 namespace {
 
-std::string NameOfStorm(const HazardTrack& track) {
+std::string NameOfStorm(const StormTrack& track) {
   return track.name.empty() ? track.id : track.name;
 }
 
-const HazardTrack& OfThatName(const std::string& option, const HazardFile& file,
-                              const HazardTrack& track) {
+const StormTrack& OfThatName(const std::string& option, const StormFile& file,
+                             const StormTrack& track) {
   const auto letters = [](const std::string& name) {
     std::string bare = Upper(name);
     bare.erase(std::remove(bare.begin(), bare.end(), '-'), bare.end());
     return bare;
   };
-  const HazardTrack& first = file.tracks.front();
+  const StormTrack& first = file.tracks.front();
   const bool unnamed = first.name.empty() || track.name.empty();
   if (file.tracks.size() == 1 && (unnamed || letters(first.name) == letters(track.name))) {
     return first;
   }
-  for (const HazardTrack& other : file.tracks) {
+  for (const StormTrack& other : file.tracks) {
     if (other.id == track.id) return other;
   }
   try {
@@ -77,9 +77,9 @@ std::string AwayLine(const std::string& wind, const StormRings& storm, const Pas
 
 }  // namespace
 
-const HazardTrack& SameStorm(const std::string& option, const HazardFile& file,
-                             const HazardTrack& track) {
-  const HazardTrack& same = OfThatName(option, file, track);
+const StormTrack& SameStorm(const std::string& option, const StormFile& file,
+                            const StormTrack& track) {
+  const StormTrack& same = OfThatName(option, file, track);
   const std::int64_t first = same.fixes.front().time;
   const std::int64_t last = same.fixes.back().time;
   if (first <= track.fixes.back().time && last >= track.fixes.front().time) return same;

@@ -14,8 +14,8 @@ namespace aquafarm::internal {
 /// The storm of `track` in another file: by its id, else by its name, at the same time.
 /// @param option that names the file, for messages
 /// @throws InputError when the file has no such storm at that time
-const HazardTrack& SameStorm(const std::string& option, const HazardFile& file,
-                             const HazardTrack& track);
+const StormTrack& SameStorm(const std::string& option, const StormFile& file,
+                            const StormTrack& track);
 
 /// What `aquafarm scenario` reports of a storm's passage, a line each.
 struct PassageReport {

@@ -177,11 +177,11 @@ class Writer {
 
   void WriteForecasts() {
     Line("    forecasts:");
-    for (const HazardForecast& forecast : plan_.forecasts) {
+    for (const StormForecast& forecast : plan_.forecasts) {
       Line("      - time: " + FormatTime(forecast.issued) +
            (forecast.agency.empty() ? "" : "  # " + OneLine(forecast.agency)) +
            "\n        points:");
-      for (const HazardFix& fix : forecast.fixes) {
+      for (const StormFix& fix : forecast.fixes) {
         Line("          - {time: " + FormatTime(fix.time) +
              ", latitude: " + Short(fix.position.latitude, 3) +
              ", longitude: " + Short(fix.position.longitude, 3) + "}");

@@ -30,7 +30,7 @@ struct RanchPlan {
   std::string storm_text;   ///< what it is, for people
   StormKnowledge knowledge;
   std::int32_t storm_steps{};
-  std::vector<HazardForecast> forecasts;  ///< of the storm, in order of issue
+  std::vector<StormForecast> forecasts;  ///< of the storm, in order of issue
   std::vector<DisasterSpec> presets;
   std::vector<NamedLayer> layers;
   std::vector<std::string> sea_units;  ///< by layer

@@ -70,8 +70,8 @@ void Resolve(const GeoFix& fix, const WorldFrame* frame, const std::string& path
 
 template <typename Archive, typename Point>
 void VisitGeoPoint(Archive& a, Point& point) {
-  a.Leaf("latitude", point.latitude, Interval<double>{-90.0, 90.0}, Need::kRequired);
-  a.Leaf("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
+  a.Field("latitude", point.latitude, Interval<double>{-90.0, 90.0}, Need::kRequired);
+  a.Field("longitude", point.longitude, Interval<double>{-180.0, 180.0}, Need::kRequired);
 }
 
 /// Reference to a field of a netCDF file; converted to the values of a SeaLayer.
@@ -111,47 +111,47 @@ void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const Grade
   const ListOf<Interval<float>> quadrants{kRadius, 0, kMaxRings};
   const bool by_quadrant = a.Has("quadrants", !waypoint.quadrants.empty());
   a.When(!real, "there is no time");
-  a.Leaf("step", waypoint.step, kStep, Need::kRequired);
-  a.Leaf("x", waypoint.x, kPlace, Need::kRequired);
-  a.Leaf("y", waypoint.y, kPlace, Need::kRequired);
+  a.Field("step", waypoint.step, kStep, Need::kRequired);
+  a.Field("x", waypoint.x, kPlace, Need::kRequired);
+  a.Field("y", waypoint.y, kPlace, Need::kRequired);
   a.When(!real && !by_quadrant, real ? "there is no time" : "there are no quadrants");
-  a.Leaf("radii", waypoint.radii, radii, Need::kRequired);
+  a.Field("radii", waypoint.radii, radii, Need::kRequired);
   a.When(!real && by_quadrant, real ? "there is no time" : "there are quadrants");
-  a.Leaf("quadrants", waypoint.quadrants, quadrants);
+  a.Field("quadrants", waypoint.quadrants, quadrants);
   if constexpr (Archive::kReads) {
     if (by_quadrant) waypoint.radii = Largest(waypoint.quadrants);
     GeoFix fix;
     const bool by_quadrant_km = a.Has("quadrants_km", false);
     a.When(real, "there is a time");
-    a.Leaf("time", fix.time, UtcTime{}, Need::kRequired);
+    a.Field("time", fix.time, UtcTime{}, Need::kRequired);
     VisitGeoPoint(a, fix.point);
     a.When(real && !by_quadrant_km, real ? "there are no quadrants_km" : "there is a time");
-    a.Leaf("radii_km", fix.radii_km, radii, Need::kRequired);
+    a.Field("radii_km", fix.radii_km, radii, Need::kRequired);
     a.When(real, "there is a time");
-    a.Leaf("quadrants_km", fix.quadrants_km, quadrants);
-    a.Leaf("pressure_hpa", fix.pressure_hpa, Interval<float>{800.0F, 1100.0F});
-    a.Leaf("wind_mps", fix.wind_mps, Interval<float>{0.0F, 150.0F});
+    a.Field("quadrants_km", fix.quadrants_km, quadrants);
+    a.Field("pressure_hpa", fix.pressure_hpa, Interval<float>{800.0F, 1100.0F});
+    a.Field("wind_mps", fix.wind_mps, Interval<float>{0.0F, 150.0F});
     if (real) Resolve(fix, frame, a.path(), waypoint);
   }
   a.Always();
-  a.Leaf("grade", waypoint.grade, kGrade, Need::kRequired);
+  a.Field("grade", waypoint.grade, kGrade, Need::kRequired);
   if constexpr (Archive::kReads) {
     if (!by_grade.empty()) waypoint.risks = by_grade[static_cast<std::size_t>(waypoint.grade - 1)];
   }
-  a.Leaf("risks", waypoint.risks, ListOf<Interval<float>>{kRisk, 1, kMaxRings});
+  a.Field("risks", waypoint.risks, ListOf<Interval<float>>{kRisk, 1, kMaxRings});
 }
 
 template <typename Archive, typename P>
 void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame) {
   const bool real = a.Has("time", false);
   a.When(!real, "there is no time");
-  a.Leaf("step", point.step, kStep, Need::kRequired);
-  a.Leaf("x", point.x, kPlace, Need::kRequired);
-  a.Leaf("y", point.y, kPlace, Need::kRequired);
+  a.Field("step", point.step, kStep, Need::kRequired);
+  a.Field("x", point.x, kPlace, Need::kRequired);
+  a.Field("y", point.y, kPlace, Need::kRequired);
   if constexpr (Archive::kReads) {
     GeoFix fix;
     a.When(real, "there is a time");
-    a.Leaf("time", fix.time, UtcTime{}, Need::kRequired);
+    a.Field("time", fix.time, UtcTime{}, Need::kRequired);
     VisitGeoPoint(a, fix.point);
     Waypoint there;
     if (real) Resolve(fix, frame, a.path(), there);
@@ -164,15 +164,15 @@ template <typename Archive, typename F>
 void VisitForecast(Archive& a, F& forecast, const WorldFrame* frame) {
   const bool real = a.Has("time", false);
   a.When(!real, "there is no time");
-  a.Leaf("step", forecast.step, kStep, Need::kRequired);
+  a.Field("step", forecast.step, kStep, Need::kRequired);
   if constexpr (Archive::kReads) {
     std::int64_t time{};
     a.When(real, "there is a time");
-    a.Leaf("time", time, UtcTime{}, Need::kRequired);
+    a.Field("time", time, UtcTime{}, Need::kRequired);
     if (real) forecast.step = ToStep(time, frame, a.path());
   }
   a.Always();
-  a.Objects("points", forecast.points, {1, kMaxWaypoints},
+  a.Structs("points", forecast.points, {1, kMaxWaypoints},
             [&](auto& b, auto& point) { VisitForecastPoint(b, point, frame); });
 }
 
@@ -182,36 +182,36 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   const ListOf<Interval<float>> risks{kRisk, 1, kMaxRings};
   const bool graded = a.Has("grade_risks", !disaster.grade_risks.empty());
   const bool by_quadrant = a.Has("quadrants", !disaster.quadrants.empty());
-  a.Leaf("kind", disaster.kind, OneOfNames{}, Need::kRequired);
+  a.Field("kind", disaster.kind, OneOfNames{}, Need::kRequired);
   a.When(!graded, "there are no grade_risks");
-  a.Leaf("risks", disaster.risks, risks);
+  a.Field("risks", disaster.risks, risks);
   a.When(tracked && graded, "there is a track");
-  a.Leaf("grade_risks", disaster.grade_risks,
-         ListOf<ListOf<Interval<float>>>{risks, graded ? 4U : 0U, 4});
+  a.Field("grade_risks", disaster.grade_risks,
+          ListOf<ListOf<Interval<float>>>{risks, graded ? 4U : 0U, 4});
   a.Always();
-  a.Leaf("duration", disaster.duration, Interval<std::int32_t>{1, kMaxSteps});
+  a.Field("duration", disaster.duration, Interval<std::int32_t>{1, kMaxSteps});
   a.When(!tracked, "there is no track");
-  a.Leaf("grade", disaster.grade, kGrade);
+  a.Field("grade", disaster.grade, kGrade);
   a.When(!tracked && !by_quadrant, tracked ? "there is no track" : "there are no quadrants");
-  a.Leaf("radii", disaster.radii, ListOf<Interval<float>>{kRadius, 1, kMaxRings});
+  a.Field("radii", disaster.radii, ListOf<Interval<float>>{kRadius, 1, kMaxRings});
   a.When(!tracked && by_quadrant, tracked ? "there is no track" : "there are quadrants");
-  a.Leaf("quadrants", disaster.quadrants, ListOf<Interval<float>>{kRadius, 0, kMaxRings});
+  a.Field("quadrants", disaster.quadrants, ListOf<Interval<float>>{kRadius, 0, kMaxRings});
   if constexpr (Archive::kReads) {
     if (by_quadrant) disaster.radii = Largest(disaster.quadrants);
   }
   a.When(!tracked, "there is no track");
-  a.Leaf("speed", disaster.speed, Interval<float>{0.0F, 1000.0F});
-  a.Leaf("heading_deg", disaster.heading_deg, Interval<std::int32_t>{0, 359});
-  a.Leaf("turn_probability", disaster.turn_probability, kShare);
-  a.Leaf("radius_growth", disaster.radius_growth, Interval<float>{-100.0F, 100.0F});
-  a.Leaf("border", disaster.border, OneOfNames{});
-  a.Leaf("start", disaster.start, kPlace);
+  a.Field("speed", disaster.speed, Interval<float>{0.0F, 1000.0F});
+  a.Field("heading_deg", disaster.heading_deg, Interval<std::int32_t>{0, 359});
+  a.Field("turn_probability", disaster.turn_probability, kShare);
+  a.Field("radius_growth", disaster.radius_growth, Interval<float>{-100.0F, 100.0F});
+  a.Field("border", disaster.border, OneOfNames{});
+  a.Field("start", disaster.start, kPlace);
   a.When(Archive::kReads ? tracked : !disaster.forecasts.empty(), "there is a track");
-  a.Objects("forecasts", disaster.forecasts, {0, kMaxWaypoints},
+  a.Structs("forecasts", disaster.forecasts, {0, kMaxWaypoints},
             [&](auto& b, auto& forecast) { VisitForecast(b, forecast, frame); });
   a.Always();
   if (!tracked) return;
-  a.Objects("track", disaster.track, {1, kMaxWaypoints}, [&](auto& b, auto& waypoint) {
+  a.Structs("track", disaster.track, {1, kMaxWaypoints}, [&](auto& b, auto& waypoint) {
     if constexpr (Archive::kReads) waypoint.risks = disaster.risks;
     VisitWaypoint(b, waypoint, frame, disaster.grade_risks);
   });
@@ -225,54 +225,54 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
 
 template <typename Archive, typename S>
 void VisitIslands(Archive& a, S& s) {
-  a.Objects("islands", s.islands, {0, kMaxListed}, [](auto& b, auto& island) {
-    b.Leaf("x", island.south_west.x, kAlong, Need::kRequired);
-    b.Leaf("y", island.south_west.y, kAlong, Need::kRequired);
-    b.Leaf("width", island.width, kSide);
-    b.Leaf("height", island.height, kSide);
+  a.Structs("islands", s.islands, {0, kMaxListed}, [](auto& b, auto& island) {
+    b.Field("x", island.south_west.x, kAlong, Need::kRequired);
+    b.Field("y", island.south_west.y, kAlong, Need::kRequired);
+    b.Field("width", island.width, kSide);
+    b.Field("height", island.height, kSide);
   });
 }
 
 template <typename Archive, typename S>
 void VisitRocksAndPorts(Archive& a, S& s) {
-  a.Object("rocks", [&](auto& b) {
+  a.Struct("rocks", [&](auto& b) {
     const bool chosen = b.Has("cells", !s.rocks.cells.empty());
     b.When(!chosen, "there are no cells");
-    b.Leaf("count", s.rocks.count, Interval<std::int32_t>{0, kMaxSide * kMaxSide});
+    b.Field("count", s.rocks.count, Interval<std::int32_t>{0, kMaxSide * kMaxSide});
     b.When(chosen, "there are cells");
-    b.Leaf("cells", s.rocks.cells, ListOf<AnyCell>{{}, chosen ? 1U : 0U, kMaxListed});
+    b.Field("cells", s.rocks.cells, ListOf<AnyCell>{{}, chosen ? 1U : 0U, kMaxListed});
     b.Always();
-    b.Leaf("reward", s.rocks.reward, kPenalty);
+    b.Field("reward", s.rocks.reward, kPenalty);
   });
-  a.Object("ports", [&](auto& b) {
+  a.Struct("ports", [&](auto& b) {
     const bool chosen = b.Has("cells", !s.ports.cells.empty());
     b.When(!chosen, "there are no cells");
-    b.Leaf("count", s.ports.count, Interval<std::int32_t>{1, kMaxPorts});
+    b.Field("count", s.ports.count, Interval<std::int32_t>{1, kMaxPorts});
     b.When(chosen, "there are cells");
-    b.Leaf("cells", s.ports.cells, ListOf<AnyCell>{{}, chosen ? 1U : 0U, kMaxPorts});
+    b.Field("cells", s.ports.cells, ListOf<AnyCell>{{}, chosen ? 1U : 0U, kMaxPorts});
     b.Always();
   });
 }
 
 template <typename Archive, typename S>
 void VisitDevices(Archive& a, S& s) {
-  a.Object("devices", [&](auto& b) {
+  a.Struct("devices", [&](auto& b) {
     auto& devices = s.devices;
-    b.Leaf("placement", devices.placement, OneOfNames{});
+    b.Field("placement", devices.placement, OneOfNames{});
     const bool chosen = devices.placement == DevicePlacement::kExplicit;
     b.When(!chosen, "placement is not explicit");
-    b.Leaf("count", devices.count, Interval<std::int32_t>{1, kMaxDevices});
-    b.Leaf("kinds", devices.kinds, ListOf<OneOfNames>{{}, 1, kMaxDevices});
-    b.Leaf("self_propelled", devices.self_propelled, Interval<std::int32_t>{0, kMaxDevices});
+    b.Field("count", devices.count, Interval<std::int32_t>{1, kMaxDevices});
+    b.Field("kinds", devices.kinds, ListOf<OneOfNames>{{}, 1, kMaxDevices});
+    b.Field("self_propelled", devices.self_propelled, Interval<std::int32_t>{0, kMaxDevices});
     b.Always();
-    b.Leaf("value", devices.value, kDeviceValue);
-    b.Leaf("health", devices.health, Interval<float>{0.0F, 1.0F, true});
+    b.Field("value", devices.value, kDeviceValue);
+    b.Field("health", devices.health, Interval<float>{0.0F, 1.0F, true});
     b.When(chosen, "placement is explicit");
-    b.Objects("sites", devices.sites, {0, kMaxDevices}, [](auto& c, auto& site) {
-      c.Leaf("cell", site.cell, AnyCell{}, Need::kRequired);
-      c.Leaf("kind", site.kind, OneOfNames{}, Need::kRequired);
-      c.Leaf("value", site.value, kDeviceValue);
-      c.Leaf("self_propelled", site.self_propelled, AnyFlag{});
+    b.Structs("sites", devices.sites, {0, kMaxDevices}, [](auto& c, auto& site) {
+      c.Field("cell", site.cell, AnyCell{}, Need::kRequired);
+      c.Field("kind", site.kind, OneOfNames{}, Need::kRequired);
+      c.Field("value", site.value, kDeviceValue);
+      c.Field("self_propelled", site.self_propelled, AnyFlag{});
     });
     b.Always();
   });
@@ -280,37 +280,37 @@ void VisitDevices(Archive& a, S& s) {
 
 template <typename Archive, typename S>
 void VisitRewardsAndDamage(Archive& a, S& s) {
-  a.Object("rewards", [&](auto& b) {
-    b.Leaf("island_crash", s.rewards.island_crash, kPenalty);
-    b.Leaf("pickup", s.rewards.pickup, kReward);
-    b.Leaf("drop_off", s.rewards.drop_off, kReward);
-    b.Leaf("illegal", s.rewards.illegal, kReward);
-    b.Leaf("collision", s.rewards.collision, kReward);
-    b.Leaf("step", s.rewards.step, kReward);
-    b.Leaf("sharing", s.rewards.sharing, OneOfNames{});
+  a.Struct("rewards", [&](auto& b) {
+    b.Field("island_crash", s.rewards.island_crash, kPenalty);
+    b.Field("pickup", s.rewards.pickup, kReward);
+    b.Field("drop_off", s.rewards.drop_off, kReward);
+    b.Field("illegal", s.rewards.illegal, kReward);
+    b.Field("collision", s.rewards.collision, kReward);
+    b.Field("step", s.rewards.step, kReward);
+    b.Field("sharing", s.rewards.sharing, OneOfNames{});
   });
-  a.Object("damage", [&](auto& b) {
-    b.Leaf("crash_probability", s.damage.crash_probability, kShare);
-    b.Leaf("island_damage", s.damage.island_damage, kShare);
-    b.Leaf("exposure_damage", s.damage.exposure_damage, kShare);
+  a.Struct("damage", [&](auto& b) {
+    b.Field("crash_probability", s.damage.crash_probability, kShare);
+    b.Field("island_damage", s.damage.island_damage, kShare);
+    b.Field("exposure_damage", s.damage.exposure_damage, kShare);
   });
 }
 
 template <typename Archive, typename S>
 void VisitView(Archive& a, S& s) {
-  a.Object("view", [&](auto& b) {
-    b.Leaf("mode", s.view.mode, OneOfNames{});
+  a.Struct("view", [&](auto& b) {
+    b.Field("mode", s.view.mode, OneOfNames{});
     b.When(s.view.mode == ViewMode::kPartial, "mode is partial");
-    b.Leaf("sensor_radius", s.view.sensor_radius, kRadius);
-    b.Leaf("bulletin_period", s.view.bulletin_period, Interval<std::int32_t>{0, kMaxSteps});
-    b.Leaf("bulletin_noise", s.view.bulletin_noise, Interval<float>{0.0F, 1000.0F});
-    b.Leaf("shared_sight", s.view.shared_sight, AnyFlag{});
+    b.Field("sensor_radius", s.view.sensor_radius, kRadius);
+    b.Field("bulletin_period", s.view.bulletin_period, Interval<std::int32_t>{0, kMaxSteps});
+    b.Field("bulletin_noise", s.view.bulletin_noise, Interval<float>{0.0F, 1000.0F});
+    b.Field("shared_sight", s.view.shared_sight, AnyFlag{});
     b.When(Archive::kReads || !s.view.forecast_error_km.empty(), "");
-    b.Leaf("forecast_error_km", s.view.forecast_error_km,
-           ListOf<Interval<float>>{{0.0F, 10000.0F}, Archive::kReads ? 3U : 0U, 3});
+    b.Field("forecast_error_km", s.view.forecast_error_km,
+            ListOf<Interval<float>>{{0.0F, 10000.0F}, Archive::kReads ? 3U : 0U, 3});
     b.Always();
-    b.Leaf("waterways", s.view.waterways, AnyFlag{});
-    b.Leaf("courses", s.view.courses, AnyFlag{});
+    b.Field("waterways", s.view.waterways, AnyFlag{});
+    b.Field("courses", s.view.courses, AnyFlag{});
   });
 }
 
@@ -323,33 +323,33 @@ void VisitPerCell(Archive& a, const char* rule_key, const char* key, const char*
   if constexpr (Archive::kReads) {
     std::string rule;
     ruled = a.Has(rule_key, false);
-    a.Leaf(rule_key, rule, TextOf{1, 1000});
+    a.Field(rule_key, rule, TextOf{1, 1000});
     const std::string path = Join(a.path(), rule_key);
     if (ruled) values = ByRule(rule, scenario.seas->layers, path);
     const bool one_a_cell = values.size() == static_cast<std::size_t>(scenario.CellCount());
     if (ruled && one_a_cell) CheckPerCell(path, values, scenario.width, range);
   }
   a.When(Archive::kReads ? !ruled : !values.empty(), condition);
-  a.Leaf(key, values, ListOf<NumberOrNone>{{}, 0, kMaxSeaValues});
+  a.Field(key, values, ListOf<NumberOrNone>{{}, 0, kMaxSeaValues});
   a.Always();
 }
 
 template <typename Archive, typename S>
 void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
   a.Optional("seas", s.seas, [&](auto& b, auto& sea) {
-    b.Objects("layers", sea.layers, {0, kMaxLayers}, [&](auto& c, auto& layer) {
-      c.Leaf("name", layer.name, TextOf{1, 60}, Need::kRequired);
+    b.Structs("layers", sea.layers, {0, kMaxLayers}, [&](auto& c, auto& layer) {
+      c.Field("name", layer.name, TextOf{1, 60}, Need::kRequired);
       const bool from_file = c.Has("file", false);
       c.When(!from_file, "there is no file");
-      c.Leaf("units", layer.units, TextOf{0, 60});
-      c.Leaf("values", layer.values, ListOf<NumberOrNone>{{}, 1, kMaxSeaValues}, Need::kRequired);
+      c.Field("units", layer.units, TextOf{0, 60});
+      c.Field("values", layer.values, ListOf<NumberOrNone>{{}, 1, kMaxSeaValues}, Need::kRequired);
       if constexpr (Archive::kReads) {
         SeaSource source;
         c.When(from_file, "there is a file");
-        c.Leaf("file", source.file, TextOf{1, 1000}, Need::kRequired);
-        c.Leaf("variable", source.variable, TextOf{1, 200}, Need::kRequired);
-        c.Leaf("depth_m", source.depth_m, Interval<double>{0.0, 12000.0});
-        c.Leaf("time", source.time, UtcTime{});
+        c.Field("file", source.file, TextOf{1, 1000}, Need::kRequired);
+        c.Field("variable", source.variable, TextOf{1, 200}, Need::kRequired);
+        c.Field("depth_m", source.depth_m, Interval<double>{0.0, 12000.0});
+        c.Field("time", source.time, UtcTime{});
         if (from_file) Resolve(source, frame, c.path(), s.width, s.height, layer);
       }
       c.Always();
@@ -363,35 +363,35 @@ void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
 /// @param frame filled as soon as grid and time are known; required by the disasters' tracks
 template <typename Archive, typename S>
 void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
-  a.Leaf("name", s.name, TextOf{1, 100}, Need::kRequired);
-  a.Leaf("description", s.description, TextOf{0, 4000});
-  a.Object("grid", [&](auto& b) {
-    b.Leaf("width", s.width, kSide);
-    b.Leaf("height", s.height, kSide);
-    b.Leaf("cell_size_m", s.cell_size_m, Interval<double>{0.01, 1.0e6});
+  a.Field("name", s.name, TextOf{1, 100}, Need::kRequired);
+  a.Field("description", s.description, TextOf{0, 4000});
+  a.Struct("grid", [&](auto& b) {
+    b.Field("width", s.width, kSide);
+    b.Field("height", s.height, kSide);
+    b.Field("cell_size_m", s.cell_size_m, Interval<double>{0.01, 1.0e6});
     b.Optional("origin", s.origin, [](auto& c, auto& point) { VisitGeoPoint(c, point); });
   });
-  a.Object("time", [&](auto& b) {
-    b.Leaf("step_duration_s", s.step_duration_s, Interval<double>{0.001, 1.0e6});
-    b.Leaf("start", s.start_time, UtcTime{});
-    b.Leaf("step_limit", s.step_limit, Interval<std::int32_t>{1, kMaxSteps});
+  a.Struct("time", [&](auto& b) {
+    b.Field("step_duration_s", s.step_duration_s, Interval<double>{0.001, 1.0e6});
+    b.Field("start", s.start_time, UtcTime{});
+    b.Field("step_limit", s.step_limit, Interval<std::int32_t>{1, kMaxSteps});
   });
   frame = {s.origin ? std::optional<GeoFrame>(GeoFrame(*s.origin, s.cell_size_m)) : std::nullopt,
            s.start_time, s.step_duration_s, s.cell_size_m, frame.folder};
-  a.Object("layout", [&](auto& b) {
-    b.Leaf("mode", s.layout, OneOfNames{});
+  a.Struct("layout", [&](auto& b) {
+    b.Field("mode", s.layout, OneOfNames{});
     b.When(s.layout == LayoutMode::kFixed, "mode is fixed");
-    b.Leaf("seed", s.layout_seed, Interval<std::uint64_t>{0, UINT64_MAX});
+    b.Field("seed", s.layout_seed, Interval<std::uint64_t>{0, UINT64_MAX});
     b.Always();
     VisitIslands(b, s);
     VisitRocksAndPorts(b, s);
     VisitDevices(b, s);
   });
-  a.Object("ships", [&](auto& b) {
-    b.Leaf("count", s.ships.count, Interval<std::int32_t>{0, kMaxShips});
-    b.Leaf("capacity", s.ships.capacity, Interval<std::int32_t>{1, kMaxDevices});
+  a.Struct("ships", [&](auto& b) {
+    b.Field("count", s.ships.count, Interval<std::int32_t>{0, kMaxShips});
+    b.Field("capacity", s.ships.capacity, Interval<std::int32_t>{1, kMaxDevices});
   });
-  a.Objects("disasters", s.disasters, {0, kMaxDisasters},
+  a.Structs("disasters", s.disasters, {0, kMaxDisasters},
             [&](auto& b, auto& disaster) { VisitDisaster(b, disaster, &frame); });
   VisitRewardsAndDamage(a, s);
   VisitView(a, s);
@@ -409,11 +409,11 @@ class FieldChecker {
   const std::string& path() const { return path_; }
 
   template <typename T, typename Domain>
-  void Leaf(const char* key, const T& value, const Domain& domain, Need = Need::kOptional) const {
+  void Field(const char* key, const T& value, const Domain& domain, Need = Need::kOptional) const {
     Check(Join(path_, key), value, domain);
   }
   template <typename Visit>
-  void Object(const char* key, const Visit& visit) const {
+  void Struct(const char* key, const Visit& visit) const {
     FieldChecker child(Join(path_, key));
     visit(child);
   }
@@ -423,7 +423,7 @@ class FieldChecker {
     if (value) visit(child, *value);
   }
   template <typename T, typename Visit>
-  void Objects(const char* key, const std::vector<T>& values, std::array<std::size_t, 2> sizes,
+  void Structs(const char* key, const std::vector<T>& values, std::array<std::size_t, 2> sizes,
                const Visit& visit) const {
     const std::string path = Join(path_, key);
     CheckSize(path, values.size(), sizes);

@@ -35,7 +35,7 @@ class YamlReader {
   const std::string& path() const { return path_; }
 
   template <typename T, typename Domain>
-  void Leaf(const char* key, T& value, const Domain& domain, Need need = Need::kOptional) {
+  void Field(const char* key, T& value, const Domain& domain, Need need = Need::kOptional) {
     const YAML::Node* node = Take(key);
     const std::string path = Join(path_, key);
     if (node != nullptr) {
@@ -47,7 +47,7 @@ class YamlReader {
   }
 
   template <typename Visit>
-  void Object(const char* key, const Visit& visit) {
+  void Struct(const char* key, const Visit& visit) {
     if (const YAML::Node* node = Take(key)) Block(*node, Join(path_, key), visit);
   }
 
@@ -59,7 +59,7 @@ class YamlReader {
   }
 
   template <typename T, typename Visit>
-  void Objects(const char* key, std::vector<T>& values, std::array<std::size_t, 2> sizes,
+  void Structs(const char* key, std::vector<T>& values, std::array<std::size_t, 2> sizes,
                const Visit& visit) {
     const YAML::Node* node = Take(key);
     if (node == nullptr) return;

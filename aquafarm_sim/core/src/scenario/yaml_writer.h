@@ -15,19 +15,19 @@ class YamlWriter {
   const std::string& text() const { return text_; }
 
   template <typename T, typename Domain>
-  void Leaf(const char* key, const T& value, const Domain&, Need = Need::kOptional) {
+  void Field(const char* key, const T& value, const Domain&, Need = Need::kOptional) {
     if (used_) Line(key, Value(value));
   }
   template <typename T, typename Domain>
-  void Leaf(const char* key, const std::optional<T>& value, const Domain& domain,
-            Need need = Need::kOptional) {
-    if (value) Leaf(key, *value, domain, need);
+  void Field(const char* key, const std::optional<T>& value, const Domain& domain,
+             Need need = Need::kOptional) {
+    if (value) Field(key, *value, domain, need);
   }
-  void Leaf(const char* key, std::int64_t value, UtcTime, Need = Need::kOptional) {
+  void Field(const char* key, std::int64_t value, UtcTime, Need = Need::kOptional) {
     if (used_) Line(key, FormatTime(value));
   }
   template <typename Visit>
-  void Object(const char* key, const Visit& visit) {
+  void Struct(const char* key, const Visit& visit) {
     if (!used_) return;
     Line(key, "");
     depth_ += 2;
@@ -36,10 +36,10 @@ class YamlWriter {
   }
   template <typename T, typename Visit>
   void Optional(const char* key, const std::optional<T>& value, const Visit& visit) {
-    if (value) Object(key, [&](YamlWriter& self) { visit(self, *value); });
+    if (value) Struct(key, [&](YamlWriter& self) { visit(self, *value); });
   }
   template <typename T, typename Visit>
-  void Objects(const char* key, const std::vector<T>& values, std::array<std::size_t, 2>,
+  void Structs(const char* key, const std::vector<T>& values, std::array<std::size_t, 2>,
                const Visit& visit) {
     if (!used_ || values.empty()) return;
     Line(key, "");

@@ -17,12 +17,12 @@ namespace aquafarm::internal {
 namespace {
 
 // Detects the type of a file from its first 64 KiB.
-FileLook LookAtBeginning(const std::string& path) {
+DetectedFile DetectTypeOfBeginning(const std::string& path) {
   std::string text(std::size_t{64} << 10U, '\0');
   std::ifstream file(path, std::ios::binary);
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
-  return LookAt(text);
+  return DetectFileType(text);
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ NcFile::NcFile(const std::string& path) : path_(path) {
   CheckLength();
   const int status = nc_open(path.c_str(), NC_NOWRITE, &id_);
   if (status == NC_ENOTNC) {
-    const FileLook look = LookAtBeginning(path);
+    const DetectedFile look = DetectTypeOfBeginning(path);
     throw InputError(path + ": got " +
                      (look.kind == FileKind::kNetcdf ? "a damaged netCDF file" : look.words) +
                      ", expected a netCDF file");
@@ -44,10 +44,10 @@ NcFile::NcFile(const std::string& path) : path_(path) {
 
 NcFile::~NcFile() { nc_close(id_); }
 
-void NcFile::Refuse(const std::string& what) const { throw InputError(path_ + ": " + what); }
+void NcFile::Fail(const std::string& what) const { throw InputError(path_ + ": " + what); }
 
 void NcFile::Need(int status, const std::string& name) const {
-  if (status != NC_NOERR) Refuse(name + ": " + nc_strerror(status));
+  if (status != NC_NOERR) Fail(name + ": " + nc_strerror(status));
 }
 
 // In classic formats libnetcdf silently reads zeros after the end of a file, and reports "invalid
@@ -63,8 +63,8 @@ void NcFile::CheckLength() const {
   std::error_code error;
   const auto size = static_cast<double>(std::filesystem::file_size(path_, error));
   if (error || !end || size >= *end) return;  // libnetcdf reports all other errors
-  Refuse("is cut off: got " + Format(size) + " bytes, " +
-         (std::isfinite(*end) ? "expected " + Format(*end) : "which end within its header"));
+  Fail("is cut off: got " + Format(size) + " bytes, " +
+       (std::isfinite(*end) ? "expected " + Format(*end) : "which end within its header"));
 }
 
 std::string NcFile::Name(int variable) const {
@@ -95,8 +95,8 @@ std::optional<double> NcFile::Number(int variable, const char* key) const {
   std::size_t length = 0;
   if (nc_inq_att(id_, variable, key, &type, &length) != NC_NOERR) return std::nullopt;
   if (type == NC_CHAR || type == NC_STRING) {
-    Refuse(Name(variable) + ": " + key + ": got the text " + Quoted(Text(variable, key)) +
-           ", expected a number");
+    Fail(Name(variable) + ": " + key + ": got the text " + Quoted(Text(variable, key)) +
+         ", expected a number");
   }
   if (length != 1) return std::nullopt;
   double value = 0.0;

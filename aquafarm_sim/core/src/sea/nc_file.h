@@ -20,7 +20,7 @@ class NcFile {
 
   int id() const { return id_; }
   /// Always throws. @throws InputError "sea.nc: what"
-  [[noreturn]] void Refuse(const std::string& what) const;
+  [[noreturn]] void Fail(const std::string& what) const;
   /// @throws InputError "sea.nc: name: …" if `status` is an error
   void Need(int status, const std::string& name) const;
 

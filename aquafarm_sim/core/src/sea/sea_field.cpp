@@ -35,7 +35,7 @@ int FindVariable(const NcFile& file, const std::string& wanted) {
     names.push_back(file.Name(variable));
     if (names.back() == wanted || file.Text(variable, "standard_name") == wanted) return variable;
   }
-  file.Refuse(wanted + ": there is no such variable; there are: " + internal::List(names));
+  file.Fail(wanted + ": there is no such variable; there are: " + internal::List(names));
 }
 
 bool IsOneOf(const std::string& text, std::initializer_list<const char*> names) {
@@ -105,8 +105,8 @@ Dimension ReadDimension(const NcFile& file, int dimension, const std::string& va
                               nc_inq_varndims(file.id(), found.coordinate, &rank) == NC_NOERR &&
                               rank == 1;
   if (length == 0 || length > kMostAlong) {
-    file.Refuse(found.name + ": got " + std::to_string(length) + " values, expected [1, " +
-                std::to_string(kMostAlong) + "]");
+    file.Fail(found.name + ": got " + std::to_string(length) + " values, expected [1, " +
+              std::to_string(kMostAlong) + "]");
   }
   found.at.resize(length);
   if (!has_coordinate) {
@@ -115,14 +115,13 @@ Dimension ReadDimension(const NcFile& file, int dimension, const std::string& va
   }
   int dimension_of_coordinate = -1;
   file.Need(nc_inq_vardimid(file.id(), found.coordinate, &dimension_of_coordinate), found.name);
-  if (dimension_of_coordinate != dimension)
-    file.Refuse(found.name + ": is along another dimension");
+  if (dimension_of_coordinate != dimension) file.Fail(found.name + ": is along another dimension");
   file.Need(nc_get_var_double(file.id(), found.coordinate, found.at.data()), found.name);
   const double scale = file.Number(found.coordinate, "scale_factor").value_or(1.0);
   const double offset = file.Number(found.coordinate, "add_offset").value_or(0.0);
   for (double& value : found.at) {
     value = value * scale + offset;
-    if (!std::isfinite(value)) file.Refuse(found.name + ": got no number, expected a coordinate");
+    if (!std::isfinite(value)) file.Fail(found.name + ": got no number, expected a coordinate");
   }
   found.axis = AxisOf(file, found.coordinate, found.name);
   return found;
@@ -140,29 +139,29 @@ std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const st
                          [axis](const Dimension& d) { return d.axis == axis; });
   };
   if (count(Axis::kLatitude) != 1 || count(Axis::kLongitude) != 1) {
-    file.Refuse(name +
-                ": got no latitude and longitude of one dimension each (a curvilinear grid?"
-                "), expected them along the variable's dimensions");
+    file.Fail(name +
+              ": got no latitude and longitude of one dimension each (a curvilinear grid?"
+              "), expected them along the variable's dimensions");
   }
   for (const Dimension& d : dimensions) {
     const bool along = d.axis == Axis::kLatitude || d.axis == Axis::kLongitude;
     if (d.axis == Axis::kOther && d.at.size() > 1) {
-      file.Refuse(name + ": dimension " + d.name + " is none of time, depth, latitude, longitude");
+      file.Fail(name + ": dimension " + d.name + " is none of time, depth, latitude, longitude");
     }
     if (along && !std::is_sorted(d.at.begin(), d.at.end()) &&
         !std::is_sorted(d.at.rbegin(), d.at.rend())) {
-      file.Refuse(d.name + ": got coordinates up and down, expected them in order");
+      file.Fail(d.name + ": got coordinates up and down, expected them in order");
     }
     const auto again = std::adjacent_find(d.at.begin(), d.at.end());
     if (along && again != d.at.end()) {
-      file.Refuse(d.name + ": got " + internal::Format(*again) + " twice, expected it once");
+      file.Fail(d.name + ": got " + internal::Format(*again) + " twice, expected it once");
     }
     if (d.axis != Axis::kLatitude) continue;
     constexpr double kPole = 90.0 + 1.0e-3;  // packed values have rounding errors
     for (const double latitude : d.at) {
       if (std::abs(latitude) <= kPole) continue;
-      file.Refuse(d.name + ": got a latitude of " + internal::Format(latitude) +
-                  ", expected [-90, 90]");
+      file.Fail(d.name + ": got a latitude of " + internal::Format(latitude) +
+                ", expected [-90, 90]");
     }
   }
   return dimensions;
@@ -206,8 +205,8 @@ std::pair<double, double> TimeUnits(const NcFile& file, const Dimension& time) {
   const std::string unit = internal::Upper(units.substr(0, since));
   const std::string calendar = file.Text(time.coordinate, "calendar");
   if (!IsOneOf(calendar, {"", "standard", "gregorian", "proleptic_gregorian"})) {
-    file.Refuse(time.name + ": calendar: got " + internal::Quoted(calendar) +
-                ", expected standard, gregorian or proleptic_gregorian");
+    file.Fail(time.name + ": calendar: got " + internal::Quoted(calendar) +
+              ", expected standard, gregorian or proleptic_gregorian");
   }
   const std::string day = since == std::string::npos ? "" : PlainTime(units.substr(since + 7));
   const std::optional<std::int64_t> zero = internal::ParseDateTime(day, 0);
@@ -217,8 +216,8 @@ std::pair<double, double> TimeUnits(const NcFile& file, const Dimension& time) {
                          : IsOneOf(unit, {"DAY", "DAYS", "D"})         ? 86400.0
                                                                        : 0.0;
   if (!zero || seconds == 0.0) {
-    file.Refuse(time.name + ": units: got " + internal::Quoted(units) +
-                ", expected such as 'hours since 2000-01-01 00:00:00'");
+    file.Fail(time.name + ": units: got " + internal::Quoted(units) +
+              ", expected such as 'hours since 2000-01-01 00:00:00'");
   }
   return {seconds, static_cast<double>(*zero)};
 }
@@ -323,9 +322,9 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
       const std::string units = file.Text(d.coordinate, "units");
       const double metres = MetresPer(units);
       if (metres == 0.0 && d.at.size() > 1) {
-        file.Refuse(d.name + ": units: got " + internal::Quoted(units) +
-                    ", expected metres, km, cm or dbar, to find a depth among " +
-                    std::to_string(d.at.size()));
+        file.Fail(d.name + ": units: got " + internal::Quoted(units) +
+                  ", expected metres, km, cm or dbar, to find a depth among " +
+                  std::to_string(d.at.size()));
       }
       const double down = IsUpwards(file, d.coordinate) ? -metres : metres;
       for (double& at : d.at) at *= down;
@@ -351,7 +350,7 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
   }
   const std::size_t rows = count[along_latitude];
   const std::size_t columns = count[along_longitude];
-  if (rows * columns > kMostValues) file.Refuse(field.name + ": is too fine for this ranch");
+  if (rows * columns > kMostValues) file.Fail(field.name + ": is too fine for this ranch");
   std::vector<float> values(rows * columns);
   file.Need(nc_get_vara_float(file.id(), variable, first.data(), count.data(), values.data()),
             field.name);

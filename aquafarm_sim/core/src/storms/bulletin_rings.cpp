@@ -15,7 +15,8 @@ using Json = nlohmann::json;
 
 std::array<double, kQuadrantCount> ReadQuadrants(
     const Json& value, const std::string& path, const std::array<const char*, kQuadrantCount>& keys,
-    std::int32_t wind_kt, const std::array<double, kQuadrantCount>& otherwise, HazardPlace& place) {
+    std::int32_t wind_kt, const std::array<double, kQuadrantCount>& otherwise,
+    ParseContext& place) {
   const JsonObject object(value, path, place);
   std::array<double, kQuadrantCount> radius_km = otherwise;
   std::size_t said = 0;
@@ -38,7 +39,7 @@ std::array<double, kQuadrantCount> ReadQuadrants(
 }
 
 void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
-                 HazardFix& fix) {
+                 StormFix& fix) {
   const bool given = *std::max_element(radius_km.begin(), radius_km.end()) > 0.0;
   const bool blows = !fix.wind_mps || *fix.wind_mps >= wind_kt * kMpsPerKnot;
   if (given || !blows) AddRing({wind_kt, radius_km, false}, fix.rings);

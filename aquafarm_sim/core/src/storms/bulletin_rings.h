@@ -17,12 +17,12 @@ inline constexpr double kMostRadius_km = 3000.0;
 std::array<double, kQuadrantCount> ReadQuadrants(
     const nlohmann::json& value, const std::string& path,
     const std::array<const char*, kQuadrantCount>& keys, std::int32_t wind_kt,
-    const std::array<double, kQuadrantCount>& otherwise, HazardPlace& place);
+    const std::array<double, kQuadrantCount>& otherwise, ParseContext& place);
 
 /// The ring of a wind from what a bulletin says of its quadrants. Bulletins write 0 and nothing
 /// alike: where the storm itself blows that hard, no radius means that it was not said; where it
 /// does not, that there is none.
 void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
-                 HazardFix& fix);
+                 StormFix& fix);
 
 }  // namespace aquafarm::internal

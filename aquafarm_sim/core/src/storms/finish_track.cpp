@@ -12,7 +12,7 @@ namespace aquafarm::internal {
 namespace {
 
 // The indices of the longest run of fixes with ascending times (patience sorting).
-std::vector<std::size_t> LongestAscending(const std::vector<HazardFix>& fixes) {
+std::vector<std::size_t> LongestAscending(const std::vector<StormFix>& fixes) {
   constexpr std::size_t kNoIndex = static_cast<std::size_t>(-1);
   std::vector<std::size_t> ends;  // of the runs of each length, the earliest end
   std::vector<std::size_t> before(fixes.size(), kNoIndex);
@@ -36,12 +36,12 @@ std::vector<std::size_t> LongestAscending(const std::vector<HazardFix>& fixes) {
 }
 
 // Leaves out the fixes whose times break the order of the others.
-void KeepAscending(std::vector<HazardFix>& fixes, LeftOut& left_out, HazardPlace& place) {
+void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext& place) {
   const std::vector<std::size_t> run = LongestAscending(fixes);
   if (run.size() == fixes.size()) return;
   const auto broken =
       std::adjacent_find(fixes.begin(), fixes.end(),
-                         [](const HazardFix& a, const HazardFix& b) { return b.time <= a.time; });
+                         [](const StormFix& a, const StormFix& b) { return b.time <= a.time; });
   const std::string order =
       ", expected one after " + FormatTime(broken->time) + " of the point before";
   const auto at_line = [&place](std::int32_t line) {
@@ -49,9 +49,9 @@ void KeepAscending(std::vector<HazardFix>& fixes, LeftOut& left_out, HazardPlace
   };
   if (run.size() * 2 <= fixes.size()) {
     at_line((broken + 1)->line);
-    place.Refuse("time: got " + FormatTime((broken + 1)->time) + order);
+    place.Fail("time: got " + FormatTime((broken + 1)->time) + order);
   }
-  std::vector<HazardFix> kept;
+  std::vector<StormFix> kept;
   std::size_t next = 0;
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     if (next < run.size() && run[next] == i) {
@@ -69,8 +69,8 @@ void KeepAscending(std::vector<HazardFix>& fixes, LeftOut& left_out, HazardPlace
 }
 
 // Warns of a motion that no storm has. Positions are rounded to a tenth of a degree, 16 km in both.
-void WarnOfJumps(const std::vector<HazardFix>& fixes, const std::string& storm,
-                 HazardPlace& place) {
+void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
+                 ParseContext& place) {
   constexpr double kMost_kmh = 150.0;
   constexpr double kRounding_km = 16.0;
   for (std::size_t i = 1; i < fixes.size(); ++i) {
@@ -91,7 +91,7 @@ void WarnOfJumps(const std::vector<HazardFix>& fixes, const std::string& storm,
 }
 
 // Leaves out a few fixes that are months away from the others: their year or month is wrong.
-void KeepTogether(std::vector<HazardFix>& fixes, LeftOut& left_out, HazardPlace& place) {
+void KeepTogether(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext& place) {
   constexpr std::int64_t kLongestGap_s = 30 * 86400;
   std::size_t best = 0;
   std::size_t best_end = 0;
@@ -118,21 +118,20 @@ void KeepTogether(std::vector<HazardFix>& fixes, LeftOut& left_out, HazardPlace&
 
 }  // namespace
 
-void FinishTrack(HazardTrack& track, LeftOut left_out, HazardPlace& place) {
+void FinishTrack(StormTrack& track, LeftOut left_out, ParseContext& place) {
   if (track.fixes.size() < left_out.count) throw InputError(left_out.first);
-  if (track.fixes.empty()) place.Refuse("points: got none, expected at least one");
+  if (track.fixes.empty()) place.Fail("points: got none, expected at least one");
   const std::int32_t line = place.line;  // where the reader continues
   KeepAscending(track.fixes, left_out, place);
   KeepTogether(track.fixes, left_out, place);
   constexpr std::int64_t kDay_s = 86400;
   const std::int64_t days = (track.fixes.back().time - track.fixes.front().time) / kDay_s;
   if (days > 366) {
-    place.Refuse("points: got " + std::to_string(days) +
-                 " days of one storm, expected at most 366");
+    place.Fail("points: got " + std::to_string(days) + " days of one storm, expected at most 366");
   }
   WarnOfJumps(track.fixes, track.id, place);
   ComputeMotion(track.fixes);
-  const auto unusable = [&place](HazardForecast& forecast) {
+  const auto unusable = [&place](StormForecast& forecast) {
     try {
       LeftOut unused;
       KeepAscending(forecast.fixes, unused, place);
@@ -145,7 +144,7 @@ void FinishTrack(HazardTrack& track, LeftOut left_out, HazardPlace& place) {
   };
   track.forecasts.erase(std::remove_if(track.forecasts.begin(), track.forecasts.end(), unusable),
                         track.forecasts.end());
-  for (HazardForecast& forecast : track.forecasts) {
+  for (StormForecast& forecast : track.forecasts) {
     WarnOfJumps(forecast.fixes, track.id, place);
     ComputeMotion(forecast.fixes);
   }

@@ -15,8 +15,8 @@
 namespace aquafarm {
 namespace {
 
-using internal::HazardPlace;
 using internal::JsonObject;
+using internal::ParseContext;
 using internal::Quoted;
 using Json = nlohmann::json;
 
@@ -29,20 +29,20 @@ std::int32_t GradeOf(const JsonObject& warning, const std::string& color) {
   for (std::size_t i = 0; i < kColors.size(); ++i) {
     if (internal::Upper(color) == kColors[i]) return static_cast<std::int32_t>(i);
   }
-  warning.Here().RefuseValue(internal::Join(warning.path(), "severityColor"),
-                             "got " + Quoted(color) + ", expected Blue, Yellow, Orange or Red");
+  warning.Here().FailValue(internal::Join(warning.path(), "severityColor"),
+                           "got " + Quoted(color) + ", expected Blue, Yellow, Orange or Red");
 }
 
 void CheckSpan(const Notice& notice, const JsonObject& where, const char* key) {
   if (notice.end > notice.start) return;
-  where.Here().RefuseValue(internal::Join(where.path(), key),
-                           "got an end that is not after the start");
+  where.Here().FailValue(internal::Join(where.path(), key),
+                         "got an end that is not after the start");
 }
 
-std::vector<Notice> ReadWarnings(const JsonObject& answer, HazardPlace& place) {
+std::vector<Notice> ReadWarnings(const JsonObject& answer, ParseContext& place) {
   const std::string code = answer.Text({"code"});
   if (!code.empty() && code != "200") {
-    answer.Here().RefuseValue("code", "got " + Quoted(code) + ", expected '200'");
+    answer.Here().FailValue("code", "got " + Quoted(code) + ", expected '200'");
   }
   std::vector<Notice> notices;
   const Json* list = answer.List({"warning"});
@@ -101,7 +101,7 @@ class Calendar {
         return;
       }
     }
-    answer.Here().RefuseValue("publishCode", "got " + Quoted(published) + ", expected YYYYMMDDHH");
+    answer.Here().FailValue("publishCode", "got " + Quoted(published) + ", expected YYYYMMDDHH");
   }
   /// UTC; none: there is no such day. Hour 24 is the next day's first.
   std::optional<std::int64_t> At(int day, int hour) const {
@@ -145,8 +145,8 @@ std::int32_t Worst(const JsonObject& period, const std::string& ratings) {
   std::int32_t worst = 0;
   for (const std::string_view word : internal::SplitWords(ratings)) {
     if (word.size() != 1 || word[0] < '1' || word[0] > '4') {
-      period.Here().RefuseValue(internal::Join(period.path(), "Riskrating"),
-                                "got " + Quoted(ratings) + ", expected numbers from 1 to 4");
+      period.Here().FailValue(internal::Join(period.path(), "Riskrating"),
+                              "got " + Quoted(ratings) + ", expected numbers from 1 to 4");
     }
     const std::int32_t rating = word[0] - '0';
     worst = worst == 0 ? rating : std::min(worst, rating);
@@ -154,7 +154,7 @@ std::int32_t Worst(const JsonObject& period, const std::string& ratings) {
   return worst;
 }
 
-std::vector<Notice> ReadAnchorages(const JsonObject& answer, HazardPlace& place) {
+std::vector<Notice> ReadAnchorages(const JsonObject& answer, ParseContext& place) {
   const Calendar calendar(answer, answer.Text({"publishCode"}));
   std::vector<Notice> notices;
   const Json* anchors = answer.Find({"anchors"});
@@ -174,8 +174,8 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, HazardPlace& place)
       notice.place = name;
       const std::string time = period.Text({"Time"});
       if (!ReadPeriod(time, calendar, notice)) {
-        period.Here().RefuseValue(internal::Join(period.path(), "Time"),
-                                  "got " + Quoted(time) + ", expected such as '04日08时-11时'");
+        period.Here().FailValue(internal::Join(period.path(), "Time"),
+                                "got " + Quoted(time) + ", expected such as '04日08时-11时'");
       }
       CheckSpan(notice, period, "Time");
       notice.wind_mps = period.Number({"WindSpeedAvg"}, 0.0, 150.0);
@@ -183,8 +183,8 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, HazardPlace& place)
       const std::string wave = period.Text({"WindWave"});
       notice.wave_max_m = WaveMax(wave);
       if (!wave.empty() && !notice.wave_max_m) {
-        period.Here().RefuseValue(internal::Join(period.path(), "WindWave"),
-                                  "got " + Quoted(wave) + ", expected such as '0.5-1.0m'");
+        period.Here().FailValue(internal::Join(period.path(), "WindWave"),
+                                "got " + Quoted(wave) + ", expected such as '0.5-1.0m'");
       }
       notice.suitability = Worst(period, period.Text({"Riskrating"}));
       notices.push_back(std::move(notice));
@@ -197,21 +197,21 @@ std::vector<Notice> ReadAnchorages(const JsonObject& answer, HazardPlace& place)
 
 NoticeFile ParseNotices(const std::string& text, const std::string& origin_name) {
   NoticeFile file;
-  HazardPlace place(origin_name, file.warnings);
+  ParseContext place(origin_name, file.warnings);
   const std::string clean = internal::CleanJson(text);
-  const internal::FileLook look = internal::LookAt(text);
+  const internal::DetectedFile look = internal::DetectFileType(text);
   const bool notices = look.kind == internal::FileKind::kNotices;
   const std::size_t begin = clean.find_first_not_of(" \t\r\n");
   const bool object = begin != std::string::npos && clean[begin] == '{';
   if (!object && !notices) {
     place.line = 1;
-    place.Refuse("got " + look.words + kExpected);
+    place.Fail("got " + look.words + kExpected);
   }
   place.locate = [&clean](const std::string& path) { return internal::LineOfJson(clean, path); };
   const Json document = internal::ParseJson(clean, place);
   const JsonObject answer(document, "", place);
   if (answer.Find({"alerts"}) != nullptr) {
-    place.RefuseValue(
+    place.FailValue(
         "alerts", std::string("got the newer interface's alerts, which are not read") + kExpected);
   }
   if (answer.Find({"anchors"}) != nullptr) {
@@ -223,8 +223,8 @@ NoticeFile ParseNotices(const std::string& text, const std::string& origin_name)
     file.notices = ReadWarnings(answer, place);
   } else {
     const bool known = look.kind != internal::FileKind::kUnknown && !notices;
-    answer.Here().Refuse("got " + (known ? look.words : "neither \"warning\" nor \"anchors\"") +
-                         kExpected);
+    answer.Here().Fail("got " + (known ? look.words : "neither \"warning\" nor \"anchors\"") +
+                       kExpected);
   }
   return file;
 }

@@ -19,17 +19,17 @@ namespace aquafarm {
 namespace {
 
 // Gives storms that share an id one each: files of several years put together have such.
-void TellApart(HazardFile& file, internal::HazardPlace& place) {
+void TellApart(StormFile& file, internal::ParseContext& place) {
   std::map<std::string, int> times;
   std::set<std::string> seen;
-  for (const HazardTrack& track : file.tracks) {
+  for (const StormTrack& track : file.tracks) {
     ++times[internal::Upper(track.id)];
     seen.insert(internal::Upper(track.id));
   }
   std::map<std::string, int> last;
   place.path.clear();
   for (std::size_t i = 0; i < file.tracks.size(); ++i) {
-    HazardTrack& track = file.tracks[i];
+    StormTrack& track = file.tracks[i];
     const std::string shared = internal::Upper(track.id);
     const int storms = times[shared];
     if (storms == 1) continue;
@@ -52,43 +52,43 @@ void TellApart(HazardFile& file, internal::HazardPlace& place) {
 
 }  // namespace
 
-HazardFile ParseHazardFile(const std::string& text, const std::string& origin_name) {
-  HazardFile file;
-  internal::HazardPlace place(origin_name, file.warnings);
+StormFile ParseStormFile(const std::string& text, const std::string& origin_name) {
+  StormFile file;
+  internal::ParseContext place(origin_name, file.warnings);
   place.line = 1;
   const std::string clean = internal::CleanJson(text);
   std::string_view content = clean;
   const std::string_view first = internal::TakeLine(content);
-  if (first == "[]") place.Refuse("got an empty list, expected a list of storms");
+  if (first == "[]") place.Fail("got an empty list, expected a list of storms");
   const bool binary = text.find('\0') != std::string::npos;
-  const std::optional<HazardFormat> format = binary ? std::nullopt : DetectHazardFormat(text);
+  const std::optional<TrackFormat> format = binary ? std::nullopt : DetectTrackFormat(text);
   if (!format) {
-    place.Refuse("got " + internal::LookAt(text).words +
-                 ", expected tracks of storms: a CMA or JMA best track, an ATCF b-deck, IBTrACS "
-                 "CSV, or JSON of a bulletin or a weather service's track");
+    place.Fail("got " + internal::DetectFileType(text).words +
+               ", expected tracks of storms: a CMA or JMA best track, an ATCF b-deck, IBTrACS "
+               "CSV, or JSON of a bulletin or a weather service's track");
   }
   file.format = *format;
   const std::string plain(internal::WithoutMark(text));
   switch (file.format) {
-    case HazardFormat::kCma:
+    case TrackFormat::kCma:
       file.tracks = internal::ReadCma(plain, place);
       break;
-    case HazardFormat::kJma:
+    case TrackFormat::kJma:
       file.tracks = internal::ReadJma(plain, place);
       break;
-    case HazardFormat::kAtcf:
+    case TrackFormat::kAtcf:
       file.tracks = internal::ReadAtcf(plain, place);
       break;
-    case HazardFormat::kIbtracs:
+    case TrackFormat::kIbtracs:
       file.tracks = internal::ReadIbtracs(plain, place);
       break;
-    case HazardFormat::kBulletin:
-    case HazardFormat::kWeatherService:
+    case TrackFormat::kBulletin:
+    case TrackFormat::kWeatherService:
       place.line = 0;
       place.locate = [&clean](const std::string& path) {
         return internal::LineOfJson(clean, path);
       };
-      file.tracks = file.format == HazardFormat::kBulletin
+      file.tracks = file.format == TrackFormat::kBulletin
                         ? internal::ReadBulletin(clean, place)
                         : internal::ReadWeatherService(clean, place);
       break;
@@ -97,16 +97,16 @@ HazardFile ParseHazardFile(const std::string& text, const std::string& origin_na
   return file;
 }
 
-HazardFile LoadHazardFile(const std::string& path) {
-  return ParseHazardFile(internal::ReadTextFile(path), path);
+StormFile LoadStormFile(const std::string& path) {
+  return ParseStormFile(internal::ReadTextFile(path), path);
 }
 
-const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {
+const StormTrack& FindTrack(const StormFile& file, const std::string& storm) {
   const std::string wanted = internal::Upper(storm);
-  std::vector<const HazardTrack*> found;
-  std::vector<const HazardTrack*> named;
+  std::vector<const StormTrack*> found;
+  std::vector<const StormTrack*> named;
   std::vector<std::string> names;
-  for (const HazardTrack& track : file.tracks) {
+  for (const StormTrack& track : file.tracks) {
     if (!storm.empty() &&
         (internal::Upper(track.id) == wanted || internal::Upper(track.shared_id) == wanted)) {
       found.push_back(&track);
@@ -125,7 +125,7 @@ const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm) {
   if (found.empty()) found = named;
   if (found.size() == 1) return *found[0];
   std::string where;
-  for (const HazardTrack* track : found) {
+  for (const StormTrack* track : found) {
     where += (where.empty() ? "" : ", ") + track->id + " from " +
              internal::FormatTime(track->fixes.front().time);
   }

@@ -32,12 +32,12 @@ Quadrants Reduced(const WindRing& ring, RingReduction reduction) {
   return quadrants;
 }
 
-bool Speaks(const HazardTrack& track, std::int32_t wind_kt) {
+bool Speaks(const StormTrack& track, std::int32_t wind_kt) {
   return std::any_of(track.fixes.begin(), track.fixes.end(),
-                     [wind_kt](const HazardFix& fix) { return fix.Ring(wind_kt) != nullptr; });
+                     [wind_kt](const StormFix& fix) { return fix.Ring(wind_kt) != nullptr; });
 }
 
-std::vector<std::int32_t> WindsOf(const HazardTrack& track) {
+std::vector<std::int32_t> WindsOf(const StormTrack& track) {
   if (Speaks(track, 30) && !Speaks(track, 34)) return {50, 30};
   return {64, 50, 34};
 }
@@ -101,10 +101,10 @@ std::string_view ToString(RingReduction value) {
                                      "equal_area", "largest", "quadrants"});
 }
 
-StormRings ToRings(const HazardTrack& track, RingReduction reduction) {
+StormRings ToRings(const StormTrack& track, RingReduction reduction) {
   StormRings storm;
   storm.wind_kt = WindsOf(track);
-  for (HazardFix fix : track.fixes) {
+  for (StormFix fix : track.fixes) {
     StormWaypoint waypoint;
     waypoint.time = fix.time;
     waypoint.position = fix.position;
@@ -168,13 +168,13 @@ std::optional<StormWaypoint> StormRings::At(std::int64_t time) const {
   return now;
 }
 
-std::int32_t BorrowRings(const HazardTrack& from, HazardTrack& track) {
+std::int32_t BorrowRings(const StormTrack& from, StormTrack& track) {
   constexpr std::int64_t kLongestGap_s = 6 * 3600;
   std::int32_t given = 0;
-  for (HazardFix& fix : track.fixes) {
+  for (StormFix& fix : track.fixes) {
     const auto next = std::lower_bound(
         from.fixes.begin(), from.fixes.end(), fix.time,
-        [](const HazardFix& other, std::int64_t time) { return other.time < time; });
+        [](const StormFix& other, std::int64_t time) { return other.time < time; });
     if (!fix.rings.empty() || next == from.fixes.end()) continue;
     const auto last = next->time == fix.time || next == from.fixes.begin() ? next : next - 1;
     if (last->time > fix.time || next->time - last->time > kLongestGap_s) continue;
@@ -239,26 +239,26 @@ DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const 
   return disaster;
 }
 
-const HazardForecast* NewestForecast(const HazardTrack& track) {
+const StormForecast* NewestForecast(const StormTrack& track) {
   AQUAFARM_CHECK_GE(track.fixes.size(), 1U);
   constexpr std::int64_t kStale_s = 24 * 3600;
-  const HazardFix& now = track.fixes.back();
-  const HazardForecast* newest = nullptr;
-  for (const HazardForecast& forecast : track.forecasts) {
+  const StormFix& now = track.fixes.back();
+  const StormForecast* newest = nullptr;
+  for (const StormForecast& forecast : track.forecasts) {
     if (forecast.fixes.back().time <= now.time || forecast.issued + kStale_s < now.time) continue;
     if (newest == nullptr || forecast.issued > newest->issued) newest = &forecast;
   }
   return newest;
 }
 
-HazardTrack WithForecast(const HazardTrack& track, NoForecast otherwise) {
-  HazardTrack whole = track;
-  const HazardForecast* const newest = NewestForecast(track);
-  const HazardFix& now = track.fixes.back();
+StormTrack WithForecast(const StormTrack& track, NoForecast otherwise) {
+  StormTrack whole = track;
+  const StormForecast* const newest = NewestForecast(track);
+  const StormFix& now = track.fixes.back();
   if (newest != nullptr) {
-    for (HazardFix fix : newest->fixes) {
+    for (StormFix fix : newest->fixes) {
       if (fix.time <= now.time) continue;
-      const HazardFix& before = whole.fixes.back();
+      const StormFix& before = whole.fixes.back();
       if (!fix.wind_mps && fix.rings.empty()) {
         fix.wind_mps = before.wind_mps;
         fix.rings = before.rings;
@@ -272,7 +272,7 @@ HazardTrack WithForecast(const HazardTrack& track, NoForecast otherwise) {
   }
   if (otherwise == NoForecast::kEnd) return whole;
   constexpr std::int64_t kAhead_s = 24 * 3600;
-  HazardFix later = now;
+  StormFix later = now;
   later.time += kAhead_s;
   later.forecast = true;
   if (now.heading_deg && now.speed_kmh) {
@@ -285,13 +285,13 @@ HazardTrack WithForecast(const HazardTrack& track, NoForecast otherwise) {
   return whole;
 }
 
-StormKnowledge KnowledgeOf(const HazardTrack& recorded, const HazardTrack& whole) {
+StormKnowledge KnowledgeOf(const StormTrack& recorded, const StormTrack& whole) {
   StormKnowledge knowledge;
-  for (const HazardFix& fix : recorded.fixes) {
+  for (const StormFix& fix : recorded.fixes) {
     if (!fix.forecast) knowledge.recorded_until = fix.time;
   }
   knowledge.known_until = whole.fixes.back().time;
-  if (const HazardForecast* newest = NewestForecast(recorded)) {
+  if (const StormForecast* newest = NewestForecast(recorded)) {
     knowledge.issued = newest->issued;
     knowledge.agency = newest->agency;
   }
@@ -313,7 +313,7 @@ std::string Describe(const StormKnowledge& knowledge) {
          knowledge.agency + ")";
 }
 
-DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, std::int32_t id,
+DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, std::int32_t id,
                         std::int32_t step_now) {
   if (!scenario.origin || !scenario.start_time) {
     throw InputError("bulletin: needs a ranch with grid.origin and time.start");
@@ -323,7 +323,7 @@ DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, s
   auto model = all.begin() + std::min(id, static_cast<std::int32_t>(all.size()));
   const bool by_quadrant = model != all.end() && !model->quadrants.empty();
   if (model == all.end() || !graded(*model)) model = std::find_if(all.begin(), all.end(), graded);
-  const HazardTrack whole = WithForecast(bulletin, NoForecast::kPersist);
+  const StormTrack whole = WithForecast(bulletin, NoForecast::kPersist);
   const StormRings storm =
       ToRings(whole, by_quadrant ? RingReduction::kQuadrants : RingReduction::kEqualArea);
   DisasterSpec disaster =
@@ -342,7 +342,7 @@ DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, s
   return disaster;
 }
 
-Passage PassOver(const StormRings& storm, GeoPoint place, double margin_km) {
+Passage ClosestApproach(const StormRings& storm, GeoPoint place, double margin_km) {
   constexpr std::int64_t kStep_s = 600;
   Passage passage;
   passage.nearest_km = 1.0e9;

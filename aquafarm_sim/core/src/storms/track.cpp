@@ -16,7 +16,7 @@ constexpr std::array<double, kStormGradeCount - 1> kLowestWind_mps{10.8, 17.2, 2
                                                                    32.7, 41.5, 51.0};
 
 // Bearing [0, 360) and speed from one fix to a later one.
-void SetMotion(const HazardFix& from, const HazardFix& to, HazardFix& fix) {
+void SetMotion(const StormFix& from, const StormFix& to, StormFix& fix) {
   double distance_m = 0.0;
   double azimuth_deg = 0.0;
   double unused = 0.0;
@@ -35,7 +35,7 @@ void SetMotion(const HazardFix& from, const HazardFix& to, HazardFix& fix) {
 // Holland's gradient wind around one fix [m/s], radii in metres.
 class HollandProfile {
  public:
-  explicit HollandProfile(const HazardFix& fix) {
+  explicit HollandProfile(const StormFix& fix) {
     constexpr double kAmbient_hpa = 1010.0;
     constexpr double kAirDensity = 1.15;  // kg/m3
     constexpr double kEarthRotation = 7.292e-5;
@@ -94,7 +94,7 @@ double LowestWindOf(StormGrade grade) {
   return kLowestWind_mps[static_cast<std::size_t>(grade) - 1];
 }
 
-const WindRing* HazardFix::Ring(std::int32_t wind_kt) const {
+const WindRing* StormFix::Ring(std::int32_t wind_kt) const {
   for (const WindRing& ring : rings) {
     if (ring.wind_kt == wind_kt) return &ring;
   }
@@ -115,7 +115,7 @@ std::int32_t DisasterGrade(StormGrade grade) {
   }
 }
 
-void ComputeMotion(std::vector<HazardFix>& fixes) {
+void ComputeMotion(std::vector<StormFix>& fixes) {
   for (std::size_t i = 0; i < fixes.size() && fixes.size() > 1; ++i) {
     if (fixes[i].heading_deg && fixes[i].speed_kmh) continue;
     const std::size_t from = std::min(i, fixes.size() - 2);
@@ -123,7 +123,7 @@ void ComputeMotion(std::vector<HazardFix>& fixes) {
   }
 }
 
-bool EstimateRing(HazardFix& fix, std::int32_t wind_kt) {
+bool EstimateRing(StormFix& fix, std::int32_t wind_kt) {
   if (fix.Ring(wind_kt) != nullptr || !fix.wind_mps || *fix.wind_mps <= 0.0) return false;
   const double wind_mps = wind_kt * kMpsPerKnot;
   WindRing ring;

@@ -33,19 +33,19 @@ constexpr std::pair<std::string_view, double> kDirections[]{
 
 }  // namespace
 
-double ReadLatitudeTenths(std::string_view text, const HazardPlace& place) {
+double ReadLatitudeTenths(std::string_view text, const ParseContext& place) {
   return ReadFixNumber(text, "latitude in tenths of a degree", -900, 900, place) / 10.0;
 }
 
-double ReadLongitudeTenths(std::string_view text, const HazardPlace& place) {
+double ReadLongitudeTenths(std::string_view text, const ParseContext& place) {
   return NormalLongitude(
       ReadFixNumber(text, "longitude in tenths of a degree", -1800, 3600, place) / 10.0);
 }
 
-void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place) {
+void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place) {
   fix.line = place.line;
   if (fixes.size() >= kMaxFixes) {
-    place.Refuse("got more than " + std::to_string(kMaxFixes) + " points of one storm");
+    place.Fail("got more than " + std::to_string(kMaxFixes) + " points of one storm");
   }
   if (!fixes.empty() && fix.time == fixes.back().time) {
     place.WarnOnce("twice",
@@ -56,7 +56,7 @@ void AppendFix(HazardFix fix, std::vector<HazardFix>& fixes, HazardPlace& place)
 }
 
 std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
-                                      const std::string& value_path, HazardPlace& place) {
+                                      const std::string& value_path, ParseContext& place) {
   if (!pressure_hpa || *pressure_hpa <= 0.0) return std::nullopt;
   if (*pressure_hpa >= kLeastPressure_hpa) return pressure_hpa;
   const std::string what = "got " + Format(*pressure_hpa) +
@@ -69,20 +69,20 @@ std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
   return std::nullopt;
 }
 
-std::vector<HazardTrack> ReadBestTracks(std::string_view text, HazardPlace& place,
-                                        BestTrackHeader (*read_header)(std::string_view line,
-                                                                       HazardPlace& place),
-                                        HazardFix (*read_point)(std::string_view line,
-                                                                HazardPlace& place)) {
-  std::vector<HazardTrack> tracks;
+std::vector<StormTrack> ReadBestTracks(std::string_view text, ParseContext& place,
+                                       BestTrackHeader (*read_header)(std::string_view line,
+                                                                      ParseContext& place),
+                                       StormFix (*read_point)(std::string_view line,
+                                                              ParseContext& place)) {
+  std::vector<StormTrack> tracks;
   LineReader lines(text, place);
   std::string_view line;
   const auto is_header = [](std::string_view of) { return Trim(of).substr(0, 5) == "66666"; };
   while (lines.Next(line)) {
     if (Trim(line).empty()) continue;
     if (!is_header(line)) {
-      place.Refuse("got " + Quoted(SplitWords(line)[0]) +
-                   ", expected a header, 66666 …, as the storm before has all its points");
+      place.Fail("got " + Quoted(SplitWords(line)[0]) +
+                 ", expected a header, 66666 …, as the storm before has all its points");
     }
     BestTrackHeader header = read_header(line, place);
     header.track.line = place.line;
@@ -91,7 +91,7 @@ std::vector<HazardTrack> ReadBestTracks(std::string_view text, HazardPlace& plac
     LeftOut left_out;
     for (std::int32_t i = 0; i < header.points; ++i) {
       if (!lines.Next(line) || is_header(line) || Trim(line).empty()) {
-        place.Refuse("got " + std::to_string(i) + " points, expected the " + promised);
+        place.Fail("got " + std::to_string(i) + " points, expected the " + promised);
       }
       TryFix([&] { AppendFix(read_point(line, place), header.track.fixes, place); }, left_out,
              place);

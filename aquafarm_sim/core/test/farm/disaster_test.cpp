@@ -18,7 +18,7 @@ Disaster Spawned(const DisasterSpec& spec, std::uint64_t episode = 0) {
 }
 
 void Move(Disaster& disaster, int step) {
-  MoveDisaster(disaster, nullptr, {1, 0, Purpose::kDisasterTurn, 0}, step, 25, 25);
+  MoveDisaster(disaster, nullptr, {1, 0, RngStream::kDisasterTurn, 0}, step, 25, 25);
 }
 
 TEST(HeadingVector, IsTheCompass) {
@@ -202,7 +202,7 @@ TEST(Track, IsInterpolatedBetweenWaypoints) {
   EXPECT_EQ(disaster.heading_deg, 90);
   EXPECT_EQ(disaster.speed, 1.0F);
   const auto track = std::make_shared<const std::vector<Waypoint>>(spec.track);
-  const StreamKey key{1, 0, Purpose::kDisasterTurn, 0};
+  const StreamKey key{1, 0, RngStream::kDisasterTurn, 0};
   for (int step = 1; step <= 15; ++step) MoveDisaster(disaster, track, key, step, 25, 25);
   EXPECT_EQ(disaster.x, 20.0F);
   EXPECT_EQ(disaster.y, 5.0F);

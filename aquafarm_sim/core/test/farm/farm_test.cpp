@@ -421,14 +421,14 @@ void CompareWithOracle(const Scenario& scenario, std::uint64_t seed) {
   for (std::uint64_t episode = 0; episode < 20; ++episode) {
     farm.Reset(seed, episode);
     test::OracleFarm oracle(farm);
-    RandomStream chance({seed, episode, Purpose::kExploration, 0});
+    RandomStream rng({seed, episode, RngStream::kExploration, 0});
     while (!farm.over()) {
       std::vector<Action> actions;
       std::vector<std::uint8_t> codes;
       for (std::size_t i = 0; i < farm.ships().size(); ++i) {
         // Picks up and drops off whenever legal, so that devices are also delivered.
         const ActionMask legal = farm.LegalActions(static_cast<std::int32_t>(i));
-        auto action = static_cast<Action>(chance.Below(kActionCount + 1));
+        auto action = static_cast<Action>(rng.Below(kActionCount + 1));
         if ((legal & MaskOf(Action::kPickup)) != 0) action = Action::kPickup;
         if ((legal & MaskOf(Action::kDropOff)) != 0) action = Action::kDropOff;
         actions.push_back(action);

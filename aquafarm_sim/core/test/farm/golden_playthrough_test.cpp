@@ -57,7 +57,7 @@ std::string Number(float value) {
 }
 
 // A simple policy that heads for the nearest goal. It delivers the devices on most charts.
-Action Pilot(const Farm& farm, std::int32_t id, RandomStream& chance) {
+Action Pilot(const Farm& farm, std::int32_t id, RandomStream& rng) {
   const Ship& ship = farm.ships()[static_cast<std::size_t>(id)];
   const ActionMask legal = farm.LegalActions(id);
   if ((legal & MaskOf(Action::kDropOff)) != 0) return Action::kDropOff;
@@ -87,9 +87,8 @@ Action Pilot(const Farm& farm, std::int32_t id, RandomStream& chance) {
     best = static_cast<Action>(move);
   }
   // Random moves escape from dead ends.
-  return best != Action::kHold && chance.Below(8) != 0
-             ? best
-             : static_cast<Action>(chance.Below(kMoveCount));
+  return best != Action::kHold && rng.Below(8) != 0 ? best
+                                                    : static_cast<Action>(rng.Below(kMoveCount));
 }
 
 std::string Playthrough(const std::shared_ptr<const Scenario>& scenario) {
@@ -102,11 +101,11 @@ std::string Playthrough(const std::shared_ptr<const Scenario>& scenario) {
     text << ToString(device.kind) << " at (" << device.cell.x << ", " << device.cell.y << ") worth "
          << Number(device.value) << '\n';
   }
-  RandomStream chance({1, 0, Purpose::kExploration, 0});
+  RandomStream rng({1, 0, RngStream::kExploration, 0});
   std::vector<std::uint8_t> codes(farm.ships().size());
   while (!farm.over()) {
     for (std::size_t id = 0; id < codes.size(); ++id) {
-      codes[id] = static_cast<std::uint8_t>(Pilot(farm, static_cast<std::int32_t>(id), chance));
+      codes[id] = static_cast<std::uint8_t>(Pilot(farm, static_cast<std::int32_t>(id), rng));
     }
     farm.Step(codes.data());
     const bool told = farm.step() <= kShown || farm.over();

@@ -37,7 +37,7 @@ Scenario WithWays(Scenario scenario) {
   return scenario;
 }
 
-Way WayFrom(const Layout& layout, Cell cell, std::size_t place) {
+RouteEntry WayFrom(const Layout& layout, Cell cell, std::size_t place) {
   const auto index =
       static_cast<std::size_t>(LinearIndex(cell, static_cast<std::int32_t>(layout.cells.cols())));
   return layout.ways[index * layout.way_count() + place];
@@ -59,7 +59,7 @@ TEST(Waterway, IsChartedForEveryPortAndEveryDeviceThatIsFetched) {
       const Grid<std::int32_t> steps = SlowSteps(layout.cells, places[i]);
       for (std::int32_t y = 0; y < scenario.height; ++y) {
         for (std::int32_t x = 0; x < scenario.width; ++x) {
-          const Way way = WayFrom(layout, {x, y}, i);
+          const RouteEntry way = WayFrom(layout, {x, y}, i);
           ASSERT_EQ(way.steps, steps(y, x));
           const bool leads = way.steps > 0 && way.steps < kUnreachable;
           ASSERT_EQ(way.east != 0 || way.north != 0, leads);

@@ -17,12 +17,12 @@ namespace aquafarm {
 namespace {
 
 std::string Tracks(const std::string& text) {
-  const HazardFile file = ParseHazardFile(text, "x");
+  const StormFile file = ParseStormFile(text, "x");
   std::string said(ToString(file.format));
   for (const std::string& warning : file.warnings) said += "\n" + warning;
-  for (const HazardTrack& track : file.tracks) {
+  for (const StormTrack& track : file.tracks) {
     said += "\n" + track.id + " " + track.name + " " + std::to_string(track.line);
-    for (const HazardFix& fix : track.fixes) {
+    for (const StormFix& fix : track.fixes) {
       said += "\n" + std::to_string(fix.time) + " " + std::to_string(fix.position.longitude) + " " +
               std::to_string(fix.rings.size()) + " " + std::to_string(fix.landfall);
     }

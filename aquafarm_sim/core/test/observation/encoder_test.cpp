@@ -68,12 +68,12 @@ TEST(TabularIndex, ATinyFarmReachesExactlyItsStates) {
   const Encoder encoder(farm.scenario());
   EXPECT_EQ(encoder.state_count(), 9U * 8);
   std::set<std::uint32_t> seen;
-  RandomStream chance({1, 0, Purpose::kExploration, 0});
+  RandomStream rng({1, 0, RngStream::kExploration, 0});
   for (std::uint64_t episode = 0; episode < 200; ++episode) {
     farm.Reset(1, episode);
     seen.insert(encoder.Index(farm, 0));
     while (!farm.over()) {
-      StepOne(farm, static_cast<Action>(chance.Below(kActionCount)));
+      StepOne(farm, static_cast<Action>(rng.Below(kActionCount)));
       const std::uint32_t index = encoder.Index(farm, 0);
       ASSERT_LT(index, encoder.state_count());
       const Encoder::TabularState state = encoder.Decode(index);
@@ -391,16 +391,16 @@ TEST(Planes, AgreeWithTheSlowOracleOnRandomFarms) {
       if (partial) scenario.view = {ViewMode::kPartial, 2.0F, 7, 1.5F};
       Farm farm = MakeFarm(scenario);
       farm.Reset(seed, 0);
-      RandomStream chance({seed, 0, Purpose::kExploration, 0});
+      RandomStream rng({seed, 0, RngStream::kExploration, 0});
       const Encoder encoder(farm.scenario());
       View view;
       std::vector<std::uint8_t> planes(encoder.planes_size(), 99);
       while (!farm.over()) {
         std::vector<std::uint8_t> codes(farm.ships().size());
-        for (auto& code : codes) code = static_cast<std::uint8_t>(chance.Below(kActionCount));
+        for (auto& code : codes) code = static_cast<std::uint8_t>(rng.Below(kActionCount));
         farm.Step(codes.data());
         if (farm.step() % 9 != 0) continue;
-        const auto ship = static_cast<std::int32_t>(chance.Below(3));
+        const auto ship = static_cast<std::int32_t>(rng.Below(3));
         Observe(farm, ship, view);
         encoder.Planes(view, planes.data());
         ASSERT_EQ(planes, SlowPlanes(view)) << "seed " << seed << " step " << farm.step();

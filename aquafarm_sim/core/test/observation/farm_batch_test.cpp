@@ -85,9 +85,9 @@ std::shared_ptr<const Scenario> Shared(Scenario scenario) {
 // Returns the n-th joint action of a test; depends only on n.
 std::vector<std::uint8_t> Actions(const FarmBatch& batch, std::uint64_t number) {
   std::vector<std::uint8_t> actions(static_cast<std::size_t>(batch.farms() * batch.agents()));
-  RandomStream chance({99, number, Purpose::kExploration, 0});
+  RandomStream rng({99, number, RngStream::kExploration, 0});
   for (std::uint8_t& action : actions) {
-    action = static_cast<std::uint8_t>(chance.Below(kActionCount));
+    action = static_cast<std::uint8_t>(rng.Below(kActionCount));
   }
   return actions;
 }

@@ -22,7 +22,7 @@ TEST(Ranch, OfManyDevicesTellsNetworksTheWay) {
   request.devices = 3;
   EXPECT_FALSE(BuildRanch(request).scenario.view.waterways);
   request.devices = 12;
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_TRUE(ranch.scenario.view.waterways);
   // 24 x 20 cells, each device waiting or delivered, or one of them aboard.
   EXPECT_TRUE(Says(ranch.decided, "states: 13762560, many for a table"));
@@ -33,13 +33,13 @@ TEST(Ranch, TooLargeForWaysByWaterIsWhatItsFileSays) {
   RanchRequest request;
   request.width = request.height = 1100;
   request.devices = 12;
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_FALSE(ranch.scenario.view.waterways);
   EXPECT_EQ(HashScenario(ranch.scenario), HashScenario(ParseScenario(ranch.yaml, request.name)));
 }
 
 TEST(Ranch, StandsOnTheChartWithPortsAtTheShore) {
-  const Ranch ranch = BuildRanch(Request());
+  const BuiltRanch ranch = BuildRanch(Request());
   const Scenario& scenario = ranch.scenario;
   EXPECT_EQ(scenario.width, 24);
   EXPECT_EQ(scenario.cell_size_m, 500.0);
@@ -50,7 +50,7 @@ TEST(Ranch, StandsOnTheChartWithPortsAtTheShore) {
   EXPECT_NEAR(land * 0.25, 4.82 * 5.54 + 0.53, 3.0);
   EXPECT_TRUE(Says(ranch.decided, "island cells"));
   EXPECT_TRUE(Says(ranch.decided, "of enclosed water filled"));
-  const std::string sketch = Sketch(scenario);
+  const std::string sketch = RenderAscii(scenario);
   EXPECT_EQ(sketch.size(), 20U * 25U);
   EXPECT_EQ(std::count(sketch.begin(), sketch.end(), 'P'), 4);
   EXPECT_EQ(std::count(sketch.begin(), sketch.end(), 'd'), 4);
@@ -60,7 +60,7 @@ TEST(Ranch, StandsOnTheChartWithPortsAtTheShore) {
 TEST(Ranch, PutsAPortAskedForAtTheNearestShore) {
   RanchRequest request = Request();
   request.port_places = {{30.025, 122.025}};  // in the lake
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   ASSERT_EQ(ranch.scenario.ports.cells.size(), 1U);
   EXPECT_TRUE(Says(ranch.decided, "port: asked for at (7, 8), put at the shore at ("));
 }
@@ -69,7 +69,7 @@ TEST(Ranch, MayBeCalmAndOnOpenSea) {
   RanchRequest request;
   request.devices = 12;
   request.placement = DevicePlacement::kLinear;
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_TRUE(ranch.scenario.disasters.empty());
   EXPECT_EQ(ranch.scenario.origin, std::nullopt);
   EXPECT_EQ(ranch.scenario.ports.count, 4);
@@ -80,7 +80,7 @@ TEST(Ranch, HasOtherDisastersBesideItsStorm) {
   RanchRequest request = Request();
   request.disasters = {"red_tide:area_km2=120,current_mps=0.3,current_to_deg=45",
                        "wave:height_m=4,radius_km=5,duration_h=48"};
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   ASSERT_EQ(ranch.scenario.disasters.size(), 3U);
   EXPECT_EQ(ranch.scenario.disasters[0].duration, 89);
   EXPECT_EQ(ranch.scenario.disasters[1].kind, DisasterKind::kRedTide);
@@ -100,10 +100,10 @@ TEST(Ranch, TakesItsSizeFromAGridInMetres) {
   RanchRequest request;
   request.chart = path.string();
   request.ports = 2;
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_EQ(ranch.scenario.width, 4);
   EXPECT_EQ(ranch.scenario.cell_size_m, 150.0);
-  EXPECT_EQ(Sketch(ranch.scenario)[5 + 1], '#');
+  EXPECT_EQ(RenderAscii(ranch.scenario)[5 + 1], '#');
   request.start = kMidnight;
   EXPECT_EQ(BuildRanch(request).scenario.start_time, kMidnight) << "without a storm";
   fs::remove(path);

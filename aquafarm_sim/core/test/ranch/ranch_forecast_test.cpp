@@ -48,7 +48,7 @@ class ForecastRanch : public testing::Test {
 };
 
 TEST_F(ForecastRanch, FollowsTheForecastWhereTheRecordEnds) {
-  const Ranch ranch = Make(kForecast);
+  const BuiltRanch ranch = Make(kForecast);
   EXPECT_TRUE(Says(ranch.decided,
                    "storm: recorded until 2021-07-24T12:00:00Z, then forecast until "
                    "2021-07-27T00:00:00Z (issued 2021-07-24T12:00:00Z by 中国)"));
@@ -67,7 +67,7 @@ TEST_F(ForecastRanch, FollowsTheForecastWhereTheRecordEnds) {
 }
 
 TEST_F(ForecastRanch, SeparatesTheRecordedPartOfAPassage) {
-  const Ranch ranch = Make(
+  const BuiltRanch ranch = Make(
       R"(}, {"time": "2021-07-25T02:00:00", "lat": 28, "lng": 124.5, "speed": 42, "radius7": 400)" +
       kForecast);
   EXPECT_TRUE(Says(ranch.decided, "; by the forecast after 2021-07-24T18:00:00Z"));
@@ -75,13 +75,13 @@ TEST_F(ForecastRanch, SeparatesTheRecordedPartOfAPassage) {
 
 TEST_F(ForecastRanch, GivesTheSameFilesForecastsToItsAgents) {
   request_.forecasts = path_.string();
-  const Ranch ranch = Make(kForecast);
+  const BuiltRanch ranch = Make(kForecast);
   EXPECT_TRUE(Says(ranch.decided, "forecasts: 1 from "));
   EXPECT_EQ(ranch.scenario.disasters.at(0).forecasts.size(), 1U);
 }
 
 TEST_F(ForecastRanch, NeverStatesAnAllClearWithoutAForecast) {
-  const Ranch ranch = Make("");
+  const BuiltRanch ranch = Make("");
   EXPECT_TRUE(Says(ranch.decided,
                    "34 kt do not reach the ranch from 2021-07-24T00:00:00Z to "
                    "2021-07-24T12:00:00Z; the storm is known until 2021-07-24T12:00:00Z only"));
@@ -94,13 +94,13 @@ TEST_F(ForecastRanch, NeverStatesAnAllClearWithoutAForecast) {
 }
 
 TEST_F(ForecastRanch, TakesNoForecastOlderThanADay) {
-  const Ranch ranch =
+  const BuiltRanch ranch =
       Make(kForecast + R"(}, {"time": "2021-07-25T20:01:00", "lat": 27, "lng": 126, "speed": 42)");
   EXPECT_TRUE(Says(ranch.decided, "known until 2021-07-25T12:01:00Z only"));
 }
 
 TEST_F(ForecastRanch, SaysThatAStormIsStillOverItAtTheEnd) {
-  const Ranch ranch =
+  const BuiltRanch ranch =
       Make(R"(}, {"time": "2021-07-25T08:00:00", "lat": 29.9, "lng": 122.3, "speed": 42)");
   EXPECT_TRUE(Says(ranch.decided, "; still over it at the last known time"));
   EXPECT_TRUE(Says(ranch.warnings,
@@ -110,7 +110,7 @@ TEST_F(ForecastRanch, SaysThatAStormIsStillOverItAtTheEnd) {
 }
 
 TEST_F(ForecastRanch, SaysThatWindAndRadiiAreUnknown) {
-  const Ranch ranch = Make("", "\"speed\": null");
+  const BuiltRanch ranch = Make("", "\"speed\": null");
   EXPECT_TRUE(Says(ranch.decided,
                    "34 kt: unknown whether they reach the ranch, as neither wind nor radii are "
                    "known from 2021-07-24T00:00:00Z to 2021-07-24T12:00:00Z while the storm is "
@@ -122,14 +122,14 @@ TEST_F(ForecastRanch, SaysThatWindAndRadiiAreUnknown) {
 }
 
 TEST_F(ForecastRanch, KeepsTheLastWindWhereAForecastHasNone) {
-  const Ranch ranch = Make(
+  const BuiltRanch ranch = Make(
       R"(, "forecast": [{"points": [{"time": "2021-07-25T20:00:00", "lat": 30.2, "lng": 122.0}]}])");
   EXPECT_TRUE(Says(ranch.decided, "34 kt over the ranch for "));
   EXPECT_EQ(ranch.scenario.disasters.at(0).track.back().radii.back(), 600.0F) << "300 km";
 }
 
 TEST_F(ForecastRanch, EstimatesFromTheGradeWhereTheWindIsUnknown) {
-  const Ranch ranch = Make(kForecast, "\"strong\": \"台风(TY)\"");
+  const BuiltRanch ranch = Make(kForecast, "\"strong\": \"台风(TY)\"");
   EXPECT_TRUE(Says(ranch.decided, "unknown at 0"));
   EXPECT_GT(ranch.scenario.disasters.at(0).track[0].radii.back(), 200.0F) << "of 32.7 m/s";
 }
@@ -167,7 +167,7 @@ TEST_F(ForecastRanch, HoldsForARealBulletinCutBeforeTheStormCame) {
   text = text.substr(0, text.rfind("},", text.rfind('{', cut)) + 1) + "]}]";
   std::ofstream(path_) << text;
   request_.track = path_.string();
-  const Ranch ranch = BuildRanch(request_);
+  const BuiltRanch ranch = BuildRanch(request_);
   EXPECT_TRUE(Says(ranch.decided, "; the storm is known until 2021-07-23T"));
   EXPECT_FALSE(Says(ranch.decided, "never"));
 }

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 TEST(Ranch, TellsItsAgentsWhatTheBulletinsForecast) {
   RanchRequest request = Request();
   request.forecasts = (kData / "bulletin.json").string();
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_TRUE(Says(ranch.decided, "forecasts: 1 from bulletin.json, the first of 2021-07-25T00"));
   const DisasterSpec& storm = ranch.scenario.disasters[0];
   ASSERT_EQ(storm.forecasts.size(), 1U);
@@ -78,7 +78,7 @@ Ranch WithBulletins(RanchRequest request, int year,
 TEST(Ranch, TakesTheNewestForecastByItsStartAndThoseIssuedInTime) {
   RanchRequest request = Request();
   request.start = kMidnight + 2 * kHour_s;
-  const Ranch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 20}, {4, 22}, {6, 23}});
+  const BuiltRanch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 20}, {4, 22}, {6, 23}});
   ASSERT_EQ(ranch.warnings.size(), 2U);
   EXPECT_NE(ranch.warnings[0].find("is there twice"), std::string::npos);
   EXPECT_NE(ranch.warnings[1].find("34 kt are still over the ranch"), std::string::npos);
@@ -91,7 +91,7 @@ TEST(Ranch, TakesTheNewestForecastByItsStartAndThoseIssuedInTime) {
 TEST(Ranch, LeavesOutAForecastThatEndsBeforeItsStart) {
   RanchRequest request = Request();
   request.start = kMidnight + 2 * kHour_s;
-  const Ranch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 2}, {4, 22}});
+  const BuiltRanch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 2}, {4, 22}});
   EXPECT_TRUE(Says(ranch.warnings,
                    "forecasts: that of 2021-07-25T00:00:00Z ends at 2021-07-25T02:00:00Z, by the "
                    "start, and is left out"));
@@ -118,7 +118,7 @@ TEST(Ranch, TakesNothingFromAStormOfAnotherYearByTheSameName) {
 }
 
 TEST(Ranch, HasTheStormAsItsFileSays) {
-  const Ranch ranch = BuildRanch(Request());
+  const BuiltRanch ranch = BuildRanch(Request());
   ASSERT_EQ(ranch.scenario.disasters.size(), 1U);
   const DisasterSpec& storm = ranch.scenario.disasters[0];
   ASSERT_EQ(storm.track.size(), 3U);
@@ -172,7 +172,7 @@ TEST(Ranch, BorrowsRadiiAndHasItsOwnStart) {
   request.storm = "2106";
   request.start = kMidnight + kHour_s;
   request.step_s = 60.0;
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_TRUE(Says(ranch.decided, "radii of 3 from bulletin.json"));
   EXPECT_EQ(ranch.scenario.start_time, kMidnight + kHour_s);
   EXPECT_EQ(ranch.scenario.step_duration_s, 60.0);
@@ -192,7 +192,7 @@ TEST(Ranch, BorrowsRadiiOfNoOtherStorm) {
     return request;
   };
   EXPECT_EQ(Refused(with("Lekima", "201909")).substr(0, 29), "radii: storm: got 'In-fa', ex");
-  const std::string id = FindTrack(LoadHazardFile(request.track), request.storm).id;
+  const std::string id = FindTrack(LoadStormFile(request.track), request.storm).id;
   EXPECT_TRUE(Says(BuildRanch(with("Lekima", id)).decided, "radii of 3")) << "by its id";
   EXPECT_TRUE(Says(BuildRanch(with("IN-FA", "202106")).decided, "radii of 3"));
   fs::remove(path);
@@ -202,7 +202,7 @@ TEST(Ranch, KeepsQuadrantsWhereAskedTo) {
   RanchRequest request = Request();
   request.radii = (kData / "bulletin.json").string();
   request.reduction = RingReduction::kQuadrants;
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   const DisasterSpec& storm = ranch.scenario.disasters[0];
   ASSERT_EQ(storm.quadrants.size(), 3U);
   const QuadrantRadii& gale = storm.track[0].quadrants[2];
@@ -218,7 +218,7 @@ TEST(Ranch, IsNotLedAstrayByAName) {
   RanchRequest request = Request();
   request.track = path.string();
   request.storm.clear();
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_EQ(ranch.scenario.ships.count, 1);
   EXPECT_NE(ranch.scenario.description.find("X?ships: {count: 9} # \""), std::string::npos);
   fs::remove(path);

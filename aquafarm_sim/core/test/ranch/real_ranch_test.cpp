@@ -25,7 +25,7 @@ TEST(RealFiles, MakeARanchOffDongji) {
   request.radii = (data / "bulletins" / "202106.json").string();
   request.devices = 12;
   request.placement = DevicePlacement::kLinear;
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_TRUE(ranch.warnings.empty());
   EXPECT_TRUE(Says(ranch.decided, "nearest: 32 km at 2021-07-25T03:30:00Z")) << ranch.yaml;
   EXPECT_TRUE(Says(ranch.decided, "strongest ring 64 kt"));
@@ -40,7 +40,7 @@ TEST(RealFiles, GiveDevicesTheirValueFromTheSea) {
   const std::string file = (data / "ocean" / "HYCOM_ST_GoO_20160428to20160503.nc").string();
   request.sea = {{"salt", file, "so"}, {"warmth", file, "thetao"}};
   request.value = "warmth > 26 ? 80 : 40 + salt";
-  const Ranch ranch = BuildRanch(request);
+  const BuiltRanch ranch = BuildRanch(request);
   EXPECT_TRUE(Says(ranch.decided, "salt: so of HYCOM_ST_GoO_20160428to20160503.nc at 2016-04-28T"));
   ASSERT_EQ(ranch.scenario.devices.sites.size(), 4U);
   for (const DeviceSite& site : ranch.scenario.devices.sites) {

@@ -60,13 +60,13 @@ TEST_P(Shipped, WritesTextThatReadsBackTheSame) {
 TEST_P(Shipped, PlaysToAnEnd) {
   const auto scenario = std::make_shared<const Scenario>(Load(GetParam()));
   Farm farm(scenario);
-  RandomStream chance({1, 0, Purpose::kExploration, 0});
+  RandomStream rng({1, 0, RngStream::kExploration, 0});
   std::vector<std::uint8_t> actions(static_cast<std::size_t>(scenario->AgentCount()));
   for (std::uint64_t episode = 0; episode < 3; ++episode) {
     farm.Reset(1, episode);
     while (!farm.over()) {
       for (std::uint8_t& action : actions) {
-        action = static_cast<std::uint8_t>(chance.Below(kActionCount));
+        action = static_cast<std::uint8_t>(rng.Below(kActionCount));
       }
       farm.Step(actions.data());
     }

@@ -8,15 +8,15 @@ namespace aquafarm {
 namespace {
 
 TEST(Bulletin, IsReadFromTheScriptOfZhejiangsWaterOffice) {
-  const HazardFile file = Load("zhejiang.js");
-  EXPECT_EQ(file.format, HazardFormat::kBulletin);
+  const StormFile file = Load("zhejiang.js");
+  EXPECT_EQ(file.format, TrackFormat::kBulletin);
   EXPECT_TRUE(file.warnings.empty()) << file.warnings[0];
-  const HazardTrack& storm = file.tracks.at(0);
+  const StormTrack& storm = file.tracks.at(0);
   EXPECT_EQ(storm.id, "202106");
   EXPECT_EQ(storm.name, "In-Fa");
   EXPECT_TRUE(storm.landfalls.empty()) << "its list names more than landfalls";
   ASSERT_EQ(storm.fixes.size(), 2U);
-  const HazardFix& fix = storm.fixes[0];
+  const StormFix& fix = storm.fixes[0];
   EXPECT_EQ(fix.time, 1627171200) << "08:00 in Beijing";
   EXPECT_EQ(fix.grade, StormGrade::kSevereTyphoon);
   EXPECT_EQ(fix.wind_mps, 42.0);
@@ -65,11 +65,11 @@ TEST(Bulletin, OfZhejiangIsRefusedWithItsLine) {
 }
 
 TEST(Bulletin, ReadsBeijingTimeAndQuadrants) {
-  const HazardFile file = Load("bulletin.json");
+  const StormFile file = Load("bulletin.json");
   ASSERT_EQ(file.tracks.size(), 2U);
-  const HazardTrack& storm = FindTrack(file, "烟花");
+  const StormTrack& storm = FindTrack(file, "烟花");
   EXPECT_EQ(storm.name, "In-Fa");
-  const HazardFix& fix = storm.fixes[0];
+  const StormFix& fix = storm.fixes[0];
   EXPECT_EQ(fix.time, kInFaNoon - 6 * 3600);
   EXPECT_EQ(fix.grade, StormGrade::kSevereTyphoon);
   EXPECT_EQ(fix.wind_mps, 42.0);
@@ -82,9 +82,9 @@ TEST(Bulletin, ReadsBeijingTimeAndQuadrants) {
 }
 
 TEST(Bulletin, KnowsBothSpellingsAndWhatIsUnknown) {
-  const HazardFile file = ParseHazardFile(Sample("bulletin.json"), "b.json");
-  const HazardTrack& storm = FindTrack(file, "202106");
-  const HazardFix& bare = storm.fixes[1];
+  const StormFile file = ParseStormFile(Sample("bulletin.json"), "b.json");
+  const StormTrack& storm = FindTrack(file, "202106");
+  const StormFix& bare = storm.fixes[1];
   EXPECT_EQ(bare.wind_mps, std::nullopt);
   EXPECT_EQ(bare.pressure_hpa, std::nullopt);
   EXPECT_EQ(bare.grade, StormGrade::kUnknown);
@@ -92,7 +92,7 @@ TEST(Bulletin, KnowsBothSpellingsAndWhatIsUnknown) {
   EXPECT_EQ(file.warnings,
             std::vector<std::string>{"b.json:18: [0].points[1].moveDir: '中' is not a "
                                      "known direction"});
-  const HazardFix& weak = storm.fixes[2];
+  const StormFix& weak = storm.fixes[2];
   EXPECT_EQ(weak.grade, StormGrade::kTropicalStorm) << "by its wind";
   EXPECT_EQ(weak.Ring(34), nullptr) << "18 m/s blow somewhere";
   ExpectRadii(weak, 50, {0, 0, 0, 0});
@@ -141,11 +141,11 @@ TEST(Bulletin, LeavesOutForecastPointsOfAnotherTime) {
       Warnings(late).substr(0, 171),
       "x:15: [0].points[0].forecast[0].points[1].time: got 2021-08-09T00:01:00Z, expected a "
       "forecast's within 15 days after 2021-07-25T00:00:00Z; the point is left out\nx:18: [0].");
-  EXPECT_EQ(ParseHazardFile(late, "x").tracks[0].forecasts.at(0).fixes.size(), 1U);
+  EXPECT_EQ(ParseStormFile(late, "x").tracks[0].forecasts.at(0).fixes.size(), 1U);
 }
 
 TEST(Bulletin, KeepsForecastsAndLandfallsInOrder) {
-  const HazardTrack storm = FindTrack(Load("bulletin.json"), "In-Fa");
+  const StormTrack storm = FindTrack(Load("bulletin.json"), "In-Fa");
   ASSERT_EQ(storm.forecasts.size(), 1U);
   EXPECT_EQ(storm.forecasts[0].agency, "中国");
   EXPECT_EQ(storm.forecasts[0].issued, storm.fixes[0].time);
@@ -157,11 +157,11 @@ TEST(Bulletin, KeepsForecastsAndLandfallsInOrder) {
 }
 
 TEST(WeatherService, ReadsTextForNumbersInsideAMarkdownFence) {
-  const HazardFile file = ParseHazardFile(Sample("weather_service.json"), "x");
+  const StormFile file = ParseStormFile(Sample("weather_service.json"), "x");
   EXPECT_EQ(file.warnings,
             std::vector<std::string>{"x:9: track[0].windRadius64: 64 kt: not every quadrant is "
                                      "said; the others are given 0"});
-  const HazardTrack& storm = file.tracks.at(0);
+  const StormTrack& storm = file.tracks.at(0);
   ASSERT_EQ(storm.fixes.size(), 3U);
   EXPECT_EQ(storm.fixes[0].grade, StormGrade::kSuperTyphoon);
   EXPECT_EQ(storm.fixes[0].pressure_hpa, std::nullopt);
@@ -185,7 +185,7 @@ TEST(WeatherService, MayAnswerWithAForecastAlone) {
   EXPECT_EQ(Warnings(answer),
             "x:5: forecast[1].lat: got '95', expected a number in [-90, 90]; the point is left "
             "out\n");
-  const HazardFile file = ParseHazardFile(With(answer, "\"95\"", "\"33\""), "x");
+  const StormFile file = ParseStormFile(With(answer, "\"95\"", "\"33\""), "x");
   EXPECT_TRUE(file.warnings.empty());
   ASSERT_EQ(file.tracks.at(0).fixes.size(), 2U);
   EXPECT_TRUE(file.tracks[0].fixes[0].forecast) << "not recorded";
@@ -197,7 +197,7 @@ TEST(WeatherService, ReadsTheForecastNextToTheTrackOrThePresentPosition) {
     {"fxTime": "2021-07-25T14:00+08:00", "lat": "31", "lon": "122", "windSpeed": "30"}]})";
   const std::string now = R"({"pubTime": "2021-07-25T08:00+08:00", "lat": "30", "lon": "122"})";
   for (const std::string& recorded : {"{\"track\": [" + now + "]", "{\"now\": " + now}) {
-    const HazardTrack track = ParseHazardFile(recorded + forecast, "x").tracks.at(0);
+    const StormTrack track = ParseStormFile(recorded + forecast, "x").tracks.at(0);
     ASSERT_EQ(track.fixes.size(), 1U) << recorded;
     EXPECT_FALSE(track.fixes[0].forecast);
     ASSERT_EQ(track.forecasts.size(), 1U);
@@ -218,13 +218,13 @@ TEST(WeatherService, SaysWhatItDoesNotRead) {
   for (const char* none : {"null", "\"\"", "[]"}) {
     const std::string answer = std::string("{\"track\": ") + none + ",\n" + forecast + "}";
     EXPECT_EQ(Warnings(answer), "") << none;
-    EXPECT_EQ(ParseHazardFile(answer, "x").tracks.at(0).fixes.size(), 1U) << none;
+    EXPECT_EQ(ParseStormFile(answer, "x").tracks.at(0).fixes.size(), 1U) << none;
   }
 }
 
 TEST(Motion, OfZeroWasNotSaid) {
   const auto speeds = [](const std::string& text) {
-    return ParseHazardFile(text, "x").tracks[0].fixes;
+    return ParseStormFile(text, "x").tracks[0].fixes;
   };
   const auto bulletin = speeds(R"([{"tfbh": "1", "points": [
     {"time": "2021-07-25T08:00:00", "lat": 30, "lng": 122, "move_speed": 0},

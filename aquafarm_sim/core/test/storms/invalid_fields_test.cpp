@@ -54,7 +54,7 @@ class Typos : public testing::TestWithParam<Typo> {};
 
 TEST_P(Typos, InAFieldLeaveThePointAndTheStorm) {
   const std::string text = Bulletin(PointAt("25T14", GetParam().point));
-  const HazardFile file = ParseHazardFile(text, "x");
+  const StormFile file = ParseStormFile(text, "x");
   EXPECT_EQ(file.warnings,
             std::vector<std::string>{std::string("x:3: [0].points[1].") + GetParam().warning});
   EXPECT_EQ(file.tracks.at(0).fixes.size(), 3U);
@@ -64,10 +64,10 @@ INSTANTIATE_TEST_SUITE_P(All, Typos, testing::ValuesIn(kFields),
                          [](const auto& test) { return test.param.name; });
 
 TEST(Typos, OfARadiusLeaveTheRingUnknownAndNotZero) {
-  const HazardFix fix =
-      ParseHazardFile(Bulletin(PointAt("25T14", R"("lat": 30, "lng": 122, "speed": 35,
+  const StormFix fix =
+      ParseStormFile(Bulletin(PointAt("25T14", R"("lat": 30, "lng": 122, "speed": 35,
       "radius7": 3380)")),
-                      "x")
+                     "x")
           .tracks.at(0)
           .fixes[1];
   EXPECT_EQ(fix.Ring(34), nullptr);
@@ -83,7 +83,7 @@ TEST(Typos, OfATimeOrAPositionLeaveOutThePoint) {
             "lng: got '12z', expected a number in [-180, 360]"},
            {PointAt("32T14", R"("lat": 30, "lng": 122)"),
             "time: got '2021-07-32T14:00:00', expected a time as 2021-07-25T14:00:00"}}) {
-    const HazardFile file = ParseHazardFile(Bulletin(point), "x");
+    const StormFile file = ParseStormFile(Bulletin(point), "x");
     EXPECT_EQ(file.warnings,
               std::vector<std::string>{"x:3: [0].points[1]." + words + "; the point is left out"});
     EXPECT_EQ(file.tracks.at(0).fixes.size(), 2U);
@@ -103,8 +103,8 @@ TEST(Typos, InATimeDoNotLoseThePointsBehindIt) {
   const auto kept = [&](const std::vector<std::string>& times, const std::string& warning) {
     std::string points;
     for (const std::string& time : times) points += (points.empty() ? "" : ",\n") + at(time);
-    const HazardFile file =
-        ParseHazardFile("[{\"tfbh\": \"1\",\n\"points\": [\n" + points + "]}]", "x");
+    const StormFile file =
+        ParseStormFile("[{\"tfbh\": \"1\",\n\"points\": [\n" + points + "]}]", "x");
     EXPECT_EQ(file.warnings, std::vector<std::string>{warning});
     return file.tracks.at(0).fixes;
   };
@@ -145,7 +145,7 @@ TEST(Typos, InALandfallOrANameLeaveTheStorm) {
   const std::string point = PointAt("25T14", kGood);
   const std::string swapped = R"(, "land": [{"land_time": "2021-07-25T12:30:00", "lat": 122.4,
     "lng": 30.0}, {"land_time": "2021-07-26T12:30:00", "lat": 30.4, "lng": 122.0}])";
-  const HazardFile file = ParseHazardFile(Bulletin(point, swapped), "x");
+  const StormFile file = ParseStormFile(Bulletin(point, swapped), "x");
   EXPECT_EQ(file.warnings,
             std::vector<std::string>{"x:1: [0].land[0].lat: got 122.4, expected a number in [-90, "
                                      "90]; the landfall is left out"});
@@ -157,7 +157,7 @@ TEST(Typos, InALandfallOrANameLeaveTheStorm) {
 TEST(Bulletin, ReadsLandfallsThatNameTheirTimeAsPointsDo) {
   const std::string land = R"(, "land": [{"time": "2021-07-25T12:30:00", "lat": 30.0, "lng": 122.4,
     "position": "Putuo"}, {"lat": 30.0, "lng": 122.4}, {"lat": 30.0, "lng": 122.4}])";
-  const HazardFile file = ParseHazardFile(Bulletin(PointAt("25T14", kGood), land), "x");
+  const StormFile file = ParseStormFile(Bulletin(PointAt("25T14", kGood), land), "x");
   ASSERT_EQ(file.tracks.at(0).landfalls.size(), 1U);
   EXPECT_EQ(file.tracks[0].landfalls[0].time, kInFaNoon - 90 * 60);
   EXPECT_EQ(file.tracks[0].landfalls[0].place, "Putuo");
@@ -191,8 +191,8 @@ TEST(Cma, OneWrongValueLeavesTheStorm) {
   EXPECT_EQ(Warnings(nameless).substr(0, 88),
             "x:5: name: got nothing, expected a name or (nameless); the storm is 2106 without a "
             "name\n");
-  EXPECT_EQ(ParseHazardFile(nameless, "x").tracks.size(), 3U);
-  EXPECT_EQ(ParseHazardFile(nameless, "x").tracks[1].fixes.size(), 3U);
+  EXPECT_EQ(ParseStormFile(nameless, "x").tracks.size(), 3U);
+  EXPECT_EQ(ParseStormFile(nameless, "x").tracks[1].fixes.size(), 3U);
 }
 
 TEST(Cma, WarningsOfAStormLeaveTheLinesOfTheNext) {

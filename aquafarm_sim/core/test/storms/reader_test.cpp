@@ -15,26 +15,26 @@
 namespace aquafarm {
 namespace {
 
-TEST(HazardFormat, IsKnownByItsContent) {
-  const std::vector<std::pair<const char*, HazardFormat>> files{
-      {"cma.txt", HazardFormat::kCma},
-      {"jma.txt", HazardFormat::kJma},
-      {"atcf.dat", HazardFormat::kAtcf},
-      {"ibtracs.csv", HazardFormat::kIbtracs},
-      {"bulletin.json", HazardFormat::kBulletin},
-      {"zhejiang.js", HazardFormat::kBulletin},
-      {"weather_service.json", HazardFormat::kWeatherService}};
+TEST(TrackFormat, IsKnownByItsContent) {
+  const std::vector<std::pair<const char*, TrackFormat>> files{
+      {"cma.txt", TrackFormat::kCma},
+      {"jma.txt", TrackFormat::kJma},
+      {"atcf.dat", TrackFormat::kAtcf},
+      {"ibtracs.csv", TrackFormat::kIbtracs},
+      {"bulletin.json", TrackFormat::kBulletin},
+      {"zhejiang.js", TrackFormat::kBulletin},
+      {"weather_service.json", TrackFormat::kWeatherService}};
   for (const auto& [name, format] : files) {
-    EXPECT_EQ(DetectHazardFormat(Sample(name)), format) << name;
+    EXPECT_EQ(DetectTrackFormat(Sample(name)), format) << name;
     EXPECT_EQ(Load(name).format, format) << name;
   }
-  EXPECT_EQ(DetectHazardFormat("name: paper\n"), std::nullopt);
-  EXPECT_EQ(ToString(HazardFormat::kIbtracs), "IBTrACS");
-  EXPECT_EQ(ToString(HazardFormat::kWeatherService), "weather service track");
+  EXPECT_EQ(DetectTrackFormat("name: paper\n"), std::nullopt);
+  EXPECT_EQ(ToString(TrackFormat::kIbtracs), "IBTrACS");
+  EXPECT_EQ(ToString(TrackFormat::kWeatherService), "weather service track");
 }
 
 // Storms without a number are known by a serial that begins anew each year.
-TEST(HazardFile, TellsStormsOfOneIdApart) {
+TEST(StormFile, TellsStormsOfOneIdApart) {
   const std::string years =
       "66666 0000 01 0012 0000 0 6 (nameless) 20200101\n"
       "2019072500 1 297 1230 1000 12\n"
@@ -43,7 +43,7 @@ TEST(HazardFile, TellsStormsOfOneIdApart) {
   EXPECT_EQ(Warnings(years),
             "x:1: storm CMA12 is there 2 times; this one is called CMA12-1\n"
             "x:3: storm CMA12 is there 2 times; this one is called CMA12-2\n");
-  const HazardFile file = ParseHazardFile(years, "x");
+  const StormFile file = ParseStormFile(years, "x");
   EXPECT_EQ(FindTrack(file, "cma12-1").line, 1);
   EXPECT_EQ(FindTrack(file, "cma12-2").line, 3);
   try {
@@ -61,11 +61,11 @@ TEST(HazardFile, TellsStormsOfOneIdApart) {
             "x:1: [0]: storm 202106 is there 2 times; this one is called 202106-1\n"
             "x:3: [1]: storm 202106 is there 2 times; this one is called 202106-2\n");
   const std::string taken = With(storm, "202106", "202106-2");
-  EXPECT_EQ(ParseHazardFile("[" + twice + "," + taken + "]", "x").tracks[1].id, "202106-3");
+  EXPECT_EQ(ParseStormFile("[" + twice + "," + taken + "]", "x").tracks[1].id, "202106-3");
 }
 
 TEST(FindTrack, NamesWhatThereIs) {
-  const HazardFile file = Load("cma.txt");
+  const StormFile file = Load("cma.txt");
   try {
     FindTrack(file, "Rai");
     FAIL();
@@ -76,9 +76,9 @@ TEST(FindTrack, NamesWhatThereIs) {
 }
 
 TEST(FindTrack, SaysHowManyMoreThereAre) {
-  HazardFile file;
+  StormFile file;
   file.tracks.resize(62);
-  for (HazardTrack& track : file.tracks) track.id = "x";
+  for (StormTrack& track : file.tracks) track.id = "x";
   try {
     FindTrack(file, "y");
     FAIL();
@@ -89,13 +89,13 @@ TEST(FindTrack, SaysHowManyMoreThereAre) {
 }
 
 TEST(FindTrack, TakesIdsBeforeNamesAndNoEmptyWord) {
-  HazardFile file;
+  StormFile file;
   file.tracks.resize(3);
   file.tracks[0].id = "1";
   file.tracks[1].id = "2";
   file.tracks[1].name = "One";
   file.tracks[2].id = "One";
-  for (HazardTrack& track : file.tracks) track.fixes.emplace_back();
+  for (StormTrack& track : file.tracks) track.fixes.emplace_back();
   EXPECT_EQ(FindTrack(file, "one").id, "One") << "not the storm of that name";
   file.tracks.pop_back();
   EXPECT_EQ(FindTrack(file, "one").id, "2");
@@ -108,7 +108,7 @@ TEST(FindTrack, TakesIdsBeforeNamesAndNoEmptyWord) {
 }
 
 // Every reader of text: a pipe is not waited for, a device not read without end.
-TEST(LoadHazardFile, NamesAFileThatIsNot) {
+TEST(LoadStormFile, NamesAFileThatIsNot) {
   const std::string pipe =
       (std::filesystem::temp_directory_path() / ("hazard_file_test." + std::to_string(getpid())))
           .string();
@@ -127,7 +127,7 @@ TEST(LoadHazardFile, NamesAFileThatIsNot) {
       }
       return "was read";
     };
-    EXPECT_EQ(refused(LoadHazardFile), path + words);
+    EXPECT_EQ(refused(LoadStormFile), path + words);
     EXPECT_EQ(refused(LoadNotices), path + words);
     EXPECT_EQ(refused(LoadCoast), path + words);
     EXPECT_EQ(refused(LoadAsciiGrid), path + words);
@@ -137,13 +137,13 @@ TEST(LoadHazardFile, NamesAFileThatIsNot) {
 }
 
 // Every cut of every sample is read, or refused with a line; nothing else happens.
-TEST(HazardFile, EveryCutOfASampleIsReadOrRefused) {
+TEST(StormFile, EveryCutOfASampleIsReadOrRefused) {
   for (const char* name : {"cma.txt", "jma.txt", "atcf.dat", "ibtracs.csv", "bulletin.json",
                            "zhejiang.js", "weather_service.json"}) {
     const std::string text = Sample(name);
     for (std::size_t size = 0; size < text.size(); ++size) {
       try {
-        EXPECT_FALSE(ParseHazardFile(text.substr(0, size), "x").tracks.empty());
+        EXPECT_FALSE(ParseStormFile(text.substr(0, size), "x").tracks.empty());
       } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()).substr(0, 2), "x:");
       }

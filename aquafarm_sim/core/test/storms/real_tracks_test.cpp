@@ -22,40 +22,40 @@ class RealFiles : public testing::Test {
   void SetUp() override {
     if (!fs::exists(SharedData())) GTEST_SKIP() << "no real files at " << SharedData();
   }
-  static HazardFile Load(const char* path) {
-    HazardFile file = LoadHazardFile((SharedData() / path).string());
+  static StormFile Load(const char* path) {
+    StormFile file = LoadStormFile((SharedData() / path).string());
     EXPECT_TRUE(file.warnings.empty()) << file.warnings[0];
     return file;
   }
-  static std::size_t Fixes(const HazardFile& file) {
+  static std::size_t Fixes(const StormFile& file) {
     std::size_t count = 0;
-    for (const HazardTrack& track : file.tracks) count += track.fixes.size();
+    for (const StormTrack& track : file.tracks) count += track.fixes.size();
     return count;
   }
 };
 
 // Three archives on one storm at one hour, 2021-07-25 06:00 UTC.
 constexpr std::int64_t kInFaNoon = 1627192800;
-const HazardFix& At(const HazardTrack& track, std::int64_t time) {
+const StormFix& At(const StormTrack& track, std::int64_t time) {
   return *std::find_if(track.fixes.begin(), track.fixes.end(),
-                       [time](const HazardFix& fix) { return fix.time == time; });
+                       [time](const StormFix& fix) { return fix.time == time; });
 }
 
-void ExpectAt(const HazardFix& fix, double latitude, double longitude, double pressure_hpa) {
+void ExpectAt(const StormFix& fix, double latitude, double longitude, double pressure_hpa) {
   EXPECT_DOUBLE_EQ(fix.position.latitude, latitude);
   EXPECT_DOUBLE_EQ(fix.position.longitude, longitude);
   EXPECT_EQ(fix.pressure_hpa, pressure_hpa);
 }
 
 TEST_F(RealFiles, OfCmaHaveEveryStorm) {
-  const HazardFile year = Load("tracks/CH2021BST.txt");
+  const StormFile year = Load("tracks/CH2021BST.txt");
   EXPECT_EQ(year.tracks.size(), 26U);
   EXPECT_EQ(Fixes(year), 926U);
-  const HazardFix fix = At(FindTrack(year, "IN-FA"), kInFaNoon);
+  const StormFix fix = At(FindTrack(year, "IN-FA"), kInFaNoon);
   ExpectAt(fix, 30.0, 122.2, 970.0);
   EXPECT_EQ(fix.wind_mps, 33.0);
   EXPECT_EQ(fix.grade, StormGrade::kTyphoon);
-  const HazardFile other = Load("tracks/CH2019BST.txt");
+  const StormFile other = Load("tracks/CH2019BST.txt");
   EXPECT_EQ(other.tracks.size(), 33U);
   EXPECT_EQ(Fixes(other), 1003U);
 }
@@ -63,7 +63,7 @@ TEST_F(RealFiles, OfCmaHaveEveryStorm) {
 TEST_F(RealFiles, OfCmaWithABlankNameHaveEveryStorm) {
   const fs::path path = SharedData() / "tracks" / "cma_archive" / "CH1997BST.txt";
   if (!fs::exists(path)) GTEST_SKIP() << "no " << path;
-  const HazardFile year = LoadHazardFile(path.string());
+  const StormFile year = LoadStormFile(path.string());
   EXPECT_EQ(year.tracks.size(), 30U);
   EXPECT_EQ(year.warnings.at(0), path.string() +
                                      ":849: name: got nothing, expected a name or (nameless); the "
@@ -82,10 +82,10 @@ TEST_F(RealFiles, OfCmaTakeAtMostTwentyMillisecondsAYear) {
 }
 
 TEST_F(RealFiles, OfJmaHave169StormsAnd6154Points) {
-  const HazardFile file = Load("tracks/bst_all_2015-2021.txt");
+  const StormFile file = Load("tracks/bst_all_2015-2021.txt");
   EXPECT_EQ(file.tracks.size(), 169U);
   EXPECT_EQ(Fixes(file), 6154U);
-  const HazardFix fix = At(FindTrack(file, "2106"), kInFaNoon);
+  const StormFix fix = At(FindTrack(file, "2106"), kInFaNoon);
   ExpectAt(fix, 30.0, 122.5, 970.0);
   EXPECT_NEAR(*fix.wind_mps, 65 * kMpsPerKnot, 1e-9);
   ASSERT_EQ(fix.rings.size(), 2U);
@@ -96,8 +96,8 @@ TEST_F(RealFiles, OfJmaHave169StormsAnd6154Points) {
   EXPECT_LT(fix.Ring(30)->radius_km[kNorthWestQuadrant], 260 * kKmPerNauticalMile);
   std::size_t blank = 0;
   std::size_t east = 0;
-  for (const HazardTrack& track : file.tracks) {
-    for (const HazardFix& each : track.fixes) {
+  for (const StormTrack& track : file.tracks) {
+    for (const StormFix& each : track.fixes) {
       blank += each.rings.empty() ? 1 : 0;
       east += each.position.longitude < 0.0 ? 1 : 0;
     }
@@ -107,10 +107,10 @@ TEST_F(RealFiles, OfJmaHave169StormsAnd6154Points) {
 }
 
 TEST_F(RealFiles, OfBulletinsAgreeWithTheBestTrack) {
-  const HazardTrack storm = FindTrack(Load("bulletins/202106.json"), "In-Fa");
+  const StormTrack storm = FindTrack(Load("bulletins/202106.json"), "In-Fa");
   EXPECT_EQ(storm.fixes.size(), 203U);
   EXPECT_EQ(storm.landfalls.size(), 2U);
-  const HazardFix fix = At(storm, kInFaNoon);
+  const StormFix fix = At(storm, kInFaNoon);
   ExpectAt(fix, 30.0, 122.2, 965.0);
   EXPECT_EQ(fix.wind_mps, 38.0);
   EXPECT_EQ(fix.grade, StormGrade::kTyphoon);
@@ -121,23 +121,23 @@ TEST_F(RealFiles, OfBulletinsAgreeWithTheBestTrack) {
   EXPECT_EQ(fix.Ring(50)->radius_km, (Radii{100, 100, 80, 100}));
   EXPECT_EQ(fix.Ring(64)->radius_km, (Radii{40, 40, 40, 40}));
   EXPECT_EQ(Load("bulletins/201909.json").tracks[0].fixes.size(), 158U);
-  const HazardTrack old = Load("bulletins/194906.json").tracks[0];
+  const StormTrack old = Load("bulletins/194906.json").tracks[0];
   EXPECT_EQ(old.fixes.size(), 33U);
   EXPECT_EQ(old.name, "Gloria");
 }
 
 TEST_F(RealFiles, OfOtherSourcesAreReadToTheEnd) {
-  const HazardTrack neoguri = FindTrack(Load("tracks/bwp082014.dat"), "Neoguri");
+  const StormTrack neoguri = FindTrack(Load("tracks/bwp082014.dat"), "Neoguri");
   EXPECT_EQ(neoguri.fixes.size(), 35U);
   EXPECT_EQ(neoguri.id, "WP082014");
   EXPECT_EQ(FindTrack(Load("tracks/bwp162014.dat"), "FUNG-WONG").fixes.size(), 27U);
-  const HazardFile active = Load("tracks/ibtracs.ACTIVE.list.v04r00.csv");
+  const StormFile active = Load("tracks/ibtracs.ACTIVE.list.v04r00.csv");
   ASSERT_EQ(active.tracks.size(), 3U);
   EXPECT_EQ(FindTrack(active, "IALY").fixes.size(), 49U);
   EXPECT_LT(FindTrack(active, "IALY").fixes[0].position.latitude, 0.0);
   EXPECT_EQ(FindTrack(active, "EWINIAR").fixes.size(), 27U);
   EXPECT_EQ(FindTrack(active, "REMAL").fixes.size(), 19U);
-  const HazardTrack ewiniar = Load("bulletins/qweather_getStormTrack.json").tracks[0];
+  const StormTrack ewiniar = Load("bulletins/qweather_getStormTrack.json").tracks[0];
   ASSERT_EQ(ewiniar.fixes.size(), 4U);
   EXPECT_EQ(ewiniar.fixes[3].grade, StormGrade::kSevereTropicalStorm);
   EXPECT_EQ(ewiniar.fixes[3].heading_deg, 45.0);
@@ -151,12 +151,11 @@ TEST_F(RealFiles, AreAllRead) {
     const std::string folder = entry.path().parent_path().filename().string();
     const std::string extension = entry.path().extension().string();
     if (folder == "tracks") {
-      EXPECT_FALSE(LoadHazardFile(path).tracks.empty()) << path;
+      EXPECT_FALSE(LoadStormFile(path).tracks.empty()) << path;
     } else if (folder == "bulletins") {
       const std::string name = entry.path().filename().string();
       const bool notices = name.find("Warning") != std::string::npos || name.substr(0, 2) == "zs";
-      EXPECT_FALSE(notices ? LoadNotices(path).notices.empty()
-                           : LoadHazardFile(path).tracks.empty())
+      EXPECT_FALSE(notices ? LoadNotices(path).notices.empty() : LoadStormFile(path).tracks.empty())
           << path;
     } else if (folder == "coast") {
       EXPECT_FALSE(LoadCoast(path).polygons.empty()) << path;

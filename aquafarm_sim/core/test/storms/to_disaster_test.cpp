@@ -18,8 +18,8 @@ constexpr std::int64_t kHour_s = 3600;
 constexpr std::int64_t kStart = 1627192800;  // 2021-07-25 06:00 UTC
 const GeoPoint kRanch{30.0, 122.0};
 
-HazardFix Fix(std::int64_t hours, double longitude, double wind_mps) {
-  HazardFix fix;
+StormFix Fix(std::int64_t hours, double longitude, double wind_mps) {
+  StormFix fix;
   fix.time = kStart + hours * kHour_s;
   fix.position = {30.0, longitude};
   fix.wind_mps = wind_mps;
@@ -32,11 +32,11 @@ WindRing Ring(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& ra
 }
 
 // Passes the ranch from east to west in 20 hours, one degree of longitude (96.5 km) in five.
-HazardTrack WestGoing() {
-  HazardTrack track;
+StormTrack WestGoing() {
+  StormTrack track;
   track.id = "9901";
   for (const std::int64_t hours : {0, 10, 20}) {
-    HazardFix fix = Fix(hours, 124.0 - 0.2 * static_cast<double>(hours), 35.0);
+    StormFix fix = Fix(hours, 124.0 - 0.2 * static_cast<double>(hours), 35.0);
     fix.rings = {Ring(34, {200, 200, 200, 200}), Ring(50, {100, 100, 60, 60}),
                  Ring(64, {40, 40, 40, 0})};
     track.fixes.push_back(fix);
@@ -59,7 +59,7 @@ TEST(ToRings, KeepsTheAreaOfTheQuadrantsOrTakesTheLargest) {
 }
 
 TEST(ToRings, EstimatesWhatIsNotSaidAndNeverBeyondAWeakerWind) {
-  HazardTrack track = WestGoing();
+  StormTrack track = WestGoing();
   track.fixes[1].rings = {Ring(34, {30, 30, 30, 30})};  // smaller than any estimate
   track.fixes[2].rings.clear();
   track.fixes[2].wind_mps.reset();
@@ -74,8 +74,8 @@ TEST(ToRings, EstimatesWhatIsNotSaidAndNeverBeyondAWeakerWind) {
 }
 
 TEST(ToRings, KeepsTheThirtyKnotsOfTheJma) {
-  HazardTrack track = WestGoing();
-  for (HazardFix& fix : track.fixes) {
+  StormTrack track = WestGoing();
+  for (StormFix& fix : track.fixes) {
     fix.rings = {Ring(30, {300, 300, 200, 200}), Ring(50, {80, 80, 80, 80})};
   }
   const StormRings storm = ToRings(track, RingReduction::kLargest);
@@ -85,11 +85,11 @@ TEST(ToRings, KeepsTheThirtyKnotsOfTheJma) {
 }
 
 TEST(BorrowRings, InterpolatesAnotherTrackOfTheSameStorm) {
-  HazardTrack best;
+  StormTrack best;
   best.fixes = {Fix(-1, 124.2, 35.0), Fix(3, 123.4, 35.0), Fix(20, 120.0, 35.0)};
-  HazardTrack bulletins;
+  StormTrack bulletins;
   for (const std::int64_t hours : {0, 6, 20}) {
-    HazardFix fix = Fix(hours, 124.0, 35.0);
+    StormFix fix = Fix(hours, 124.0, 35.0);
     const double radius = 100.0 + 10.0 * static_cast<double>(hours);
     fix.rings = {Ring(34, {radius, radius, 0, radius})};
     bulletins.fixes.push_back(fix);
@@ -120,25 +120,25 @@ TEST(ToDisaster, PutsCellsAndStepsInThePlaceOfKilometresAndHours) {
 }
 
 TEST(Bulletins, GoOnWithTheNewestForecast) {
-  HazardTrack track = WestGoing();
-  HazardForecast old;
+  StormTrack track = WestGoing();
+  StormForecast old;
   old.issued = kStart;
   old.fixes = {Fix(30, 119.0, 20.0)};
-  HazardForecast fresh;
+  StormForecast fresh;
   fresh.issued = kStart + 20 * kHour_s;
   fresh.fixes = {Fix(20, 120.0, 30.0), Fix(26, 119.5, 25.0), Fix(44, 118.0, 18.0)};
   track.forecasts = {old, fresh};
-  const HazardTrack whole = WithForecast(track, NoForecast::kEnd);
+  const StormTrack whole = WithForecast(track, NoForecast::kEnd);
   ASSERT_EQ(whole.fixes.size(), 5U);
   EXPECT_EQ(whole.fixes[4].time, kStart + 44 * kHour_s);
 }
 
 TEST(Bulletins, GoOnAsTheStormMovesWithoutAForecast) {
-  HazardTrack track = WestGoing();
+  StormTrack track = WestGoing();
   track.fixes.back().heading_deg = 0.0;
   track.fixes.back().speed_kmh = 10.0;
   EXPECT_EQ(WithForecast(track, NoForecast::kEnd).fixes.size(), 3U);
-  const HazardTrack whole = WithForecast(track, NoForecast::kPersist);
+  const StormTrack whole = WithForecast(track, NoForecast::kPersist);
   ASSERT_EQ(whole.fixes.size(), 4U);
   EXPECT_EQ(whole.fixes[3].time, kStart + 44 * kHour_s);
   EXPECT_NEAR(whole.fixes[3].position.latitude, 30.0 + 240.0 / 110.9, 0.01);
@@ -146,7 +146,7 @@ TEST(Bulletins, GoOnAsTheStormMovesWithoutAForecast) {
 }
 
 TEST(Bulletins, LastFromNowToTheirEnd) {
-  HazardTrack track = WestGoing();
+  StormTrack track = WestGoing();
   track.fixes.back().heading_deg = 0.0;
   track.fixes.back().speed_kmh = 10.0;
   Scenario scenario;
@@ -169,14 +169,14 @@ TEST(Bulletins, LastFromNowToTheirEnd) {
 }
 
 TEST(Tracks, BeginOnTheRanchsSideOfTheGlobe) {
-  HazardTrack track = WestGoing();
-  HazardFix antipode = track.fixes.front();
+  StormTrack track = WestGoing();
+  StormFix antipode = track.fixes.front();
   antipode.time -= 6 * kHour_s;
   antipode.position = {-30.0, -58.0};
   const GeoFrame frame(kRanch, 1000.0);
   EXPECT_FALSE(frame.Faces(antipode.position));
   EXPECT_TRUE(frame.Faces(kRanch));
-  const auto made = [&frame](const HazardTrack& of) {
+  const auto made = [&frame](const StormTrack& of) {
     return ToDisaster(ToRings(of, RingReduction::kEqualArea), DefaultGradeRisks(), frame, 1000.0,
                       3600.0, kStart);
   };
@@ -185,7 +185,7 @@ TEST(Tracks, BeginOnTheRanchsSideOfTheGlobe) {
   const DisasterSpec cut = made(track);
   ASSERT_EQ(cut.track.size(), without.track.size());
   EXPECT_EQ(cut.track[0].x, without.track[0].x);
-  const auto refused = [&made](const HazardTrack& of) -> std::string {
+  const auto refused = [&made](const StormTrack& of) -> std::string {
     try {
       made(of);
     } catch (const InputError& error) {
@@ -193,7 +193,7 @@ TEST(Tracks, BeginOnTheRanchsSideOfTheGlobe) {
     }
     return "";
   };
-  HazardTrack back = WestGoing();
+  StormTrack back = WestGoing();
   back.fixes[1].position = antipode.position;
   EXPECT_NE(refused(back).find("leaves the ranch's side of the globe"), std::string::npos);
   track.fixes.resize(1);
@@ -214,14 +214,16 @@ TEST(Steps, AreBounded) {
   }
 }
 
-TEST(PassOver, TellsWhenAStormIsNearestAndHowLongItsWindLasts) {
-  const Passage passage = PassOver(ToRings(WestGoing(), RingReduction::kLargest), kRanch, 0.0);
+TEST(ClosestApproach, TellsWhenAStormIsNearestAndHowLongItsWindLasts) {
+  const Passage passage =
+      ClosestApproach(ToRings(WestGoing(), RingReduction::kLargest), kRanch, 0.0);
   EXPECT_EQ(passage.nearest_time, kStart + 10 * kHour_s);
   EXPECT_LT(passage.nearest_km, 0.01);
   EXPECT_EQ(passage.worst_wind_kt, 64);
   EXPECT_EQ(passage.first, kStart) << "193 km away, within 200";
   EXPECT_NEAR(passage.widest_h, 20.0, 0.2);
-  const Passage far = PassOver(ToRings(WestGoing(), RingReduction::kLargest), {36.0, 122.0}, 0.0);
+  const Passage far =
+      ClosestApproach(ToRings(WestGoing(), RingReduction::kLargest), {36.0, 122.0}, 0.0);
   EXPECT_EQ(far.worst_wind_kt, 0);
   EXPECT_EQ(far.widest_h, 0.0);
   EXPECT_NEAR(far.nearest_km, 665.5, 1.0) << "six degrees of latitude";
@@ -231,16 +233,16 @@ TEST(PassOver, TellsWhenAStormIsNearestAndHowLongItsWindLasts) {
 TEST(RealFiles, GiveTheTrackOfTheShippedScenario) {
   const std::filesystem::path data = SharedData();
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real files at " << data;
-  const HazardFile best = LoadHazardFile((data / "tracks" / "CH2021BST.txt").string());
-  const HazardFile bulletins = LoadHazardFile((data / "bulletins" / "202106.json").string());
-  HazardTrack track = FindTrack(best, "In-Fa");
+  const StormFile best = LoadStormFile((data / "tracks" / "CH2021BST.txt").string());
+  const StormFile bulletins = LoadStormFile((data / "bulletins" / "202106.json").string());
+  StormTrack track = FindTrack(best, "In-Fa");
   EXPECT_GT(BorrowRings(FindTrack(bulletins, "In-Fa"), track), 50);
   const StormRings storm = ToRings(track, RingReduction::kEqualArea);
   const StormWaypoint noon = *storm.At(kStart);
   EXPECT_NEAR(noon.radii_km[2], 241.1, 0.1);
   EXPECT_NEAR(noon.radii_km[1], 95.4, 0.1);
   EXPECT_NEAR(noon.radii_km[0], 40.0, 0.1);
-  const Passage passage = PassOver(storm, {30.168, 122.698}, 0.0);
+  const Passage passage = ClosestApproach(storm, {30.168, 122.698}, 0.0);
   EXPECT_NEAR(passage.nearest_km, 29.0, 1.5);
   EXPECT_NEAR(static_cast<double>(passage.nearest_time - (kStart - 3 * kHour_s)), 0.0, 1800.0);
 }

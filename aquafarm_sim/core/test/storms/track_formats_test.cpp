@@ -10,12 +10,12 @@ namespace aquafarm {
 namespace {
 
 TEST(Cma, HasTwoMinuteWindsAndItsGrades) {
-  const HazardTrack& storm = FindTrack(Load("cma.txt"), "2106");
+  const StormTrack& storm = FindTrack(Load("cma.txt"), "2106");
   EXPECT_EQ(storm.name, "In-fa");
   EXPECT_EQ(storm.agency, "CMA");
   EXPECT_EQ(storm.line, 5);
   ASSERT_EQ(storm.fixes.size(), 3U);
-  const HazardFix& fix = storm.fixes[2];
+  const StormFix& fix = storm.fixes[2];
   EXPECT_EQ(fix.time, kInFaNoon);
   EXPECT_DOUBLE_EQ(fix.position.latitude, 30.0);
   EXPECT_DOUBLE_EQ(fix.position.longitude, 122.2);
@@ -28,8 +28,8 @@ TEST(Cma, HasTwoMinuteWindsAndItsGrades) {
 }
 
 TEST(Cma, TellsMissingWindsFromWeakOnes) {
-  const HazardFile file = Load("cma.txt");
-  const std::vector<HazardFix>& fixes = FindTrack(file, "Faye(Gloria)").fixes;
+  const StormFile file = Load("cma.txt");
+  const std::vector<StormFix>& fixes = FindTrack(file, "Faye(Gloria)").fixes;
   EXPECT_EQ(fixes[0].wind_mps, 12.0);
   EXPECT_EQ(fixes[1].wind_mps, std::nullopt) << "9 is below 10 m/s";
   EXPECT_EQ(fixes[1].wind_below_mps, 10.0);
@@ -41,7 +41,7 @@ TEST(Cma, TellsMissingWindsFromWeakOnes) {
 }
 
 TEST(Cma, KnowsStormsByNumberOrElseBySerial) {
-  const HazardFile file = Load("cma.txt");
+  const StormFile file = Load("cma.txt");
   ASSERT_EQ(file.tracks.size(), 3U);
   EXPECT_EQ(file.tracks[0].id, "7127,7128");
   EXPECT_EQ(file.tracks[2].id, "CMA12");
@@ -51,17 +51,17 @@ TEST(Cma, KnowsStormsByNumberOrElseBySerial) {
 }
 
 TEST(Cma, LeavesOutATimeThatIsThereTwiceAndSaysSo) {
-  const HazardFile file = ParseHazardFile(Sample("cma.txt"), "year.txt");
+  const StormFile file = ParseStormFile(Sample("cma.txt"), "year.txt");
   EXPECT_EQ(file.warnings,
             std::vector<std::string>{
                 "year.txt:9: time: 2021-07-25T06:00:00Z is there twice, the second is left out"});
 }
 
 TEST(Jma, TurnsAnAsideCircleIntoQuadrants) {
-  const HazardFile file = Load("jma.txt");
-  const HazardTrack& storm = FindTrack(file, "in-fa");
+  const StormFile file = Load("jma.txt");
+  const StormTrack& storm = FindTrack(file, "in-fa");
   EXPECT_EQ(storm.id, "2106");
-  const HazardFix& fix = storm.fixes[1];
+  const StormFix& fix = storm.fixes[1];
   EXPECT_EQ(fix.time, kInFaNoon);
   EXPECT_NEAR(*fix.wind_mps, 33.44, 0.01);
   EXPECT_EQ(fix.averaging_min, 10);
@@ -74,7 +74,7 @@ TEST(Jma, TurnsAnAsideCircleIntoQuadrants) {
 }
 
 TEST(Jma, TellsBlankRadiiFromNone) {
-  const HazardTrack storm = FindTrack(Load("jma.txt"), "2106");
+  const StormTrack storm = FindTrack(Load("jma.txt"), "2106");
   EXPECT_TRUE(storm.fixes[0].rings.empty());
   EXPECT_EQ(storm.fixes[0].wind_mps, std::nullopt);
   EXPECT_EQ(storm.fixes[0].grade, StormGrade::kTropicalDepression);
@@ -83,17 +83,17 @@ TEST(Jma, TellsBlankRadiiFromNone) {
 }
 
 TEST(Jma, HasYearsFrom1951AndLongitudesBeyond180) {
-  const HazardFix fix = FindTrack(Load("jma.txt"), "5101").fixes[0];
+  const StormFix fix = FindTrack(Load("jma.txt"), "5101").fixes[0];
   EXPECT_EQ(fix.time, -595382400);  // 1951-02-19 00:00 UTC
   EXPECT_NEAR(fix.position.longitude, -179.5, 1e-9);
   EXPECT_EQ(fix.grade, StormGrade::kUnknown);
 }
 
 TEST(Atcf, MergesTheRowsOfATime) {
-  const HazardTrack storm = FindTrack(Load("atcf.dat"), "NEOGURI");
+  const StormTrack storm = FindTrack(Load("atcf.dat"), "NEOGURI");
   EXPECT_EQ(storm.id, "WP082014");
   ASSERT_EQ(storm.fixes.size(), 3U);
-  const HazardFix& fix = storm.fixes[1];
+  const StormFix& fix = storm.fixes[1];
   EXPECT_NEAR(*fix.wind_mps, 36.01, 0.01);
   EXPECT_EQ(fix.averaging_min, 1);
   EXPECT_EQ(fix.grade, StormGrade::kTyphoon);
@@ -110,7 +110,7 @@ TEST(Atcf, MergesTheRowsOfATime) {
 }
 
 TEST(Atcf, ReadsSouthAndWestAndAQuadrantAboutTheNorth) {
-  const HazardFix fix = FindTrack(Load("atcf.dat"), "lusi").fixes[0];
+  const StormFix fix = FindTrack(Load("atcf.dat"), "lusi").fixes[0];
   EXPECT_DOUBLE_EQ(fix.position.latitude, -10.0);
   EXPECT_DOUBLE_EQ(fix.position.longitude, -179.0);
   const auto mean = [](double a, double b) { return std::sqrt((a * a + b * b) / 2.0); };
@@ -121,14 +121,14 @@ TEST(Atcf, ReadsSouthAndWestAndAQuadrantAboutTheNorth) {
 }
 
 TEST(Ibtracs, TakesTheWindsOfTheAgencyInCharge) {
-  const HazardFile file = Load("ibtracs.csv");
-  const HazardFix& tokyo = FindTrack(file, "2021198N21140").fixes[0];
+  const StormFile file = Load("ibtracs.csv");
+  const StormFix& tokyo = FindTrack(file, "2021198N21140").fixes[0];
   EXPECT_NEAR(*tokyo.wind_mps, 33.44, 0.01);
   EXPECT_EQ(tokyo.averaging_min, 10);
   EXPECT_EQ(tokyo.pressure_hpa, 970.0);
   EXPECT_NEAR(tokyo.position.longitude, -122.2, 1e-9);
   EXPECT_TRUE(tokyo.extratropical);
-  const HazardTrack& ialy = FindTrack(file, "Ialy");
+  const StormTrack& ialy = FindTrack(file, "Ialy");
   EXPECT_EQ(ialy.agency, "IBTrACS PROVISIONAL");
   EXPECT_NEAR(*ialy.fixes[0].wind_mps, 18.01, 0.01);
   EXPECT_EQ(ialy.fixes[0].averaging_min, 1) << "WMO_WIND is blank";

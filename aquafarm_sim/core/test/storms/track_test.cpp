@@ -9,7 +9,7 @@ namespace aquafarm {
 namespace {
 
 TEST(Motion, IsComputedWhereTheSourceHasNone) {
-  const HazardTrack storm = FindTrack(Load("cma.txt"), "in-FA");
+  const StormTrack storm = FindTrack(Load("cma.txt"), "in-FA");
   // 29.7N 123.0E to 29.9N 122.7E: 22.2 km north, 29.0 km west in 3 h.
   EXPECT_NEAR(*storm.fixes[0].heading_deg, 307.4, 0.3);
   EXPECT_NEAR(*storm.fixes[0].speed_kmh, 12.2, 0.1);
@@ -31,7 +31,7 @@ TEST(Grades, AreThoseOfTheStandard) {
 }
 
 TEST(EstimatedRings, FallOffAsHollandsWindAndAreMarked) {
-  HazardFix fix;
+  StormFix fix;
   fix.position = {30.0, 122.2};
   EXPECT_FALSE(EstimateRing(fix, 34)) << "no wind";
   fix.wind_mps = 38.0;
@@ -51,7 +51,7 @@ TEST(EstimatedRings, FallOffAsHollandsWindAndAreMarked) {
 }
 
 TEST(EstimatedRings, AreNoneAboveTheStormsOwnWind) {
-  HazardFix fix;
+  StormFix fix;
   fix.position = {30.0, 122.2};
   fix.wind_mps = 20.0;
   ASSERT_TRUE(EstimateRing(fix, 34));

@@ -14,12 +14,12 @@ const std::string kInFa =
 
 TEST(Jma, ALineThatEndsWithinAPointIsRefused) {
   const std::string text = Sample("jma.txt");
-  const HazardFix whole = ParseHazardFile(text, "x").tracks[0].fixes[1];
+  const StormFix whole = ParseStormFile(text, "x").tracks[0].fixes[1];
   for (std::size_t size = 13; size < kInFa.size(); ++size) {
     const std::string cut = With(text, kInFa, kInFa.substr(0, size));
     const std::string refusal = Refusal(cut);
     if (refusal == "was read") {
-      const HazardFix fix = ParseHazardFile(cut, "x").tracks[0].fixes[1];
+      const StormFix fix = ParseStormFile(cut, "x").tracks[0].fixes[1];
       EXPECT_EQ(fix.wind_mps, whole.wind_mps) << size;
       ASSERT_EQ(fix.rings.size(), whole.rings.size()) << size;
       for (std::size_t i = 0; i < fix.rings.size(); ++i) {
@@ -83,7 +83,7 @@ TEST(Jma, WhatContradictsItselfIsIgnoredWithAWarning) {
   EXPECT_EQ(Warnings(direction),
             "x:4: direction of the longest radius: got 0, expected 1 to 9 with a radius of 30 kt; "
             "the radii are ignored\n");
-  EXPECT_EQ(ParseHazardFile(direction, "x").tracks[0].fixes[2].Ring(30), nullptr);
+  EXPECT_EQ(ParseStormFile(direction, "x").tracks[0].fixes[2].Ring(30), nullptr);
 }
 
 TEST(Atcf, ARowThatEndsWithinItsRadiiIsRefused) {
@@ -143,7 +143,7 @@ TEST(Cma, APointThatIsShorterThanTheOthersIsSaid) {
 
 TEST(Bulletin, AQuadrantThatIsNotSaidHasTheRadiusOfAll) {
   const auto ring = [](const std::string& quadrants) {
-    const HazardFile file = ParseHazardFile(
+    const StormFile file = ParseStormFile(
         "[{\"tfbh\": \"202106\", \"name\": \"In-fa\", \"points\": [{\"time\": \"2021-07-25 "
         "14:00:00\","
         "\"lat\": 30, \"lng\": 122, \"speed\": 38, \"radius7\": 280, \"radius7_quad\": " +

@@ -21,7 +21,7 @@ struct TapeError : std::runtime_error {
 };
 
 /// The log of one farm's episode.
-struct EpisodeTape {
+struct EpisodeLog {
   /// The farm's saved state after an external change, such as a bulletin.
   struct Change {
     std::int32_t step{};  ///< number of steps taken before the change
@@ -47,7 +47,7 @@ struct BagFormat {
 };
 
 /// File name of the bag: "episode_00000012_seed_1_return_+102.4.bag".
-std::string BagName(const EpisodeTape& tape);
+std::string BagName(const EpisodeLog& tape);
 
 /// Simulates tapes again and writes them as bags. Reuse one writer for many tapes: it creates its
 /// farm only once.
@@ -59,7 +59,7 @@ class EpisodeBagWriter {
   /// into an lz4 bag. The bag is written to path.active and then renamed to `path`.
   /// @throws TapeError if the simulation does not reproduce the tape's record
   /// @throws std::runtime_error if the bag cannot be written; a partial file is removed
-  void Write(const EpisodeTape& tape, const std::string& path);
+  void Write(const EpisodeLog& tape, const std::string& path);
 
  private:
   const BagFormat format_;

@@ -57,22 +57,22 @@ class EpisodeRecorder final : public RanchRecorder {
   std::string fault() const;   ///< reason why recording stopped; empty if it has not
 
  private:
-  bool Wants(const EpisodeTape& tape);
-  void Enqueue(EpisodeTape tape);
+  bool Wants(const EpisodeLog& tape);
+  void Enqueue(EpisodeLog tape);
   void Run();
-  void Write(const EpisodeTape& tape);
+  void Write(const EpisodeLog& tape);
 
   const Keep keep_;
   const std::string folder_;
   EpisodeBagWriter writer_;  // used only by the writing thread
   const RecorderLimits limits_;
-  std::vector<EpisodeTape> tapes_;  // by farm; used only by the ranch's thread
-  std::optional<float> extreme_;    // best or worst return so far
-  std::string extreme_path_;        // bag of that episode; used only by the writing thread
+  std::vector<EpisodeLog> tapes_;  // by farm; used only by the ranch's thread
+  std::optional<float> extreme_;   // best or worst return so far
+  std::string extreme_path_;       // bag of that episode; used only by the writing thread
 
   mutable std::mutex mutex_;  // guards the rest
   std::condition_variable changed_;
-  std::deque<EpisodeTape> queue_;
+  std::deque<EpisodeLog> queue_;
   std::size_t waiting_bytes_{};  // size of the actions that are queued or being written
   std::uint64_t kept_{};
   std::string fault_;

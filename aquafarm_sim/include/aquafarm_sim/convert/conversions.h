@@ -88,10 +88,10 @@ aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message);
 
 /// Converts a storm bulletin, for use with ToDisaster (storms/to_disaster.h).
 /// @throws InputError "storm.fixes[0].latitude_deg: got 95, expected a number in [-90, 90]"
-aquafarm::HazardTrack FromMsg(const aquafarm_msgs::Storm& message);
+aquafarm::StormTrack FromMsg(const aquafarm_msgs::Storm& message);
 
 /// Converts a track with its forecast, if it has one.
-aquafarm_msgs::Storm ToMsg(const aquafarm::HazardTrack& track);
+aquafarm_msgs::Storm ToMsg(const aquafarm::StormTrack& track);
 
 /// Converts a sea layer to a grid: 0 its min value … 100 its max value, -1 unknown.
 void SeaToMsg(const aquafarm::SeaLayer& layer, const aquafarm::Scenario& scenario,

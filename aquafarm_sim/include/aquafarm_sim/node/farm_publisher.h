@@ -30,13 +30,13 @@
 
 namespace aquafarm_sim {
 
-class RanchPublisher : public RanchListener {
+class FarmPublisher : public RanchListener {
  public:
   /// @param ranch must outlive the publisher, which is its listener until it is destroyed
-  RanchPublisher(const ros::NodeHandle& node, const SimParams& params, Ranch& ranch);
-  ~RanchPublisher() override;
-  RanchPublisher(const RanchPublisher&) = delete;
-  RanchPublisher& operator=(const RanchPublisher&) = delete;
+  FarmPublisher(const ros::NodeHandle& node, const SimParams& params, FarmServer& ranch);
+  ~FarmPublisher() override;
+  FarmPublisher(const FarmPublisher&) = delete;
+  FarmPublisher& operator=(const FarmPublisher&) = delete;
 
   /// Waits for a subscriber of `episode`. Only recorders subscribe to it before the first step.
   /// @returns false if there is no subscriber within the limit
@@ -71,7 +71,7 @@ class RanchPublisher : public RanchListener {
   void Run();
 
   const SimParams params_;
-  Ranch& ranch_;
+  FarmServer& ranch_;
   tf2_ros::TransformBroadcaster frames_;
   tf2_ros::StaticTransformBroadcaster static_frames_;
   ros::Publisher clock_;

@@ -43,8 +43,8 @@ class SimNode {
 
   const SimParams params_;
   ros::NodeHandle node_;
-  Ranch ranch_;
-  RanchPublisher publisher_;
+  FarmServer ranch_;
+  FarmPublisher publisher_;
   std::unique_ptr<EpisodeRecorder> recorder_;  // null if no episodes are kept
   // Commands may wait for other ships. They run on separate threads and block no other call.
   ros::CallbackQueue ship_queue_;

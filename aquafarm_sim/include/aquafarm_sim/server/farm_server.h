@@ -125,10 +125,10 @@ class RanchRecorder {
   virtual void OnIntervention(const aquafarm::Farm& farm, std::int32_t number) = 0;
 };
 
-class Ranch {
+class FarmServer {
  public:
   /// @throws InputError if no layout of the scenario can be generated
-  Ranch(std::shared_ptr<const aquafarm::Scenario> scenario, const RanchOptions& options);
+  FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario, const RanchOptions& options);
 
   /// @param listener must stay valid until it is replaced or the ranch ends; null: no listener
   void SetListener(RanchListener* listener);
@@ -196,7 +196,7 @@ class Ranch {
     std::string message;
   };
   /// Identifies the last accepted request of a kind. Sequence numbers are per client.
-  struct Numbered {
+  struct IdempotencyKey {
     std::uint64_t sequence{};  // 0: no request
     std::string caller;
     bool IsRepeated(std::uint64_t by_sequence, const std::string& by_caller) const {
@@ -212,10 +212,10 @@ class Ranch {
   bool IsMissing(std::int32_t ship) const;
   bool EveryShipHasACommand() const;
   std::string MissingShips() const;
-  std::optional<Refusal> Hear(const ShipCommand& command);
+  std::optional<Refusal> MarkPresent(const ShipCommand& command);
   std::optional<Refusal> CheckHolder(std::int32_t ship, const std::string& caller);
   bool IsHeldByAnother(Slot& slot, const std::string& caller);
-  void GoOnWithoutTheLate();
+  void StepWithoutAbsent();
   void StepPublishedFarm();
   void DropPending();
   void DropCommands();
@@ -240,7 +240,7 @@ class Ranch {
 
   void Advance();
   void Changed(bool by_joint_step = false);
-  void Tell(const std::function<void(RanchListener&)>& telling);
+  void Notify(const std::function<void(RanchListener&)>& telling);
   void EpisodeBegan(bool by_joint_step = false);
   RanchView View() const;
 
@@ -268,10 +268,10 @@ class Ranch {
   RanchCounters counters_;
   Clock::time_point joint_step_at_{};  // time of the last joint step; the clock's zero if none
 
-  Numbered last_step_;
+  IdempotencyKey last_step_;
   aquafarm_msgs::Step::Response step_answer_;
   aquafarm_msgs::Step::Response step_refusal_;
-  Numbered last_reset_;
+  IdempotencyKey last_reset_;
   aquafarm_msgs::Reset::Response reset_answer_;
 };
 

@@ -11,21 +11,21 @@
 namespace aquafarm_viz {
 
 /// Pose of an outline (unit size, y up, bow at north) in an image.
-struct Placing {
+struct Pose2 {
   cv::Point2d at;        ///< position of its origin [pixels]
   double size_px{1.0};   ///< pixels per unit
   double bearing_deg{};  ///< rotation, clockwise from north
 };
 
 /// Returns the pixel coordinates of a point of a placed outline.
-cv::Point2d Place(cv::Point2d point, const Placing& placing);
+cv::Point2d Place(cv::Point2d point, const Pose2& placing);
 
 /// Fills an outline; the outline need not be convex.
-void FillShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Placing& placing,
+void FillShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Pose2& placing,
                const cv::Scalar& color);
 
 /// Draws the edge of an outline, `thickness` pixels wide.
-void StrokeShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Placing& placing,
+void StrokeShape(cv::Mat& image, const std::vector<cv::Point2f>& outline, const Pose2& placing,
                  const cv::Scalar& color, int thickness);
 
 /// Fills a circle.

@@ -47,7 +47,7 @@ class FarmPainter {
   /// Draws a state. The returned 8-bit BGR picture is valid until the next call.
   /// The spec must pass CheckSpec and the state CheckState.
   const cv::Mat& Draw(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
-                      const Extras& extras = {});
+                      const Overlays& overlays = {});
 
  private:
   struct Parts;
@@ -57,6 +57,6 @@ class FarmPainter {
 /// Draws one picture.
 /// @throws std::invalid_argument with the reason if the spec or state cannot be drawn
 cv::Mat DrawFarm(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
-                 ImageSize size = {}, const Extras& extras = {});
+                 ImageSize size = {}, const Overlays& overlays = {});
 
 }  // namespace aquafarm_viz

@@ -22,10 +22,10 @@ struct ImageSize {
 };
 
 /// Optional content of a picture in addition to the state; nullptr omits it.
-struct Extras {
-  const Wake* wake{};                               ///< recent trails of the ships
+struct Overlays {
+  const Trail* trail{};                             ///< recent trails of the ships
   const aquafarm_msgs::TrainingStatus* training{};  ///< progress of the learner
-  const Wake* route{};                              ///< trails since the start of the episode
+  const Trail* route{};                             ///< trails since the start of the episode
   Layers layers{};                                  ///< layers to draw
   const Values* values{};                           ///< values and greedy actions of a policy
   const aquafarm_msgs::PolicyChoice* choice{};      ///< choice of a compared policy in this state

@@ -33,6 +33,6 @@ visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec,
 /// The spec must pass CheckSpec and the state CheckState.
 visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec,
                                              const aquafarm_msgs::FarmState& state,
-                                             const Wake* wake = nullptr);
+                                             const Trail* trail = nullptr);
 
 }  // namespace aquafarm_viz

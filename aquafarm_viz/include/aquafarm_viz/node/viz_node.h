@@ -52,8 +52,8 @@ class VizNode {
 
   ros::NodeHandle node_;
   Pairing pairing_;
-  Wake wake_;
-  Wake route_{Wake::kWhole};
+  Trail trail_;
+  Trail route_{Trail::kWhole};
   const Layers layers_;
   FarmPainter painter_;
   aquafarm_msgs::TrainingStatusConstPtr training_;

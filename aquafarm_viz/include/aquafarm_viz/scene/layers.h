@@ -7,7 +7,7 @@ namespace aquafarm_viz {
 
 /// Optional layers of a picture, in addition to the chart, ships and devices.
 struct Layers {
-  bool wake{true};    ///< recent trail of each ship
+  bool trail{true};   ///< recent trail of each ship
   bool risk{true};    ///< rings of disasters, shaded by severity
   bool route{};       ///< whole trail of each ship, coloured in time order (Fig. 11)
   bool sight{};       ///< sensor range of each ship in partial view

@@ -22,13 +22,13 @@ struct ShipWake {
 };
 
 /// Stores the trail of each ship of one farm: its last cells, or its whole route.
-class Wake {
+class Trail {
  public:
   static constexpr std::size_t kLength = 24;        ///< max cells of a trail
   static constexpr std::size_t kWhole = 1'000'000;  ///< max cells of a route
   static constexpr int kMaxJump = 2;                ///< max distance [cells] that is not a gap
 
-  explicit Wake(std::size_t length = kLength) : length_(length) {}
+  explicit Trail(std::size_t length = kLength) : length_(length) {}
 
   /// Adds the next state. Another episode or an earlier step clears all trails.
   void Update(const aquafarm_msgs::FarmState& state);
@@ -49,6 +49,6 @@ class Wake {
 };
 
 /// Returns the bearing to draw a ship at: that of its move in this state, else of its trail, or 0.
-int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Wake* wake);
+int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Trail* trail);
 
 }  // namespace aquafarm_viz

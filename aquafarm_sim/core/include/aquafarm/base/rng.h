@@ -11,7 +11,7 @@
 namespace aquafarm {
 
 /// Purpose of a draw. Each purpose has its own streams.
-enum class Purpose : std::uint8_t {
+enum class RngStream : std::uint8_t {
   kLayout,
   kStart,
   kDisasterSpawn,
@@ -27,7 +27,7 @@ enum class Purpose : std::uint8_t {
 struct StreamKey {
   std::uint64_t seed{};
   std::uint64_t episode{};
-  Purpose purpose{};
+  RngStream purpose{};
   std::uint32_t stream{};  ///< index of a ship, disaster, …; below 2^24
 };
 

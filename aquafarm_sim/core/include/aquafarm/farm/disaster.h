@@ -77,7 +77,7 @@ struct Disaster : ObservableDisaster {
   Bulletin bulletin;
 
   /// Copies the current rings into the bulletin.
-  void TellRings() {
+  void SnapshotRings() {
     bulletin.radius = radius;
     bulletin.quadrant = quadrant;
   }

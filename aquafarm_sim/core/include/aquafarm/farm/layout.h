@@ -35,7 +35,7 @@ struct Layout {
   std::vector<PlacedDevice> devices;
   /// [H, W, way_count()] Routes from each cell to each port and then to each fetchable device, in
   /// id order; empty without ViewSpec::waterways.
-  std::vector<Way> ways;
+  std::vector<RouteEntry> ways;
 
   std::size_t way_count() const { return ways.size() / static_cast<std::size_t>(cells.size()); }
   std::uint8_t bits(Cell cell) const { return cells(cell.y, cell.x); }
@@ -64,12 +64,12 @@ class LayoutGenerator {
   void Reserve(Layout& layout) const;
   void PlaceIslands(Layout& layout) const;
   void PlaceExplicit(Layout& layout) const;
-  bool DrawPorts(RandomStream& chance, Layout& layout);
-  bool DrawDevices(RandomStream& chance, Layout& layout);
-  bool DrawRocks(RandomStream& chance, Layout& layout);
-  void Spread(RandomStream& chance, Layout& layout);
-  void LineUp(RandomStream& chance, Layout& layout);
-  void Scatter(RandomStream& chance, Layout& layout);
+  bool DrawPorts(RandomStream& rng, Layout& layout);
+  bool DrawDevices(RandomStream& rng, Layout& layout);
+  bool DrawRocks(RandomStream& rng, Layout& layout);
+  void Spread(RandomStream& rng, Layout& layout);
+  void LineUp(RandomStream& rng, Layout& layout);
+  void Scatter(RandomStream& rng, Layout& layout);
   void AddPort(Cell cell, Layout& layout) const;
   void AddDevice(Cell cell, Layout& layout) const;
   void AddRock(Cell cell, float reward, Layout& layout) const;
@@ -80,14 +80,14 @@ class LayoutGenerator {
   /// Returns whether cells without any bit of `blocked` connect all ports and devices.
   bool Connected(const Layout& layout, std::uint8_t blocked);
   /// Removes a random candidate and returns it.
-  Cell TakeCandidate(RandomStream& chance);
+  Cell TakeCandidate(RandomStream& rng);
   void CollectFree(const Layout& layout);
 
   const Scenario& scenario_;
   std::vector<std::int32_t> candidates_;  // linear indices of cells still available
   std::vector<std::int32_t> queue_;       // scratch of the breadth-first search
-  Grid<std::int32_t> way_steps_;          // scratch of ChartWays
-  std::vector<Cell> way_queue_;           // scratch of ChartWays
+  Grid<std::int32_t> way_steps_;          // scratch of ComputeRoutes
+  std::vector<Cell> way_queue_;           // scratch of ComputeRoutes
   std::vector<std::uint8_t> reached_;     // with a border of one cell on every side
   const char* crowded_{""};
 };

@@ -23,7 +23,7 @@ void StepsByWater(const Grid<std::uint8_t>& cells, const Cell* targets, std::siz
 
 /// The route from one cell to one target: the next move and the number of moves left. Of several
 /// shortest routes, the one whose next cell is nearest to the target in a straight line.
-struct Way {
+struct RouteEntry {
   std::int32_t steps{kUnreachable};
   std::int8_t east{};  ///< next move; both 0 at the target and where no route exists
   std::int8_t north{};
@@ -33,7 +33,7 @@ struct Way {
 /// index.
 /// @param ways [H · W · stride]
 /// @param steps scratch, like `queue`, as in StepsByWater
-void ChartWays(const Grid<std::uint8_t>& cells, Cell target, Way* ways, std::size_t stride,
-               Grid<std::int32_t>& steps, std::vector<Cell>& queue);
+void ComputeRoutes(const Grid<std::uint8_t>& cells, Cell target, RouteEntry* ways,
+                   std::size_t stride, Grid<std::int32_t>& steps, std::vector<Cell>& queue);
 
 }  // namespace aquafarm

@@ -8,7 +8,7 @@
 
 namespace aquafarm {
 
-enum class HazardFormat : std::uint8_t {
+enum class TrackFormat : std::uint8_t {
   kCma,       ///< CMA best track, CHyyyyBST.txt
   kJma,       ///< JMA / RSMC Tokyo best track, bst_*.txt
   kAtcf,      ///< ATCF b-deck, bWPnnyyyy.dat
@@ -16,11 +16,11 @@ enum class HazardFormat : std::uint8_t {
   kBulletin,  ///< typhoon bulletin, including Zhejiang's (tfbh or tfid, points with radius7…)
   kWeatherService,  ///< storm-track response of a weather service (track with windRadius30 …)
 };
-inline constexpr int kHazardFormatCount = 6;
-std::string_view ToString(HazardFormat value);
+inline constexpr int kTrackFormatCount = 6;
+std::string_view ToString(TrackFormat value);
 
 /// Detects the format of a text from its content; nullopt if it is not a track file. CMA and JMA
 /// files start with the same word, so the first point decides between them.
-std::optional<HazardFormat> DetectHazardFormat(const std::string& text);
+std::optional<TrackFormat> DetectTrackFormat(const std::string& text);
 
 }  // namespace aquafarm

@@ -51,8 +51,8 @@ struct View {
   std::vector<KnownDisaster> disasters;
   const Scenario* scenario{};
   const Layout* layout{};
-  std::vector<Cell>
-      eyes;  ///< cells of the sensors: its own cell, or the cells of all networked agents
+  std::vector<Cell> sensor_positions;  ///< cells of the sensors: its own cell, or the cells of all
+                                       ///< networked agents
 };
 
 /// Fills `view` with the current observation of `ship`.

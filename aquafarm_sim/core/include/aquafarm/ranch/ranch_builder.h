@@ -12,7 +12,7 @@
 namespace aquafarm {
 
 /// A ranch made.
-struct Ranch {
+struct BuiltRanch {
   Scenario scenario;
   std::string yaml;                   ///< the file, with comments that say where it comes from
   std::vector<std::string> decided;   ///< a line each, for people
@@ -20,10 +20,10 @@ struct Ranch {
 };
 
 /// @throws InputError for files that cannot be read, a place without water, a storm not in the file
-Ranch BuildRanch(const RanchRequest& request);
+BuiltRanch BuildRanch(const RanchRequest& request);
 
 /// The layout of a scenario's first episode as text, north up: # island, o rock, P port, d device,
 /// . water.
-std::string Sketch(const Scenario& scenario);
+std::string RenderAscii(const Scenario& scenario);
 
 }  // namespace aquafarm

@@ -13,21 +13,21 @@
 namespace aquafarm {
 
 /// What a file of tracks holds.
-struct HazardFile {
-  HazardFormat format{};
-  std::vector<HazardTrack> tracks;    ///< at least one, in the order of the file
+struct StormFile {
+  TrackFormat format{};
+  std::vector<StormTrack> tracks;     ///< at least one, in the order of the file
   std::vector<std::string> warnings;  ///< repairs made: "file:line: what was done"
 };
 
 /// Reads a file of tracks in whichever format it is.
 /// @throws InputError "CH2021BST.txt:12: latitude: got 950, expected [-900, 900]"
-HazardFile LoadHazardFile(const std::string& path);
+StormFile LoadStormFile(const std::string& path);
 
 /// The same for text; `origin_name` stands for the file in messages.
-HazardFile ParseHazardFile(const std::string& text, const std::string& origin_name);
+StormFile ParseStormFile(const std::string& text, const std::string& origin_name);
 
 /// The one track that a word names: an id, or a name in any case.
 /// @throws InputError naming what there is when none or more than one fits
-const HazardTrack& FindTrack(const HazardFile& file, const std::string& storm);
+const StormTrack& FindTrack(const StormFile& file, const std::string& storm);
 
 }  // namespace aquafarm

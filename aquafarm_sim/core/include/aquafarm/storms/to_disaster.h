@@ -55,13 +55,13 @@ struct StormRings {
 /// Reduces a track to rings. A stronger wind never reaches beyond a weaker one. Radii that are not
 /// given are estimated from the wind, or from the lowest wind of the grade where the wind is
 /// unknown.
-StormRings ToRings(const HazardTrack& track, RingReduction reduction);
+StormRings ToRings(const StormTrack& track, RingReduction reduction);
 
 /// Gives the fixes of a track that say nothing of radii those of another track of the same storm at
 /// the same time, interpolated between fixes of at most six hours; for best tracks, which have no
 /// radii, from the bulletins.
 /// @returns how many fixes were given some
-std::int32_t BorrowRings(const HazardTrack& from, HazardTrack& track);
+std::int32_t BorrowRings(const StormTrack& from, StormTrack& track);
 
 /// What `aquafarm scenario` writes, a risk for each of three rings: [decided]
 const GradeRisks& DefaultGradeRisks();
@@ -78,7 +78,7 @@ DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const 
 
 /// The newest forecast of a track that extends beyond its fixes, of the agency named first; nullptr
 /// without such a forecast, or if it was issued more than 24 hours before the last fix.
-const HazardForecast* NewestForecast(const HazardTrack& track);
+const StormForecast* NewestForecast(const StormTrack& track);
 
 /// What continues a track without a forecast.
 enum class NoForecast : std::uint8_t {
@@ -87,9 +87,9 @@ enum class NoForecast : std::uint8_t {
              ///< storm stands still
 };
 
-/// The recorded fixes of a track, then the newest forecast, marked as HazardFix::forecast. A
+/// The recorded fixes of a track, then the newest forecast, marked as StormFix::forecast. A
 /// forecast point without wind and radii keeps those of the point before.
-HazardTrack WithForecast(const HazardTrack& track, NoForecast otherwise);
+StormTrack WithForecast(const StormTrack& track, NoForecast otherwise);
 
 /// Until when a storm is known.
 struct StormKnowledge {
@@ -99,7 +99,7 @@ struct StormKnowledge {
   std::string agency;             ///< of the forecast; may be empty
 };
 /// Reads it from a track that WithForecast made of `recorded`.
-StormKnowledge KnowledgeOf(const HazardTrack& recorded, const HazardTrack& whole);
+StormKnowledge KnowledgeOf(const StormTrack& recorded, const StormTrack& whole);
 /// "recorded until …, then forecast until … (issued … by 中国)", "known until … only", or with
 /// persistence "… ; no forecast: it is assumed to keep its motion until …".
 std::string Describe(const StormKnowledge& knowledge);
@@ -111,7 +111,7 @@ std::string Describe(const StormKnowledge& knowledge);
 /// @param step_now of the episode: the disaster lasts from it to the last waypoint, at least a step
 /// @throws InputError for a scenario without grid.origin or time.start, or a bulletin that is known
 ///   until a time before step_now only
-DisasterSpec ToDisaster(const HazardTrack& bulletin, const Scenario& scenario, std::int32_t id,
+DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, std::int32_t id,
                         std::int32_t step_now);
 
 /// When a ring of a storm lies over a place.
@@ -139,6 +139,6 @@ inline constexpr double kLargestGale_km = 1110.0;
 
 /// Follows a storm past a place from its first to its last known time, every ten minutes.
 /// @param margin_km by which rings count as wider: the half-diagonal of a ranch
-Passage PassOver(const StormRings& storm, GeoPoint place, double margin_km);
+Passage ClosestApproach(const StormRings& storm, GeoPoint place, double margin_km);
 
 }  // namespace aquafarm

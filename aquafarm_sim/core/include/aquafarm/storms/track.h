@@ -61,7 +61,7 @@ struct WindRing {
 };
 
 /// One position of a storm.
-struct HazardFix {
+struct StormFix {
   std::int64_t time{};  ///< UTC [s since 1970]
   GeoPoint position;    ///< longitude in (-180, 180]
   StormGrade grade{};
@@ -86,10 +86,10 @@ struct HazardFix {
 };
 
 /// A forecast that was issued with a fix.
-struct HazardForecast {
-  std::string agency;            ///< as written, UTF-8
-  std::int64_t issued{};         ///< UTC [s since 1970]: the time of the fix it came with
-  std::vector<HazardFix> fixes;  ///< in order of time
+struct StormForecast {
+  std::string agency;           ///< as written, UTF-8
+  std::int64_t issued{};        ///< UTC [s since 1970]: the time of the fix it came with
+  std::vector<StormFix> fixes;  ///< in order of time
 };
 
 struct Landfall {
@@ -99,13 +99,13 @@ struct Landfall {
 };
 
 /// One storm.
-struct HazardTrack {
+struct StormTrack {
   std::string id;    ///< the only one in its file: "2106", "CMA3" (unnumbered), "WP082014", SID
   std::string name;  ///< as written; empty: none was given
-  std::string local_name;        ///< in the agency's own writing; empty: none was given
-  std::string agency;            ///< whose positions these are
-  std::vector<HazardFix> fixes;  ///< in order of time, no time twice
-  std::vector<HazardForecast> forecasts;
+  std::string local_name;       ///< in the agency's own writing; empty: none was given
+  std::string agency;           ///< whose positions these are
+  std::vector<StormFix> fixes;  ///< in order of time, no time twice
+  std::vector<StormForecast> forecasts;
   std::vector<Landfall> landfalls;  ///< in order of time
   std::int32_t line{};              ///< of the file, where it starts; 0 in JSON
   std::string shared_id;  ///< in the file, where others have it too; `id` tells them apart
@@ -117,7 +117,7 @@ std::int32_t DisasterGrade(StormGrade grade);
 
 /// Fills in motion where the source gives none: bearing and distance (geodesic, WGS 84) to the next
 /// fix, at the last fix from the one before. @param fixes in order of time
-void ComputeMotion(std::vector<HazardFix>& fixes);
+void ComputeMotion(std::vector<StormFix>& fixes);
 
 /// Adds the ring of a wind to a fix that was said none of it, marked as estimated.
 ///
@@ -129,7 +129,7 @@ void ComputeMotion(std::vector<HazardFix>& fixes);
 /// rho = 1.15 kg/m3, kept in Holland's range [1, 2.5]; 1.3 without a pressure. Circles: asymmetry
 /// is not guessed.
 /// @returns whether it added one; without a wind it cannot
-bool EstimateRing(HazardFix& fix, std::int32_t wind_kt);
+bool EstimateRing(StormFix& fix, std::int32_t wind_kt);
 
 /// Puts a ring in order of wind. @returns false when there is one of this wind already
 bool AddRing(WindRing ring, std::vector<WindRing>& rings);

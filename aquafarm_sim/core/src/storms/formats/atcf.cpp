@@ -45,7 +45,7 @@ std::string_view At(const Fields& fields, Field field) {
 
 // "123N" or "1423E" in tenths of a degree.
 double ReadAngle(std::string_view text, char positive, char negative, std::int32_t most,
-                 const char* name, const HazardPlace& place) {
+                 const char* name, const ParseContext& place) {
   const char side = text.empty() ? ' ' : text.back();
   if (side != positive && side != negative) {
     place.RefuseFix(std::string(name) + ": got " + Quoted(text) +
@@ -87,7 +87,7 @@ std::optional<std::array<double, kQuadrantCount>> Quadrants(std::string_view cod
   return quadrants;
 }
 
-void ReadRing(const Fields& fields, HazardFix& fix, HazardPlace& place) {
+void ReadRing(const Fields& fields, StormFix& fix, ParseContext& place) {
   const std::int32_t wind_kt =
       TryWhole(At(fields, kRadiusWind), "wind of the radii", 0, 100, place).value_or(0);
   const std::string_view code = At(fields, kRadiusCode);
@@ -113,8 +113,8 @@ void ReadRing(const Fields& fields, HazardFix& fix, HazardPlace& place) {
              "left out");
 }
 
-HazardFix ReadFix(const Fields& fields, HazardPlace& place) {
-  HazardFix fix;
+StormFix ReadFix(const Fields& fields, ParseContext& place) {
+  StormFix fix;
   fix.time = ReadHour(At(fields, kTime), place);
   const std::string_view minute = At(fields, kMinute);
   if (!minute.empty()) fix.time += 60 * ReadFixNumber(minute, "minutes", 0, 59, place);
@@ -146,7 +146,7 @@ HazardFix ReadFix(const Fields& fields, HazardPlace& place) {
 }
 
 // A time has a row for each wind whose radii are told, alike but for these.
-bool IsSame(const HazardFix& fix, const HazardFix& known) {
+bool IsSame(const StormFix& fix, const StormFix& known) {
   return fix.time == known.time && fix.position.latitude == known.position.latitude &&
          fix.position.longitude == known.position.longitude && fix.wind_mps == known.wind_mps &&
          fix.pressure_hpa == known.pressure_hpa;
@@ -161,13 +161,14 @@ using NarrowRow = std::pair<std::int32_t, std::size_t>;
 
 // A row that ends before the last radius, in a deck whose others do not, was cut; one that ends
 // before the radius of the greatest wind may have been. @param widest most fields of a row
-void CheckNarrowRows(const std::vector<NarrowRow>& narrow, std::size_t widest, HazardPlace& place) {
+void CheckNarrowRows(const std::vector<NarrowRow>& narrow, std::size_t widest,
+                     ParseContext& place) {
   for (const auto& [number, size] : narrow) {
     place.line = number;
     if (size < kThroughRadii && widest >= kThroughRadii) {
-      place.Refuse("got " + std::to_string(size) + " fields, expected " +
-                   std::to_string(kThroughRadii) + " or more, to a comma after the radii, as " +
-                   "other rows have");
+      place.Fail("got " + std::to_string(size) + " fields, expected " +
+                 std::to_string(kThroughRadii) + " or more, to a comma after the radii, as " +
+                 "other rows have");
     }
     if (widest < kThroughMaxWind) continue;
     place.Warn("got " + std::to_string(size) + " fields, the file's others have up to " +
@@ -177,8 +178,8 @@ void CheckNarrowRows(const std::vector<NarrowRow>& narrow, std::size_t widest, H
 
 }  // namespace
 
-std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
-  std::vector<HazardTrack> tracks;
+std::vector<StormTrack> ReadAtcf(std::string_view text, ParseContext& place) {
+  std::vector<StormTrack> tracks;
   LineReader lines(text, place);
   Fields fields;
   std::string_view line;
@@ -196,11 +197,11 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
       narrow.emplace_back(place.line, fields.size());
     }
     if (fields.size() <= kType) {
-      place.Refuse("got " + std::to_string(fields.size()) + " fields, expected at least " +
-                   std::to_string(kType + 1) + " of an ATCF row, from basin to type");
+      place.Fail("got " + std::to_string(fields.size()) + " fields, expected at least " +
+                 std::to_string(kType + 1) + " of an ATCF row, from basin to type");
     }
     if (fields[kTechnique] != "BEST") {
-      place.Refuse("technique: got " + Quoted(fields[kTechnique]) + ", expected BEST: a b-deck");
+      place.Fail("technique: got " + Quoted(fields[kTechnique]) + ", expected BEST: a b-deck");
     }
     ReadWholeOrBlank(fields[kHours], "TAU of a best track", 0, 0, place);
     const std::string storm = std::string(fields[kBasin]) + std::string(fields[kCyclone]);
@@ -208,16 +209,16 @@ std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place) {
       current = storm;
       if (!tracks.empty()) FinishTrack(tracks.back(), left_out, place);
       left_out = {};
-      HazardTrack track;
+      StormTrack track;
       track.id = storm + std::string(fields[kTime].substr(0, 4));
       track.agency = "ATCF";
       track.line = place.line;
       tracks.push_back(std::move(track));
     }
-    HazardTrack& track = tracks.back();
+    StormTrack& track = tracks.back();
     if (!At(fields, kName).empty()) track.name = At(fields, kName);
     const auto read = [&] {
-      HazardFix fix = ReadFix(fields, place);
+      StormFix fix = ReadFix(fields, place);
       if (track.fixes.empty() || !IsSame(fix, track.fixes.back())) {
         AppendFix(std::move(fix), track.fixes, place);
       }

@@ -51,7 +51,7 @@ StormGrade GradeOfText(const std::string& text) {
 // "250|220|200|180", or one number for all; nullopt with a warning for anything else.
 std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& point,
                                                              JsonObject::Keys keys,
-                                                             HazardPlace& place) {
+                                                             ParseContext& place) {
   std::array<double, kQuadrantCount> radius{};
   const Json* value = point.Find(keys);
   const std::string text = value != nullptr && value->is_string() ? value->get<std::string>() : "";
@@ -80,7 +80,7 @@ std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& p
 }
 
 void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys whole,
-              JsonObject::Keys quadrants, HazardFix& fix, HazardPlace& place) {
+              JsonObject::Keys quadrants, StormFix& fix, ParseContext& place) {
   const auto said = ParseRadii(point, whole, place);
   std::array<double, kQuadrantCount> radius = said.value_or(std::array<double, kQuadrantCount>{});
   bool valid = said.has_value();
@@ -100,8 +100,8 @@ void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys wh
   if (valid) AddSaidRing(wind_kt, radius, fix);  // else unknown, so estimated
 }
 
-HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
-  HazardFix fix;
+StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
+  StormFix fix;
   fix.time = point.NeedTime({"time"}, kBeijing_s);
   fix.position = point.NeedPosition({"lat"}, {"lng", "lon"});
   const double wind = point.TryNumber({"speed"}, 0.0, 150.0).value_or(0.0);
@@ -138,7 +138,7 @@ HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
 // Whether a forecast's point is after the observed one that it hangs on, which for some agencies is
 // later than their own issue. @throws FixError when it is too far ahead for a forecast
 bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
-             HazardPlace& place) {
+             ParseContext& place) {
   constexpr std::int64_t kMostDays = 15;
   if (time - observed > kMostDays * 86400) {
     place.RefuseFixValue(path, "got " + FormatTime(time) + ", expected a forecast's within " +
@@ -153,12 +153,12 @@ bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
   return time >= observed;
 }
 
-void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& track,
-                   HazardPlace& place) {
+void ReadForecasts(const JsonObject& point, std::int64_t issued, StormTrack& track,
+                   ParseContext& place) {
   const Json* forecasts = point.TryList({"forecast"});
   for (std::size_t i = 0; forecasts != nullptr && i < forecasts->size(); ++i) {
     const JsonObject one((*forecasts)[i], At(Join(point.path(), "forecast"), i), place);
-    HazardForecast forecast;
+    StormForecast forecast;
     forecast.agency = one.TryText({"sets", "tm"});
     forecast.issued = issued;
     const JsonObject::Keys keys{"points", "forecastpoints"};
@@ -167,7 +167,7 @@ void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& tr
     for (std::size_t k = 0; points != nullptr && k < points->size(); ++k) {
       const JsonObject entry((*points)[k], At(Join(one.path(), one.KeyOf(keys)), k), place);
       const auto read = [&] {
-        HazardFix fix = ReadPoint(entry, place);
+        StormFix fix = ReadPoint(entry, place);
         if (IsAhead(fix.time, issued, Join(entry.path(), "time"), place)) {
           AppendFix(std::move(fix), forecast.fixes, entry.Here());
         }
@@ -183,7 +183,7 @@ void ReadForecasts(const JsonObject& point, std::int64_t issued, HazardTrack& tr
   }
 }
 
-void ReadLandfalls(const JsonObject& storm, HazardTrack& track, HazardPlace& place) {
+void ReadLandfalls(const JsonObject& storm, StormTrack& track, ParseContext& place) {
   const Json* land = storm.TryList({"land"});
   for (std::size_t i = 0; land != nullptr && i < land->size(); ++i) {
     const Json& each = (*land)[i];
@@ -202,10 +202,10 @@ void ReadLandfalls(const JsonObject& storm, HazardTrack& track, HazardPlace& pla
                    [](const Landfall& a, const Landfall& b) { return a.time < b.time; });
 }
 
-HazardTrack ReadStorm(const JsonObject& storm, HazardPlace& place) {
-  HazardTrack track;
+StormTrack ReadStorm(const JsonObject& storm, ParseContext& place) {
+  StormTrack track;
   track.id = storm.Text({"tfbh", "ident", "tfid"});
-  if (track.id.empty()) storm.Here().Refuse("tfbh: got nothing, expected a storm's number");
+  if (track.id.empty()) storm.Here().Fail("tfbh: got nothing, expected a storm's number");
   const auto named = [](const std::string& text) { return text == "-" ? std::string() : text; };
   track.name = named(storm.TryText({"ename", "enname"}));
   track.local_name = named(storm.TryText({"name"}));
@@ -215,7 +215,7 @@ HazardTrack ReadStorm(const JsonObject& storm, HazardPlace& place) {
   for (std::size_t i = 0; points != nullptr && i < points->size(); ++i) {
     const JsonObject point((*points)[i], At(Join(storm.path(), "points"), i), place);
     const auto read = [&] {
-      HazardFix fix = ReadPoint(point, place);
+      StormFix fix = ReadPoint(point, place);
       const std::int64_t time = fix.time;
       AppendFix(std::move(fix), track.fixes, point.Here());
       ReadForecasts(point, time, track, place);
@@ -229,15 +229,15 @@ HazardTrack ReadStorm(const JsonObject& storm, HazardPlace& place) {
 
 }  // namespace
 
-std::vector<HazardTrack> ReadBulletin(const std::string& text, HazardPlace& place) {
+std::vector<StormTrack> ReadBulletin(const std::string& text, ParseContext& place) {
   const Json document = ParseJson(text, place);
-  std::vector<HazardTrack> tracks;
+  std::vector<StormTrack> tracks;
   if (document.is_object()) {  // one storm without the list around it
     tracks.push_back(ReadStorm(JsonObject(document, "", place), place));
     return tracks;
   }
   if (!document.is_array() || document.empty()) {
-    place.RefuseValue("bulletin", "got an empty list, expected a list of storms");
+    place.FailValue("bulletin", "got an empty list, expected a list of storms");
   }
   for (std::size_t i = 0; i < document.size(); ++i) {
     tracks.push_back(ReadStorm(JsonObject(document[i], At("", i), place), place));

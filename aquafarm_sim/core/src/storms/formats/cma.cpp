@@ -15,7 +15,7 @@ constexpr std::int32_t kAveraging_min = 2;
 
 // 66666 BBBB CCC DDDD EEEE F G name date. BBBB is 0000 for every storm before 2017 and EEEE may be
 // two numbers, "7127,7128"; the serial DDDD is in every file once.
-BestTrackHeader ReadHeader(std::string_view line, HazardPlace& place) {
+BestTrackHeader ReadHeader(std::string_view line, ParseContext& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   constexpr std::size_t kBeforeName = 7;
   const auto is_date = [](std::string_view word) {
@@ -23,9 +23,9 @@ BestTrackHeader ReadHeader(std::string_view line, HazardPlace& place) {
   };
   const bool blank_name = words.size() == kBeforeName + 1 && is_date(words.back());
   if (words.size() < kBeforeName + 2 && !blank_name) {
-    place.Refuse("got " + std::to_string(words.size()) +
-                 " words, expected a header: 66666, numbers, points, serial, number, end, hours, "
-                 "name, date");
+    place.Fail("got " + std::to_string(words.size()) +
+               " words, expected a header: 66666, numbers, points, serial, number, end, hours, "
+               "name, date");
   }
   BestTrackHeader header;
   header.points = ReadWhole(words[2], "number of points", 1, kMaxFixes, place);
@@ -35,7 +35,7 @@ BestTrackHeader ReadHeader(std::string_view line, HazardPlace& place) {
   header.track.agency = "CMA";
   const std::string_view date = words.back();
   if (!is_date(date)) {
-    place.Refuse("date: got " + Quoted(date) + " at the end, expected YYYYMMDD: was it cut off?");
+    place.Fail("date: got " + Quoted(date) + " at the end, expected YYYYMMDD: was it cut off?");
   }
   for (std::size_t i = kBeforeName; i + 1 < words.size(); ++i) {
     header.track.name += (i > kBeforeName ? " " : "") + std::string(words[i]);
@@ -49,13 +49,13 @@ BestTrackHeader ReadHeader(std::string_view line, HazardPlace& place) {
 }
 
 // YYYYMMDDHH I LAT LONG PRES WND [OWD]
-HazardFix ReadPoint(std::string_view line, HazardPlace& place) {
+StormFix ReadPoint(std::string_view line, ParseContext& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   if (words.size() != 6 && words.size() != 7) {
-    place.Refuse("got " + std::to_string(words.size()) +
-                 " words, expected a point: time, grade, latitude, longitude, pressure, wind");
+    place.Fail("got " + std::to_string(words.size()) +
+               " words, expected a point: time, grade, latitude, longitude, pressure, wind");
   }
-  HazardFix fix;
+  StormFix fix;
   fix.time = ReadHour(words[0], place);
   fix.position = {ReadLatitudeTenths(words[2], place), ReadLongitudeTenths(words[3], place)};
   constexpr std::int32_t kNoGrade = -1;
@@ -92,7 +92,7 @@ namespace {
 
 // Columns are fixed, and the last number stands at the right of its own: a point that is shorter
 // than others of as many words has lost digits of it.
-void WarnOfShortPoints(std::string_view text, HazardPlace& place) {
+void WarnOfShortPoints(std::string_view text, ParseContext& place) {
   constexpr std::size_t kMostWords = 7;
   const auto each = [&](auto&& act) {
     LineReader lines(text, place);
@@ -118,8 +118,8 @@ void WarnOfShortPoints(std::string_view text, HazardPlace& place) {
 
 }  // namespace
 
-std::vector<HazardTrack> ReadCma(std::string_view text, HazardPlace& place) {
-  std::vector<HazardTrack> tracks = ReadBestTracks(text, place, ReadHeader, ReadPoint);
+std::vector<StormTrack> ReadCma(std::string_view text, ParseContext& place) {
+  std::vector<StormTrack> tracks = ReadBestTracks(text, place, ReadHeader, ReadPoint);
   WarnOfShortPoints(text, place);
   return tracks;
 }

@@ -12,11 +12,11 @@
 
 namespace aquafarm::internal {
 
-std::vector<HazardTrack> ReadCma(std::string_view text, HazardPlace& place);
-std::vector<HazardTrack> ReadJma(std::string_view text, HazardPlace& place);
-std::vector<HazardTrack> ReadAtcf(std::string_view text, HazardPlace& place);
-std::vector<HazardTrack> ReadIbtracs(std::string_view text, HazardPlace& place);
-std::vector<HazardTrack> ReadBulletin(const std::string& text, HazardPlace& place);
-std::vector<HazardTrack> ReadWeatherService(const std::string& text, HazardPlace& place);
+std::vector<StormTrack> ReadCma(std::string_view text, ParseContext& place);
+std::vector<StormTrack> ReadJma(std::string_view text, ParseContext& place);
+std::vector<StormTrack> ReadAtcf(std::string_view text, ParseContext& place);
+std::vector<StormTrack> ReadIbtracs(std::string_view text, ParseContext& place);
+std::vector<StormTrack> ReadBulletin(const std::string& text, ParseContext& place);
+std::vector<StormTrack> ReadWeatherService(const std::string& text, ParseContext& place);
 
 }  // namespace aquafarm::internal

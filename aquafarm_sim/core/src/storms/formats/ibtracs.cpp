@@ -25,13 +25,13 @@ std::int32_t AveragingOf(std::string_view agency) {
 
 class Columns {
  public:
-  Columns(const Fields& names, const HazardPlace& place) : count_(names.size()) {
+  Columns(const Fields& names, const ParseContext& place) : count_(names.size()) {
     for (std::size_t i = 0; i < names.size(); ++i) at_.emplace(std::string(names[i]), i);
     for (const char* needed :
          {"SID", "NAME", "ISO_TIME", "NATURE", "LAT", "LON", "WMO_WIND", "WMO_PRES", "WMO_AGENCY",
           "TRACK_TYPE", "IFLAG", "USA_WIND", "USA_PRES", "USA_RMW", "STORM_SPEED", "STORM_DIR"}) {
       if (at_.count(needed) == 0) {
-        place.Refuse(std::string("got no column ") + needed + ", expected those of IBTrACS v04");
+        place.Fail(std::string("got no column ") + needed + ", expected those of IBTrACS v04");
       }
     }
   }
@@ -47,12 +47,12 @@ class Columns {
 };
 
 std::optional<double> Number(std::string_view text, const char* name, double max,
-                             HazardPlace& place) {
+                             ParseContext& place) {
   return TryNumber(text, name, 0.0, max, place);
 }
 
 double Degrees(std::string_view text, const char* name, double min, double max,
-               const HazardPlace& place) {
+               const ParseContext& place) {
   const std::optional<double> value = ParseNumber(text);
   if (value && *value >= min && *value <= max) return *value;  // false for nan
   place.RefuseFix(std::string(name) + ": got " + Quoted(text) + ", expected a number in [" +
@@ -60,7 +60,7 @@ double Degrees(std::string_view text, const char* name, double min, double max,
 }
 
 // The first agency with any radius of a wind gives all four quadrants.
-void ReadRings(const Columns& columns, const Fields& fields, HazardFix& fix, HazardPlace& place) {
+void ReadRings(const Columns& columns, const Fields& fields, StormFix& fix, ParseContext& place) {
   constexpr std::array<const char*, kQuadrantCount> kQuadrants{"NE", "SE", "SW", "NW"};
   for (const std::int32_t wind_kt : {34, 50, 64}) {
     for (const char* agency : {"USA", "BOM", "REUNION"}) {
@@ -80,8 +80,8 @@ void ReadRings(const Columns& columns, const Fields& fields, HazardFix& fix, Haz
 }
 
 // WMO_WIND is the responsible agency's; where it is blank, as in provisional tracks, the USA's.
-void ReadStrength(const Columns& columns, const Fields& fields, HazardFix& fix,
-                  HazardPlace& place) {
+void ReadStrength(const Columns& columns, const Fields& fields, StormFix& fix,
+                  ParseContext& place) {
   auto wind_kt = Number(columns.Get(fields, "WMO_WIND"), "WMO_WIND", 250.0, place);
   fix.averaging_min = wind_kt ? AveragingOf(columns.Get(fields, "WMO_AGENCY")) : 0;
   if (!wind_kt) {
@@ -101,8 +101,8 @@ void ReadStrength(const Columns& columns, const Fields& fields, HazardFix& fix,
   if (radius) fix.max_wind_radius_km = *radius * kKmPerNauticalMile;
 }
 
-HazardFix ReadFix(const Columns& columns, const Fields& fields, HazardPlace& place) {
-  HazardFix fix;
+StormFix ReadFix(const Columns& columns, const Fields& fields, ParseContext& place) {
+  StormFix fix;
   const std::string_view time = columns.Get(fields, "ISO_TIME");
   const std::optional<std::int64_t> utc = ParseDateTime(time, 0);
   if (!utc) {
@@ -126,8 +126,8 @@ HazardFix ReadFix(const Columns& columns, const Fields& fields, HazardPlace& pla
 
 }  // namespace
 
-std::vector<HazardTrack> ReadIbtracs(std::string_view text, HazardPlace& place) {
-  std::vector<HazardTrack> tracks;
+std::vector<StormTrack> ReadIbtracs(std::string_view text, ParseContext& place) {
+  std::vector<StormTrack> tracks;
   LineReader lines(text, place);
   Fields fields;
   std::string_view line;
@@ -140,23 +140,23 @@ std::vector<HazardTrack> ReadIbtracs(std::string_view text, HazardPlace& place) 
     if (Trim(line).empty()) continue;
     SplitFields(line, fields);
     if (fields.size() != columns.count()) {
-      place.Refuse("got " + std::to_string(fields.size()) + " fields, expected the " +
-                   std::to_string(columns.count()) + " of row 1");
+      place.Fail("got " + std::to_string(fields.size()) + " fields, expected the " +
+                 std::to_string(columns.count()) + " of row 1");
     }
     const std::string_view id = columns.Get(fields, "SID");
     if (place.line == 2 && id.empty()) {  // the units
       const std::string_view unit = columns.Get(fields, "WMO_WIND");
-      if (unit != "kts") place.Refuse("WMO_WIND: got unit " + Quoted(unit) + ", expected 'kts'");
+      if (unit != "kts") place.Fail("WMO_WIND: got unit " + Quoted(unit) + ", expected 'kts'");
       continue;
     }
-    if (id.empty()) place.Refuse("SID: got nothing, expected a storm's identifier");
+    if (id.empty()) place.Fail("SID: got nothing, expected a storm's identifier");
     if (tracks.empty() || tracks.back().id != id) {
       if (!seen.emplace(id, true).second) {
-        place.Refuse("SID: got " + Quoted(id) + " again, expected its rows one after another");
+        place.Fail("SID: got " + Quoted(id) + " again, expected its rows one after another");
       }
       if (!tracks.empty()) FinishTrack(tracks.back(), left_out, place);
       left_out = {};
-      HazardTrack track;
+      StormTrack track;
       track.id = id;
       track.name = columns.Get(fields, "NAME");
       if (track.name == "NOT_NAMED" || track.name == "UNNAMED") track.name.clear();
@@ -168,7 +168,7 @@ std::vector<HazardTrack> ReadIbtracs(std::string_view text, HazardPlace& place) 
     TryFix([&] { AppendFix(ReadFix(columns, fields, place), tracks.back().fixes, place); },
            left_out, place);
   }
-  if (tracks.empty()) place.Refuse("got no storm, expected rows of fixes");
+  if (tracks.empty()) place.Fail("got no storm, expected rows of fixes");
   FinishTrack(tracks.back(), left_out, place);
   return tracks;
 }

@@ -41,16 +41,16 @@ std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double long
 }
 
 // Blank: not said. All zero: no such wind. A line that ends within was cut.
-void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, HazardFix& fix,
-              HazardPlace& place) {
+void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, StormFix& fix,
+              ParseContext& place) {
   const std::string_view direction = Columns(line, at, at + 1);
   const std::string_view longest = Columns(line, at + 1, at + 5);
   if (Trim(direction).empty() && Trim(longest).empty()) return;
   constexpr std::size_t kWidth = 10;
   if (line.size() < at + kWidth) {
-    place.Refuse("got a line of " + std::to_string(line.size()) + " columns, expected " +
-                 std::to_string(at + kWidth) + " or more where there are radii of " +
-                 std::to_string(wind_kt) + " kt");
+    place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected " +
+               std::to_string(at + kWidth) + " or more where there are radii of " +
+               std::to_string(wind_kt) + " kt");
   }
   const auto code = TryWhole(direction, "direction of the longest radius", 0, 9, place);
   const auto far = TryWhole(longest, "longest radius", 0, 2000, place);
@@ -71,10 +71,10 @@ void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, Hazar
   }
 }
 
-BestTrackHeader ReadHeader(std::string_view line, HazardPlace& place) {
+BestTrackHeader ReadHeader(std::string_view line, ParseContext& place) {
   if (line.size() < kThroughHeader) {
-    place.Refuse("got a header of " + std::to_string(line.size()) + " columns, expected " +
-                 std::to_string(kThroughHeader) + " or more, to its date");
+    place.Fail("got a header of " + std::to_string(line.size()) + " columns, expected " +
+               std::to_string(kThroughHeader) + " or more, to its date");
   }
   BestTrackHeader header;
   header.points = ReadWhole(Columns(line, 12, 15), "number of points", 1, 999, place);
@@ -105,16 +105,16 @@ StormGrade Grade(std::int32_t code, const std::optional<double>& wind_mps) {
   }
 }
 
-HazardFix ReadPoint(std::string_view line, HazardPlace& place) {
+StormFix ReadPoint(std::string_view line, ParseContext& place) {
   if (Columns(line, 9, 12) != "002") {
-    place.Refuse("got " + Quoted(line) + ", expected a point: yymmddhh 002 …");
+    place.Fail("got " + Quoted(line) + ", expected a point: yymmddhh 002 …");
   }
   if (line.size() < kThroughWind) {
-    place.Refuse("got a line of " + std::to_string(line.size()) + " columns, expected " +
-                 std::to_string(kThroughWind) + " or more of a point, to its wind");
+    place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected " +
+               std::to_string(kThroughWind) + " or more of a point, to its wind");
   }
   const std::string_view hour = Columns(line, 0, 8);
-  HazardFix fix;
+  StormFix fix;
   // The file starts in 1951.
   fix.time = ReadHour((hour < "51" ? "20" : "19") + std::string(hour), place);
   std::int32_t code = TryWhole(Columns(line, 13, 14), "grade", 2, 9, place).value_or(kUnknownGrade);
@@ -134,15 +134,15 @@ HazardFix ReadPoint(std::string_view line, HazardPlace& place) {
   ReadRing(line, 41, 50, fix, place);
   constexpr std::size_t kWeaker = 52;
   if (!fix.rings.empty() && Trim(Columns(line, kWeaker, kWeaker + 1)).empty()) {
-    place.Refuse("got radii of 50 kt alone, expected those of 30 kt as well");
+    place.Fail("got radii of 50 kt alone, expected those of 30 kt as well");
   }
   ReadRing(line, kWeaker, 30, fix, place);
   // Since 1977 storms have radii; where there are none the columns are blank, not missing.
   constexpr std::int64_t k1977 = 220924800;
   const bool is_storm = code >= 3 && code <= 5;
   if (is_storm && fix.time >= k1977 && line.size() < kThroughRadii) {
-    place.Refuse("got a line of " + std::to_string(line.size()) + " columns, expected " +
-                 std::to_string(kThroughRadii) + " or more of a storm, to its radii");
+    place.Fail("got a line of " + std::to_string(line.size()) + " columns, expected " +
+               std::to_string(kThroughRadii) + " or more of a storm, to its radii");
   }
   fix.landfall = Columns(line, 71, 72) == "#";
   return fix;
@@ -150,7 +150,7 @@ HazardFix ReadPoint(std::string_view line, HazardPlace& place) {
 
 // Below a header that is filled up with blanks a point is, too; below one that ends with its date a
 // point ends with its wind, its radii or its mark.
-void WarnOfShortPoints(std::string_view text, HazardPlace& place) {
+void WarnOfShortPoints(std::string_view text, ParseContext& place) {
   LineReader lines(text, place);
   std::string_view line;
   std::size_t header = 0;
@@ -166,8 +166,8 @@ void WarnOfShortPoints(std::string_view text, HazardPlace& place) {
 
 }  // namespace
 
-std::vector<HazardTrack> ReadJma(std::string_view text, HazardPlace& place) {
-  std::vector<HazardTrack> tracks = ReadBestTracks(text, place, ReadHeader, ReadPoint);
+std::vector<StormTrack> ReadJma(std::string_view text, ParseContext& place) {
+  std::vector<StormTrack> tracks = ReadBestTracks(text, place, ReadHeader, ReadPoint);
   WarnOfShortPoints(text, place);
   return tracks;
 }

@@ -33,8 +33,8 @@ StormGrade Grade(const JsonObject& point, const std::string& type,
   return wind_mps ? GradeOfWind(*wind_mps) : StormGrade::kUnknown;
 }
 
-HazardFix ReadPoint(const JsonObject& point, HazardPlace& place) {
-  HazardFix fix;
+StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
+  StormFix fix;
   fix.time = point.NeedTime({"time", "pubTime", "fxTime"}, kBeijing_s);
   fix.position = point.NeedPosition({"lat"}, {"lon"});
   const double wind = point.TryNumber({"windSpeed"}, 0.0, 150.0).value_or(0.0);
@@ -80,7 +80,7 @@ const char* KeyOfPoints(const JsonObject& answer) {
 }
 
 // Sections that an answer may have in addition to its points.
-void WarnOfUnread(const Json& document, HazardPlace& place) {
+void WarnOfUnread(const Json& document, ParseContext& place) {
   constexpr std::array<std::string_view, 11> kKnown{"code", "updateTime", "fxLink",  "isActive",
                                                     "now",  "track",      "refer",   "id",
                                                     "name", "stormid",    "forecast"};
@@ -94,16 +94,16 @@ void WarnOfUnread(const Json& document, HazardPlace& place) {
 bool IsLandfall(const JsonObject& point) { return point.TryText({"type"}) == "DL"; }
 
 // A forecast next to the track is taken as issued with the last fix.
-void ReadForecast(const JsonObject& answer, HazardTrack& track, HazardPlace& place) {
+void ReadForecast(const JsonObject& answer, StormTrack& track, ParseContext& place) {
   const Json* points = answer.TryList({"forecast"});
   if (points == nullptr || points->empty() || track.fixes.empty()) return;
-  HazardForecast forecast;
+  StormForecast forecast;
   forecast.issued = track.fixes.back().time;
   LeftOut unused;
   for (std::size_t i = 0; i < points->size(); ++i) {
     const JsonObject point((*points)[i], At("forecast", i), place);
     const auto read = [&] {
-      HazardFix fix = ReadPoint(point, place);
+      StormFix fix = ReadPoint(point, place);
       if (fix.time > forecast.issued) AppendFix(std::move(fix), forecast.fixes, point.Here());
     };
     if (!IsLandfall(point)) TryFix(read, unused, place);
@@ -111,7 +111,7 @@ void ReadForecast(const JsonObject& answer, HazardTrack& track, HazardPlace& pla
   if (!forecast.fixes.empty()) track.forecasts.push_back(std::move(forecast));
 }
 
-void ReadLandfall(const JsonObject& point, HazardTrack& track, HazardPlace& place) {
+void ReadLandfall(const JsonObject& point, StormTrack& track, ParseContext& place) {
   try {
     track.landfalls.push_back(
         {point.NeedTime({"time"}, kBeijing_s), point.NeedPosition({"lat"}, {"lon"}), ""});
@@ -122,18 +122,18 @@ void ReadLandfall(const JsonObject& point, HazardTrack& track, HazardPlace& plac
 
 }  // namespace
 
-std::vector<HazardTrack> ReadWeatherService(const std::string& text, HazardPlace& place) {
+std::vector<StormTrack> ReadWeatherService(const std::string& text, ParseContext& place) {
   const Json document = ParseJson(text, place);
   const JsonObject answer(document, "", place);
   const std::string code = answer.Text({"code"});
   if (!code.empty() && code != "200") {
-    answer.Here().Refuse("code: got " + Quoted(code) + ", expected '200'");
+    answer.Here().Fail("code: got " + Quoted(code) + ", expected '200'");
   }
   const char* key = KeyOfPoints(answer);
   WarnOfUnread(document, place);
   const Json* now = answer.Find({"now"});
   const bool alone = std::string_view(key) == "forecast" && now == nullptr;
-  HazardTrack track;
+  StormTrack track;
   track.id = answer.Text({"id", "stormid"});
   if (track.id.empty()) track.id = "storm";
   track.name = answer.TryText({"name"});
@@ -152,7 +152,7 @@ std::vector<HazardTrack> ReadWeatherService(const std::string& text, HazardPlace
   if (now != nullptr) {
     const JsonObject point(*now, "now", place);
     const auto read = [&] {
-      HazardFix fix = ReadPoint(point, place);
+      StormFix fix = ReadPoint(point, place);
       if (track.fixes.empty() || fix.time > track.fixes.back().time) {
         AppendFix(std::move(fix), track.fixes, point.Here());
       }
@@ -160,9 +160,9 @@ std::vector<HazardTrack> ReadWeatherService(const std::string& text, HazardPlace
     TryFix(read, left_out, place);
   }
   if (!alone) ReadForecast(answer, track, place);
-  for (HazardFix& fix : track.fixes) fix.forecast = alone;
+  for (StormFix& fix : track.fixes) fix.forecast = alone;
   FinishTrack(track, left_out, answer.Here());
-  std::vector<HazardTrack> tracks;
+  std::vector<StormTrack> tracks;
   tracks.push_back(std::move(track));
   return tracks;
 }

@@ -68,7 +68,7 @@ struct EpisodeResult {
 
 /// Results of one Reset or Step. Owned by the environment and valid until its next call. Arrays are
 /// row-major.
-struct Results {
+struct StepResults {
   /// True if this transition is the last one of the agent at entry farm · S + agent.
   bool IsDone(std::size_t entry, std::size_t farm) const {
     return in_play[entry] == 0 || IsTerminated(static_cast<EndReason>(reasons[farm]));
@@ -115,22 +115,22 @@ class Environment {
 
   /// Starts the episode sequence of `seed`: farm i plays episode first_episode + i, then every
   /// N-th.
-  virtual const Results& Reset(std::uint64_t seed, std::uint64_t first_episode = 0) = 0;
+  virtual const StepResults& Reset(std::uint64_t seed, std::uint64_t first_episode = 0) = 0;
 
   /// Takes one step in every farm.
   /// @param actions [N, S], each in [0, kActionCount); other values are a programming error
-  virtual const Results& Step(const std::vector<std::uint8_t>& actions) = 0;
+  virtual const StepResults& Step(const std::vector<std::uint8_t>& actions) = 0;
 
   /// Serializes all farms, also in mid-episode.
   virtual std::string Save() = 0;
   /// Restores saved farms, which continue bit-identically, and returns their current results with
   /// an empty `finished`.
   /// @throws InputError if the bytes do not fit; the farms are then unchanged
-  virtual const Results& Load(const std::string& bytes) = 0;
+  virtual const StepResults& Load(const std::string& bytes) = 0;
 
   /// True once after the farms were lost and replaced by new ones (a ROS node restarted). The
   /// results of the last call are then first observations of new episodes.
-  virtual bool TakeRestarted() { return false; }
+  virtual bool ConsumeRestart() { return false; }
 };
 
 }  // namespace aquafarm::agents

@@ -16,10 +16,10 @@ class LocalEnvironment final : public Environment {
   LocalEnvironment(std::shared_ptr<const Scenario> scenario, const EnvironmentOptions& options);
 
   const EnvironmentSpec& spec() const override { return spec_; }
-  const Results& Reset(std::uint64_t seed, std::uint64_t first_episode = 0) override;
-  const Results& Step(const std::vector<std::uint8_t>& actions) override;
+  const StepResults& Reset(std::uint64_t seed, std::uint64_t first_episode = 0) override;
+  const StepResults& Step(const std::vector<std::uint8_t>& actions) override;
   std::string Save() override;
-  const Results& Load(const std::string& bytes) override;
+  const StepResults& Load(const std::string& bytes) override;
 
   /// The farms, for tools that inspect them.
   const FarmBatch& batch() const { return batch_; }
@@ -32,7 +32,7 @@ class LocalEnvironment final : public Environment {
   EnvironmentSpec spec_;
   std::vector<float> terms_;  // [N, S, kRewardTermCount]; empty unless own rewards are requested
   bool with_states_{};
-  Results results_;
+  StepResults results_;
   BatchOutput output_;
 };
 

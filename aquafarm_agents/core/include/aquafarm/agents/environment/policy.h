@@ -21,7 +21,7 @@ class Policy {
   virtual void Begin(std::uint64_t seed, std::int32_t farms) = 0;
 
   /// Chooses the actions of the step after `results`. @param actions is resized to [N, S]
-  virtual void Act(const Results& results, std::vector<std::uint8_t>& actions) = 0;
+  virtual void Act(const StepResults& results, std::vector<std::uint8_t>& actions) = 0;
 
   /// Learned V_π: the expected discounted return of each action that the last Act chose, [N, S].
   /// Empty if the policy has no value estimates.

@@ -16,16 +16,16 @@
 namespace aquafarm::agents {
 
 /// Greedy action in a cell.
-struct BestMove {
+struct GreedyAction {
   Cell cell{};
   std::uint8_t action{};
   float value{std::numeric_limits<float>::quiet_NaN()};  ///< NaN if the policy has no values
 };
 
-/// Max number of cells of a farm for which BestMoves is supported.
+/// Max number of cells of a farm for which GreedyActions is supported.
 inline constexpr std::int32_t kMaxCells = 10000;
 
-/// Reason why BestMoves does not support farms of a scenario; empty if it does.
+/// Reason why GreedyActions does not support farms of a scenario; empty if it does.
 std::string WhyNoBestMoves(const Scenario& scenario);
 
 /// Greedy action of ship 0 in every free cell of a farm in its current state, row by row from the
@@ -33,7 +33,7 @@ std::string WhyNoBestMoves(const Scenario& scenario);
 /// @param policy is reset first: a recurrent policy starts from an empty state
 /// @param stop ends it early with the cells done so far; null if it cannot be stopped
 /// @throws InputError if the policy does not fit
-std::vector<BestMove> BestMoves(const Farm& farm, std::uint8_t encodings, Policy& policy,
-                                const std::atomic<bool>* stop = nullptr);
+std::vector<GreedyAction> GreedyActions(const Farm& farm, std::uint8_t encodings, Policy& policy,
+                                        const std::atomic<bool>* stop = nullptr);
 
 }  // namespace aquafarm::agents

@@ -16,7 +16,7 @@
 namespace aquafarm::agents {
 
 /// Rollout values of a farm's cells.
-struct PlayedValues {
+struct RolloutValues {
   std::int32_t width{};
   std::int32_t height{};
   std::uint64_t seed{};
@@ -33,14 +33,14 @@ struct PlayedValues {
 ///        stopped
 /// @param discount in [0, 1]
 /// @throws InputError if the scenario or the policy does not fit
-PlayedValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
-                        const MakePolicyFor& make_policy, std::uint64_t seed, std::uint64_t episode,
-                        std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
-                        double discount = 1.0);
+RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::uint8_t encodings,
+                         const MakePolicyFor& make_policy, std::uint64_t seed,
+                         std::uint64_t episode, std::int32_t episodes,
+                         const std::atomic<bool>* stop = nullptr, double discount = 1.0);
 
 /// Writes JSON with the values and the sea layers of the scenario. Rows start in the south; cells
 /// without a value are null. @throws StorageError
-void WriteValues(const std::string& path, const PlayedValues& values, const std::string& policy,
+void WriteValues(const std::string& path, const RolloutValues& values, const std::string& policy,
                  const Scenario& scenario);
 
 }  // namespace aquafarm::agents

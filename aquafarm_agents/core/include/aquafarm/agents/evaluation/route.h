@@ -38,8 +38,8 @@ struct Route {
   EpisodeResult result;
   /// Greedy action of ship 0 in every free cell, at the episode's start and right after the first
   /// pickup (empty if there is no pickup). A recurrent policy starts from an empty state.
-  std::vector<BestMove> at_start;
-  std::vector<BestMove> after_pickup;
+  std::vector<GreedyAction> at_start;
+  std::vector<GreedyAction> after_pickup;
 };
 
 /// Plays one episode of EvaluationSeed(seed) with all agents and records the route of ship 0.

@@ -13,10 +13,10 @@ struct Checkpoint;
 
 /// Random streams for exploration, one per agent of each farm: entry i is stream i of (seed,
 /// exploration). Restored streams continue bit-identically.
-class EntryStreams {
+class AgentRng {
  public:
-  EntryStreams() = default;
-  EntryStreams(std::uint64_t seed, std::size_t entries);
+  AgentRng() = default;
+  AgentRng(std::uint64_t seed, std::size_t entries);
 
   std::size_t size() const { return streams_.size(); }
   RandomStream& operator[](std::size_t entry) { return streams_[entry]; }

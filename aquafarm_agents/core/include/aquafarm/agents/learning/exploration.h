@@ -132,7 +132,7 @@ class Explorer {
   double value_scale_;
   double level_{};
   float epsilon_{};
-  EntryStreams streams_;
+  AgentRng streams_;
 };
 
 }  // namespace aquafarm::agents

@@ -43,7 +43,7 @@ class Learner {
   /// @param progress of the run, [0, 1]; drives the schedules
   /// @param actions is resized to [N, S]
   /// @throws LearnerFailed
-  virtual void Step(const Results& results, double progress,
+  virtual void Step(const StepResults& results, double progress,
                     std::vector<std::uint8_t>& actions) = 0;
 
   virtual LearnerStatus status() const = 0;

@@ -29,16 +29,16 @@ class RandomPolicy final : public Policy {
       : agents_(spec.agents), features_(spec.feature_count), actions_(actions) {}
   std::uint8_t encodings() const override;
   void Begin(std::uint64_t seed, std::int32_t farms) override;
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
-  const EntryStreams& streams() const { return streams_; }
-  EntryStreams& streams() { return streams_; }
+  const AgentRng& streams() const { return streams_; }
+  AgentRng& streams() { return streams_; }
 
  private:
   std::int32_t agents_;
   std::int32_t features_;
   RandomActions actions_;
-  EntryStreams streams_;
+  AgentRng streams_;
 };
 
 /// RANDOM behind the Learner interface. It draws its actions and does not learn.
@@ -49,7 +49,8 @@ class RandomLearner final : public Learner {
   std::uint8_t encodings() const override { return policy_.encodings(); }
   /// Empty for `all`, as in checkpoints from before the option existed.
   std::string options() const override;
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override;
   std::unique_ptr<Policy> GreedyPolicy() const override;
   void SavePolicy(Checkpoint&) const override {}

@@ -71,7 +71,7 @@ class Replay {
   /// Adds a time step.
   /// @param observations [entries, observation_size]
   /// @param carry [entries, carry_size] recurrent state of each agent before this time step
-  void Add(const Results& results, const Scalar* observations, const float* carry = nullptr);
+  void Add(const StepResults& results, const Scalar* observations, const float* carry = nullptr);
   /// Adds the chosen actions to the newest time step. @param actions [entries]
   void SetActions(const std::vector<std::uint8_t>& actions);
 

@@ -64,7 +64,8 @@ class TabularLearner final : public Learner {
 
   std::uint8_t encodings() const override { return kIndexBit; }
   std::string options() const override { return resolved_; }
-  void Step(const Results& results, double progress, std::vector<std::uint8_t>& actions) override;
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override;
   std::unique_ptr<Policy> GreedyPolicy() const override;
   void SavePolicy(Checkpoint& checkpoint) const override;
@@ -94,7 +95,7 @@ class GreedyTabularPolicy final : public Policy {
       : table_(std::move(table)), mask_illegal_(mask_illegal) {}
   std::uint8_t encodings() const override { return kIndexBit; }
   void Begin(std::uint64_t, std::int32_t) override {}
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
  private:
   QTable table_;

@@ -16,8 +16,8 @@ inline constexpr std::size_t kMaxPlanStates = 50'000'000;
 
 /// Which future of the disasters a plan is made for.
 enum class Foresight : std::uint8_t {
-  kClairvoyant,   ///< as they will really move
-  kHeadingHolds,  ///< as the scenario's forecast has it, else straight on as it moves now
+  kOracle,       ///< as they will really move
+  kPersistence,  ///< as the scenario's forecast has it, else straight on as it moves now
 };
 
 /// Where ships that have planned before will be, so that a plan keeps out of their way: a ship's

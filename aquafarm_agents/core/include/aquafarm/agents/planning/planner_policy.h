@@ -15,7 +15,7 @@
 
 namespace aquafarm::agents {
 
-/// *Receding-horizon* (kHeadingHolds) plans anew at each step, as a good operator would who trusts
+/// *Receding-horizon* (kPersistence) plans anew at each step, as a good operator would who trusts
 /// that a disaster holds its heading. *Clairvoyant* knows what will come: it plans once an episode,
 /// and again when the farm is not where the plan put it.
 class PlannerPolicy final : public Policy {
@@ -24,11 +24,11 @@ class PlannerPolicy final : public Policy {
   PlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
   std::uint8_t encodings() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
  private:
   /// What is left of one farm's plan.
-  struct Course {
+  struct PlanState {
     Plan plan;
     std::size_t next{};  // action of the plan
     std::uint64_t seed{};
@@ -36,13 +36,13 @@ class PlannerPolicy final : public Policy {
     std::int32_t step{};
     Cell cell{};  // where the ship should be then
   };
-  std::uint8_t Follow(const Farm& farm, Course& course);
+  std::uint8_t Follow(const Farm& farm, PlanState& course);
 
   std::shared_ptr<const Scenario> scenario_;
   Foresight foresight_;
   Planner planner_;
   std::unique_ptr<FarmBatch> farms_;
-  std::vector<Course> courses_;
+  std::vector<PlanState> courses_;
 };
 
 }  // namespace aquafarm::agents

@@ -32,7 +32,7 @@ class TeamPlanner {
   TeamPlanner(TeamPlanner&&) noexcept;
 
   /// One farm's plans, as far as they go.
-  struct Course {
+  struct PlanState {
     std::vector<std::vector<std::uint8_t>> actions;  ///< by agent, from `start` on
     std::vector<std::vector<std::int32_t>> path;     ///< by agent: its cell before each action
     std::uint64_t seed{};
@@ -45,7 +45,7 @@ class TeamPlanner {
 
   /// Chooses for the next step of a farm that is not over, planning anew where it must.
   /// @param actions [agents]
-  void Act(const Farm& farm, Course& course, std::uint8_t* actions);
+  void Act(const Farm& farm, PlanState& course, std::uint8_t* actions);
 
   /// Who fetches what: ids of devices for each agent, what it holds or is included.
   std::vector<std::vector<std::int32_t>> Assign(const Farm& farm) const;
@@ -62,13 +62,13 @@ class TeamPlannerPolicy final : public Policy {
   TeamPlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
   std::uint8_t encodings() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
-  void Act(const Results& results, std::vector<std::uint8_t>& actions) override;
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
  private:
   std::shared_ptr<const Scenario> scenario_;
   TeamPlanner planner_;
   std::unique_ptr<FarmBatch> farms_;
-  std::vector<TeamPlanner::Course> courses_;
+  std::vector<TeamPlanner::PlanState> courses_;
 };
 
 }  // namespace aquafarm::agents

@@ -80,7 +80,7 @@ class Trainer {
  private:
   void Train(const std::atomic<bool>* stop, const OnProgress& on_progress);
   void Begin();
-  void Count(const Results& results);
+  void Count(const StepResults& results);
   void CountEpisode(const EpisodeResult& result);
   void Report(const OnProgress& on_progress);
   void Summarise();
@@ -93,7 +93,7 @@ class Trainer {
   RunFolder* const folder_;
   std::unique_ptr<MetricsFile> metrics_;
 
-  const Results* results_{};  // current; null before the start
+  const StepResults* results_{};  // current; null before the start
   std::vector<std::uint8_t> actions_;
   TrainingProgress progress_;
   std::uint64_t next_episode_{};  // above all started episodes

@@ -39,7 +39,7 @@ void Print(const aquafarm_agents::BagChoices& choices) {
         Value(share).c_str(), Value(double(one.value_at_start)).c_str(),
         Value(one.mean_value).c_str(), Value(double(one.episode_return)).c_str());
   }
-  if (all > 0) std::printf("%llu of %llu choices agree with what was done\n", agreed, all);
+  if (all > 0) std::printf("%llu of %llu choices agree with the recorded actions\n", agreed, all);
 }
 
 }  // namespace

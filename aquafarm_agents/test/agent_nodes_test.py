@@ -75,7 +75,7 @@ class AgentNodesTest(unittest.TestCase):
     def wait_until(self, condition, what, limit_s=30):
         end = time.monotonic() + limit_s
         while not condition(self.state()):
-            self.assertLess(time.monotonic(), end, f"waited in vain for {what}")
+            self.assertLess(time.monotonic(), end, f"timed out waiting for {what}")
             time.sleep(0.02)
 
     def expect_solved(self, runs, episodes):
@@ -154,7 +154,7 @@ class AgentNodesTest(unittest.TestCase):
         self.ranch.wait_for(lambda: "back: ship 1" in words(), "a word of its return")
         self.assertEqual(1, words().count(
             "no command within ~barrier_timeout_s, 0.5 s, of ship 1: it holds until it is back"))
-        self.assertIn("given up until they command again: ship 1", told)
+        self.assertIn("not waiting until their next command: ship 1", told)
 
     def test_one_that_dies_holds_its_ship_only_and_joins_again_when_paced(self):
         self.die_and_join_again("_pace:=paced", "_rate_hz:=50")
@@ -208,7 +208,7 @@ class AgentNodesTest(unittest.TestCase):
         self.addCleanup(rospy.delete_param, "/use_sim_time")
         self.sim(WIDE, "_barrier_timeout_s:=0.2")
         run = self.agent(0, "random")
-        run.wait_for(lambda: "ship 0: other ships gave no command within" in run.words(),
+        run.wait_for(lambda: "ship 0: barrier timed out: no command from other ships within" in run.words(),
                      "a warning")
 
     def test_a_ship_driven_by_what_the_whole_farm_tells_is_held_until_its_node_ends(self):
@@ -261,7 +261,7 @@ class AgentNodesTest(unittest.TestCase):
     def test_without_a_sim_node_it_says_so_and_ends(self):
         run = self.agent(0, "random", "_sim_timeout_s:=2")
         self.assertEqual(4, run.code(), run.words())
-        self.assertIn(f"no answer from service {self.namespace}/get_state", run.words())
+        self.assertIn(f"no response from service {self.namespace}/get_state", run.words())
 
 
 if __name__ == "__main__":

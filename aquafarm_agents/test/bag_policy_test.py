@@ -168,7 +168,7 @@ class BagPolicyTest(unittest.TestCase):
         self.refused("q_learning of scenario tiny does not fit scenario pair: width: it knows 6", 2,
                      self.bag_of("random", PAIR), policy)
         self.refused("/no/such/folder", 2, bag, "/no/such/folder")
-        self.refused("damaged or no bag", 2, TINY, policy)
+        self.refused("damaged or not a bag", 2, TINY, policy)
         self.refused("/nowhere/x.bag: there is no such file", 2, "/nowhere/x.bag", policy)
         data = bytearray(bag.read_bytes())
         place = data.index(b"ver=\x01\0\0\0") + 8 + 4 + 8  # of an index's first entry

@@ -154,7 +154,7 @@ class PolicyNodeTest(unittest.TestCase):
         for mode in ("evaluate", "act"):
             run = self.play("_policy:=random", f"_mode:={mode}", wait_s=2)
             self.assertEqual(4, run.code(), run.words())
-            self.assertIn(f"no answer from service {self.namespace}/", run.words())
+            self.assertIn(f"no response from service {self.namespace}/", run.words())
 
 
 if __name__ == "__main__":

@@ -66,7 +66,7 @@ class Program:
         end = time.monotonic() + limit_s
         while not condition():
             assert self.process.poll() is None, f"ended before {what}:\n{self.words()}"
-            assert time.monotonic() < end, f"waited in vain for {what}:\n{self.words()}"
+            assert time.monotonic() < end, f"timed out waiting for {what}:\n{self.words()}"
             time.sleep(0.02)
 
 

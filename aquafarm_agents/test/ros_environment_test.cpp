@@ -204,7 +204,8 @@ TEST(RosEnvironment, StartsAfreshWhenAnotherHasMovedOrResetTheFarms) {
     EXPECT_TRUE(step()) << "no transition leads from one episode into another";
     EXPECT_TRUE(environment.ConsumeRestart());
     ASSERT_EQ(i + 1, notices.size());
-    EXPECT_CONTAINS(notices.back(), "another has moved or reset them, or the node is new");
+    EXPECT_CONTAINS(notices.back(),
+                    "another client has stepped or reset them, or the node has restarted");
     EXPECT_CONTAINS(notices.back(), "fresh episodes from number " + std::to_string(13 + 3 * i));
     EXPECT_FALSE(step());
     EXPECT_FALSE(environment.ConsumeRestart());
@@ -221,7 +222,7 @@ TEST(RosEnvironment, EndsWhereAnotherTrainsOnTheSameFarms) {
   EXPECT_CONTAINS(MessageOf<EnvironmentLost>([&] {
                     for (int i = 0; i < 100 && other.call(reset); ++i) environment.Step(actions);
                   }),
-                  "its farms are taken away again and again");
+                  "another client keeps changing the farms");
 }
 
 TEST(RosEnvironment, RefusesFarmsThatItCannotUse) {
@@ -247,7 +248,7 @@ TEST(RosEnvironment, NobodyThereIsToldWithinTheLimit) {
   options.on_notice = [&notices](const std::string& text) { notices.push_back(text); };
   EXPECT_CONTAINS(
       MessageOf<EnvironmentLost>([&] { RosEnvironment(ros::NodeHandle("nowhere"), options); }),
-      "no answer from service /nowhere/get_state for 2 s");
+      "no response from service /nowhere/get_state for 2 s");
   EXPECT_EQ(notices.size(), 1U);
 }
 

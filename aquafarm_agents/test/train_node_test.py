@@ -180,7 +180,7 @@ class TrainNodeTest(unittest.TestCase):
     def test_without_a_sim_node_it_says_so_and_ends(self):
         run = self.train("run", wait_s=2)
         self.assertEqual(4, run.code(), run.words())
-        self.assertIn(f"no answer from service {self.namespace}/get_state for 2 s", run.words())
+        self.assertIn(f"no response from service {self.namespace}/get_state for 2 s", run.words())
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parent.parent / "scripts"
 SCRIPT = SCRIPTS.parent.parent / "aquafarm"
 LIMIT_S = 20
 DEAD_DISPLAY = ":65432"
-DEAD = f"nobody answers at the display {DEAD_DISPLAY}, or not to us"
+DEAD = f"cannot connect to display {DEAD_DISPLAY}, or not to us"
 WAY_OUT = (": give headless:=true or rviz:=false and look at the topic image, or draw a bag with "
            "'./aquafarm render'")
 
@@ -77,7 +77,7 @@ class ReplayTest(unittest.TestCase):
         self.shown(7)
         self.ranch.wait_for(lambda: self.choices and self.choices[-1].step == 7, LIMIT_S)
         self.assertEqual("random", self.choices[-1].policy)
-        self.assertIn("choices agree with what was done", self.ranch.words())
+        self.assertIn("choices agree with the recorded actions", self.ranch.words())
 
     def play(self, *parameters):
         """Starts a separate player; returns its process and the list of states."""
@@ -271,7 +271,7 @@ class ReplayTest(unittest.TestCase):
             broken = pathlib.Path(folder) / "x.bag"
             cut = self.bag.read_bytes()[:-10]
             for content, arguments, words in (
-                    (b"no bag\n", (), "x.bag: damaged or no bag: "),
+                    (b"no bag\n", (), "x.bag: damaged or not a bag: "),
                     (cut, (), "x.bag: damaged: a length beyond its end at byte "),
                     (cut, ("policy:=random",), "x.bag: damaged: a length beyond its end at byte "),
                     (cut, ("policy:=/no/run",), "/no/run")):

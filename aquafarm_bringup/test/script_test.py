@@ -212,7 +212,7 @@ class ScriptTest(unittest.TestCase):
             self.assertIn("building in", words(tree, build_type="Debug"))
             self.assertTrue(cache.exists(), "another type is compiled in place")
             for other in ((folder / "other",), (tree, folder / "moved" / "src")):
-                self.assertIn("is of another tree or place; building all anew", words(*other))
+                self.assertIn("was built from another checkout; rebuilding", words(*other))
                 self.assertFalse(cache.exists())
 
     def test_a_second_build_waits_for_the_first_and_takes_what_it_made(self):

@@ -146,7 +146,7 @@ class ValuesTest(unittest.TestCase):
         alone = subprocess.run(command, check=False, capture_output=True, text=True, timeout=100,
                                env={**os.environ, "ROS_MASTER_URI": "http://127.0.0.1:9"})
         self.assertEqual(2, alone.returncode)
-        self.assertIn("no ROS master answers at http://127.0.0.1:9", alone.stderr)
+        self.assertIn("cannot reach a ROS master at http://127.0.0.1:9", alone.stderr)
         rospy.init_node("values_test", anonymous=True, disable_signals=True)
         with subprocess.Popen(command, stdout=subprocess.DEVNULL) as playing:
             try:

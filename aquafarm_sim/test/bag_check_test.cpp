@@ -336,7 +336,7 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   const std::string bag = OneBag();
   EXPECT_EQ(folder_ + "/none.bag: there is no such file", Refusal(folder_ + "/none.bag"));
   std::ofstream(folder_ + "/text.bag") << "no bag";
-  EXPECT_NE(std::string::npos, Refusal(folder_ + "/text.bag").find("damaged or no bag"));
+  EXPECT_NE(std::string::npos, Refusal(folder_ + "/text.bag").find("damaged or not a bag"));
   const std::string late = folder_ + "/late.bag";
   {
     ros::Time time;  // a value that no constructor accepts
@@ -344,16 +344,16 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
     rosbag::Bag(late, rosbag::bagmode::Write)
         .write("/ranch/saved_state", time, aquafarm_msgs::SavedState());
   }
-  EXPECT_EQ(0U, Refusal(late).find(late + ": damaged or no bag: ")) << Refusal(late);
+  EXPECT_EQ(0U, Refusal(late).find(late + ": damaged or not a bag: ")) << Refusal(late);
   // Replaces the count of connections in the header, which is padded to 4 kB.
   const std::string encrypted = Changed(bag, true, [](auto*, auto*, auto*) { return true; });
   const std::string content = ContentOf(encrypted);
   Put(encrypted, content.find("chunk_count="), "encryptor=a/b");
   EXPECT_EQ(encrypted + ": encrypted; 'rosbag decrypt' it first", Refusal(encrypted));
-  EXPECT_EQ(folder_ + ": damaged or no bag: no regular file", Refusal(folder_));
+  EXPECT_EQ(folder_ + ": damaged or not a bag: no regular file", Refusal(folder_));
   const std::string pipe = folder_ + "/pipe.bag";
   ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));
-  EXPECT_EQ(pipe + ": damaged or no bag: no regular file", Refusal(pipe));
+  EXPECT_EQ(pipe + ": damaged or not a bag: no regular file", Refusal(pipe));
   EXPECT_NE(std::string::npos, Refusal(Changed(bag, false, [](FarmSpec* spec, auto*, auto*) {
                                  return spec == nullptr;
                                })).find("no topic spec, so nothing says what was played"));

@@ -59,7 +59,7 @@ class BulletinNodeTest(unittest.TestCase):
             if condition(disaster):
                 return disaster
             time.sleep(0.05)
-        self.fail(f"waited in vain for {what}: {disaster}")
+        self.fail(f"timed out waiting for {what}: {disaster}")
 
     def test_a_bulletin_reaches_the_episode_and_the_next_observation(self):
         message("spec", rospy.AnyMsg)

@@ -199,7 +199,7 @@ TEST_F(EpisodeBag, ADiskThatDoesNotFollowEndsTheKeepingNotTheFarms) {
   const auto ranch = MakeRanch(ShortScenario(), 32);
   const auto recorder = Record(*ranch, "all", {1, std::chrono::milliseconds(0)});
   Play(*ranch, 32, 90);  // 32 episodes end in one step
-  EXPECT_EQ("the disk does not follow", recorder->fault());
+  EXPECT_EQ("the disk is too slow", recorder->fault());
   ranch->SetRecorder(nullptr);
 }
 

@@ -105,7 +105,7 @@ TEST(FarmServer, ALoneCommandTimesOutAndIsTakenBack) {
   const std::uint64_t hash = StateOf(*ranch).hash;
   const CommandResult lone = ranch->Command({0, kNorth, 0, 0, 1});
   EXPECT_EQ(Outcome::TIMEOUT, lone.code);
-  EXPECT_EQ("other ships gave no command within 0.200000 s: 1", lone.message);
+  EXPECT_EQ("barrier timed out: no command from other ships within 0.200000 s: 1", lone.message);
   EXPECT_EQ(hash, StateOf(*ranch).hash);
   const CommandResult other = ranch->Command({1, kNorth, 0, 0, 1});
   EXPECT_EQ(Outcome::TIMEOUT, other.code);

@@ -51,7 +51,7 @@ class Recorder:
             if condition(self.messages):
                 return
             time.sleep(0.02)
-        raise AssertionError(f"waited in vain for {what}; got {len(self.messages)} messages")
+        raise AssertionError(f"timed out waiting for {what}; got {len(self.messages)} messages")
 
 
 def states():

@@ -71,7 +71,7 @@ class SimNodePairTest(unittest.TestCase):
         end = time.monotonic() + 10
         while not warnings and time.monotonic() < end:
             rospy.rostime.wallsleep(0.05)
-        self.assertEqual(["a ship waited in vain for the others"], warnings[:1])
+        self.assertEqual(["barrier timed out"], warnings[:1])
 
     def test_waiting_commands_keep_nobody_else_waiting(self):
         waiting = [Caller(0, HOLD, token=i + 1) for i in range(20)]

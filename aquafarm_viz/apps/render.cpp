@@ -134,7 +134,7 @@ std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
   }
   std::string all;
   for (const auto& prefix : prefixes) all += " " + prefix;
-  throw std::runtime_error(request.bag + ": holds several ranches, choose one with --ns:" + all);
+  throw std::runtime_error(request.bag + ": holds several ranches, select one with --ns:" + all);
 }
 
 /// Input of one picture: a state and the optional content.
@@ -235,7 +235,7 @@ void WarnOfMissing(const Request& request, const Found& found) {
 void RenderPicture(const Request& request) {
   if (!cv::haveImageWriter(request.output)) {
     throw std::runtime_error(request.output +
-                             ": got an ending that is no picture's and no film's, "
+                             ": got an unknown extension, "
                              "expected .png, .jpg, .mp4, .webm or .gif");
   }
   aquafarm_viz::FarmPainter painter(request.size);

@@ -106,7 +106,7 @@ TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
   EXPECT_EQ(WEXITSTATUS(none.code), 2);
   EXPECT_EQ(none.output, "render: " + Path("none.bag") + ": there is no such file\n");
   EXPECT_EQ(Render("--bag " + Path("")).output,
-            "render: " + Path("") + ": damaged or no bag: no regular file\n");
+            "render: " + Path("") + ": damaged or not a bag: no regular file\n");
   const std::string bag = MakeBag({"/aquafarm/"});
   test::DamageIndex(bag);
   const Result damaged = Render("--bag " + bag + " -o " + Path("x.png"));
@@ -124,10 +124,9 @@ TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
   EXPECT_NE(unwritable.output.find("could not be written"), std::string::npos);
   const Result unknown = Render("--bag " + bag + " -o " + Path("x.nonsense"));
   EXPECT_NE(unknown.code, 0);
-  EXPECT_EQ(unknown.output,
-            "render: " + Path("x.nonsense") +
-                ": got an ending that is no picture's and no film's, expected .png, "
-                ".jpg, .mp4, .webm or .gif\n");
+  EXPECT_EQ(unknown.output, "render: " + Path("x.nonsense") +
+                                ": got an unknown extension, expected .png, "
+                                ".jpg, .mp4, .webm or .gif\n");
 }
 
 TEST_F(RenderTest, PutsSeveralStepsOfOneEpisodeSideBySide) {

@@ -94,7 +94,7 @@ TEST_F(ServiceCallerTest, TellsTheAnswerOrWhatWasWrong) {
 }
 
 TEST_F(ServiceCallerTest, SaysThatThereIsNoSuchService) {
-  EXPECT_EQ(LineOf("nothing"), "/nothing: there is no such service; does a ranch run?");
+  EXPECT_EQ(LineOf("nothing"), "/nothing: service not available; is a ranch running?");
 }
 
 TEST_F(ServiceCallerTest, CutsOffACallWithoutAnAnswer) {
@@ -113,7 +113,7 @@ TEST_F(ServiceCallerTest, ACallTooManyIsRefusedWithALine) {
   const auto server = node_.advertiseService("quick", AnswerQuickly);
   const auto lines = LinesOf("quick", 11);  // at most one is running and eight wait
   EXPECT_EQ(lines.size(), 11U);
-  const std::string refused = "/quick: not called, 8 calls wait for their answers already";
+  const std::string refused = "/quick: not called: 8 calls are already waiting";
   const auto refusals = std::count(lines.begin(), lines.end(), refused);
   EXPECT_GE(refusals, 2);
   EXPECT_EQ(refusals + std::count(lines.begin(), lines.end(), "done"), 11);

@@ -127,7 +127,7 @@ ExitCode Run(Arguments arguments) {
 int Main(int argc, char** argv) {
   Arguments arguments;
   arguments.scenario.name.clear();
-  CLI::App app("Plays a saved policy greedily on episodes never trained on, and reports.");
+  CLI::App app("Plays a saved policy greedily on unseen episodes, and reports.");
   app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
   app.option_defaults()->always_capture_default();
   app.add_option("policy", arguments.policy,
@@ -140,7 +140,7 @@ int Main(int argc, char** argv) {
   app.add_option("--policy-seed", arguments.policy_seed,
                  "seed of a policy that draws its actions, such as RANDOM; default: that of the "
                  "episodes");
-  app.add_option("-f,--farms", arguments.environment.farms, "farms stepped together")
+  app.add_option("-f,--farms", arguments.environment.farms, "number of parallel farms")
       ->check(CLI::Range(1, kMaxFarms));
   app.add_option("-w,--write", arguments.output,
                  "write <this>.csv and <this>.json; empty: nothing");

@@ -47,7 +47,7 @@ int Main(int argc, char** argv) {
   std::vector<std::string> settings;
   EnvironmentOptions environment;
   environment.farms = 0;
-  CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume goes on.");
+  CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume continues.");
   app.footer(ListAlgorithms() +
              "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 130 "
              "interrupted and saved");
@@ -63,10 +63,11 @@ int Main(int argc, char** argv) {
          "-f,--farms", environment.farms,
          "number of parallel farms; 0: the algorithm's default, 256 for ppo and 16 for others")
       ->check(CLI::Range(0, kMaxFarms));
-  app.add_option("-t,--threads", environment.threads, "threads that step them")
+  app.add_option("-t,--threads", environment.threads, "number of threads that step the farms")
       ->check(CLI::Range(1, 256));
   app.add_option("-d,--run-dir", options.run_dir, "run folder; empty: a new one under ./runs");
-  app.add_flag("-r,--resume", options.resume, "go on from the newest checkpoint of the run folder");
+  app.add_flag("-r,--resume", options.resume,
+               "resume from the newest checkpoint in the run folder");
   app.add_option(
       "-x,--exploration", options.exploration,
       "such as epsilon_greedy:linear:1:0.05:0.5, boltzmann:1 or icm+boltzmann:1; empty: the "
@@ -76,8 +77,10 @@ int Main(int argc, char** argv) {
                  "where the scenario shares the reward, agents learn from their own part of it, or "
                  "from the sum: own, shared");
   app.add_option("--checkpoint-period", options.checkpoint_period_s, "seconds between checkpoints");
-  app.add_option("--evaluate", options.evaluation_episodes, "greedy episodes at the end; 0: none");
-  app.add_option("--random", options.random_episodes, "episodes of RANDOM beside them; 0: none");
+  app.add_option("--evaluate", options.evaluation_episodes,
+                 "greedy evaluation episodes at the end; 0 disables them");
+  app.add_option("--random", options.random_episodes,
+                 "RANDOM episodes for comparison; 0 disables them");
   AddScenarioOptions(app, scenario);
   try {
     app.parse(argc, argv);

@@ -292,7 +292,8 @@ std::map<Key, FarmSpec> ReadSpecs(const rosbag::Bag& bag, const std::string& top
 /// Reason why a policy gives no maps of values and moves on farms of a scenario; empty if it does.
 std::string WhyNoMaps(const agents::SavedPolicy& saved, const aquafarm::Scenario& scenario) {
   const std::string& name = saved.checkpoint.algorithm;
-  if (saved.encodings == 0) return name + " looks at nothing, so it has no values and best moves";
+  if (saved.encodings == 0)
+    return name + " reads no observation, so it has no values or greedy actions";
   if ((saved.encodings & agents::kStatesBit) != 0) {
     return name + " plans on the whole farm and has no values and best moves of cells";
   }

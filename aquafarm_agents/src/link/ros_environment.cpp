@@ -226,7 +226,7 @@ aquafarm_msgs::GetState::Response RosEnvironment::GetState(std::int32_t farm, bo
 
 void RosEnvironment::Restart(const std::string& why) {
   if (++restarts_ > kMostRestarts) {
-    throw EnvironmentLost("sim node: its farms are taken away again and again: " + why);
+    throw EnvironmentLost("sim node: another client keeps changing the farms: " + why);
   }
   Notice("the farms are not as they were left (" + why +
          "); going on with fresh episodes from number " + std::to_string(next_episode_));
@@ -242,7 +242,7 @@ void RosEnvironment::WaitForReturn(ros::WallTime& lost_since) {
   }
   const double waited_s = (ros::WallTime::now() - lost_since).toSec();
   if (Stopped() || waited_s >= options_.wait_limit_s) {
-    throw EnvironmentLost("sim node: no answer from service " + node_.resolveName(names::kStep) +
+    throw EnvironmentLost("sim node: no response from service " + node_.resolveName(names::kStep) +
                           " for " + Seconds(waited_s));
   }
   Sleep();
@@ -273,12 +273,12 @@ void RosEnvironment::CallOrThrow(ros::ServiceClient& client, const std::string& 
   while (!Try(client, name, service)) {
     const double waited_s = (ros::WallTime::now() - start).toSec();
     if (!told && waited_s >= 1.0) {
-      Notice("no answer from service " + node_.resolveName(name) + "; waiting up to " +
+      Notice("no response from service " + node_.resolveName(name) + "; waiting up to " +
              Seconds(options_.wait_limit_s) + " for the sim node");
       told = true;
     }
     if (Stopped() || waited_s >= options_.wait_limit_s) {
-      throw EnvironmentLost("sim node: no answer from service " + node_.resolveName(name) +
+      throw EnvironmentLost("sim node: no response from service " + node_.resolveName(name) +
                             " for " + Seconds(waited_s));
     }
     Sleep();

@@ -58,7 +58,7 @@ def to_points(values, cell_size_m, stamp):
 def require_master():
     """Raises ValuesError without waiting if there is no ROS master."""
     if not rosgraph.is_master_online():
-        raise ValuesError("--publish: no ROS master answers at "
+        raise ValuesError("--publish: cannot reach a ROS master at "
                           f"{rosgraph.rosenv.get_master_uri()}; start ./aquafarm sim first and "
                           "set ROS_MASTER_URI to its master")
 

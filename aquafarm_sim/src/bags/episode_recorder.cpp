@@ -148,7 +148,7 @@ void EpisodeRecorder::Enqueue(EpisodeLog tape) {
     return waiting_bytes_ < limits_.waiting_bytes || !fault_.empty();
   });
   if (!follows) {
-    fault_ = "the disk does not follow";
+    fault_ = "the disk is too slow";
     ROS_ERROR("no more episodes are kept: %s", fault_.c_str());
   }
   if (!fault_.empty()) return;

@@ -118,7 +118,8 @@ SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_nod
       diagnosed_at_(ros::WallTime::now()) {
   const double wait_s = params_.recorder_wait_s;
   if (wait_s > 0.0 && !publisher_.WaitForRecorder(wait_s)) {
-    ROS_WARN("nobody recorded within ~recorder_wait_s, %g s; going on", wait_s);
+    ROS_WARN("no recorder subscribed within ~recorder_wait_s, %g s; continuing without one",
+             wait_s);
   }
   KeepEpisodes();
   const std::int32_t agents = ranch_.agents();
@@ -222,16 +223,17 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
       static_cast<double>(now.farm_steps - diagnosed_.farm_steps) / elapsed_s;
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
   if (now.barrier_timeouts > diagnosed_.barrier_timeouts) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "a ship waited in vain for the others");
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "barrier timed out");
   }
   if (!now.absent.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
-                   "given up until they command again: ship " + Joined(now.absent));
+                   "not waiting until their next command: ship " + Joined(now.absent));
   }
   TellAbsent(now.absent);
   const std::string lost = recorder_ == nullptr ? "" : recorder_->fault();
   if (!lost.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "episodes are no longer kept: " + lost);
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
+                   "recording of episodes stopped: " + lost);
   }
   if (now.untold > diagnosed_.untold) {
     status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,

@@ -90,7 +90,7 @@ aquafarm_msgs::CommandResult FarmServer::MoveShip(const ShipCommand& command) {
 }
 
 std::optional<FarmServer::Refusal> FarmServer::Check(const ShipCommand& command) const {
-  if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is ending"};
+  if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is shutting down"};
   if (command.ship < 0 || command.ship >= agents_) {
     return Refusal{Outcome::UNKNOWN_SHIP, "ship: got " + std::to_string(command.ship) +
                                               ", expected [0, " + std::to_string(agents_ - 1) +
@@ -109,7 +109,7 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const ShipCommand& command)
   }
   if (farm.over() && !context_.paced) {
     return Refusal{Outcome::EPISODE_OVER, "episode " + std::to_string(farm.episode()) +
-                                              " is over; call reset for the next"};
+                                              " has ended; call reset to start the next one"};
   }
   if (context_.paused) return Refusal{Outcome::PAUSED, "the farm is paused"};
   return std::nullopt;
@@ -132,7 +132,7 @@ aquafarm_msgs::CommandResult FarmServer::Refuse(std::int32_t ship, std::uint8_t 
 aquafarm_msgs::CommandResult FarmServer::AcceptPaced(const ShipCommand& command) {
   if (batch_->farm(0).over()) {
     return Refuse(command.ship, Outcome::EPISODE_OVER,
-                  "the episode is over; the next begins by itself");
+                  "the episode has ended; the next one starts automatically");
   }
   Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
   slot.pending = command;
@@ -172,7 +172,7 @@ aquafarm_msgs::CommandResult FarmServer::WaitForOthers(const ShipCommand& comman
     ++counters_.superseded;
     return Refuse(
         command.ship, Outcome::SUPERSEDED,
-        "ship " + std::to_string(command.ship) + " gave a newer command for the same step");
+        "ship " + std::to_string(command.ship) + " sent a newer command for the same step");
   }
   slot.heard_at = Clock::now();  // the client was connected while it waited
   if (!woken && !ending_ && options_.late_ships_hold && !context_.paused && !context_.paced) {
@@ -182,16 +182,16 @@ aquafarm_msgs::CommandResult FarmServer::WaitForOthers(const ShipCommand& comman
   const std::string missing = MissingShips();
   slot.pending.reset();
   slot.reply = nullptr;
-  if (ending_) return Refuse(command.ship, Outcome::SHUTTING_DOWN, "the sim node is ending");
+  if (ending_) return Refuse(command.ship, Outcome::SHUTTING_DOWN, "the sim node is shutting down");
   if (woken) {
     return Refuse(command.ship, Outcome::STALE,
-                  episodes == episode_count_ ? "the farm was stepped by others meanwhile"
-                                             : "another episode has begun meanwhile");
+                  episodes == episode_count_ ? "another client has stepped the farm"
+                                             : "a new episode has started");
   }
   ++counters_.barrier_timeouts;
   return Refuse(command.ship, Outcome::TIMEOUT,
-                "other ships gave no command within " + std::to_string(options_.barrier_timeout_s) +
-                    " s: " + missing);
+                "barrier timed out: no command from other ships within " +
+                    std::to_string(options_.barrier_timeout_s) + " s: " + missing);
 }
 
 // Returns true if the farm waits for a command of the ship.

@@ -89,7 +89,7 @@ const aquafarm_msgs::Step::Response& FarmServer::Step(const aquafarm_msgs::Step:
 
 std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::Request& request,
                                                      const std::string& caller) {
-  if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is ending"};
+  if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is shutting down"};
   if (context_.paced) {
     return Refusal{Outcome::WRONG_PACE, "joint steps need pace lockstep; call set_pace"};
   }
@@ -99,9 +99,10 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::
   }
   // Checked last: a client that waits for the farms then gets STALE only once, when they are free.
   if (request.turn != 0 && request.turn != turn_) {
-    return Refusal{Outcome::STALE, "turn: got " + std::to_string(request.turn) +
-                                       ", the farms are at " + std::to_string(turn_) +
-                                       ": another has moved or reset them, or the node is new"};
+    return Refusal{Outcome::STALE,
+                   "turn: got " + std::to_string(request.turn) + ", the farms are at " +
+                       std::to_string(turn_) +
+                       ": another client has stepped or reset them, or the node has restarted"};
   }
   const auto expected = static_cast<std::size_t>(batch_->farms()) * slots_.size();
   if (request.actions.size() != expected) {

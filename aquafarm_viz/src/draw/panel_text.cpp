@@ -244,7 +244,7 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
 void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const Fonts& fonts) {
   if (!state.terminated && !state.truncated) return;
   static constexpr std::array<const char*, 4> kReasons{"episode over", "all devices retrieved",
-                                                       "the disaster is over", "step limit"};
+                                                       "the disaster has ended", "step limit"};
   const std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
   const int width = fonts.title.Width(text) + layout.Px(28);
   const cv::Rect plate(layout.map.x + (layout.map.width - width) / 2, layout.map.y + layout.Px(12),

@@ -76,7 +76,7 @@ class VideoFilm final : public Film {
   void Close() override {
     writer_.release();
     if (Pictures() < pictures_) {
-      throw StorageError(path_ + ": could not be written whole");
+      throw StorageError(path_ + ": could not be written completely");
     }
     MoveToItsPlace(path_);
   }

@@ -37,7 +37,7 @@ class ServiceCaller {
     Enqueue(name, [this, name, service, describe = std::move(describe)]() mutable {
       const std::string full = node_.resolveName(name);
       ros::ServiceClient client = node_.serviceClient<Service>(name, true);
-      if (!client.isValid()) return full + ": there is no such service; does a ranch run?";
+      if (!client.isValid()) return full + ": service not available; is a ranch running?";
       if (!Arm(&client)) return std::string();
       const bool answered = client.call(service);
       if (Disarm()) return full + ": no answer within " + LimitInWords();

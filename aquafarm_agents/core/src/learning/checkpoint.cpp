@@ -112,12 +112,12 @@ void ReadSections(const nlohmann::json& index, std::string_view bytes, Checkpoin
 Checkpoint Parse(std::string_view bytes) {
   Header header{};
   if (bytes.size() < sizeof(header)) {
-    throw InputError("no checkpoint, or cut short: got " + std::to_string(bytes.size()) +
+    throw InputError("not a checkpoint, or truncated: got " + std::to_string(bytes.size()) +
                      " bytes, expected at least " + std::to_string(sizeof(header)));
   }
   std::memcpy(&header, bytes.data(), sizeof(header));
   if (std::memcmp(header.magic, kMagic, sizeof(kMagic)) != 0) {
-    throw InputError("no checkpoint: it does not begin with 'aquaCKPT'");
+    throw InputError("not a checkpoint: does not start with 'aquaCKPT'");
   }
   if (header.format != kCheckpointFormat) {
     throw InputError("of format " + std::to_string(header.format) + ", expected " +
@@ -127,7 +127,7 @@ Checkpoint Parse(std::string_view bytes) {
   const bool fits = header.index_bytes <= bytes.size() &&
                     header.section_bytes == bytes.size() - header.index_bytes;
   if (!fits) {
-    throw InputError("cut short or too long: got " + std::to_string(bytes.size()) +
+    throw InputError("wrong length: got " + std::to_string(bytes.size()) +
                      " bytes after the header, expected " +
                      std::to_string(header.index_bytes + header.section_bytes));
   }

@@ -143,7 +143,8 @@ bool Run::Resume(Trainer& trainer, const RunFolder& folder) {
       if (first_damage.empty()) first_damage = error.what();
       continue;
     }
-    if (!first_damage.empty()) Notify(RunPhase::kStarting, first_damage + "; taking an older one");
+    if (!first_damage.empty())
+      Notify(RunPhase::kStarting, first_damage + "; using the previous checkpoint");
     trainer.Resume(checkpoint, path);
     Notify(RunPhase::kStarting, "resuming from " + path);
     return true;
@@ -180,7 +181,8 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
   options.progress_period_s = options_.progress_period_s;
   Trainer trainer(environment, learner, options, &folder);
   if (options_.resume && !Resume(trainer, folder)) {
-    Notify(RunPhase::kStarting, folder.path() + ": holds no checkpoint yet; starting anew");
+    Notify(RunPhase::kStarting,
+           folder.path() + ": contains no checkpoint yet; starting from the beginning");
   }
   if (trainer.Done() >= 1.0) {
     Notify(RunPhase::kStarting, "the run has reached its limit; give steps or episodes beyond it");
@@ -200,10 +202,10 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
     case TrainingEnd::kLost:
       return Fail(ExitCode::kLost, trainer.message() + "; saved in " + folder.path());
     case TrainingEnd::kDiverged:
-      return Fail(ExitCode::kDiverged, trainer.message() + "; the last good checkpoint is " +
+      return Fail(ExitCode::kDiverged, trainer.message() + "; the last valid checkpoint is " +
                                            folder.NewestCheckpoint().value_or("none"));
     case TrainingEnd::kStorage:
-      return Fail(ExitCode::kStorage, trainer.message() + "; the last good checkpoint is " +
+      return Fail(ExitCode::kStorage, trainer.message() + "; the last valid checkpoint is " +
                                           folder.NewestCheckpoint().value_or("none"));
   }
 }
@@ -225,7 +227,7 @@ void Run::SavePolicy(const Environment& environment, const Learner& learner,
 }
 
 void Run::Evaluate(Environment& environment, const Learner& learner, const RunFolder& folder) {
-  Notify(RunPhase::kEvaluating, "evaluating on episodes never trained on");
+  Notify(RunPhase::kEvaluating, "evaluating on unseen episodes");
   EvaluationContext context;
   context.policy = report_.policy_path;
   context.algorithm = options_.algorithm;

@@ -48,16 +48,16 @@ std::vector<std::string> CheckpointsIn(const std::string& run_folder) {
 RunFolder::RunFolder(std::string path, bool resume) : path_(std::move(path)) {
   if (path_.empty()) throw InputError("run_dir: got nothing, expected a folder");
   std::error_code error;
-  if (resume && !fs::exists(path_, error)) throw InputError(path_ + ": holds no run to resume");
+  if (resume && !fs::exists(path_, error)) throw InputError(path_ + ": contains no run to resume");
   fs::create_directories(path_ + "/checkpoints", error);
   if (error) throw StorageError(path_ + ": cannot be made: " + error.message());
   Lock();
   try {
     const bool holds_run = fs::exists(path_ + "/run.json", error) || !CheckpointsIn(path_).empty();
     if (!resume && holds_run) {
-      throw InputError(path_ + ": holds a run already; resume it or name another folder");
+      throw InputError(path_ + ": already contains a run; resume it or choose another folder");
     }
-    if (resume && !holds_run) throw InputError(path_ + ": holds no run to resume");
+    if (resume && !holds_run) throw InputError(path_ + ": contains no run to resume");
     const std::string probe = path_ + "/checkpoints/probe";
     WriteFileAtomically(probe, std::string(4096, '\0'));
     unlink(probe.c_str());

@@ -145,7 +145,7 @@ void Trainer::Count(const StepResults& results) {
   if (environment_.ConsumeRestart()) {
     ++progress_.restarts;
     next_episode_ += static_cast<std::uint64_t>(environment_.spec().farms);
-    notice_ = "the farms were lost and came back; training goes on with fresh episodes";
+    notice_ = "the farms were lost and came back; training continues with new episodes";
   }
 }
 

@@ -32,10 +32,10 @@ TEST_F(RunFolderTest, IsFreeAgainWhenItsProcessHasDied) {
 TEST_F(RunFolderTest, HoldingARunIsRefusedUnlessResumed) {
   { RunFolder(folder_ + "/run", false).Write("run.json", "{}"); }
   EXPECT_CONTAINS(MessageOf<InputError>([&] { RunFolder(folder_ + "/run", false); }),
-                  "holds a run already; resume it or name another folder");
+                  "already contains a run; resume it or choose another folder");
   EXPECT_NO_THROW(RunFolder(folder_ + "/run", true));
   EXPECT_CONTAINS(MessageOf<InputError>([&] { RunFolder(folder_ + "/other", true); }),
-                  "/other: holds no run to resume");
+                  "/other: contains no run to resume");
 }
 
 TEST_F(RunFolderTest, WhereNothingCanBeWrittenIsRefusedAtOnce) {

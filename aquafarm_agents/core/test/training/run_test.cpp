@@ -158,7 +158,8 @@ TEST_F(RunTest, AFullDiskEndsItAndKeepsTheLastGoodCheckpoint) {
   const RunReport report = Train();
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(report.code, ExitCode::kStorage);
-  EXPECT_CONTAINS(report.summary, "cannot be written: File too large; the last good checkpoint is");
+  EXPECT_CONTAINS(report.summary,
+                  "cannot be written: File too large; the last valid checkpoint is");
   EXPECT_GT(ReadCheckpoint(*RunFolder::NewestCheckpoint(options_.run_dir)).steps, 0U);
 }
 
@@ -202,7 +203,7 @@ TEST_F(Programs, NameTheLastGoodCheckpointOfATrainingThatDivergedAndPlayIt) {
   }
   ASSERT_EQ(Run(command), static_cast<int>(ExitCode::kDiverged)) << output_;
   EXPECT_CONTAINS(output_, "farm steps, on the batch drawn from seed 1 at position ");
-  const std::string words = "; the last good checkpoint is ";
+  const std::string words = "; the last valid checkpoint is ";
   const std::size_t at = output_.find(words);
   ASSERT_NE(at, std::string::npos) << output_;
   const std::size_t begin = at + words.size();

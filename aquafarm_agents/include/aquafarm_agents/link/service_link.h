@@ -42,7 +42,7 @@ class ServiceLink {
       if (lost_since.isZero()) lost_since = (now - begun).toSec() < call_limit_s_ ? now : begun;
       const bool stopped = !ros::ok() || (stop_ != nullptr && *stop_);
       if (stopped || (now - lost_since).toSec() >= wait_limit_s_) {
-        throw aquafarm::agents::EnvironmentLost("sim node: no answer from service " +
+        throw aquafarm::agents::EnvironmentLost("sim node: no response from service " +
                                                 node_.resolveName(name));
       }
       ros::WallDuration(kRetryPeriod_s).sleep();

@@ -15,7 +15,7 @@ void NeedRegularFile(const std::string& path) {
   std::error_code error;  // the reader of the file reports a missing file
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (error || std::filesystem::is_regular_file(status)) return;
-  throw InputError(path + ": cannot read: is no regular file");
+  throw InputError(path + ": cannot read: not a regular file");
 }
 
 std::string ReadTextFile(const std::string& path) {

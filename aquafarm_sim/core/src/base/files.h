@@ -9,7 +9,7 @@ namespace aquafarm::internal {
 
 /// Rejects an existing path that is not a regular file: reading a pipe would block, and reading a
 /// device may never end. Accepts a missing path.
-/// @throws InputError "path: cannot read: is no regular file"
+/// @throws InputError "path: cannot read: not a regular file"
 void NeedRegularFile(const std::string& path);
 
 /// Reads a regular file completely. @throws InputError when it cannot be read or is larger than

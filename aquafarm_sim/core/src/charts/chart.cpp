@@ -54,7 +54,7 @@ std::int32_t FillEnclosed(Grid<std::uint8_t>& kind) {
       largest = bodies;
     }
   }
-  if (largest == 0) throw InputError("got no water, expected some for ships to sail on");
+  if (largest == 0) throw InputError("got a chart without water, expected at least one water cell");
   std::int32_t filled = 0;
   for (Eigen::Index i = 0; i < kind.size(); ++i) {
     if (kind.data()[i] != kWater || body.data()[i] == largest) continue;

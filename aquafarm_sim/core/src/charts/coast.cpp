@@ -69,12 +69,12 @@ std::string FaultOf(const CoastRing& ring, std::size_t& left) {
       if (Cross(ring[a], ring[a + 1], ring[b], ring[b + 1])) return "crosses itself";
       doubles = doubles || Doubles(ring[a], ring[a + 1], ring[b], ring[b + 1]);
       if (--left > 0) continue;
-      return "of " + std::to_string(lines) + " lines " + (doubles ? "runs along itself and " : "") +
+      return "of " + std::to_string(lines) + " lines " + (doubles ? "overlaps itself and " : "") +
              "was not looked through for crossings after " + std::to_string(kMostComparisons) +
              " comparisons of the file, nor are those behind it";
     }
   }
-  return doubles ? "runs along itself" : "";
+  return doubles ? "overlaps itself" : "";
 }
 
 class CoastReader {

@@ -227,8 +227,7 @@ Json ParseJson(const std::string& text, ParseContext& place) {
     place.line = LineAt(text, error.byte == 0 ? 0 : error.byte - 1);
     const std::string what = error.what();
     const std::size_t reason = what.find("; ");  // follows the position as given by the library
-    place.Fail("got no valid JSON: " +
-               (reason == std::string::npos ? what : what.substr(reason + 2)));
+    place.Fail("invalid JSON: " + (reason == std::string::npos ? what : what.substr(reason + 2)));
   } catch (const Json::out_of_range& error) {  // a number is too large; the message contains it
     const std::string what = error.what();
     const std::size_t from = what.find('\'') + 1;

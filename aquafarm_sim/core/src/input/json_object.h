@@ -24,7 +24,7 @@ bool IsAssignment(std::string_view text);
 /// same.
 std::string CleanJson(const std::string& text);
 
-/// Parses JSON. @throws InputError "file:line: got no valid JSON: …", also for a duplicate key in
+/// Parses JSON. @throws InputError "file:line: invalid JSON: …", also for a duplicate key in
 /// an object
 nlohmann::json ParseJson(const std::string& text, ParseContext& place);
 

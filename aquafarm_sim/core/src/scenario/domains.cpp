@@ -45,8 +45,7 @@ void Check(const std::string& path, const std::string& value, const TextOf& doma
                                std::to_string(domain.max_bytes) + "]");
   }
   if (!IsUtf8WithoutControls(value)) {
-    throw FieldError(path,
-                     "got control characters or bytes that are no UTF-8, expected plain text");
+    throw FieldError(path, "got control characters or invalid UTF-8, expected plain text");
   }
 }
 

@@ -294,7 +294,7 @@ void CheckAgents(const Scenario& scenario) {
   const std::int32_t fetched = scenario.FetchableCount();
   if (scenario.ships.count == 0 && fetched > 0) {
     throw FieldError("ships.count", "got 0, expected at least 1: " + Format(fetched) +
-                                        " devices do not drive themselves");
+                                        " devices are not self-propelled");
   }
 }
 

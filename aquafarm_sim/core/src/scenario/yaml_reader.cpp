@@ -88,7 +88,7 @@ YAML::Node ParseDocument(const std::string& text, const std::string& origin_name
     }
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
+    throw InputError(Place(origin_name, error.mark.line + 1) + "invalid YAML: " + error.msg);
   }
 }
 
@@ -214,7 +214,7 @@ void ReadYaml(const std::string& text, const std::string& origin_name, const std
   } catch (const FieldError& error) {
     throw InputError(Place(origin_name, lines.Find(error.path)) + error.what());
   } catch (const YAML::Exception& error) {
-    throw InputError(Place(origin_name, error.mark.line + 1) + "got no valid YAML: " + error.msg);
+    throw InputError(Place(origin_name, error.mark.line + 1) + "invalid YAML: " + error.msg);
   }
 }
 

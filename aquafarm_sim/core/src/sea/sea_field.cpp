@@ -35,7 +35,7 @@ int FindVariable(const NcFile& file, const std::string& wanted) {
     names.push_back(file.Name(variable));
     if (names.back() == wanted || file.Text(variable, "standard_name") == wanted) return variable;
   }
-  file.Fail(wanted + ": there is no such variable; there are: " + internal::List(names));
+  file.Fail(wanted + ": no such variable; available: " + internal::List(names));
 }
 
 bool IsOneOf(const std::string& text, std::initializer_list<const char*> names) {

@@ -49,7 +49,7 @@ void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place) 
   }
   if (!fixes.empty() && fix.time == fixes.back().time) {
     place.WarnOnce("twice",
-                   "time: " + FormatTime(fix.time) + " is there twice, the second is left out");
+                   "time: " + FormatTime(fix.time) + " occurs twice; the second is dropped");
     return;
   }
   fixes.push_back(std::move(fix));

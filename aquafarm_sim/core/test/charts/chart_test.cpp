@@ -136,7 +136,7 @@ TEST(Coast, WarnsOfARingThatRunsAlongItself) {
     return coast.warnings.empty() ? "" : coast.warnings[0];
   };
   const std::string along =
-      "x:2: geometry.coordinates[0]: the ring runs along itself; what it goes round an odd number "
+      "x:2: geometry.coordinates[0]: the ring overlaps itself; what it goes round an odd number "
       "of times is land";
   EXPECT_EQ(said("[[0,0],[2,0],[2,2],[3,3],[2,2],[0,2],[0,0]]"), along) << "out and back";
   EXPECT_EQ(said("[[0,0],[4,0],[4,1],[4,-1],[4,2],[0,2],[0,0]]"), along) << "upright";
@@ -163,7 +163,7 @@ TEST(Coast, SaysWhenARingHasTooManyLinesToLookThrough) {
       "x:1: coordinates[0]: the ring of 11002 lines was not looked through for crossings after "
       "50000000 com");
   EXPECT_EQ(said("[-2,1],[-1,1],").substr(0, 89),
-            "x:1: coordinates[0]: the ring of 11004 lines runs along itself and was not looked "
+            "x:1: coordinates[0]: the ring of 11004 lines overlaps itself and was not looked "
             "through")
       << "out and back before there were too many";
 }
@@ -217,7 +217,7 @@ TEST(Coast, RefusesWhatIsNoCoast) {
   EXPECT_EQ(refused("{\"type\": \"FeatureCollection\", \"features\": []}"),
             "x:1: got no polygon, expected a coast");
   EXPECT_EQ(refused("[1, 2]"), "x:1: got a list, expected an object");
-  EXPECT_EQ(refused("{\"type\":\n").substr(0, 24), "x:2: got no valid JSON: ");
+  EXPECT_EQ(refused("{\"type\":\n").substr(0, 24), "x:2: invalid JSON: ");
 }
 
 TEST(Coast, OfZhoushanHas217Polygons) {

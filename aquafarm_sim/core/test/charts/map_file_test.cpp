@@ -165,7 +165,7 @@ TEST_F(MapFiles, RefusePicturesThatAreNot) {
   fs::remove(folder_ / "m.pgm");
   EXPECT_EQ(Refused(), "m.pgm: cannot read: No such file or directory");
   ASSERT_EQ(mkfifo(Path("m.pgm").c_str(), 0600), 0);
-  EXPECT_EQ(Refused(), "m.pgm: cannot read: is no regular file") << "a pipe is not waited for";
+  EXPECT_EQ(Refused(), "m.pgm: cannot read: not a regular file") << "a pipe is not waited for";
 }
 
 TEST_F(MapFiles, RefuseWrongKeys) {

@@ -126,7 +126,8 @@ TEST(Ranch, IsRefusedWithTheReason) {
   request = Request();
   request.center = GeoPoint{30.01, 122.01};
   request.width = request.height = 3;
-  EXPECT_EQ(Refused(request), request.chart + ": got no water, expected some for ships to sail on");
+  EXPECT_EQ(Refused(request),
+            request.chart + ": got a chart without water, expected at least one water cell");
   request = Request();
   request.devices = 1000;
   EXPECT_NE(Refused(request).find("devices"), std::string::npos);
@@ -157,7 +158,7 @@ TEST(Ranch, KnowsItsChartByItsContent) {
   EXPECT_EQ(with(folder / "sea.nc", "sea.asc"), ":1: got a netCDF file" + expected);
   std::ofstream(folder / "words") << "\nsome words";
   EXPECT_EQ(with(folder / "words", "words.txt"), ":1: got 'some words'" + expected);
-  EXPECT_EQ(with(folder / "words", "words.json").substr(0, 26), ":2: got no valid JSON: las");
+  EXPECT_EQ(with(folder / "words", "words.json").substr(0, 26), ":2: invalid JSON: las");
   std::ofstream(folder / "turned.yaml") << "image: " << (kData / "chart.pgm").string()
                                         << "\nresolution: 10\norigin: [0, 0, 1.5]\nnegate: 0\n"
                                            "occupied_thresh: 0.65\nfree_thresh: 0.2\n";

@@ -244,11 +244,11 @@ TEST_F(SeaFiles, ThatAreNotThereAreRefused) {
   ASSERT_EQ(mkfifo((folder_ / "pipe.nc").c_str(), 0600), 0);
   for (const std::string& name : {std::string("pipe.nc"), std::string(".")}) {
     EXPECT_EQ(RefusedFile(Write(name)), "seas.layers[0].file: " + (folder_ / name).string() +
-                                            ": cannot read: is no regular file");
+                                            ": cannot read: not a regular file");
   }
   EXPECT_EQ(RefusedFile(Write("sea.nc", "so")),
             "seas.layers[0].file: " + (folder_ / "sea.nc").string() +
-                ": so: there is no such variable; there are: lat, lon, thetao");
+                ": so: no such variable; available: lat, lon, thetao");
   EXPECT_EQ(RefusedFile(Write("sea.nc", "thetao", false)),
             "seas.layers[0].file: needs grid.origin, which is missing");
 }

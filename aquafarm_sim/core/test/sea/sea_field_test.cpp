@@ -318,7 +318,7 @@ TEST_F(SeaFields, HaveTimesAsUdunitsWritesThem) {
 TEST_F(SeaFields, AreRefusedWithTheReason) {
   Write({});
   EXPECT_EQ(Refused({"temperature", {}, 0.0}),
-            "temperature: there is no such variable; there are: time, depth, lat, lon, so");
+            "temperature: no such variable; available: time, depth, lat, lon, so");
   EXPECT_EQ(Refused({"depth", {}, 0.0}).substr(0, 42),
             "depth: got no latitude and longitude of on");
   Shape shape;

@@ -60,8 +60,8 @@ TEST(Bulletin, OfZhejiangIsRefusedWithItsLine) {
   EXPECT_EQ(warned("\"29.7\"", "\"95\""),
             "x:7: [0].points[0].lat: got '95', expected a number in [-90, 90]; the point is left "
             "out\n");
-  EXPECT_NE(refused("];", "").find(": got no valid JSON: "), std::string::npos);
-  EXPECT_EQ(refused("let typhoons =", "typhoons").substr(0, 26), "x:3: got no valid JSON: la");
+  EXPECT_NE(refused("];", "").find(": invalid JSON: "), std::string::npos);
+  EXPECT_EQ(refused("let typhoons =", "typhoons").substr(0, 26), "x:3: invalid JSON: la");
 }
 
 TEST(Bulletin, ReadsBeijingTimeAndQuadrants) {

@@ -113,7 +113,7 @@ TEST(LoadStormFile, NamesAFileThatIsNot) {
       (std::filesystem::temp_directory_path() / ("hazard_file_test." + std::to_string(getpid())))
           .string();
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  const std::string no_file = ": cannot read: is no regular file";
+  const std::string no_file = ": cannot read: not a regular file";
   for (const auto& [path, words] :
        {std::pair(std::string("/nowhere/track.txt"),
                   std::string(": cannot read: No such file or directory")),

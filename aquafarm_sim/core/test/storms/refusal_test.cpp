@@ -101,7 +101,7 @@ const std::vector<WrongText> kWrongTexts{
      "x:2: [0].points[0]: got 7, expected an object"},
     {"BulletinList", R"([{"tfbh": "1", "points": "none"}])",
      "x:1: [0].points: got 'none', expected a list"},
-    {"JsonCut", "[{\"tfbh\": \"1\",\n\"points\": [{\"time\"", "x:2: got no valid JSON: "},
+    {"JsonCut", "[{\"tfbh\": \"1\",\n\"points\": [{\"time\"", "x:2: invalid JSON: "},
     {"JsonNumber", "[{\"tfbh\": \"1\",\n\"points\": 1e999}]",
      "x:2: got '1e999', expected a number that a double can hold"},
     {"ServiceCode", R"({"code": "404", "track": []})", "x:1: code: got '404', expected '200'"},

@@ -54,7 +54,7 @@ TEST(Cma, LeavesOutATimeThatIsThereTwiceAndSaysSo) {
   const StormFile file = ParseStormFile(Sample("cma.txt"), "year.txt");
   EXPECT_EQ(file.warnings,
             std::vector<std::string>{
-                "year.txt:9: time: 2021-07-25T06:00:00Z is there twice, the second is left out"});
+                "year.txt:9: time: 2021-07-25T06:00:00Z occurs twice; the second is dropped"});
 }
 
 TEST(Jma, TurnsAnAsideCircleIntoQuadrants) {

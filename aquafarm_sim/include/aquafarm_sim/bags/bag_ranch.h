@@ -39,7 +39,7 @@ inline std::string FindRanch(const rosbag::Bag& bag, const std::string& path,
   for (const std::string& one : found) all += (all.empty() ? "" : ", ") + one;
   throw aquafarm::InputError(path + (found.empty() ? NoSpec(bag)
                                      : wanted.empty()
-                                         ? ": several ranches, choose one with --ns: " + all
+                                         ? ": several ranches, select one with --ns: " + all
                                          : ": no ranch " + wanted + ", there is: " + all));
 }
 

@@ -158,7 +158,7 @@ void OpenBag(rosbag::Bag& bag, const std::string& path) {
     throw aquafarm::InputError(path + ": damaged: " + damage.what() +
                                "; 'rosbag reindex' may mend its index");
   } catch (const std::exception& error) {  // from rosbag, its plugins, times and the file mapping
-    throw aquafarm::InputError(path + ": damaged or no bag: " + error.what());
+    throw aquafarm::InputError(path + ": damaged or not a bag: " + error.what());
   }
   CheckMessages<Messages...>(bag, path);
 }
@@ -181,7 +181,7 @@ auto ReadingBag(const std::string& path, const Work& work) -> decltype(work()) {
   } catch (const internal::Damage& damage) {
     throw aquafarm::InputError(path + ": damaged: " + damage.what());
   } catch (const rosbag::BagException& error) {
-    throw aquafarm::InputError(path + ": damaged or no bag: " + error.what());
+    throw aquafarm::InputError(path + ": damaged or not a bag: " + error.what());
   } catch (const ros::Exception& error) {
     throw aquafarm::InputError(path + ": damaged: " + error.what());
   }

@@ -49,7 +49,7 @@ struct SeaField {
 using Layer = Grid<float>;
 
 /// Reads the part of a field that covers a ranch of width × height cells.
-/// @throws InputError "sea.nc: so: there is no such variable; there are: …"; always, in a build
+/// @throws InputError "sea.nc: so: no such variable; available: …"; always, in a build
 ///         without netCDF (CMake: AQUAFARM_WITH_NETCDF=OFF)
 SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,
                       std::int32_t width, std::int32_t height);

@@ -38,7 +38,7 @@ def check_seed(seed: Any) -> int:
 
 
 def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dict[str, Any]:
-    """Options of reset; refuses unknown names and an `episode` that is no number of one."""
+    """Options of reset; refuses unknown names and an `episode` that is not an episode number."""
     options = {} if options is None else options
     for name in options:
         if name not in known:

@@ -43,7 +43,7 @@ class LstmActorCritic final : public ActorCritic {
   std::vector<float> seen_;           // [hidden] x
   std::vector<float> gate_values_;    // [4 hidden] after the nonlinearity
   std::vector<float> hidden_before_;  // [hidden] h, cleared where an episode started
-  std::vector<float> cell_before_;    // [hidden] c, likewise
+  std::vector<float> cell_before_;    // [hidden] cell state c, as above
   std::vector<float> cell_tanh_;      // [hidden] of c'
   std::vector<float> joined_;         // [2 hidden]
   std::vector<float> outputs_;

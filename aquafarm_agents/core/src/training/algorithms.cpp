@@ -126,7 +126,7 @@ const std::vector<Algorithm>& Algorithms() {
       {"maddpg", "an actor for each agent, a critic that sees all of them (§3.3)", true, 800000,
        WithCuriosityToo<MaddpgEncodings>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
       {"ppo", "proximal policy optimization: an actor-critic that learns from its own steps", true,
-       3000000, WithCuriosityToo<PpoEncodings>, MakeExplorer<MakePpo>, MakePpoPolicy,
+       2500000, WithCuriosityToo<PpoEncodings>, MakeExplorer<MakePpo>, MakePpoPolicy,
        /*default_farms=*/256},
       {"planner",
        "plans on the forecast that disasters hold their heading; several agents cooperate", false,

@@ -28,7 +28,7 @@ struct PpoOptions {
   double gamma{0.98};                                             ///< discount per step
   double gae_lambda{0.95};                            ///< λ of generalized advantage estimation
   std::int32_t rollout_size{16384};                   ///< agent steps collected between two updates
-  std::int32_t batch_size{512};                       ///< agent steps of one gradient step
+  std::int32_t batch_size{256};                       ///< agent steps of one gradient step
   std::int32_t epochs{2};                             ///< passes over each rollout
   Schedule clip_range{ScheduleKind::kConstant, 0.2};  ///< ε of the clipped probability ratio
   double value_clip_range{0.0};     ///< largest change of a value per update; 0: not limited

@@ -59,8 +59,9 @@ TEST_F(ClientFlags, BatchesAndFarmsAreMadeAndFreedByTheClient) {
   const auto scenario = std::make_shared<const Scenario>(test::CrowdedScenario(2));
   FarmBatch batch(scenario, 3);
   batch.Reset(5, 0, {});
-  const Farm copy = batch.farm(0);
-  EXPECT_EQ(copy.Hash(), batch.farm(0).Hash());
+  Farm farm(scenario);
+  farm.Load(batch.farm(0).Save());
+  EXPECT_EQ(farm.Hash(), batch.farm(0).Hash());
 }
 
 }  // namespace

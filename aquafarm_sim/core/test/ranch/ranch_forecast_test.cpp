@@ -28,8 +28,8 @@ class ForecastRanch : public testing::Test {
   ~ForecastRanch() override { fs::remove(path_); }
 
   // Three recorded points 700 km and more to the south-east of the ranch, each 300 km wide.
-  Ranch Make(const std::string& forecast,
-             const std::string& wind = "\"speed\": 42, \"radius7\": 300") {
+  BuiltRanch Make(const std::string& forecast,
+                  const std::string& wind = "\"speed\": 42, \"radius7\": 300") {
     const auto point = [&](const char* time, double latitude, double longitude) {
       return std::string("{\"time\": \"2021-07-") + time +
              ":00:00\", \"lat\": " + std::to_string(latitude) +
@@ -115,7 +115,7 @@ TEST_F(ForecastRanch, SaysThatWindAndRadiiAreUnknown) {
                    "34 kt: unknown whether they reach the ranch, as neither wind nor radii are "
                    "known from 2021-07-24T00:00:00Z to 2021-07-24T12:00:00Z while the storm is "
                    "within 1110 km; the storm is known until"));
-  const Ranch partly =
+  const BuiltRanch partly =
       Make(R"(}, {"time": "2021-07-25T08:00:00", "lat": 29.9, "lng": 122.3, "speed": 42)",
            "\"speed\": null");
   EXPECT_TRUE(Says(partly.warnings, "storm: neither wind nor radii are known from"));

@@ -55,8 +55,8 @@ TEST(Ranch, TakesTheForecastOfTheAgencyNamedFirst) {
 
 // The ranch with bulletins of In-fa of a year, each a pair of hours of its 25 July, UTC: when it
 // was issued and when the one point forecast is.
-Ranch WithBulletins(RanchRequest request, int year,
-                    const std::vector<std::array<int, 2>>& bulletins) {
+BuiltRanch WithBulletins(RanchRequest request, int year,
+                         const std::vector<std::array<int, 2>>& bulletins) {
   const auto time = [year](int hour) {
     char text[40];
     std::snprintf(text, sizeof(text), "%d-07-%02dT%02d:00:00Z", year, 25 + (hour < 0 ? -1 : 0),

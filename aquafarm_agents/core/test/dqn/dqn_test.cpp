@@ -152,7 +152,7 @@ float Gap(const std::string& algorithm, const std::string& options, std::uint64_
     values = network->Forward(input);
   }
   std::array<float, kActionCount> forbidden{};
-  MaskLogits(Allowed(results.legal[0], true), forbidden.data());
+  MaskLogits(LegalMask(results.legal[0], true), forbidden.data());
   const torch::Tensor best =
       std::get<0>((values + torch::from_blob(forbidden.data(), {1, kActionCount})).topk(2, 1));
   return (best[0][0] - best[0][1]).item<float>();

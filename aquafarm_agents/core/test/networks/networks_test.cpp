@@ -338,15 +338,15 @@ TEST(Allowed, LeavesMovesIntoOpenWaterOrAllWhereThereIsNone) {
   std::vector<float> features(kFirstBlockedFeature + kMoveCount, 0.0F);
   float* const blocked = features.data() + kFirstBlockedFeature;
   const ActionMask legal = kMoveMask | MaskOf(Action::kDropOff);
-  EXPECT_EQ(Allowed(legal, features.data(), options), legal);
+  EXPECT_EQ(LegalMask(legal, features.data(), options), legal);
   blocked[static_cast<int>(Action::kWest)] = 1.0F;
-  EXPECT_EQ(Allowed(legal, features.data(), options), legal & ~MaskOf(Action::kWest));
+  EXPECT_EQ(LegalMask(legal, features.data(), options), legal & ~MaskOf(Action::kWest));
   options.mask_illegal = false;
-  EXPECT_EQ(Allowed(legal, features.data(), options), kAllActions & ~MaskOf(Action::kWest));
+  EXPECT_EQ(LegalMask(legal, features.data(), options), kAllActions & ~MaskOf(Action::kWest));
   std::fill_n(blocked, kMoveCount, 1.0F);
-  EXPECT_EQ(Allowed(legal, features.data(), options), kAllActions);
+  EXPECT_EQ(LegalMask(legal, features.data(), options), kAllActions);
   options.mask_illegal = true;
-  EXPECT_EQ(Allowed(legal, features.data(), options), legal);
+  EXPECT_EQ(LegalMask(legal, features.data(), options), legal);
 }
 
 TEST(AdvantageGap, IsOfTheBestActionThatIsAllowed) {

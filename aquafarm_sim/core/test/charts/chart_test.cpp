@@ -162,7 +162,7 @@ TEST(Coast, SaysWhenARingHasTooManyLinesToLookThrough) {
       said("").substr(0, 100),
       "x:1: coordinates[0]: the ring of 11002 lines was not looked through for crossings after "
       "50000000 com");
-  EXPECT_EQ(said("[-2,1],[-1,1],").substr(0, 89),
+  EXPECT_EQ(said("[-2,1],[-1,1],").substr(0, 87),
             "x:1: coordinates[0]: the ring of 11004 lines overlaps itself and was not looked "
             "through")
       << "out and back before there were too many";
@@ -217,7 +217,7 @@ TEST(Coast, RefusesWhatIsNoCoast) {
   EXPECT_EQ(refused("{\"type\": \"FeatureCollection\", \"features\": []}"),
             "x:1: got no polygon, expected a coast");
   EXPECT_EQ(refused("[1, 2]"), "x:1: got a list, expected an object");
-  EXPECT_EQ(refused("{\"type\":\n").substr(0, 24), "x:2: invalid JSON: ");
+  EXPECT_EQ(refused("{\"type\":\n").substr(0, 19), "x:2: invalid JSON: ");
 }
 
 TEST(Coast, OfZhoushanHas217Polygons) {

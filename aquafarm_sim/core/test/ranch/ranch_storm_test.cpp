@@ -80,7 +80,7 @@ TEST(Ranch, TakesTheNewestForecastByItsStartAndThoseIssuedInTime) {
   request.start = kMidnight + 2 * kHour_s;
   const BuiltRanch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 20}, {4, 22}, {6, 23}});
   ASSERT_EQ(ranch.warnings.size(), 2U);
-  EXPECT_NE(ranch.warnings[0].find("is there twice"), std::string::npos);
+  EXPECT_NE(ranch.warnings[0].find("occurs twice"), std::string::npos);
   EXPECT_NE(ranch.warnings[1].find("34 kt are still over the ranch"), std::string::npos);
   const std::vector<IssuedForecast>& told = ranch.scenario.disasters[0].forecasts;
   ASSERT_EQ(told.size(), 2U) << "the storm is over at 06:00";
@@ -130,7 +130,7 @@ TEST(Ranch, HasTheStormAsItsFileSays) {
   EXPECT_TRUE(Says(ranch.decided, "In-fa (2106), CMA best track cma.txt, 3 fixes, winds of 2 min"));
   EXPECT_TRUE(Says(ranch.decided, "radii estimated at 3, unknown at 0"));
   EXPECT_TRUE(Says(ranch.decided, "34 kt over the ranch for 6."));
-  EXPECT_TRUE(Says(ranch.warnings, "cma.txt:9: time: 2021-07-25T06:00:00Z is there twice"));
+  EXPECT_TRUE(Says(ranch.warnings, "cma.txt:9: time: 2021-07-25T06:00:00Z occurs twice"));
   Farm farm(std::make_shared<const Scenario>(ranch.scenario));
   farm.Reset(1, 0);
   EXPECT_LT(RiskAt(farm.disasters(), {12, 10}), 0.0F);

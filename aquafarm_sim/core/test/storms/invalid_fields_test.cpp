@@ -198,8 +198,8 @@ TEST(Cma, OneWrongValueLeavesTheStorm) {
 TEST(Cma, WarningsOfAStormLeaveTheLinesOfTheNext) {
   std::string text = With(Sample("cma.txt"), "2021072503 4 299 1227", "2021072503 4 299 1627");
   text = With(text, "2021080100 0 -50 3599 1004", "2021080100 0 -50 3599   4");
-  EXPECT_EQ(Warnings(text).substr(0, 59),
-            "x:9: time: 2021-07-25T06:00:00Z is there twice, the second ");
+  EXPECT_EQ(Warnings(text).substr(0, 57),
+            "x:9: time: 2021-07-25T06:00:00Z occurs twice; the second ");
   EXPECT_NE(Warnings(text).find("x:7: points: got 1273 km/h from 2021-07-25T00:00:00Z to "
                                 "2021-07-25T03:00:00Z"),
             std::string::npos)

@@ -125,8 +125,7 @@ TEST(Atcf, ATimeThatIsThereTwiceWithAnotherPlaceIsSaid) {
   EXPECT_EQ(Warnings(text), "");
   const std::string moved =
       With(text, "131N, 1414E,  70,  970, TY,  50", "231N, 1414E,  70,  970, TY,  50");
-  EXPECT_NE(Warnings(moved).find("x:3: time: 2014-07-04T06:00:00Z is there twice"),
-            std::string::npos)
+  EXPECT_NE(Warnings(moved).find("x:3: time: 2014-07-04T06:00:00Z occurs twice"), std::string::npos)
       << Warnings(moved);
   EXPECT_NE(Refusal(With(text, "BEST,   0, 131N", "BEST,  12, 131N")).find("TAU"),
             std::string::npos);

@@ -122,7 +122,7 @@ class PolicyNodeTest(unittest.TestCase):
     def test_drivers_that_waited_in_vain_for_each_other_go_on(self):
         start_sim(self, self.namespace, PAIR, "_barrier_timeout_s:=0.3")
         one = self.drive("_policy:=random", "_ship:=1", "_episodes:=2")
-        one.wait_for(lambda: "gave no command within" in one.words(), "a timeout")
+        one.wait_for(lambda: "no command from other ships within" in one.words(), "a timeout")
         other = self.drive("_policy:=random", "_ship:=0", "_episodes:=2")
         self.assertEqual(0, one.code(), one.words())
         self.assertEqual(0, other.code(), other.words())
@@ -140,7 +140,7 @@ class PolicyNodeTest(unittest.TestCase):
                 ((f"_policy:={self.trained()}",), "q_learning of scenario tiny does not fit scenario pair: width: it knows 6"),
                 (("_policy:=/no/such/folder",), "/no/such/folder"),
                 ((f"_policy:={self.folder}",), "holds neither policy.ckpt nor a checkpoint"),
-                ((f"_policy:={TINY}",), "no checkpoint"),
+                ((f"_policy:={TINY}",), "not a checkpoint"),
                 ((), "~policy: got nothing, expected a run folder"),
                 (("_policy:=random", "_mode:=watch"), "expected evaluate or act"),
                 (("_policy:=random", "_episodes:=0"), "~episodes: got 0, expected [1, 10000000]"),

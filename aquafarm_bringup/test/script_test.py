@@ -237,7 +237,7 @@ class ScriptTest(unittest.TestCase):
                                           env=dict(os.environ, AQUAFARM_WS=str(ws)),
                                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
                 self.addCleanup(second.kill)
-                self.assertIn("something else is building in", second.stdout.readline())
+                self.assertIn("another process is building in", second.stdout.readline())
                 (ws / "built").touch()  # as the first build does at its end
             finally:
                 os.close(lock)

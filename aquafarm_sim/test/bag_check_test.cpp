@@ -188,6 +188,21 @@ std::string EndOf(const std::string& path) {
   return ends.at(static_cast<std::size_t>(WEXITSTATUS(status)));
 }
 
+// The messages of a bag with their connections, as text.
+std::string MessagesOf(const std::string& path) {
+  rosbag::Bag bag(path);
+  std::string all;
+  for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
+    std::string bytes(message.size(), '\0');
+    ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(bytes.data()),
+                                       static_cast<std::uint32_t>(bytes.size()));
+    message.write(stream);
+    all += message.getTopic() + ' ' + message.getMD5Sum() + message.getMessageDefinition() +
+           std::to_string(message.getTime().toNSec()) + bytes;
+  }
+  return all;
+}
+
 // Flips one bit in each of `count` bytes from `begin` on; each flip gives one bag.
 void FlipBits(const std::string& bag, std::size_t begin, std::size_t count) {
   std::ifstream file(bag, std::ios::binary);
@@ -201,8 +216,10 @@ void FlipBits(const std::string& bag, std::size_t begin, std::size_t count) {
     flipped[place] = static_cast<char>(flipped[place] ^ (1 << (i % 8)));
     const std::string path = bag + ".flipped";
     std::ofstream(path, std::ios::binary) << flipped;
-    EXPECT_EQ("found", EndOf(path))
-        << "byte " << place << " bit " << i % 8 << " of " << bytes.size();
+    const std::string end = EndOf(path);
+    // LZ4 can express the same bytes in several ways: such a flip changes no message.
+    if (end == "hides" && MessagesOf(path) == MessagesOf(bag)) continue;
+    EXPECT_EQ("found", end) << "byte " << place << " bit " << i % 8 << " of " << bytes.size();
   }
 }
 

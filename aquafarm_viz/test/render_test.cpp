@@ -96,7 +96,7 @@ TEST_F(RenderTest, AsksWhichRanchWhenThereAreSeveral) {
   const std::string bag = MakeBag({"/east/", "/west/"});
   const Result result = Render("--bag " + bag + " -o " + Path("x.png"));
   EXPECT_NE(result.code, 0);
-  EXPECT_NE(result.output.find("choose one with --ns: /east/ /west/"), std::string::npos)
+  EXPECT_NE(result.output.find("select one with --ns: /east/ /west/"), std::string::npos)
       << result.output;
   EXPECT_EQ(Render("--bag " + bag + " --ns /west -o " + Path("x.png")).code, 0);
 }

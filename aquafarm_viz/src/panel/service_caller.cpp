@@ -38,8 +38,8 @@ void ServiceCaller::Enqueue(const std::string& name, std::function<std::string()
   }
   changed_.notify_all();
   if (job == nullptr) return;
-  on_answer_(node_.resolveName(name) + ": not called, " + std::to_string(kMostWaiting) +
-             " calls wait for their answers already");
+  on_answer_(node_.resolveName(name) + ": not called: " + std::to_string(kMostWaiting) +
+             " calls are already waiting");
 }
 
 std::string ServiceCaller::LimitInWords() const {

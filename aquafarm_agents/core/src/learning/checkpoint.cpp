@@ -127,7 +127,7 @@ Checkpoint Parse(std::string_view bytes) {
   const bool fits = header.index_bytes <= bytes.size() &&
                     header.section_bytes == bytes.size() - header.index_bytes;
   if (!fits) {
-    throw InputError("wrong length: got " + std::to_string(bytes.size()) +
+    throw InputError("truncated or too long: got " + std::to_string(bytes.size()) +
                      " bytes after the header, expected " +
                      std::to_string(header.index_bytes + header.section_bytes));
   }

@@ -66,7 +66,7 @@ TEST_F(CheckpointFile, EveryCutIsRefused) {
   const std::string bytes = ReadFile(path);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     WriteFileAtomically(path, bytes.substr(0, size));
-    EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "cut short");
+    EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "truncated");
   }
   WriteFileAtomically(path, bytes + "x");
   EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }), "too long");

@@ -123,7 +123,7 @@ TEST_F(Resume, CtrlCSavesAndResumes) {
   EXPECT_CONTAINS(ReadFile(Output("q_learning.run")), "interrupted; saved in");
   Process again(Command("q_learning.run", false), Output("again"));
   EXPECT_EQ(again.Wait(), 2);
-  EXPECT_CONTAINS(ReadFile(Output("again")), "holds a run already");
+  EXPECT_CONTAINS(ReadFile(Output("again")), "already contains a run");
   Process rest(Command("q_learning.run", true), Output("rest"));
   EXPECT_EQ(rest.Wait(), 0) << ReadFile(Output("rest"));
 }

@@ -39,7 +39,8 @@ class BulletinNodeTest(unittest.TestCase):
             ["rosrun", "aquafarm_sim", "bulletin_node", f"_folder:={folder}", "_period_s:=0.1",
              "__name:=" + name, "__ns:=" + (namespace or rospy.get_namespace().rstrip("/")),
              *arguments],
-            stderr=subprocess.PIPE, text=True)
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            env=dict(os.environ, ROSCONSOLE_STDOUT_LINE_BUFFERED="1"))
 
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="bulletins.")
@@ -91,7 +92,7 @@ class BulletinNodeTest(unittest.TestCase):
     def test_a_folder_that_is_not_there_is_refused(self):
         missing = os.path.join(self.folder, "missing")
         node = self.start(missing)
-        _, error = node.communicate(timeout=LIMIT_S)
+        error, _ = node.communicate(timeout=LIMIT_S)
         self.assertEqual(2, node.returncode)
         self.assertIn(f"bulletin_node: {missing}: cannot read this folder: No such file", error)
 
@@ -105,16 +106,16 @@ class BulletinNodeTest(unittest.TestCase):
 
     def read_until(self, node, words):
         """What a node writes to its log until it contains the words or the time is over."""
-        os.set_blocking(node.stderr.fileno(), False)
+        os.set_blocking(node.stdout.fileno(), False)
         text, end = b"", time.monotonic() + LIMIT_S
         while words not in text.decode(errors="replace") and time.monotonic() < end:
             try:
-                text += os.read(node.stderr.fileno(), 4096)
+                text += os.read(node.stdout.fileno(), 4096)
             except BlockingIOError:
                 time.sleep(0.05)
         node.terminate()
         node.wait(LIMIT_S)
-        node.stderr.close()
+        node.stdout.close()
         return text.decode(errors="replace")
 
     def test_the_log_separates_what_is_recorded_from_what_is_forecast(self):

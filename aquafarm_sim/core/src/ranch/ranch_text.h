@@ -55,7 +55,7 @@ std::string Text(const char* format, Args... args) {
 std::string FileName(const std::string& path);
 /// Returns a text on one line.
 std::string OneLine(std::string text);
-/// Formats a number with at most `digits` significant digits.
+/// Formats a number with at most `digits` decimals.
 std::string Short(double value, int digits);
 /// Returns "[2, 3]".
 std::string CellText(Cell cell);

@@ -14,7 +14,7 @@ from stable_baselines3.common.monitor import Monitor
 
 STEPS = 15000
 
-# A small ranch beside a red tide: half a minute of training is enough.
+# A small ranch near a red tide: half a minute of training is enough.
 SCENARIO = """
 name: small
 grid: {width: 4, height: 4, cell_size_m: 1000}

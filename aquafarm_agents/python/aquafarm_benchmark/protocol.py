@@ -51,7 +51,7 @@ class Contestant:
     episodes: int = 0  # maximum number of evaluation episodes; 0: as many as requested
     repeats: bool = True  # False: one run, since the result does not depend on the seed
     scenario: str = ""  # empty: the benchmark's
-    paper_row: str = ""  # key of PAPER_TABLE; empty: Table 1 has no such row
+    paper_row: str = ""  # key of PAPER_TABLE; empty if Table 1 has no such row
     named_only: bool = False  # True: takes part only if --algorithms names it
 
     @property

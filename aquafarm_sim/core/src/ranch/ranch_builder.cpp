@@ -358,7 +358,7 @@ class Builder {
            all.begin() + static_cast<std::ptrdiff_t>(to)};
   }
 
-  // Call it when all disasters are known.
+  // Requires that all disasters are known.
   std::int32_t StepLimit() const {
     if (ends_unknown_ && duration_ == plan_.storm_steps) return duration_;
     return duration_ > 0 ? duration_ + 100 : 5000;

@@ -24,7 +24,7 @@ struct PassageReport {
 };
 
 /// Reports a passage. It never states that a storm stays away for longer than it is known, and it
-/// separates what is recorded from what is forecast.
+/// separates recorded from forecast data.
 /// @param storm with at least one waypoint
 PassageReport Report(const StormRings& storm, const Passage& passage,
                      const StormKnowledge& knowledge);

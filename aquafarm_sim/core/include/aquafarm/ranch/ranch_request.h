@@ -21,8 +21,8 @@ struct SeaLayerRequest {
 struct RanchRequest {
   std::string name{"my_ranch"};
   std::string chart;  ///< GeoJSON, map_server YAML or ASCII grid; empty for open sea
-  std::optional<GeoPoint>
-      center;              ///< of the ranch; optional only for a chart in metres without a storm
+  /// Centre of the ranch; optional only for a chart in metres without a storm.
+  std::optional<GeoPoint> center;
   std::int32_t width{25};  ///< cells; a chart in metres has its own size
   std::int32_t height{25};
   double cell_size_m{200.0};

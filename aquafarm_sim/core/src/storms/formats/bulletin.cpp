@@ -137,8 +137,9 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   return fix;
 }
 
-// Returns whether a forecast point is later than the observed point that contains it. Some agencies
-// issue a forecast before that point. @throws FixError if it is too far ahead for a forecast
+// Returns whether a forecast point is later than the observed point that contains it. Some
+// forecasts were issued before that observed point. @throws FixError if it is too far ahead for a
+// forecast
 bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
              ParseContext& place) {
   constexpr std::int64_t kMostDays = 15;

@@ -30,8 +30,8 @@ class Planner {
  public:
   /// @param scenario must outlive the planner
   /// @param slots max devices of a task; 0: all devices of the scenario
-  /// @throws InputError if the reward of steps or of illegal actions is positive, or if the states
-  ///   do not fit a table (kMaxStates)
+  /// @throws InputError if the reward of steps or of illegal actions is positive, or if there are
+  ///   too many devices or states (kMaxStates)
   explicit Planner(const Scenario& scenario, std::int32_t slots = 0);
   ~Planner();
   Planner(Planner&&) noexcept;

@@ -42,10 +42,10 @@ struct PpoOptions {
   /// The coefficient of the entropy bonus is the level; icm adds curiosity.
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
-  PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy plays
+  PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy acts
   std::int32_t threads{1};                 ///< of the matrix library
 
-  /// Steps per agent that one rollout holds. @param entries farms × agents
+  /// Returns the steps per agent in one rollout. @param entries farms × agents
   std::int32_t Horizon(std::size_t entries) const;
 
   /// Parses "key=value …". @param resolved receives the values of all options

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""For catkin alone, which reads no pyproject.toml: the folder of the Python packages."""
+"""Folder of the Python packages for catkin, which does not read pyproject.toml."""
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 

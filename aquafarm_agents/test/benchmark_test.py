@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A small benchmark: what it ends in, killed, resumed, interrupted, refused."""
+"""Tests of a small benchmark: its results, kill and resume, interrupt, rejected input."""
 import csv
 import dataclasses
 import fcntl
@@ -26,7 +26,7 @@ FIGURES = {"rewards", "average_rewards", "mean_square_error", "mean_score", "rep
 
 
 def running(words):
-    """Numbers of the processes that have these words in their command line."""
+    """Returns the ids of processes whose command line contains `words`."""
     found = []
     for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
         try:
@@ -38,7 +38,7 @@ def running(words):
 
 
 def send_all(words, sent):
-    """Sends a signal to all that have these words in their command line. Returns how many."""
+    """Sends a signal to all processes whose command line contains `words`; returns their number."""
     reached = 0
     for number in running(words):
         try:
@@ -50,8 +50,8 @@ def send_all(words, sent):
 
 
 def stop_once_under_way(trainings):
-    """Whether each of these run folders' trainings was stopped (SIGSTOP) amid its episodes; stops
-    those that have come so far."""
+    """Stops (SIGSTOP) the trainings of these run folders that have completed some episodes; returns
+    whether all of them are stopped."""
     stopped = 0
     for folder in trainings:
         if (folder / "evaluation.json").exists():
@@ -106,7 +106,7 @@ class BenchmarkTest(unittest.TestCase):
         self.check_evaluation_figure(everything, rows)
 
     def check_evaluation_figure(self, everything, rows):
-        """The bars of the evaluation figure are the numbers of results.json."""
+        """Compares the bars of the evaluation figure with results.json."""
         shown = [one for one in (*protocol.CONTESTANTS, protocol.OPTIMUM) if one.name in rows]
         drawn = [dict(rows[one.name], return_interval=[
             math.nan if bound is None else bound for bound in rows[one.name]["return_interval"]])
@@ -126,12 +126,12 @@ class BenchmarkTest(unittest.TestCase):
         part = self.start("parts", *arguments, episodes=60000)
         trainings = self.folder / "parts/runs/q_learning"
         both = [trainings / "seed_1", trainings / "seed_2"]
-        # Whatever fails: none stays stopped.
+        # Also after a failure, no process stays stopped.
         self.addCleanup(send_all, str(trainings), signal.SIGCONT)
         part.wait_for(lambda: stop_once_under_way(both), "two trainings")
         part.send(signal.SIGKILL)
         part.code()
-        send_all(str(trainings), signal.SIGCONT)  # they find that they were interrupted
+        send_all(str(trainings), signal.SIGCONT)  # they continue and handle their SIGINT
         self.assertFalse(list(trainings.glob("*/evaluation.json")), "it was over already")
         rest = self.start("parts", *arguments, episodes=60000)
         self.assertEqual(0, rest.code(), rest.words())
@@ -140,7 +140,7 @@ class BenchmarkTest(unittest.TestCase):
         for name in ("runs.csv", "table.csv", "table.md"):
             self.assertEqual((self.folder / "whole" / name).read_text(),
                              (self.folder / "parts" / name).read_text(), name)
-        # What is finished is not done again.
+        # Complete runs are not repeated.
         before = {path: path.stat().st_mtime_ns for path in trainings.rglob("policy.ckpt")}
         self.assertEqual(2, len(before))
         again = self.start("parts", *arguments, episodes=60000)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The data that the figures of §4 plot, against numbers computed from each episode."""
+"""Compares the data in the figures of §4 with numbers computed from each episode."""
 import sys
 import unittest
 import unittest.mock
@@ -19,7 +19,7 @@ def by_name(name):
 
 
 def make_run(seed, episodes):
-    """A run as results.read_run gives it, with returns, steps and losses drawn from a seed."""
+    """Returns a run in the format of results.read_run with random returns, steps and losses."""
     chance = np.random.Generator(np.random.PCG64(seed))
     return {"curve": {"return": chance.normal(10.0 * seed, 5.0, episodes),
                       "steps": chance.integers(1, 100, episodes).astype(float),
@@ -31,14 +31,14 @@ class FiguresTest(unittest.TestCase):
 
     def setUp(self):
         self.contestants = [by_name("sarsa"), by_name("lstm_dqn")]
-        # Runs of the same learner may differ by an episode or two.
+        # The lengths of a learner's runs may differ by one or two episodes.
         self.runs = {"sarsa": [make_run(1, 120), make_run(2, 121)],
                      "lstm_dqn": [make_run(3, 120), make_run(4, 120)]}
         _, self.axes = figures.plt.subplots()
         self.addCleanup(figures.plt.close, "all")
 
     def lines(self, axes=None):
-        """{label: (x, y)} of the curves that have a label."""
+        """Returns {label: (x, y)} of the curves with a label."""
         return {line.get_label(): (np.asarray(line.get_xdata()), np.asarray(line.get_ydata()))
                 for line in (axes or self.axes).lines if not line.get_label().startswith("_")}
 

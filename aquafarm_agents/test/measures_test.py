@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What §4.2 measures, against numbers worked out by hand."""
+"""Compares the measures of §4.2 with numbers computed by hand."""
 import math
 import pathlib
 import sys
@@ -26,10 +26,10 @@ class MeasuresTest(unittest.TestCase):
     def test_convergence_is_where_the_mean_comes_to_stay(self):
         success = np.ones(400)
         self.assertEqual(50, measures.convergence(np.full(400, 80.0), success))
-        # From episode 101 on all are 100; means are within 5 % once 47.5 of 50 are: 48 of them.
+        # From episode 101 on all returns are 100. A mean is within 5 % if 48 of 50 returns are 100.
         late = np.concatenate((np.zeros(100), np.full(300, 100.0)))
         self.assertEqual(148, measures.convergence(late, success))
-        # Negative plateaus have a band as well.
+        # Negative plateaus have a band, too.
         self.assertEqual(50, measures.convergence(np.full(400, -80.0), success))
 
     def test_what_fails_or_does_not_stay_has_not_converged(self):
@@ -48,7 +48,7 @@ class MeasuresTest(unittest.TestCase):
         noisy[:100] -= 1000.0
         self.assertIsNone(measures.convergence(noisy, success))
         self.assertLess(measures.convergence(noisy, success, measures.NOISE), 160)
-        # Where 5 % is the wider band, it is the band.
+        # The band is 5 % if that is wider.
         calm = np.concatenate((np.zeros(100), np.full(300, 100.0)))
         self.assertEqual(148, measures.convergence(calm, np.ones(400), measures.NOISE))
 
@@ -60,7 +60,7 @@ class MeasuresTest(unittest.TestCase):
     def test_an_interquartile_mean_leaves_out_a_quarter_at_either_end(self):
         self.assertAlmostEqual(3.5, measures.interquartile_mean([100, 1, 2, 3, 4, 5, 6, -50]))
         self.assertAlmostEqual(2.0, measures.interquartile_mean([1, 2, 3]))
-        # Of five, one and a quarter of the next go at either end: (0.75·2 + 3 + 0.75·4) / 2.5.
+        # Of five values, 1.25 are excluded at either end: (0.75·2 + 3 + 0.75·4) / 2.5.
         self.assertAlmostEqual((0.75 * 2 + 3 + 0.75 * 4) / 2.5,
                                measures.interquartile_mean([4, 90, 3, -9, 2]))
         self.assertEqual(7.0, measures.interquartile_mean([7.0]))
@@ -161,7 +161,7 @@ class MeasuresTest(unittest.TestCase):
         self.assertEqual(["aquafarm_evaluate", "/nowhere/runs/lstm_dqn_printed/seed_2",
                           "paper_plain"], evaluate[:3])
         self.assertEqual("paper", jobs["lstm_dqn 1"].commands[0][1])
-        # RANDOM's evaluations differ by run, since each has a seed of its own.
+        # RANDOM's evaluations differ by run because each has its own seed.
         seeds = [evaluate[evaluate.index("--policy-seed") + 1]
                  for evaluate in (jobs[f"random {seed}"].commands[1] for seed in (1, 2))]
         self.assertEqual(["1", "2"], seeds)

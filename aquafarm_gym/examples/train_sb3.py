@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trains Stable-Baselines3's PPO to bring one device home, and plays greedily what it learnt.
+"""Trains Stable-Baselines3's PPO to retrieve one device, and evaluates the greedy policy.
 
     python3 train_sb3.py [STEPS]       after: pip install gymnasium stable-baselines3
 """
@@ -14,7 +14,7 @@ from stable_baselines3.common.monitor import Monitor
 
 STEPS = 15000
 
-# A small ranch beside a red tide: half a minute of training is enough.
+# A small ranch near a red tide: half a minute of training is enough.
 SCENARIO = """
 name: small
 grid: {width: 4, height: 4, cell_size_m: 1000}
@@ -36,9 +36,9 @@ disasters:
 
 
 def main(steps):
-    """Trains for `steps` steps; returns the mean return of episodes it never trained on."""
+    """Trains for `steps` steps; returns the mean return of episodes not used for training."""
     env = Monitor(aquafarm_gym.FarmEnv(aquafarm_core.Scenario.parse(SCENARIO, "small")))
-    # Rewards are tens, hence the large weight of the entropy: it keeps the ship trying.
+    # Rewards are in the tens, so the entropy coefficient must be large to keep exploration.
     model = PPO("MlpPolicy", env, seed=1, n_steps=1024, batch_size=128, learning_rate=1e-3,
                 gamma=0.97, gae_lambda=0.9, ent_coef=0.5)
     model.learn(steps)

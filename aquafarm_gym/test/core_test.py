@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python module aquafarm_core: what it writes, where it writes it, and what it refuses."""
+"""Tests of the Python module aquafarm_core: contents and memory of arrays, and rejected input."""
 import copy
 import os
 import pathlib
@@ -23,7 +23,7 @@ PAPER = core.Scenario.load(f"{core.SCENARIO_FOLDER}/paper.yaml")
 
 
 def actions_of(seed, batch, count):
-    """`count` joint actions, drawn."""
+    """Returns `count` random joint actions."""
     return np.random.default_rng(seed).integers(
         0, len(core.ACTIONS), (count, batch.farms, batch.agents)).astype(np.uint8)
 
@@ -146,7 +146,7 @@ class CoreTest(unittest.TestCase):
         expected.step(np.ones((8, 1), np.uint8))
         child = os.fork()
         if child == 0:
-            signal.alarm(20)  # ends a child that waits for threads it does not have
+            signal.alarm(20)  # ends a child that waits for threads that do not exist
             batch.step(np.ones((8, 1), np.uint8))
             os._exit(0 if (batch.buffers["hashes"] == expected.buffers["hashes"]).all() else 1)
         self.assertEqual(os.waitpid(child, 0)[1], 0)
@@ -234,7 +234,7 @@ class CoreTest(unittest.TestCase):
         actions = actions_of(1, batch, 64)
         rates = []
         for _ in range(5):
-            start = time.process_time()  # of this process: others may have the machine
+            start = time.process_time()  # CPU time of this process: others may use the machine
             for joint in actions:
                 batch.step(joint)
             rates.append(actions.size / (time.process_time() - start))
@@ -243,7 +243,7 @@ class CoreTest(unittest.TestCase):
 
 
 def core_after_reset(farms):
-    """The bytes of farms at their start."""
+    """Returns the saved bytes of farms after a reset."""
     batch = core.FarmBatch(PAPER, farms)
     batch.reset(1)
     return batch.save()

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python environments without ROS: seeds, infos, autoreset, copies, rendering, refusals.
+"""Tests of the Python environments without ROS: seeds, infos, autoreset, copies, rendering and
+rejected input.
 
-Runs in the virtual environment that --venv names (venv_tools.py), or in the Python that starts it.
+Runs in the virtual environment given by --venv (venv_tools.py), or in the Python that starts it.
 """
 import contextlib
 import copy
@@ -27,18 +28,18 @@ if not WHY_NOT:
     from gymnasium.utils.env_checker import data_equivalence
 
 REEF = str(pathlib.Path(__file__).resolve().parent / "data" / "reef.yaml")
-SHORT = 60  # step limit of the farms whose episodes end often
+SHORT = 60  # step limit of farms with short episodes
 MODES = ("NextStep", "SameStep", "Disabled")
 
 
 def short_paper():
-    """paper.yaml with episodes of SHORT steps."""
+    """Returns paper.yaml with episodes of SHORT steps."""
     text = core.Scenario.load(f"{core.SCENARIO_FOLDER}/paper.yaml").yaml
     return core.Scenario.parse(text.replace("step_limit: 5000", f"step_limit: {SHORT}"), "short")
 
 
 def has(name):
-    """Whether a package is installed."""
+    """Returns whether a package is installed."""
     return importlib.util.find_spec(name) is not None
 
 
@@ -127,7 +128,7 @@ class EnvTest(unittest.TestCase):
             self.assertGreaterEqual(ended, 10)
 
     def check_step(self, ours, theirs, where=slice(None)):
-        """Compares (observations, infos) of both."""
+        """Compares the (observations, infos) of both environments."""
         np.testing.assert_array_equal(ours[0], theirs[0])
         for key in ("action_mask", "outcome", "reason", "is_success"):
             np.testing.assert_array_equal(ours[1][key][where], theirs[1][key][where], key)

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gymnasium's and PettingZoo's own checks, and the same steps in process and through ROS.
+"""Runs the checks of Gymnasium and PettingZoo, and compares steps in process and through ROS.
 
-Runs in the virtual environment that --venv names (venv_tools.py).
+Runs in the virtual environment given by --venv (venv_tools.py).
 """
 import importlib.util
 import os
@@ -213,7 +213,7 @@ class GymTest(unittest.TestCase):
         self.assertGreater(example.main(example.STEPS), 80)
 
     def assert_same(self, one, other):
-        """Bit for bit, whatever it is made of."""
+        """Compares nested structures of arrays bit by bit."""
         self.assertTrue(data_equivalence(one, other, exact=True), f"{one}\n{other}")
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A virtual environment for tests that need packages from PyPI.
 
-A test program that calls enter_venv() continues as the Python of the virtual environment in the
-folder that its argument --venv names, which is made if need be. Where PyPI is out of reach the
-test's cases are skipped, with a word. Without --venv the running Python is used as it is.
+A test program that calls enter_venv() continues in the Python of the virtual environment in the
+folder given by its argument --venv, which is created if necessary. Without access to PyPI the
+test's cases are skipped with a message. Without --venv the running Python is used.
 """
 import importlib.util
 import os
@@ -13,14 +13,14 @@ import sys
 import unittest
 from xml.etree import ElementTree
 
-# The last Stable-Baselines3 that Debian 12's python3-torch satisfies, and the Gymnasium it takes.
+# The latest Stable-Baselines3 that supports Debian 12's python3-torch, and a Gymnasium for it.
 WANTED = ["gymnasium==1.0.0", "pettingzoo==1.25.0", "stable-baselines3==2.4.1",
           "farama-notifications==0.0.4", "cloudpickle", "typing-extensions"]
 LIMIT_S = 150
 
 
 def enter_venv():
-    """Continues in the virtual environment; returns why it cannot, or "" inside of it."""
+    """Continues in the virtual environment; returns the reason if it cannot, "" if it is inside."""
     if "--venv" not in sys.argv:
         missing = [name for name in ("gymnasium", "pettingzoo")
                    if importlib.util.find_spec(name) is None]
@@ -46,7 +46,7 @@ def enter_venv():
 
 
 def run_tests(name, cases, why_not):
-    """Runs the cases of a test program: under rostest, else by unittest alone."""
+    """Runs the cases of a test program with rostest if it was started by rostest, else unittest."""
     results = [one.split("xml:")[1] for one in sys.argv if one.startswith("--gtest_output=xml:")]
     if not results:
         suite = unittest.defaultTestLoader.loadTestsFromTestCase(cases)
@@ -59,7 +59,7 @@ def run_tests(name, cases, why_not):
 
 
 def report_skipped(name, cases, why_not, path):
-    """Writes a result with every case skipped: rosunit's own counts skipped cases as passed."""
+    """Writes a result with every case skipped, because rosunit counts skipped cases as passed."""
     suite = ElementTree.Element("testsuite", name=name, failures="0", errors="0")
     for case_name in unittest.TestLoader().getTestCaseNames(cases):
         case = ElementTree.SubElement(suite, "testcase", classname=cases.__name__, name=case_name)

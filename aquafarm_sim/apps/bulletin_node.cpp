@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Watches a folder for bulletins and tells the ranch of each: a storm's track, forecast and rings
-// go through set_disaster as they are, and the ranch makes a disaster of them.
+// Watches a folder for bulletins and sends each to the ranch with set_disaster: the track, forecast
+// and rings of a storm. The ranch converts them to a disaster.
 #include <aquafarm_msgs/SetDisaster.h>
 #include <ros/ros.h>
 
@@ -22,15 +22,16 @@ namespace aquafarm_sim {
 namespace {
 
 constexpr double kLookPeriod_s = 0.05;
-constexpr std::chrono::seconds kEndLimit{2};  // from the shutdown of a connection to its call's end
+constexpr std::chrono::seconds kEndLimit{
+    2};  // from the shutdown of a connection to the end of its call
 
-/// The ranch is away or hangs: the file is sent again.
+/// The ranch is away or does not respond: the file is sent again.
 class NoAnswer : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A call with what its thread needs, which may outlive the wait for it.
+/// A call with the data of its thread, which may outlive the wait for it.
 struct Call {
   ros::ServiceClient client;
   aquafarm_msgs::SetDisaster message;
@@ -39,9 +40,9 @@ struct Call {
 
 struct BulletinParams {
   std::string folder;
-  std::string storm;          // empty: the file's only one
-  double period_s{1.0};       // between looks at the folder
-  double call_limit_s{10.0};  // until a ranch that does not answer counts as away
+  std::string storm;          // empty: the only storm of the file
+  double period_s{1.0};       // between checks of the folder
+  double call_limit_s{10.0};  // until an unresponsive ranch counts as away
   int id{0};                  // of the disaster that the bulletins replace
 };
 
@@ -57,7 +58,7 @@ BulletinParams ReadParams() {
   if (params.folder.empty()) {
     throw aquafarm::InputError("~folder: missing, expected the folder of the bulletins");
   }
-  BulletinFolder(params.folder).New();  // refuses a folder that is not there
+  BulletinFolder(params.folder).New();  // throws if the folder does not exist
   return params;
 }
 
@@ -65,7 +66,7 @@ class BulletinNode {
  public:
   explicit BulletinNode(const BulletinParams& params) : params_(params), folder_(params.folder) {}
 
-  /// Sends what is new in the folder.
+  /// Sends the new files of the folder.
   void Look() {
     try {
       for (const std::string& path : folder_.New()) {
@@ -73,8 +74,8 @@ class BulletinNode {
         folder_.Mark(path);
         fault_.clear();
       }
-    } catch (const std::exception& error) {  // the folder or the ranch may come back
-      // Once, however often it is tried; a throttle would go by /clock, which may stand still.
+    } catch (const std::exception& error) {  // the folder or the ranch may become available again
+      // Logs an error once. A throttle would use /clock, which may stand still.
       if (fault_ != error.what()) ROS_ERROR("%s", error.what());
       fault_ = error.what();
     }
@@ -123,7 +124,7 @@ class BulletinNode {
     Report(path, name, storm);
   }
 
-  // What the ranch has now: how much of it is recorded and how much is forecast.
+  // Reports the new state of the ranch: how much of the storm is recorded and how much is forecast.
   void Report(const std::string& path, const std::string& name,
               const aquafarm::StormTrack& storm) const {
     const aquafarm::StormKnowledge known =
@@ -139,13 +140,14 @@ class BulletinNode {
 
   const BulletinParams params_;
   BulletinFolder folder_;
-  std::string fault_;  // said last
+  std::string fault_;  // last reported error
   ros::NodeHandle node_;
 };
 
 int Run() {
   try {
-    const ros::NodeHandle lives;  // ROS's console is gone for good once the last handle is
+    const ros::NodeHandle
+        lives;  // ROS closes its console permanently when the last handle is destroyed
     const BulletinParams params = ReadParams();
     BulletinNode node(params);
     ros::WallTime next = ros::WallTime::now();

@@ -22,7 +22,7 @@ class BulletinFolderTest : public testing::Test {
   }
   ~BulletinFolderTest() override { fs::remove_all(path_); }
 
-  // With a time of its own, as a clock may be coarse.
+  // Sets the time explicitly because the clock may be coarse.
   void Write(const std::string& name, const std::string& text, int seconds) const {
     std::ofstream(path_ / name) << text;
     fs::last_write_time(path_ / name, fs::file_time_type(std::chrono::seconds(1000 + seconds)));

@@ -105,7 +105,7 @@ class BulletinNodeTest(unittest.TestCase):
         self.assertIn(words, self.read_until(self.start(folder), words))
 
     def read_until(self, node, words):
-        """What a node writes to its log until it contains the words or the time is over."""
+        """Returns a node's output up to the given words, or all of it at the timeout."""
         os.set_blocking(node.stdout.fileno(), False)
         text, end = b"", time.monotonic() + LIMIT_S
         while words not in text.decode(errors="replace") and time.monotonic() < end:

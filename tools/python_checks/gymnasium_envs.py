@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gymnasium's check_env on every id and encoding, its specs as JSON, and its wrappers."""
+"""Runs Gymnasium's check_env on every id and observation type, and tests specs and wrappers."""
 import aquafarm_gym
 import gymnasium
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gymnasium's vector wrappers and its Sync and Async vectors of single environments, unseeded."""
+"""Tests Gymnasium's vector wrappers, and Sync and Async vectors of unseeded environments."""
 import aquafarm_gym
 import gymnasium
 from gymnasium.wrappers import vector as wrappers
@@ -10,7 +10,7 @@ for mode in gymnasium.vector.AutoresetMode:
     if mode == gymnasium.vector.AutoresetMode.DISABLED:
         continue
     envs = wrappers.RecordEpisodeStatistics(envs)
-    if mode == gymnasium.vector.AutoresetMode.NEXT_STEP:  # these wrappers refuse SAME_STEP
+    if mode == gymnasium.vector.AutoresetMode.NEXT_STEP:  # these wrappers reject SAME_STEP
         envs = wrappers.NormalizeReward(wrappers.NormalizeObservation(envs))
     envs.reset(seed=1)
     ended = 0

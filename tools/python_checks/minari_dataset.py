@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Minari records episodes, recovers the environment, and every reward is found again."""
+"""Records episodes with Minari, recovers the environment, and repeats every reward."""
 import os
 import tempfile
 

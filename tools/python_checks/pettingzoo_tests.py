@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""PettingZoo's api, parallel, seed, max_cycles, render and state tests."""
+"""Runs PettingZoo's api, parallel, seed, max_cycles, render and state tests."""
 import types
 
 import aquafarm_core as core
@@ -10,7 +10,7 @@ from pettingzoo.utils import parallel_to_aec
 
 
 def with_limit(max_cycles):
-    """two_squads with so many steps."""
+    """Returns two_squads with a step limit of `max_cycles`."""
     text = aquafarm_gym.find_scenario("two_squads").yaml
     limit = aquafarm_gym.find_scenario("two_squads").step_limit
     changed = text.replace(f"step_limit: {limit}", f"step_limit: {max_cycles}")

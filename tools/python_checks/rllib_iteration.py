@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One iteration of RLlib's PPO."""
+"""Runs one iteration of RLlib's PPO."""
 import aquafarm_gym
 from ray.rllib.algorithms.ppo import PPOConfig
 from ray.tune.registry import register_env

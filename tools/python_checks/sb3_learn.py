@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Stable-Baselines3: check_env, PPO over FarmVecEnv, and MaskablePPO where sb3_contrib is there."""
+"""Tests Stable-Baselines3: check_env, PPO with FarmVecEnv, and MaskablePPO with sb3_contrib."""
 import importlib.util
 
 import aquafarm_core

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tianshou's vector environments and replay buffer take infos until three episodes have ended."""
+"""Stores infos of three episodes with tianshou's vector environments and replay buffer."""
 import aquafarm_gym
 from tianshou.data import Batch, VectorReplayBuffer
 from tianshou.env import DummyVectorEnv

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A TorchRL rollout over one farm, with infos."""
+"""Runs a TorchRL rollout of one farm with infos."""
 import aquafarm_gym
 from torchrl.envs import GymWrapper
 from torchrl.envs.utils import check_env_specs

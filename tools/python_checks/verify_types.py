@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""pyright --verifytypes: at least 95 % of the public symbols of both packages have known types."""
+"""Checks with pyright --verifytypes that 95 % of the public symbols have known types."""
 import json
 import os
 import pathlib
@@ -8,7 +8,7 @@ import sys
 
 WANTED = 0.95
 
-# pyright asks the python on PATH where packages lie.
+# pyright queries the python on PATH for the folders of packages.
 VARIABLES = {**os.environ,
              "PATH": f"{pathlib.Path(sys.executable).parent}:{os.environ.get('PATH', '')}"}
 

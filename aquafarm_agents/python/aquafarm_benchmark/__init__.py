@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The evaluation protocol of §4.2: trains, measures, compares and draws.
+"""The evaluation protocol of §4.2: trains, evaluates, compares and draws.
 
-protocol  which learners, how long, and the paper's own numbers
+protocol  the learners, the length of their trainings, and the paper's results
 runs      the trainings, in parallel, each resumable
 measures  convergence, stability, EA, interquartile means and intervals
-results   the table and files that a benchmark ends in
+results   the table and the result files of a benchmark
 figures   Figs. 11 to 14 and the learning curves
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program aquafarm_benchmark."""
+"""Command line of the program aquafarm_benchmark."""
 import argparse
 import fcntl
 import json
@@ -21,11 +21,11 @@ _EPILOG = """exit codes: 0 all is there, 1 some runs failed (the others are kept
 3 storage, 130 interrupted (the same command goes on)"""
 
 
-_LOCK_LIMIT_S = 15.0  # that trainings of a killed benchmark are given to save and end
+_LOCK_LIMIT_S = 15.0  # time for the trainings of a killed benchmark to save and exit
 
 
 class BadInput(ValueError):
-    """One line: what it got, what it expected."""
+    """Wrong input, described in one line: the given and the expected value."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -35,7 +35,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parse(arguments):
-    """Arguments with the profile's numbers filled in."""
+    """Parses the arguments; unset numbers are those of the profile."""
     parser = _Parser(
         prog="aquafarm_benchmark", epilog=_EPILOG,
         description="Trains every learner several times, measures them as the paper's §4.2 does, "
@@ -97,7 +97,7 @@ def _default_names(profile):
 
 
 def _require_paper(options):
-    """The profile names the scenario of each row, so another one has no effect."""
+    """Rejects a scenario with profile paper, whose rows have their own scenarios."""
     if options.profile == "paper" and options.scenario != "paper":
         raise BadInput(f"scenario: got '{options.scenario}' with profile paper, expected paper, "
                        "whose rows have scenarios of their own; use profile full for another "
@@ -105,7 +105,7 @@ def _require_paper(options):
 
 
 def find_program(name, folder):
-    """Path of a program of the core."""
+    """Returns the path of a program of the core."""
     places = [folder] if folder else [
         pathlib.Path(prefix) / "lib/aquafarm_agents"
         for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
@@ -120,7 +120,7 @@ def find_program(name, folder):
 
 
 def make_jobs(options, contestants, folder):
-    """All runs: a job a seed, one for those whom another seed teaches nothing else."""
+    """Returns the jobs: one per contestant and seed; one in total if the seed has no effect."""
     train = find_program("aquafarm_train", options.programs)
     evaluate = find_program("aquafarm_evaluate", options.programs)
     jobs = []
@@ -157,7 +157,7 @@ def _has_begun(run):
 
 
 def settings_of(options, contestants, farm):
-    """What decides the results; a folder holds results of one such set."""
+    """Returns the settings that affect the results. All results of a folder have the same ones."""
     return {**farm, "runs": options.runs, "episodes": options.episodes,
             "evaluation_episodes": options.evaluation_episodes, "max_steps": options.max_steps,
             "evaluation_seed": options.evaluation_seed, "farms": FARMS,
@@ -174,9 +174,9 @@ def _settings_of_one(one):
 
 
 def claim(folder, settings):
-    """Makes the folder, or refuses one that holds another benchmark or is at work.
+    """Creates the folder; raises BadInput if it contains another benchmark or is in use.
 
-    Returns the descriptor that keeps it claimed, for as long as any process has it open."""
+    Returns the descriptor of its lock, which is held until every process has closed it."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "benchmark.json"
     there = None
@@ -226,7 +226,7 @@ _FARM_KEYS = ("scenario", "scenario_hash", "version")
 
 
 def look_at_farm(options):
-    """Name, hash and version of the farm; refuses a scenario that no one can play."""
+    """Returns name, hash and version of the farm; raises BadInput if the scenario is invalid."""
     evaluate = find_program("aquafarm_evaluate", options.programs)
     with tempfile.TemporaryDirectory(prefix="aquafarm_") as folder:
         one = subprocess.run([evaluate, "random", options.scenario, "--episodes", "1",
@@ -240,7 +240,7 @@ def look_at_farm(options):
 
 
 def _require_alike(name, of_one):
-    """Refuses to pool runs that learnt with other settings than their neighbours."""
+    """Raises BadInput if the runs of one contestant were trained with different options."""
     kinds = {run["training"].get("options", "") for run in of_one}
     if len(kinds) > 1:
         raise BadInput(f"{name}: its runs were made with different options ({'; '.join(kinds)}); "
@@ -248,7 +248,7 @@ def _require_alike(name, of_one):
 
 
 def run(options):
-    """The whole protocol: trains, measures, writes and draws."""
+    """Runs the complete protocol: trains, evaluates, writes and draws."""
     contestants = [one.for_episodes(options.episodes)
                    for one in PROFILES[options.profile].contestants
                    if one.name in options.algorithms]
@@ -285,7 +285,7 @@ def _conclude(folder, contestants, found, settings, episodes):
     optimum = best["return_per_episode"] if best else None
     rows = []
     for one in everyone:
-        # Some play fewer episodes; the optimum is then that of the same ones.
+        # Some contestants play fewer episodes: compare them with the optimum of the same ones.
         count = found[one.name][0]["evaluation"]["episodes"]
         yardstick = results.mean_return(best["folder"] / "evaluation.csv", count) if best else None
         rows.append(results.summarise(one, found[one.name], yardstick, episodes))
@@ -325,11 +325,11 @@ def _say(text):
 
 
 def main(arguments=None):
-    """Returns the exit code."""
+    """Runs the program; returns its exit code."""
     arguments = sys.argv[1:] if arguments is None else arguments
     # roslaunch adds __name:=… and __log:=…
     arguments = [word for word in arguments if not word.startswith("__")]
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # both mean: save and end
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # save and exit, as for SIGINT
     try:
         run(parse(arguments))
         return _OK

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The figures of §4 from what results.py read, as PNG.
+"""Draws the figures of §4 as PNG from the data of results.py.
 
-Each plot_… draws on axes; each draw_… makes the figure of one or more of them and saves it.
+Each plot_… function draws on axes; each draw_… function creates a figure with them and saves it.
 """
 import json
 
 import matplotlib
 
-matplotlib.use("Agg")  # no display is asked for
+matplotlib.use("Agg")  # needs no display
 import numpy as np  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.patches import Polygon  # noqa: E402
@@ -18,15 +18,15 @@ _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0
                "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
                "south_east": (1, -1)}
 _DPI = 110
-_MOST_PROBED = 40  # disasters drawn along a route, at most
+_MOST_PROBED = 40  # max number of disasters drawn along a route
 
 
 def _rings(disaster):
-    """Outlines of a disaster's rings, which may have a radius for each quadrant."""
+    """Yields the outlines of a disaster's rings, which may have a radius for each quadrant."""
     bearings = np.radians(np.arange(360.0))
     quadrants = disaster.get("quadrants") or [[radius] * 4 for radius in disaster["radii"]]
     for ring in quadrants:
-        radii = np.repeat(ring, 90)  # north-east first, clockwise as bearings are
+        radii = np.repeat(ring, 90)  # north-east first, clockwise like bearings
         yield np.column_stack([disaster["x"] + radii * np.sin(bearings),
                                disaster["y"] + radii * np.cos(bearings)])
 
@@ -50,13 +50,13 @@ def _label(axes, title, ylabel, xlabel="episode"):
 
 
 def _smooth(values):
-    """Moving mean over the protocol's window, of the length that is left, and its episodes."""
+    """Returns the episodes and values of the moving mean over the protocol's window."""
     window = min(measures.WINDOW, len(values))
     return np.arange(window, len(values) + 1), measures.moving_mean(values, window)
 
 
 def _show_returns(axes, curves, optimum=None):
-    """Scales so that what is learnt shows, whatever the first falls cost."""
+    """Scales the axes to the learnt returns; low returns at the start do not affect the scale."""
     if optimum is not None:
         axes.axhline(optimum, color="black", linestyle="--", label="clairvoyant")
         curves = [*curves, np.array([optimum])]
@@ -94,7 +94,7 @@ def plot_rewards_by_episodes(axes, contestants, runs, optimum):
 
 
 def draw_rewards(path, contestants, runs, optimum):
-    """Fig. 12a by time steps, next to the same by episodes."""
+    """Fig. 12a by time steps, next to the same data by episodes."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(13, 4.5), layout="constrained")
     _label(left, "Rewards by time steps, first run (Fig. 12a)", "50-episode mean return",
            "time steps so far")
@@ -113,7 +113,7 @@ def draw_average_rewards(path, contestants, runs):
 
 
 def plot_average_rewards(axes, contestants, runs):
-    """Mean over the runs of each one's mean return of all episodes so far."""
+    """Mean over the runs of their mean returns of all episodes so far."""
     curves = []
     for one in contestants:
         curve = _curves(runs[one.name], "return").mean(axis=0)
@@ -125,14 +125,14 @@ def plot_average_rewards(axes, contestants, runs):
 
 
 def draw_square_error(path, contestants, runs):
-    """Fig. 12c: mean square error of what learners expect, over all runs."""
+    """Fig. 12c: mean square error of the learners' value estimates, over all runs."""
     figure, axes = _axes("Mean square error (Fig. 12c)", "mean square error [reward²]")
     plot_square_error(axes, contestants, runs)
     _save(figure, path)
 
 
 def plot_square_error(axes, contestants, runs):
-    """Mean over the runs of the squared TD error by episode; nothing for RANDOM."""
+    """Mean over the runs of the squared TD error by episode, without RANDOM."""
     for one in contestants:
         losses = _curves(runs[one.name], "loss")
         known = np.isfinite(losses).any(axis=0)
@@ -172,14 +172,14 @@ def plot_mean_score(axes, contestants, runs):
 
 
 def draw_evaluation(path, contestants, rows):
-    """Mean return of greedy episodes never trained on, with its 95 % interval."""
+    """Mean return of greedy episodes not used for training, with its 95 % interval."""
     figure, axes = _axes("Return on episodes never trained on", "return of an episode", "")
     plot_evaluation(axes, contestants, rows)
     _save(figure, path)
 
 
 def plot_evaluation(axes, contestants, rows):
-    """A bar for each row: the interquartile mean of the runs and its interval."""
+    """One bar per row: the interquartile mean of the runs and its interval."""
     by_name = {row["name"]: row for row in rows}
     for place, one in enumerate(contestants):
         row = by_name[one.name]
@@ -196,7 +196,7 @@ def plot_evaluation(axes, contestants, rows):
 
 
 def draw_repeated(path, contestants, runs, optimum):
-    """Fig. 14: 50-episode means over all runs, shaded by a standard deviation to either side."""
+    """Fig. 14: 50-episode means over all runs, shaded by ± one standard deviation."""
     figure, axes = _axes("Repeated trainings (Fig. 14): mean and standard deviation",
                          "50-episode mean return")
     plot_repeated(axes, contestants, runs, optimum)
@@ -204,7 +204,7 @@ def draw_repeated(path, contestants, runs, optimum):
 
 
 def plot_repeated(axes, contestants, runs, optimum):
-    """Mean over the runs of their 50-episode means, shaded by a standard deviation."""
+    """Mean over the runs of their 50-episode means, shaded by ± one standard deviation."""
     curves = []
     for one in contestants:
         smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
@@ -216,7 +216,7 @@ def plot_repeated(axes, contestants, runs, optimum):
 
 
 def _plot_shaded(axes, episodes, values, one, label):
-    """The mean of values [runs, episodes], shaded by a standard deviation to either side."""
+    """Plots the mean of values [runs, episodes], shaded by ± one standard deviation."""
     mean, spread = values.mean(axis=0), values.std(axis=0)
     axes.plot(episodes, mean, color=one.colour, label=label)
     axes.fill_between(episodes, mean - spread, mean + spread, color=one.colour, alpha=0.2,
@@ -224,8 +224,8 @@ def _plot_shaded(axes, episodes, values, one, label):
 
 
 def draw_route(path, label, route_file):
-    """Fig. 11: the best move at each cell as arrows, before and after the first pickup, and the
-    route with its colour in time order."""
+    """Fig. 11: the greedy action at each cell as arrows, before and after the first pickup, and the
+    route coloured by time."""
     route = json.loads(route_file.read_text())
     panels = [("best_moves_at_start", "with nothing aboard"),
               ("best_moves_after_pickup", "with a device aboard")]
@@ -240,7 +240,7 @@ def draw_route(path, label, route_file):
     _chart(axes, route["chart"])
     _disasters(axes, route["steps"])
     cells = np.array([step["cell"] for step in route["steps"]])
-    chance = np.random.Generator(np.random.PCG64(1))  # passages of a cell lie beside each other
+    chance = np.random.Generator(np.random.PCG64(1))  # separates repeated visits of a cell
     shown = cells + chance.uniform(-0.18, 0.18, cells.shape)
     axes.plot(shown[:, 0], shown[:, 1], color="black", linewidth=0.6, alpha=0.6, zorder=4)
     points = axes.scatter(shown[:, 0], shown[:, 1], c=np.arange(len(shown)), cmap="plasma", s=26,
@@ -251,7 +251,7 @@ def draw_route(path, label, route_file):
 
 
 def _curves(of_one, column):
-    """[runs, episodes], as long as the shortest: farms in step end some episodes more."""
+    """Returns [runs, episodes] with the length of the shortest run; lengths may differ slightly."""
     length = min(len(run["curve"][column]) for run in of_one)
     return np.array([run["curve"][column][:length] for run in of_one])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which learners a benchmark compares, with which settings, and Table 1 as the paper prints it."""
+"""The learners of a benchmark with their settings, and the paper's Table 1 as printed."""
 import dataclasses
 import re
 import typing
@@ -15,7 +15,7 @@ class PrintedRow:
     ea: str
 
     def terms(self):
-        """The four terms of Eq. 16: return per step, success, rank and stability."""
+        """Returns the four terms of Eq. 16: return per step, success, rank and stability."""
         rank = int(re.search(r"\((\d+)\)", self.convergence).group(1))
         return (_number(self.average_return), _number(self.success), rank,
                 _number(self.stability))
@@ -37,13 +37,13 @@ PAPER_TABLE = {
 
 @dataclasses.dataclass(frozen=True)
 class Contestant:
-    """A row of the benchmark: an algorithm with its settings. Settings may name {explored}, the
+    """A row of the benchmark: an algorithm with its settings. Settings may contain {explored}, the
     fraction of the training in which networks explore, and {last_rate}, their final learning
     rate."""
     name: str  # of the row and of its folder
     label: str  # for tables and figures
     colour: str
-    algorithm: str = ""  # as --algorithm and policy take it; empty: the row's name
+    algorithm: str = ""  # name for --algorithm and policy; empty: the row's name
     learns: bool = True
     exploration: str = ""  # empty: the algorithm's default
     options: typing.Tuple[str, ...] = ()
@@ -51,7 +51,7 @@ class Contestant:
     episodes: int = 0  # maximum number of evaluation episodes; 0: as many as requested
     repeats: bool = True  # False: one run, since the result does not depend on the seed
     scenario: str = ""  # empty: the benchmark's
-    paper_row: str = ""  # key of PAPER_TABLE; empty: Table 1 has no such row
+    paper_row: str = ""  # key of PAPER_TABLE; empty if Table 1 has no such row
     named_only: bool = False  # True: takes part only if --algorithms names it
 
     @property
@@ -59,7 +59,7 @@ class Contestant:
         return self.algorithm or self.name
 
     def for_episodes(self, episodes):
-        """The same with the settings of a training of so many episodes."""
+        """Returns this row with the settings for a training of `episodes` episodes."""
         numbers = {"explored": f"{min(1.0, _EXPLORED / episodes):.6g}",
                    "last_rate": f"{_FIRST_RATE / (1.0 + _SLOWING * episodes):.6g}"}
         return dataclasses.replace(
@@ -67,8 +67,8 @@ class Contestant:
             options=tuple(option.format(**numbers) for option in self.options))
 
 
-# Episodes of a training run one after the other, as §4.2 counts them. With many farms at a time the
-# first episodes are all exploration, and short episodes come first.
+# The episodes of a training run one after the other, as in §4.2. With many farms at a time, the
+# first recorded episodes would all be exploration, and short episodes would be recorded first.
 FARMS = 1
 
 # Trainings run in parallel, one per core, hence device=cpu. Reasons for these numbers:
@@ -113,14 +113,14 @@ PLAIN_SCENARIO = "paper_plain"
 
 
 def _printed(one, colour, options, cost):
-    """A row with the settings that the paper prints, on the plain observation."""
+    """Returns a row with the settings printed in the paper, on the plain observation."""
     return dataclasses.replace(one, name=f"{one.name}_printed", algorithm=one.algorithm_name,
                                label=f"{one.label}, printed", colour=colour, options=options,
                                exploration="", cost=cost, scenario=PLAIN_SCENARIO)
 
 
 def _changed(one, suffix, label, colour, changes=(), scenario=""):
-    """A tuned row with some options changed: one part of the ablation."""
+    """Returns a tuned row with some options changed: one part of the ablation."""
     keys = {change.split("=", 1)[0] for change in changes}
     kept = tuple(option for option in one.options if option.split("=", 1)[0] not in keys)
     return dataclasses.replace(one, name=f"{one.name}_{suffix}", algorithm=one.algorithm_name,

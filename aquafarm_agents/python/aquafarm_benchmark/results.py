@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""From finished runs to measures, and from measures to files."""
+"""Computes measures from complete runs, and writes them to files."""
 import csv
 import json
 import math
@@ -15,14 +15,14 @@ _EVALUATED = ("return_per_episode", "return_per_step", "success_rate", "steps_pe
 
 
 def write_atomically(path, text):
-    """Writes beside and renames."""
+    """Writes a temporary file in the same folder and renames it."""
     beside = path.with_name(path.name + ".part")
     beside.write_text(text)
     os.replace(beside, path)
 
 
 def read_curve(metrics):
-    """Columns of a training's metrics.csv: dict of arrays over episodes."""
+    """Returns the columns of a training's metrics.csv: dict of arrays over episodes."""
     columns = {"return": [], "steps": [], "success": [], "loss": []}
     with open(metrics, newline="") as file:
         for row in csv.DictReader(file):
@@ -32,8 +32,8 @@ def read_curve(metrics):
 
 
 def read_run(folder):
-    """What one seed of one contestant came to; 'curve' is None and 'training', its run.json, is
-    empty when nothing was trained."""
+    """Returns the results of one seed of one contestant. Without a training, 'curve' is None and
+    'training' (the content of run.json) is empty."""
     evaluation = json.loads((folder / "evaluation.json").read_text())
     metrics = folder / "metrics.csv"
     curve = read_curve(metrics) if metrics.exists() else None
@@ -51,7 +51,7 @@ def read_run(folder):
 
 
 def mean_return(evaluation_csv, count):
-    """Mean return of the first `count` episodes of an evaluation."""
+    """Returns the mean return of the first `count` episodes of an evaluation."""
     with open(evaluation_csv, newline="") as file:
         returns = [float(row["return"]) for row in csv.DictReader(file)
                    if int(row["episode"]) < count]
@@ -64,9 +64,9 @@ def _interval(values):
 
 
 def summarise(contestant, runs, optimum, training_episodes):
-    """Measures of a contestant over its runs, but for the ranks, which need all contestants.
+    """Returns the measures of a contestant over its runs, except ranks, which need all contestants.
 
-    optimum: mean return of the clairvoyant on the episodes that it was evaluated on; None: unknown.
+    optimum: mean return of the clairvoyant on the same evaluation episodes; None if unknown.
     """
     def column(name):
         return np.array([run[name] for run in runs], dtype=float)
@@ -82,7 +82,7 @@ def summarise(contestant, runs, optimum, training_episodes):
     row["return_per_step_interval"] = _interval(column("return_per_step"))
     row["success_interval"] = _interval(column("success_rate"))
     row["share_of_optimum"] = None
-    if optimum is not None and optimum > 0.0:  # of a loss there is no share
+    if optimum is not None and optimum > 0.0:  # the share is undefined for an optimum of 0 or less
         row["share_of_optimum"] = row["return_per_episode"] / optimum
     row["stability"] = row["stability_settled"] = row["stability_interval"] = None
     for name, stability in (("convergence", "stability"), ("settled", "stability_settled")):
@@ -100,7 +100,7 @@ def summarise(contestant, runs, optimum, training_episodes):
 
 
 def add_ea(rows):
-    """Adds rank, ea_paper and ea_normalised to those that train."""
+    """Adds rank, ea_paper and ea_normalised to the rows of learners."""
     trained = [row for row in rows if row["stability"] is not None]
     ranks = measures.convergence_ranks({row["name"]: row["convergence"] for row in trained})
     for row in rows:
@@ -128,7 +128,7 @@ def _share(value):
 
 
 def table(rows):
-    """Table 1 beside ours, as Markdown."""
+    """Returns the results next to the rows of Table 1, as Markdown."""
     lines = ["| | return per step | success | converged at | stability | settled at | EA | "
              "EA in [0, 1] | return per episode, 95 % interval | share of the optimum |",
              "| --- " * 10 + "|"]
@@ -159,7 +159,8 @@ Eq. 16 gives the printed EA of three rows, and −0.80 for RANDOM, where the pap
 
 
 def write(folder, settings, rows, runs):
-    """results.json (everything), table.csv and runs.csv (a line each), table.md."""
+    """Writes results.json (everything), table.csv (a line per row), runs.csv (a line per run) and
+    table.md."""
     columns = ["name", "runs", "return_per_step", "return_per_step_low", "return_per_step_high",
                "success_rate", "success_low", "success_high", "success_worst", "convergence",
                "stability", "stability_low", "stability_high", "settled", "stability_settled", "rank", "ea_paper", "ea_normalised",

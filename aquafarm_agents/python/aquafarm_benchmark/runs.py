@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trainings and evaluations as processes: in parallel, each resumable, all ended in time."""
+"""Trainings and evaluations as processes: parallel, resumable, and terminated on an interrupt."""
 import ctypes
 import dataclasses
 import json
@@ -12,8 +12,8 @@ import subprocess
 import time
 import typing
 
-_REFUSED = 2  # exit code of a program whose input does not fit
-_LINGER_S = 10.0  # that processes are given to save after Ctrl-C; roslaunch gives 15
+_REFUSED = 2  # exit code of a program for invalid input
+_LINGER_S = 10.0  # time for processes to save after Ctrl-C; roslaunch allows 15
 _DONE = re.compile(r"(?:steps|episodes) ([\d,]+) / ([\d,]+)")
 
 _LIBC = ctypes.CDLL(None, use_errno=True)
@@ -21,30 +21,30 @@ _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
 
 
 def _end_with(parent):
-    """In a child: should its parent be killed, the child saves and ends as at Ctrl-C."""
+    """Called in a child: if its parent is killed, the child saves and exits as on Ctrl-C."""
     _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
     if os.getppid() != parent:
-        os._exit(1)  # it was killed before it was asked
+        os._exit(1)  # the parent was killed before the call
 
 
 class RunFailed(RuntimeError):
-    """Some runs failed; the text says which and why."""
+    """Some runs failed; the text lists them with the reasons."""
 
 
 class Interrupted(RuntimeError):
-    """Ctrl-C; what was finished is kept."""
+    """Ctrl-C; complete runs are kept."""
 
 
 @dataclasses.dataclass
 class Job:
-    """Commands that run one after the other and leave `result` behind."""
+    """Commands that run one after the other and write `result`."""
     contestant: str
     name: str
     folder: pathlib.Path
     result: pathlib.Path
     commands: typing.List[typing.List[str]]
     cost: float
-    resumes: bool = False  # its folder holds a run already
+    resumes: bool = False  # its folder already contains a run
     next_command: int = 0
     process: typing.Optional[subprocess.Popen] = None
     started: float = 0.0
@@ -55,7 +55,7 @@ class Job:
         return self.folder.with_name(self.folder.name + ".log")
 
     def start_next(self, lock):
-        """Starts the next command; its words are appended to the log. It keeps `lock` open."""
+        """Starts the next command, which appends its output to the log and keeps `lock` open."""
         self.folder.mkdir(parents=True, exist_ok=True)
         parent = os.getpid()
         with open(self.log, "ab") as log:
@@ -67,13 +67,14 @@ class Job:
         self.next_command += 1
 
     def last_words(self):
-        """Last line of the log."""
+        """Returns the last line of the log."""
         text = self.log.read_text(errors="replace") if self.log.exists() else ""
         lines = text.strip().splitlines()
         return lines[-1] if lines else "it said nothing"
 
     def done(self):
-        """Share of the training that is over, as its last line says; 0 before, 1 after it."""
+        """Returns the completed fraction of the training, read from the log's last line: 0 before
+        the training, 1 after it."""
         if self.next_command > 1:
             return 1.0
         found = [(int(done.replace(",", "")) / max(1, int(limit.replace(",", ""))))
@@ -82,7 +83,7 @@ class Job:
 
 
 def is_complete(result):
-    """Whether an evaluation was written and not cut short."""
+    """Returns whether an evaluation was written and is complete."""
     try:
         return bool(json.loads(result.read_text())["complete"])
     except (OSError, ValueError, KeyError):
@@ -90,14 +91,14 @@ def is_complete(result):
 
 
 def run_all(jobs, at_once, report, lock=None, period_s=10.0):
-    """Runs the jobs that have no result yet, the longest first, `at_once` side by side.
+    """Runs the jobs without a result, the longest first, up to `at_once` in parallel.
 
-    report(text) is told what is going on every period_s. Returns {name of contestant: reason} of
-    those whose first program refused to begin (exit code 2, such as a table on a farm with too many
-    states). Whoever refuses later on, or after a run of theirs is over, has failed.
-    lock is a file descriptor that every process keeps open until it has ended.
-    Raises RunFailed when some failed (the others are run all the same), Interrupted on Ctrl-C after
-    every process has saved and ended.
+    report(text) is called with the progress every period_s seconds. Returns {contestant: reason}
+    for contestants whose first program rejects its input (exit code 2, such as a table on a farm
+    with too many states). Such an exit after the first command, or after a complete run of the
+    contestant, is a failure. lock is a file descriptor that every process keeps open until it ends.
+    Raises RunFailed if some runs failed (the others run nevertheless), Interrupted on Ctrl-C after
+    every process has saved and exited.
     """
     waiting = sorted((job for job in jobs if not is_complete(job.result)),
                      key=lambda job: -job.cost)
@@ -150,7 +151,7 @@ def run_all(jobs, at_once, report, lock=None, period_s=10.0):
 
 def _end(running):
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)  # this ends soon, whoever asks again
+        signal.signal(number, signal.SIG_IGN)  # ignore repeated interrupts: this ends soon
     for job in running:
         job.process.send_signal(signal.SIGINT)
     end = time.monotonic() + _LINGER_S
@@ -163,14 +164,14 @@ def _end(running):
 
 
 class _Progress:
-    """How far all runs are, and how long they still take by what finished ones took."""
+    """Progress of all runs, and an estimate of the remaining time from complete runs."""
 
     def __init__(self, jobs, over, waiting, at_once):
         self._count = len(jobs)
         self._costs = {job.contestant: job.cost for job in jobs}
         self._over = over
         self._at_once = min(at_once, max(1, len(waiting)))
-        self._took = {}  # seconds of whole jobs by contestant
+        self._took = {}  # durations of complete jobs by contestant [s]
 
     def finish(self, job):
         self._over += 1
@@ -196,7 +197,7 @@ class _Progress:
 
 
 def describe_seconds(seconds):
-    """'45 s', '7 min', '2 h 05 min'."""
+    """Returns '45 s', '7 min', '2 h 05 min'."""
     if seconds < 90.0:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)

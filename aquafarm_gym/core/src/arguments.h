@@ -8,11 +8,11 @@
 
 namespace aquafarm::python {
 
-/// A Python argument as messages quote it: its repr, cut to 60 characters.
+/// Returns a Python argument as quoted in messages: its repr, cut to 60 characters.
 std::string Given(pybind11::handle argument);
 
-/// A whole number from Python (int, NumPy integer or anything with __index__).
-/// @param where starts the message, such as "FarmBatch: farms"
+/// Converts a whole number from Python (int, NumPy integer or any object with __index__).
+/// @param where start of the message, such as "FarmBatch: farms"
 /// @throws InputError "where: got -3, expected a whole number in [low, high]; next"
 std::uint64_t WholeNumber(pybind11::handle argument, const std::string& where, std::uint64_t low,
                           std::uint64_t high, const std::string& next);

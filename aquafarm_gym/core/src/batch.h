@@ -15,57 +15,59 @@
 
 namespace aquafarm::python {
 
-/// A FarmBatch and the NumPy arrays that it writes. The arrays are NumPy's own memory, so nothing
-/// is copied on the way to Python.
+/// A FarmBatch with the NumPy arrays that it writes. The batch writes directly into the arrays'
+/// memory, so nothing is copied for Python.
 class Batch {
  public:
   inline static constexpr std::uint64_t kMaxFarms = 1U << 20U;
   inline static constexpr std::uint64_t kMaxThreads = 1024;
 
   /// @param write names of the buffers to allocate
-  /// @throws InputError for a number out of range or a buffer that does not exist
+  /// @throws InputError for a number out of range or an unknown buffer
   Batch(std::shared_ptr<const Scenario> scenario, pybind11::handle farms,
         const std::vector<std::string>& write, pybind11::handle threads);
 
-  /// Writes into `array` from now on. NumPy refuses to resize it while it is bound.
-  /// @throws InputError when its type or shape does not fit
+  /// Writes into `array` from now on. NumPy does not resize it while it is bound.
+  /// @throws InputError if its type or shape does not fit
   void Bind(const std::string& name, const pybind11::array& array);
 
   void Reset(pybind11::handle seed, pybind11::handle first_episode);
-  /// Starts the next episode in the farms that `mask` (bool [N]) selects.
+  /// Starts the next episode in the farms selected by `mask` (bool [N]).
   void StartNext(const pybind11::array& mask);
-  /// Starts episode episodes[i] of the sequence seeds[i] in the farms that `mask` selects, both
-  /// [N]; later episodes of these farms are `stride` apart.
+  /// Starts episode episodes[i] of the sequence seeds[i] in the farms selected by `mask`; both
+  /// lists have N entries. Later episodes of these farms are `stride` apart.
   void Start(const pybind11::array& mask, const pybind11::sequence& seeds,
              const pybind11::sequence& episodes, pybind11::handle stride);
-  /// @throws InputError for actions of another type, shape or range, or before the first reset
+  /// @throws InputError if the type, shape or range of the actions is wrong, or before the first
+  ///   reset
   void Step(const pybind11::array& actions);
 
-  /// Records of the episodes that are over, by farm, as dicts.
+  /// Returns the records of the farms whose episode has ended, as dicts.
   pybind11::list Finished() const;
-  /// The present state of one farm as text.
+  /// Returns the present state of one farm as text.
   std::string Text(pybind11::handle farm) const;
 
   pybind11::bytes Save() const;
   void Load(const std::string& bytes);
 
-  /// All that another process needs to continue this batch: see FromState.
+  /// Returns everything that another process needs to continue this batch; see FromState.
   pybind11::tuple State() const;
   static std::unique_ptr<Batch> FromState(const pybind11::tuple& state);
-  /// Whether both have the same scenario, buffers and state.
+  /// Returns whether both have the same scenario, buffers and state.
   bool Equals(const Batch& other) const;
 
   const FarmBatch& batch() const { return batch_; }
   const std::map<std::string, pybind11::array>& buffers() const { return buffers_; }
 
  private:
-  /// Refuses a call while another thread's call runs; taken and returned under the GIL, which
-  /// reset and step release in between.
+  /// Rejects a call while a call of another thread runs. Acquired and released under the GIL, which
+  /// reset and step release during their work.
   class Turn;
 
   const BufferType& TypeOf(const std::string& name) const;
   void Keep(const BufferType& type, pybind11::array array);
-  /// The farms that a mask selects. @throws InputError unless it is bool [N] with a true entry
+  /// Returns the farms selected by a mask. @throws InputError unless it is bool [N] with a true
+  /// entry
   std::vector<std::int32_t> Selected(const pybind11::array& mask) const;
   std::vector<std::string> BufferNames() const;
 
@@ -74,8 +76,8 @@ class Batch {
   FarmBatch batch_;
   std::vector<BufferType> types_;
   std::map<std::string, pybind11::array> buffers_;
-  /// Weak references to the arrays in use and to the arrays they are views of: NumPy refuses to
-  /// resize an array that has one, even with refcheck=False.
+  /// Weak references to the arrays in use and to the arrays that they are views of. NumPy does not
+  /// resize an array with a weak reference, even with refcheck=False.
   std::map<std::string, std::vector<pybind11::weakref>> guards_;
   BatchOutput output_;
   bool is_reset_{};

@@ -11,24 +11,24 @@
 
 namespace aquafarm::python {
 
-/// One array of BatchOutput as NumPy knows it.
+/// One array of BatchOutput, described for NumPy.
 struct BufferType {
   std::string name;   ///< of the member of BatchOutput
-  std::string dtype;  ///< as NumPy spells it
+  std::string dtype;  ///< NumPy's name of the type
   std::vector<pybind11::ssize_t> shape;
 };
 
-/// The arrays that a batch can write, in the order of BatchOutput.
+/// Returns the arrays that a batch can write, in the order of BatchOutput.
 std::vector<BufferType> BufferTypes(const FarmBatch& batch);
 
-/// "uint8 [4, 1, 8, 25, 25]".
+/// Returns "uint8 [4, 1, 8, 25, 25]".
 std::string Describe(const std::string& dtype, const std::vector<pybind11::ssize_t>& shape);
 std::string Describe(const pybind11::array& array);
 
-/// True for an array of this type and shape that can be written as one row-major block.
+/// Returns true for a writable row-major array of this type and shape.
 bool Fits(const pybind11::array& array, const BufferType& type);
 
-/// Lets a batch write `data` as its array `name`.
+/// Sets `data` as the array `name` that a batch writes.
 void Point(BatchOutput& output, std::string_view name, void* data);
 
 }  // namespace aquafarm::python

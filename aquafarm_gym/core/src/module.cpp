@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The native part of the Python package aquafarm_core: scenarios, and FarmBatch writing into NumPy
-// arrays.
+// The native part of the Python package aquafarm_core: scenarios, and FarmBatch, which writes into
+// NumPy arrays.
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -29,7 +29,8 @@ std::string NameOf(int value) {
   return std::string(ToString(static_cast<T>(value)));
 }
 
-// What aquafarm_core checks at import: whether this module and NumPy agree on arrays.
+// Defines the functions with which aquafarm_core checks at import that this module and NumPy use
+// the same array layout.
 void DefineProbes(py::module_& module) {
   module.def(
       "_made_array",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The farm's core: scenarios, and many farms stepped into NumPy arrays.
+"""The farm's core: scenarios, and batches of farms that write into NumPy arrays.
 
     batch = FarmBatch(Scenario.load("my.yaml"), farms=1024, write=["rewards", "planes"])
     batch.reset(seed=7)
@@ -11,7 +11,7 @@ import pkgutil
 
 import numpy
 
-# A CMake build folder and a catkin devel space hold the native module apart from the sources.
+# In a CMake build folder and a catkin devel space the native module is not next to the sources.
 __path__ = pkgutil.extend_path(__path__, __name__)
 
 try:
@@ -35,7 +35,7 @@ FarmBatch.__module__ = Scenario.__module__ = __name__  # where pickle finds them
 
 
 def _scenario_folder():
-    """The shipped scenarios: in a wheel, next to a catkin install, or in the sources."""
+    """Returns the folder of the shipped scenarios in the wheel, the install or the sources."""
     native = pathlib.Path(_native.__file__).resolve().parent
     for folder in (native / "scenarios", native.parents[3] / "share/aquafarm_sim/scenarios"):
         if folder.is_dir():

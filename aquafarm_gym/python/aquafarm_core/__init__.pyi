@@ -20,7 +20,7 @@ __all__ = ["ACTIONS", "HOLD", "OPTIMISED", "OUTCOMES", "PLANES", "REASONS", "SCE
            "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Scenario"]
 
 class Scenario:
-    """A whole farm as its file describes it."""
+    """A complete farm, as described by its file."""
 
     @staticmethod
     def load(path: str) -> Scenario: ...

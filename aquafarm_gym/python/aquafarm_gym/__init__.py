@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The marine ranch for researchers: Gymnasium and PettingZoo over farms in this process or behind
-ROS services, with the same spaces and the same transitions, bit for bit.
+"""Gymnasium and PettingZoo environments of the marine ranch, with farms in this process or behind
+ROS services. Spaces and transitions of both are bit-identical.
 
     env = gymnasium.make("aquafarm/Paper-v1")                        # one ship
     env = gymnasium.make("aquafarm/Farm-v1", scenario="my.yaml")     # one ship on any farm
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from aquafarm_gym.ros import RosFarms as RosFarms
     from aquafarm_gym.sb3 import FarmVecEnv as FarmVecEnv
 
-# Imported when asked for: each needs a package that not every installation has.
+# Imported on first use, because each needs an optional package.
 _OPTIONAL: dict[str, tuple[str, list[str]]] = {
     "FarmParallelEnv": ("parallel_env", ["pettingzoo"]),
     "FarmVecEnv": ("sb3", ["stable_baselines3"]),

@@ -17,7 +17,7 @@ from aquafarm_gym.farms import ENCODINGS, LocalFarms
 
 
 def one_agent(farms: Any) -> Any:
-    """Refuses farms of several agents."""
+    """Returns the farms; raises ValueError if they have several agents."""
     if farms.agents != 1:
         raise ValueError(f"scenario {farms.name}: got {farms.agents} agents, expected 1; use "
                          "FarmParallelEnv or TeamVectorEnv")
@@ -25,7 +25,7 @@ def one_agent(farms: Any) -> Any:
 
 
 def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
-    """The array of an observation; refuses farms that do not write it."""
+    """Returns the array of an observation; raises ValueError if the farms do not write it."""
     if observation not in farms.buffers:
         has = ", ".join(name for name in ENCODINGS if name in farms.buffers)
         raise ValueError(f"observation: got '{observation}', but the farms given write {has}")
@@ -34,7 +34,7 @@ def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
 
 
 def check_render_mode(render_mode: str | None, farms: Any) -> str | None:
-    """Refuses an unknown mode, and farms that cannot be drawn."""
+    """Returns the mode; raises ValueError if it is unknown or the farms cannot be rendered."""
     if render_mode not in (None, "ansi", "human"):
         raise ValueError(f"render_mode: got '{render_mode}', expected ansi, human or None; "
                          "pictures are drawn by './aquafarm render'")
@@ -45,7 +45,7 @@ def check_render_mode(render_mode: str | None, farms: Any) -> str | None:
 
 
 def html_of(text: str) -> str:
-    """A text picture for a notebook."""
+    """Returns a text picture as HTML for a notebook."""
     return f'<pre style="line-height: 1.1">{html.escape(text)}</pre>'
 
 
@@ -53,11 +53,11 @@ class FarmEnv(gymnasium.Env[Any, Any]):
     """One farm with one ship.
 
     observation: `features` (default), `planes` or `index`. info has the same keys at every step,
-    with numbers alone: `action_mask` (int8 [10], 1: legal), `outcome` (index into
+    and contains only numbers: `action_mask` (int8 [10], 1: legal), `outcome` (index into
     aquafarm_core.OUTCOMES), `reason` (index into aquafarm_core.REASONS, 0: the episode continues),
     `is_success`, and `summary`, whose entries are 0 until the episode ends. reset(seed=…) starts a
     sequence of episodes, reset() continues with its next one, options={"episode": k} with its k-th.
-    Copies and pickles of farms in this process continue bit for bit.
+    Copies and pickles of farms in this process continue bit-identically.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["ansi", "human"], "render_fps": 4}
@@ -70,7 +70,7 @@ class FarmEnv(gymnasium.Env[Any, Any]):
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper",
                  observation: str = "features", farms: Any = None,
                  render_mode: str | None = None) -> None:
-        """farms: a backend instead of a scenario played in this process, such as RosFarms()."""
+        """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms()."""
         self.farms = one_agent(farms or LocalFarms(scenario, 1, observation))
         self.render_mode = check_render_mode(render_mode, self.farms)
         self.observation = observation
@@ -80,7 +80,7 @@ class FarmEnv(gymnasium.Env[Any, Any]):
         self._attach()
 
     def _attach(self) -> None:
-        """Names the arrays that the farms write."""
+        """Binds the arrays that the farms write."""
         self._buffers = self.farms.buffers
         self._observation = observation_of(self.farms, self.observation)
         self._actions = np.zeros((1, 1), np.uint8)
@@ -109,7 +109,8 @@ class FarmEnv(gymnasium.Env[Any, Any]):
                 reason != 0 and not truncated, truncated, self._info())
 
     def render(self) -> str | None:
-        """The farm as text in the mode `ansi` (marks: farm_text.h); the mode `human` prints it at each reset and step."""
+        """Returns the farm as text in the mode `ansi` (marks: farm_text.h). The mode `human` prints
+        it at each reset and step."""
         if self.render_mode is None:
             gymnasium.logger.warn("render: got render_mode None, expected ansi; pass "
                                   "render_mode='ansi' to the constructor")
@@ -120,7 +121,7 @@ class FarmEnv(gymnasium.Env[Any, Any]):
             print(self.farms.text(0))
 
     def action_masks(self) -> npt.NDArray[np.bool_]:
-        """Legal actions as sb3_contrib's MaskablePPO asks for them."""
+        """Returns the legal actions, bool [10], for MaskablePPO of sb3_contrib."""
         return spaces.action_mask(self._buffers["legal"][0, 0]).astype(bool)
 
     def close(self) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Seeds, episodes and options of reset, and the numbers that infos hold."""
+"""Seeds, episodes and options of reset, and the numbers in infos."""
 from __future__ import annotations
 
 import operator
@@ -8,12 +8,12 @@ from typing import Any
 
 import aquafarm_core as core
 
-# int64 arrays and C longs must hold every seed.
+# Every seed must fit an int64 array and a C long.
 SEED_LIMIT: int = 1 << 63
 EPISODE_LIMIT: int = 1 << 62
 
 REASON_CODES: dict[str, int] = {name: code for code, name in enumerate(core.REASONS)}
-# Entries of info["summary"] while an episode runs; the types are those of a finished one.
+# Entries of info["summary"] during an episode; the types are those of a finished episode.
 NO_SUMMARY: dict[str, Any] = {
     "seed": 0, "episode": 0, "steps": 0, "episode_return": 0.0, "devices": 0, "delivered": 0,
     "delivered_health": 0.0, "crashes": 0, "collisions": 0, "steps_in_disaster": 0, "reason": 0,
@@ -21,7 +21,7 @@ NO_SUMMARY: dict[str, Any] = {
 
 
 def whole_number(where: str, value: Any, limit: int, hint: str) -> int:
-    """Checks a whole number in [0, limit)."""
+    """Returns a whole number; raises ValueError if it is not in [0, limit)."""
     try:
         number = operator.index(value)
     except TypeError:
@@ -33,12 +33,12 @@ def whole_number(where: str, value: Any, limit: int, hint: str) -> int:
 
 
 def check_seed(seed: Any) -> int:
-    """A seed of the environments: a whole number in [0, 2**63)."""
+    """Returns a seed; raises ValueError if it is not a whole number in [0, 2**63)."""
     return whole_number("seed", seed, SEED_LIMIT, "pass a smaller seed, or None to draw one")
 
 
 def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dict[str, Any]:
-    """Options of reset; refuses unknown names and an `episode` that is not an episode number."""
+    """Returns the options of reset; raises ValueError for an unknown name or a wrong `episode`."""
     options = {} if options is None else options
     for name in options:
         if name not in known:
@@ -51,14 +51,14 @@ def check_options(options: dict[str, Any] | None, known: Collection[str]) -> dic
 
 
 def summary_of(finished: dict[str, Any]) -> dict[str, Any]:
-    """A record of FarmBatch.finished() as numbers alone, with the entries of NO_SUMMARY."""
+    """Converts a record of FarmBatch.finished() to numbers, with the entries of NO_SUMMARY."""
     numbers = {name: finished[name] for name in NO_SUMMARY}
     numbers["reason"] = REASON_CODES[finished["reason"]]
     return numbers
 
 
 class Episodes:
-    """Position in the sequence of episodes: a seed starts one, a reset without a seed continues."""
+    """Position in a sequence of episodes. A seed starts it, a reset without a seed continues."""
 
     seed: int | None
     episode: int
@@ -68,7 +68,7 @@ class Episodes:
 
     def next(self, seed: Any, options: dict[str, Any], drawn_seed: Callable[[], int | None],
              by: int = 1) -> tuple[int, int]:
-        """The (seed, episode) to begin; options may name an `episode` of the sequence."""
+        """Returns the next (seed, episode); options may select an `episode` of the sequence."""
         if seed is not None:
             self.seed, self.episode = check_seed(seed), 0
         elif self.seed is None:

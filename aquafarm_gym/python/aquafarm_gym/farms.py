@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""N farms with S agents each, as arrays: what every environment here stands on.
+"""N farms with S agents each, as arrays: the backends of all environments in this package.
 
 A backend has the attributes name, yaml, farms, agents, state_count, feature_names, feature_count,
 plane_count, height, width and buffers (see aquafarm_core.FarmBatch), and the methods
-reset(seed, first_episode), step(actions), finished() and close(). LocalFarms, the farms in this
-process, also has start, start_next and text; aquafarm_gym.ros.RosFarms, the farms behind ROS, has
-not.
+reset(seed, first_episode), step(actions), finished() and close(). LocalFarms (farms in this
+process) also has start, start_next and text; aquafarm_gym.ros.RosFarms (farms behind ROS) does not.
 """
 from __future__ import annotations
 
@@ -21,7 +20,7 @@ ALWAYS: tuple[str, ...] = ("rewards", "outcomes", "legal", "in_play", "reasons",
 
 
 def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario:
-    """A Scenario from itself, from a shipped one's name, or from a file's path."""
+    """Returns a Scenario: the given one, a shipped one by name or the one of a file."""
     if isinstance(scenario, core.Scenario):
         return scenario
     folder = pathlib.Path(core.SCENARIO_FOLDER)
@@ -38,7 +37,7 @@ def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario
 
 
 def check_encoding(encoding: str, state_count: int, name: str) -> None:
-    """Refuses an unknown encoding, and a table of a farm that has too many states for one."""
+    """Raises ValueError for an unknown encoding, and for `index` if a farm has too many states."""
     if encoding not in ENCODINGS:
         raise ValueError(f"observation: got '{encoding}', expected one of: {', '.join(ENCODINGS)}")
     if encoding == "index" and state_count == 0:
@@ -47,7 +46,7 @@ def check_encoding(encoding: str, state_count: int, name: str) -> None:
 
 
 class LocalFarms:
-    """Farms in this process. Copies and pickles continue bit for bit."""
+    """Farms in this process. Copies and pickles continue bit-identically."""
 
     scenario: core.Scenario
     batch: core.FarmBatch
@@ -112,7 +111,7 @@ class LocalFarms:
         return self.batch.text(farm)
 
     def close(self) -> None:
-        """Releases nothing: the farms hold memory alone."""
+        """Does nothing: the farms use no resources except memory."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, LocalFarms) and self.batch == other.batch

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A PettingZoo environment: one farm whose ships, and devices that drive themselves, act."""
+"""A PettingZoo environment: one farm with ships and self-propelled devices as agents."""
 from __future__ import annotations
 
 import pathlib
@@ -21,11 +21,11 @@ from aquafarm_gym.farms import LocalFarms
 
 
 class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]
-    """One farm with several agents, named ship_0, ship_1, … as in ROS; those that are
-    self-propelled devices come last and terminate when they are delivered.
+    """One farm with several agents, named ship_0, ship_1, … as in ROS. Self-propelled devices come
+    last and terminate when they are delivered.
 
-    Observations and infos are those of FarmEnv, one per agent. state() is the observations of all
-    agents in one array (`state_space`), as centralized critics read it.
+    Observations and infos are those of FarmEnv, one per agent. state() returns the observations of
+    all agents in one array (`state_space`), for centralized critics.
     """
 
     metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": ["ansi", "human"],
@@ -43,7 +43,7 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "two_squads",
                  observation: str = "features", farms: Any = None,
                  render_mode: str | None = None) -> None:
-        """farms: a backend instead of a scenario played in this process, such as RosFarms()."""
+        """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms()."""
         self.farms = farms or LocalFarms(scenario, 1, observation)
         self.observation = observation
         self.render_mode = check_render_mode(render_mode, self.farms)
@@ -58,7 +58,7 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
         self._attach()
 
     def _attach(self) -> None:
-        """Names the arrays that the farms write."""
+        """Binds the arrays that the farms write."""
         self._buffers = self.farms.buffers
         self._observation = observation_of(self.farms, self.observation)
 
@@ -106,13 +106,13 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
         return results
 
     def state(self) -> npt.NDArray[Any]:
-        """The observations of all agents, also of those that are done: features [S · F], planes
-        [S · P, H, W], index [S]."""
+        """Returns the observations of all agents, including those that are done: features [S · F],
+        planes [S · P, H, W], index [S]."""
         joint = self._observation[0].astype(self.state_space.dtype)
         return np.asarray(joint.reshape(self.state_space.shape))
 
     def render(self) -> str | None:
-        """The farm as text in the mode `ansi` (marks: farm_text.h); the mode `human` prints it."""
+        """Returns the farm as text in the mode `ansi` (marks: farm_text.h). `human` prints it."""
         if self.render_mode == "human":
             print(self.farms.text(0))
         return str(self.farms.text(0)) if self.render_mode == "ansi" else None

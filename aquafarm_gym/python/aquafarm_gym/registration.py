@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Gymnasium ids. A number after -v changes when the same seed and actions give another
-observation, reward, end or info; docs/python.md lists what changed."""
+"""The Gymnasium ids. The number after -v increases when the same seed and actions give different
+observations, rewards, ends or infos. docs/python.md lists the changes."""
 from __future__ import annotations
 
 import gymnasium
 
-# Farms of one ship that are shipped; each has an id of its own.
+# The shipped farms with one ship; each has its own id.
 SCENARIOS: dict[str, str] = {
     "Paper": "paper", "PaperPartial": "paper_partial", "Partial": "partial", "Procedural": "procedural",
     "RedTide": "red_tide", "ZhoushanDanas2019": "zhoushan_danas_2019",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Farms behind a sim node's services, as arrays; the same numbers as LocalFarms, bit for bit."""
+"""Farms behind a sim node's services, as arrays that are bit-identical to those of LocalFarms."""
 from __future__ import annotations
 
 import itertools
@@ -27,7 +27,7 @@ BITS: dict[str, int] = {
 
 
 def check_master(limit_s: float) -> None:
-    """Raises ConnectionError where no master listens, for which rospy would wait for ever."""
+    """Raises ConnectionError if no master listens; rospy waits for one without a limit."""
     uri = rosgraph.get_master_uri()
     try:
         host, port = rosgraph.network.parse_http_host_and_port(uri)
@@ -37,7 +37,7 @@ def check_master(limit_s: float) -> None:
 
 
 class Service(rospy.ServiceProxy):  # type: ignore[misc]
-    """A persistent service whose every call has a limit, which rospy's own lacks."""
+    """A persistent service with a timeout for each call, which rospy's ServiceProxy lacks."""
 
     def __init__(self, name: str, kind: Any, limit_s: float) -> None:
         super().__init__(name, kind, persistent=True)
@@ -45,7 +45,7 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
         self.transport: Any
 
     def call(self, request: Any) -> Any:
-        """Calls; raises rospy.ServiceException when there is no answer within the limit."""
+        """Calls; raises rospy.ServiceException if there is no response within the limit."""
         try:
             if self.transport is None:
                 self._connect(request)
@@ -59,7 +59,7 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
         uri = self._get_service_uri(request)
         transport = TCPROSTransport(self.protocol, self.resolved_name)
         transport.buff_size = self.buff_size
-        # rospy reads the handshake without a limit: cut it off from outside.
+        # rospy reads the handshake without a timeout: another thread shuts the socket down.
         watch = threading.Timer(self._limit_s, lambda: transport.socket.shutdown(socket.SHUT_RDWR))
         watch.daemon = True
         watch.start()
@@ -74,9 +74,9 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
 class RosFarms:
     """Farms behind the sim node of a namespace.
 
-    A call that was lost is sent again with its number, so no farm steps twice. A sim node that
-    came back without its farms, or whose farms another has moved, or one that stays away for longer
-    than wait_limit_s, is a ConnectionError.
+    A lost call is sent again with the same sequence number, so no farm steps twice. Raises
+    ConnectionError if the sim node restarted without its farms, if another client moved them, or if
+    the node does not respond for wait_limit_s.
     """
 
     name: str
@@ -109,9 +109,9 @@ class RosFarms:
             core.Scenario.parse(self.yaml, self.name)).feature_names
         self.plane_count, self.height, self.width = spec.plane_count, spec.height, spec.width
         self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
-        # Different from those of an earlier client of this node.
+        # Random start, so that the numbers differ from those of earlier clients of this node.
         self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)
-        self._turn: int | None = None  # of the last answer; None: to be reset
+        self._turn: int | None = None  # of the last response; None: needs a reset
         self._finished: list[dict[str, Any]] = []
         entries = (farms, self.agents)
         shape: tuple[int, ...] = {
@@ -149,7 +149,7 @@ class RosFarms:
         return self._finished
 
     def close(self) -> None:
-        """Ends the connections."""
+        """Closes the connections."""
         for service in self._services.values():
             service.close()
 

@@ -21,9 +21,9 @@ from aquafarm_gym.farms import LocalFarms
 class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
     """N farms with one ship each as a Stable-Baselines3 VecEnv.
 
-    A farm whose episode is over starts its next one in the same step; its info then holds
-    `terminal_observation`, `TimeLimit.truncated`, `episode` (r, l, as Monitor has them) and
-    `is_success`. action_masks() is what sb3_contrib's MaskablePPO asks for.
+    A farm whose episode ends starts its next one in the same step. Its info then contains
+    `terminal_observation`, `TimeLimit.truncated`, `episode` (r and l, as in Monitor) and
+    `is_success`. action_masks() is for MaskablePPO of sb3_contrib.
     """
 
     def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
@@ -42,7 +42,7 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
                          spaces.action_space())
 
     def reset(self) -> npt.NDArray[Any]:
-        """Starts the sequence of the seed set by seed(); without one the sequence continues."""
+        """Starts the sequence of the seed set by seed(), or continues the sequence without one."""
         seed = self._seeds[0]
         if seed is None and self._episodes.seed is not None:
             self.farms.start_next(np.ones(self.num_envs, bool))
@@ -81,7 +81,7 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
                 "episode": {"r": summary["episode_return"], "l": summary["steps"], "t": 0.0}}
 
     def action_masks(self) -> npt.NDArray[np.bool_]:
-        """Legal actions, bool [N, 10]."""
+        """Returns the legal actions, bool [N, 10]."""
         return spaces.action_mask(self._legal).astype(bool)
 
     def close(self) -> None:
@@ -103,7 +103,7 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         return [masks[i] for i in self._get_indices(indices)]
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
-        # infos hold what Monitor would add.
+        # infos already contain the entries that Monitor adds.
         return [wrapper_class is Monitor] * self._count(indices)
 
     def _count(self, indices: None | int | Iterable[int]) -> int:

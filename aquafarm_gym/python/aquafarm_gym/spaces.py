@@ -10,7 +10,7 @@ from gymnasium import spaces
 N_ACTIONS: int = len(core.ACTIONS)
 
 # Bounds of the features by the last part of their names (FarmBatch.feature_names). Lengths are in
-# units of the map's longer side; a storm's centre and reach may lie far outside of the map.
+# units of the map's longer side. A storm's centre and reach may be far outside the map.
 FAR: float = 1e4
 BOUNDS: dict[str, tuple[float, float]] = {
     "x": (-1, 1), "y": (-1, 1), "time_left": (-1, 1), "free_capacity": (0, 1),
@@ -23,7 +23,7 @@ GROUP_BOUNDS: dict[str, tuple[float, float]] = {
 
 
 def feature_bounds(name: str) -> tuple[float, float]:
-    """The least and greatest value of a feature."""
+    """Returns the min and max value of a feature."""
     group, _, part = name.rpartition(".")
     if group in GROUP_BOUNDS:
         return GROUP_BOUNDS[group]
@@ -33,12 +33,12 @@ def feature_bounds(name: str) -> tuple[float, float]:
 
 
 def action_space() -> spaces.Discrete:
-    """The paper's ten actions: eight moves, pickup, drop-off (names: aquafarm_core.ACTIONS)."""
+    """Returns the paper's ten actions: eight moves, pickup, drop-off (aquafarm_core.ACTIONS)."""
     return spaces.Discrete(N_ACTIONS)
 
 
 def observation_space(farms: Any, encoding: str) -> spaces.Space[Any]:
-    """Discrete for `index`, a bounded Box for `features` and `planes`."""
+    """Returns a Discrete for `index`, a bounded Box for `features` and `planes`."""
     if encoding == "index":
         return spaces.Discrete(farms.state_count)
     if encoding == "features":
@@ -48,13 +48,13 @@ def observation_space(farms: Any, encoding: str) -> spaces.Space[Any]:
 
 
 def action_mask(legal: npt.ArrayLike) -> npt.NDArray[np.int8]:
-    """Bits of legal actions [...] as 0 and 1 [..., 10], as Discrete.sample(mask) takes them."""
+    """Converts bits of legal actions [...] to 0 and 1 [..., 10], as Discrete.sample(mask) needs."""
     bits = np.array(legal, "<u2")[..., None].view(np.uint8)
     return np.unpackbits(bits, axis=-1, count=N_ACTIONS, bitorder="little").view(np.int8)
 
 
 def state_space(farms: Any, encoding: str) -> spaces.Space[Any]:
-    """The observations of all agents of a farm in one space."""
+    """Returns the space of the observations of all agents of a farm."""
     own = observation_space(farms, encoding)
     if isinstance(own, spaces.Discrete):
         return spaces.MultiDiscrete([int(own.n)] * farms.agents)

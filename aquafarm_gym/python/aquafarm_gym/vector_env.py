@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gymnasium vector environments: many farms as arrays, with one ship or with several each."""
+"""Gymnasium vector environments: many farms as arrays, with one or several ships each."""
 from __future__ import annotations
 
 import pathlib
@@ -25,7 +25,7 @@ Array: TypeAlias = npt.NDArray[Any]
 
 
 def autoreset_name(mode: Any, farms: Any) -> str:
-    """The name of a gymnasium.vector.AutoresetMode, or of a text that names one."""
+    """Returns the name of a gymnasium.vector.AutoresetMode, given as such or as a text."""
     name = getattr(mode, "value", mode)
     if name not in AUTORESET_MODES:
         raise ValueError(f"autoreset_mode: got {mode!r}, expected a "
@@ -37,7 +37,7 @@ def autoreset_name(mode: Any, farms: Any) -> str:
 
 
 class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
-    """N farms, stepped together: what the two classes below share."""
+    """Base class of the vector environments: N farms that step together."""
 
     metadata: dict[str, Any] = {"render_modes": ["ansi"], "render_fps": 4}
     farms: Any
@@ -68,12 +68,12 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                              "autoreset_mode": gymnasium.vector.AutoresetMode(self._mode)}
         self._copy = copy
         self._episodes = Episodes()
-        self._own_sequences = False  # whether some farm plays a sequence of its own
+        self._own_sequences = False  # True if a farm has its own sequence of episodes
         self._begun = np.zeros(self.num_envs, np.int64)  # episodes since the last reset, by farm
         self._attach()
 
     def _attach(self) -> None:
-        """Names the arrays that the farms write."""
+        """Binds the arrays that the farms write."""
         buffers = self.farms.buffers
         self._observation = self._agents_of(observation_of(self.farms, self.observation))
         self._all_rewards = buffers["rewards"]
@@ -86,22 +86,22 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self._no_summary = {name: np.zeros(self.num_envs, np.asarray(value).dtype)
                             for name, value in NO_SUMMARY.items()}
         for array in (self._everywhere, self._nowhere, *self._no_summary.values()):
-            array.flags.writeable = False  # handed out at every step
+            array.flags.writeable = False  # shared by the infos of all steps
 
     def _agents_of(self, array: Array) -> Array:
-        """What an observation, action or mask holds of [N, S, …]."""
+        """Selects the agents' part of an array [N, S, …] for observations and masks."""
         raise NotImplementedError
 
     def _rewards(self) -> Array:
-        """The reward of each farm, [N]."""
+        """Returns the reward of each farm, [N]."""
         raise NotImplementedError
 
     def reset(self, *, seed: int | Sequence[int | None] | None = None,
               options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
-        """Starts episodes. seed: one number starts its sequence, farm i of N at episode i; a list
-        starts a sequence per farm at its episode 0. Without a seed each farm's sequence continues.
-        options: `episode` (added to the first episode) and `reset_mask` (bool [N], the farms that
-        start; the others stay as they are)."""
+        """Starts episodes. seed: one number starts its sequence, with farm i of N at episode i; a
+        list starts one sequence per farm, at episode 0. Without a seed each farm continues its
+        sequence. options: `episode` (added to the first episode) and `reset_mask` (bool [N], the
+        farms that start; the others do not change)."""
         options = check_options(options, ("episode", "reset_mask"))
         mask = self._mask_of(options)
         seeds = self._seeds_of(seed)
@@ -148,7 +148,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                              "start together: pass one seed")
 
     def _start_all(self, seed: int | None, options: dict[str, Any]) -> None:
-        # Farm i of N plays every N-th episode: continue behind the farm that has come furthest.
+        # Farm i of N plays every N-th episode: continue after the latest episode of any farm.
         by = self.num_envs * (1 + int(self._begun.max()))
         self.farms.reset(*self._episodes.next(seed, options, lambda: self.np_random_seed, by))
         self._begun[:] = 0
@@ -199,7 +199,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         truncated = self._reasons == core.STEP_LIMIT
         rewards = self._rewards()
         if self._mode == SAME_STEP and not self._copy:
-            rewards = rewards.copy()  # a farm that starts again in this step overwrites its entry
+            rewards = rewards.copy()  # the start of an episode in this step overwrites the entry
         if self._mode == SAME_STEP and over.any():
             infos = self._restart(over)
         else:
@@ -207,7 +207,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         return self._out(self._observation), rewards, over ^ truncated, truncated, infos
 
     def _restart(self, over: Array) -> dict[str, Any]:
-        """Starts the next episodes at once; infos hold the last observations and infos."""
+        """Starts the next episodes in the same step; infos contain the final observations and
+        infos."""
         final_obs = np.full(self.num_envs, None)
         for i in np.flatnonzero(over):
             final_obs[i] = self._observation[i].copy()
@@ -217,13 +218,13 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
                 "final_info": final_info, "_final_info": over}
 
     def render(self) -> tuple[str, ...] | None:
-        """Each farm as text in the mode `ansi`."""
+        """Returns each farm as text in the mode `ansi`."""
         if self.render_mode != "ansi":
             return None
         return tuple(self.farms.text(i) for i in range(self.num_envs))
 
     def close_extras(self, **kwargs: Any) -> None:
-        if "farms" in self.__dict__:  # not where the constructor has failed
+        if "farms" in self.__dict__:  # False if the constructor has failed
             self.farms.close()
 
     def _out(self, array: Array) -> Array:
@@ -276,15 +277,15 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
 
 
 class FarmVectorEnv(VectorBase):
-    """N farms with one ship each, stepped together in this process (or behind ROS, by `farms`).
+    """N farms with one ship each that step together in this process (or behind ROS, with `farms`).
 
-    A farm whose episode is over starts its next one as autoreset_mode says (names or values of
-    gymnasium.vector.AutoresetMode): in the next step, whose action it ignores (the default), in the
-    same step, or only by reset with a reset_mask. With copy=False observations and rewards are the
-    arrays that the farms write, overwritten by the next step. infos has the same keys at every
-    step: those of FarmEnv as arrays [N, …], and `started`, each with its mask `_action_mask` …;
-    `summary` counts where `_summary` is True and is 0 elsewhere. In the mode SameStep `final_obs`
-    and `final_info` join them when an episode ends.
+    autoreset_mode (a name or value of gymnasium.vector.AutoresetMode) specifies when a farm starts
+    its next episode: in the next step, whose action it ignores (the default), in the same step, or
+    only by reset with a reset_mask. With copy=False observations and rewards are the arrays that
+    the farms write; the next step overwrites them. infos has the same keys at every step: those of
+    FarmEnv as arrays [N, …], and `started`, each with its mask `_action_mask` …. `summary` is valid
+    where `_summary` is True and 0 elsewhere. In the mode SameStep, infos also contain `final_obs`
+    and `final_info` when an episode ends.
     """
 
     def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
@@ -305,9 +306,9 @@ class FarmVectorEnv(VectorBase):
 class TeamVectorEnv(VectorBase):
     """N farms with S ships each as joint steps: actions [N, S], observations [N, S, …].
 
-    The reward is the sum over the agents; infos["agent_rewards"] float32 [N, S] holds each agent's
-    own, infos["in_play"] bool [N, S] is False for a self-propelled device that is delivered. The
-    rest is as in FarmVectorEnv, with S entries per farm.
+    The reward is the sum over the agents. infos["agent_rewards"], float32 [N, S], contains the
+    reward of each agent. infos["in_play"], bool [N, S], is False for a delivered self-propelled
+    device. Other results are as in FarmVectorEnv, with S entries per farm.
     """
 
     def __init__(self, num_envs: int = 1,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Wrappers that put the action mask into the observation, where RLlib, tianshou and PettingZoo's
-learners look for it: {"observation": …, "action_mask": int8 […, 10]}."""
+"""Wrappers that add the action mask to the observation, as the learners of RLlib, tianshou and
+PettingZoo expect it: {"observation": …, "action_mask": int8 […, 10]}."""
 from __future__ import annotations
 
 from typing import Any
@@ -13,13 +13,13 @@ from aquafarm_gym.spaces import N_ACTIONS
 
 
 def masked_space(space: gymnasium.Space[Any], shape: tuple[int, ...] = ()) -> gymnasium.spaces.Dict:
-    """An observation space joined by masks [*shape, 10]."""
+    """Returns an observation space with masks [*shape, 10]."""
     masks = gymnasium.spaces.Box(0, 1, (*shape, N_ACTIONS), np.int8)
     return gymnasium.spaces.Dict({"observation": space, "action_mask": masks})
 
 
 def joined(observation: Any, infos: dict[str, Any]) -> dict[str, Any]:
-    """An observation with the mask of its info."""
+    """Returns an observation with the mask of its info."""
     return {"observation": observation, "action_mask": infos["action_mask"]}
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes a scenario file from a chart, a place and a storm, shows it and says what it decided.
+// Makes a scenario file from a chart, a place and a storm. Shows the layout and lists its
+// decisions.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -31,7 +32,7 @@ struct Arguments {
   bool own_cell{};
 };
 
-// "30.2,122.7" or "25x25" as two numbers.
+// Parses "30.2,122.7" or "25x25" as two numbers.
 std::pair<double, double> Pair(const std::string& name, const std::string& text, char between,
                                const char* expected) {
   const std::size_t at = text.find(between);
@@ -53,7 +54,7 @@ GeoPoint Place(const std::string& name, const std::string& text) {
                    "', expected a latitude in [-90, 90] and a longitude in [-180, 360]");
 }
 
-// "200m" or "0.2km".
+// Parses "200m" or "0.2km".
 double Metres(const std::string& text) {
   const bool km = text.size() > 2 && text.compare(text.size() - 2, 2, "km") == 0;
   const std::size_t unit = km ? 2 : !text.empty() && text.back() == 'm' ? 1 : 0;
@@ -64,7 +65,7 @@ double Metres(const std::string& text) {
   return km ? value * 1000.0 : value;
 }
 
-// "salinity=sea.nc:so"; the file may have a colon, the variable none.
+// Parses "salinity=sea.nc:so"; the file name may contain a colon, the variable may not.
 SeaLayerRequest SeaLayer(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::size_t colon = text.rfind(':');
@@ -102,7 +103,7 @@ RanchRequest Finished(const Arguments& arguments) {
   ranch.width = whole(width);
   ranch.height = whole(height);
   ranch.cell_size_m = Metres(arguments.cell);
-  constexpr int kDrawnPlacements = 3;  // explicit needs sites, which a file has
+  constexpr int kDrawnPlacements = 3;  // explicit needs sites, which only a scenario file contains
   ranch.placement = Named<DevicePlacement>("layout", arguments.layout, kDrawnPlacements);
   ranch.reduction = Named<RingReduction>("rings", arguments.rings, kRingReductionCount);
   if (!arguments.start.empty()) ranch.start = ParseUtc("start", arguments.start);
@@ -122,7 +123,7 @@ void WriteFile(const std::string& path, const std::string& text) {
   if (!file || error) throw InputError(path + ": cannot write");
 }
 
-// A chart in metres has a size and cells of its own.
+// A chart in metres has its own size and cells.
 void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   const RanchRequest asked = Finished(arguments);
   if (arguments.own_size && (made.width != asked.width || made.height != asked.height)) {
@@ -133,12 +134,12 @@ void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   }
 }
 
-// What to train with: a table, or a network where it would be too large.
+// Suggests a learner: a table, or a network if the table would be too large.
 std::string Learner(const Scenario& made) {
   if (made.AgentCount() > 1) return " algorithm:=auto";
   const std::uint64_t states = Encoder(made).state_count();
   constexpr std::uint64_t kMost = 100'000'000;
-  if (states == 0 || states > kMost) {  // ten values each: beyond a table of 4 GB
+  if (states == 0 || states > kMost) {  // ten values per state: beyond a table of 4 GB
     return " algorithm:=dqn options:=steps_per_update=4 steps:=1200000";
   }
   return "";

@@ -29,7 +29,7 @@ std::vector<std::string> BulletinFolder::New() {
   }
   found_ = std::move(found);
   std::vector<std::pair<State, std::string>> fresh;
-  std::map<std::string, State> marked;  // forgets what is gone
+  std::map<std::string, State> marked;  // without deleted files
   for (const auto& [path, state] : found_) {
     const auto before = marked_.find(path);
     if (before != marked_.end()) marked.insert(*before);

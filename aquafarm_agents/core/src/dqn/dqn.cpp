@@ -24,7 +24,7 @@ std::uint8_t EncodingOf(NetworkKind network) {
   return network == NetworkKind::kCnn ? kPlanesBit : kFeaturesBit;
 }
 
-/// Plays the best action of a network.
+/// Takes the greedy action of a network.
 template <typename Scalar>
 class GreedyDqnPolicy final : public Policy {
  public:
@@ -43,8 +43,8 @@ class GreedyDqnPolicy final : public Policy {
   }
   std::uint8_t encodings() const override { return EncodingOf(options_.network); }
   void Begin(std::uint64_t, std::int32_t) override {}
-  /// An agent who is done gets action 0 and value 0; the network sees the rows from the first to
-  /// the last who is in play.
+  /// Inactive agents get action 0 and value 0. The network evaluates the rows from the first to the
+  /// last active agent.
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     const auto is_in_play = [](std::uint8_t flag) { return flag != 0; };
     const auto& flags = results.in_play;
@@ -66,7 +66,7 @@ class GreedyDqnPolicy final : public Policy {
   }
 
  private:
-  /// @returns [count, kActionCount], until the next call
+  /// @returns [count, kActionCount], valid until the next call
   const float* Values(const Scalar* seen, std::size_t count) {
     if constexpr (std::is_same_v<Scalar, float>) {
       if (count == 1 && row_network_) return row_network_->Forward(seen);
@@ -81,28 +81,28 @@ class GreedyDqnPolicy final : public Policy {
 
   torch::Device device_;
   std::vector<std::int64_t> shape_;
-  std::size_t size_;  // of one observation
+  std::size_t size_;  // size of one observation
   DeepOptions options_;
   std::shared_ptr<QNetwork> network_;
   FlatParameters parameters_;
   torch::Tensor computed_;
-  std::optional<RowNetwork> row_network_;  // of features on the CPU
+  std::optional<RowNetwork> row_network_;  // for feature observations on the CPU
 };
 
-/// A minibatch of B samples on its way from the replay to the network; a sample is one agent's
-/// transition, or those of all agents of a farm: R rows in all.
+/// A minibatch of B samples for the network. A sample contains the transition of one agent, or of
+/// all agents of a farm: R rows in total.
 template <typename Scalar>
 struct Batch {
   std::vector<Scalar> from;
   std::vector<Scalar> to;
   std::vector<std::int64_t> actions;
-  std::vector<float> present;        // [R] 1: in play, 0: done before
+  std::vector<float> present;        // [R] 1 if the agent is active, 0 if it finished before
   std::vector<float> rewards;        // [B]
-  std::vector<float> discounts;      // [R] of the value at `to`
-  std::vector<float> forbidden;      // [R, kActionCount] by MaskLogits, of the next actions
-  std::vector<float> forbidden_now;  // likewise, of those among which the action was chosen
+  std::vector<float> discounts;      // [R] of the value of `to`
+  std::vector<float> forbidden;      // [R, kActionCount] by MaskLogits, for the next actions
+  std::vector<float> forbidden_now;  // [R, kActionCount] by MaskLogits, for the actions of `from`
   std::vector<float> weights;        // [B]
-  std::vector<std::size_t> drawn;    // [B] row of the replay
+  std::vector<std::size_t> drawn;    // [B] row in the replay buffer
 
   Batch(std::size_t size, std::size_t rows, std::size_t observation_size)
       : from(rows * observation_size),
@@ -168,7 +168,7 @@ class DqnLearner final : public Learner {
   const std::size_t observation_size_;
   std::shared_ptr<QNetwork> online_;
   std::shared_ptr<QNetwork> target_;
-  std::shared_ptr<QNetwork> acting_;  // online_ itself, unless it acts by an average
+  std::shared_ptr<QNetwork> acting_;  // online_, or a moving average of its weights
   ValueOptimizer optimizer_;
   Explorer explorer_;
   RepetitionPenalty repetitions_;
@@ -177,7 +177,7 @@ class DqnLearner final : public Learner {
   ReplaySampler<Scalar> sampler_;
   double progress_{};
   Batch<Scalar> batch_;
-  std::vector<float> team_rewards_;  // scratch, [agents]
+  std::vector<float> team_rewards_;  // scratch [agents]
 };
 
 template <typename Scalar>
@@ -259,7 +259,7 @@ void DqnLearner<Scalar>::DrawAlone(std::size_t i, const TransitionIndex& moment)
   Fill(i, one.from, one.to, one.discount);
 }
 
-// An agent that is done adds nothing to the team's value, before or after.
+// The value of an agent that is done is excluded from the team's value.
 template <typename Scalar>
 void DqnLearner<Scalar>::DrawJoint(std::size_t i, const TransitionIndex& moment) {
   const std::size_t first = moment.entry;
@@ -267,7 +267,7 @@ void DqnLearner<Scalar>::DrawJoint(std::size_t i, const TransitionIndex& moment)
       replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
                       static_cast<float>(options_.discount), team_rewards_.data());
   const float sum = std::accumulate(team_rewards_.begin(), team_rewards_.end(), 0.0F);
-  // A shared reward is the team's already, to each of them.
+  // A team reward is repeated for each agent.
   const float reward = spec_.team_reward ? sum / static_cast<float>(group()) : sum;
   batch_.rewards[i] = reward * static_cast<float>(options_.reward_scale);
   const std::size_t from = replay_.Row(moment.age, first);
@@ -293,7 +293,7 @@ void DqnLearner<Scalar>::Fill(std::size_t k, std::size_t from, std::size_t to, f
              batch_.forbidden_now.data() + k * kActionCount);
 }
 
-// [R] → [B]: value decomposition adds up the values of a team (Sunehag et al. 2018).
+// [R] → [B]: sums the values of a team (value decomposition, Sunehag et al. 2018).
 template <typename Scalar>
 torch::Tensor DqnLearner<Scalar>::SumOfGroups(const torch::Tensor& values) const {
   if (!options_.joint) return values;

@@ -24,8 +24,7 @@ std::shared_ptr<RecurrentNetwork> MakeRecurrent(const EnvironmentSpec& spec,
   return network;
 }
 
-/// What every agent carries from step to step: h and c, [entries, 2, hidden], zero when an episode
-/// begins.
+/// Recurrent state of every agent: h and c, [slots, 2, hidden], zero at the start of an episode.
 class Carry {
  public:
   Carry(std::size_t entries, std::int64_t hidden)
@@ -54,7 +53,7 @@ class Carry {
     std::copy_n(both.data_ptr<float>(), values_.size(), values_.data());
   }
 
-  /// h and c of rows [count, 2, hidden].
+  /// Returns h and c of rows [count, 2, hidden].
   static RecurrentNetwork::State StateOf(float* rows, std::int64_t count, std::int64_t hidden,
                                          torch::Device device) {
     const torch::Tensor both = torch::from_blob(rows, {count, 2, hidden}).to(device);
@@ -67,7 +66,7 @@ class Carry {
   std::vector<float> values_;
 };
 
-/// One step of all agents: values [entries, kActionCount], the carry moved on.
+/// Steps all agents: returns values [slots, kActionCount] and updates the recurrent states.
 torch::Tensor StepNetwork(RecurrentNetwork& network, const StepResults& results,
                           std::int64_t features, Carry& carry, torch::Device device) {
   const auto entries = static_cast<std::int64_t>(results.legal.size());
@@ -162,7 +161,7 @@ class RecurrentDqnLearner final : public Learner {
   const torch::Device device_;
   std::shared_ptr<RecurrentNetwork> online_;
   std::shared_ptr<RecurrentNetwork> target_;
-  std::shared_ptr<RecurrentNetwork> acting_;  // online_ itself, unless it acts by an average
+  std::shared_ptr<RecurrentNetwork> acting_;  // online_, or a moving average of its weights
   ValueOptimizer optimizer_;
   Explorer explorer_;
   RepetitionPenalty repetitions_;
@@ -245,8 +244,8 @@ RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network
           torch::where(warms_up, state.second, stored.second)};
 }
 
-// [T + 1, B, kActionCount]. Algorithm 2 looks at either end of a tuple with the state stored there;
-// a sequence is stepped through from the state at its beginning.
+// Returns [T + 1, B, kActionCount]. Algorithm 2 evaluates both ends of a tuple with the state
+// stored there. A sequence is evaluated from the state at its beginning.
 torch::Tensor RecurrentDqnLearner::ValuesAlong(RecurrentNetwork& network,
                                                const torch::Tensor& observations) {
   RecurrentNetwork::State state = WarmState(network);
@@ -258,7 +257,7 @@ torch::Tensor RecurrentDqnLearner::ValuesAlong(RecurrentNetwork& network,
   return torch::cat({before, network.Forward(observations.narrow(0, 1, 1), after)});
 }
 
-// [T, B] of Algorithm 2, line 20. `values` are the online network's.
+// Returns [T, B] of Algorithm 2, line 20. `values` are those of the online network.
 torch::Tensor RecurrentDqnLearner::Targets(const torch::Tensor& observations,
                                            const torch::Tensor& actions,
                                            const torch::Tensor& values) {
@@ -298,7 +297,7 @@ void RecurrentDqnLearner::Update() {
   if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
 }
 
-// Each step of a run by its own error. (R2D2 has one priority a sequence, which is fixed there.)
+// Each step of a sequence gets its own priority. (R2D2 has one priority per sequence.)
 void RecurrentDqnLearner::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor values = errors.cpu().contiguous();
   const float* const error = values.data_ptr<float>();

@@ -17,7 +17,7 @@ bool EndsWith(const std::string& name, const std::string& end) {
   return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
 }
 
-// Names as Encoder::feature_names gives them.
+// Names as in Encoder::feature_names.
 bool TellsSituations(const std::string& name) {
   if (name == "self.x" || name == "self.y" || name == "free_capacity") return true;
   return name.rfind("device", 0) == 0 && (EndsWith(name, ".deployed") || EndsWith(name, ".aboard"));
@@ -35,7 +35,7 @@ RepetitionPenalty::RepetitionPenalty(const EnvironmentSpec& spec, double penalty
   done_.resize(turn_.size() * kRemembered);
 }
 
-// A hash, above the bits of an action.
+// Hash of the situation, above the bits of an action.
 std::uint64_t RepetitionPenalty::SituationOf(const float* features) const {
   Hasher situation;
   for (const std::size_t feature : telling_) situation.Add(features[feature], 0.0F);

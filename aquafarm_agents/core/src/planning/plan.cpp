@@ -17,7 +17,7 @@ std::vector<Track> Foresee(const Farm& farm, Foresight foresight,
     const auto disaster = static_cast<std::int32_t>(id);
     disasters[id].turn_threshold = 0;
     disasters[id].waypoint = kNone;
-    // One with a track comes from afar and knows no border.
+    // A disaster with a track may be far outside the map and ignores its border.
     if (!tracks[id]->empty()) disasters[id].border = Border::kLeave;
     if (!HasForecast(farm, disaster, farm.step())) continue;
     disasters[id].waypoint = 0;
@@ -31,8 +31,8 @@ void Reservations::Add(std::int32_t id, std::int32_t first, const std::vector<st
   for (std::size_t k = 0; k < path.size(); ++k) {
     const std::int32_t step = first + static_cast<std::int32_t>(k);
     taken_[Key(step, path[k])].push_back({id, 0});
-    // Ships move in id order: a higher id finds it gone on, a lower one where it was, and may not
-    // be where it is about to go.
+    // Ships move in id order: later ships see its new cell, earlier ones its old cell, and these
+    // must not be in its next cell.
     taken_[Key(step - 1, path[k])].push_back({id, 1});
     taken_[Key(step + 1, path[k])].push_back({id, -1});
   }

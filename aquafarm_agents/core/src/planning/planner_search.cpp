@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search of a plan: forward in time, the best return so far per state, pruned by the bound.
+// The search for a plan: forward in time, max return so far per state, pruned by the bound.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -37,7 +37,7 @@ void PlannerSolver::Prepare(const Farm& farm) {
   best_layer_ = 0;
 }
 
-// Value lost when what is aboard for its value loses `share` of its health.
+// Returns the value lost when the paid devices aboard lose `share` of their health.
 double PlannerSolver::Loss(std::size_t set, float share) const {
   double loss = 0.0;
   for (std::size_t d = 0; d < devices_ && share > 0.0F; ++d) {
@@ -97,7 +97,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   }
   if (IsInTheWay(step, cell)) return;
   const float risk = risk_.data()[cell];
-  // The farm picks up the lowest id of those that wait in a cell.
+  // The farm picks up the device with the lowest id in a cell.
   for (std::size_t d = 0; d < devices_; ++d) {
     if (site_[d] != static_cast<std::int32_t>(cell) || FateOf(set, d) != kWaiting) continue;
     for (const Fate fate : {kPaid, kUnpaid}) {
@@ -127,7 +127,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   }
 }
 
-// Ports block nobody.
+// Ports are never blocked.
 bool PlannerSolver::IsInTheWay(std::int32_t step, std::size_t cell) const {
   if (task_->others == nullptr) return false;
   const auto index = static_cast<std::int32_t>(cell);
@@ -141,7 +141,7 @@ Plan PlannerSolver::Solve(const Farm& farm, Foresight foresight, const Task& tas
   if (farm.over()) return {};
   task_ = &task;
   Prepare(farm);
-  // A narrow search first: what it finds prunes the exact one.
+  // A narrow search first: its result prunes the exact search.
   Search(farm, foresight, kBeam);
   Plan narrow = Trace();
   if (best_ != kNever) best_ -= kSlack;
@@ -181,7 +181,7 @@ std::int32_t PlannerSolver::LastStep(std::int32_t step) const {
   return disasters_.empty() ? scenario_.step_limit : std::min(scenario_.step_limit, step + longest);
 }
 
-// What is aboard already may be delivered for its value or for nothing.
+// Devices aboard may be delivered as paid or as unpaid.
 void PlannerSolver::ReachStart(const Farm& farm) {
   layers_.emplace_back();
   next_values_.clear();
@@ -189,13 +189,13 @@ void PlannerSolver::ReachStart(const Farm& farm) {
   const auto cell = static_cast<std::size_t>(LinearIndex(ship.cell, scenario_.width));
   std::vector<std::pair<std::size_t, double>> starts{{0, 0.0}};
   for (std::size_t d = 0; d < devices_; ++d) {
-    if (d >= task_->devices.size()) {  // a slot that this task does not need
+    if (d >= task_->devices.size()) {  // a slot that this task does not use
       for (auto& start : starts) start.first = With(start.first, d, kGone);
       continue;
     }
     const std::int32_t id = task_->devices[d];
     const Device& device = farm.devices()[static_cast<std::size_t>(id)];
-    // A ship that is a device has itself aboard.
+    // A ship that is a device carries itself.
     if (device.status == DeviceStatus::kDeployed && id != ship.own_device) continue;
     const std::size_t count = starts.size();
     for (std::size_t i = 0; i < count; ++i) {
@@ -214,7 +214,7 @@ void PlannerSolver::ReachStart(const Farm& farm) {
   }
 }
 
-// Keeps the most promising states of the layer just reached.
+// Keeps the states of the current layer with the highest upper bounds.
 void PlannerSolver::Narrow(std::size_t widest) {
   std::vector<Node>& layer = layers_.back();
   if (layer.size() <= widest) return;
@@ -235,7 +235,7 @@ void PlannerSolver::Narrow(std::size_t widest) {
   next_values_ = std::move(kept_values);
 }
 
-// Time is over: what is aboard for its value was promised and not delivered.
+// The episode ends: plans with an undelivered paid device are invalid.
 void PlannerSolver::EndOfTime() {
   for (std::size_t index = 0; index < layers_.back().size(); ++index) {
     const Node& node = layers_.back()[index];
@@ -249,7 +249,7 @@ void PlannerSolver::EndOfTime() {
 
 Plan PlannerSolver::Trace() const {
   Plan plan;
-  if (best_layer_ == 0) return plan;  // nothing was completed
+  if (best_layer_ == 0) return plan;  // no complete plan was found
   plan.expected_return = best_;
   std::uint32_t parent = best_parent_;
   plan.actions.push_back(best_action_);

@@ -64,7 +64,7 @@ void PlannerSolver::ListOptions(const Farm& farm) {
       std::vector<Option>& options = options_[static_cast<std::size_t>(here)];
       options.clear();
       if ((layout_->bits({x, y}) & kBlockedBits) != 0) continue;
-      std::optional<Option> edge;  // standing still by a move off the map
+      std::optional<Option> edge;  // stays in the cell by a move off the map
       for (std::uint8_t action = 0; action < kMoveCount; ++action) {
         const Cell to{x + kMoves[action].x, y + kMoves[action].y};
         const bool on_map =
@@ -80,8 +80,8 @@ void PlannerSolver::ListOptions(const Farm& farm) {
         }
       }
       if (edge) options.push_back(*edge);
-      // Standing still by an illegal action, which replaces the step reward: not by the one that
-      // might pick up a device here, or drop one off.
+      // Staying in the cell by an illegal action, which replaces the step reward. The action chosen
+      // must not pick up or drop off a device here.
       const bool at_port = (layout_->bits({x, y}) & kPortBit) != 0;
       options.push_back({here, scenario_.rewards.illegal, 0.0F,
                          static_cast<std::uint8_t>(at_port ? Action::kPickup : Action::kDropOff),
@@ -90,7 +90,7 @@ void PlannerSolver::ListOptions(const Farm& farm) {
   }
 }
 
-// Adds to `best` [cells] what picking up or dropping off there leads to.
+// Updates `best` [cells] with the returns after a pickup or a drop-off in the cell.
 void PlannerSolver::AddGains(std::size_t set, std::vector<double>& best) const {
   const auto bound = [&](std::size_t next, std::size_t cell) {
     return next == all_gone_ ? 0.0 : bound_[next * cells_ + cell];
@@ -116,7 +116,7 @@ void PlannerSolver::AddGains(std::size_t set, std::vector<double>& best) const {
   }
 }
 
-// Slots that a task does not need count as gone from the start.
+// Unused slots of a task count as gone from the start.
 bool PlannerSolver::IsOfTask(std::size_t set) const {
   for (std::size_t d = task_->devices.size(); d < devices_; ++d) {
     if (FateOf(set, d) != kGone) return false;
@@ -124,9 +124,9 @@ bool PlannerSolver::IsOfTask(std::size_t set) const {
   return true;
 }
 
-// Device sets only ever advance, so each layer of cells is solved once, the last ones first: the
-// most that any cell can still earn, a step costing what it costs in quiet water, or in the mildest
-// risk where that costs less.
+// Computes the max further return of every state. A device's status only advances, so each set of
+// devices is solved once, the last sets first. A move costs the step reward in quiet water, or the
+// mildest risk if that costs less.
 void PlannerSolver::SolveBound() {
   bound_.assign(state_count(), 0.0);
   const double move = std::max(static_cast<double>(scenario_.rewards.step), kMildestRisk);
@@ -139,7 +139,7 @@ void PlannerSolver::SolveBound() {
   std::priority_queue<Entry> queue;
   for (const std::size_t set : order) {
     if (set == all_gone_ || !IsOfTask(set)) continue;
-    std::fill(best.begin(), best.end(), 0.0);  // doing nothing more is no better than free
+    std::fill(best.begin(), best.end(), 0.0);  // stopping costs nothing
     AddGains(set, best);
     for (std::size_t cell = 0; cell < cells_; ++cell) {
       if (best[cell] > 0.0) queue.push({best[cell], cell});
@@ -184,7 +184,7 @@ void PlannerSolver::AdvanceDisasters(const Farm& farm, std::int32_t step) {
   crash_hurts_ = probability >= 1.0F || ToUnit(draws[0]) < probability;
 }
 
-// What still waits where it was deployed, after the damage of this step.
+// Damages the devices that still wait at their deployed positions, after this step.
 void PlannerSolver::WearDown() {
   const float exposure = scenario_.damage.exposure_damage;
   for (std::size_t d = 0; d < task_->devices.size() && exposure > 0.0F; ++d) {

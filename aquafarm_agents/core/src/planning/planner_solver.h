@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What Planner keeps to itself: the farm and the task as a graph (planner_solver.cpp) and the
-/// search in it (planner_search.cpp).
+/// Implementation of Planner: the farm and the task as a graph (planner_solver.cpp) and the search
+/// in it (planner_search.cpp).
 
 #include <limits>
 #include <vector>
@@ -11,22 +11,22 @@
 
 namespace aquafarm::agents {
 
-/// What has become of a device, as far as a plan goes.
+/// Status of a device in a plan.
 enum Fate : std::uint8_t { kWaiting, kPaid, kUnpaid, kGone };
 constexpr std::int32_t kFates = 4;
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
-// Sums of floats in double differ from the farm's own by less than this.
+// Sums of floats in double precision differ from the farm's own sums by less than this.
 constexpr double kTolerance = 1e-6;
-// By how much the exact search undercuts the narrow one's result, to meet it again on its own.
+// Margin by which the exact search starts below the result of the narrow search, to find it again.
 constexpr double kSlack = 1e-3;
-// States kept a step by the narrow search.
+// States per step that the narrow search keeps.
 constexpr std::size_t kBeam = 64;
 
-// One way to act in a cell, before disasters: where it leads and what it pays.
+// One action in a cell without disasters: its destination and its reward.
 struct Option {
   std::int32_t to{};
-  float reward{};  // crash, illegal; 0 for a quiet move
+  float reward{};  // of a crash or an illegal action; 0 for a quiet move
   float damage{};  // health lost aboard in a crash
   std::uint8_t action{};
   bool triggers{};  // a crash or an illegal action, which replaces the step reward, even if it is 0
@@ -39,16 +39,16 @@ class PlannerSolver {
   std::size_t state_count() const { return sets_.size() * cells_; }
 
  private:
-  // A state reached at some time, and how.
+  // A state reached at some step, with its predecessor.
   struct Node {
     std::uint32_t state;
-    std::uint32_t parent;  // index into the layer before
+    std::uint32_t parent;  // index into the previous layer
     std::uint8_t action;
   };
   struct Open {
     double reached{kNever};
     std::uint32_t layer_index{};
-    std::uint32_t mark{};  // layer in which it was reached, + 1
+    std::uint32_t mark{};  // layer in which it was reached, plus 1
   };
 
   Fate FateOf(std::size_t set, std::size_t device) const {
@@ -82,27 +82,27 @@ class PlannerSolver {
   const Scenario& scenario_;
   std::size_t cells_;
   std::size_t devices_;                    // slots of a task
-  std::vector<std::uint32_t> sets_;        // two bits a device: its Fate
-  std::vector<std::int32_t> set_of_bits_;  // back; kNone: more aboard than capacity
+  std::vector<std::uint32_t> sets_;        // two bits per device: its Fate
+  std::vector<std::int32_t> set_of_bits_;  // inverse of sets_; kNone: more aboard than the capacity
   std::size_t all_gone_{};
 
-  // Of the farm and the task planned for.
+  // Data of the current farm and task.
   const Task* task_{};
   const Layout* layout_{};
   std::vector<std::vector<Option>> options_;  // by cell
   std::vector<std::int32_t> site_;            // by device: its cell
   std::vector<float> value_;
-  std::vector<float> health_;  // of what still waits, now
-  std::vector<double> bound_;  // by state: most that can follow, were there no disaster
+  std::vector<float> health_;  // present health of the waiting devices
+  std::vector<double> bound_;  // by state: max further return without disasters
   std::vector<Disaster> disasters_;
-  std::vector<Track> tracks_;  // that they are thought to follow
+  std::vector<Track> tracks_;  // assumed tracks of the disasters
   Grid<float> risk_;
   bool crash_hurts_{};
 
-  // The search.
+  // State of the search.
   std::vector<std::vector<Node>> layers_;
-  std::vector<double> values_;       // of the layer being expanded
-  std::vector<double> next_values_;  // of the layer being reached
+  std::vector<double> values_;       // of the layer that is expanded
+  std::vector<double> next_values_;  // of the layer that is reached
   std::vector<Open> open_;           // by state
   double best_{kNever};
   std::size_t best_layer_{};

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-/// The best trip for one device, found forward in time.
+/// The best trip for one device, searched forward in time.
 class Trip {
  public:
   Trip(const Farm& farm, std::size_t id, const std::vector<std::int32_t>& to_port)
@@ -39,7 +39,7 @@ class Trip {
     ListWaits(farm.ships().size() > 1);
   }
 
-  /// Goes on by a step. @param risk [H, W] in it
+  /// Advances by one step. @param risk [H, W] of this step
   void Step(const Grid<float>& risk) {
     StartTrips();
     PickUpAndDropOff(risk);
@@ -56,9 +56,9 @@ class Trip {
 
   double best() const { return best_; }
 
-  /// Whether no trip can beat the best any more, were there no disaster from now on.
+  /// Returns whether no trip can exceed the best one, even without any further disaster.
   bool IsOver() const {
-    // In a risk that is milder than a step, ships pay it instead.
+    // A risk that is milder than a step replaces its cost.
     const double move = shares_way_ ? 0.0 : std::max(move_, kMildestRisk);
     double most = kNever;
     for (std::size_t cell = 0; cell < laden_.size(); ++cell) {
@@ -79,8 +79,8 @@ class Trip {
   double worth() const { return static_cast<double>(health_) * static_cast<double>(device_.value); }
   double drop_off() const { return static_cast<double>(scenario_.rewards.drop_off); }
 
-  // The most that a step of standing still pays in quiet water, by cell: a crash, a collision or an
-  // illegal action replaces the step reward (Farm::Reward). What a crash damages is left out.
+  // Lists, by cell, the max reward of one step of waiting in quiet water. A crash, a collision or
+  // an illegal action replaces the step reward (Farm::Reward). The damage of a crash is ignored.
   void ListWaits(bool has_others) {
     const RewardSpec& rewards = scenario_.rewards;
     const float anywhere =
@@ -125,10 +125,11 @@ class Trip {
         static_cast<double>(scenario_.damage.exposure_damage * device_.value) * here;
     picked_up_bare_ = empty_[site_] + static_cast<double>(scenario_.rewards.pickup) + Risk(here);
     picked_up_for_value_ = picked_up_bare_ + worth() + wear;
-    best_ = std::max(best_, picked_up_bare_);  // and never brought home
+    best_ = std::max(best_, picked_up_bare_);  // without a delivery
   }
 
-  // One move, or one step of staying, from every cell; a cell is worth its best way to it.
+  // One move, or one step of waiting, from every cell. Each cell keeps the max return of all routes
+  // to it.
   void Spread(const Grid<float>& risk, double value_per_risk, std::vector<double>& values) {
     std::fill(next_.begin(), next_.end(), kNever);
     for (std::int32_t y = 0; y < scenario_.height; ++y) {
@@ -145,12 +146,12 @@ class Trip {
     }
     values.swap(next_);
   }
-  // What a step that ends in `to` pays. @param quiet in quiet water
+  // Returns the reward of a step that ends in `to`. @param quiet reward in quiet water
   double Price(const Grid<float>& risk, Cell to, double value_per_risk, double quiet) const {
     const auto here = static_cast<double>(risk(to.y, to.x));
     return here < 0.0 ? Risk(here) + here * value_per_risk : quiet;
   }
-  // What a ship pays for a risk; one that has others aboard as well pays it once for all.
+  // Returns the reward of a risk. A ship with several devices pays it once, so it is then ignored.
   double Risk(double here) const { return shares_way_ ? 0.0 : here; }
   void Raise(Cell cell, double value) {
     double& known = next_[Index(cell)];
@@ -165,13 +166,14 @@ class Trip {
   float health_;
   bool shares_way_{};
   double move_{};
-  double best_{0.0};           // not to fetch it at all
-  std::vector<double> empty_;  // best return so far, by cell: on the way to the device
-  std::vector<double> laden_;  // the same with it, its worth paid in, wear paid as it comes
-  std::vector<double> bare_;   // the same with it, for nothing: wear takes no more than its worth
+  double best_{0.0};           // 0: the device is not fetched
+  std::vector<double> empty_;  // max return so far, by cell: without the device
+  std::vector<double> laden_;  // max return so far with the device as paid: its value is credited,
+                               // damage is subtracted
+  std::vector<double> bare_;   // max return so far with the device as unpaid: no value, no damage
   std::vector<double> next_;
-  std::vector<double> wait_;            // reward of standing still in quiet water, by cell
-  double picked_up_for_value_{kNever};  // in this step
+  std::vector<double> wait_;            // reward of waiting in quiet water, by cell
+  double picked_up_for_value_{kNever};  // of this step
   double picked_up_bare_{kNever};
 };
 

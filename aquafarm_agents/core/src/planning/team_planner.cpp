@@ -12,19 +12,19 @@
 namespace aquafarm::agents {
 namespace {
 
-// Steps for which a ship with nothing to do plans to keep out of harm's way.
+// Length of a plan for a ship without work, which only avoids risks.
 constexpr std::int32_t kIdleSteps = 30;
-// What the sum of all work weighs beside the time of the last ship to be done.
+// Weight of the total time relative to the time of the last ship.
 constexpr double kWorkWeight = 1e-3;
 
-// Devices that one ship may be given at most: its even share and two more.
+// Max devices per ship: the average number plus two.
 std::int32_t Slots(const Scenario& scenario) {
   const std::int32_t devices = scenario.devices.Total();
   const std::int32_t ships = std::max(1, scenario.ships.count);
   return std::max(1, std::min(devices, (devices + ships - 1) / ships + 2));
 }
 
-/// How long ships would take for their shares, in quiet water.
+/// Estimates how long ships need for their devices in quiet water.
 class TravelCostModel {
  public:
   explicit TravelCostModel(const Farm& farm)
@@ -36,8 +36,8 @@ class TravelCostModel {
     for (const Device& device : farm.devices()) device_.push_back(from({device.cell}));
   }
 
-  /// A ship's time for devices that still wait: trips from and to their nearest ports, but for the
-  /// first, which begins where the ship is.
+  /// Returns the time of a ship for waiting devices: round trips from their nearest ports. The
+  /// first trip begins at the ship's cell.
   double Time(std::int32_t ship, const std::vector<std::int32_t>& share) const {
     const Ship& one = farm_.ships()[static_cast<std::size_t>(ship)];
     const std::size_t here = Index(one.cell);
@@ -62,8 +62,8 @@ class TravelCostModel {
 
   const Farm& farm_;
   double capacity_;
-  std::vector<std::int32_t> port_;                 // to the nearest port
-  std::vector<std::vector<std::int32_t>> device_;  // to each device
+  std::vector<std::int32_t> port_;                 // distance to the nearest port
+  std::vector<std::vector<std::int32_t>> device_;  // distance to each device
 };
 
 using Shares = std::vector<std::vector<std::int32_t>>;
@@ -79,10 +79,10 @@ double Cost(const TravelCostModel& work, const Shares& shares) {
   return last + kWorkWeight * sum;
 }
 
-/// Moves and swaps devices between ships while that is better.
+/// Moves and swaps devices between ships while this reduces the cost.
 class LocalSearch {
  public:
-  /// @param room devices that each ship may be given
+  /// @param room max further devices for each ship
   LocalSearch(const TravelCostModel& work, const std::vector<std::size_t>& room, Shares& shares)
       : work_(work), room_(room), shares_(shares), cost_(Cost(work, shares)) {}
   void Run() {
@@ -149,7 +149,7 @@ class TeamPlanner::Impl {
     const TravelCostModel work(farm);
     const auto slots = static_cast<std::size_t>(Slots(scenario_));
     Shares shares(static_cast<std::size_t>(scenario_.ships.count));
-    // Ships may have more aboard than they would be given: whoever drove them before gave it.
+    // Ships may carry more devices than the planner assigns, loaded by another policy.
     std::vector<std::size_t> room(shares.size());
     for (std::size_t ship = 0; ship < shares.size(); ++ship) {
       const auto aboard = static_cast<std::size_t>(farm.ships()[ship].aboard);
@@ -161,7 +161,7 @@ class TeamPlanner::Impl {
       const bool is_fetched = device.status == DeviceStatus::kDeployed && !device.self_propelled;
       if (is_fetched) waiting.push_back(static_cast<std::int32_t>(id));
     }
-    // The longest trips first, each to whom it delays the least.
+    // The longest trips first, each to the ship with the smallest increase in cost.
     std::stable_sort(waiting.begin(), waiting.end(), [&work](std::int32_t a, std::int32_t b) {
       return work.ToPort(a) > work.ToPort(b);
     });
@@ -171,7 +171,7 @@ class TeamPlanner::Impl {
       const Device& device = farm.devices()[id];
       if (device.carrier == kNone) continue;
       auto& share = shares[static_cast<std::size_t>(device.carrier)];
-      // The rest of a larger load is landed with it, or planned for afterwards.
+      // Further devices of a larger load are delivered with it, or planned afterwards.
       if (share.size() < slots) share.push_back(static_cast<std::int32_t>(id));
     }
     for (std::size_t id = shares.size(); id < farm.ships().size(); ++id) {
@@ -213,7 +213,7 @@ class TeamPlanner::Impl {
     return AreAsForeseen(farm, course);
   }
 
-  // A bulletin, or a turn that the forecast did not know of, changes everything.
+  // Returns false after a bulletin, or after a turn that is not in the forecast.
   bool AreAsForeseen(const Farm& farm, PlanState& course) const {
     if (farm.disasters().size() != course.disasters.size()) return false;
     for (; course.foreseen < farm.step(); ++course.foreseen) {
@@ -254,7 +254,7 @@ class TeamPlanner::Impl {
       reserved_.Add(static_cast<std::int32_t>(id), farm.step(),
                     {LinearIndex(ship.cell, scenario_.width)});
     }
-    for (const bool idle : {false, true}) {  // those with nothing to do give way
+    for (const bool idle : {false, true}) {  // ships without work plan last and avoid the others
       for (std::size_t id = 0; id < agents; ++id) {
         if (!farm.ships()[id].in_play || shares[id].empty() != idle) continue;
         PlanOne(farm, static_cast<std::int32_t>(id), shares[id], course);
@@ -272,7 +272,7 @@ class TeamPlanner::Impl {
     auto& actions = course.actions[static_cast<std::size_t>(id)];
     auto& path = course.path[static_cast<std::size_t>(id)];
     actions = planner_.Solve(farm, foresight_, task).actions;
-    // Hemmed in: any move, and think again.
+    // The ship is enclosed: take any move and plan again.
     if (actions.empty()) actions = {static_cast<std::uint8_t>(farm.step() % kMoveCount)};
     Cell cell = farm.ships()[static_cast<std::size_t>(id)].cell;
     path.push_back(LinearIndex(cell, scenario_.width));

@@ -49,7 +49,7 @@ void Actor::Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const {
     for (std::uint8_t a = 0; a < kActionCount; ++a) {
       const float prob = distribution_.probs(row, a);
       if (prob <= 0.0F) continue;
-      actions[i] = a;  // the last possible action if rounding leaves a rest
+      actions[i] = a;  // the last legal action if rounding leaves a remainder
       left -= prob;
       if (left < 0.0F) break;
     }

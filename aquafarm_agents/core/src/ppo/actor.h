@@ -26,7 +26,7 @@ class Actor {
 
   /// Draws actions from the probabilities; agent i draws from stream i.
   void Sample(AgentRng& rng, std::vector<std::uint8_t>& actions) const;
-  /// Takes the most probable actions; the lowest number among equals.
+  /// Takes the most probable actions; the action with the lowest index among equals.
   void TakeBest(std::vector<std::uint8_t>& actions) const;
 
   std::size_t entries() const { return masks_.size(); }

@@ -29,13 +29,13 @@ class ActorCritic {
  public:
   virtual ~ActorCritic() = default;
 
-  /// Numbers per agent that are carried from step to step; 0 if feed-forward.
+  /// Size of an agent's recurrent state; 0 if feed-forward.
   virtual std::size_t state_size() const = 0;
-  /// Largest number of rows that Forward is efficient with.
+  /// Max number of rows for which Forward is efficient.
   virtual std::size_t chunk_rows() const = 0;
 
-  /// Computes the outputs and keeps what Backward needs.
-  /// @param state_after [sequences, state_size] after the last step; null: not wanted
+  /// Computes the outputs and stores the activations that Backward needs.
+  /// @param state_after [sequences, state_size] after the last step; nullptr if not needed
   /// @returns [rows, kActorCriticOutputs], valid until the next call
   virtual const float* Forward(const SequenceRows& rows, float* state_after) = 0;
 
@@ -45,7 +45,7 @@ class ActorCritic {
 
   std::vector<float>& weights() { return weights_; }
   const std::vector<float>& weights() const { return weights_; }
-  /// Sum of the gradients since it was last cleared; in the order of the weights.
+  /// Sum of the gradients since the last clear, in the order of the weights.
   std::vector<float>& gradient() { return gradient_; }
 
  protected:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMeanDecay = 0.9;
 constexpr double kSquareDecay = 0.999;
-constexpr float kEpsilon = 1e-5F;  // as PPO's reference code has it; Kingma and Ba: 1e-8
+constexpr float kEpsilon = 1e-5F;  // as in PPO's reference code; Kingma and Ba use 1e-8
 
 using Array = Eigen::Map<Eigen::ArrayXf>;
 using ConstArray = Eigen::Map<const Eigen::ArrayXf>;

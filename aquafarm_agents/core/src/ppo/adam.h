@@ -23,12 +23,12 @@ class Adam {
 
   /// Adds sections `adam.mean`, `adam.square` and `adam`.
   void Save(Checkpoint& checkpoint) const;
-  /// @throws InputError if they are missing or have another size; it is then unchanged
+  /// @throws InputError if they are missing or have another size; the state is then unchanged
   void Load(const Checkpoint& checkpoint);
 
  private:
   std::vector<float> mean_;    // of the gradient
-  std::vector<float> square_;  // mean of its square
+  std::vector<float> square_;  // mean of the squared gradient
   std::uint64_t steps_{};
 };
 

@@ -25,7 +25,7 @@ class FeedForward final : public ActorCritic {
   const Linear first_;
   const Linear second_;
   const Linear head_;
-  // [rows, …] of the last Forward
+  // [rows, …] activations of the last Forward
   std::vector<float> first_out_;
   std::vector<float> second_out_;
   std::vector<float> outputs_;

@@ -9,7 +9,7 @@
 ///   kContinues      both terms as above
 ///   kTruncated      A_{t+1} = 0; V(s_{t+1}) is the value of the episode's last observation
 ///   kTerminated     A_{t+1} = 0 and V(s_{t+1}) = 0
-///   kNoTransition   A_t = 0; the slot is not learned from
+///   kNoTransition   A_t = 0; the slot is excluded from training
 
 #include <cstddef>
 #include <cstdint>
@@ -17,12 +17,12 @@
 
 namespace aquafarm::agents {
 
-/// What follows a step for the agent that took it.
+/// What follows a step of an agent: another step, the end of the episode, or no transition.
 enum class StepEnd : std::uint8_t { kContinues, kTruncated, kTerminated, kNoTransition };
 inline constexpr int kStepEndCount = 4;
 
 /// Computes the advantages of `ends.size() / entries` steps. All arrays are time-major.
-/// @param rewards [T, E] that follow the action of a slot
+/// @param rewards [T, E] after the action of a slot
 /// @param values [T + 1, E] of the observations; the last row is the bootstrap
 /// @param ends [T, E]
 /// @param advantages [T, E], resized

@@ -12,7 +12,7 @@ namespace aquafarm::agents {
 /// One fully connected layer inside a flat parameter vector: weights [inputs, outputs], row-major,
 /// then the bias [outputs].
 struct Linear {
-  std::size_t begin{};  ///< of its weights in the flat vector
+  std::size_t begin{};  ///< index of its first weight in the flat vector
   std::size_t inputs{};
   std::size_t outputs{};
 
@@ -30,7 +30,7 @@ struct Linear {
     }
   }
 
-  /// The same, then ReLU.
+  /// out = ReLU(in · W + b)
   void ForwardRelu(const std::vector<float>& weights, std::size_t rows, const float* in,
                    float* out) const {
     Multiply(rows, outputs, inputs, in, weights.data() + begin, 0.0F, out);
@@ -58,7 +58,7 @@ struct Linear {
   }
 };
 
-/// slopes = 0 where the ReLU's output is 0.
+/// Sets slopes to 0 where the output of the ReLU is 0.
 inline void BackwardRelu(std::size_t size, const float* out, float* slopes) {
   for (std::size_t i = 0; i < size; ++i) slopes[i] = out[i] > 0.0F ? slopes[i] : 0.0F;
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kGates = 4;  // in the order i, f, g, o
 constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
-constexpr float kForgetBias = 1.0F;  // of initial weights: remembers at first
+constexpr float kForgetBias = 1.0F;  // of the initial weights: the cell state persists at first
 
 using Row = Eigen::Map<Eigen::ArrayXf>;
 using ConstRow = Eigen::Map<const Eigen::ArrayXf>;

@@ -9,7 +9,7 @@
 
 namespace aquafarm::agents {
 
-/// @param seed of the initial weights: uniform in ±1/√fan_in; those of the logits a hundredth of it
+/// @param seed of the initial weights: uniform in ±1/√fan_in, and ±0.01/√fan_in for the logits
 std::unique_ptr<ActorCritic> MakeActorCritic(std::size_t features, std::size_t hidden,
                                              bool recurrent, std::uint64_t seed);
 

@@ -9,9 +9,9 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr float kFarBelow = -1e30F;  // any logit
+constexpr float kFarBelow = -1e30F;  // below any logit
 
-/// A value that the loss depends on, with the derivative by what it was computed from.
+/// A value in the loss and its derivative.
 struct Sloped {
   float value{};
   float slope{};
@@ -26,7 +26,7 @@ Sloped Ratio(float log_ratio) {
   return {bound * (1.0F + log_ratio - kMaxLogRatio), bound};
 }
 
-/// −min(ρ A, clip(ρ) A) and its derivative by log π(a | s).
+/// −min(ρ A, clip(ρ) A) and its derivative with respect to log π(a | s).
 Sloped PolicyTerm(float log_ratio, float advantage, float clip) {
   const Sloped ratio = Ratio(log_ratio);
   const float clipped = std::min(std::max(ratio.value, 1.0F - clip), 1.0F + clip);
@@ -36,8 +36,8 @@ Sloped PolicyTerm(float log_ratio, float advantage, float clip) {
   return {-clipped * advantage, 0.0F};
 }
 
-/// ½ (V − target)² and its derivative by V. With a clip range the larger of the losses of V and of
-/// V held within the range around V_old (as in the code of Schulman et al. 2017).
+/// ½ (V − target)² and its derivative with respect to V. With a clip range it is the larger of the
+/// losses of V and of V clipped to the range around V_old (as in the code of Schulman et al. 2017).
 Sloped ValueTerm(float value, float old_value, float target, float clip) {
   const float error = value - target;
   if (clip <= 0.0F) return {0.5F * error * error, error};

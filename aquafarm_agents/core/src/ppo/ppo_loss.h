@@ -13,20 +13,21 @@ namespace aquafarm::agents {
 
 inline constexpr int kActorCriticOutputs = kActionCount + 1;
 
-/// Largest log ratio that is exponentiated. Clipping does not bound the ratio from above where the
-/// advantage is negative, so exp() could overflow and make gradients NaN. Beyond the bound b the
-/// ratio continues along its tangent: e^b (1 + x − b). Loss and gradient stay finite and agree.
+/// Max log ratio that is exponentiated. Clipping does not bound the ratio from above if the
+/// advantage is negative, so exp() could overflow and cause NaN gradients. Beyond the bound b the
+/// ratio continues along its tangent: e^b (1 + x − b). Loss and gradient stay finite and
+/// consistent.
 inline constexpr float kMaxLogRatio = 3.0F;
 
-/// π(a | s) of many rows; an action outside the mask has probability 0.
+/// π(a | s) of many rows; masked actions have probability 0.
 struct ActionDistribution {
   using Table = Eigen::Array<float, Eigen::Dynamic, kActionCount, Eigen::ColMajor>;
-  Table log_probs;           ///< [rows, kActionCount]; meaningless where the probability is 0
+  Table log_probs;           ///< [rows, kActionCount]; undefined where the probability is 0
   Table probs;               ///< [rows, kActionCount]
   Eigen::ArrayXf entropies;  ///< [rows], nats
 
   /// @param outputs [rows, kActorCriticOutputs], row-major
-  /// @param masks [rows], at least one of the kActionCount bits each
+  /// @param masks [rows], at least one of kActionCount bits set in each
   void Compute(const float* outputs, const ActionMask* masks, std::size_t rows);
 };
 
@@ -37,24 +38,24 @@ struct PpoCoefficients {
   float entropy{};
 };
 
-/// What was recorded for each row when its action was chosen. Pointers to [rows].
+/// Data recorded for each row when its action was chosen. Pointers to [rows].
 struct PpoRows {
   const ActionMask* masks{};
   const std::uint8_t* actions{};
   const float* log_probs{};   ///< log π_old(a | s)
   const float* values{};      ///< V_old(s)
-  const float* advantages{};  ///< as used in the loss, normalised or not
-  const float* targets{};     ///< of the value
+  const float* advantages{};  ///< as used in the loss, optionally normalised
+  const float* targets{};     ///< value targets
   const float* weights{};     ///< of the row in the loss; 0: the row is ignored
 };
 
 /// Weighted sums over the rows.
 struct PpoLoss {
-  double policy{};   ///< −min(ρ A, clip(ρ) A)
-  double value{};    ///< ½ (V − target)², clipped if asked for; not multiplied by value_coef
-  double entropy{};  ///< nats
+  double policy{};        ///< −min(ρ A, clip(ρ) A)
+  double value{};         ///< ½ (V − target)², optionally clipped; not multiplied by value_coef
+  double entropy{};       ///< nats
   double square_error{};  ///< (V − target)²
-  double clipped{};       ///< share of rows whose policy gradient is cut off by the clipping
+  double clipped{};       ///< fraction of rows whose policy gradient is 0 because of clipping
   double Total(const PpoCoefficients& c) const {
     return policy + static_cast<double>(c.value) * value - static_cast<double>(c.entropy) * entropy;
   }

@@ -37,7 +37,7 @@ std::int32_t PpoOptions::Horizon(std::size_t entries) const {
   const auto steps = static_cast<std::int32_t>(static_cast<std::size_t>(rollout_size) / entries);
   const std::int32_t horizon = std::max(kMinHorizon, steps);
   if (!recurrent) return horizon;
-  // Whole sequences, so that each begins with a stored state.
+  // Only complete sequences, so that each begins with a stored state.
   return (horizon + sequence_length - 1) / sequence_length * sequence_length;
 }
 

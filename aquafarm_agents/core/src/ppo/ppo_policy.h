@@ -11,11 +11,11 @@
 
 namespace aquafarm::agents {
 
-/// Plays the weights of an ActorCritic, greedily or by sampling (PpoOptions::policy). Its values
-/// are V(s) in units of reward; an agent that is out of play gets action 0 and value 0.
+/// Acts with the weights of an ActorCritic, greedily or by sampling (PpoOptions::policy). Its
+/// values are V(s) in units of reward. Inactive agents get action 0 and value 0.
 class PpoPolicy final : public Policy {
  public:
-  /// @throws InputError if `weights` has not the size of the network
+  /// @throws InputError if the size of `weights` differs from that of the network
   PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
             const std::vector<float>& weights);
 

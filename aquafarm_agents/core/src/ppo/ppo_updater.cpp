@@ -11,9 +11,10 @@
 namespace aquafarm::agents {
 namespace {
 
-constexpr float kErrorShare = 0.05F;  // of an update in the moving average of the squared error
+constexpr float kErrorShare =
+    0.05F;  // weight of an update in the moving average of the squared error
 constexpr float kMinDeviation = 1e-6F;
-constexpr std::size_t kPrefetched = 4;  // rows ahead; shuffled rows are in no order of memory
+constexpr std::size_t kPrefetched = 4;  // rows ahead; shuffled rows are not contiguous in memory
 
 void Prefetch(const float* values, std::size_t count) {
   constexpr std::size_t kCacheLine = 64 / sizeof(float);
@@ -30,7 +31,7 @@ PpoUpdater::PpoUpdater(const PpoOptions& options, ActorCritic& network)
       value_error_(std::nanf("")),
       length_(options.recurrent ? static_cast<std::size_t>(options.sequence_length) : 1) {}
 
-// Sequences with at least one step to learn from.
+// Returns the sequences with at least one transition.
 void PpoUpdater::Collect(const Rollout& rollout) {
   const std::size_t entries = rollout.shape().entries;
   sequences_.clear();
@@ -43,7 +44,7 @@ void PpoUpdater::Collect(const Rollout& rollout) {
   }
 }
 
-// Fisher and Yates.
+// Fisher-Yates shuffle.
 void PpoUpdater::Shuffle(RandomStream& rng) {
   for (std::size_t left = sequences_.size(); left > 1; --left) {
     std::swap(sequences_[left - 1], sequences_[rng.Below(static_cast<std::uint32_t>(left))]);

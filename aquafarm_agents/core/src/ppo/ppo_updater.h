@@ -15,18 +15,18 @@
 
 namespace aquafarm::agents {
 
-/// Improves an ActorCritic on full rollouts: epochs of shuffled minibatches. A minibatch passes
-/// through the network in chunks that fit the processor's cache; their gradients add up.
+/// Improves an ActorCritic with full rollouts in epochs of shuffled minibatches. A minibatch is
+/// processed in chunks that fit the processor's cache; their gradients are summed.
 class PpoUpdater {
  public:
   PpoUpdater(const PpoOptions& options, ActorCritic& network);
 
-  /// Where an update happens; for schedules and messages.
+  /// Position of an update in the run; for schedules and messages.
   struct Context {
     double progress{};  ///< of the run, [0, 1]
     std::uint64_t farm_steps{};
   };
-  /// Runs all epochs on a finished rollout. @param rng orders the samples
+  /// Runs all epochs on a complete rollout. @param rng for the order of the samples
   /// @throws LearnerFailed if a loss or a gradient is not finite; the weights are then those of
   /// the last good minibatch
   void Update(const Rollout& rollout, const Context& context, RandomStream& rng);
@@ -56,11 +56,11 @@ class PpoUpdater {
   PpoCoefficients coefficients_;
 
   // Scratch.
-  std::vector<std::uint32_t> sequences_;  // first slots of the sequences to learn from
+  std::vector<std::uint32_t> sequences_;  // first slots of the sequences with transitions
   std::size_t length_;                    // steps of a sequence
-  float mean_{};                          // of the advantages of a minibatch
+  float mean_{};                          // mean of the advantages of a minibatch
   float inverse_deviation_{1.0F};
-  float weight_{};  // of a row in a minibatch
+  float weight_{};  // weight of a row in a minibatch
   std::vector<float> features_;
   std::vector<float> state_;
   std::vector<std::uint8_t> started_;

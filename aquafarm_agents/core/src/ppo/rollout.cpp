@@ -32,7 +32,7 @@ void Rollout::Complete(const StepResults& results, float reward_scale) {
     rewards_[first + entry] = results.rewards[entry] * reward_scale;
     if (end == StepEnd::kNoTransition) continue;
     if (results.started[farm] != 0) {
-      end = StepEnd::kNoTransition;  // the farm was lost and replaced
+      end = StepEnd::kNoTransition;  // the farm was lost and replaced by a new one
     } else if (results.IsDone(entry, farm)) {
       end = StepEnd::kTerminated;
     } else if (static_cast<EndReason>(results.reasons[farm]) != EndReason::kNone) {

@@ -11,17 +11,18 @@
 
 namespace aquafarm::agents {
 
-/// T steps of E agents (farms × agents of each), time-major: slot t · E + e. A slot holds what an
-/// agent saw, what it chose and what followed.
+/// T steps of E slots (farms × agents), time-major: index t · E + e. Each contains an observation,
+/// the chosen action, and the reward and end that followed.
 class Rollout {
  public:
   struct Shape {
     std::size_t steps{};
     std::size_t entries{};  ///< E
-    std::size_t agents{};   ///< of one farm
+    std::size_t agents{};   ///< agents of one farm
     std::size_t features{};
     std::size_t state_size{};
-    std::size_t sequence_length{1};  ///< the state is kept at every sequence_length-th step
+    std::size_t sequence_length{
+        1};  ///< the recurrent state is stored at every sequence_length-th step
   };
   explicit Rollout(const Shape& shape);
 
@@ -29,14 +30,14 @@ class Rollout {
   std::size_t slots() const { return shape_.steps * shape_.entries; }
   bool IsFull() const { return steps_ == shape_.steps && !is_open_; }
 
-  /// Records what followed the last decisions; does nothing if there are none.
+  /// Records the results of the last decisions; does nothing if there are none.
   void Complete(const StepResults& results, float reward_scale);
-  /// Records decisions, all [E]. @param state [E, state_size] before them
+  /// Records decisions [E]. @param state [E, state_size] before them
   void Add(const StepResults& results, const std::vector<ActionMask>& masks,
            const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,
            const std::vector<float>& values, const std::vector<float>& state);
   /// Computes advantages and value targets of a full rollout.
-  /// @param last_values [E] of the observations that follow the last step
+  /// @param last_values [E] of the observations after the last step
   void Finish(const std::vector<float>& last_values, float gamma, float lambda);
   void Clear() { steps_ = 0; }
 
@@ -60,8 +61,8 @@ class Rollout {
 
  private:
   Shape shape_;
-  std::size_t steps_{};  // recorded
-  bool is_open_{};       // the last step waits for its results
+  std::size_t steps_{};  // number of recorded steps
+  bool is_open_{};       // the results of the last step are not recorded yet
   std::vector<float> features_;
   std::vector<float> states_;  // [T / sequence_length, E, state_size]
   std::vector<ActionMask> masks_;

@@ -10,7 +10,7 @@
 
 namespace aquafarm::agents {
 
-/// Draws initial weights from (seed, learner), uniform in ±1/√fan_in as PyTorch does.
+/// Draws initial weights from (seed, learner), uniform in ±1/√fan_in as in PyTorch.
 class WeightDrawer {
  public:
   explicit WeightDrawer(std::uint64_t seed) : rng_({seed, 0, RngStream::kLearner, 0}) {}
@@ -22,7 +22,7 @@ class WeightDrawer {
     }
   }
 
-  /// The last layer: its logits begin near 0, so that the policy is almost uniform at first.
+  /// Draws the last layer: its logits are near 0, so that the initial policy is almost uniform.
   void DrawHead(const Linear& layer, std::vector<float>& weights) {
     constexpr float kLogitScale = 0.01F;
     Draw(layer, weights);

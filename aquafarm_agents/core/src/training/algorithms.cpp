@@ -53,7 +53,7 @@ using Encodings = std::uint8_t (*)(const std::string&);
 using MakeLearner = std::unique_ptr<Learner> (*)(const EnvironmentSpec&, std::uint64_t,
                                                  const std::string&);
 
-// The exploration that learner options ask for, whatever else they say.
+// Returns the exploration in a learner's options and ignores the other options.
 ExplorationOptions ExplorationIn(const std::string& options) {
   return ParseExploration(OptionReader(options).Text("exploration", "epsilon_greedy"),
                           ExplorationOf::kAny);
@@ -90,7 +90,7 @@ std::unique_ptr<Policy> MakeEachPolicy(const Checkpoint& checkpoint, const Envir
   return MakeIndependentPolicy(checkpoint, spec, make);
 }
 
-// "one rescue squad decides", "4 networked self-propelled devices decide"
+// Returns "one rescue squad decides", "4 networked self-propelled devices decide".
 std::string DescribeDeciders(std::int32_t ships, std::int32_t devices, bool networked) {
   const auto count = [](std::int32_t n, const std::string& one) {
     return n == 1 ? "one " + one : std::to_string(n) + " " + one + "s";
@@ -149,7 +149,7 @@ const Algorithm& FindAlgorithm(const std::string& name) {
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options) {
   if ((algorithm.encodings(options) & kIndexBit) == 0) return algorithm.default_steps;
-  // Measured on a ranch of 17.9 million states (docs/data.md): half as many do not suffice.
+  // Measured on a ranch with 17.9 million states (docs/data.md): half as many steps are not enough.
   constexpr std::uint64_t kStepsPerState = 8;
   constexpr std::uint64_t kMillion = 1'000'000;
   const std::uint64_t enough = (kStepsPerState * spec.state_count / kMillion + 1) * kMillion;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// DQN and LSTM-DQN learn tiny farms, each switch on its own, and continue bit for bit.
+// DQN and LSTM-DQN learn tiny farms with each option, and continue bit-identically.
 #include "aquafarm/agents/dqn/dqn.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr const char* kSmallRecurrent =
     "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=8 "
     "burn_in=4 learning_rate=linear:0.003:0.0001:1 ";
 
-/// Success of a greedy policy on seeds never trained on, before and after training.
+/// Success rate of a greedy policy on unseen seeds, before and after training.
 struct Progress {
   double before{};
   double after{};
@@ -66,7 +66,7 @@ TEST(Dqn, SolvesItWithEachSwitchTurnedRound) {
     EXPECT_NE(Resolved(kSmall + change, false), Resolved(kSmall, false)) << change;
     ExpectSolves("dqn", kSmall + change, 20000);
   }
-  // Illegal actions have to be unlearnt first, and tried for longer.
+  // The learner must first learn to avoid illegal actions, so it explores longer.
   ExpectSolves(
       "dqn",
       kSmall + std::string("mask_illegal=false exploration=epsilon_greedy:linear:1:0.05:0.5"),
@@ -97,7 +97,7 @@ TEST(RecurrentDqn, SolvesItWithEachSwitchTurnedRound) {
     EXPECT_NE(Resolved(kSmallRecurrent + change, true), Resolved(kSmallRecurrent, true)) << change;
     ExpectSolves("lstm_dqn", kSmallRecurrent + change, 20000);
   }
-  // Errors are set apart as well, so it takes longer.
+  // The action gap also widens errors, so training takes longer.
   ExpectSolves("lstm_dqn", kSmallRecurrent + std::string("action_gap=0.5"), 40000);
 }
 
@@ -108,7 +108,7 @@ TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
                24000);
 }
 
-// The tiny farm with its device where one way alone takes no more than two steps.
+// The tiny farm with its device at a cell from which only one route takes at most two steps.
 std::shared_ptr<const Scenario> OneWayFarm() {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 60;
@@ -116,7 +116,8 @@ std::shared_ptr<const Scenario> OneWayFarm() {
   return Share(scenario);
 }
 
-// How much the best legal action is worth above the next where an episode begins.
+// Returns the value of the best legal action minus that of the second best, at the start of an
+// episode.
 float Gap(const std::string& algorithm, const std::string& options, std::uint64_t steps) {
   const Algorithm& entry = FindAlgorithm(algorithm);
   LocalEnvironment environment(OneWayFarm(), {8, entry.encodings(options), false, 1});
@@ -176,7 +177,7 @@ struct Crashes {
   int greedy{};
 };
 
-/// Crashes in `steps` steps of a learner that knows nothing, and in as many of its greedy policy.
+/// Crashes in `steps` steps of an untrained learner, and in as many steps of its greedy policy.
 Crashes CrashesIn(const std::string& algorithm, const std::string& options, int steps) {
   const Algorithm& entry = FindAlgorithm(algorithm);
   LocalEnvironment environment(TinyFarm(), {4, entry.encodings(options), false, 1});
@@ -349,7 +350,7 @@ TEST(DeepPolicies, ThatDoNotFitAreRefusedWithWhatDiffers) {
   }
 }
 
-// Actions of a policy in `count` episodes from `first` on.
+// Returns the actions of a policy in `count` episodes, starting with episode `first`.
 std::vector<std::vector<std::uint8_t>> ActionsIn(Environment& environment, Policy& policy,
                                                  std::uint64_t first, std::size_t count) {
   policy.Begin(1, 1);
@@ -377,7 +378,7 @@ TEST(RecurrentDqn, ForgetsAtAnEpisodesStart) {
   std::string& bytes = checkpoint.sections["weights"];
   std::vector<float> weights(bytes.size() / sizeof(float));
   checkpoint.GetArray("weights", weights.size(), weights);
-  for (float& weight : weights) weight *= 4.0F;  // so that what it remembers matters
+  for (float& weight : weights) weight *= 4.0F;  // so that the recurrent state matters
   checkpoint.SetArray("weights", weights);
   const auto policy = FindAlgorithm("lstm_dqn").make_policy(checkpoint, environment.spec());
   const auto in_a_row = ActionsIn(environment, *policy, 0, 6);

@@ -84,7 +84,7 @@ TEST(RepetitionPenalty, AreForgottenAfterAThousandSteps) {
 }
 
 TEST(RepetitionPenalty, EndGoingToAndFro) {
-  // Values of a network that is wrong by 3: it would rather step aside, and back, than pick up.
+  // Values of a network with an error of 3: it prefers to step away and back over the pickup.
   constexpr std::uint8_t kAside = 1;
   constexpr std::uint8_t kBack = 5;
   constexpr auto kPickup = static_cast<std::uint8_t>(Action::kPickup);

@@ -16,12 +16,12 @@ namespace aquafarm::agents::test {
 
 using Values = std::vector<double>;
 
-/// Reads layers from a flat list of parameters, in the order of PyTorch's modules.
+/// Reads layers from a flat parameter vector, in the order of PyTorch's modules.
 class ParameterReader {
  public:
   explicit ParameterReader(const Values& parameters) : parameters_(parameters) {}
 
-  /// W x + b with W [outputs, inputs], then b, as torch::nn::Linear keeps them.
+  /// Returns W x + b with W [outputs, inputs], then b, in the layout of torch::nn::Linear.
   Values Linear(const Values& x, std::size_t outputs) {
     const std::size_t bias = place_ + outputs * x.size();
     Values y(outputs);
@@ -48,7 +48,7 @@ inline Values Relu(Values x) {
   return x;
 }
 
-/// Q(s, ·) of two hidden layers.
+/// Returns Q(s, ·) of a network with two hidden layers.
 inline Values MlpOracle(const Values& parameters, const Values& x, std::size_t hidden) {
   ParameterReader reader(parameters);
   const Values first = Relu(reader.Linear(x, hidden));
@@ -56,19 +56,19 @@ inline Values MlpOracle(const Values& parameters, const Values& x, std::size_t h
   return reader.Linear(second, kActionCount);
 }
 
-/// h and c of an LSTM.
+/// State of an LSTM.
 struct Memory {
   Values h;
   Values c;
 };
 
-/// Q(s, ·) of the recurrent network; steps the memory (Hochreiter and Schmidhuber 1997, with the
-/// forget gate of Gers et al. 2000; gates in PyTorch's order i, f, g, o).
+/// Returns Q(s, ·) of the recurrent network and updates its state (Hochreiter and Schmidhuber 1997,
+/// with the forget gate of Gers et al. 2000; gates in PyTorch's order i, f, g, o).
 inline Values LstmOracle(const Values& parameters, const Values& x, std::size_t hidden, bool skip,
                          Memory& memory) {
   ParameterReader reader(parameters);
   const Values seen = Relu(reader.Linear(x, hidden));
-  const std::size_t of_input = 4 * hidden * hidden;  // then as many of h, then two biases
+  const std::size_t of_input = 4 * hidden * hidden;  // followed by as many of h and two biases
   Values gates(4 * hidden);
   for (std::size_t g = 0; g < gates.size(); ++g) {
     gates[g] = reader.at(2 * of_input + g) + reader.at(2 * of_input + gates.size() + g);
@@ -89,7 +89,7 @@ inline Values LstmOracle(const Values& parameters, const Values& x, std::size_t 
   return reader.Linear(Relu(reader.Linear(joined, joined.size())), kActionCount);
 }
 
-/// The gradient of `loss` at `parameters`, by central differences.
+/// Returns the gradient of `loss` at `parameters`, by central differences.
 inline Values Differences(Values parameters, const std::function<double(const Values&)>& loss) {
   constexpr double kStep = 1e-6;
   Values gradient(parameters.size());
@@ -104,7 +104,7 @@ inline Values Differences(Values parameters, const std::function<double(const Va
   return gradient;
 }
 
-/// One step of Adam with PyTorch's constants. @param step number of this step, from 1
+/// One step of Adam with PyTorch's constants. @param step number of this step, starting at 1
 inline Values AdamOracle(Values parameters, const Values& gradient, const Values& mean,
                          const Values& square, int step, double rate) {
   constexpr double kMeanDecay = 0.9;

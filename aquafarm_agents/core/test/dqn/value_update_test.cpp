@@ -15,14 +15,14 @@ namespace {
 
 constexpr std::size_t kHidden = 4;
 constexpr std::size_t kMoments = 41;
-constexpr int kAdamStep = 5;  // steps of Adam before the update
+constexpr int kAdamStep = 5;  // Adam steps before the update
 constexpr double kTau = 0.25;
 
 const char* const kCommon =
     "hidden=4 start=1000000 replay=400 steps_per_update=1 learning_rate=0.01 "
     "target_rate=0.25 exploration=epsilon_greedy:1 discount=0.9 reward_scale=0.25 threads=1 ";
 
-/// One tiny farm whose episodes are truncated, and one whose disaster ends them.
+/// A tiny farm whose episodes are truncated, or one whose disaster terminates them.
 std::shared_ptr<const Scenario> Farm(bool truncates, std::int32_t ships, bool team) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.ships.count = ships;
@@ -34,13 +34,14 @@ std::shared_ptr<const Scenario> Farm(bool truncates, std::int32_t ships, bool te
   return Share(scenario);
 }
 
-/// A learner that has seen kMoments moments and never updated, and what an oracle needs of them.
+/// A learner that has recorded kMoments time steps and is not updated yet, with the data for an
+/// oracle.
 struct Update {
   DeepOptions options;
   EnvironmentSpec spec;
   bool recurrent{};
-  std::vector<StepResults> log;                    // by moment
-  std::vector<std::vector<std::uint8_t>> actions;  // by moment
+  std::vector<StepResults> log;                    // by time step
+  std::vector<std::vector<std::uint8_t>> actions;  // by time step
   Checkpoint before;
   Checkpoint after;
   double progress{0.25};
@@ -68,7 +69,7 @@ Values Doubles(const Checkpoint& checkpoint, const std::string& name) {
   return {values.begin(), values.end()};
 }
 
-// Another target network, and an Adam that has taken steps, so that each of them shows.
+// Changes the target network and the state of Adam, so that errors in each of them are visible.
 void Disturb(Checkpoint& checkpoint) {
   RandomStream rng({77, 0, RngStream::kLearner, 9});
   std::vector<float> target;
@@ -120,10 +121,10 @@ Update MakeUpdate(const std::string& algorithm, const std::string& options,
 
 struct Batch {
   std::vector<TransitionIndex> moments;
-  std::vector<double> weights;  // importance, the largest 1
+  std::vector<double> weights;  // importance weights, the largest is 1
 };
 
-// The moments that the learner drew, from its own random stream.
+// Returns the transitions that the learner draws, from its random stream.
 Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   const auto& spec = update.spec;
   const std::size_t carry = update.recurrent ? 2 * kHidden : 0;
@@ -149,7 +150,7 @@ Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   return batch;
 }
 
-/// One term of a loss: (y − Σ Q(s, a))² of a sample, weighted.
+/// One weighted term of a loss: (y − Σ Q(s, a))² of a sample.
 struct Term {
   double target{};
   double weight{};
@@ -172,7 +173,7 @@ std::size_t BestOf(const Update& update, const Values& values, std::size_t momen
   return best;
 }
 
-/// The sum of rewards over n steps at most, where it ends, and what the value there counts.
+/// Sum of rewards over at most n steps, its last time step, and the discount of the value there.
 struct Return {
   double reward{};
   double discount{1.0};
@@ -193,7 +194,7 @@ Return SumRewards(const Update& update, std::size_t moment, std::size_t entry, s
   return sum;
 }
 
-/// Compares what the learner did with terms whose predictions `predict` gives.
+/// Compares the learner's update with `terms`; `predict` computes their predictions.
 void ExpectUpdate(const Update& update, const std::vector<Term>& terms,
                   const std::function<Values(const Values& parameters)>& predict) {
   const Values online = Doubles(update.before, "weights");
@@ -240,7 +241,7 @@ void ExpectUpdate(const Update& update, const std::vector<Term>& terms,
   }
 }
 
-// How samples of a batch ended, so that no case is left untested.
+// Checks that a batch contains the expected ends of episodes.
 void ExpectEnds(const Update& update, const Batch& batch, bool truncates) {
   int ended = 0;
   for (const TransitionIndex& moment : batch.moments) {
@@ -294,7 +295,7 @@ TEST(DqnUpdate, IsThatOfEachSwitch) {
   }
 }
 
-// VDN: the team's value is the sum of its agents' (Sunehag et al. 2018).
+// VDN: the team's value is the sum of its agents' values (Sunehag et al. 2018).
 void ExpectVdn(const std::string& options, bool team) {
   SCOPED_TRACE(options + (team ? " team" : " individual"));
   const Update update = MakeUpdate("vdn", options, Farm(false, 2, team));
@@ -310,7 +311,7 @@ void ExpectVdn(const std::string& options, bool team) {
       const Values seen = update.Seen(sum.to, agent);
       const Values values = MlpOracle(target, seen, kHidden);
       const Values chooses = update.options.double_q ? MlpOracle(online, seen, kHidden) : values;
-      // A shared reward is the team's already, given to each agent.
+      // A team reward is repeated for each agent.
       term.target += sum.reward / (team ? static_cast<double>(agents) : 1.0) +
                      sum.discount * values[BestOf(update, chooses, sum.to, agent)];
     }
@@ -338,7 +339,8 @@ TEST(VdnUpdate, FitsTheSumOfTheAgentsValues) {
 
 Memory Empty() { return {Values(kHidden), Values(kHidden)}; }
 
-// What the agent carried into a moment, stepped from its episode's start by the acting network.
+// Returns the recurrent state of an agent before a time step, computed from the start of its
+// episode with the acting network.
 Memory CarriedInto(const Update& update, const Values& parameters, std::size_t moment,
                    std::size_t entry) {
   std::size_t first = moment;
@@ -361,7 +363,7 @@ TEST(LstmDqnUpdate, IsAlgorithm2) {
     std::vector<Term> terms;
     for (const auto& [age, entry] : batch.moments) {
       const Return sum = SumRewards(update, age, entry, 1);
-      // Q of the target network at s_{j+1} with c_j and h_j as the agent had them (line 20).
+      // Q of the target network at s_{j+1} with the stored c_j and h_j of the agent (line 20).
       Memory carried = CarriedInto(update, online, age + 1, entry);
       const Values values =
           LstmOracle(target, update.Seen(age + 1, entry), kHidden, false, carried);
@@ -385,12 +387,12 @@ TEST(LstmDqnUpdate, IsAlgorithm2) {
   }
 }
 
-/// A run of steps that LSTM-DQN learns from.
+/// A sequence of steps that LSTM-DQN is trained with.
 struct Run {
   std::size_t entry{};
-  std::size_t warm_from{};  // first moment of the burn-in; `first` without a burn-in
+  std::size_t warm_from{};  // first time step of the burn-in; `first` without a burn-in
   std::size_t first{};
-  std::size_t last{};  // moment after the last that is learnt from
+  std::size_t last{};  // time step after the last one used for training
 };
 
 Run RunOf(const Update& update, const TransitionIndex& moment) {
@@ -399,7 +401,7 @@ Run RunOf(const Update& update, const TransitionIndex& moment) {
   while (moment.age - run.warm_from < burn_in && !update.IsStarted(run.warm_from, run.entry)) {
     --run.warm_from;
   }
-  // Near its episode's start a run begins there, with the empty state.
+  // Near the start of its episode a sequence begins there, with a zero state.
   if (update.IsStarted(run.warm_from, run.entry)) run.first = run.warm_from;
   run.last = run.first;
   while (run.last - run.first < static_cast<std::size_t>(update.options.sequence) &&
@@ -409,7 +411,7 @@ Run RunOf(const Update& update, const TransitionIndex& moment) {
   return run;
 }
 
-// Values of a network along a run, from the state that the acting network stored.
+// Returns the values of a network along a sequence, from the state that the acting network stored.
 std::vector<Values> Along(const Update& update, const Run& run, const Values& acting,
                           const Values& warming, const Values& parameters) {
   const bool skip = update.options.skip_connection;
@@ -453,7 +455,7 @@ void ExpectSequences(const std::string& options, bool truncates) {
   ExpectUpdate(update, terms, [&](const Values& parameters) {
     Values predicted;
     for (const Run& run : runs) {
-      // The burn-in has no gradient: it is stepped with the weights as they were.
+      // The burn-in has no gradient and uses the weights before the update.
       const auto values = Along(update, run, online, online, parameters);
       for (std::size_t m = run.first; m < run.last; ++m) {
         predicted.push_back(values[m - run.first][update.actions[m][run.entry]]);

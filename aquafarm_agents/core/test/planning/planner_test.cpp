@@ -22,7 +22,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// 4 × 3 cells, an island, a rock, a port, two devices; everything that costs, costs.
+// 4 × 3 cells, an island, a rock, a port and two devices; every kind of penalty occurs.
 Scenario TinyScenario(std::int32_t duration, float exposure, std::int32_t capacity) {
   Scenario scenario;
   scenario.name = "tiny";
@@ -48,11 +48,11 @@ Scenario TinyScenario(std::int32_t duration, float exposure, std::int32_t capaci
   return scenario;
 }
 
-// The best return of all action sequences, by playing every one: states that agree in all that
-// decides the future are played once.
+// Returns the max return of all action sequences by trying every one. States with the same future
+// are evaluated once.
 double BruteForce(const Farm& farm, std::map<std::string, double>& seen) {
   if (farm.over()) return 0.0;
-  // Hash() tells apart how a state was reached (the return so far), so name the state by hand.
+  // Hash() includes the return so far, so states are named without it.
   const Ship& ship = farm.ships()[0];
   std::string name = std::to_string(farm.step()) + ' ' + std::to_string(ship.cell.x) + ' ' +
                      std::to_string(ship.cell.y);
@@ -74,7 +74,7 @@ double BruteForce(const Farm& farm, std::map<std::string, double>& seen) {
   return best;
 }
 
-// Plays a plan and returns what it came to.
+// Executes a plan and returns its return.
 double Play(Farm& farm, const Plan& plan) {
   const float before = farm.ships()[0].episode_return;
   for (const std::uint8_t action : plan.actions) {
@@ -105,7 +105,7 @@ TEST(Clairvoyant, EqualsBruteForceOnTinyFarms) {
   }
 }
 
-// The plan of each episode, and the bound of a team, against brute force.
+// Compares the plan of each episode, and the team bound, with brute force.
 void ExpectBruteForce(const Scenario& valid, std::uint64_t episodes) {
   ValidateScenario(valid);
   const auto scenario = std::make_shared<const Scenario>(valid);
@@ -128,12 +128,12 @@ TEST(Clairvoyant, EqualsBruteForceWithQuadrantsAndARiskySea) {
   storm.quadrants = {{0.8F, 0.0F, 0.5F, 0.8F}, {3.0F, 0.5F, 1.7F, 1.0F}};
   storm.radii = {0.8F, 3.0F};
   lopsided.seas = SeaSpec{{}, std::vector<float>(12, 0.0F), {}};
-  lopsided.seas->risk[9] = -6.0F;  // where a device waits, at (1, 2)
+  lopsided.seas->risk[9] = -6.0F;  // position of a waiting device, (1, 2)
   lopsided.seas->risk[5] = -15.0F;
   ExpectBruteForce(lopsided, 6);
 }
 
-// A risk is paid instead of a step, so where it is the milder of the two, ships go through it.
+// A risk replaces the step reward, so ships pass through risks that are milder than a step.
 TEST(Clairvoyant, EqualsBruteForceWhereAStepCostsMoreThanARisk) {
   for (const float step : {-10.0F, -19.0F}) {
     SCOPED_TRACE(step);
@@ -144,8 +144,7 @@ TEST(Clairvoyant, EqualsBruteForceWhereAStepCostsMoreThanARisk) {
   }
 }
 
-// A device that drives itself waits until the storm has left its port: next to a rock, in a farm
-// where a step costs 9.
+// A self-propelled device waits next to a rock until the storm has left its port. A step costs 9.
 Scenario WaitingScenario(float illegal, float rock) {
   Scenario scenario = TinyScenario(5, 0.0F, 1);
   scenario.ships.count = 0;
@@ -162,7 +161,8 @@ Scenario WaitingScenario(float illegal, float rock) {
   return scenario;
 }
 
-// A crash or an illegal action replaces the step reward, even if its own is 0 (Farm::Reward).
+// A crash or an illegal action replaces the step reward, even if its own reward is 0
+// (Farm::Reward).
 TEST(Clairvoyant, EqualsBruteForceWhereAnIllegalActionOrACrashIsFree) {
   ExpectBruteForce(WaitingScenario(0.0F, -5.0F), 1);
   ExpectBruteForce(WaitingScenario(-10.0F, 0.0F), 1);
@@ -232,7 +232,7 @@ TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {
     std::map<std::string, double> seen;
     const Plan plan = planner.Solve(farm, Foresight::kOracle);
     EXPECT_NEAR(plan.expected_return, BruteForce(farm, seen), 1e-3) << "step " << farm.step();
-    // Following the plan, what is still to come is what was promised.
+    // Along the plan, the remaining return equals the expected one.
     if (last < 1e8) {
       EXPECT_NEAR(plan.expected_return, last, 1e-3);
     }
@@ -282,7 +282,7 @@ TEST(Planner, SaysWhatItCannotPlanFor) {
   EXPECT_THROW(Planner{many}, InputError);
 }
 
-// What policies of the two kinds come to on the same episodes.
+// Compares the results of both policies on the same episodes.
 class PlannerPolicies : public ::testing::Test {
  protected:
   static Evaluation Evaluate(const std::string& policy, std::int32_t farms) {
@@ -335,7 +335,7 @@ TEST_F(PlannerPolicies, PlanForTheTeamOnAFarmOfTwoShips) {
     const auto policy = MakePolicy(FindPolicy(name), environment.spec());
     const Evaluation evaluation = agents::Evaluate(environment, *policy, 3, 20);
     EXPECT_EQ(evaluation.success_rate, 1.0);
-    EXPECT_EQ(evaluation.mean_steps, 6.0);  // two north, pickup, two south, drop-off
+    EXPECT_EQ(evaluation.mean_steps, 6.0);  // two moves north, pickup, two moves south, drop-off
   }
 }
 

@@ -43,14 +43,14 @@ float Play(Farm& farm, Foresight foresight) {
   return farm.record().episode_return;
 }
 
-using Actions = std::vector<std::uint8_t>;  // two a step
+using Actions = std::vector<std::uint8_t>;  // two per step
 
 void Replay(const Actions& actions, Farm& farm) {
   farm.Reset(farm.seed(), farm.episode());
   for (std::size_t i = 0; i < actions.size(); i += 2) farm.Step(actions.data() + i);
 }
 
-// Where ships, devices and their health are alike, only the best way there counts.
+// If ships, devices and their health are equal, only the highest return so far matters.
 std::uint64_t StateOf(const Farm& farm) {
   std::uint64_t key = 0;
   for (const Ship& ship : farm.ships()) {
@@ -63,7 +63,7 @@ std::uint64_t StateOf(const Farm& farm) {
   return key;
 }
 
-// Every joint action in every state that can be reached, layer by layer.
+// Tries every joint action in every reachable state, layer by layer.
 float BestJointReturn(Farm& farm) {
   struct Way {
     float value{};
@@ -124,7 +124,7 @@ TEST(TeamBound, CountsEachTripAloneInQuietWater) {
   Scenario scenario = TinyTeam();
   scenario.disasters.clear();
   const Farm farm = aquafarm::test::MakeFarm(scenario);
-  // Both devices lie two moves from a port at most three: (0, 3) three, (3, 1) two.
+  // Distances from the nearest port: three moves to (0, 3), two moves to (3, 1).
   const double far = 20 + 60 - 3 + 20 - 3;
   const double near = 20 + 80 - 2 + 20 - 2;
   EXPECT_DOUBLE_EQ(TeamBound(farm), far + near);
@@ -147,7 +147,7 @@ TEST(TeamBound, ChargesARiskOnceWhereDevicesShareAShip) {
   scenario.step_limit = 40;
   scenario.disasters = {StillDisaster(1.0F, 1.0F, {9.0F}, {-6.0F})};
   Farm farm = aquafarm::test::MakeFarm(scenario);
-  // Risk is everywhere, so a ship that fetches both at once pays it once, not for each.
+  // The risk is everywhere: a ship with both devices pays it once, not for each device.
   Planner planner(farm.scenario());
   const double best = planner.Solve(farm, Foresight::kOracle).expected_return;
   EXPECT_GT(best, 0.0);
@@ -210,7 +210,7 @@ TEST(TeamPlanner, SharesOutTheWorkEvenly) {
   EXPECT_NE(shares[0], shares[1]);
 }
 
-// A person, or another policy, may have loaded a ship with more than the planner would.
+// A person or another policy may have loaded more devices than the planner would.
 TEST(TeamPlanner, TakesOverShipsWithAnyLoad) {
   Scenario scenario = TinyTeam();
   scenario.width = 10;

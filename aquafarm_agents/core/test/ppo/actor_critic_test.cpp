@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Outputs and gradients of both networks against plain loops and complex-step derivatives (Squire
-// and Trapp 1998), which use no back-propagation.
+// Compares outputs and gradients of both networks with plain loops and complex-step derivatives
+// (Squire and Trapp 1998), which use no back-propagation.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ constexpr std::size_t kWidth = kActorCriticOutputs;
 Complex Relu(Complex x) { return x.real() > 0.0 ? x : Complex(0.0); }
 Complex Sigmoid(Complex x) { return 1.0 / (1.0 + std::exp(-x)); }
 
-/// Reads layers from a flat vector in their order.
+/// Reads layers from a flat parameter vector in order.
 class Layers {
  public:
   explicit Layers(const Vector& weights) : next_(weights.data()) {}
@@ -56,7 +56,7 @@ Vector FeedForwardOutputs(const Vector& weights, const Vector& features) {
   return layers.Apply(second, kWidth);
 }
 
-/// Advances h and c.
+/// Updates h and c.
 Vector LstmOutputs(const Vector& weights, const Vector& features, Vector& h, Vector& c) {
   Layers layers(weights);
   const Vector seen = ReluOf(layers.Apply(features, kHidden));
@@ -132,7 +132,7 @@ Complex DefinedLoss(const Vector& weights, const Batch& batch, bool recurrent,
 
 void ExpectAgrees(bool recurrent, std::size_t steps, std::size_t sequences) {
   const auto network = MakeActorCritic(kFeatures, kHidden, recurrent, 9);
-  for (float& weight : network->weights()) weight *= 3.0F;  // so that saturation matters
+  for (float& weight : network->weights()) weight *= 3.0F;  // so that the gates saturate
   const Batch batch = MakeBatch(steps, sequences, network->state_size());
   Vector weights(network->weights().begin(), network->weights().end());
   const float* const outputs = network->Forward(batch.rows(), nullptr);

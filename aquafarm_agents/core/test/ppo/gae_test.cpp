@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Advantages against their definition as a sum, and what a rollout records of each kind of end.
+// Compares advantages with their definition as a sum, and checks the record of each kind of end.
 #include "ppo/gae.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct Steps {
   std::vector<StepEnd> ends;
 };
 
-// The sum over future errors, in double, for one entry of one column (E = 1).
+// Returns the sum over future errors, in double precision, for one slot of one column (E = 1).
 double DefinedAdvantage(const Steps& steps, std::size_t t, double gamma, double lambda) {
   if (steps.ends[t] == StepEnd::kNoTransition) return 0.0;
   double sum = 0.0;
@@ -57,7 +57,7 @@ TEST(Gae, EqualsItsDefinitionForRandomEpisodes) {
 
 TEST(Gae, BootstrapsAtTruncationAndNotAtTermination) {
   const std::vector<float> rewards{1.0F, 1.0F};
-  const std::vector<float> values{10.0F, 20.0F, 30.0F, 40.0F};  // two entries, one step
+  const std::vector<float> values{10.0F, 20.0F, 30.0F, 40.0F};  // two slots, one step
   std::vector<float> advantages;
   EstimateAdvantages(rewards, values, {StepEnd::kTruncated, StepEnd::kTerminated}, 2, 0.5F, 1.0F,
                      advantages);
@@ -66,7 +66,7 @@ TEST(Gae, BootstrapsAtTruncationAndNotAtTermination) {
 }
 
 TEST(Gae, DoesNotMixEntries) {
-  // Entry 0 earns nothing; entry 1 earns 8 in the second step.
+  // Slot 0 gets no reward; slot 1 gets 8 in the second step.
   const std::vector<float> rewards{0, 0, 0, 8};
   const std::vector<float> values(6, 0.0F);
   const std::vector<StepEnd> ends(4, StepEnd::kContinues);
@@ -75,7 +75,7 @@ TEST(Gae, DoesNotMixEntries) {
   EXPECT_EQ(advantages, (std::vector<float>{0, 2, 0, 8}));
 }
 
-// One farm of two agents; each call is the results of one step.
+// Returns the results of one step of a farm with two agents.
 StepResults Outcome(EndReason reason, bool started, std::vector<std::uint8_t> in_play) {
   StepResults results;
   results.rewards = {2.0F, 4.0F};
@@ -86,10 +86,10 @@ StepResults Outcome(EndReason reason, bool started, std::vector<std::uint8_t> in
   return results;
 }
 
-// Records one decision after `before` and what followed it.
+// Records one decision after `before` and its results `after`.
 Rollout Recorded(const StepResults& before, const StepResults& after) {
   Rollout rollout({1, 2, 2, 1, 0, 1});
-  rollout.Complete(before, 1.0F);  // nothing waits for its results yet
+  rollout.Complete(before, 1.0F);  // without effect: there is no decision yet
   rollout.Add(before, {1, 1}, {0, 0}, {0, 0}, {10, 20}, {});
   EXPECT_FALSE(rollout.IsFull());
   rollout.Complete(after, 0.5F);
@@ -103,11 +103,11 @@ TEST(Rollout, LearnsFromStepsOfActiveAgentsOnly) {
   Rollout rollout = Recorded(going, going);
   EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F + 100.0F - 10.0F) << "reward 2, scaled by 0.5";
   EXPECT_FLOAT_EQ(rollout.target(1), 2.0F + 200.0F);
-  // Agent 1 is done by this step; its value does not count.
+  // Agent 1 finishes in this step; its next value is not used.
   rollout = Recorded(going, Outcome(EndReason::kNone, false, {1, 0}));
   EXPECT_FLOAT_EQ(rollout.advantage(1), 2.0F - 20.0F);
   EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F + 100.0F - 10.0F);
-  // It was done before.
+  // Agent 1 finished before.
   rollout = Recorded(Outcome(EndReason::kNone, false, {1, 0}), going);
   EXPECT_TRUE(rollout.IsValid(0));
   EXPECT_FALSE(rollout.IsValid(1));
@@ -115,11 +115,11 @@ TEST(Rollout, LearnsFromStepsOfActiveAgentsOnly) {
   EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F - 10.0F) << "terminated";
   rollout = Recorded(going, Outcome(EndReason::kStepLimit, false, {1, 1}));
   EXPECT_FLOAT_EQ(rollout.advantage(0), 1.0F + 100.0F - 10.0F) << "truncated";
-  // The episode was over: the environment ignores the action and starts the next episode.
+  // The episode has ended: the environment ignores the action and starts the next episode.
   rollout = Recorded(Outcome(EndReason::kAllRetrieved, false, {1, 1}),
                      Outcome(EndReason::kNone, true, {1, 1}));
   EXPECT_FALSE(rollout.IsValid(0));
-  // The farm was lost in mid-episode and came back with another one.
+  // The farm was lost during the episode and replaced by another one.
   rollout = Recorded(going, Outcome(EndReason::kNone, true, {1, 1}));
   EXPECT_FALSE(rollout.IsValid(0));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loss and its gradient against the definition in double precision and central differences.
+// Compares the loss and its gradient with the definition in double precision and central
+// differences.
 #include "ppo/ppo_loss.h"
 
 #include <gtest/gtest.h>
@@ -113,7 +114,7 @@ TEST(PpoLoss, AndItsGradientEqualTheDefinition) {
 TEST(PpoLoss, MaskedActionsHaveNoProbabilityAndNoGradient) {
   Case c;
   c.outputs.assign(kWidth, 0.0);
-  c.outputs[4] = 80.0;  // masked, and far above the others
+  c.outputs[4] = 80.0;  // masked, and far larger than the others
   c.mask = 0b0000000011;
   c.advantage = 1.0;
   c.log_prob = std::log(0.5);
@@ -132,7 +133,7 @@ TEST(PpoLoss, StaysFiniteWhereANegativeAdvantageDoesNotClipTheRatio) {
   Case c;
   c.outputs.assign(kWidth, 0.0);
   c.advantage = -1.0;
-  c.log_prob = -200.0;  // e^198 is beyond a float
+  c.log_prob = -200.0;  // e^198 exceeds the range of a float
   const PpoCoefficients k{0.2F, 0.0F, 0.0F, 0.0F};
   const Computed computed = Compute(c, k);
   EXPECT_NEAR(computed.loss, DefinedLoss(c, k), 1.0) << "some 3,900";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PPO learns tiny farms in each of its forms, keeps to the masks and ends at a loss that is not
-// finite. That it continues bit for bit is in training/algorithms_test and training/resume_test.
+// PPO learns tiny farms with each option, respects the masks and stops at a non-finite loss.
+// training/algorithms_test and training/resume_test check that it continues bit-identically.
 #include "aquafarm/agents/ppo/ppo.h"
 
 #include <algorithm>
@@ -105,7 +105,7 @@ TEST(Ppo, GreedyPoliciesRepeatAndSampledOnesFollowTheirSeed) {
   EXPECT_NE(actions_of("policy=sampled", 1), actions_of("policy=sampled", 2));
 }
 
-// As the node of a ship does, which receives its own share alone.
+// As a ship's node, which receives only its own share of the results.
 TEST(Ppo, PlaysAShipByItsOwnShareAsAmongAll) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.ships.count = 2;

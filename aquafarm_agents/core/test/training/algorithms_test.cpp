@@ -22,7 +22,7 @@ TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
     const auto learner = algorithm.make(environment.spec(), 1, "");
     EXPECT_EQ(learner->encodings(), algorithm.encodings("")) << algorithm.name;
     EXPECT_GT(algorithm.default_steps, 0U);
-    // The resolved options make the same learner again.
+    // The resolved options create the same learner.
     EXPECT_EQ(algorithm.make(environment.spec(), 1, learner->options())->options(),
               learner->options());
   }
@@ -41,7 +41,7 @@ TEST(Algorithms, ATableOfManyStatesIsTrainedForLonger) {
   EXPECT_EQ(steps("dqn"), 200'000U);
 }
 
-// With the default options deep learners update too rarely for a short test.
+// With the default options, deep learners update too rarely for a short test.
 std::string Lively(const Algorithm& algorithm) {
   const std::string name = algorithm.name;
   const std::string small = "hidden=8 batch=8 start=20 replay=300 priority=0.5";
@@ -62,7 +62,7 @@ void ExpectContinues(const Algorithm& algorithm, const std::string& options) {
   }
   Checkpoint checkpoint;
   learner->Save(checkpoint);
-  // From the resolved options: a resumed run may have nothing else.
+  // Created from the resolved options, because a resumed run may have nothing else.
   const auto resumed = algorithm.make(environment.spec(), 1, learner->options());
   EXPECT_EQ(resumed->options(), learner->options()) << algorithm.name << ' ' << options;
   resumed->Load(checkpoint);
@@ -98,7 +98,7 @@ TEST(Algorithms, EachContinuesBitForBit) {
   }
 }
 
-// Each sentence of the caption of Fig. 6, whatever the reward sharing.
+// Each sentence of the caption of Fig. 6, with each kind of reward sharing.
 TEST(Algorithms, AutoChoosesAsFig6Does) {
   const auto choose = [](Scenario scenario) {
     return ChooseAlgorithm(LocalEnvironment(Share(std::move(scenario)), {}).spec());
@@ -175,7 +175,7 @@ TEST(RandomPolicy, DrawsEachReachableActionAlike) {
   checkpoint.options = learner->options();
   const auto policy = random.make_policy(checkpoint, environment.spec());
   policy->Begin(3, 1);
-  // At the port (2, 0): the map ends in the south, and islands are to the west and north-west.
+  // At the port (2, 0): the map ends in the south; islands are in the west and north-west.
   const StepResults& results = environment.Reset(1);
   std::array<int, kActionCount> counts{};
   std::vector<std::uint8_t> actions;

@@ -24,7 +24,7 @@ std::string NotInRange(std::string_view text, const char* name, T min, T max) {
 }  // namespace
 
 std::string ParseContext::Located(const std::string& value_path) const {
-  // Each search reads the file again: after many the line is left out.
+  // Each search reads the file again, so only a limited number of messages contain the line.
   constexpr int kMostSearches = 200;
   if (!locate) return file_ + ":" + std::to_string(line) + ": ";
   if (++searches_ > kMostSearches) return file_ + ": ";
@@ -103,7 +103,7 @@ std::int32_t ReadWhole(std::string_view text, const char* name, std::int32_t min
 double ReadNumber(std::string_view text, const char* name, double min, double max,
                   const ParseContext& place) {
   const std::optional<double> value = ParseNumber(text);
-  if (value && *value >= min && *value <= max) return *value;  // false for nan
+  if (value && *value >= min && *value <= max) return *value;  // false for NaN
   place.Fail(NotInRange(text, name, min, max));
 }
 
@@ -128,7 +128,7 @@ std::optional<double> TryNumber(std::string_view text, const char* name, double 
                                 ParseContext& place) {
   if (Trim(text).empty()) return std::nullopt;
   const std::optional<double> value = ParseNumber(text);
-  if (value && *value >= min && *value <= max) return value;  // false for nan
+  if (value && *value >= min && *value <= max) return value;  // false for NaN
   place.WarnOnce(name, NotInRange(text, name, min, max) + kIgnored);
   return std::nullopt;
 }

@@ -25,7 +25,7 @@ class FixError : public InputError {
 /// The points of one storm that were left out.
 struct LeftOut {
   std::size_t count{};
-  std::string first;  ///< the message of the first
+  std::string first;  ///< message about the first of them
 };
 
 /// Position of a parser. Reports errors and warnings with the file and the line.
@@ -42,9 +42,9 @@ class ParseContext {
   [[noreturn]] void Fail(const std::string& what) const;
   /// @throws InputError "file:line: value_path: what", with the line of that value
   [[noreturn]] void FailValue(const std::string& value_path, const std::string& what) const;
-  /// @throws FixError with the words of Refuse
+  /// @throws FixError with the message of Fail
   [[noreturn]] void RefuseFix(const std::string& what) const;
-  /// @throws FixError with the words of RefuseValue
+  /// @throws FixError with the message of FailValue
   [[noreturn]] void RefuseFixValue(const std::string& value_path, const std::string& what) const;
   void Warn(const std::string& what);
   void WarnValue(const std::string& value_path, const std::string& what);
@@ -52,21 +52,21 @@ class ParseContext {
   void WarnOnce(const std::string& kind, const std::string& what);
   void WarnValueOnce(const std::string& kind, const std::string& value_path,
                      const std::string& what);
-  /// The same with the words of a refusal; `end` says what is done instead.
+  /// As WarnOnce, with the message of an error; `end` states the consequence.
   void WarnOnce(const std::string& kind, const InputError& error, const std::string& end);
-  /// Counts a point that is left out and warns of the first one.
+  /// Counts a point that is left out and warns about the first one.
   void LeaveOut(const FixError& error, LeftOut& left_out);
 
  private:
   struct Repeated {
-    std::size_t index{};  // of the warning
-    std::size_t more{};   // of its kind after the first
+    std::size_t index{};  // index of the warning
+    std::size_t more{};   // number of warnings of its kind after the first
     std::string text;
   };
-  // True for the second and later ones of a kind, which are counted.
+  // Returns true for the second and later ones of a kind, which are counted.
   bool IsRepeated(const std::string& kind);
   void AddFirst(const std::string& kind, std::string text);
-  // "file:line: ", with the line of a value in JSON.
+  // Returns "file:line: ", with the line of a value in JSON.
   std::string Located(const std::string& value_path) const;
   std::string At(const std::string& what) const;
   std::string AtValue(const std::string& value_path, const std::string& what) const;
@@ -76,7 +76,7 @@ class ParseContext {
   mutable int searches_{};
 };
 
-/// Reads one point by `read()`. @returns false when its time or position is invalid: it is left out
+/// Reads one point with `read()`. @returns false if its time or position is invalid: it is left out
 template <typename Read>
 bool TryFix(Read read, LeftOut& left_out, ParseContext& place) {
   try {
@@ -117,17 +117,17 @@ std::optional<std::int32_t> ReadWholeOrBlank(std::string_view text, const char* 
 /// As ReadWholeOrBlank; an invalid value is ignored with one warning per name and file.
 std::optional<std::int32_t> TryWhole(std::string_view text, const char* name, std::int32_t min,
                                      std::int32_t max, ParseContext& place);
-/// As TryWhole, of a decimal number.
+/// As TryWhole, for a decimal number.
 std::optional<double> TryNumber(std::string_view text, const char* name, double min, double max,
                                 ParseContext& place);
-/// Ends the warning about a value that is not used.
+/// Ending of the warning about an ignored value.
 inline constexpr const char* kIgnored = "; the value is ignored";
 
-/// A whole number of a time or a position. @throws FixError
+/// Parses a whole number of a time or a position. @throws FixError
 std::int32_t ReadFixNumber(std::string_view text, const char* name, std::int32_t min,
                            std::int32_t max, const ParseContext& place);
 
-/// UTC seconds of YYYYMMDDHH. @throws FixError for a date that does not exist
+/// Returns UTC seconds of YYYYMMDDHH. @throws FixError for a date that does not exist
 std::int64_t ReadHour(std::string_view text, const ParseContext& place);
 
 }  // namespace aquafarm::internal

@@ -40,7 +40,7 @@ using internal::OneLine;
 using internal::Short;
 using internal::Text;
 
-// Everything that goes into the text of the file, collected part by part.
+// Collects the parts of the file's text.
 class Builder {
  public:
   explicit Builder(const RanchRequest& request) : request_(request) {
@@ -76,7 +76,8 @@ class Builder {
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
   }
 
-  // A table of many states takes many steps; a network needs few where it is told the way.
+  // A table with many states learns slowly; a network learns quickly with distances by water in its
+  // view.
   bool IsForNetworks() {
     constexpr std::uint32_t kSoonLearnt = 1'000'000;
     const std::uint32_t states = Encoder(ranch_.scenario).state_count();
@@ -86,7 +87,7 @@ class Builder {
     try {
       ValidateScenario(told);
     } catch (const InputError&) {
-      return false;  // a farm too large for the ways by water
+      return false;  // the farm is too large for distances by water
     }
     plan_.waterways = true;
     const std::string many = states == 0 ? "more than 268435456" : std::to_string(states);
@@ -117,20 +118,20 @@ class Builder {
     plan_.cell_size_m = cell_size_m;
   }
 
-  // The origin is the centre of cell (0, 0); the place asked for is the middle of the ranch.
+  // The origin is the centre of cell (0, 0); the requested place is the middle of the ranch.
   GeoFrame Frame() {
     if (!request_.center) {
       throw InputError("center: got nothing, expected the place of the ranch on the chart");
     }
     const GeoPoint corner = GeoFrame(*request_.center, plan_.cell_size_m)
                                 .ToGeo(-(width() - 1) / 2.0, -(height() - 1) / 2.0);
-    // Rounded as it is written, so that the file and this agree.
+    // Rounded as in the file, so that both agree.
     plan_.origin =
         GeoPoint{std::stod(Short(corner.latitude, 6)), std::stod(Short(corner.longitude, 6))};
     return GeoFrame(*plan_.origin, plan_.cell_size_m);
   }
 
-  // What is said of the land or water of a chart goes behind its name.
+  // Prefixes messages about the land or water of a chart with its name.
   template <typename Make>
   auto OfChart(Make make) {
     try {
@@ -209,13 +210,13 @@ class Builder {
     if (ports.empty()) Say(Text("ports: no shore, so %d drawn at the edge", request_.ports));
   }
 
-  // In the name of a fix of the track's file; JSON has no lines here.
+  // Reports an error at a fix, with its line in the track's file; JSON has no lines here.
   [[noreturn]] void Fail(const StormFix& fix, const std::string& what) const {
     throw InputError(request_.track + ":" + (fix.line > 0 ? std::to_string(fix.line) + ":" : "") +
                      " " + FormatTime(fix.time) + ": " + what);
   }
 
-  // The scenario's reader says the same of the line that is written here.
+  // The scenario's reader applies the same check to the line that is written here.
   void CheckReach(const StormTrack& track) {
     const GeoFrame frame = Frame();
     for (const StormFix& fix : track.fixes) {
@@ -228,8 +229,8 @@ class Builder {
     }
   }
 
-  // The recorded track and its newest forecast: its own, or one of --forecasts unless the track is
-  // a best track, which is complete.
+  // Returns the recorded track with its newest forecast. The forecast is its own or one of
+  // --forecasts, but a best track is complete and does not get one of --forecasts.
   StormTrack Continued(StormTrack recorded, TrackFormat format) {
     const bool complete = format == TrackFormat::kCma || format == TrackFormat::kJma;
     if (!request_.forecasts.empty()) {
@@ -277,7 +278,7 @@ class Builder {
     return track;
   }
 
-  // When the episode starts and ends, from when the storm is over the ranch.
+  // Sets the start and the end of the episode from the time at which the storm is over the ranch.
   void SetTime() {
     plan_.step_s = request_.step_s.value_or(
         std::max(1.0, std::round(plan_.cell_size_m / (request_.speed_kn * kMpsPerKnot))));
@@ -314,7 +315,8 @@ class Builder {
     ReadForecasts(track, end);
   }
 
-  // From the newest issued by the start on, of the agency that each bulletin names first.
+  // Keeps the forecasts from the newest one issued by the start, of the agency that each bulletin
+  // lists first.
   void ReadForecasts(const StormTrack& track, std::int64_t end) {
     if (request_.forecasts.empty()) return;
     std::vector<StormForecast>& kept = plan_.forecasts;
@@ -345,7 +347,7 @@ class Builder {
         FormatTime(kept.front().issued));
   }
 
-  // Keeps the waypoints from the last before the start to the first after the end.
+  // Keeps the waypoints from the last one before the start to the first one after the end.
   void Trim(std::int64_t end) {
     std::vector<StormWaypoint>& all = plan_.storm.waypoints;
     std::size_t from = 0;
@@ -356,13 +358,13 @@ class Builder {
            all.begin() + static_cast<std::ptrdiff_t>(to)};
   }
 
-  // Once all disasters are known.
+  // Requires that all disasters are known.
   std::int32_t StepLimit() const {
     if (ends_unknown_ && duration_ == plan_.storm_steps) return duration_;
     return duration_ > 0 ? duration_ + 100 : 5000;
   }
 
-  // Those that are in force during the episode, or all where it has no time.
+  // Lists the notices that are in force during the episode, or all if it has no time.
   void SayNotices() {
     if (request_.notices.empty()) return;
     const NoticeFile file = LoadNotices(request_.notices);
@@ -385,7 +387,7 @@ class Builder {
     SeaField field = LoadSeaField(sea.file, {sea.variable, time, request_.sea_depth_m}, frame,
                                   width(), height());
     NamedLayer layer{sea.name, ToLayer(field, frame, width(), height())};
-    // Rounded as they are written, so that the rules of the file and of this command agree.
+    // Rounded as in the file, so that the rules of the file and of this command agree.
     layer.layer = layer.layer.unaryExpr([](float value) {
       return std::isnan(value)
                  ? value
@@ -427,7 +429,7 @@ class Builder {
     Say("values: " + request_.value);
   }
 
-  // An option's expression at every cell.
+  // Evaluates an option's expression at every cell.
   Layer OfSea(const char* option, const std::string& expression) const {
     try {
       return Evaluate(expression, plan_.layers);
@@ -436,7 +438,7 @@ class Builder {
     }
   }
 
-  // The devices stay where they were drawn, each with the value of its cell.
+  // Keeps the drawn positions of the devices and gives each the value of its cell.
   void ValueDevices() {
     Layout layout;
     LayoutGenerator(ranch_.scenario).Generate(request_.seed, 0, layout);
@@ -459,10 +461,11 @@ class Builder {
   const RanchRequest& request_;
   BuiltRanch ranch_;
   internal::RanchPlan plan_;
-  Layer value_;              // of a device, by cell
-  StormFile forecasts_;      // of --forecasts
-  std::int32_t duration_{};  // of all disasters
-  bool ends_unknown_{};      // the storm is near where its known track ends: no calm follows
+  Layer value_;              // value of a device, by cell
+  StormFile forecasts_;      // content of --forecasts
+  std::int32_t duration_{};  // max duration of all disasters
+  bool ends_unknown_{};  // the storm is near at the end of its known track: the time after it is
+                         // unknown
 };
 
 }  // namespace
@@ -471,7 +474,7 @@ BuiltRanch BuildRanch(const RanchRequest& request) {
   BuiltRanch ranch = Builder(request).Build();
   LayoutGenerator generator(ranch.scenario);
   Layout layout;
-  generator.Generate(0, 0, layout);  // refuses what does not fit on the water there is
+  generator.Generate(0, 0, layout);  // rejects a layout that does not fit on the water
   return ranch;
 }
 

@@ -13,7 +13,7 @@
 namespace aquafarm::internal {
 namespace {
 
-// A part of the globe [degrees]; longitudes are relative to that of the ranch's middle.
+// A region of the globe [degrees]; longitudes are relative to the ranch's middle.
 struct Extent {
   double south{90.0}, north{-90.0}, west{1.0e9}, east{-1.0e9};
 

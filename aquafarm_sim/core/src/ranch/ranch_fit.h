@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Whether the inputs of a ranch fit one another: a chart and a field of the sea that cover it.
+/// Checks that the inputs of a ranch fit together: its chart and its sea fields must cover it.
 
 #include <optional>
 #include <string>
@@ -13,25 +13,25 @@
 
 namespace aquafarm::internal {
 
-/// A ranch on the globe.
+/// Position and size of a ranch on the globe.
 struct RanchArea {
   GeoFrame frame;
   std::int32_t width{};  ///< cells
   std::int32_t height{};
 };
 
-/// @throws InputError when no land of a coast lies within the ranch's latitudes and longitudes
+/// @throws InputError if no land of a coast is within the ranch's latitudes and longitudes
 void NeedCover(const Coast& coast, const RanchArea& ranch, const std::string& path);
-/// Counts the cells of the ranch whose centre lies outside a grid in degrees; they become land.
-/// @returns a warning, or "" @throws InputError when all do
+/// Counts the cells of the ranch whose centre is outside a grid in degrees; they become land.
+/// @returns a warning, or "" @throws InputError if all cells are outside
 std::string NeedCover(const AsciiGrid& grid, const RanchArea& ranch, const std::string& path);
-/// @throws InputError when a field has no value on the ranch, with the reason
+/// @throws InputError with the reason if a field has no value on the ranch
 void NeedValues(const SeaField& field, const Layer& layer, const RanchArea& ranch,
                 const std::string& path);
-/// A warning when a field is of another time than the start of the ranch, or "".
+/// Returns a warning if the time of a field differs from the start of the ranch, else "".
 std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
                       const std::string& path);
-/// A warning when a port was asked for outside the ranch, or "".
+/// Returns a warning if a requested port is outside the ranch, else "".
 std::string CheckPort(GeoPoint wanted, const RanchArea& ranch);
 
 }  // namespace aquafarm::internal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The storm of a ranch: which one of a file, and what is known of its passage.
+/// Selects the storm of a ranch from a file and reports its passage.
 
 #include <string>
 #include <vector>
@@ -11,28 +11,28 @@
 
 namespace aquafarm::internal {
 
-/// The storm of `track` in another file: by its id, else by its name, at the same time.
-/// @param option that names the file, for messages
-/// @throws InputError when the file has no such storm at that time
+/// Returns the storm of `track` in another file: by its id, else by its name, at the same time.
+/// @param option name of the option with the file, for messages
+/// @throws InputError if the file has no such storm at that time
 const StormTrack& SameStorm(const std::string& option, const StormFile& file,
                             const StormTrack& track);
 
-/// What `aquafarm scenario` reports of a storm's passage, a line each.
+/// Report of `aquafarm scenario` on a storm's passage, one line each.
 struct PassageReport {
   std::vector<std::string> lines;
   std::vector<std::string> warnings;
 };
 
 /// Reports a passage. It never states that a storm stays away for longer than it is known, and it
-/// separates what is recorded from what is forecast.
+/// separates recorded from forecast data.
 /// @param storm with at least one waypoint
 PassageReport Report(const StormRings& storm, const Passage& passage,
                      const StormKnowledge& knowledge);
 
 /// Checks a start against the time of a storm.
-/// @param end UTC at which the storm has left the ranch, or is known no more
-/// @returns a warning when the start is before the first known position, or ""
-/// @throws InputError when the start is not before `end`
+/// @param end UTC at which the storm has left the ranch, or at which its known track ends
+/// @returns a warning if the start is before the first known position, else ""
+/// @throws InputError if the start is not before `end`
 std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& storm,
                        const Passage& passage);
 

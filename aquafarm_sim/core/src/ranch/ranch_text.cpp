@@ -59,7 +59,7 @@ class Writer {
   }
 
  private:
-  // Where the written track leaves what was recorded.
+  // States where the written track changes from recorded to forecast.
   std::string ForecastNote() const {
     const auto& all = plan_.storm.waypoints;
     const bool forecast =
@@ -69,7 +69,7 @@ class Writer {
 
   void Line(const std::string& line) { yaml_ += line + "\n"; }
 
-  // As numbers, so that the file needs no other.
+  // Written as numbers, so that the scenario needs no other file.
   void WriteSeas() {
     Line("seas:\n  layers:");
     for (std::size_t i = 0; i < plan_.layers.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The text of a ranch's file, once everything is decided.
+/// Writes the text of a ranch's file after all decisions are made.
 
 #include <cstdio>
 #include <string>
@@ -15,33 +15,33 @@
 
 namespace aquafarm::internal {
 
-/// What goes into the file, collected part by part.
+/// Content of the file, collected part by part.
 struct RanchPlan {
   std::int32_t width{};
   std::int32_t height{};
   double cell_size_m{};
   std::optional<GeoPoint> origin;
   double step_s{};
-  std::int64_t start{};  ///< UTC of step 0, where there is a storm or one was asked for
+  std::int64_t start{};  ///< UTC of step 0, if there is a storm or a requested start
   std::int32_t step_limit{};
   Terrain terrain;
-  std::vector<Cell> ports;  ///< empty: drawn
-  StormRings storm;         ///< without waypoints: calm
-  std::string storm_text;   ///< what it is, for people
+  std::vector<Cell> ports;  ///< empty: drawn at random
+  StormRings storm;         ///< without waypoints: calm weather
+  std::string storm_text;   ///< description of the storm, for people
   StormKnowledge knowledge;
   std::int32_t storm_steps{};
-  std::vector<StormForecast> forecasts;  ///< of the storm, in order of issue
+  std::vector<StormForecast> forecasts;  ///< of the storm, sorted by time of issue
   std::vector<DisasterSpec> presets;
   std::vector<NamedLayer> layers;
-  std::vector<std::string> sea_units;  ///< by layer
+  std::vector<std::string> sea_units;  ///< one for each layer
   bool waterways{};
 };
 
-/// @param decided lines for people, which go into comments
+/// @param decided lines for people, written as comments
 std::string WriteRanch(const RanchRequest& request, const RanchPlan& plan,
                        const std::vector<std::string>& decided);
 
-/// The line of the file that leaves the devices to be drawn.
+/// Returns the line of the file for randomly drawn devices.
 std::string DevicesLine(const RanchRequest& request);
 
 template <typename... Args>
@@ -51,13 +51,13 @@ std::string Text(const char* format, Args... args) {
   return text;
 }
 
-/// The last part of a path.
+/// Returns the last part of a path.
 std::string FileName(const std::string& path);
-/// What a file says of itself, on one line.
+/// Returns a text on one line.
 std::string OneLine(std::string text);
-/// A number as a file should show it: of so many digits, no more.
+/// Formats a number with at most `digits` decimals.
 std::string Short(double value, int digits);
-/// "[2, 3]"
+/// Returns "[2, 3]".
 std::string CellText(Cell cell);
 
 }  // namespace aquafarm::internal

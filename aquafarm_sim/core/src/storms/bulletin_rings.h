@@ -12,16 +12,16 @@ namespace aquafarm::internal {
 
 inline constexpr double kMostRadius_km = 3000.0;
 
-/// The radii of an object by the keys of its quadrants, north-east first and in either case. Those
-/// that it leaves out, or that are invalid, are as `otherwise`, with a warning.
+/// Reads the radii of an object with one key per quadrant, NE, SE, SW, NW, in lower or upper case.
+/// Missing or invalid radii are replaced by those of `otherwise`, with a warning.
 std::array<double, kQuadrantCount> ReadQuadrants(
     const nlohmann::json& value, const std::string& path,
     const std::array<const char*, kQuadrantCount>& keys, std::int32_t wind_kt,
     const std::array<double, kQuadrantCount>& otherwise, ParseContext& place);
 
-/// The ring of a wind from what a bulletin says of its quadrants. Bulletins write 0 and nothing
-/// alike: where the storm itself blows that hard, no radius means that it was not said; where it
-/// does not, that there is none.
+/// Adds the ring of a wind from the quadrants of a bulletin. Bulletins write 0 for "no such wind"
+/// and for "not known". If the storm's own wind is at least that strong, all zeros mean that the
+/// radii are not known; else they mean that no such wind blows.
 void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
                  StormFix& fix);
 

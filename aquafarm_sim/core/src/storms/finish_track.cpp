@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ends a track that a reader has read: order of time, jumps, motion.
+// Completes a track after reading: order of time, jumps, motion.
 #include <GeographicLib/Geodesic.hpp>
 #include <algorithm>
 #include <cmath>
@@ -11,10 +11,10 @@
 namespace aquafarm::internal {
 namespace {
 
-// The indices of the longest run of fixes with ascending times (patience sorting).
+// Returns the indices of the longest ascending subsequence of fix times (patience sorting).
 std::vector<std::size_t> LongestAscending(const std::vector<StormFix>& fixes) {
   constexpr std::size_t kNoIndex = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> ends;  // of the runs of each length, the earliest end
+  std::vector<std::size_t> ends;  // by length of the subsequence, the index of the earliest end
   std::vector<std::size_t> before(fixes.size(), kNoIndex);
   for (std::size_t i = 0; i < fixes.size(); ++i) {
     const auto at = std::lower_bound(
@@ -35,7 +35,7 @@ std::vector<std::size_t> LongestAscending(const std::vector<StormFix>& fixes) {
   return run;
 }
 
-// Leaves out the fixes whose times break the order of the others.
+// Drops the fixes whose times break the order of the others.
 void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext& place) {
   const std::vector<std::size_t> run = LongestAscending(fixes);
   if (run.size() == fixes.size()) return;
@@ -45,7 +45,7 @@ void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext
   const std::string order =
       ", expected one after " + FormatTime(broken->time) + " of the point before";
   const auto at_line = [&place](std::int32_t line) {
-    if (line > 0) place.line = line;  // JSON has none: the storm's
+    if (line > 0) place.line = line;  // points in JSON have no line: keep that of the storm
   };
   if (run.size() * 2 <= fixes.size()) {
     at_line((broken + 1)->line);
@@ -68,7 +68,8 @@ void KeepAscending(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext
   fixes = std::move(kept);
 }
 
-// Warns of a motion that no storm has. Positions are rounded to a tenth of a degree, 16 km in both.
+// Warns about a speed that no storm reaches. Positions are rounded to a tenth of a degree, up to 16
+// km for two positions.
 void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
                  ParseContext& place) {
   constexpr double kMost_kmh = 150.0;
@@ -90,7 +91,7 @@ void WarnOfJumps(const std::vector<StormFix>& fixes, const std::string& storm,
   }
 }
 
-// Leaves out a few fixes that are months away from the others: their year or month is wrong.
+// Drops a few fixes that are months away from the others: their year or month is wrong.
 void KeepTogether(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext& place) {
   constexpr std::int64_t kLongestGap_s = 30 * 86400;
   std::size_t best = 0;
@@ -121,7 +122,7 @@ void KeepTogether(std::vector<StormFix>& fixes, LeftOut& left_out, ParseContext&
 void FinishTrack(StormTrack& track, LeftOut left_out, ParseContext& place) {
   if (track.fixes.size() < left_out.count) throw InputError(left_out.first);
   if (track.fixes.empty()) place.Fail("points: got none, expected at least one");
-  const std::int32_t line = place.line;  // where the reader continues
+  const std::int32_t line = place.line;  // line at which the reader continues
   KeepAscending(track.fixes, left_out, place);
   KeepTogether(track.fixes, left_out, place);
   constexpr std::int64_t kDay_s = 86400;

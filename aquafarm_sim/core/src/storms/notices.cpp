@@ -23,7 +23,7 @@ using Json = nlohmann::json;
 constexpr std::int64_t kBeijing_s = 8 * 3600;
 constexpr const char* kExpected = ", expected a weather service's warnings or anchorage forecasts";
 
-// Blue, Yellow, Orange, Red; White is no warning.
+// Returns 1 to 4 for Blue, Yellow, Orange and Red; 0 for White, which is not a warning.
 std::int32_t GradeOf(const JsonObject& warning, const std::string& color) {
   constexpr std::array<const char*, 5> kColors{"WHITE", "BLUE", "YELLOW", "ORANGE", "RED"};
   for (std::size_t i = 0; i < kColors.size(); ++i) {
@@ -58,10 +58,10 @@ std::vector<Notice> ReadWarnings(const JsonObject& answer, ParseContext& place) 
     CheckSpan(notice, warning, "endTime");
     notices.push_back(std::move(notice));
   }
-  return notices;  // none in force is an answer, too
+  return notices;  // may be empty: no warning is in force
 }
 
-// "<0.5m" or "1.0-1.5m": the upper end.
+// Returns the upper end of "<0.5m" or "1.0-1.5m".
 std::optional<double> WaveMax(const std::string& text) {
   if (text.size() < 2 || text.back() != 'm') return std::nullopt;
   const std::size_t from = text.find_first_of("-<");
@@ -70,7 +70,7 @@ std::optional<double> WaveMax(const std::string& text) {
   return value && *value >= 0.0 && *value <= 40.0 ? value : std::nullopt;
 }
 
-// Takes a number and the word behind it off the front.
+// Removes a number and the following word from the front of a text.
 std::optional<int> TakeNumber(std::string& text, const std::string& word) {
   const std::size_t at = text.find(word);
   if (at == 0 || at == std::string::npos || at > 2) return std::nullopt;
@@ -82,8 +82,8 @@ std::optional<int> TakeNumber(std::string& text, const std::string& word) {
   return value;
 }
 
-// The hour of a day of a month: of the publication's, the one before or the one after, that in
-// which the day is nearest to the publication.
+// Converts a day of the month and an hour to a time. The month is that of the publication, the
+// previous one or the next one: the one in which the day is nearest to the publication.
 class Calendar {
  public:
   /// @param published "2026050411", Beijing time
@@ -103,7 +103,7 @@ class Calendar {
     }
     answer.Here().FailValue("publishCode", "got " + Quoted(published) + ", expected YYYYMMDDHH");
   }
-  /// UTC; none: there is no such day. Hour 24 is the next day's first.
+  /// Returns UTC; nullopt if there is no such day. Hour 24 is the first hour of the next day.
   std::optional<std::int64_t> At(int day, int hour) const {
     if (hour < 0 || hour > 24) return std::nullopt;
     std::optional<std::int64_t> nearest;
@@ -121,10 +121,10 @@ class Calendar {
  private:
   int year_{};
   int month_{};
-  std::int64_t published_{};  // as if Beijing's hours were UTC
+  std::int64_t published_{};  // Beijing time, computed as if it were UTC
 };
 
-// "04日23时-05日02时", the second day left out where it is the first one.
+// Parses "04日23时-05日02时"; the second day may be missing if it equals the first.
 bool ReadPeriod(std::string text, const Calendar& calendar, Notice& notice) {
   const auto day = TakeNumber(text, "日");
   const auto from = TakeNumber(text, "时-");
@@ -140,7 +140,7 @@ bool ReadPeriod(std::string text, const Calendar& calendar, Notice& notice) {
   return true;
 }
 
-// "4 4 3 3": the worst of them.
+// Returns the worst of the ratings in "4 4 3 3".
 std::int32_t Worst(const JsonObject& period, const std::string& ratings) {
   std::int32_t worst = 0;
   for (const std::string_view word : internal::SplitWords(ratings)) {

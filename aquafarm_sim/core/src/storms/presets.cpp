@@ -16,7 +16,7 @@ namespace {
 
 using internal::Interval;
 
-// The keys of one preset, each asked for once.
+// The keys of one preset. Each may be queried once.
 class Keys {
  public:
   Keys(const std::string& text, const std::string& where) : where_(where) {
@@ -37,7 +37,7 @@ class Keys {
     }
   }
 
-  /// @param otherwise none: the key is needed
+  /// @param otherwise default value; nullopt if the key is required
   double Take(const std::string& key, const Interval<double>& domain,
               std::optional<double> otherwise = std::nullopt) {
     known_.push_back(key);
@@ -77,13 +77,13 @@ class Keys {
   std::vector<std::string> known_;
 };
 
-// Grade 1 from the first threshold on, 2 from the second, and so on.
+// Returns grade 1 from the first threshold on, 2 from the second, and so on.
 std::int32_t GradeFrom(double value, const std::array<double, 4>& thresholds) {
   const auto above = std::upper_bound(thresholds.begin(), thresholds.end(), value);
   return static_cast<std::int32_t>(above - thresholds.begin());
 }
 
-// Metres a second to the east and to the north.
+// Velocity to the east and to the north [m/s].
 struct Flow {
   double east{};
   double north{};
@@ -112,7 +112,7 @@ void SetDrift(const Flow& flow, const GridScale& scale, DisasterSpec& disaster) 
   disaster.speed = static_cast<float>(speed_mps * scale.step_duration_s / scale.cell_size_m);
   const double bearing = std::atan2(flow.east, flow.north) * 180.0 / kPi;
   disaster.heading_deg = static_cast<std::int32_t>(std::lround(bearing + 360.0)) % 360;
-  // What drifts leaves; what stays where it is has no heading that would matter.
+  // A drifting disaster leaves the map. The heading of a stationary one has no effect.
   disaster.border = speed_mps > 0.0 ? Border::kLeave : Border::kReflect;
   disaster.turn_probability = 0.0F;
 }
@@ -127,7 +127,7 @@ void SetRings(double radius_km, double growth_m_h, const GridScale& scale, Disas
   disaster.risks = kRisks[static_cast<std::size_t>(disaster.grade - 1)];
 }
 
-// Grade, size and flow of each kind.
+// Grade, size and drift of each kind.
 struct Preset {
   const char* name;
   DisasterKind kind;
@@ -142,7 +142,7 @@ double RadiusOf(double area_km2) { return std::sqrt(area_km2 / kPi); }
 
 void FillStorm(Keys& keys, const GridScale&, DisasterSpec& disaster, double& radius_km,
                Flow& flow) {
-  // Lowest winds of force 6, 8, 10 and 12 [m/s].
+  // Lower limits of wind force 6, 8, 10 and 12 [m/s].
   disaster.grade = GradeFrom(keys.Take("wind_mps", {10.8, 120.0}), {10.8, 17.2, 24.5, 32.7});
   radius_km = keys.Take("radius_km", kRadius_km);
   flow = TakeCurrent(keys);

@@ -18,7 +18,7 @@
 namespace aquafarm {
 namespace {
 
-// Gives storms that share an id one each: files of several years put together have such.
+// Makes the ids of storms unique: in files of several years, storms may share an id.
 void TellApart(StormFile& file, internal::ParseContext& place) {
   std::map<std::string, int> times;
   std::set<std::string> seen;

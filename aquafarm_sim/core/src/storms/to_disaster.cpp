@@ -21,7 +21,7 @@ double Largest(const Quadrants& quadrants) {
   return *std::max_element(quadrants.begin(), quadrants.end());
 }
 
-// The quadrants, all of a circle's radius where they do not stay.
+// Returns the quadrants of a ring; unless they are kept, all have the radius of the circle.
 Quadrants Reduced(const WindRing& ring, RingReduction reduction) {
   Quadrants quadrants = ring.radius_km;
   if (reduction == RingReduction::kQuadrants) return quadrants;
@@ -42,7 +42,7 @@ std::vector<std::int32_t> WindsOf(const StormTrack& track) {
   return {64, 50, 34};
 }
 
-// How far and in which quadrant of a storm a place is.
+// Distance of a place from a storm, and the quadrant of the storm that contains it.
 struct Offset {
   double distance_km{};
   std::size_t quadrant{};
@@ -68,7 +68,7 @@ GeoPoint Between(GeoPoint a, GeoPoint b, double part) {
           internal::NormalLongitude(a.longitude + step * part)};
 }
 
-// The waypoints on the ranch's side of the globe, from the first to the last.
+// Returns the waypoints on the ranch's side of the globe, from the first to the last.
 std::vector<StormWaypoint> Facing(const StormRings& storm, const GeoFrame& frame) {
   const auto faces = [&frame](const StormWaypoint& at) { return frame.Faces(at.position); };
   const auto& all = storm.waypoints;
@@ -112,7 +112,7 @@ StormRings ToRings(const StormTrack& track, RingReduction reduction) {
     waypoint.pressure_hpa = fix.pressure_hpa;
     waypoint.wind_mps = fix.wind_mps;
     waypoint.forecast = fix.forecast;
-    // A storm of a grade has at least the lowest wind of it; one below TS has no ring.
+    // Without a wind, use the lower limit of the grade. Below TS there are no rings.
     if (!fix.wind_mps && fix.grade >= StormGrade::kTropicalStorm) {
       fix.wind_mps = LowestWindOf(fix.grade);
     }

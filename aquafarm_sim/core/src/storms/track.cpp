@@ -11,7 +11,7 @@
 namespace aquafarm {
 namespace {
 
-// Lowest wind of each grade from TD on [m/s], GB/T 19201-2006.
+// Lower limit of each grade from TD on [m/s], GB/T 19201-2006.
 constexpr std::array<double, kStormGradeCount - 1> kLowestWind_mps{10.8, 17.2, 24.5,
                                                                    32.7, 41.5, 51.0};
 
@@ -66,7 +66,7 @@ class HollandProfile {
   double shape_{1.3};
 };
 
-// The farthest radius with this wind, by bisection: outside of the greatest wind it only falls.
+// Returns the largest radius with this wind, by bisection: outside Rmax the wind only decreases.
 double RadiusOf(double wind_mps, const HollandProfile& profile) {
   double inner = profile.max_wind_radius();
   double outer = std::max(2.0e6, 2.0 * inner);

@@ -11,8 +11,9 @@
 namespace aquafarm::internal {
 namespace {
 
-// The directions that bulletins use. Of three characters the first two or the last two name the
-// half that the third leans to (北西北 as 北北西); what was measured between fixes agrees.
+// The directions in bulletins. With three characters, the first two or the last two name the main
+// direction towards which the third one leans (北西北 equals 北北西). The motion between fixes
+// agrees with this reading.
 constexpr std::pair<std::string_view, double> kDirections[]{
     {"N", 0.0},          {"NNE", 22.5},       {"NE", 45.0},        {"ENE", 67.5},
     {"E", 90.0},         {"ESE", 112.5},      {"SE", 135.0},       {"SSE", 157.5},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What the readers of tracks share: fixes, rings, directions and best tracks of lines.
+/// Shared by the readers of tracks: fixes, rings, directions and line-based best tracks.
 
 #include <optional>
 #include <string>
@@ -13,43 +13,44 @@
 
 namespace aquafarm::internal {
 
-/// Most fixes of one storm: a year of hourly ones.
+/// Max number of fixes of one storm: more than a year of hourly fixes.
 inline constexpr std::size_t kMaxFixes = 10000;
 
-/// No storm's was ever below 870.
+/// Lower limit of a plausible pressure; the lowest on record is 870 hPa.
 inline constexpr double kLeastPressure_hpa = 800.0;
 
-/// Tenths of a degree in [-900, 900]. @throws FixError
+/// Parses tenths of a degree in [-900, 900]. @throws FixError
 double ReadLatitudeTenths(std::string_view text, const ParseContext& place);
 
-/// Tenths of a degree in [-1800, 3600], brought to (-180, 180]. @throws FixError
+/// Parses tenths of a degree in [-1800, 3600], normalized to (-180, 180]. @throws FixError
 double ReadLongitudeTenths(std::string_view text, const ParseContext& place);
 
-/// The pressure of a storm; 0 and less mean unknown. Values below 800 hPa are ignored with a
-/// warning.
+/// Returns the pressure of a storm; nullopt for 0 or less, which mean unknown. Values below 800 hPa
+/// are ignored with a warning.
 std::optional<double> CheckedPressure(std::optional<double> pressure_hpa,
                                       const std::string& value_path, ParseContext& place);
 
-/// Appends a fix. One with the time of the last is left out with a warning.
+/// Appends a fix. A fix with the time of the last one is left out with a warning.
 /// @throws InputError for too many fixes
 void AppendFix(StormFix fix, std::vector<StormFix>& fixes, ParseContext& place);
 
-/// Ends a track: leaves out points that break the order of time, warns of jumps, and computes
-/// motion that the source does not give.
-/// @throws InputError without points, when more points were left out than kept, or when they span
-///   more than 366 days
+/// Completes a track: leaves out points that break the order of time, warns about jumps, and
+/// computes the motion if the source does not give it.
+/// @throws InputError if there are no points, if more points were left out than kept, or if they
+///   span more than 366 days
 void FinishTrack(StormTrack& track, LeftOut left_out, ParseContext& place);
 
-/// "NE", "ENE", "西北", … as a compass bearing; none: no direction.
+/// Returns "NE", "ENE", "西北", … as a compass bearing; nullopt if it is not a direction.
 std::optional<double> ParseDirection(std::string_view text);
 
-/// What the header of a storm says in the best tracks of CMA and JMA.
+/// Header of a storm in the best tracks of CMA and JMA.
 struct BestTrackHeader {
   StormTrack track;
-  std::int32_t points{};  ///< lines that follow
+  std::int32_t points{};  ///< number of lines that follow
 };
 
-/// Storms of a header, 66666 …, and as many points as it promises, each on a line of its own.
+/// Reads storms that consist of a header, 66666 …, and the number of points given there, one per
+/// line.
 std::vector<StormTrack> ReadBestTracks(std::string_view text, ParseContext& place,
                                        BestTrackHeader (*read_header)(std::string_view line,
                                                                       ParseContext& place),

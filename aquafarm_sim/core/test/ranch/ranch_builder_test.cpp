@@ -24,7 +24,7 @@ TEST(Ranch, OfManyDevicesTellsNetworksTheWay) {
   request.devices = 12;
   const BuiltRanch ranch = BuildRanch(request);
   EXPECT_TRUE(ranch.scenario.view.waterways);
-  // 24 x 20 cells, each device waiting or delivered, or one of them aboard.
+  // 24 x 20 cells; each device is waiting or delivered, or one of them is aboard.
   EXPECT_TRUE(Says(ranch.decided, "states: 13762560, many for a table"));
   EXPECT_NE(ranch.yaml.find("#   states: 13762560"), std::string::npos);
 }
@@ -46,7 +46,7 @@ TEST(Ranch, StandsOnTheChartWithPortsAtTheShore) {
   EXPECT_EQ(scenario.ports.cells.size(), 4U);
   std::int32_t land = 0;
   for (const IslandBlock& block : scenario.islands) land += block.width * block.height;
-  // 4.8 x 5.5 km with its lake filled, and a triangle of half a square kilometre.
+  // 4.8 x 5.5 km with its lake filled, and a triangle of 0.5 km².
   EXPECT_NEAR(land * 0.25, 4.82 * 5.54 + 0.53, 3.0);
   EXPECT_TRUE(Says(ranch.decided, "island cells"));
   EXPECT_TRUE(Says(ranch.decided, "of enclosed water filled"));
@@ -187,7 +187,7 @@ TEST(Ranch, CountsNoticesAfterItsLastStepAsOfOtherTimes) {
                         << from << R"(", "endTime": ")" << to << "\"}]}";
     return BuildRanch(request).decided;
   };
-  // 89 steps of 243 s from midnight, so to 06:00: the storm is not known after that.
+  // 89 steps of 243 s from midnight end at 06:00, after which the storm is not known.
   EXPECT_TRUE(Says(warn("2021-07-25T06:00+00:00", "2021-07-26T12:00+00:00"), "notice: gale of x"));
   EXPECT_TRUE(Says(warn("2021-07-25T06:01+00:00", "2021-07-26T12:00+00:00"),
                    "notices: 1 more at other times"));

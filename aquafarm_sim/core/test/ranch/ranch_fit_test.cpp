@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Inputs of a ranch that do not fit one another are named; longitudes are equal modulo 360.
+// The message names the inputs of a ranch that do not fit together. Longitudes are equal modulo
+// 360.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

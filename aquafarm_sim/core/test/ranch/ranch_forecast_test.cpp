@@ -27,7 +27,7 @@ class ForecastRanch : public testing::Test {
   ForecastRanch() { request_.track.clear(); }
   ~ForecastRanch() override { fs::remove(path_); }
 
-  // Three recorded points 700 km and more to the south-east of the ranch, each 300 km wide.
+  // Three recorded points, 700 km or more south-east of the ranch, each with a radius of 300 km.
   BuiltRanch Make(const std::string& forecast,
                   const std::string& wind = "\"speed\": 42, \"radius7\": 300") {
     const auto point = [&](const char* time, double latitude, double longitude) {
@@ -156,7 +156,7 @@ TEST_F(ForecastRanch, NamesAStormThatIsFarAwayAndAStartBeforeIt) {
                    "position at 2021-07-24T00:00:00Z on; the storm stands there until then"));
 }
 
-// A bulletin cut at an hour before the storm came.
+// A bulletin that ends before the storm arrives.
 TEST_F(ForecastRanch, HoldsForARealBulletinCutBeforeTheStormCame) {
   const fs::path real = SharedData() / "bulletins" / "202106.json";
   if (!fs::exists(real)) GTEST_SKIP() << "no real files at " << SharedData();

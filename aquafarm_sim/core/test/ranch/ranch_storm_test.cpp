@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The storm of a ranch: its track, its radii, and what its bulletins forecast.
+// The storm of a ranch: its track, its radii and the forecasts of its bulletins.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -53,8 +53,8 @@ TEST(Ranch, TakesTheForecastOfTheAgencyNamedFirst) {
   EXPECT_NEAR(told[0].points[0].y, frame.ToGrid({30.1, 122.0})[1], 1e-2);
 }
 
-// The ranch with bulletins of In-fa of a year, each a pair of hours of its 25 July, UTC: when it
-// was issued and when the one point forecast is.
+// The ranch with bulletins of In-Fa. Each pair contains two hours of 25 July of `year`, UTC: the
+// time of issue and the time of its only forecast point.
 BuiltRanch WithBulletins(RanchRequest request, int year,
                          const std::vector<std::array<int, 2>>& bulletins) {
   const auto time = [year](int hour) {

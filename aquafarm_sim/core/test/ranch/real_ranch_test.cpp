@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranches of files that authorities published; skipped where they are not at hand.
+// Ranches built from published files; skipped if the files are missing.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -54,7 +54,7 @@ TEST(RealFiles, GiveDevicesTheirValueFromTheSea) {
   EXPECT_NE(Refused(request).find("expected the ranch at"), std::string::npos);
 }
 
-// The archive's bulletins were kept without their forecasts; the storm goes on as it did.
+// The bulletins of the archive contain no forecasts; the storm continues its motion.
 TEST(RealFiles, OfBulletinsHaveNoForecastsToTell) {
   const fs::path data = SharedData();
   if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
@@ -69,7 +69,8 @@ TEST(RealFiles, OfBulletinsHaveNoForecastsToTell) {
             "202106.json, expected bulletins with forecast points");
 }
 
-// Scenario files that a person may edit; what decides the play is still what the command makes.
+// People may edit scenario files; the parts that determine an episode still match the command's
+// result.
 TEST(RealFiles, MakeTheShippedRanches) {
   const fs::path data = SharedData();
   if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
@@ -95,8 +96,7 @@ TEST(RealFiles, MakeTheShippedRanches) {
             LoadScenario((shipped / "zhoushan_mitag_2019.yaml").string()).hash);
 }
 
-// It was written by hand, for its islands are blocks that a person chose; its storm is the
-// command's.
+// The file was written by hand, with islands as blocks of cells; its storm equals the command's.
 TEST(RealRanch, ShippedInFaHasTheStormThatTheCommandMakes) {
   const fs::path data = SharedData();
   if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
@@ -119,7 +119,7 @@ TEST(RealRanch, ShippedInFaHasTheStormThatTheCommandMakes) {
       EXPECT_NEAR(by_command.x, by_hand.x, 0.02F) << "the origin is rounded";
       EXPECT_NEAR(by_command.y, by_hand.y, 0.02F);
       EXPECT_EQ(by_command.grade, by_hand.grade);
-      // After the last bulletin the command estimates a gale ring, the hand wrote none.
+      // After the last bulletin the command estimates a gale ring; the file has none there.
       if (by_hand.radii.back() == 0.0F) continue;
       EXPECT_EQ(by_command.radii, by_hand.radii) << by_hand.step;
       ++same;

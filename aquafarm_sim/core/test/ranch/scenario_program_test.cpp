@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Runs the program; gives its exit code and what it wrote.
+// Runs the program; returns its exit code and its output.
 std::pair<int, std::string> RunApp(const std::string& arguments) {
   FILE* pipe = popen((AQUAFARM_SCENARIO_APP " " + arguments + " 2>&1").c_str(), "r");
   std::string text;

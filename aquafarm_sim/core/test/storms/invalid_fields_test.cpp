@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One wrong value does not lose a storm: the value or its point is left out with one warning.
+// A wrong value does not lose a storm: the value or its point is left out with one warning.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 struct Typo {
   const char* name;
-  const char* point;  // the second of three
+  const char* point;  // the second of three points
   const char* warning;
 };
 void PrintTo(const Typo& typo, std::ostream* out) { *out << typo.name; }

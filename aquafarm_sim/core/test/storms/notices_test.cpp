@@ -71,7 +71,7 @@ TEST(Anchorages, WithoutForecastsAreSaid) {
   }
 }
 
-// The periods of the sample, published at a time and named by its days and hours.
+// Periods of the sample, with the time of publication and the text with days and hours.
 std::int64_t StartOf(const std::string& published, const std::string& period) {
   std::string text = Sample("anchorage.json");
   text.replace(text.find("2026043011"), 10, published);

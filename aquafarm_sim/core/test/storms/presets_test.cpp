@@ -10,7 +10,7 @@
 namespace aquafarm {
 namespace {
 
-const GridScale kScale{500.0, 360.0};  // a tenth of an hour a step
+const GridScale kScale{500.0, 360.0};  // a tenth of an hour per step
 
 DisasterSpec Made(const std::string& text) { return ParseDisasterPreset(text, kScale); }
 
@@ -37,7 +37,7 @@ TEST(Presets, HaveTheGradesOfTheWarnings) {
 }
 
 TEST(Presets, HaveTwoRingsOfAllAndHalfTheArea) {
-  const DisasterSpec tide = Made("red_tide:area_km2=78.54,growth_m_h=100");  // 5 km around
+  const DisasterSpec tide = Made("red_tide:area_km2=78.54,growth_m_h=100");  // radius 5 km
   ASSERT_EQ(tide.radii.size(), 2U);
   EXPECT_NEAR(tide.radii[1], 10.0F, 1e-3F);
   EXPECT_NEAR(tide.radii[0] * tide.radii[0] * 2.0F, 100.0F, 0.1F);
@@ -65,7 +65,7 @@ TEST(Presets, OfSpillsDriftAsideOfTheWindToo) {
   EXPECT_EQ(
       ParseDisasterPreset("oil_spill:area_km2=2,wind_mps=10,wind_from_deg=270", scale).heading_deg,
       75);
-  // 0.3 m/s to 105 degrees and 0.3 m/s to 345: 0.3 m/s to 45.
+  // 0.3 m/s towards 105 degrees plus 0.3 m/s towards 345 degrees: 0.3 m/s towards 45 degrees.
   const DisasterSpec both =
       Made("oil_spill:area_km2=2,wind_mps=10,wind_from_deg=270,current_mps=0.3,current_to_deg=345");
   EXPECT_EQ(both.heading_deg, 45);

@@ -33,7 +33,7 @@ TEST(TrackFormat, IsKnownByItsContent) {
   EXPECT_EQ(ToString(TrackFormat::kWeatherService), "weather service track");
 }
 
-// Storms without a number are known by a serial that begins anew each year.
+// Storms without a number have a serial number that restarts each year.
 TEST(StormFile, TellsStormsOfOneIdApart) {
   const std::string years =
       "66666 0000 01 0012 0000 0 6 (nameless) 20200101\n"
@@ -107,7 +107,7 @@ TEST(FindTrack, TakesIdsBeforeNamesAndNoEmptyWord) {
   }
 }
 
-// Every reader of text: a pipe is not waited for, a device not read without end.
+// No reader waits for a pipe, or reads from a device without end.
 TEST(LoadStormFile, NamesAFileThatIsNot) {
   const std::string pipe =
       (std::filesystem::temp_directory_path() / ("hazard_file_test." + std::to_string(getpid())))
@@ -136,7 +136,7 @@ TEST(LoadStormFile, NamesAFileThatIsNot) {
   std::filesystem::remove(pipe);
 }
 
-// Every cut of every sample is read, or refused with a line; nothing else happens.
+// Every truncated sample is read, or rejected with a line number.
 TEST(StormFile, EveryCutOfASampleIsReadOrRefused) {
   for (const char* name : {"cma.txt", "jma.txt", "atcf.dat", "ibtracs.csv", "bulletin.json",
                            "zhejiang.js", "weather_service.json"}) {

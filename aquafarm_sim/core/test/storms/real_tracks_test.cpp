@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The readers on files that authorities published; skipped where they are not at hand.
+// Tests the readers with published files; skipped if the files are missing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class RealFiles : public testing::Test {
   }
 };
 
-// Three archives on one storm at one hour, 2021-07-25 06:00 UTC.
+// Three archives contain one storm at the same hour, 2021-07-25 06:00 UTC.
 constexpr std::int64_t kInFaNoon = 1627192800;
 const StormFix& At(const StormTrack& track, std::int64_t time) {
   return *std::find_if(track.fixes.begin(), track.fixes.end(),
@@ -72,7 +72,7 @@ TEST_F(RealFiles, OfCmaWithABlankNameHaveEveryStorm) {
 
 TEST_F(RealFiles, OfCmaTakeAtMostTwentyMillisecondsAYear) {
   double least_ms = 1e9;
-  for (int i = 0; i < 10; ++i) {  // the best of some: others use the machine too
+  for (int i = 0; i < 10; ++i) {  // the fastest of some runs: other processes use the machine, too
     const auto start = std::chrono::steady_clock::now();
     Load("tracks/CH2021BST.txt");
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
@@ -168,7 +168,7 @@ TEST_F(RealFiles, AreAllRead) {
       EXPECT_TRUE(extension == ".pgm" || extension == ".png" || extension == ".bmp")
           << path << " is read with its YAML file";
     } else {
-      continue;  // what the folder says of itself
+      continue;  // a file about the folder itself
     }
     ++read;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is no file of tracks: where, what it got and what was expected.
+// Files without tracks are rejected with the position, the given and the expected value.
 #include <gtest/gtest.h>
 
 #include "storm_samples.h"

@@ -31,7 +31,8 @@ WindRing Ring(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& ra
   return {wind_kt, radius_km, false};
 }
 
-// Passes the ranch from east to west in 20 hours, one degree of longitude (96.5 km) in five.
+// Passes the ranch from east to west in 20 hours, with one degree of longitude (96.5 km) in five
+// hours.
 StormTrack WestGoing() {
   StormTrack track;
   track.id = "9901";
@@ -60,7 +61,7 @@ TEST(ToRings, KeepsTheAreaOfTheQuadrantsOrTakesTheLargest) {
 
 TEST(ToRings, EstimatesWhatIsNotSaidAndNeverBeyondAWeakerWind) {
   StormTrack track = WestGoing();
-  track.fixes[1].rings = {Ring(34, {30, 30, 30, 30})};  // smaller than any estimate
+  track.fixes[1].rings = {Ring(34, {30, 30, 30, 30})};  // smaller than any estimated radius
   track.fixes[2].rings.clear();
   track.fixes[2].wind_mps.reset();
   track.fixes[2].grade = StormGrade::kUnknown;
@@ -229,7 +230,7 @@ TEST(ClosestApproach, TellsWhenAStormIsNearestAndHowLongItsWindLasts) {
   EXPECT_NEAR(far.nearest_km, 665.5, 1.0) << "six degrees of latitude";
 }
 
-// The shipped scenario was made by hand from these two files before there was this code.
+// The shipped scenario was written by hand from these two files.
 TEST(RealFiles, GiveTheTrackOfTheShippedScenario) {
   const std::filesystem::path data = SharedData();
   if (!std::filesystem::exists(data)) GTEST_SKIP() << "no real files at " << data;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracks in lines and columns: CMA, JMA, ATCF, IBTrACS.
+// Line-based and column-based tracks: CMA, JMA, ATCF, IBTrACS.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -99,7 +99,7 @@ TEST(Atcf, MergesTheRowsOfATime) {
   EXPECT_EQ(fix.grade, StormGrade::kTyphoon);
   EXPECT_NEAR(*fix.max_wind_radius_km, 55.56, 0.01);
   ExpectRadii(fix, 34, NauticalMiles({110, 90, 0, 100}));
-  // A semicircle about the north-east: half of SE and NW belong to it.
+  // A semicircle towards the north-east contains half of SE and half of NW.
   const double half = std::sqrt((60.0 * 60.0 + 40.0 * 40.0) / 2.0);
   ExpectRadii(fix, 50, NauticalMiles({60, half, 40, half}));
   ExpectRadii(fix, 64, NauticalMiles({20, 20, 20, 20}));

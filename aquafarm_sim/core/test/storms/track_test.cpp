@@ -39,7 +39,8 @@ TEST(EstimatedRings, FallOffAsHollandsWindAndAreMarked) {
   for (const std::int32_t wind_kt : {64, 34, 50}) EXPECT_TRUE(EstimateRing(fix, wind_kt));
   ASSERT_EQ(fix.rings.size(), 3U);
   // Rmax = 46.4 exp(-0.589 + 0.507) = 42.7 km; B = 1.00; f = 7.292e-5 /s. At 214 km:
-  // a = 0.2, Vc^2 = 1562, sqrt(1562 · 0.2 · e^0.8 + 61) - 7.8 = 19.7 m/s, so that 17.5 is beyond.
+  // a = 0.2, Vc^2 = 1562, sqrt(1562 · 0.2 · e^0.8 + 61) - 7.8 = 19.7 m/s, so that the radius of
+  // 17.5 m/s is larger.
   EXPECT_EQ(fix.rings[0].wind_kt, 34) << "the weakest first";
   const double gale = fix.rings[0].radius_km[0];
   EXPECT_GT(gale, 214.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines of tracks that end too soon, and values that contradict each other: refused or said, never
-// taken for smaller numbers.
+// Truncated lines and contradictory values are rejected or reported. They are never read as smaller
+// numbers.
 #include <gtest/gtest.h>
 
 #include "storm_samples.h"
@@ -8,7 +8,7 @@
 namespace aquafarm {
 namespace {
 
-// The whole line of In-Fa with radii of 50 and 30 kt.
+// The complete line of In-Fa with radii of 50 and 30 kt.
 const std::string kInFa =
     "21072506 002 5 300 1225 970      065     90080 0080 20325 0240         #        ";
 
@@ -39,7 +39,7 @@ TEST(Jma, ALineThatEndsWithinAPointIsRefused) {
             "x:3: got a line of 36 columns, expected 62 or more of a storm, to its radii");
 }
 
-// A header that is filled up with blanks has points that are, one that ends with its date has not.
+// Points below a padded header are padded; points below a header that ends with its date are not.
 TEST(Jma, APointThatIsShorterThanItsHeaderIsSaid) {
   const std::string head =
       "66666 2106  002 0011 2106 0 6                IN-FA              20220101";

@@ -10,22 +10,23 @@
 
 namespace aquafarm_sim {
 
-/// A folder that bulletins are put into.
+/// A folder that receives bulletins as files.
 class BulletinFolder {
  public:
   explicit BulletinFolder(std::string path) : path_(std::move(path)) {}
 
-  /// Files that are new or changed since they were marked, the oldest first. Hidden files and those
-  /// that end in ".part" are still being written. Files that cannot be looked at are passed over.
-  /// @throws InputError when there is no such folder, or it cannot be read to its end
+  /// Returns the files that are new or changed since they were marked, the oldest first. Hidden
+  /// files and files that end in ".part" are incomplete and skipped, as are files whose state
+  /// cannot be read.
+  /// @throws InputError if the folder does not exist or cannot be read completely
   std::vector<std::string> New();
-  /// Marks a file of the last New(): it is given again only when it changes after that look.
+  /// Marks a file of the last New(). It is returned again only if it changes after that call.
   void Mark(const std::string& path);
 
  private:
-  using State = std::pair<std::filesystem::file_time_type, std::uintmax_t>;  // changed, size
+  using State = std::pair<std::filesystem::file_time_type, std::uintmax_t>;  // time of change, size
   std::string path_;
-  std::map<std::string, State> found_;  // by path, at the last look
+  std::map<std::string, State> found_;  // by path, at the last New()
   std::map<std::string, State> marked_;
 };
 

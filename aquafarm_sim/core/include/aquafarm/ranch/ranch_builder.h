@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// A scenario from a chart, a place and a storm: what `aquafarm scenario` does.
+/// Builds a scenario from a chart, a place and a storm, as `aquafarm scenario` does.
 
 #include <string>
 #include <vector>
@@ -11,19 +11,21 @@
 
 namespace aquafarm {
 
-/// A ranch made.
+/// Result of BuildRanch.
 struct BuiltRanch {
   Scenario scenario;
-  std::string yaml;                   ///< the file, with comments that say where it comes from
-  std::vector<std::string> decided;   ///< a line each, for people
-  std::vector<std::string> warnings;  ///< of the files read
+  std::string yaml;                   ///< text of the scenario file, with comments on the sources
+  std::vector<std::string> decided;   ///< decisions, one line each, for people
+  std::vector<std::string> warnings;  ///< warnings about the input files
 };
 
-/// @throws InputError for files that cannot be read, a place without water, a storm not in the file
+/// Builds a scenario.
+/// @throws InputError for unreadable files, a place without water, or a storm that is not in the
+///   file
 BuiltRanch BuildRanch(const RanchRequest& request);
 
-/// The layout of a scenario's first episode as text, north up: # island, o rock, P port, d device,
-/// . water.
+/// Draws the layout of a scenario's first episode as text, north up: # island, o rock, P port, d
+/// device, . water.
 std::string RenderAscii(const Scenario& scenario);
 
 }  // namespace aquafarm

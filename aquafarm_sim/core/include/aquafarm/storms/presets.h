@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Disasters other than storms with a track (§1), from what people know of them: a wave height, a
-/// warning level, an area, a wind and a current. docs/data.md names the source of every number.
+/// Disasters other than storms with a track (§1), from observed quantities: wave height, warning
+/// level, area, wind or current. docs/data.md lists the source of every number.
 ///
 ///   storm:wind_mps=18,radius_km=50                       signal by mean wind
 ///   storm_surge:level=3,radius_km=30                     warning tide level reached
@@ -11,10 +11,10 @@
 ///   oil_spill:area_km2=2,wind_mps=8,wind_from_deg=315,current_mps=0.2,current_to_deg=90
 ///   chemical_spill:…                                     as oil_spill
 ///
-/// Each has grade, two rings (all of it, and the half of its area around the middle) with the risks
-/// of its grade, and drifts: with the current, spills besides with 3 % of the wind, 15 degrees to
-/// the right of it in the north (to the left in the south). `growth_m_h` widens both rings,
-/// `duration_h` (24) ends it.
+/// Each has a grade and two rings with the risks of its grade. The outer ring has the full area,
+/// the inner ring half of it. Each drifts with the current. Spills also drift with 3 % of the wind
+/// speed, 15 degrees to the right of the wind in the north (to the left in the south). `growth_m_h`
+/// widens both rings; the disaster ends after `duration_h` (default 24).
 
 #include <string>
 
@@ -22,16 +22,16 @@
 
 namespace aquafarm {
 
-/// What turns metres and hours into cells and steps.
+/// Conversion from metres and hours to cells and steps.
 struct GridScale {
   double cell_size_m{1000.0};
   double step_duration_s{180.0};
-  bool south{};  ///< of the equator
+  bool south{};  ///< true if south of the equator
 };
 
-/// The disaster that a text describes; its centre is drawn anywhere on the enlarged map.
-/// @throws InputError "disaster: wave: height_m: got 1, expected [2.5, 30]"; an unknown kind or key
-///         is answered with those there are
+/// Parses a disaster from its description. Its centre is drawn anywhere on the enlarged map.
+/// @throws InputError "disaster: wave: height_m: got 1, expected [2.5, 30]"; for an unknown kind or
+///   key, the message lists the valid ones
 DisasterSpec ParseDisasterPreset(const std::string& text, const GridScale& scale);
 
 }  // namespace aquafarm

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Reads published tracks; docs/data.md says what each format holds and what is lost on the way.
+/// Reads published tracks. docs/data.md describes the content of each format and what is lost.
 
 #include <optional>
 #include <string>
@@ -12,22 +12,22 @@
 
 namespace aquafarm {
 
-/// What a file of tracks holds.
+/// Content of a file of tracks.
 struct StormFile {
   TrackFormat format{};
   std::vector<StormTrack> tracks;     ///< at least one, in the order of the file
-  std::vector<std::string> warnings;  ///< repairs made: "file:line: what was done"
+  std::vector<std::string> warnings;  ///< repairs: "file:line: what was done"
 };
 
-/// Reads a file of tracks in whichever format it is.
+/// Reads a file of tracks and detects its format.
 /// @throws InputError "CH2021BST.txt:12: latitude: got 950, expected [-900, 900]"
 StormFile LoadStormFile(const std::string& path);
 
-/// The same for text; `origin_name` stands for the file in messages.
+/// Reads the same from a text; `origin_name` replaces the file name in messages.
 StormFile ParseStormFile(const std::string& text, const std::string& origin_name);
 
-/// The one track that a word names: an id, or a name in any case.
-/// @throws InputError naming what there is when none or more than one fits
+/// Returns the track with the given id, or with the given name (case is ignored).
+/// @throws InputError that lists the tracks of the file if no track or more than one matches
 const StormTrack& FindTrack(const StormFile& file, const std::string& storm);
 
 }  // namespace aquafarm

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// ATCF b-decks: commas, padded with blanks, one to three rows a time, one a wind radius. Rows end
-// where the one who wrote them stopped. (science.nrlmry.navy.mil, abrdeck.html)
+// ATCF b-decks: comma-separated rows padded with blanks, one to three rows per time, one per wind
+// radius. Trailing fields of a row may be missing. (science.nrlmry.navy.mil, abrdeck.html)
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -43,7 +43,7 @@ std::string_view At(const Fields& fields, Field field) {
   return field < fields.size() ? fields[field] : std::string_view();
 }
 
-// "123N" or "1423E" in tenths of a degree.
+// Parses "123N" or "1423E" in tenths of a degree.
 double ReadAngle(std::string_view text, char positive, char negative, std::int32_t most,
                  const char* name, const ParseContext& place) {
   const char side = text.empty() ? ' ' : text.back();
@@ -55,10 +55,10 @@ double ReadAngle(std::string_view text, char positive, char negative, std::int32
   return (side == positive ? tenths : -tenths) / 10.0;
 }
 
-// AAA is a circle; NEQ and the like start there and go clockwise; a semicircle, such as NES, has
-// two radii, its own and that of the other half. Each eighth of the circle is given its radius, a
-// quadrant the root of the mean square of its two eighths, which keeps the area.
-// nullopt for an unknown code.
+// AAA is a circle. NEQ and similar codes name the first quadrant; the others follow clockwise. A
+// semicircle, such as NES, has two radii: its own and that of the other half. Each eighth of the
+// circle gets its radius. A quadrant gets the root mean square of its two eighths, which keeps the
+// area. Returns nullopt for an unknown code.
 std::optional<std::array<double, kQuadrantCount>> Quadrants(std::string_view code,
                                                             const std::array<double, 4>& radius) {
   constexpr std::array<std::string_view, 8> kTowards{"NN", "NE", "EE", "SE",
@@ -96,7 +96,7 @@ void ReadRing(const Fields& fields, StormFix& fix, ParseContext& place) {
   std::array<double, 4> radius{};
   for (std::size_t i = 0; i < said; ++i) {
     const std::string_view field = At(fields, static_cast<Field>(kRadius1 + i));
-    if (field.empty()) ReadWhole(field, "radius", 0, 1500, place);  // refuses a row that was cut
+    if (field.empty()) ReadWhole(field, "radius", 0, 1500, place);  // rejects a truncated row
     const auto value = TryWhole(field, "radius", 0, 1500, place);
     if (!value) return;
     radius[i] = kKmPerNauticalMile * *value;
@@ -134,7 +134,7 @@ StormFix ReadFix(const Fields& fields, ParseContext& place) {
   const std::string_view type = At(fields, kType);
   fix.extratropical = type == "EX" || type == "ET" || type == "PT";
   if (fix.wind_mps) fix.grade = GradeOfWind(*fix.wind_mps);
-  // Best tracks leave direction and speed at 0: then they are computed.
+  // Best tracks set direction and speed to 0; the motion is then computed.
   if (const auto speed_kt = above_zero(kSpeed, "speed", 200)) {
     const auto direction = TryWhole(At(fields, kDirection), "direction", 0, 360, place);
     if (direction) {
@@ -145,22 +145,23 @@ StormFix ReadFix(const Fields& fields, ParseContext& place) {
   return fix;
 }
 
-// A time has a row for each wind whose radii are told, alike but for these.
+// A time has one row for each wind radius. The rows differ only in the radii.
 bool IsSame(const StormFix& fix, const StormFix& known) {
   return fix.time == known.time && fix.position.latitude == known.position.latitude &&
          fix.position.longitude == known.position.longitude && fix.wind_mps == known.wind_mps &&
          fix.pressure_hpa == known.pressure_hpa;
 }
 
-// Fields of a row through its last radius, and through the radius of the greatest wind.
+// Number of fields of a row through its last radius, and through the radius of the greatest wind.
 constexpr std::size_t kThroughRadii = kRadius4 + 2;
 constexpr std::size_t kThroughMaxWind = kMaxWindRadius + 2;
 
 // The line and the number of fields of a row that ends before the radius of the greatest wind.
 using NarrowRow = std::pair<std::int32_t, std::size_t>;
 
-// A row that ends before the last radius, in a deck whose others do not, was cut; one that ends
-// before the radius of the greatest wind may have been. @param widest most fields of a row
+// Detects truncated rows. A row that ends before the last radius is truncated if other rows of the
+// deck are longer. A row that ends before the radius of the greatest wind may be truncated.
+// @param widest max number of fields of a row
 void CheckNarrowRows(const std::vector<NarrowRow>& narrow, std::size_t widest,
                      ParseContext& place) {
   for (const auto& [number, size] : narrow) {
@@ -191,7 +192,7 @@ std::vector<StormTrack> ReadAtcf(std::string_view text, ParseContext& place) {
     if (Trim(line).empty()) continue;
     SplitFields(line, fields);
     widest = std::max(widest, fields.size());
-    // Some rows end in the comma behind the radii by right.
+    // Some valid rows end with the comma after the radii.
     const bool ends_in_radii = fields.size() == kThroughRadii && fields.back().empty();
     if (fields.size() < kThroughMaxWind && !ends_in_radii) {
       narrow.emplace_back(place.line, fields.size());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Typhoon bulletins as JSON: a list of storms, each with its points, and forecasts with some of
-// them. No document exists; the shape is that of some two thousand files. A second spelling of
-// the keys (moveDir for move_dir, r7 for radius7) is as good as the first; so is that of Zhejiang's
-// water office (tfid, movedirection, radii as 250|220|200|180).
+// Typhoon bulletins as JSON: a list of storms, each with its points; some points have forecasts.
+// There is no specification; the structure was derived from about two thousand files. Alternative
+// spellings of the keys are accepted (moveDir for move_dir, r7 for radius7), as are those of
+// Zhejiang's water office (tfid, movedirection, radii as 250|220|200|180).
 #include <algorithm>
 #include <array>
 
@@ -19,12 +19,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::int64_t kBeijing_s = 8 * 3600;  // times have no zone
+constexpr std::int64_t kBeijing_s = 8 * 3600;  // times do not contain a zone
 constexpr std::int32_t kAveraging_min = 2;
 
 // "强台风(STY)", "台风", "Super TY" …
 StormGrade GradeOfText(const std::string& text) {
-  // The longer words first: they hold the shorter ones.
+  // The longer words first: they contain the shorter ones.
   constexpr std::array<std::pair<std::string_view, StormGrade>, 14> kWords{{
       {"SUPER TY", StormGrade::kSuperTyphoon},
       {"SUPERTY", StormGrade::kSuperTyphoon},
@@ -48,7 +48,8 @@ StormGrade GradeOfText(const std::string& text) {
       ->second;
 }
 
-// "250|220|200|180", or one number for all; nullopt with a warning for anything else.
+// Parses "250|220|200|180", or one number for all quadrants; nullopt with a warning for anything
+// else.
 std::optional<std::array<double, kQuadrantCount>> ParseRadii(const JsonObject& point,
                                                              JsonObject::Keys keys,
                                                              ParseContext& place) {
@@ -97,7 +98,7 @@ void ReadRing(const JsonObject& point, std::int32_t wind_kt, JsonObject::Keys wh
         point.KeyOf(quadrants), Join(point.path(), point.KeyOf(quadrants)),
         std::string("got no object, expected radii as {\"ne\": 250, …}") + kIgnored);
   }
-  if (valid) AddSaidRing(wind_kt, radius, fix);  // else unknown, so estimated
+  if (valid) AddSaidRing(wind_kt, radius, fix);  // else the ring is unknown and gets estimated
 }
 
 StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
@@ -105,7 +106,7 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   fix.time = point.NeedTime({"time"}, kBeijing_s);
   fix.position = point.NeedPosition({"lat"}, {"lng", "lon"});
   const double wind = point.TryNumber({"speed"}, 0.0, 150.0).value_or(0.0);
-  if (wind > 0.0) fix.wind_mps = wind;  // 0: of old storms, not known
+  if (wind > 0.0) fix.wind_mps = wind;  // 0 means unknown, in old storms
   fix.averaging_min = kAveraging_min;
   fix.pressure_hpa = CheckedPressure(point.TryNumber({"pressure"}, 0.0, 1100.0),
                                      Join(point.path(), "pressure"), place);
@@ -124,7 +125,8 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   ReadRing(point, 64, {"radius12", "r12"}, {"radius12_quad", "r12Quad", "radius12Quad"}, fix,
            place);
   fix.speed_kmh = point.TryNumber({"move_speed", "moveSpeed", "movespeed"}, 0.0, 300.0);
-  if (fix.speed_kmh == 0.0) fix.speed_kmh.reset();  // not said; a storm at rest is computed
+  if (fix.speed_kmh == 0.0)
+    fix.speed_kmh.reset();  // 0 means not given; the motion is then computed
   const JsonObject::Keys way{"move_dir", "moveDir", "movedirection"};
   const std::string direction = point.TryText(way);
   fix.heading_deg = ParseDirection(direction);
@@ -135,8 +137,9 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   return fix;
 }
 
-// Whether a forecast's point is after the observed one that it hangs on, which for some agencies is
-// later than their own issue. @throws FixError when it is too far ahead for a forecast
+// Returns whether a forecast point is later than the observed point that contains it. Some
+// forecasts were issued before that observed point. @throws FixError if it is too far ahead for a
+// forecast
 bool IsAhead(std::int64_t time, std::int64_t observed, const std::string& path,
              ParseContext& place) {
   constexpr std::int64_t kMostDays = 15;
@@ -187,7 +190,7 @@ void ReadLandfalls(const JsonObject& storm, StormTrack& track, ParseContext& pla
   const Json* land = storm.TryList({"land"});
   for (std::size_t i = 0; land != nullptr && i < land->size(); ++i) {
     const Json& each = (*land)[i];
-    const bool zhejiangs = each.contains("landtime");  // which names more than landfalls
+    const bool zhejiangs = each.contains("landtime");  // Zhejiang lists other events here, too
     if (zhejiangs || IsBlank(each)) continue;
     try {
       const JsonObject entry(each, At(Join(storm.path(), "land"), i), place);
@@ -232,7 +235,7 @@ StormTrack ReadStorm(const JsonObject& storm, ParseContext& place) {
 std::vector<StormTrack> ReadBulletin(const std::string& text, ParseContext& place) {
   const Json document = ParseJson(text, place);
   std::vector<StormTrack> tracks;
-  if (document.is_object()) {  // one storm without the list around it
+  if (document.is_object()) {  // one storm without an enclosing list
     tracks.push_back(ReadStorm(JsonObject(document, "", place), place));
     return tracks;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CMA best track, CHyyyyBST.txt: a header of words a storm, then its points. Words, not columns: a
-// header of 2018 is shifted. (tcdata.typhoon.org.cn/zjljsjj.html)
+// CMA best track, CHyyyyBST.txt: one header per storm, then its points. Fields are separated by
+// blanks, not by columns, because a header of 2018 is shifted. (tcdata.typhoon.org.cn/zjljsjj.html)
 #include <algorithm>
 #include <array>
 
@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::int32_t kAveraging_min = 2;
 
-// 66666 BBBB CCC DDDD EEEE F G name date. BBBB is 0000 for every storm before 2017 and EEEE may be
-// two numbers, "7127,7128"; the serial DDDD is in every file once.
+// 66666 BBBB CCC DDDD EEEE F G name date. BBBB is 0000 for every storm before 2017. EEEE may be two
+// numbers, "7127,7128". The serial number DDDD is unique in each file.
 BestTrackHeader ReadHeader(std::string_view line, ParseContext& place) {
   const std::vector<std::string_view> words = SplitWords(line);
   constexpr std::size_t kBeforeName = 7;
@@ -90,8 +90,8 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
 
 namespace {
 
-// Columns are fixed, and the last number stands at the right of its own: a point that is shorter
-// than others of as many words has lost digits of it.
+// Columns are fixed and numbers are right-aligned. A point that is shorter than others with as many
+// fields has therefore lost digits of its last number.
 void WarnOfShortPoints(std::string_view text, ParseContext& place) {
   constexpr std::size_t kMostWords = 7;
   const auto each = [&](auto&& act) {

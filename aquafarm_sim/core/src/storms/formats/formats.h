@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The readers of tracks, one for each format. The parse context refuses and warns.
+/// The readers of tracks, one for each format. They report errors and warnings to the parse
+/// context.
 
 #include <string>
 #include <string_view>

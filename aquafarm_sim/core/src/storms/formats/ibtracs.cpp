@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// IBTrACS v04 CSV: names in row 1, units in row 2, then a row a fix; columns are found by name and
-// a missing value is a blank. (IBTrACS v04 column documentation)
+// IBTrACS v04 CSV: names in row 1, units in row 2, then one row per fix. Columns are found by name.
+// A missing value is a blank. (IBTrACS v04 column documentation)
 #include <array>
 #include <map>
 
@@ -15,8 +15,8 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-// Averaging of the winds of an agency that WMO_WIND is taken from [min]; IBTrACS leaves them as
-// they are (its technical details, table of agencies).
+// Returns the averaging period of the winds of an agency that WMO_WIND is taken from [min]. IBTrACS
+// does not convert them (its technical details, table of agencies).
 std::int32_t AveragingOf(std::string_view agency) {
   if (agency == "newdelhi") return 3;
   if (agency.substr(0, 7) == "hurdat_" || agency == "atcf" || agency == "cphc") return 1;
@@ -54,12 +54,12 @@ std::optional<double> Number(std::string_view text, const char* name, double max
 double Degrees(std::string_view text, const char* name, double min, double max,
                const ParseContext& place) {
   const std::optional<double> value = ParseNumber(text);
-  if (value && *value >= min && *value <= max) return *value;  // false for nan
+  if (value && *value >= min && *value <= max) return *value;  // false for NaN
   place.RefuseFix(std::string(name) + ": got " + Quoted(text) + ", expected a number in [" +
                   Format(min) + ", " + Format(max) + "]");
 }
 
-// The first agency with any radius of a wind gives all four quadrants.
+// All four quadrants come from the first agency with a radius of this wind.
 void ReadRings(const Columns& columns, const Fields& fields, StormFix& fix, ParseContext& place) {
   constexpr std::array<const char*, kQuadrantCount> kQuadrants{"NE", "SE", "SW", "NW"};
   for (const std::int32_t wind_kt : {34, 50, 64}) {
@@ -79,7 +79,8 @@ void ReadRings(const Columns& columns, const Fields& fields, StormFix& fix, Pars
   }
 }
 
-// WMO_WIND is the responsible agency's; where it is blank, as in provisional tracks, the USA's.
+// WMO_WIND is from the responsible agency. If it is blank, as in provisional tracks, the USA's wind
+// is used.
 void ReadStrength(const Columns& columns, const Fields& fields, StormFix& fix,
                   ParseContext& place) {
   auto wind_kt = Number(columns.Get(fields, "WMO_WIND"), "WMO_WIND", 250.0, place);
@@ -144,7 +145,7 @@ std::vector<StormTrack> ReadIbtracs(std::string_view text, ParseContext& place) 
                  std::to_string(columns.count()) + " of row 1");
     }
     const std::string_view id = columns.Get(fields, "SID");
-    if (place.line == 2 && id.empty()) {  // the units
+    if (place.line == 2 && id.empty()) {  // the row of units
       const std::string_view unit = columns.Get(fields, "WMO_WIND");
       if (unit != "kts") place.Fail("WMO_WIND: got unit " + Quoted(unit) + ", expected 'kts'");
       continue;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int32_t kAveraging_min = 10;
 constexpr std::int32_t kUnknownGrade = 7;  // "just entering the region": the wind decides
-// Lines end here or are filled up to 80 columns.
+// Lines end here or are padded to 80 columns.
 constexpr std::size_t kThroughHeader = 72;
 constexpr std::size_t kThroughWind = 36;
 constexpr std::size_t kThroughRadii = 62;
@@ -23,8 +23,8 @@ std::string_view Columns(std::string_view line, std::size_t first, std::size_t e
   return line.substr(first, end - first);
 }
 
-// The JMA's wind area is a circle about a centre that may lie aside of the storm's: the longest
-// radius points to one side, the shortest to the other. A quadrant is told by its middle.
+// The JMA's wind area is a circle whose centre may differ from the storm's: the longest radius
+// points to one side, the shortest to the other. Each quadrant gets the radius at its middle.
 std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double longest,
                                              double shortest) {
   std::array<double, kQuadrantCount> radius{};
@@ -40,7 +40,7 @@ std::array<double, kQuadrantCount> Quadrants(std::int32_t direction, double long
   return radius;
 }
 
-// Blank: not said. All zero: no such wind. A line that ends within was cut.
+// Blank: not given. All zero: no such wind. A line that ends within the field is truncated.
 void ReadRing(std::string_view line, std::size_t at, std::int32_t wind_kt, StormFix& fix,
               ParseContext& place) {
   const std::string_view direction = Columns(line, at, at + 1);
@@ -99,7 +99,7 @@ StormGrade Grade(std::int32_t code, const std::optional<double>& wind_mps) {
       return StormGrade::kTropicalStorm;
     case 4:
       return StormGrade::kSevereTropicalStorm;
-    default:  // TY has no upper end here; 6, 7 and 9 do not say
+    default:  // TY has no upper limit here; 6, 7 and 9 do not give a grade
       if (wind_mps) return GradeOfWind(*wind_mps);
       return code == 5 ? StormGrade::kTyphoon : StormGrade::kUnknown;
   }
@@ -137,7 +137,7 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
     place.Fail("got radii of 50 kt alone, expected those of 30 kt as well");
   }
   ReadRing(line, kWeaker, 30, fix, place);
-  // Since 1977 storms have radii; where there are none the columns are blank, not missing.
+  // Storms have radii since 1977. Without radii the columns are blank, not missing.
   constexpr std::int64_t k1977 = 220924800;
   const bool is_storm = code >= 3 && code <= 5;
   if (is_storm && fix.time >= k1977 && line.size() < kThroughRadii) {
@@ -148,8 +148,8 @@ StormFix ReadPoint(std::string_view line, ParseContext& place) {
   return fix;
 }
 
-// Below a header that is filled up with blanks a point is, too; below one that ends with its date a
-// point ends with its wind, its radii or its mark.
+// Points below a padded header are padded, too. Points below a header that ends with its date end
+// with the wind, the radii or the landfall mark.
 void WarnOfShortPoints(std::string_view text, ParseContext& place) {
   LineReader lines(text, place);
   std::string_view line;

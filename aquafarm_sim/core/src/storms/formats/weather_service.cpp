@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A weather service's answer to "where is this storm": {code, now, track}; every value is text.
-// (QWeather's storm-track API: windRadius30, 50 and 64 are the winds of force 7, 10 and 12; its
+// Response of a weather service to a storm query: {code, now, track}; every value is a text.
+// (QWeather's storm-track API: windRadius30, 50 and 64 are the winds of force 7, 10 and 12. Its
 // storm-forecast API has forecast in place of track and no radii.)
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::int64_t kBeijing_s = 8 * 3600;  // where a time has no zone
+constexpr std::int64_t kBeijing_s = 8 * 3600;  // for times without a zone
 constexpr std::int32_t kAveraging_min = 2;
 
 StormGrade Grade(const JsonObject& point, const std::string& type,
@@ -62,7 +62,8 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
     AddSaidRing(wind_kt, radius, fix);
   }
   fix.speed_kmh = point.TryNumber({"moveSpeed"}, 0.0, 300.0);
-  if (fix.speed_kmh == 0.0) fix.speed_kmh.reset();  // not said; a storm at rest is computed
+  if (fix.speed_kmh == 0.0)
+    fix.speed_kmh.reset();  // 0 means not given; the motion is then computed
   fix.heading_deg = point.TryNumber({"move360"}, 0.0, 360.0);
   if (fix.heading_deg == 360.0) fix.heading_deg = 0.0;
   const std::string direction = point.TryText({"moveDir"});
@@ -73,13 +74,13 @@ StormFix ReadPoint(const JsonObject& point, ParseContext& place) {
   return fix;
 }
 
-// The list of points: the track, else the forecast. A track that says nothing is none.
+// Returns the key of the list of points: "forecast" if there is no track or an empty one.
 const char* KeyOfPoints(const JsonObject& answer) {
   const Json* track = answer.List({"track"});
   return track == nullptr || track->empty() ? "forecast" : "track";
 }
 
-// Sections that an answer may have in addition to its points.
+// Warns about sections that are not read.
 void WarnOfUnread(const Json& document, ParseContext& place) {
   constexpr std::array<std::string_view, 11> kKnown{"code", "updateTime", "fxLink",  "isActive",
                                                     "now",  "track",      "refer",   "id",
@@ -90,10 +91,10 @@ void WarnOfUnread(const Json& document, ParseContext& place) {
   }
 }
 
-// A point of type DL marks a landfall and says nothing else.
+// A point of type DL only marks a landfall.
 bool IsLandfall(const JsonObject& point) { return point.TryText({"type"}) == "DL"; }
 
-// A forecast next to the track is taken as issued with the last fix.
+// A forecast in addition to the track counts as issued with the last fix.
 void ReadForecast(const JsonObject& answer, StormTrack& track, ParseContext& place) {
   const Json* points = answer.TryList({"forecast"});
   if (points == nullptr || points->empty() || track.fixes.empty()) return;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// DQN (Mnih et al. 2015; §3.4.3, Eq. 15): a network for Q(s, ·), learnt from a replay against a
-/// target network that follows it,
+/// DQN (Mnih et al. 2015; §3.4.3, Eq. 15): a network for Q(s, ·), trained from a replay buffer with
+/// a target network,
 ///
 ///   y = r + γ max over a' of Q_target(s', a')        y = r after termination
-///   loss = (y − Q(s, a))², or Huber's
+///   loss = (y − Q(s, a))², or the Huber loss
 ///
-/// and LSTM-DQN (Algorithm 2): the same with a memory, learnt from sequences that lie inside one
-/// episode and begin with the state that was carried then, warmed up for burn_in steps. All farms
-/// act in one forward pass. See DeepOptions for what can be switched on.
+/// and LSTM-DQN (Algorithm 2): DQN with a recurrent network, trained from sequences within one
+/// episode. A sequence starts with the stored recurrent state, after burn_in warm-up steps. All
+/// farms act in one forward pass. DeepOptions lists the options.
 
 #include <memory>
 #include <string>
@@ -18,22 +18,24 @@
 
 namespace aquafarm::agents {
 
-/// EncodingBits that a DQN of these options reads. @throws InputError when an option is wrong
+/// Returns the EncodingBits that a DQN with these options requires. @throws InputError if an option
+/// is wrong
 std::uint8_t DqnEncodings(const std::string& options);
-/// @throws InputError
+/// @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
-/// Value decomposition (VDN, Sunehag et al. 2018): one network plays all agents and their values
-/// add up to the team's, learnt from the sum of their rewards; a policy like any DQN's.
+/// Value decomposition (VDN, Sunehag et al. 2018): one network acts for all agents. The sum of
+/// their values is the team's value, trained from the sum of their rewards. The policy is a DQN
+/// policy.
 ///
 ///   Q_team(s, a) = Σ over agents i of Q(o_i, a_i)
-/// @throws InputError
+/// @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
-/// @throws InputError when the policy does not fit farms of `spec`, with the reason
+/// @throws InputError if the policy does not fit farms of `spec`, with the reason
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 
-// The same of LSTM-DQN.
+// The same functions for LSTM-DQN.
 std::uint8_t RecurrentDqnEncodings(const std::string& options);
 std::unique_ptr<Learner> MakeRecurrentDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                           const std::string& options);

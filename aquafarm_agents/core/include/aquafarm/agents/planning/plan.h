@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What planners share: the foreseen future, tasks, plans, and the cells that other ships reserve.
+/// Types shared by the planners: the assumed future, tasks, plans, and cells reserved by other
+/// ships.
 
 #include <cstdint>
 #include <unordered_map>
@@ -11,28 +12,28 @@
 
 namespace aquafarm::agents {
 
-/// Most (cell, devices) states that one plan may visit.
+/// Max number of (cell, devices) states of one plan.
 inline constexpr std::size_t kMaxPlanStates = 50'000'000;
 
-/// Which future of the disasters a plan is made for.
+/// The future of the disasters that a plan assumes.
 enum class Foresight : std::uint8_t {
-  kOracle,       ///< as they will really move
-  kPersistence,  ///< as the scenario's forecast has it, else straight on as it moves now
+  kOracle,       ///< the true future
+  kPersistence,  ///< the scenario's forecast, else straight motion with the present heading
 };
 
-/// Where ships that have planned before will be, so that a plan keeps out of their way: a ship's
-/// cell at each step, its own and the one that the order of moving makes it block. Ports block
-/// nobody.
+/// Cells reserved by ships with earlier plans, so that a plan avoids them. For each step they
+/// contain the ship's cell and the cell that it blocks because ships move in order. Ports are never
+/// blocked.
 class Reservations {
  public:
   void Clear() { taken_.clear(); }
-  /// Ship `id` is in `path[k]` at step first + k, from now (k = 0) on.
+  /// Reserves `path[k]` for ship `id` at step first + k; k = 0 is the present step.
   void Add(std::int32_t id, std::int32_t first, const std::vector<std::int32_t>& path);
-  /// Whether ship `id` would be in another's way, or another in its, in `cell` at `step`.
+  /// Returns whether ship `id` in `cell` at `step` would conflict with another ship's reservation.
   bool IsTaken(std::int32_t id, std::int32_t step, std::int32_t cell) const;
 
  private:
-  // A ship is there then (offset 0), will be a step later (+1), or was a step before (-1).
+  // The ship is there at the step (offset 0), one step later (+1), or was one step before (-1).
   struct Visit {
     std::int32_t ship;
     std::int32_t offset;
@@ -44,24 +45,25 @@ class Reservations {
   std::unordered_map<std::uint64_t, std::vector<Visit>> taken_;
 };
 
-/// What one ship is to do, of the farm's work.
+/// The part of a farm's work that one ship does.
 struct Task {
   std::int32_t ship{0};
-  /// Devices that it fetches, holds, or is itself; at most Planner::slots().
+  /// Devices that it fetches or carries, or the device that it is; at most Planner::slots().
   std::vector<std::int32_t> devices;
-  /// Step up to which it keeps out of harm's way when there is nothing to do; else 0.
+  /// Last step of a plan that only avoids risks because the ship has no work; else 0.
   std::int32_t until{0};
-  const Reservations* others{};  ///< null: nobody is in the way
+  const Reservations* others{};  ///< nullptr if no ship is in the way
 };
 
-/// Makes a farm's disasters move as they are foreseen from now on.
-/// @returns the tracks that they then follow
+/// Sets the assumed motion of a farm's disasters from now on.
+/// @returns the tracks that they follow
 std::vector<Track> Foresee(const Farm& farm, Foresight foresight, std::vector<Disaster>& disasters);
 
-/// What to do from a farm's present step on.
+/// Actions from a farm's present step on.
 struct Plan {
-  std::vector<std::uint8_t> actions;  ///< one per step, to the end of the episode or of all work
-  double expected_return{};           ///< from the present step on, in the assumed future
+  std::vector<std::uint8_t>
+      actions;               ///< one per step, until the episode ends or the work is complete
+  double expected_return{};  ///< from the present step on, in the assumed future
 };
 
 }  // namespace aquafarm::agents

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Planning for one ship by dynamic programming over (time, cell, devices aboard and
-/// delivered). With the disasters' true future it gives the exact best return of a seeded episode:
-/// the clairvoyant optimum, the yardstick of §4.2. With the forecast that every disaster holds its
-/// present heading it is what a good operator would do, planning again each step.
+/// Plans for one ship by dynamic programming over (time, cell, devices aboard and delivered). With
+/// the true future of the disasters the plan has the exact max return of a seeded episode: the
+/// clairvoyant optimum, the reference of §4.2. With the forecast that every disaster keeps its
+/// present heading, and a new plan at each step, it acts like a good operator.
 ///
-/// Health is kept exactly. A deployed device's health depends on time alone; aboard, its loss adds
-/// up along the way. So a device picked up is either *for value* (its worth is paid in at pickup,
-/// losses are paid as they come, and it must be delivered) or *for nothing* (it may be delivered
-/// for the bare reward): whichever is better equals worth clamped at zero.
+/// Health is computed exactly. The health of a deployed device depends only on time; aboard, its
+/// loss accumulates along the route. Each pickup is therefore planned as paid or unpaid. Paid: the
+/// value is credited at pickup, losses are subtracted as they occur, and the device must be
+/// delivered. Unpaid: it may be delivered for the drop-off reward only. The better of the two
+/// equals the value clamped at zero.
 ///
-///   forward in time, best return so far per state ──> pruned where it cannot beat the best
-///   complete plan even if no disaster came any more (a bound solved once, without time)
+///   forward in time, max return so far per state ──> pruned if the state cannot beat the best
+///   complete plan even without any further disaster (a bound solved once, independent of time)
 
 #include <cstdint>
 #include <memory>
@@ -24,26 +25,25 @@ namespace aquafarm::agents {
 
 class PlannerSolver;
 
-/// Plans for farms of one scenario; keeps its memory between plans.
+/// Plans for farms of one scenario; reuses its memory for each plan.
 class Planner {
  public:
   /// @param scenario must outlive the planner
-  /// @param slots most devices of a task; 0: all of the scenario's
-  /// @throws InputError when the scenario pays for steps or illegal actions, or the states do not
-  /// fit a
-  ///         table (kMaxStates)
+  /// @param slots max devices of a task; 0: all devices of the scenario
+  /// @throws InputError if the reward of steps or of illegal actions is positive, or if there are
+  ///   too many devices or states (kMaxStates)
   explicit Planner(const Scenario& scenario, std::int32_t slots = 0);
   ~Planner();
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
 
-  /// Number of (cell, devices) states that a plan may visit at most, and the limit of it.
+  /// Number of (cell, devices) states, and its limit.
   std::size_t state_count() const;
   inline static constexpr std::size_t kMaxStates = kMaxPlanStates;
 
-  /// The best plan from the farm's present state; empty when its episode is over.
+  /// Returns the best plan from the farm's present state; empty if its episode is over.
   Plan Solve(const Farm& farm, Foresight foresight, const Task& task);
-  /// The same for the one ship of a farm, which does all there is to do.
+  /// As above, for the only ship of a farm, which does all the work.
   Plan Solve(const Farm& farm, Foresight foresight);
 
  private:

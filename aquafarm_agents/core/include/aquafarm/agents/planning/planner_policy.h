@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Planning as a policy like any other, on farms in this process or behind ROS: it reads the
-/// farms' saved states into farms of its own and plans there. It sees all of a farm, in partial
-/// view too: it is a yardstick, not a contender, where learners see less.
+/// Planning as a Policy, for farms in this process or behind ROS. It loads the saved states of the
+/// farms into its own farms and plans there. It sees the complete farm, even with a partial view,
+/// so it is a reference and not a fair comparison for learners that see less.
 
 #include <memory>
 #include <string>
@@ -15,26 +15,26 @@
 
 namespace aquafarm::agents {
 
-/// *Receding-horizon* (kPersistence) plans anew at each step, as a good operator would who trusts
-/// that a disaster holds its heading. *Clairvoyant* knows what will come: it plans once an episode,
-/// and again when the farm is not where the plan put it.
+/// The *receding-horizon* policy (kPersistence) plans again at each step and assumes that disasters
+/// keep their headings. The *clairvoyant* policy (kOracle) knows the true future: it plans once per
+/// episode, and again if the farm deviates from the plan.
 class PlannerPolicy final : public Policy {
  public:
-  /// @throws InputError when the farm is beyond the planner (see Planner)
+  /// @throws InputError if the farm is too large or not supported (see Planner)
   PlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
   std::uint8_t encodings() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
  private:
-  /// What is left of one farm's plan.
+  /// Remaining plan of one farm.
   struct PlanState {
     Plan plan;
-    std::size_t next{};  // action of the plan
+    std::size_t next{};  // index of the next action of the plan
     std::uint64_t seed{};
     std::uint64_t episode{};
     std::int32_t step{};
-    Cell cell{};  // where the ship should be then
+    Cell cell{};  // expected cell of the ship at `step`
   };
   std::uint8_t Follow(const Farm& farm, PlanState& course);
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Cooperative planning, the classical baseline of several agents (after cooperative A*, Silver
-/// 2005, with an assignment before it):
+/// Cooperative planning, the classical baseline for several agents (cooperative A*, Silver 2005,
+/// after an assignment step):
 ///
-///   1. devices are shared out so that the last ship is done as early as can be
-///   2. ship by ship, the best plan for its share in time (planner.h), out of the way of those that
-///      have planned already
-///   3. all of it again when a disaster does not hold its heading, a ship is not where its plan put
-///      it, or one has done its share
+///   1. assign the devices to ships so that the last ship finishes as early as possible
+///   2. ship by ship, compute the best plan for its devices (planner.h) that avoids the ships
+///      planned before
+///   3. repeat both if a disaster changes its heading, or if a ship deviates from its plan or has
+///      completed it
 ///
-/// Self-propelled devices plan their own way home. Not an optimum: team_bound.h bounds it.
+/// Self-propelled devices plan their own routes. The result is not optimal; team_bound.h bounds it.
 
 #include <cstdint>
 #include <memory>
@@ -26,28 +26,29 @@ namespace aquafarm::agents {
 class TeamPlanner {
  public:
   /// @param scenario must outlive the planner
-  /// @throws InputError of Planner
+  /// @throws InputError as Planner
   TeamPlanner(const Scenario& scenario, Foresight foresight);
   ~TeamPlanner();
   TeamPlanner(TeamPlanner&&) noexcept;
 
-  /// One farm's plans, as far as they go.
+  /// Plans of one farm from step `start` on.
   struct PlanState {
-    std::vector<std::vector<std::uint8_t>> actions;  ///< by agent, from `start` on
+    std::vector<std::vector<std::uint8_t>> actions;  ///< by agent, from step `start` on
     std::vector<std::vector<std::int32_t>> path;     ///< by agent: its cell before each action
     std::uint64_t seed{};
     std::uint64_t episode{};
     std::int32_t start{};
-    std::vector<Disaster> disasters;  ///< as they should be at `foreseen`
-    std::vector<Track> tracks;        ///< that they are thought to follow
+    std::vector<Disaster> disasters;  ///< expected state at step `foreseen`
+    std::vector<Track> tracks;        ///< assumed tracks of the disasters
     std::int32_t foreseen{};
   };
 
-  /// Chooses for the next step of a farm that is not over, planning anew where it must.
+  /// Chooses the actions of the next step of a farm whose episode is active. Plans again if
+  /// necessary.
   /// @param actions [agents]
   void Act(const Farm& farm, PlanState& course, std::uint8_t* actions);
 
-  /// Who fetches what: ids of devices for each agent, what it holds or is included.
+  /// Assigns devices: for each agent the ids of those that it fetches, carries or is.
   std::vector<std::vector<std::int32_t>> Assign(const Farm& farm) const;
 
  private:
@@ -55,10 +56,10 @@ class TeamPlanner {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The team planner as a policy; sees all of a farm, like PlannerPolicy.
+/// The team planner as a Policy. It sees the complete farm, as PlannerPolicy does.
 class TeamPlannerPolicy final : public Policy {
  public:
-  /// @throws InputError when the farm is beyond the planner (see Planner)
+  /// @throws InputError if the farm is too large or not supported (see Planner)
   TeamPlannerPolicy(const EnvironmentSpec& spec, Foresight foresight);
   std::uint8_t encodings() const override { return kStatesBit; }
   void Begin(std::uint64_t seed, std::int32_t farms) override;

@@ -31,7 +31,7 @@ struct PpoOptions {
   std::int32_t batch_size{256};                       ///< agent steps of one gradient step
   std::int32_t epochs{2};                             ///< passes over each rollout
   Schedule clip_range{ScheduleKind::kConstant, 0.2};  ///< ε of the clipped probability ratio
-  double value_clip_range{0.0};     ///< largest change of a value per update; 0: not limited
+  double value_clip_range{0.0};     ///< max change of a value per update; 0: not limited
   double value_coef{0.5};           ///< weight of the value loss
   double max_grad_norm{0.5};        ///< 0: not limited
   double reward_scale{0.05};        ///< factor on all rewards
@@ -42,13 +42,13 @@ struct PpoOptions {
   /// The coefficient of the entropy bonus is the level; icm adds curiosity.
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
-  PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy plays
+  PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy acts
   std::int32_t threads{1};                 ///< of the matrix library
 
-  /// Steps per agent that one rollout holds. @param entries farms × agents
+  /// Returns the steps per agent in one rollout. @param entries farms × agents
   std::int32_t Horizon(std::size_t entries) const;
 
-  /// Reads "key=value …". @param resolved receives all options with their values in force
+  /// Parses "key=value …". @param resolved receives the values of all options
   /// @throws InputError if a key is unknown or a value is out of range
   static PpoOptions Parse(const std::string& text, std::string& resolved);
 };

@@ -9,37 +9,38 @@
 
 namespace aquafarm::agents {
 
-/// Farms that aquafarm_train steps together for most learners.
+/// Default number of farms that aquafarm_train steps together.
 inline constexpr std::int32_t kDefaultFarms = 16;
 
-/// A learner that can be asked for by name.
+/// A learner or policy that is selected by its name.
 struct Algorithm {
   const char* name;
   const char* summary;          ///< one line for people
-  bool learns;                  ///< false: its name alone stands for a policy
-  std::uint64_t default_steps;  ///< of training without a limit; see DefaultSteps
-  /// EncodingBits that it reads with these options. @throws InputError when an option is wrong
+  bool learns;                  ///< false: the name refers to a policy that needs no training
+  std::uint64_t default_steps;  ///< steps of a training without a limit; see DefaultSteps
+  /// Returns the EncodingBits that it requires with these options. @throws InputError if an option
+  /// is wrong
   std::uint8_t (*encodings)(const std::string& options);
-  /// Null: there is nothing to train.
+  /// Creates the learner; nullptr if there is nothing to train.
   std::unique_ptr<Learner> (*make)(const EnvironmentSpec& spec, std::uint64_t seed,
                                    const std::string& options);
-  /// Makes what it learnt play on farms of `spec`. @throws InputError when it does not fit
+  /// Creates the trained policy for farms of `spec`. @throws InputError if it does not fit
   std::unique_ptr<Policy> (*make_policy)(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
-  std::int32_t default_farms{kDefaultFarms};  ///< stepped together by aquafarm_train
+  std::int32_t default_farms{kDefaultFarms};  ///< farms that aquafarm_train steps together
 };
 
-/// All of them, in the order in which they are listed.
+/// All algorithms, in the order in which they are listed to users.
 const std::vector<Algorithm>& Algorithms();
 
 /// @throws InputError "algorithm: got 'dqm', expected one of: random, q_learning, sarsa"
 const Algorithm& FindAlgorithm(const std::string& name);
 
-/// Steps of a training without a limit: the algorithm's own number, or eight for each state of a
-/// table where that is more. (Measured for Q-learning, docs/data.md; SARSA is given the same.)
+/// Returns the steps of a training without a limit: the algorithm's default, or eight per state of
+/// a table if that is more. (Measured for Q-learning, docs/data.md; used for SARSA, too.)
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
-/// The name that leaves the choice to ChooseAlgorithm.
+/// The name for which ChooseAlgorithm selects the algorithm.
 inline constexpr const char* kAutoAlgorithm = "auto";
 
 struct Choice {
@@ -47,7 +48,8 @@ struct Choice {
   std::string reason;  ///< one line for people
 };
 
-/// Chooses by device intelligence, network and number of squads, as Fig. 6 of the paper does:
+/// Selects an algorithm by device intelligence, network and number of squads, as in Fig. 6 of the
+/// paper:
 ///
 ///   non-intelligent devices, one squad        a single-agent learner
 ///   several squads, or networked devices      a multi-agent learner

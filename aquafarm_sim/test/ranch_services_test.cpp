@@ -138,7 +138,8 @@ TEST(RanchServices, AStepForFarmsThatAnotherHasMovedIsStale) {
     const std::uint64_t hash = StateOf(*ranch).hash;
     const auto stale = ranch->Step(mine);
     EXPECT_EQ(Outcome::STALE, stale.code) << i;
-    EXPECT_NE(std::string::npos, stale.message.find("another client has stepped or reset them")) << i;
+    EXPECT_NE(std::string::npos, stale.message.find("another client has stepped or reset them"))
+        << i;
     EXPECT_EQ(hash, StateOf(*ranch).hash) << i;
     mine.turn = StepAll(*ranch, {kHold}).result.turn;
   }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Folder of the Python packages for catkin, which does not read pyproject.toml."""
+"""Folder of the Python packages, for catkin. Wheels are built by pyproject.toml."""
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 

@@ -11,7 +11,9 @@ namespace aquafarm {
 inline std::filesystem::path SharedData() {
   namespace fs = std::filesystem;
   if (const char* path = std::getenv("AQUAFARM_SHARED_DATA")) return path;
-  return fs::path(AQUAFARM_CORE_DIR).parent_path().parent_path().parent_path() / "shared" / "data";
+  // A workspace can contain a link to the project.
+  const fs::path core = fs::weakly_canonical(AQUAFARM_CORE_DIR);
+  return core.parent_path().parent_path().parent_path() / "shared" / "data";
 }
 
 }  // namespace aquafarm

@@ -91,7 +91,7 @@ TEST_F(CheckpointFile, RefusalsSayWhatTheFileIs) {
   EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(folder_); }), "is a folder");
   WriteFileAtomically(path, std::string(100, 'x'));
   EXPECT_CONTAINS(MessageOf<InputError>([&] { ReadCheckpoint(path); }),
-                  "does not begin with 'aquaCKPT'");
+                  "does not start with 'aquaCKPT'");
   WriteCheckpoint(path, Example());
   std::string bytes = ReadFile(path);
   bytes[8] = 9;

@@ -28,11 +28,6 @@ def make_farms():
     return aquafarm_gym.FarmVectorEnv(FARMS, "paper", copy=False)
 
 
-def masks_of(legal):
-    """Bits [N] as bools [N, 10]."""
-    return (legal[:, None] >> numpy.arange(10)) & 1 != 0
-
-
 def make_sb3_farms():
     """The farms as Stable-Baselines3 takes environments: all of them in one call a step. The step
     that starts an episode passes as a step of reward 0, which costs the references nothing."""
@@ -43,11 +38,11 @@ def make_sb3_farms():
             self.farms = make_farms()
             super().__init__(FARMS, self.farms.single_observation_space,
                              gymnasium.spaces.Discrete(10))
-            self.legal = None
+            self.masks = None
 
         def reset(self):
             seen, infos = self.farms.reset(seed=1)
-            self.legal = infos["legal"]
+            self.masks = infos["action_mask"].astype(bool)
             return seen.copy()
 
         def step_async(self, actions):
@@ -55,12 +50,12 @@ def make_sb3_farms():
 
         def step_wait(self):
             seen, rewards, terminated, truncated, infos = self.farms.step(self.actions)
-            self.legal = infos["legal"]
+            self.masks = infos["action_mask"].astype(bool)
             return seen.copy(), 0.05 * rewards, terminated | truncated, [{}] * FARMS
 
         def env_method(self, name, *_args, indices=None, **_kwargs):
             assert name == "action_masks"
-            return list(masks_of(self.legal))
+            return list(self.masks)
 
         def has_attr(self, name):
             return name == "action_masks"
@@ -121,7 +116,7 @@ class TorchPpo:
         torch.manual_seed(1)
         self.farms = make_farms()
         self.seen, infos = self.farms.reset(seed=1)
-        self.masks = torch.from_numpy(masks_of(infos["legal"]))
+        self.masks = torch.from_numpy(infos["action_mask"].astype(bool))
         self.network = ActorCritic(self.seen.shape[1])
         self.optimizer = torch.optim.Adam(self.network.parameters(), RATE, eps=1e-5)
 
@@ -134,7 +129,7 @@ class TorchPpo:
                 actions = torch.multinomial(logs.exp(), 1)
                 masks = self.masks
                 self.seen, rewards, ended, cut, infos = self.farms.step(actions[:, 0].numpy())
-                self.masks = torch.from_numpy(masks_of(infos["legal"]))
+                self.masks = torch.from_numpy(infos["action_mask"].astype(bool))
                 steps.append((seen, masks, actions, logs.gather(1, actions)[:, 0], values,
                               torch.from_numpy(0.05 * rewards), torch.from_numpy(ended | cut)))
             last = self.network(torch.from_numpy(self.seen.copy()), self.masks)[1]

@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "agents_fixture.h"
+#include "aquafarm/agents/base/storage.h"
 #include "process.h"
 
 namespace aquafarm::agents::test {
@@ -15,16 +14,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string Contents(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 class OldRunTest : public FolderTest, public ::testing::WithParamInterface<const char*> {
  protected:
   OldRunTest() {
     fs::copy(old_run(), run_, fs::copy_options::recursive);
-    recorded_ = nlohmann::json::parse(Contents(run_ / "run.json"));
+    recorded_ = nlohmann::json::parse(ReadFile(run_ / "run.json"));
   }
 
   static fs::path old_run() {
@@ -34,7 +28,7 @@ class OldRunTest : public FolderTest, public ::testing::WithParamInterface<const
   int Execute(std::vector<std::string> arguments) {
     return Process(std::move(arguments), folder_ + "/log").Wait();
   }
-  std::string Log() const { return Contents(folder_ + "/log"); }
+  std::string Log() const { return ReadFile(folder_ + "/log"); }
 
   /// The arguments that resume the run as it was started, up to a number of farm steps.
   std::vector<std::string> ResumeArguments(std::int64_t steps) const {
@@ -67,8 +61,8 @@ TEST_P(OldRunTest, PolicyIsReadAndPlayed) {
                      folder_ + "/evaluation"}),
             0)
       << Log();
-  const auto now = nlohmann::json::parse(Contents(folder_ + "/evaluation.json"));
-  const auto then = nlohmann::json::parse(Contents(run_ / "evaluation.json"));
+  const auto now = nlohmann::json::parse(ReadFile(folder_ + "/evaluation.json"));
+  const auto then = nlohmann::json::parse(ReadFile(run_ / "evaluation.json"));
   for (const char* key : {"algorithm", "scenario_hash", "training_steps"}) {
     EXPECT_EQ(now[key], then[key]) << key;
   }
@@ -78,7 +72,7 @@ TEST_P(OldRunTest, RunResumesFromItsCheckpoint) {
   const std::int64_t before = recorded_["steps"];
   const std::int64_t after = before + 200;
   ASSERT_EQ(Execute(ResumeArguments(after)), 0) << Log();
-  const auto now = nlohmann::json::parse(Contents(run_ / "run.json"));
+  const auto now = nlohmann::json::parse(ReadFile(run_ / "run.json"));
   EXPECT_GE(now["steps"].get<std::int64_t>(), after);
   EXPECT_EQ(now["algorithm"], recorded_["algorithm"]);
   EXPECT_EQ(now["seed"], recorded_["seed"]);
@@ -94,7 +88,7 @@ class OldTableTest : public OldRunTest {};
 
 TEST_P(OldTableTest, ResumedRunEndsWithTheSameTableAsThen) {
   ASSERT_EQ(Execute(ResumeArguments(8000)), 0) << Log();
-  EXPECT_EQ(Contents(run_ / "policy.ckpt"), Contents(run_ / "policy_after_8000_steps.ckpt"));
+  EXPECT_EQ(ReadFile(run_ / "policy.ckpt"), ReadFile(run_ / "policy_after_8000_steps.ckpt"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Version010, OldTableTest, ::testing::Values("q_learning", "sarsa"),

@@ -31,15 +31,14 @@ class Planner {
   /// @param scenario must outlive the planner
   /// @param slots max devices of a task; 0: all devices of the scenario
   /// @throws InputError if the reward of steps or of illegal actions is positive, or if there are
-  ///   too many devices or states (kMaxStates)
+  ///   too many devices or states (kMaxPlanStates)
   explicit Planner(const Scenario& scenario, std::int32_t slots = 0);
   ~Planner();
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
 
-  /// Number of (cell, devices) states, and its limit.
+  /// Number of (cell, devices) states, at most kMaxPlanStates.
   std::size_t state_count() const;
-  inline static constexpr std::size_t kMaxStates = kMaxPlanStates;
 
   /// Returns the best plan from the farm's present state; empty if its episode is over.
   Plan Solve(const Farm& farm, Foresight foresight, const Task& task);

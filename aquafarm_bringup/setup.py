@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""For catkin alone: where the Python package lies."""
+"""For catkin alone: where the Python packages lie."""
 from catkin_pkg.python_setup import generate_distutils_setup
 from setuptools import setup
 
-setup(**generate_distutils_setup(packages=["aquafarm_report"], package_dir={"": "python"}))
+setup(**generate_distutils_setup(packages=["aquafarm_plan", "aquafarm_report"],
+                                  package_data={"aquafarm_plan": ["plan.schema.json", "templates/*"]},
+                                  package_dir={"": "python"}))

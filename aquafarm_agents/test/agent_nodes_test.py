@@ -40,8 +40,9 @@ class AgentNodesTest(unittest.TestCase):
         if not folder.exists():
             run = Program(self, program("aquafarm_agents", "aquafarm_train"), TEAM, "-a", "vdn",
                           "--steps", "40000", "--farms", "8", "--run-dir", folder, "--evaluate",
-                          "100", "-o", "hidden=32", "-o", "batch=32", "-o", "start=500", "-o",
-                          "replay=5000", "-o", "target_period=50", "-o", "steps_per_update=4", "-o",
+                          "100", "-o", "hidden_size=32", "-o", "batch_size=32", "-o",
+                          "learning_starts=500", "-o", "buffer_size=5000", "-o",
+                          "target_update_interval=50", "-o", "train_interval=4", "-o",
                           "learning_rate=linear:0.002:0.0001:1")
             self.assertEqual(0, run.code(), run.words())
             self.assertIn("success 100.0 %", run.words())
@@ -153,7 +154,7 @@ class AgentNodesTest(unittest.TestCase):
         words = self.die_and_join_again("_late_ships_hold:=true", "_barrier_timeout_s:=0.5")
         self.ranch.wait_for(lambda: "back: ship 1" in words(), "a word of its return")
         self.assertEqual(1, words().count(
-            "no command within ~barrier_timeout_s, 0.5 s, of ship 1: it holds until it is back"))
+            "no command from ship 1 within ~barrier_timeout_s, 0.5 s; it holds until it returns"))
         self.assertIn("not waiting until their next command: ship 1", told)
 
     def test_one_that_dies_holds_its_ship_only_and_joins_again_when_paced(self):
@@ -239,7 +240,7 @@ class AgentNodesTest(unittest.TestCase):
         self.wait_until(lambda state: state.step > 5, "both ships at work")
         second = self.agent(1, "random")
         self.assertEqual(2, second.code(), second.words())
-        self.assertIn(f"node {self.namespace}/agent_1 runs already, at http://", second.words())
+        self.assertIn(f"node {self.namespace}/agent_1 is already running at http://", second.words())
         step = self.state().step
         self.wait_until(lambda state: state.step > step + 20, "the first to drive on")
         first.send(signal.SIGKILL)  # its stale registration must not block the next node
@@ -254,7 +255,7 @@ class AgentNodesTest(unittest.TestCase):
         before = self.state().hash
         run = self.agent(0, self.trained())
         self.assertEqual(2, run.code(), run.words())
-        self.assertIn("vdn of scenario team does not fit scenario four_squads: agents: it knows 2, "
+        self.assertIn("vdn of scenario team does not fit scenario four_squads: agents: the policy has 2, "
                       "the farm has 4", run.words())
         self.assertEqual(before, self.state().hash)
 

@@ -165,11 +165,11 @@ class BagPolicyTest(unittest.TestCase):
 
     def test_what_cannot_be_asked_has_its_line(self):
         bag, policy = self.bag_of("clairvoyant", TINY), self.trained()
-        self.refused("q_learning of scenario tiny does not fit scenario pair: width: it knows 6", 2,
+        self.refused("q_learning of scenario tiny does not fit scenario pair: width: the policy has 6", 2,
                      self.bag_of("random", PAIR), policy)
         self.refused("/no/such/folder", 2, bag, "/no/such/folder")
         self.refused("damaged or not a bag", 2, TINY, policy)
-        self.refused("/nowhere/x.bag: there is no such file", 2, "/nowhere/x.bag", policy)
+        self.refused("/nowhere/x.bag: no such file", 2, "/nowhere/x.bag", policy)
         data = bytearray(bag.read_bytes())
         place = data.index(b"ver=\x01\0\0\0") + 8 + 4 + 8  # of an index's first entry
         data[place:place + 4] = struct.pack("<I", 0x7ffffff0)
@@ -200,7 +200,7 @@ class BagPolicyTest(unittest.TestCase):
         self.refused("no state follows its spec", 2, self.changed(
             bag, lambda topic, message: None if topic.endswith("/state") else message), policy)
         self.refused("no ranch /other/, there is: /aquafarm/", 2, bag, policy, "--ns", "/other")
-        self.refused("is the bag that is read; expected another file", 2, bag, policy, "-o", bag)
+        self.refused("is the input bag, expected another file", 2, bag, policy, "-o", bag)
         self.refused("/nowhere/x.bag.active", 3, bag, policy, "-o", "/nowhere/x.bag")
 
 

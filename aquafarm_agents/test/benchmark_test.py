@@ -175,7 +175,7 @@ class BenchmarkTest(unittest.TestCase):
         first = self.start("out", "--algorithms", "q_learning", episodes=40)
         self.assertEqual(0, first.code(), first.words())
         path = self.folder / "out/runs/q_learning/seed_2/run.json"
-        path.write_text(path.read_text().replace("discount=0.97", "discount=0.5"))
+        path.write_text(path.read_text().replace("gamma=0.97", "gamma=0.5"))
         again = self.start("out", "--algorithms", "q_learning", episodes=40)
         self.assertEqual(2, again.code(), again.words())
         self.assertIn("q_learning: its runs were made with different options", again.words())
@@ -210,7 +210,7 @@ class BenchmarkTest(unittest.TestCase):
                      "a training")
         one.send(signal.SIGINT)
         self.assertEqual(130, one.code(), one.words())
-        self.assertIn("the same command goes on from here", one.words())
+        self.assertIn("the same command resumes it", one.words())
         self.assertTrue(list(self.folder.glob("out/runs/q_learning/*/checkpoints/step_*.ckpt")))
 
     def test_a_failed_run_is_told_and_the_others_are_kept(self):

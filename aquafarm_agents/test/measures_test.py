@@ -143,7 +143,7 @@ class MeasuresTest(unittest.TestCase):
             self.assertEqual(rows[name].options, rows[f"{name}_no_routes"].options)
             self.assertEqual("paper_plain", rows[f"{name}_no_routes"].scenario)
             self.assertIn("mask_blocked=false", rows[f"{name}_no_masks"].options)
-            self.assertIn("priority=0", rows[f"{name}_paper_replay"].options)
+            self.assertIn("priority_exponent=0", rows[f"{name}_paper_replay"].options)
         for one in rows.values():
             keys = [option.split("=", 1)[0] for option in one.options]
             self.assertEqual(len(keys), len(set(keys)), f"{one.name} gives an option twice")
@@ -188,12 +188,15 @@ class MeasuresTest(unittest.TestCase):
                "success_rate": 1.0, "convergence": 420.0, "stability": 0.9, "settled": 280.0,
                "stability_settled": 1.0, "ea_paper": 1.95,
                "ea_normalised": 0.97, "return_iqm": 265.0, "return_interval": [260.0, 270.0],
-               "share_of_optimum": 0.955}
+               "share_of_optimum": 0.955, "evaluation_episodes": 1000,
+               "distinct_episodes": 998}
         lines = results.table([row]).splitlines()
         self.assertEqual("| LSTM-DQN | 4.50 | 1.000 | 420 | 0.9 | 280 (1.0) | 1.95 | 0.97 | 265.0 "
-                         "(260.0 … 270.0) | 0.955 |", lines[2])
+                         "(260.0 … 270.0) | 0.955 | 998 of 1000 |", lines[2])
         self.assertEqual("| *LSTM-DQN, paper* | 1.67 per step | 1 | ≤300 timesteps (4) | 1 | – | "
-                         "1.67 | – | – | – |", lines[3])
+                         "1.67 | – | – | – | – |", lines[3])
+        old = results.table([dict(row, distinct_episodes=None)]).splitlines()
+        self.assertTrue(old[2].endswith("| – of 1000 |"), old[2])
         without = results.table([dict(row, paper_row="")]).splitlines()
         self.assertEqual(lines[:3], without)
 

@@ -137,9 +137,9 @@ class PolicyNodeTest(unittest.TestCase):
     def test_policies_that_do_not_fit_are_refused_with_the_reason(self):
         start_sim(self, self.namespace, PAIR)
         for parameters, words in (
-                ((f"_policy:={self.trained()}",), "q_learning of scenario tiny does not fit scenario pair: width: it knows 6"),
+                ((f"_policy:={self.trained()}",), "q_learning of scenario tiny does not fit scenario pair: width: the policy has 6"),
                 (("_policy:=/no/such/folder",), "/no/such/folder"),
-                ((f"_policy:={self.folder}",), "holds neither policy.ckpt nor a checkpoint"),
+                ((f"_policy:={self.folder}",), "contains neither policy.ckpt nor a checkpoint"),
                 ((f"_policy:={TINY}",), "not a checkpoint"),
                 ((), "~policy: got nothing, expected a run folder"),
                 (("_policy:=random", "_mode:=watch"), "expected evaluate or act"),

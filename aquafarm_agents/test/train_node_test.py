@@ -113,7 +113,7 @@ class TrainNodeTest(unittest.TestCase):
         run.wait_for(lambda: "the sim node is gone" in run.words(), "a word of the loss", 5)
         start_sim(self, self.namespace, TINY)
         self.assertEqual(0, run.code(), run.words())
-        self.assertIn("going on with fresh episodes", run.words())
+        self.assertIn("continuing with fresh episodes", run.words())
         lines = metrics.read_text().splitlines()
         column = lines[0].split(",").index("episode")
         episodes = [int(line.split(",")[column]) for line in lines[1:]]
@@ -146,7 +146,7 @@ class TrainNodeTest(unittest.TestCase):
 
     def test_auto_asks_the_farm_who_decides_and_says_what_it_chose(self):
         start_sim(self, self.namespace, TINY)
-        run = self.train("run", "_algorithm:=auto", "_steps:=200", "_options:=hidden=8")
+        run = self.train("run", "_algorithm:=auto", "_steps:=200", "_options:=hidden_size=8")
         self.assertEqual(0, run.code(), run.words())
         self.assertIn("auto: one rescue squad decides, so a single-agent learner: lstm_dqn",
                       run.words())
@@ -165,13 +165,15 @@ class TrainNodeTest(unittest.TestCase):
 
     def test_arguments_are_refused_with_what_is_allowed(self):
         for argument, words in (
-                ("_algorithm:=dqm", "algorithm: got 'dqm', expected one of: random, q_learning"),
+                ("_algorithm:=dqm",
+                 "algorithm: got 'dqm' (did you mean 'dqn'?), expected one of: random, q_learning"),
                 ("_episodes:=-1", "~episodes: got -1, expected [0, 2147483647]"),
+                ("_seed:=1.5", "~seed: got 1.5, expected a whole number"),
                 ("_episodes:=many", "~episodes: got another type, expected a whole number"),
-                ("_epsiodes:=5", "~epsiodes: unknown parameter, expected one of: "),
+                ("_epsiodes:=5", "~epsiodes: unknown parameter (did you mean 'episodes'?), expected one of: "),
                 ("_exploration:=greedy", "exploration: got 'greedy'"),
                 ("_options:=discuont=0.9", "discuont"),
-                ("_options:=discount=1.5", "discount: got 1.5, expected [0, 1]")):
+                ("_options:=gamma=1.5", "gamma: got 1.5, expected [0, 1]")):
             with self.subTest(argument=argument):
                 run = self.train("run", argument)
                 self.assertEqual(2, run.code(), run.words())

@@ -130,7 +130,7 @@ class KeepEpisodesTest(unittest.TestCase):
         cut.write_bytes(data)
         code, words = verify(cut)
         self.assertEqual(2, code, words)
-        self.assertIn("its recording was killed; 'rosbag reindex' it first", words)
+        self.assertIn("its recorder was killed; run 'rosbag reindex' first", words)
         subprocess.run(["rosbag", "reindex", str(cut)], check=True, timeout=60,
                        capture_output=True)
         code, words = verify(cut)

@@ -4,6 +4,7 @@
 of a message has a comment."""
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -16,8 +17,9 @@ import rostest
 
 PACKAGE = "aquafarm_bringup"
 LAUNCH = pathlib.Path(rospkg.RosPack().get_path(PACKAGE)) / "launch"
+LIMIT_S = 60
 FILES = sorted(LAUNCH.rglob("*.launch"))
-ARGUMENTS = {"replay": ["bag:=/tmp/none.bag"]}
+ARGUMENTS = {"replay": ["bag:=/tmp/none.bag"], "evaluate": ["policy:=random"]}
 VARIANTS = {
     "train": [["run_dir:=/tmp/run", "resume:=true", "rviz:=true"], ["viz:=false"]],
     "agents": [["scenario:=four_squads", "ships:=4", "pace:=paced"], ["ships:=0"]],
@@ -49,7 +51,7 @@ class LaunchFilesTest(unittest.TestCase):
                     continue  # derived from others; users cannot set it
                 where = f"{path.name}: {argument.get('name')}"
                 self.assertGreater(len(argument.get("doc") or ""), 15, where)
-                if where != "replay.launch: bag":
+                if where not in ("replay.launch: bag", "evaluate.launch: policy"):
                     self.assertTrue(argument.get("default"), where)
 
     def test_every_file_and_variant_parses(self):
@@ -59,6 +61,33 @@ class LaunchFilesTest(unittest.TestCase):
                 with self.subTest(file=path.name, arguments=arguments):
                     config = load(path, arguments)
                     self.assertEqual([], config.config_errors)
+
+    def test_roslaunch_refuses_an_argument_that_does_not_exist(self):
+        for name, argument, hint in (("train", "algorthm:=sarsa", "algorithm"),
+                                     ("sim", "polcy:=random", "policy")):
+            done = subprocess.run(["roslaunch", PACKAGE, f"{name}.launch", argument],
+                                  capture_output=True, text=True, timeout=LIMIT_S, check=False)
+            self.assertNotEqual(0, done.returncode, done.stdout)
+            self.assertIn(f"{name}.launch has no argument '{argument.split(':=')[0]}' "
+                          f"(did you mean '{hint}'?); it has: ", done.stderr)
+            self.assertNotIn("process[", done.stdout, "a node was started")
+
+    def test_no_service_takes_the_name_of_a_file(self):
+        services = list((pathlib.Path(rospkg.RosPack().get_path("aquafarm_msgs")) / "srv").iterdir())
+        self.assertGreater(len(services), 10)
+        for path in services:
+            for line in path.read_text().split("---")[0].splitlines():
+                field = line.partition("#")[0].split()
+                if len(field) < 2 or field[0] != "string":
+                    continue
+                self.assertNotRegex(field[1], "file|path|folder|dir|bag", path.name)
+
+    def test_check_arguments_takes_what_the_file_has(self):
+        check = LAUNCH.parent / "scripts" / "check_arguments"
+        for words, code in ((["seed:=3", "__name:=x"], 0), (["sed:=3"], 2), ([], 0)):
+            done = subprocess.run([check, LAUNCH / "train.launch", *words], capture_output=True,
+                                  text=True, timeout=LIMIT_S, check=False)
+            self.assertEqual(code, done.returncode, done.stderr)
 
     def test_every_ship_gets_a_node_of_its_own(self):
         nodes = load(LAUNCH / "agents.launch", ["scenario:=four_squads", "ships:=4"]).nodes

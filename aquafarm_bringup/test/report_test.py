@@ -269,7 +269,7 @@ class ReportTest(unittest.TestCase):
         other = self.folder / "other.yaml"
         other.write_text(SCENARIO.replace("width: 6", "width: 7"))
         code, words = run("aquafarm_sim", "episode_bag", other, route, "-o", bag)
-        self.assertEqual((2, f"episode_bag: {route}: is of another scenario than {other}\n"),
+        self.assertEqual((2, f"episode_bag: {route}: belongs to another scenario than {other}\n"),
                          (code, words))
         code, words = run("aquafarm_sim", "episode_bag", own, other, "-o", bag)
         self.assertEqual(2, code)

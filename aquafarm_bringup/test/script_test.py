@@ -7,6 +7,7 @@ import os
 import pathlib
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -31,6 +32,24 @@ def run(*command, **options):
                           check=False, **options)
 
 
+def built_tree(folder):
+    """Makes a copy of the script with a workspace that counts as built; returns it and its
+    environment."""
+    ws, tree = folder / "ws", folder / "tree"
+    for part in (ws / "src", ws / "build", ws / "devel", tree):
+        part.mkdir(parents=True)
+    copy = tree / "aquafarm"
+    copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "false -C"))
+    (tree / "aquafarm_bringup").symlink_to(PACKAGE)
+    (ws / "src" / "aquafarm").symlink_to(tree)
+    (ws / "build" / "CMakeCache.txt").write_text(
+        f"CMAKE_BUILD_TYPE:STRING=Release\nCMAKE_HOME_DIRECTORY:INTERNAL={ws / 'src'}\n")
+    (ws / "devel" / "setup.bash").touch()
+    (ws / "built").touch()
+    return copy, dict(os.environ, AQUAFARM_WS=str(ws), AQUAFARM_BUILD_TYPE="Release",
+                      ROS_HOME=str(folder / "ros"), ROS_LOG_DIR=str(folder / "ros" / "log"))
+
+
 @unittest.skipUnless(SCRIPT.exists(), f"no script at {SCRIPT}: the package stands alone")
 class ScriptTest(unittest.TestCase):
 
@@ -42,7 +61,8 @@ class ScriptTest(unittest.TestCase):
     def test_an_unknown_argument_is_refused_with_the_list(self):
         done = run(SCRIPT, "train", "algoritm:=sarsa")
         self.assertEqual(2, done.returncode)
-        self.assertIn("train.launch has no argument 'algoritm'; it has: algorithm ", done.stdout)
+        self.assertIn("train.launch has no argument 'algoritm' (did you mean 'algorithm'?); it has: "
+                      "algorithm ", done.stdout)
 
     def test_an_argument_without_a_value_is_refused(self):
         done = run(SCRIPT, "train", "sarsa")
@@ -70,6 +90,52 @@ class ScriptTest(unittest.TestCase):
             done = run(SCRIPT, "replay", "bag:=day.bag", "start_step:=first", cwd=folder)
             self.assertIn("start_step: got 'first', expected a number", done.stdout)
 
+    def test_what_is_missing_is_asked_for_and_not_replaced(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for verb, words in (("replay", "replay: got no bag, expected bag:=FILE"),
+                                ("evaluate", "evaluate: got no policy, and ")):
+                done = run(SCRIPT, verb, cwd=folder)
+                self.assertEqual(2, done.returncode, done.stdout)
+                self.assertIn(words, done.stdout)
+
+    def test_a_fraction_is_no_whole_number(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for argument in ("seed:=1.5", "farms:=2.25", "episodes:=0.5", "random_episodes:=7.5"):
+                done = run(SCRIPT, "train", argument, cwd=folder)
+                self.assertEqual(2, done.returncode, done.stdout)
+                name, value = argument.split(":=")
+                self.assertIn(f"{name}: got '{value}', expected a whole number", done.stdout)
+            self.assertEqual([], os.listdir(folder))
+
+    def test_a_program_in_place_of_the_master_is_named_at_once(self):
+        with tempfile.TemporaryDirectory() as folder, socket.socket() as silent:
+            silent.bind(("127.0.0.1", 0))
+            silent.listen()
+            uri = f"http://127.0.0.1:{silent.getsockname()[1]}"
+            copy, env = built_tree(pathlib.Path(folder).resolve())
+            done = run("bash", copy, "sim", "headless:=true", cwd=folder,
+                       env=dict(env, ROS_MASTER_URI=uri))
+            self.assertEqual(2, done.returncode, done.stdout)
+            self.assertIn(f"ROS_MASTER_URI: got {uri}, where a program that is not a ROS master listens",
+                          done.stdout)
+
+    def test_a_node_that_was_killed_has_not_ended_well(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder).resolve()
+            copy, env = built_tree(folder)
+            tools = folder / "bin"
+            tools.mkdir()
+            (tools / "roslaunch").write_text("#!/bin/sh\nexit 0\n")  # its nodes left no exit code
+            (tools / "roslaunch").chmod(0o755)
+            copy.write_text(copy.read_text().replace("export PATH=/usr/bin:/bin:$PATH\n", ""))
+            done = run("bash", copy, "train", "verbose:=true", cwd=folder,
+                       env=dict(env, PATH=f"{tools}:{env['PATH']}",
+                                ROS_MASTER_URI=f"http://127.0.0.1:{free_port()}"))
+            self.assertEqual(137, done.returncode, done.stdout)
+            self.assertIn("train ended with exit code 137: its node was killed before it ended; "
+                          "resume:=true continues from the last checkpoint", done.stdout)
+            self.assertNotIn("ended well", done.stdout)
+
     def test_a_resumed_run_takes_what_is_not_given_from_its_folder(self):
         def taken(folder, *arguments):  # rejected after the defaults are printed
             done = run(SCRIPT, "train", "resume:=true", "viz:=perhaps", *arguments, cwd=folder)
@@ -87,10 +153,10 @@ class ScriptTest(unittest.TestCase):
             (newest / "scenario.yaml").touch()
             (newest / "run.json").write_text(json.dumps({
                 "algorithm": "sarsa", "credit": "shared", "episodes": 9, "farms": 8, "seed": 3,
-                "options": "discount=0.9 exploration=boltzmann:5 mask_illegal=true"}))
+                "options": "gamma=0.9 exploration=boltzmann:5 mask_illegal=true"}))
             of_run = {"scenario": f"{newest}/scenario.yaml", "algorithm": "sarsa", "credit": "shared",
                       "farms": "8", "seed": "3", "exploration": "boltzmann:5",
-                      "options": "discount=0.9 mask_illegal=true"}
+                      "options": "gamma=0.9 mask_illegal=true"}
             self.assertEqual({"run_dir": str(newest), "report": str(newest), **of_run},
                              taken(folder))
             self.assertEqual({"report": str(newest), **of_run},
@@ -102,7 +168,7 @@ class ScriptTest(unittest.TestCase):
             with self.subTest("the options of another algorithm are of no use"):
                 self.assertFalse({"options", "exploration"} &
                                  set(taken(folder, "algorithm:=q_learning")))
-                self.assertEqual("discount=0.9 mask_illegal=true",
+                self.assertEqual("gamma=0.9 mask_illegal=true",
                                  taken(folder, "algorithm:=sarsa")["options"])
             with self.subTest("a learner without options"):
                 words = json.loads((newest / "run.json").read_text())
@@ -110,6 +176,14 @@ class ScriptTest(unittest.TestCase):
                 self.assertFalse({"options", "exploration"} & set(taken(folder)))
             with self.subTest("a new run"):
                 self.assertEqual({"run_dir", "report"}, set(taken(folder, "resume:=false")))
+            with self.subTest("arguments of a stranger"):
+                for theirs in ({"algorithm": "sarsa\nreport:=/tmp/theirs"},
+                               {"options": "discount=$(env HOME)"},
+                               {"credit": "own' sh -c 'id"}):
+                    (newest / "run.json").write_text(json.dumps(dict(words, **theirs)))
+                    done = run(SCRIPT, "train", "resume:=true", "viz:=perhaps", cwd=folder)
+                    self.assertIn(f"{newest}/run.json: damaged: ValueError(", done.stdout)
+                    self.assertNotIn("theirs\n", done.stdout)
             with self.subTest("damaged"):
                 (newest / "run.json").write_text("{")
                 done = run(SCRIPT, "train", "resume:=true", "viz:=perhaps", cwd=folder)
@@ -118,25 +192,13 @@ class ScriptTest(unittest.TestCase):
     def test_an_interrupted_training_goes_on_with_resume_alone(self):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder).resolve()
-            ws, tree = folder / "ws", folder / "tree"
-            for part in (ws / "src", ws / "build", ws / "devel", tree):
-                part.mkdir(parents=True)
-            copy = tree / "aquafarm"  # its workspace is that of this test, already built
-            copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "false -C"))
-            (tree / "aquafarm_bringup").symlink_to(PACKAGE)
-            (ws / "src" / "aquafarm").symlink_to(tree)
-            (ws / "build" / "CMakeCache.txt").write_text(
-                f"CMAKE_BUILD_TYPE:STRING=Release\nCMAKE_HOME_DIRECTORY:INTERNAL={ws / 'src'}\n")
-            (ws / "devel" / "setup.bash").touch()
-            (ws / "built").touch()
+            copy, env = built_tree(folder)
 
             def train(*arguments):
-                env = dict(os.environ, AQUAFARM_WS=str(ws), AQUAFARM_BUILD_TYPE="Release",
-                           ROS_MASTER_URI=f"http://127.0.0.1:{free_port()}",
-                           ROS_HOME=str(folder / "ros"), ROS_LOG_DIR=str(folder / "ros" / "log"))
                 process = subprocess.Popen(
                     ["bash", copy, "train", "viz:=false", "report:=none", "evaluation_episodes:=0",
-                     *arguments], cwd=folder, env=env, stdin=subprocess.DEVNULL, text=True,
+                     *arguments], cwd=folder,
+                    env=dict(env, ROS_MASTER_URI=f"http://127.0.0.1:{free_port()}"), stdin=subprocess.DEVNULL, text=True,
                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
                 self.addCleanup(process.stdout.close)
                 self.addCleanup(process.wait)
@@ -144,7 +206,7 @@ class ScriptTest(unittest.TestCase):
                 return process
 
             first = train("scenario:=zhoushan_infa_2021", "algorithm:=sarsa", "farms:=8", "seed:=3",
-                          "options:=discount=0.9", "exploration:=boltzmann:5", "steps:=300000")
+                          "options:=gamma=0.9", "exploration:=boltzmann:5", "steps:=300000")
             end = time.monotonic() + LIMIT_S
             while not any(path.read_text().count("\n") > 1
                           for path in folder.glob("runs/*/metrics.csv")):

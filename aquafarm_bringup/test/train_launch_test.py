@@ -105,7 +105,7 @@ class TrainLaunchTest(unittest.TestCase):
             self.assertIn("starting it again", ranch.words())
 
     def test_ctrl_c_saves_and_resume_ends_in_the_bits_of_a_run_never_stopped(self):
-        begun = ("episodes:=6000", "algorithm:=sarsa", "options:=discount=0.9 mask_illegal=true",
+        begun = ("episodes:=6000", "algorithm:=sarsa", "options:=gamma=0.9 mask_illegal=true",
                  "exploration:=epsilon_greedy:0.2", "credit:=shared", "seed:=3", "farms:=32")
         with self.train(*begun, "checkpoint_period_s:=1000") as ranch:
             self.wait_until_training(ranch)

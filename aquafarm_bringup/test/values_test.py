@@ -95,7 +95,7 @@ class ValuesTest(unittest.TestCase):
         self.assertEqual(167, report["seas"][0]["cells"])
         self.assertIn("not that one causes the other", report["note"])
         self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
-        self.assertEqual(3, len(os.listdir(self.folder.name)), "nothing is left beside")
+        self.assertEqual(3, len(os.listdir(self.folder.name)), "no temporary file is left")
 
     def test_another_file_is_refused(self):
         path = pathlib.Path(self.folder.name) / "x.json"

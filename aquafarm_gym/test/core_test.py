@@ -224,7 +224,7 @@ class CoreTest(unittest.TestCase):
             thread.start()
         for thread in threads:
             thread.join()
-        self.assertEqual({"FarmBatch: another thread's call still runs"}, set(words))
+        self.assertEqual({"FarmBatch: another thread's call is still running; use one batch per thread"}, set(words))
         batch.step(np.zeros((512, 1), np.uint8))
         self.assertLess(time.monotonic() - before, 30)
 

@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "aquafarm/base/check.h"
-#include "aquafarm/storms/reader.h"
 #include "aquafarm/storms/to_disaster.h"
+#include "aquafarm/tracks/reader.h"
 #include "aquafarm_sim/convert/conversions.h"
 #include "aquafarm_sim/names.h"
 #include "aquafarm_sim/node/bulletin_folder.h"
@@ -100,8 +100,8 @@ class BulletinNode {
                                             : aquafarm::FindTrack(file, params_.storm);
     const std::string name = storm.name.empty() ? storm.id : storm.name;
     if (storm.fixes.front().time < 0) {
-      throw aquafarm::InputError(path + ": " + name + ": got positions of before 1970, expected " +
-                                 "later ones: a ROS time begins there");
+      throw aquafarm::InputError(path + ": " + name + ": got positions before 1970, expected " +
+                                 "later ones: ROS time begins in 1970");
     }
     const auto call = std::make_shared<Call>();
     call->message.request.farm = -1;

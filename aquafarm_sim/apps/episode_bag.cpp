@@ -34,7 +34,7 @@ void Write(const std::string& scenario_path, const std::string& route_path,
     throw InputError(route_path + ": no route: " + error.what());
   }
   if (hash != scenario->hash) {
-    throw InputError(route_path + ": is of another scenario than " + scenario_path);
+    throw InputError(route_path + ": belongs to another scenario than " + scenario_path);
   }
   aquafarm::Farm farm(scenario);
   farm.Reset(tape.seed, tape.episode);

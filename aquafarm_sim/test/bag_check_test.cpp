@@ -336,8 +336,7 @@ TEST_F(EpisodeBag, AMessageOfNoTopicAndAChunkToldOfTwiceHaveTheirLine) {
   const std::size_t last = sound.rfind(place) + place.size();
   const std::size_t first = sound.rfind(place, last - place.size() - 1) + place.size();
   Put(path, last, sound.substr(first, 8));
-  EXPECT_EQ(0U, Refusal(path).find(path + ": damaged: what is told of a chunk at byte "))
-      << Refusal(path);
+  EXPECT_EQ(0U, Refusal(path).find(path + ": damaged: wrong chunk info at byte ")) << Refusal(path);
   std::ofstream(path, std::ios::binary) << sound;
   const std::string zero(4, '\0');
   const std::string connection = "conn=" + zero + std::string("\x04\0\0\0op=\x07", 8);
@@ -351,7 +350,7 @@ TEST_F(EpisodeBag, AMessageOfNoTopicAndAChunkToldOfTwiceHaveTheirLine) {
 
 TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   const std::string bag = OneBag();
-  EXPECT_EQ(folder_ + "/none.bag: there is no such file", Refusal(folder_ + "/none.bag"));
+  EXPECT_EQ(folder_ + "/none.bag: no such file", Refusal(folder_ + "/none.bag"));
   std::ofstream(folder_ + "/text.bag") << "no bag";
   EXPECT_NE(std::string::npos, Refusal(folder_ + "/text.bag").find("damaged or not a bag"));
   const std::string late = folder_ + "/late.bag";
@@ -366,7 +365,7 @@ TEST_F(EpisodeBag, BagsThatCannotBeCheckedHaveTheirLine) {
   const std::string encrypted = Changed(bag, true, [](auto*, auto*, auto*) { return true; });
   const std::string content = ContentOf(encrypted);
   Put(encrypted, content.find("chunk_count="), "encryptor=a/b");
-  EXPECT_EQ(encrypted + ": encrypted; 'rosbag decrypt' it first", Refusal(encrypted));
+  EXPECT_EQ(encrypted + ": encrypted; run 'rosbag decrypt' first", Refusal(encrypted));
   EXPECT_EQ(folder_ + ": damaged or not a bag: no regular file", Refusal(folder_));
   const std::string pipe = folder_ + "/pipe.bag";
   ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));

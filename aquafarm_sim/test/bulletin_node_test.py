@@ -101,7 +101,7 @@ class BulletinNodeTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, folder, ignore_errors=True)
         with open(os.path.join(folder, "old.json"), "w", encoding="utf-8") as file:
             file.write(storm(30.0, 50.0).replace("2021-07-24", "1949-07-24"))
-        words = "old.json: In-Fa: got positions of before 1970, expected later ones"
+        words = "old.json: In-Fa: got positions before 1970, expected later ones"
         self.assertIn(words, self.read_until(self.start(folder), words))
 
     def read_until(self, node, words):

@@ -8,8 +8,8 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/forecast.h"
-#include "aquafarm/storms/reader.h"
 #include "aquafarm/storms/to_disaster.h"
+#include "aquafarm/tracks/reader.h"
 #include "aquafarm_sim/convert/conversions.h"
 #include "aquafarm_sim/convert/observation.h"
 #include "ranch_fixture.h"
@@ -169,16 +169,16 @@ TEST(Storms, ThatAreWrongChangeNothing) {
   EXPECT_EQ(refused([](auto& s) { s.forecast[0].stamp = s.fixes[0].stamp; }),
             "storm.forecast[0].stamp: got 1627084800, expected a time after 1627084800");
   EXPECT_EQ(refused([](auto& s) { s.fixes[0].rings[1].wind_kt = 64; }),
-            "storm.fixes[0].rings[1].wind_kt: got 64 twice, expected one ring of a wind");
+            "storm.fixes[0].rings[1].wind_kt: got 64 twice, expected one ring per wind");
   EXPECT_EQ(refused([](auto& s) { s.fixes[0].max_wind_radius_km = -1.0F; }),
             "storm.fixes[0].max_wind_radius_km: got -1, expected a number in [0, 5000]");
   EXPECT_EQ(refused([](auto& s) { s.fixes.clear(); }),
-            "storm.fixes: got none, expected where the storm is");
+            "storm.fixes: got none, expected at least one position");
   EXPECT_EQ(refused([](auto& s) {
               s.fixes.clear();
               s.forecast.clear();
             }),
-            "storm.fixes: got none, expected where the storm is")
+            "storm.fixes: got none, expected at least one position")
       << "it has a name";
   EXPECT_EQ(refused([](auto& s) { s.fixes.resize(100000, s.fixes[0]); }),
             "storm.fixes: got 100000 entries, expected at most 10000");
@@ -234,6 +234,7 @@ void ExpectTheSameThroughAMessage(const aquafarm::StormTrack& track) {
 TEST(Storms, MakeTheSameDisasterThroughAMessage) {
   const aquafarm::StormFile file = aquafarm::LoadStormFile(AQUAFARM_CORE_DIR "/test/data/atcf.dat");
   ASSERT_TRUE(file.tracks[0].fixes[0].max_wind_radius_km);
+  ASSERT_EQ(file.tracks[0].fixes[0].averaging_min, 1) << "selects the estimate of radii";
   for (aquafarm::StormTrack track : file.tracks) {
     ExpectTheSameThroughAMessage(track);
     for (aquafarm::StormFix& fix : track.fixes) fix.rings.clear();  // all rings are then estimated

@@ -191,7 +191,7 @@ TEST(Conversions, AnObservationOfAnotherFarmIsRefused) {
   message.observer = 0;
   EXPECT_EQ(words(), "taken");
   message.devices[0].self_propelled = 1;
-  EXPECT_EQ(words(), "observation: device 0 drives itself, expected one that is fetched");
+  EXPECT_EQ(words(), "observation: device 0 is self-propelled, expected one that a ship fetches");
   message.ships[0].x = 40;
   EXPECT_EQ(words(), "observation: got ship 0 at (40, 0), expected a cell of 5 x 5");
 }

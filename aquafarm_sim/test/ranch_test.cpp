@@ -188,7 +188,7 @@ TEST(FarmServer, AClaimedShipObeysItsHolderAlone) {
   EXPECT_EQ("ship 0 is held by /one", foreign.message);
   EXPECT_EQ(0U, foreign.step) << "the farm is untouched";
   EXPECT_EQ(Outcome::OK, ranch->Command({0, kNorth, 0, 0, 2, "/one"}).code);
-  EXPECT_FALSE(claim("/two", true).ok) << "nobody releases another's claim";
+  EXPECT_FALSE(claim("/two", true).ok) << "a client cannot release another client's claim";
   EXPECT_TRUE(claim("/one", true).ok);
   EXPECT_EQ("", claim("/one", true).holder);
   EXPECT_TRUE(claim("/two", false).ok);

@@ -41,13 +41,14 @@ class SimNodeStartTest(unittest.TestCase):
         self.assertIn("paper", words)
 
     def test_an_unknown_parameter_is_refused(self):
-        self.assertIn("unknown parameter, expected one of: scenario, farms,",
+        self.assertIn("~farm: unknown parameter (did you mean 'farms'?), expected one of: scenario,",
                       self.refusal("_scenario:=" + LONE, "_farm:=3"))
 
     def test_parameters_out_of_range_are_refused(self):
         for argument, words in (("_rate_hz:=-1", "rate_hz: got -1, expected [0.001, 1000]"),
                                 ("_farms:=0", "farms: got 0, expected [1, 4096]"),
                                 ("_farms:=many", "farms: got another type"),
+                                ("_seed:=1.5", "~seed: got 1.5, expected a whole number"),
                                 ("_pace:=fast", "pace: got 'fast', expected lockstep or paced")):
             self.assertIn(words, self.refusal("_scenario:=" + LONE, argument))
 

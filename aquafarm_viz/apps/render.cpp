@@ -97,12 +97,12 @@ std::string Missing(const Request& request, const Found& found, const std::vecto
            (gap.before
                 ? " has steps " + std::to_string(*gap.before) + " and " + after + " around it"
                 : " begins with step " + after) +
-           "; 'verify' tells more";
+           "; run 'verify' for details";
   }
   return Name(request) + ": no such step; the bag has episodes " +
          std::to_string(found.first_episode) + " to " + std::to_string(found.last_episode) +
          " and steps up to " + std::to_string(found.last_step) +
-         " (not each of them need be recorded)";
+         " (some of them may not be recorded)";
 }
 
 // Returns the prefix of the topic `state` in the bag. Names in bags may have no namespace.
@@ -134,7 +134,7 @@ std::string FindPrefix(const rosbag::Bag& bag, const Request& request) {
   }
   std::string all;
   for (const auto& prefix : prefixes) all += " " + prefix;
-  throw std::runtime_error(request.bag + ": holds several ranches, select one with --ns:" + all);
+  throw std::runtime_error(request.bag + ": contains several ranches, select one with --ns:" + all);
 }
 
 /// Input of one picture: a state and the optional content.
@@ -270,16 +270,16 @@ void RenderPicture(const Request& request) {
   const std::filesystem::path output(request.output);
   std::vector<std::uint8_t> bytes;
   cv::imencode(output.extension().string(), picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
-  const std::string beside = request.output + ".part";
-  std::ofstream file(beside, std::ios::binary);
+  const std::string temporary = request.output + ".part";
+  std::ofstream file(temporary, std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()),
              static_cast<std::streamsize>(bytes.size()));
   file.close();
   std::error_code error;
-  if (file) std::filesystem::rename(beside, output, error);
+  if (file) std::filesystem::rename(temporary, output, error);
   if (!file || error) {
     std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
+    std::filesystem::remove(temporary, ignored);
     throw aquafarm_viz::StorageError(request.output + ": could not be written");
   }
 }
@@ -351,7 +351,7 @@ int main(int argc, char** argv) {
   try {
     if (aquafarm_viz::Film::Is(request.output) && (request.at_end || step->count() > 0)) {
       throw std::runtime_error(std::string(request.at_end ? "--end" : "--step") +
-                               ": expected none with a film, which shows a whole episode");
+                               ": expected no value with a video, which shows a whole episode");
     }
     request.layers = aquafarm_viz::ParseLayers(layers);
     aquafarm_sim::ReadingBag(request.bag, [&] {

@@ -104,7 +104,7 @@ TEST_F(RenderTest, AsksWhichRanchWhenThereAreSeveral) {
 TEST_F(RenderTest, RefusesWhatIsNoBagOrNoPlaceToWrite) {
   const Result none = Render("--bag " + Path("none.bag"));
   EXPECT_EQ(WEXITSTATUS(none.code), 2);
-  EXPECT_EQ(none.output, "render: " + Path("none.bag") + ": there is no such file\n");
+  EXPECT_EQ(none.output, "render: " + Path("none.bag") + ": no such file\n");
   EXPECT_EQ(Render("--bag " + Path("")).output,
             "render: " + Path("") + ": damaged or not a bag: no regular file\n");
   const std::string bag = MakeBag({"/aquafarm/"});
@@ -182,12 +182,13 @@ TEST_F(RenderTest, AFilmThatTheDiskHasNoRoomForLeavesNothing) {
 
 TEST_F(RenderTest, AFilmShowsAWholeEpisode) {
   const std::string bag = MakeBag({"/aquafarm/"});
-  EXPECT_NE(
-      Render(bag + " --step 3 -o " + Path("x.gif"))
-          .output.find("render: --step: expected none with a film, which shows a whole episode"),
-      std::string::npos);
-  EXPECT_NE(Render(bag + " --end -o " + Path("x.gif")).output.find("render: --end: expected none"),
+  EXPECT_NE(Render(bag + " --step 3 -o " + Path("x.gif"))
+                .output.find(
+                    "render: --step: expected no value with a video, which shows a whole episode"),
             std::string::npos);
+  EXPECT_NE(
+      Render(bag + " --end -o " + Path("x.gif")).output.find("render: --end: expected no value"),
+      std::string::npos);
   EXPECT_FALSE(fs::exists(Path("x.gif")));
 }
 
@@ -213,11 +214,12 @@ TEST_F(RenderTest, SaysWhatTheBagLacks) {
   result = Render(bag + " --step 4 --step 2 -o " + Path("z.png"));
   EXPECT_EQ(WEXITSTATUS(result.code), 2);
   EXPECT_EQ(result.output, "render: " + bag +
-                               ": no step 2; episode 12 has steps 1 and 4 around it; 'verify' "
-                               "tells more\n");
+                               ": no step 2; episode 12 has steps 1 and 4 around it; run "
+                               "'verify' for details\n");
   write(true, aquafarm::kVersion, {2, 3, 5});
-  EXPECT_EQ(Render(bag + " -o " + Path("z.png")).output,
-            "render: " + bag + ": no step 0; episode 12 begins with step 2; 'verify' tells more\n");
+  EXPECT_EQ(
+      Render(bag + " -o " + Path("z.png")).output,
+      "render: " + bag + ": no step 0; episode 12 begins with step 2; run 'verify' for details\n");
   EXPECT_EQ(Render(bag + " --end -o " + Path("x.png")).output,
             "render: " + bag + ": 1 step is missing; 'verify' says which\n");
   write(true, "9.9.9");
@@ -269,8 +271,8 @@ TEST_F(RenderTest, WithoutACodecItSaysWhatElseThereIs) {
   const std::string bag = MakeBag({"/aquafarm/"});
   const Result result = Render(bag + " -o " + Path("x.mp4"), "OPENCV_VIDEOIO_PRIORITY_FFMPEG=0");
   EXPECT_NE(result.code, 0);
-  EXPECT_NE(result.output.find("x.mp4: no codec for .mp4 here (tried avc1), or no place to "
-                               "write; a .gif needs none, or install libavcodec"),
+  EXPECT_NE(result.output.find("x.mp4: no codec for .mp4 (tried avc1), or the folder is "
+                               "not writable; use .gif, or install libavcodec"),
             std::string::npos)
       << result.output;
   EXPECT_FALSE(fs::exists(Path("x.mp4")));

@@ -185,7 +185,7 @@ TEST_F(Replay, AtIsTheStepThatIsShownAtAPosition) {
 }
 
 TEST_F(Replay, ABagThatCannotBeShownHasItsLine) {
-  EXPECT_EQ(FaultOf("/nowhere/x.bag"), "/nowhere/x.bag: there is no such file");
+  EXPECT_EQ(FaultOf("/nowhere/x.bag"), "/nowhere/x.bag: no such file");
   test::DamageIndex(MakeBag());
   EXPECT_EQ(FaultOf(path_).find(path_ + ": damaged: an index that is not of its chunk at byte "),
             0U);

@@ -47,7 +47,7 @@ std::string ScenarioOf(const Arguments& arguments, const SavedPolicy& saved) {
     const std::string path = (folder / "scenario.yaml").string();
     if (fs::exists(path, ignored)) return path;
   }
-  throw InputError("scenario: got nothing, and there is no scenario.yaml beside " + saved.path);
+  throw InputError("scenario: got none, and there is no scenario.yaml next to " + saved.path);
 }
 
 // Mean bound of the played episodes.
@@ -127,7 +127,7 @@ ExitCode Run(Arguments arguments) {
 int Main(int argc, char** argv) {
   Arguments arguments;
   arguments.scenario.name.clear();
-  CLI::App app("Plays a saved policy greedily on unseen episodes, and reports.");
+  CLI::App app("Plays a saved policy greedily on episodes of evaluation seeds, and reports.");
   app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
   app.option_defaults()->always_capture_default();
   app.add_option("policy", arguments.policy,

@@ -18,9 +18,11 @@ namespace {
 
 constexpr std::int32_t kFarms = 16;
 
-constexpr const char* kDqnOptions = "batch=64 hidden=128 steps_per_update=4 start=5000 priority=0";
+constexpr const char* kDqnOptions =
+    "batch_size=64 hidden_size=128 train_interval=4 learning_starts=5000 priority_exponent=0";
 constexpr const char* kLstmOptions =
-    "batch=32 hidden=64 sequence=16 burn_in=8 steps_per_update=16 start=5000 priority=0";
+    "batch_size=32 hidden_size=64 sequence_length=16 burn_in=8 train_interval=16 "
+    "learning_starts=5000 priority_exponent=0";
 
 std::shared_ptr<const Scenario> Paper(bool all_features) {
   Scenario scenario = LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml");

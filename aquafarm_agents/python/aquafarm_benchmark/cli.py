@@ -39,7 +39,7 @@ def parse(arguments):
     parser = _Parser(
         prog="aquafarm_benchmark", epilog=_EPILOG,
         description="Trains every learner several times, measures them as the paper's §4.2 does, "
-        "and ends with Table 1 beside ours and the figures. Killed or interrupted, the same "
+        "and ends with Table 1 next to ours and the figures. Killed or interrupted, the same "
         "command goes on: finished runs are kept, others resume from their checkpoints.")
     parser.add_argument("scenario", nargs="?", default="paper",
                         help="scenario file, or the name of a shipped one (default: paper)")
@@ -263,7 +263,7 @@ def run(options):
     for name, reason in declined.items():
         _say(f"{name} does not take part: {reason}")
     if all(one.name in declined for one in contestants):
-        raise BadInput("nobody takes part")
+        raise BadInput("no contestant is left")
     found = {}
     for job in jobs:
         if job.contestant not in declined:

@@ -78,8 +78,8 @@ _EXPLORED = 100  # episodes until the temperature is one unit of reward
 _COOLING = "boltzmann:harmonic:20:1:{explored}"
 _FIRST_RATE = 5e-4
 _SLOWING = 49 / 2000  # per episode: the rate is _FIRST_RATE / (1 + _SLOWING · episode)
-_NETWORK = ("device=cpu", "mask_blocked=true", "target_period=25", "average_rate=0.002",
-            "replay=300000", "action_gap=0.5", "repetition_penalty=10",
+_NETWORK = ("device=cpu", "mask_blocked=true", "target_update_interval=25", "ema_rate=0.002",
+            "buffer_size=300000", "action_gap=0.5", "repetition_penalty=10",
             f"learning_rate=harmonic:{_FIRST_RATE}:{{last_rate}}:1")
 _TABLE_EXPLORATION = "epsilon_greedy:linear:1:0.01:0.5"
 
@@ -91,9 +91,10 @@ _Q_LEARNING = Contestant("q_learning", "Q-learning", "#1f77b4", cost=0.02,
 _SARSA = Contestant("sarsa", "SARSA", "#17becf", cost=0.02, exploration=_TABLE_EXPLORATION,
                     options=("mask_illegal=true",), paper_row="sarsa")
 _DQN = Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING,
-                  options=_NETWORK + ("steps_per_update=1",))
+                  options=_NETWORK + ("train_interval=1",))
 _LSTM_DQN = Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
-                       options=_NETWORK + ("hidden=64", "batch=64"), paper_row="lstm_dqn")
+                       options=_NETWORK + ("hidden_size=64", "batch_size=64"),
+                       paper_row="lstm_dqn")
 
 CONTESTANTS = (
     _RANDOM,
@@ -133,14 +134,15 @@ def _tuned(one):
 
 
 # The paper's DQN settings where the tuned ones differ; see preset=paper in docs/algorithms.md.
-_PAPER_REPLAY = ("priority=0", "loss=mse", "gradient_limit=0", "double_q=false", "action_gap=0",
-                 "average_rate=0", "reward_scale=1", "discount=0.99", "target_period=250",
-                 "replay=100000", "learning_rate=linear:0.0005:0.00001:1")
+_PAPER_REPLAY = ("priority_exponent=0", "loss=mse", "max_grad_norm=0", "double_dqn=false",
+                 "action_gap=0", "ema_rate=0", "reward_scale=1", "gamma=0.99",
+                 "target_update_interval=250", "buffer_size=100000",
+                 "learning_rate=linear:0.0005:0.00001:1")
 
 _PAPER_CONTESTANTS = (
     dataclasses.replace(_RANDOM, scenario=PLAIN_SCENARIO),
-    _printed(_Q_LEARNING, "#aec7e8", ("discount=0.99",), cost=0.02),
-    _printed(_SARSA, "#9edae5", ("discount=0.99",), cost=0.02),
+    _printed(_Q_LEARNING, "#aec7e8", ("gamma=0.99",), cost=0.02),
+    _printed(_SARSA, "#9edae5", ("gamma=0.99",), cost=0.02),
     _printed(_DQN, "#98df8a", ("preset=paper", "device=cpu"), cost=2.0),
     _printed(_LSTM_DQN, "#9467bd", ("preset=paper", "device=cpu"), cost=4.0),
     _tuned(_Q_LEARNING),

@@ -16,9 +16,9 @@ _EVALUATED = ("return_per_episode", "return_per_step", "success_rate", "steps_pe
 
 def write_atomically(path, text):
     """Writes a temporary file in the same folder and renames it."""
-    beside = path.with_name(path.name + ".part")
-    beside.write_text(text)
-    os.replace(beside, path)
+    temporary = path.with_name(path.name + ".part")
+    temporary.write_text(text)
+    os.replace(temporary, path)
 
 
 def read_curve(metrics):
@@ -40,6 +40,9 @@ def read_run(folder):
     run = {name: evaluation[name] for name in _EVALUATED}
     run.update(seed=int(folder.name.rsplit("_", maxsplit=1)[-1]), folder=folder, curve=curve,
                convergence=None, settled=None, evaluation=evaluation)
+    # Evaluations of version 0.1.0 have no count of distinct starts.
+    run["distinct_episodes"] = evaluation.get("distinct_episodes")
+    run["evaluation_episodes"] = evaluation["episodes"]
     settings = folder / "run.json"
     run["training"] = json.loads(settings.read_text()) if settings.exists() else {}
     if run["training"]:
@@ -96,6 +99,9 @@ def summarise(contestant, runs, optimum, training_episodes):
         row["stability_interval"] = list(measures.wilson_interval(converged, len(runs)))
     row["training_steps"] = float(np.mean([run["evaluation"]["training_steps"] for run in runs]))
     row["episodes"] = training_episodes
+    row["evaluation_episodes"] = runs[0]["evaluation_episodes"]
+    counts = [run["distinct_episodes"] for run in runs]
+    row["distinct_episodes"] = None if None in counts else min(counts)
     return row
 
 
@@ -127,11 +133,17 @@ def _share(value):
     return "below 0" if value is not None and value < 0.0 else _text(value, "{:.3f}")
 
 
+def _distinct(row):
+    """Returns "990 of 1000": how many evaluation episodes start differently."""
+    return f"{_text(row['distinct_episodes'], '{}')} of {row['evaluation_episodes']}"
+
+
 def table(rows):
     """Returns the results next to the rows of Table 1, as Markdown."""
     lines = ["| | return per step | success | converged at | stability | settled at | EA | "
-             "EA in [0, 1] | return per episode, 95 % interval | share of the optimum |",
-             "| --- " * 10 + "|"]
+             "EA in [0, 1] | return per episode, 95 % interval | share of the optimum | "
+             "distinct episodes |",
+             "| --- " * 11 + "|"]
     for row in rows:
         printed = PAPER_TABLE.get(row.get("paper_row"))
         low, high = row["return_interval"]
@@ -143,17 +155,20 @@ def table(rows):
             row["label"], _text(row["return_per_step"]), _text(row["success_rate"], "{:.3f}"),
             _text(row["convergence"], "{:.0f}"), _text(row["stability"], "{:.1f}"), settled,
             _text(row["ea_paper"]), _text(row["ea_normalised"]),
-            f"{row['return_iqm']:.1f}{interval}", _share(row["share_of_optimum"]))) + " |")
+            f"{row['return_iqm']:.1f}{interval}", _share(row["share_of_optimum"]),
+            _distinct(row))) + " |")
         if printed:
             lines.append("| " + " | ".join((
                 f"*{row['label']}, paper*", printed.average_return, printed.success,
-                printed.convergence, printed.stability, "–", printed.ea, "–", "–", "–")) + " |")
+                printed.convergence, printed.stability, "–", printed.ea, "–", "–", "–",
+                "–")) + " |")
     return "\n".join(lines) + "\n"
 
 
 _TABLE_NOTES = """
 Rows in italics: Table 1 of the paper as printed, with the rank of Eq. 16 in brackets. Its unit of
 convergence is timesteps; the paper's protocol (§4.2) counts episodes, and so do the other rows.
+Distinct episodes start with another layout, other ships or another storm; the others repeat.
 Eq. 16 gives the printed EA of three rows, and −0.80 for RANDOM, where the paper prints −0.7.
 """
 
@@ -166,7 +181,8 @@ def write(folder, settings, rows, runs):
                "stability", "stability_low", "stability_high", "settled", "stability_settled", "rank", "ea_paper", "ea_normalised",
                "return_per_episode", "return_iqm", "return_low", "return_high",
                "share_of_optimum", "steps_per_episode", "crashes_per_episode",
-               "steps_in_disaster_per_episode", "training_steps"]
+               "steps_in_disaster_per_episode", "training_steps", "evaluation_episodes",
+               "distinct_episodes"]
     lines = [",".join(columns)]
     for row in rows:
         flat = dict(row)

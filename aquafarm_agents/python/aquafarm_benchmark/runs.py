@@ -142,7 +142,7 @@ def run_all(jobs, at_once, report, lock=None, period_s=10.0):
     except BaseException as error:
         _end(running)
         if isinstance(error, KeyboardInterrupt):
-            raise Interrupted("interrupted; the same command goes on from here") from None
+            raise Interrupted("interrupted; the same command resumes it") from None
         raise
     if failures:
         raise RunFailed("\n".join(failures))

@@ -386,7 +386,7 @@ class Walk {
     const auto spec = specs_.find(key);
     if (spec == specs_.end()) {
       throw InputError(path_ + ": episode " + Number(key.second) + " of seed " + Number(key.first) +
-                       ": the bag holds no spec of it");
+                       ": the bag has no spec for it");
     }
     key_ = key;
     probe_.emplace(spec->second, path_, saved_, rewinds_);
@@ -424,7 +424,7 @@ BagChoices AskAlong(const std::string& path, const agents::SavedPolicy& policy,
     const std::string ranch = aquafarm_sim::FindRanch(bag, path, options.ns);
     std::error_code ignored;
     if (!options.output.empty() && fs::equivalent(path, options.output, ignored)) {
-      throw InputError(options.output + ": is the bag that is read; expected another file");
+      throw InputError(options.output + ": is the input bag, expected another file");
     }
     Walk walk(ReadSpecs(bag, ranch + names::kSpec, path), policy, options, ranch, path, rewinds);
     for (const rosbag::MessageInstance& message : all) {

@@ -74,8 +74,8 @@ void RefuseTwin() {
   std::string host;
   std::uint32_t port = 0;
   if (!ros::network::splitURI(uri, host, port) || !IsListenedOn(host, port)) return;
-  throw aquafarm::InputError("node " + name + " runs already, at " + uri +
-                             ": expected one node of a name; end it first, or take another name");
+  throw aquafarm::InputError("node " + name + " is already running at " + uri +
+                             "; stop it or use another name");
 }
 
 }  // namespace aquafarm_agents

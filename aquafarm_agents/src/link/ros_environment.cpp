@@ -25,9 +25,11 @@ using aquafarm::agents::StepResults;
 using aquafarm_msgs::Outcome;
 using aquafarm_msgs::StepResult;
 
-static_assert(int{StepResult::INDEX} == int{aquafarm::agents::kIndexBit});
-static_assert(int{StepResult::FEATURES} == int{aquafarm::agents::kFeaturesBit});
-static_assert(int{StepResult::PLANES} == int{aquafarm::agents::kPlanesBit});
+static_assert(int{StepResult::INDEX} == int{aquafarm::kIndexField});
+static_assert(int{StepResult::FEATURES} == int{aquafarm::kFeaturesField});
+static_assert(int{StepResult::PLANES} == int{aquafarm::kPlanesField});
+static_assert(int{StepResult::HASHES} == int{aquafarm::kHashesField});
+static_assert(int{StepResult::TERMS} == int{aquafarm::kTermsField});
 
 constexpr double kRetryPeriod_s = 0.1;
 // Max restarts without a completed episode. More indicate another client on the same farms.
@@ -104,7 +106,7 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
   if ((options_.encodings & aquafarm::agents::kIndexBit) != 0 && spec_.state_count == 0) {
     throw InputError(
         "scenario " + spec_.scenario_name +
-        ": too many states for a table, expected a learner with a network, as auto chooses");
+        ": too many states for a table, expected a learner with a network; use algorithm auto");
   }
   if (now.spec.farms != spec_.farms) Reset(now.state.seed);
 }
@@ -171,17 +173,9 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
 void RosEnvironment::Take(StepResult& result) {
   if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) results_.states = Save();
   turn_ = result.turn;
-  results_.rewards.swap(result.rewards);
-  if (own_rewards_) aquafarm::agents::AddUpTerms(result.terms, results_.rewards);
-  results_.outcomes.swap(result.outcomes);
-  results_.legal.swap(result.legal);
-  results_.in_play.swap(result.in_play);
-  results_.reasons.swap(result.reasons);
-  results_.started.swap(result.started);
-  results_.hashes.swap(result.hashes);
-  results_.index.swap(result.index);
-  results_.features.swap(result.features);
-  results_.planes.swap(result.planes);
+  aquafarm::VisitStepFields([](const aquafarm::StepField&, auto& to, auto& from) { to.swap(from); },
+                            results_, result);
+  if (own_rewards_) aquafarm::agents::UseOwnRewards(results_);
   results_.finished.clear();
   for (const auto& summary : result.finished) results_.finished.push_back(FromMsg(summary));
 }
@@ -229,7 +223,7 @@ void RosEnvironment::Restart(const std::string& why) {
     throw EnvironmentLost("sim node: another client keeps changing the farms: " + why);
   }
   Notice("the farms are not as they were left (" + why +
-         "); going on with fresh episodes from number " + std::to_string(next_episode_));
+         "); continuing with fresh episodes from number " + std::to_string(next_episode_));
   Reset(seed_, next_episode_);
   restarted_ = true;
 }

@@ -3,6 +3,7 @@
 #include <ros/console.h>
 #include <ros/node_handle.h>
 #include <ros/param.h>
+#include <unistd.h>
 
 #include <climits>
 #include <cmath>
@@ -28,7 +29,8 @@ using agents::ExitCode;
 using agents::RunPhase;
 using aquafarm_msgs::TrainingStatus;
 
-constexpr double kPrintPeriod_s = 5.0;
+constexpr double kPrintPeriod_s = 10.0;    // one line each
+constexpr double kTerminalPeriod_s = 1.0;  // one line that renews itself
 
 struct TrainParams {
   agents::RunOptions run;
@@ -112,6 +114,40 @@ TrainingStatus ToMsg(const agents::RunStatus& status, const agents::RunOptions& 
   return message;
 }
 
+/// Progress on the console: a line that renews itself on a terminal, else a line every 10 s.
+class ProgressLine {
+ public:
+  ~ProgressLine() { Close(); }
+
+  /// Prints the progress if its period has passed.
+  void Print(const agents::TrainingProgress& progress) {
+    const ros::WallTime now = ros::WallTime::now();
+    const double period_s = terminal_ ? kTerminalPeriod_s : kPrintPeriod_s;
+    if (!printed_.isZero() && (now - printed_).toSec() < period_s) return;
+    printed_ = now;
+    const std::string text = agents::DescribeProgress(progress);
+    if (terminal_) {
+      std::printf("\r%s\033[K", text.c_str());
+      std::fflush(stdout);
+      open_ = true;
+    } else {
+      ROS_INFO("%s", text.c_str());
+    }
+  }
+
+  /// Ends the line, so that other text can follow.
+  void Close() {
+    if (open_) std::printf("\n");
+    std::fflush(stdout);
+    open_ = false;
+  }
+
+ private:
+  const bool terminal_{isatty(STDOUT_FILENO) == 1};
+  bool open_{false};
+  ros::WallTime printed_;
+};
+
 /// Reports the status: always on a topic, periodically on the console.
 class StatusReporter {
  public:
@@ -122,15 +158,15 @@ class StatusReporter {
   void Notify(const agents::RunStatus& status) {
     last_ = status;
     Publish(ToMsg(status, options_, ExitCode::kOk));
-    if (!status.message.empty()) ROS_INFO("%s", status.message.c_str());
-    const ros::WallTime now = ros::WallTime::now();
-    const bool due = printed_.isZero() || (now - printed_).toSec() >= kPrintPeriod_s;
-    if (status.phase != RunPhase::kTraining || !due) return;
-    printed_ = now;
-    ROS_INFO("%s", agents::DescribeProgress(status.progress).c_str());
+    if (!status.message.empty()) {
+      line_.Close();
+      ROS_INFO("%s", status.message.c_str());
+    }
+    if (status.phase == RunPhase::kTraining) line_.Print(status.progress);
   }
 
   void Warn(const std::string& text) {
+    line_.Close();
     ROS_WARN("%s", text.c_str());
     TrainingStatus message = ToMsg(last_, options_, ExitCode::kOk);
     message.phase = TrainingStatus::WAITING;
@@ -139,6 +175,7 @@ class StatusReporter {
   }
 
   void End(const agents::RunReport& report) {
+    line_.Close();
     Publish(ToMsg(report.status, options_, report.code));
     ros::WallDuration(0.2).sleep();  // lets the last status be sent before the node exits
   }
@@ -149,7 +186,7 @@ class StatusReporter {
   const agents::RunOptions options_;
   ros::Publisher publisher_;
   agents::RunStatus last_;
-  ros::WallTime printed_;
+  ProgressLine line_;
 };
 
 agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {

@@ -52,6 +52,12 @@ def draw_curves(columns):
     return f'<div class="chart">{svg[svg.index("<svg"):]}</div>'
 
 
+def count_text(summary, episodes):
+    """Returns "100 episodes, 3 distinct": repeated starts are no evidence of generality."""
+    distinct = summary.get("distinct_episodes")  # evaluations of version 0.1.0 have none
+    return f"{episodes} episodes" + (f", {distinct} distinct" if distinct is not None else "")
+
+
 def show_episodes(run, folder, episodes):
     """Summary of a run's policy, and sections with the table, the map and the videos."""
     summary, rows = films.evaluate(run, folder, episodes)
@@ -71,7 +77,7 @@ def show_episodes(run, folder, episodes):
     table = page.table(["mean of an episode", ""], [
         (name, form.format(summary[key])) for key, name, form in keys if key in summary])
     return summary, [
-        page.section(f"Greedy play, {len(rows)} episodes it never trained on", table),
+        page.section(f"Greedy play, {count_text(summary, len(rows))}", table),
         page.section("The ranch", page.picture(chart, "at the start of an episode")),
         page.section("Best, median and worst episode",
                      f'<div class="films">{"".join(shown)}</div>')]
@@ -159,9 +165,9 @@ def make(source, output, episodes=EPISODES):
         except (OSError, ValueError, KeyError) as error:
             raise ReportError(f"{source}: cannot be reported on: {error!r}") from error
     try:
-        beside = output.with_name(output.name + ".part")
-        beside.write_text(text, encoding="utf-8")
-        os.replace(beside, output)
+        temporary = output.with_name(output.name + ".part")
+        temporary.write_text(text, encoding="utf-8")
+        os.replace(temporary, output)
     except OSError as error:
         raise ReportError(f"{output}: cannot be written: {error.strerror}") from None
     return output

@@ -98,10 +98,10 @@ def draw(text, values, layers, results, path):
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
     figure.suptitle(f"{text['scenario']}: what starting in a cell pays, and the sea ({episodes})")
-    beside = f"{path}.part"
-    figure.savefig(beside, dpi=110, format="png")
+    temporary = f"{path}.part"
+    figure.savefig(temporary, dpi=110, format="png")
     pyplot.close(figure)
-    os.replace(beside, path)
+    os.replace(temporary, path)
 
 
 def make(values_file, output):
@@ -114,9 +114,9 @@ def make(values_file, output):
     report["note"] = NOTE
     report["seas"] = [{"name": name, "units": units, **result}
                       for (name, units, _), result in zip(layers, results)]
-    beside = f"{output}.json.part"
-    pathlib.Path(beside).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
-    os.replace(beside, f"{output}.json")
+    temporary = f"{output}.json.part"
+    pathlib.Path(temporary).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
+    os.replace(temporary, f"{output}.json")
     return [f"{name}: Spearman {said(result['spearman_rho'])}, SSIM {said(result['ssim'])}, "
             f"turned over {said(result['ssim_turned'])}, over {result['cells']} cells"
             for (name, _, _), result in zip(layers, results)]

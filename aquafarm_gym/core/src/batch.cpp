@@ -61,7 +61,9 @@ py::dict DictOf(const EpisodeRecord& record, std::int32_t farm) {
 class Batch::Turn {
  public:
   explicit Turn(bool& busy) : busy_(busy) {
-    if (busy_) throw std::runtime_error("FarmBatch: another thread's call still runs");
+    if (busy_)
+      throw std::runtime_error(
+          "FarmBatch: another thread's call is still running; use one batch per thread");
     busy_ = true;
   }
   ~Turn() { busy_ = false; }

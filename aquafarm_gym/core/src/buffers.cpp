@@ -1,27 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "buffers.h"
 
+#include <type_traits>
+
 #include "aquafarm/base/check.h"
 
 namespace aquafarm::python {
 namespace py = pybind11;
 
+namespace {
+
+std::string DtypeOf(const float*) { return "float32"; }
+std::string DtypeOf(const std::uint8_t*) { return "uint8"; }
+std::string DtypeOf(const std::uint16_t*) { return "uint16"; }
+std::string DtypeOf(const std::uint32_t*) { return "uint32"; }
+std::string DtypeOf(const std::uint64_t*) { return "uint64"; }
+
+}  // namespace
+
 std::vector<BufferType> BufferTypes(const FarmBatch& batch) {
-  const py::ssize_t n = batch.farms();
-  const py::ssize_t s = batch.agents();
+  using Columns = StepField::Columns;
   const Scenario& scenario = batch.scenario();
-  std::vector<BufferType> types{
-      {"rewards", "float32", {n, s}},
-      {"terms", "float32", {n, s, kRewardTermCount}},
-      {"outcomes", "uint8", {n, s}},
-      {"legal", "uint16", {n, s}},
-      {"in_play", "uint8", {n, s}},
-      {"reasons", "uint8", {n}},
-      {"started", "uint8", {n}},
-      {"hashes", "uint64", {n}},
-      {"features", "float32", {n, s, batch.encoder().feature_count()}},
-      {"planes", "uint8", {n, s, Encoder::kPlaneCount, scenario.height, scenario.width}}};
-  if (batch.encoder().state_count() != 0) types.push_back({"index", "uint32", {n, s}});
+  std::vector<BufferType> types;
+  BatchOutput none;
+  VisitStepFields(
+      [&](const StepField& field, const auto* pointer) {
+        if (field.bit == kIndexField && batch.encoder().state_count() == 0) return;
+        std::vector<py::ssize_t> shape{batch.farms()};
+        if (field.rows == StepField::Rows::kAgents) shape.push_back(batch.agents());
+        if (field.columns == Columns::kTerms) shape.push_back(kRewardTermCount);
+        if (field.columns == Columns::kFeatures) shape.push_back(batch.encoder().feature_count());
+        if (field.columns == Columns::kPlanes) {
+          shape.insert(shape.end(), {Encoder::kPlaneCount, scenario.height, scenario.width});
+        }
+        types.push_back({field.name, DtypeOf(pointer), shape});
+      },
+      none);
   return types;
 }
 
@@ -45,17 +59,11 @@ bool Fits(const py::array& array, const BufferType& type) {
 }
 
 void Point(BatchOutput& output, std::string_view name, void* data) {
-  if (name == "rewards") output.rewards = static_cast<float*>(data);
-  if (name == "terms") output.terms = static_cast<float*>(data);
-  if (name == "outcomes") output.outcomes = static_cast<std::uint8_t*>(data);
-  if (name == "legal") output.legal = static_cast<ActionMask*>(data);
-  if (name == "in_play") output.in_play = static_cast<std::uint8_t*>(data);
-  if (name == "reasons") output.reasons = static_cast<std::uint8_t*>(data);
-  if (name == "started") output.started = static_cast<std::uint8_t*>(data);
-  if (name == "hashes") output.hashes = static_cast<std::uint64_t*>(data);
-  if (name == "index") output.index = static_cast<std::uint32_t*>(data);
-  if (name == "features") output.features = static_cast<float*>(data);
-  if (name == "planes") output.planes = static_cast<std::uint8_t*>(data);
+  VisitStepFields(
+      [&](const StepField& field, auto*& pointer) {
+        if (name == field.name) pointer = static_cast<std::decay_t<decltype(pointer)>>(data);
+      },
+      output);
 }
 
 }  // namespace aquafarm::python

@@ -9,7 +9,8 @@ import gymnasium
 SCENARIOS: dict[str, str] = {
     "Paper": "paper", "PaperPartial": "paper_partial", "Partial": "partial", "Procedural": "procedural",
     "RedTide": "red_tide", "ZhoushanDanas2019": "zhoushan_danas_2019",
-    "ZhoushanInfa2021": "zhoushan_infa_2021", "ZhoushanMitag2019": "zhoushan_mitag_2019"}
+    "ZhoushanInfa2021": "zhoushan_infa_2021", "ZhoushanMitag2019": "zhoushan_mitag_2019",
+    "ZhoushanStorms": "zhoushan_storms"}
 VERSION: int = 1
 
 

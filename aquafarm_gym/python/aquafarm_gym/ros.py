@@ -105,28 +105,19 @@ class RosFarms:
         self.name, self.yaml = spec.scenario_name, spec.scenario_yaml
         self.farms, self.agents = farms, spec.agents
         self.state_count, self.feature_count = spec.state_count, spec.feature_count
-        self.feature_names = core.FarmBatch(
-            core.Scenario.parse(self.yaml, self.name)).feature_names
+        # The arrays of a batch in this process, which this object fills instead.
+        arrays = core.FarmBatch(
+            core.Scenario.parse(self.yaml, self.name), farms,
+            write=["rewards", "outcomes", "legal", "in_play", "reasons", "started", observation]
+            + (["hashes"] if hashes else []))
+        self.feature_names = arrays.feature_names
+        self.buffers: dict[str, npt.NDArray[Any]] = dict(arrays.buffers)
         self.plane_count, self.height, self.width = spec.plane_count, spec.height, spec.width
         self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
         # Random start, so that the numbers differ from those of earlier clients of this node.
         self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)
         self._turn: int | None = None  # of the last response; None: needs a reset
         self._finished: list[dict[str, Any]] = []
-        entries = (farms, self.agents)
-        shape: tuple[int, ...] = {
-            "index": entries, "features": (*entries, self.feature_count),
-            "planes": (*entries, self.plane_count, self.height, self.width)}[observation]
-        dtype: Any = {"index": np.uint32, "features": np.float32, "planes": np.uint8}[observation]
-        self.buffers: dict[str, npt.NDArray[Any]] = {
-            "rewards": np.zeros(entries, np.float32),
-            "outcomes": np.zeros(entries, np.uint8),
-            "legal": np.zeros(entries, np.uint16),
-            "in_play": np.zeros(entries, np.uint8),
-            "reasons": np.zeros(farms, np.uint8),
-            "started": np.zeros(farms, np.uint8), observation: np.zeros(shape, dtype)}
-        if hashes:
-            self.buffers["hashes"] = np.zeros(farms, np.uint64)
 
     def reset(self, seed: int, first_episode: int = 0) -> None:
         """As FarmBatch.reset."""

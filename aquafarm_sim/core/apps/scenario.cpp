@@ -26,6 +26,8 @@ struct Arguments {
   std::string rings{"equal_area"};
   std::string start;
   std::vector<std::string> sea;
+  std::string years;
+  std::string evaluation_years;
   std::string output;
   std::string map;
   bool own_size{};  // --size was given
@@ -60,7 +62,7 @@ double Metres(const std::string& text) {
   const std::size_t unit = km ? 2 : !text.empty() && text.back() == 'm' ? 1 : 0;
   double value = 0.0;
   if (!CLI::detail::lexical_cast(text.substr(0, text.size() - unit), value)) {
-    throw InputError("cell: got '" + text + "', expected a length as 200m or 0.2km");
+    throw InputError("cell: got '" + text + "', expected a length such as 200m or 0.2km");
   }
   return km ? value * 1000.0 : value;
 }
@@ -87,11 +89,25 @@ Enum Named(const char* name, const std::string& text, int count) {
   throw InputError(std::string(name) + ": got '" + text + "', expected one of " + names);
 }
 
+// Parses "1979:2009".
+Range<std::int32_t> Years(const char* name, const std::string& text) {
+  const auto [first, last] = Pair(name, text, ':', "FIRST:LAST as 1979:2009");
+  const auto whole = [](double year) { return year == std::floor(year) && std::abs(year) < 1.0e4; };
+  if (whole(first) && whole(last)) {
+    return {static_cast<std::int32_t>(first), static_cast<std::int32_t>(last)};
+  }
+  throw InputError(std::string(name) + ": got '" + text + "', expected FIRST:LAST as 1979:2009");
+}
+
 RanchRequest Finished(const Arguments& arguments) {
   RanchRequest ranch = arguments.ranch;
   if (!arguments.center.empty()) ranch.center = Place("center", arguments.center);
   for (const std::string& port : arguments.ports) ranch.port_places.push_back(Place("port", port));
   for (const std::string& sea : arguments.sea) ranch.sea.push_back(SeaLayer(sea));
+  if (!arguments.years.empty()) ranch.archive.years = Years("years", arguments.years);
+  if (!arguments.evaluation_years.empty()) {
+    ranch.archive.evaluation_years = Years("evaluation-years", arguments.evaluation_years);
+  }
   const auto [width, height] = Pair("size", arguments.size, 'x', "WIDTHxHEIGHT in cells");
   const auto whole = [&](double side) {
     if (side >= 2.0 && side <= kMaxSide && side == std::floor(side)) {
@@ -114,12 +130,12 @@ RanchRequest Finished(const Arguments& arguments) {
 }
 
 void WriteFile(const std::string& path, const std::string& text) {
-  const std::string beside = path + ".part";
-  std::ofstream file(beside, std::ios::trunc);
+  const std::string temporary = path + ".part";
+  std::ofstream file(temporary, std::ios::trunc);
   file << text;
   file.close();
   std::error_code error;
-  if (file) std::filesystem::rename(beside, path, error);
+  if (file) std::filesystem::rename(temporary, path, error);
   if (!file || error) throw InputError(path + ": cannot write");
 }
 
@@ -127,10 +143,10 @@ void WriteFile(const std::string& path, const std::string& text) {
 void RefuseUnused(const Arguments& arguments, const Scenario& made) {
   const RanchRequest asked = Finished(arguments);
   if (arguments.own_size && (made.width != asked.width || made.height != asked.height)) {
-    throw InputError("size: got '" + arguments.size + "', expected none, as the chart has its own");
+    throw InputError("size: got '" + arguments.size + "', expected no value: the chart defines it");
   }
   if (arguments.own_cell && made.cell_size_m != asked.cell_size_m) {
-    throw InputError("cell: got '" + arguments.cell + "', expected none, as the chart has its own");
+    throw InputError("cell: got '" + arguments.cell + "', expected no value: the chart defines it");
   }
 }
 
@@ -140,7 +156,7 @@ std::string Learner(const Scenario& made) {
   const std::uint64_t states = Encoder(made).state_count();
   constexpr std::uint64_t kMost = 100'000'000;
   if (states == 0 || states > kMost) {  // ten values per state: beyond a table of 4 GB
-    return " algorithm:=dqn options:=steps_per_update=4 steps:=1200000";
+    return " algorithm:=dqn options:=train_interval=4 steps:=1200000";
   }
   return "";
 }
@@ -176,12 +192,27 @@ int Main(int argc, char** argv) {
   CLI::Option* track =
       app.add_option("--track", ranch.track, "file with the storm's track; empty: calm");
   app.add_option("--storm", ranch.storm, "name or number of the storm in that file")->needs(track);
+  CLI::Option* years =
+      app.add_option("--years", arguments.years, "FIRST:LAST of the storms that training draws");
+  CLI::Option* archive =
+      app.add_option("--archive", ranch.archive.files,
+                     "files of tracks (CMA, JMA, ATCF, IBTrACS or a storm archive): every episode "
+                     "draws a storm of them")
+          ->needs(years)
+          ->excludes(track);
+  years->needs(archive);
+  app.add_option("--evaluation-years", arguments.evaluation_years,
+                 "FIRST:LAST of the storms of evaluation alone; empty: all after --years")
+      ->needs(archive);
+  app.add_option("--within", ranch.archive.within_km,
+                 "km: storms of the archive that come nearer than this to the middle")
+      ->check(CLI::Range(1.0, 2000.0))
+      ->needs(archive);
   app.add_option("--radii", ranch.radii, "file with radii of winds, for a track that has none")
       ->needs(track);
-  app.add_option(
-         "--forecasts", ranch.forecasts,
-         "bulletins of the storm with forecast points: agents are told these, and the truth "
-         "follows the track")
+  app.add_option("--forecasts", ranch.forecasts,
+                 "bulletins of the storm with forecast points: agents receive these, and the truth "
+                 "follows the track")
       ->needs(track);
   app.add_option("--rings", arguments.rings,
                  "quadrants of winds: circles of equal_area or largest, or as quadrants")

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "aquafarm/sea/sea_field.h"
-#include "aquafarm/storms/reader.h"
+#include "aquafarm/tracks/reader.h"
 #include "metric_reporter.h"
 #include "write_sea.h"
 

@@ -6,8 +6,8 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/storms/notices.h"
-#include "aquafarm/storms/reader.h"
 #include "aquafarm/storms/to_disaster.h"
+#include "aquafarm/tracks/reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace aquafarm;

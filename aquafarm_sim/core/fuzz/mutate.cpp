@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Replaces libFuzzer if the compiler is not clang: passes every sample of a folder to the target,
-// then mutated samples. The mutations are the same in every run. A crash, a hang or an unexpected
-// exception is a bug.
+// then mutated samples. The mutations are the same in every run with the same seed. A crash, a hang
+// or an unexpected exception is a bug.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -61,13 +61,18 @@ void Mutate(aquafarm::RandomStream& rng, std::string& bytes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) {
-    std::fprintf(stderr, "usage: %s CHANGES_A_SAMPLE FOLDER…\n", argv[0]);
+  const std::string option = argc > 1 ? argv[1] : "";
+  const bool seeded = option.rfind("--seed=", 0) == 0;
+  const std::uint64_t seed = seeded ? std::strtoull(option.c_str() + 7, nullptr, 10) : 1;
+  const std::vector<std::string> words(argv + (seeded ? 2 : 1), argv + argc);
+  if (words.size() < 2) {
+    std::fprintf(stderr, "usage: %s [--seed=N] CHANGES FOLDER…\n", argv[0]);
     return 2;
   }
   std::vector<std::string> samples;
-  for (int folder = 2; folder < argc; ++folder) {
-    for (const auto& entry : fs::directory_iterator(argv[folder])) {
+  for (std::size_t folder = 1; folder < words.size(); ++folder) {
+    for (const auto& entry : fs::directory_iterator(words[folder])) {
+      if (!entry.is_regular_file()) continue;
       std::ifstream file(entry.path(), std::ios::binary);
       samples.emplace_back(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
     }
@@ -75,8 +80,8 @@ int main(int argc, char** argv) {
   std::sort(samples.begin(), samples.end());
   // Keeps the duration of a run independent of the number of samples.
   const auto changes =
-      std::atoi(argv[1]) * 6 / static_cast<int>(std::max<std::size_t>(samples.size(), 1));
-  aquafarm::RandomStream rng({1, 0, aquafarm::RngStream::kExploration, 0});
+      std::atoi(words[0].c_str()) * 6 / static_cast<int>(std::max<std::size_t>(samples.size(), 1));
+  aquafarm::RandomStream rng({seed, 0, aquafarm::RngStream::kExploration, 0});
   for (const std::string& sample : samples) {
     Feed(sample);
     for (int i = 0; i < changes; ++i) {
@@ -85,6 +90,7 @@ int main(int argc, char** argv) {
       Feed(changed);
     }
   }
-  std::printf("%zu samples, %d changes each\n", samples.size(), changes);
+  std::printf("%zu samples, %d changes each; inputs: %zu\n", samples.size(), changes,
+              samples.size() * (1 + static_cast<std::size_t>(changes)));
   return 0;
 }

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "aquafarm/base/check.h"
-#include "aquafarm/storms/reader.h"
+#include "aquafarm/tracks/reader.h"
 
 namespace aquafarm {
 

@@ -4,11 +4,13 @@
 #include <ros/node_handle.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/base/suggest.h"
 
 namespace aquafarm_sim {
 
@@ -22,7 +24,13 @@ class Params {
 
   void Text(const std::string& name, std::string& value) { Read(name, "a text", value); }
   void Flag(const std::string& name, bool& value) { Read(name, "true or false", value); }
+  /// A number with a fraction is refused; NodeHandle::getParam would round it.
   void Int(const std::string& name, int min, int max, int& value) {
+    double number = value;
+    if (node_.getParam(name, number) && !(number == std::trunc(number))) {
+      throw aquafarm::InputError("~" + name + ": got " + ToText(number) +
+                                 ", expected a whole number");
+    }
     if (Read(name, "a whole number", value)) CheckRange(name, value, min, max);
   }
   void Number(const std::string& name, double min, double max, double& value) {
@@ -43,7 +51,9 @@ class Params {
       if (std::find(known_.begin(), known_.end(), name) != known_.end()) continue;
       std::string names;
       for (const std::string& one : known_) names += (names.empty() ? "" : ", ") + one;
-      throw aquafarm::InputError("~" + name + ": unknown parameter, expected one of: " + names);
+      throw aquafarm::InputError("~" + name + ": unknown parameter" +
+                                 aquafarm::DidYouMean(name, known_) +
+                                 ", expected one of: " + names);
     }
   }
 

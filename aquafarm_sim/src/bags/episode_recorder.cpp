@@ -149,7 +149,7 @@ void EpisodeRecorder::Enqueue(EpisodeLog tape) {
   });
   if (!follows) {
     fault_ = "the disk is too slow";
-    ROS_ERROR("no more episodes are kept: %s", fault_.c_str());
+    ROS_ERROR("episode recording stopped: %s", fault_.c_str());
   }
   if (!fault_.empty()) return;
   waiting_bytes_ += tape.actions.size();
@@ -172,10 +172,10 @@ void EpisodeRecorder::Run() {
       Write(tape);
       written = true;
     } catch (const TapeError& error) {  // only this episode is lost
-      ROS_ERROR("an episode is not kept: %s", error.what());
+      ROS_ERROR("an episode was not recorded: %s", error.what());
     } catch (const std::exception& error) {
       fault = error.what();
-      ROS_ERROR("no more episodes are kept: %s", error.what());
+      ROS_ERROR("episode recording stopped: %s", error.what());
     }
     lock.lock();
     waiting_bytes_ -= tape.actions.size();

@@ -163,7 +163,7 @@ std::vector<aquafarm::QuadrantRadii> QuadrantsOf(const std::string& name,
   std::vector<aquafarm::QuadrantRadii> rings;
   if (flat.size() % 4 != 0) {
     throw aquafarm::InputError(name + ": got " + std::to_string(flat.size()) +
-                               " entries, expected four a ring");
+                               " entries, expected four per ring");
   }
   for (std::size_t i = 0; i < flat.size(); i += 4) {
     rings.push_back({flat[i], flat[i + 1], flat[i + 2], flat[i + 3]});

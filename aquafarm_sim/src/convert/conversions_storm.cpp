@@ -37,6 +37,7 @@ aquafarm::StormFix FixFrom(const aquafarm_msgs::StormFix& message, const std::st
   CheckNumber(name + ".grade", message.grade, 0.0, aquafarm_msgs::StormFix::SUPER_TY);
   CheckNumber(name + ".wind_mps", static_cast<double>(message.wind_mps), 0.0, 150.0);
   CheckNumber(name + ".pressure_hpa", static_cast<double>(message.pressure_hpa), 0.0, 1100.0);
+  CheckNumber(name + ".averaging_min", message.averaging_min, 0.0, 60.0);
   CheckNumber(name + ".max_wind_radius_km", static_cast<double>(message.max_wind_radius_km), 0.0,
               5000.0);
   CheckCount(name + ".rings", message.rings.size(), kMostRings);
@@ -44,6 +45,7 @@ aquafarm::StormFix FixFrom(const aquafarm_msgs::StormFix& message, const std::st
   fix.time = message.stamp.sec;
   fix.position = {message.latitude_deg, message.longitude_deg};
   fix.wind_mps = IfSaid(message.wind_mps);
+  fix.averaging_min = message.averaging_min;
   fix.pressure_hpa = IfSaid(message.pressure_hpa);
   fix.max_wind_radius_km = IfSaid(message.max_wind_radius_km);
   fix.grade = static_cast<aquafarm::StormGrade>(message.grade);
@@ -62,7 +64,7 @@ aquafarm::StormFix FixFrom(const aquafarm_msgs::StormFix& message, const std::st
     if (fix.Ring(message.rings[i].wind_kt) != nullptr) {
       throw aquafarm::InputError(here + ".wind_kt: got " +
                                  std::to_string(message.rings[i].wind_kt) +
-                                 " twice, expected one ring of a wind");
+                                 " twice, expected one ring per wind");
     }
     aquafarm::WindRing ring;
     ring.wind_kt = message.rings[i].wind_kt;
@@ -101,6 +103,7 @@ aquafarm_msgs::StormFix FixTo(const aquafarm::StormFix& fix) {
   message.longitude_deg = fix.position.longitude;
   message.grade = static_cast<std::uint8_t>(fix.grade);
   message.wind_mps = static_cast<float>(fix.wind_mps.value_or(0.0));
+  message.averaging_min = static_cast<std::uint8_t>(std::clamp(fix.averaging_min, 0, 60));
   message.pressure_hpa = static_cast<float>(fix.pressure_hpa.value_or(0.0));
   message.max_wind_radius_km = static_cast<float>(fix.max_wind_radius_km.value_or(0.0));
   message.has_motion = fix.heading_deg && fix.speed_kmh;
@@ -123,7 +126,7 @@ aquafarm::StormTrack FromMsg(const aquafarm_msgs::Storm& message) {
   track.name = message.name;
   track.fixes = FixesFrom(message.fixes, "storm.fixes", -1);
   if (track.fixes.empty()) {
-    throw aquafarm::InputError("storm.fixes: got none, expected where the storm is");
+    throw aquafarm::InputError("storm.fixes: got none, expected at least one position");
   }
   const std::int64_t now = track.fixes.back().time;
   if (!message.forecast.empty()) {

@@ -269,8 +269,10 @@ void SimNode::TellAbsent(const std::vector<std::int32_t>& absent) const {
   const auto lost = without(absent, diagnosed_.absent);
   const auto back = without(diagnosed_.absent, absent);
   if (!lost.empty()) {
-    ROS_WARN("no command within ~barrier_timeout_s, %g s, of ship %s: it holds until it is back",
-             params_.ranch.barrier_timeout_s, Joined(lost).c_str());
+    ROS_WARN(
+        "barrier timed out: no command from ship %s within ~barrier_timeout_s, %g s; it holds "
+        "until it returns",
+        Joined(lost).c_str(), params_.ranch.barrier_timeout_s);
   }
   if (!back.empty()) ROS_WARN("back: ship %s", Joined(back).c_str());
 }

@@ -128,7 +128,7 @@ aquafarm_msgs::CommandResult FarmServer::Refuse(std::int32_t ship, std::uint8_t 
 }
 
 // A paced farm whose episode has ended starts the next episode at its next tick. Until then there
-// is no step that a command could be for.
+// is not a step that a command could address.
 aquafarm_msgs::CommandResult FarmServer::AcceptPaced(const ShipCommand& command) {
   if (batch_->farm(0).over()) {
     return Refuse(command.ship, Outcome::EPISODE_OVER,

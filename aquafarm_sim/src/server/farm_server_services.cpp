@@ -31,13 +31,6 @@ bool IsSaid(const aquafarm_msgs::Storm& storm) {
   return !storm.fixes.empty() || !storm.forecast.empty() || !storm.name.empty();
 }
 
-/// Resizes an array, or clears it if not `wanted`. Returns the address of its entries.
-template <typename T>
-T* Sized(bool wanted, std::size_t size, std::vector<T>& entries) {
-  entries.resize(wanted ? size : 0);
-  return wanted ? entries.data() : nullptr;
-}
-
 }  // namespace
 
 template <typename Response>
@@ -141,30 +134,19 @@ std::optional<FarmServer::Refusal> FarmServer::CheckAnswerSize(std::int32_t farm
 }
 
 aquafarm::BatchOutput FarmServer::Prepare(std::uint8_t encodings, StepResult& result) const {
-  const aquafarm::Encoder& encoder = batch_->encoder();
-  const auto farms = static_cast<std::size_t>(batch_->farms());
-  const std::size_t entries = farms * slots_.size();
-  const auto wants = [encodings](std::uint8_t bit) { return (encodings & bit) != 0; };
+  const aquafarm::StepShape shape = batch_->shape();
   result.farms = batch_->farms();
   result.agents = agents_;
-  result.terminated.resize(farms);
-  result.truncated.resize(farms);
+  result.terminated.resize(shape.farms);
+  result.truncated.resize(shape.farms);
   result.finished.clear();
   aquafarm::BatchOutput output;
-  output.rewards = Sized(true, entries, result.rewards);
-  output.terms =
-      Sized(wants(StepResult::TERMS), entries * aquafarm::kRewardTermCount, result.terms);
-  output.outcomes = Sized(true, entries, result.outcomes);
-  output.legal = Sized(true, entries, result.legal);
-  output.in_play = Sized(true, entries, result.in_play);
-  output.reasons = Sized(true, farms, result.reasons);
-  output.started = Sized(true, farms, result.started);
-  output.hashes = Sized(wants(StepResult::HASHES), farms, result.hashes);
-  output.index = Sized(wants(StepResult::INDEX), entries, result.index);
-  output.features =
-      Sized(wants(StepResult::FEATURES),
-            entries * static_cast<std::size_t>(encoder.feature_count()), result.features);
-  output.planes = Sized(wants(StepResult::PLANES), entries * encoder.planes_size(), result.planes);
+  aquafarm::VisitStepFields(
+      [&](const aquafarm::StepField& field, auto& values, auto*& to) {
+        values.resize(field.IsIn(encodings) ? field.Size(shape) : 0);
+        to = values.empty() ? nullptr : values.data();
+      },
+      result, output);
   return output;
 }
 

@@ -58,8 +58,8 @@ class VideoFilm final : public Film {
       tried += (tried.empty() ? "" : ", ") + codec;
     }
     RemoveUnfinished(path);
-    throw std::runtime_error(path + ": no codec for " + Ending(path) + " here (tried " + tried +
-                             "), or no place to write; a .gif needs none, or install libavcodec");
+    throw std::runtime_error(path + ": no codec for " + Ending(path) + " (tried " + tried +
+                             "), or the folder is not writable; use .gif, or install libavcodec");
   }
 
   ~VideoFilm() override {

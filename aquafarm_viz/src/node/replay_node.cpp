@@ -11,7 +11,7 @@
 #include <set>
 #include <string>
 
-#include "aquafarm_viz/params.h"
+#include "aquafarm_sim/params.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -40,18 +40,20 @@ bool IsDrawn(const rosbag::MessageInstance& message) {
 
 ReplayParams ReadReplayParams(const ros::NodeHandle& node) {
   ReplayParams params;
-  node.getParam("bag", params.bag);
+  aquafarm_sim::Params reader(node);
+  reader.Text("bag", params.bag);
+  reader.Number("speed", 0.001, kMostSpeed, params.speed);
+  reader.Number("start_s", 0.0, 1e9, params.start_s);
+  reader.Int("start_episode", -1, INT_MAX, params.start_episode);
+  reader.Int("start_step", 0, INT_MAX, params.start_step);
+  reader.Number("delay_s", 0.0, 3600.0, params.delay_s);
+  reader.Flag("paused", params.paused);
+  reader.Flag("loop", params.loop);
+  reader.Flag("keep_alive", params.keep_alive);
+  reader.RefuseOthers();
   if (params.bag.empty()) {
-    throw std::invalid_argument(node.resolveName("bag") + ": got nothing, expected a bag file");
+    throw aquafarm::InputError("~bag: got nothing, expected a bag file");
   }
-  ReadParam(node, "speed", params.speed, 0.001, kMostSpeed);
-  ReadParam(node, "start_s", params.start_s, 0.0, 1e9);
-  ReadParam(node, "start_episode", params.start_episode, -1, INT_MAX);
-  ReadParam(node, "start_step", params.start_step, 0, INT_MAX);
-  ReadParam(node, "delay_s", params.delay_s, 0.0, 3600.0);
-  ReadParam(node, "paused", params.paused);
-  ReadParam(node, "loop", params.loop);
-  ReadParam(node, "keep_alive", params.keep_alive);
   return params;
 }
 
@@ -88,7 +90,7 @@ void ReplayNode::Begin() {
       params_.start_episode < 0 ? first.episode : static_cast<std::uint64_t>(params_.start_episode);
   auto step = tape_.Find(first, episode, static_cast<std::uint64_t>(params_.start_step));
   if (!step) {
-    ROS_WARN("start_episode: got %d, the bag has no such; showing episode %llu",
+    ROS_WARN("start_episode: got %d, which the bag does not contain; showing episode %llu",
              params_.start_episode, static_cast<unsigned long long>(first.episode));
     step = first;
   }
@@ -194,7 +196,7 @@ bool ReplayNode::OnJump(aquafarm_msgs::Jump::Request& request,
                             });
     Refuse("episode: got " + std::to_string(request.episode) + ", the bag has episodes " +
                std::to_string(lowest->episode) + " to " + std::to_string(highest->episode) +
-               " (not each of them need be recorded)",
+               " (some of them may not be recorded)",
            response);
     return true;
   }

@@ -11,9 +11,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "aquafarm_sim/params.h"
 #include "aquafarm_viz/markers/markers.h"
 #include "aquafarm_viz/names.h"
-#include "aquafarm_viz/params.h"
 #include "aquafarm_viz/replay/replay.h"
 
 namespace aquafarm_viz {
@@ -34,11 +34,14 @@ visualization_msgs::MarkerArray Joined(visualization_msgs::MarkerArray first,
 
 VizParams ReadVizParams(const ros::NodeHandle& node) {
   VizParams params;
-  ReadParam(node, names::kRateParam, params.rate_hz, 0.1, 1000.0);
-  ReadParam(node, names::kWidthParam, params.image.width, kMinImageSide, kMaxImageSide);
+  aquafarm_sim::Params reader(node);
   std::string layers;
-  if (node.getParam(names::kLayersParam, layers)) params.layers = ParseLayers(layers);
-  ReadParam(node, names::kHeightParam, params.image.height, kMinImageSide, kMaxImageSide);
+  reader.Number(names::kRateParam, 0.1, 1000.0, params.rate_hz);
+  reader.Int(names::kWidthParam, kMinImageSide, kMaxImageSide, params.image.width);
+  reader.Int(names::kHeightParam, kMinImageSide, kMaxImageSide, params.image.height);
+  reader.Text(names::kLayersParam, layers);
+  reader.RefuseOthers();
+  if (node.hasParam(names::kLayersParam)) params.layers = ParseLayers(layers);
   return params;
 }
 

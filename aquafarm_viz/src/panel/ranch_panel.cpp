@@ -30,9 +30,7 @@ std::string InWords(const aquafarm_msgs::Command& answer) {
   const auto& result = answer.response.result;
   const std::string what = "ship " + std::to_string(answer.request.ship) + " " +
                            ActionName(answer.request.action) + ": ";
-  if (!result.ok) return what + result.message;
-  const std::string fault = OutcomeName(result.code);
-  return what + (fault.empty() ? "done" : fault) + ", step " + Count(result.step);
+  return what + (result.ok ? DescribeResult(result) : result.message);
 }
 
 }  // namespace

@@ -35,6 +35,18 @@ std::string OutcomeName(std::uint8_t outcome) {
   }
 }
 
+std::string DescribeResult(const aquafarm_msgs::CommandResult& result) {
+  using aquafarm_msgs::Outcome;
+  if (result.code == Outcome::ACCEPTED) return "accepted for step " + Count(result.step);
+  const std::string step = ", step " + Count(result.step);
+  if (result.code == Outcome::OK) return "done" + step;
+  std::string what = OutcomeName(result.code);
+  if (result.code == Outcome::ILLEGAL_PICKUP) what = "illegal pickup";
+  if (result.code == Outcome::ILLEGAL_DROP_OFF) what = "illegal drop-off";
+  if (result.code == Outcome::HELD) what = "held";
+  return what + ", " + Signed(static_cast<double>(result.reward)) + step;
+}
+
 std::string Duration(double seconds) {
   if (!std::isfinite(seconds) || seconds < 0.0 || seconds > 1e8) return "";
   const auto whole = static_cast<unsigned>(seconds);

@@ -29,7 +29,7 @@ Kind ReadWord(OptionReader& reader, const std::string& key, Kind otherwise,
 }
 
 /// Reads a whole number in [min, max]; `value` is also the default.
-/// @throws InputError "batch: got 2.5, expected a whole number"
+/// @throws InputError "batch_size: got 2.5, expected a whole number"
 template <typename Whole>
 void ReadWhole(OptionReader& reader, const std::string& key, double min, double max, Whole& value) {
   const double got = reader.Number(key, static_cast<double>(value), min, max);

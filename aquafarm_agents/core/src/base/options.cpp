@@ -2,13 +2,42 @@
 #include "aquafarm/agents/base/options.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "aquafarm/base/check.h"
 
 namespace aquafarm::agents {
 
-OptionReader::OptionReader(const std::string& text) {
+namespace {
+
+// Old names and their replacements, which are the usual names of reinforcement-learning libraries.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kRenamed{
+    {{"average_rate", "ema_rate"},
+     {"batch", "batch_size"},
+     {"discount", "gamma"},
+     {"double_q", "double_dqn"},
+     {"gradient_limit", "max_grad_norm"},
+     {"hidden", "hidden_size"},
+     {"importance", "importance_exponent"},
+     {"priority", "priority_exponent"},
+     {"replay", "buffer_size"},
+     {"sequence", "sequence_length"},
+     {"start", "learning_starts"},
+     {"steps_per_update", "train_interval"},
+     {"target_period", "target_update_interval"},
+     {"target_rate", "tau"}}};
+
+std::string_view CurrentName(std::string_view key) {
+  const auto* const found = std::find_if(kRenamed.begin(), kRenamed.end(),
+                                         [&](const auto& names) { return names.first == key; });
+  return found == kRenamed.end() ? key : found->second;
+}
+
+// Splits "key=value …" into pairs. @throws InputError on any other syntax
+std::vector<std::pair<std::string, std::string>> SplitOptions(const std::string& text) {
   const char* const kBlanks = " ,\t\n";
+  std::vector<std::pair<std::string, std::string>> pairs;
   std::size_t begin = text.find_first_not_of(kBlanks);
   while (begin != std::string::npos) {
     const std::size_t end = std::min(text.find_first_of(kBlanks, begin), text.size());
@@ -17,11 +46,27 @@ OptionReader::OptionReader(const std::string& text) {
     if (equals == std::string::npos || equals == 0 || equals + 1 == word.size()) {
       throw InputError("options: got '" + word + "', expected key=value");
     }
-    const std::string key = word.substr(0, equals);
-    if (!given_.emplace(key, word.substr(equals + 1)).second) {
-      throw InputError("options: " + key + " is given twice");
-    }
+    pairs.emplace_back(word.substr(0, equals), word.substr(equals + 1));
     begin = text.find_first_not_of(kBlanks, end);
+  }
+  return pairs;
+}
+
+std::string JoinOptions(const std::map<std::string, std::string>& options) {
+  std::string text;
+  for (const auto& [key, value] : options) text += (text.empty() ? "" : " ") + key + "=" + value;
+  return text;
+}
+
+}  // namespace
+
+OptionReader::OptionReader(const std::string& text) {
+  for (auto& [key, value] : SplitOptions(text)) {
+    const std::string name(CurrentName(key));
+    if (!given_.emplace(name, std::move(value)).second) {
+      throw InputError("options: " + name + " is given twice" +
+                       (name == key ? "" : ", once as " + key + ", its old name"));
+    }
   }
 }
 
@@ -76,12 +121,22 @@ void OptionReader::Finish() const {
   }
 }
 
-std::string OptionReader::Resolved() const {
-  std::string text;
-  for (const auto& [key, value] : resolved_) {
-    text += (text.empty() ? "" : " ") + key + "=" + value;
+std::string OptionReader::Resolved() const { return JoinOptions(resolved_); }
+
+std::string CanonicalOptions(const std::string& text) {
+  std::map<std::string, std::string> options;
+  for (auto& [key, value] : SplitOptions(text)) options[std::string(CurrentName(key))] = value;
+  return JoinOptions(options);
+}
+
+std::vector<std::string> RenamedOptions(const std::string& text) {
+  std::vector<std::string> lines;
+  for (const auto& [key, value] : SplitOptions(text)) {
+    const std::string_view name = CurrentName(key);
+    if (name == key) continue;
+    lines.push_back("option " + key + " is now called " + std::string(name));
   }
-  return text;
+  return lines;
 }
 
 }  // namespace aquafarm::agents

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +16,8 @@
 
 namespace aquafarm::agents {
 namespace {
+
+constexpr char kTemporary[] = ".tmp";
 
 // The rename must be on disk before the caller removes older files.
 bool SyncFolderOf(const std::string& path) {
@@ -44,23 +47,38 @@ std::string ErrnoText(const std::string& path, const std::string& what) {
 }
 
 void WriteFileAtomically(const std::string& path, std::string_view bytes) {
-  const std::string beside = path + ".tmp";
-  const int file = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  WriteFileAtomically(path, std::vector<std::string_view>{bytes});
+}
+
+void WriteFileAtomically(const std::string& path, const std::vector<std::string_view>& parts) {
+  const std::string temporary = path + kTemporary;
+  const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) throw StorageError(ErrnoText(path, "cannot be written"));
-  bool good = WriteAll(file, bytes) && fsync(file) == 0;
+  bool good = std::all_of(parts.begin(), parts.end(),
+                          [file](std::string_view part) { return WriteAll(file, part); }) &&
+              fsync(file) == 0;
   int error = errno;
   if (close(file) != 0 && good) {
     good = false;
     error = errno;
   }
-  if (good && (std::rename(beside.c_str(), path.c_str()) != 0 || !SyncFolderOf(path))) {
+  if (good && (std::rename(temporary.c_str(), path.c_str()) != 0 || !SyncFolderOf(path))) {
     good = false;
     error = errno;
   }
   if (good) return;
-  unlink(beside.c_str());
+  unlink(temporary.c_str());
   errno = error;
   throw StorageError(ErrnoText(path, "cannot be written"));
+}
+
+void RemoveTemporaryFiles(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::filesystem::path> left;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    if (entry.path().extension() == kTemporary) left.push_back(entry.path());
+  }
+  for (const std::filesystem::path& path : left) std::filesystem::remove(path, error);
 }
 
 std::string ReadFile(const std::string& path) {

@@ -139,7 +139,7 @@ class DqnLearner final : public Learner {
   void Load(const Checkpoint& checkpoint) override;
 
  private:
-  std::size_t size() const { return static_cast<std::size_t>(options_.batch); }
+  std::size_t size() const { return static_cast<std::size_t>(options_.batch_size); }
   std::size_t group() const { return options_.joint ? static_cast<std::size_t>(spec_.agents) : 1; }
   std::size_t rows() const { return size() * group(); }
   torch::Tensor ToInput(const Scalar* rows, std::size_t count) const {
@@ -192,12 +192,12 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       observation_size_(ElementCount(shape_)),
       online_(MakeNetwork(spec, options, seed)),
       target_(MakeNetwork(spec, options, seed)),
-      acting_(options.average_rate > 0.0 ? MakeNetwork(spec, options, seed) : online_),
+      acting_(options.ema_rate > 0.0 ? MakeNetwork(spec, options, seed) : online_),
       optimizer_(options, *online_, *target_, *acting_, device_),
       explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
       repetitions_(spec, options.repetition_penalty * options.reward_scale),
       rng_({seed, 0, RngStream::kLearner, 1}),
-      replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents,
+      replay_({static_cast<std::size_t>(options.buffer_size), EntryCount(spec), spec.agents,
                observation_size_, 0}),
       sampler_(replay_, options, static_cast<std::size_t>(options.n_step), group()),
       batch_(size(), rows(), observation_size_),
@@ -254,7 +254,7 @@ template <typename Scalar>
 void DqnLearner<Scalar>::DrawAlone(std::size_t i, const TransitionIndex& moment) {
   const Transition one =
       replay_.At(moment.age, moment.entry, static_cast<std::size_t>(options_.n_step),
-                 static_cast<float>(options_.discount));
+                 static_cast<float>(options_.gamma));
   batch_.rewards[i] = one.reward * static_cast<float>(options_.reward_scale);
   Fill(i, one.from, one.to, one.discount);
 }
@@ -265,7 +265,7 @@ void DqnLearner<Scalar>::DrawJoint(std::size_t i, const TransitionIndex& moment)
   const std::size_t first = moment.entry;
   const JointTransition all =
       replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
-                      static_cast<float>(options_.discount), team_rewards_.data());
+                      static_cast<float>(options_.gamma), team_rewards_.data());
   const float sum = std::accumulate(team_rewards_.begin(), team_rewards_.end(), 0.0F);
   // A team reward is repeated for each agent.
   const float reward = spec_.team_reward ? sum / static_cast<float>(group()) : sum;
@@ -308,7 +308,7 @@ torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& from, const torch
   const torch::Tensor to = ToInput(batch_.to.data(), rows());
   const torch::Tensor forbidden = ToDevice(batch_.forbidden, {count, kActionCount});
   torch::Tensor next = target_->Forward(to);
-  if (options_.double_q) {
+  if (options_.double_dqn) {
     const torch::Tensor best = online_->Forward(to).add_(forbidden).argmax(1, /*keepdim=*/true);
     next = next.gather(1, best).squeeze(1);
   } else {
@@ -336,7 +336,7 @@ void DqnLearner<Scalar>::Update() {
   if (options_.joint) predicted = SumOfGroups(predicted * ToDevice(batch_.present, {count}));
   optimizer_.Update(predicted, targets,
                     ToDevice(batch_.weights, {static_cast<std::int64_t>(size())}), origin);
-  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
+  if (options_.priority_exponent > 0.0) Reprioritise((predicted.detach() - targets).abs());
 }
 
 template <typename Scalar>

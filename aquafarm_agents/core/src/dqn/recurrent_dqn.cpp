@@ -18,7 +18,7 @@ namespace {
 
 std::shared_ptr<RecurrentNetwork> MakeRecurrent(const EnvironmentSpec& spec,
                                                 const DeepOptions& options, std::uint64_t seed) {
-  auto network = std::make_shared<RecurrentNetwork>(spec.feature_count, options.hidden,
+  auto network = std::make_shared<RecurrentNetwork>(spec.feature_count, options.hidden_size,
                                                     options.dueling, options.skip_connection);
   DrawWeights(*network, seed, 0);
   return network;
@@ -88,13 +88,13 @@ class RecurrentPolicy final : public Policy {
         options_(options),
         network_(MakeRecurrent(spec, options, 0)),
         parameters_(*network_, device_),
-        carry_(0, options.hidden) {
+        carry_(0, options.hidden_size) {
     parameters_.FromVector(weights);
   }
   std::uint8_t encodings() const override { return kFeaturesBit; }
   void Begin(std::uint64_t, std::int32_t farms) override {
-    carry_ =
-        Carry(static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_), options_.hidden);
+    carry_ = Carry(static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_),
+                   options_.hidden_size);
   }
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     const torch::NoGradGuard no_grad;
@@ -182,14 +182,14 @@ RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint6
       device_(FindDevice(options.device)),
       online_(MakeRecurrent(spec, options, seed)),
       target_(MakeRecurrent(spec, options, seed)),
-      acting_(options.average_rate > 0.0 ? MakeRecurrent(spec, options, seed) : online_),
+      acting_(options.ema_rate > 0.0 ? MakeRecurrent(spec, options, seed) : online_),
       optimizer_(options, *online_, *target_, *acting_, device_),
       explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
       repetitions_(spec, options.repetition_penalty * options.reward_scale),
       rng_({seed, 0, RngStream::kLearner, 1}),
-      carry_(EntryCount(spec), options.hidden),
-      replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
-               carry_.size_of_one()}),
+      carry_(EntryCount(spec), options.hidden_size),
+      replay_({static_cast<std::size_t>(options.buffer_size), EntryCount(spec), spec.agents,
+               features(), carry_.size_of_one()}),
       sampler_(replay_, options, 1),
       batch_(options, features(), carry_.size_of_one()) {}
 
@@ -235,7 +235,7 @@ RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network
   const torch::NoGradGuard no_grad;
   const auto count = static_cast<std::int64_t>(batch_.size());
   RecurrentNetwork::State state =
-      Carry::StateOf(batch_.carry.data(), count, options_.hidden, device_);
+      Carry::StateOf(batch_.carry.data(), count, options_.hidden_size, device_);
   if (options_.burn_in == 0) return state;
   const RecurrentNetwork::State stored = state;
   network.WarmUp(ToDevice(batch_.warm_up, {options_.burn_in, count, spec_.feature_count}), state);
@@ -253,7 +253,7 @@ torch::Tensor RecurrentDqnLearner::ValuesAlong(RecurrentNetwork& network,
   const torch::Tensor before = network.Forward(observations.narrow(0, 0, 1), state);
   RecurrentNetwork::State after =
       Carry::StateOf(batch_.carry_after.data(), static_cast<std::int64_t>(batch_.size()),
-                     options_.hidden, device_);
+                     options_.hidden_size, device_);
   return torch::cat({before, network.Forward(observations.narrow(0, 1, 1), after)});
 }
 
@@ -263,11 +263,11 @@ torch::Tensor RecurrentDqnLearner::Targets(const torch::Tensor& observations,
                                            const torch::Tensor& values) {
   const torch::NoGradGuard no_grad;
   const auto count = static_cast<std::int64_t>(batch_.size());
-  const std::int64_t steps = options_.sequence;
+  const std::int64_t steps = options_.sequence_length;
   const torch::Tensor told = ValuesAlong(*target_, observations);
   const torch::Tensor forbidden = ToDevice(batch_.forbidden, {steps + 1, count, kActionCount});
   torch::Tensor next =
-      options_.double_q
+      options_.double_dqn
           ? told.gather(2, (values.detach() + forbidden).argmax(2, /*keepdim=*/true)).squeeze(2)
           : (told + forbidden).amax(2);
   next = next.gather(0, ToDevice(batch_.next, {steps, count}));
@@ -281,12 +281,12 @@ torch::Tensor RecurrentDqnLearner::Targets(const torch::Tensor& observations,
 }
 
 void RecurrentDqnLearner::Update() {
-  const auto longest = static_cast<std::size_t>(options_.burn_in + options_.sequence);
+  const auto longest = static_cast<std::size_t>(options_.burn_in + options_.sequence_length);
   if (replay_.size() < 2 + longest || !sampler_.IsReady()) return;
   const BatchOrigin origin{seed_, rng_.position()};
   Draw();
   const auto count = static_cast<std::int64_t>(batch_.size());
-  const std::int64_t steps = options_.sequence;
+  const std::int64_t steps = options_.sequence_length;
   const torch::Tensor observations =
       ToDevice(batch_.observations, {steps + 1, count, spec_.feature_count});
   const torch::Tensor actions = ToDevice(batch_.actions, {steps, count, 1});
@@ -294,7 +294,7 @@ void RecurrentDqnLearner::Update() {
   const torch::Tensor targets = Targets(observations, actions, values);
   const torch::Tensor predicted = values.narrow(0, 0, steps).gather(2, actions).squeeze(2);
   optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {steps, count}), origin);
-  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
+  if (options_.priority_exponent > 0.0) Reprioritise((predicted.detach() - targets).abs());
 }
 
 // Each step of a sequence gets its own priority. (R2D2 has one priority per sequence.)

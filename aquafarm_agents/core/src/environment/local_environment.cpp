@@ -30,12 +30,12 @@ EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
   return result;
 }
 
-void AddUpTerms(const std::vector<float>& terms, std::vector<float>& rewards) {
-  AQUAFARM_CHECK_EQ(terms.size(), rewards.size() * kRewardTermCount);
-  for (std::size_t entry = 0; entry < rewards.size(); ++entry) {
+void UseOwnRewards(StepResults& results) {
+  AQUAFARM_CHECK_EQ(results.terms.size(), results.rewards.size() * kRewardTermCount);
+  for (std::size_t entry = 0; entry < results.rewards.size(); ++entry) {
     // Same order of summation as RewardTerms::Total.
-    const auto own = terms.begin() + static_cast<std::ptrdiff_t>(entry * kRewardTermCount);
-    rewards[entry] = std::accumulate(own, own + kRewardTermCount, 0.0F);
+    const auto own = results.terms.begin() + static_cast<std::ptrdiff_t>(entry * kRewardTermCount);
+    results.rewards[entry] = std::accumulate(own, own + kRewardTermCount, 0.0F);
   }
 }
 
@@ -65,55 +65,30 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
   if ((options.encodings & kIndexBit) != 0 && spec_.state_count == 0) {
     throw InputError(
         "scenario " + spec_.scenario_name +
-        ": too many states for a table, expected a learner with a network, as auto chooses");
+        ": too many states for a table, expected a learner with a network; use algorithm auto");
   }
-  const auto farms = static_cast<std::size_t>(spec_.farms);
-  const std::size_t entries = farms * static_cast<std::size_t>(spec_.agents);
-  results_.rewards.resize(entries);
-  results_.outcomes.resize(entries);
-  results_.legal.resize(entries);
-  results_.in_play.resize(entries);
-  results_.reasons.resize(farms);
-  results_.started.resize(farms);
-  results_.finished.reserve(farms);
-  if (options.hashes) results_.hashes.resize(farms);
-  if ((options.encodings & kIndexBit) != 0) results_.index.resize(entries);
-  if ((options.encodings & kFeaturesBit) != 0) {
-    results_.features.resize(entries * static_cast<std::size_t>(spec_.feature_count));
-  }
-  if ((options.encodings & kPlanesBit) != 0) {
-    results_.planes.resize(entries * batch_.encoder().planes_size());
-  }
+  std::uint8_t bits = options.encodings & (kIndexBit | kFeaturesBit | kPlanesBit);
+  if (options.hashes) bits |= kHashesField;
   if ((options.encodings & kOwnRewardsBit) != 0 && spec_.team_reward) {
+    own_rewards_ = true;
     spec_.team_reward = false;
-    terms_.resize(entries * kRewardTermCount);
+    bits |= kTermsField;
   }
+  const StepShape shape = batch_.shape();
+  VisitStepFields(
+      [&](const StepField& field, auto& values, auto*& output) {
+        if (!field.IsIn(bits)) return;
+        values.resize(field.Size(shape));
+        output = values.data();
+      },
+      results_, output_);
+  results_.finished.reserve(shape.farms);
   with_states_ = (options.encodings & kStatesBit) != 0;
-  output_ = Output();
-}
-
-BatchOutput LocalEnvironment::Output() {
-  const auto data_or_null = [](auto& values) { return values.empty() ? nullptr : values.data(); };
-  BatchOutput output;
-  output.rewards = results_.rewards.data();
-  output.terms = data_or_null(terms_);
-  output.outcomes = results_.outcomes.data();
-  output.legal = results_.legal.data();
-  output.in_play = results_.in_play.data();
-  output.reasons = results_.reasons.data();
-  output.started = results_.started.data();
-  output.hashes = data_or_null(results_.hashes);
-  output.index = data_or_null(results_.index);
-  output.features = data_or_null(results_.features);
-  output.planes = data_or_null(results_.planes);
-  return output;
 }
 
 const StepResults& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
   batch_.Reset(seed, first_episode, output_);
-  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
-  if (with_states_) results_.states = batch_.Save();
-  results_.finished.clear();
+  Complete();
   return results_;
 }
 
@@ -121,15 +96,19 @@ const StepResults& LocalEnvironment::Step(const std::vector<std::uint8_t>& actio
   AQUAFARM_CHECK_EQ(actions.size(), results_.rewards.size());
   AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), kActionCount);
   batch_.Step(actions.data(), output_);
-  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
-  if (with_states_) results_.states = batch_.Save();
+  Complete();
   CollectFinished();
   return results_;
 }
 
+void LocalEnvironment::Complete() {
+  if (own_rewards_) UseOwnRewards(results_);
+  if (with_states_) results_.states = batch_.Save();
+  results_.finished.clear();
+}
+
 // A finished farm starts its next episode in the next step, so each reason marks a new result.
 void LocalEnvironment::CollectFinished() {
-  results_.finished.clear();
   for (std::int32_t i = 0; i < spec_.farms; ++i) {
     if (results_.reasons[static_cast<std::size_t>(i)] == 0) continue;
     results_.finished.push_back(ToResult(batch_.farm(i).record(), i));
@@ -141,9 +120,7 @@ std::string LocalEnvironment::Save() { return batch_.Save(); }
 const StepResults& LocalEnvironment::Load(const std::string& bytes) {
   batch_.Load(bytes);
   batch_.Write(output_);
-  if (!terms_.empty()) AddUpTerms(terms_, results_.rewards);
-  if (with_states_) results_.states = bytes;
-  results_.finished.clear();
+  Complete();
   return results_;
 }
 

@@ -3,11 +3,15 @@
 
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <unordered_set>
 
 #include "aquafarm/agents/base/storage.h"
 #include "aquafarm/agents/evaluation/metrics.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/farm/farm.h"
+#include "aquafarm/scenario/scenario_yaml.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -49,6 +53,7 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
                          {"seed", evaluation.seed & ~kEvaluationSeedBit},
                          {"farm_seed", evaluation.seed},
                          {"episodes", evaluation.episodes.size()},
+                         {"distinct_episodes", evaluation.distinct},
                          {"complete", evaluation.complete},
                          {"return_per_episode", evaluation.mean_return},
                          {"return_per_step", evaluation.return_per_step},
@@ -60,6 +65,17 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
                          {"wall_s", evaluation.wall_s}};
   if (evaluation.mean_bound) json["upper_bound_per_episode"] = *evaluation.mean_bound;
   return json;
+}
+
+// Episodes depend on scenario, seed and number alone, also behind ROS, so they can be started here.
+std::size_t CountDistinct(const EnvironmentSpec& spec, const Evaluation& evaluation) {
+  Farm farm(std::make_shared<const Scenario>(ParseScenario(spec.scenario_yaml, "scenario")));
+  std::unordered_set<std::uint64_t> starts;
+  for (const EpisodeResult& result : evaluation.episodes) {
+    farm.Reset(result.seed, result.episode);
+    starts.insert(farm.StartHash());
+  }
+  return starts.size();
 }
 
 }  // namespace
@@ -104,6 +120,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
     if (is_over[i] != 0) evaluation.episodes.push_back(results[i]);
   }
   evaluation.complete = over == count;
+  evaluation.distinct = CountDistinct(environment.spec(), evaluation);
   Summarise(evaluation);
   evaluation.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -125,9 +142,9 @@ std::string Describe(const Evaluation& evaluation) {
   char text[200];
   std::snprintf(text, sizeof(text),
                 "success %.1f %%, return %.1f per episode, %.2f per step, %.1f steps "
-                "(%zu episodes)",
+                "(%zu episodes, %zu distinct)",
                 100.0 * evaluation.success_rate, evaluation.mean_return, evaluation.return_per_step,
-                evaluation.mean_steps, evaluation.episodes.size());
+                evaluation.mean_steps, evaluation.episodes.size(), evaluation.distinct);
   return text;
 }
 

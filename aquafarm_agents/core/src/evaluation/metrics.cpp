@@ -67,7 +67,7 @@ MetricsFile::MetricsFile(std::string path, std::uint64_t size) : path_(std::move
     if (!shorter) throw StorageError(text);
     throw InputError(path_ + ": got " + std::to_string(status.st_size) +
                      " bytes, expected at least the " + std::to_string(size) +
-                     " that the checkpoint counts");
+                     " that the checkpoint records");
   }
   flushed_ = size;
   buffer_.reserve(2 * kFlushBytes);

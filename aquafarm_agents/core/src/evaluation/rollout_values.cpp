@@ -115,9 +115,8 @@ RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::u
                      " cells, expected at most " + std::to_string(kMaxCells));
   }
   if (episodes > 1 && scenario->layout != LayoutMode::kFixed) {
-    throw InputError(
-        "values: got a layout drawn per_episode, expected a fixed one to average over " +
-        std::to_string(episodes) + " episodes");
+    throw InputError("values: got layout.mode per_episode, expected fixed to average over " +
+                     std::to_string(episodes) + " episodes");
   }
   const auto cells = static_cast<std::size_t>(scenario->CellCount());
   RolloutValues values{

@@ -27,8 +27,8 @@ std::shared_ptr<const Scenario> WithoutEnds(Scenario scenario) {
   }
   if (scenario.layout != LayoutMode::kFixed) {
     throw InputError(
-        "matrices: got layout.mode per_episode, expected fixed: each layout has states of its "
-        "own");
+        "matrices: got layout.mode per_episode, expected fixed: each episode would have "
+        "other states");
   }
   scenario.disasters.clear();
   scenario.step_limit = kNoLimit;
@@ -75,7 +75,7 @@ TabularModel::TabularModel(const Scenario& scenario) : not_finite_(WhyNotFinite(
   const std::shared_ptr<const Scenario> endless = WithoutEnds(scenario);
   const Encoder encoder(*endless);
   if (encoder.state_count() == 0) {
-    throw InputError("matrices: got more tabular states than an index has, expected at most " +
+    throw InputError("matrices: got too many tabular states for an index, expected at most " +
                      std::to_string(Encoder::kMaxStates) + "; fewer devices or cells are needed");
   }
   Farm farm(endless);

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/learning/checkpoint.h"
 
-#include <algorithm>
 #include <cstring>
-#include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string_view>
-#include <vector>
 
+#include "aquafarm/agents/base/options.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
 #include "aquafarm/base/version.h"
@@ -59,20 +56,13 @@ nlohmann::json ToIndex(const Checkpoint& c) {
           {"sections", sections}};
 }
 
-// Adds the value that an option had before it existed, where the recorded options lack it.
+// Returns recorded options as this version would record them: with the current names, and with the
+// value that an option had before it existed.
 std::string CompleteOptions(const std::string& algorithm, const std::string& recorded) {
-  constexpr std::string_view kAdded = "skip_connection";
-  if (algorithm.find("lstm_dqn") == std::string::npos || recorded.empty() ||
-      recorded.find(std::string(kAdded) + '=') != std::string::npos) {
-    return recorded;
-  }
-  std::istringstream words(recorded);
-  std::vector<std::string> options{std::istream_iterator<std::string>(words), {}};
-  options.push_back(std::string(kAdded) + "=true");
-  std::sort(options.begin(), options.end());
-  std::string completed;
-  for (const std::string& option : options) completed += (completed.empty() ? "" : " ") + option;
-  return completed;
+  constexpr std::string_view kAdded = "skip_connection=";
+  const bool is_lstm = algorithm.find("lstm_dqn") != std::string::npos;
+  const bool lacks = is_lstm && !recorded.empty() && recorded.find(kAdded) == std::string::npos;
+  return CanonicalOptions(lacks ? recorded + " " + std::string(kAdded) + "true" : recorded);
 }
 
 Checkpoint FromIndex(const nlohmann::json& index) {
@@ -158,18 +148,20 @@ void Checkpoint::CheckSize(const std::string& name, std::size_t got, std::size_t
 }
 
 void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint) {
-  std::string body;
-  nlohmann::json::to_cbor(ToIndex(checkpoint), body);
+  std::string index;
+  nlohmann::json::to_cbor(ToIndex(checkpoint), index);
   Header header{};
   std::memcpy(header.magic, kMagic, sizeof(kMagic));
   header.format = kCheckpointFormat;
-  header.index_bytes = body.size();
-  for (const auto& [name, bytes] : checkpoint.sections) body += bytes;
-  header.section_bytes = body.size() - header.index_bytes;
-  header.checksum = HashBytes(body);
-  std::string file(reinterpret_cast<const char*>(&header), sizeof(header));
-  file += body;
-  WriteFileAtomically(path, file);
+  header.index_bytes = index.size();
+  std::vector<std::string_view> parts{index};  // the sections are not copied: a table may be large
+  for (const auto& [name, bytes] : checkpoint.sections) {
+    parts.emplace_back(bytes);
+    header.section_bytes += bytes.size();
+  }
+  header.checksum = HashBytes(parts);
+  parts.insert(parts.begin(), {reinterpret_cast<const char*>(&header), sizeof(header)});
+  WriteFileAtomically(path, parts);
 }
 
 Checkpoint ReadCheckpoint(const std::string& path) {
@@ -188,8 +180,8 @@ void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
                     const EnvironmentSpec& spec) {
   const auto refuse = [&](const std::string& what, const std::string& got,
                           const std::string& expected) {
-    throw InputError(path + ": cannot be continued: " + what + ": it has " + got + ", asked for " +
-                     expected);
+    throw InputError(path + ": cannot be resumed: " + what + ": the checkpoint has " + got +
+                     ", this run has " + expected);
   };
   const auto compare = [&](const std::string& what, const auto& got, const auto& expected) {
     if (got != expected) refuse(what, std::to_string(got), std::to_string(expected));

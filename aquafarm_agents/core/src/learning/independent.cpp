@@ -44,15 +44,15 @@ class Share {
  public:
   /// @param agents of one farm
   const StepResults& Of(const StepResults& all, std::size_t agent, std::size_t agents) {
-    Take(all.rewards, agent, agents, all, share_.rewards);
-    Take(all.outcomes, agent, agents, all, share_.outcomes);
-    Take(all.legal, agent, agents, all, share_.legal);
-    Take(all.in_play, agent, agents, all, share_.in_play);
-    Take(all.index, agent, agents, all, share_.index);
-    Take(all.features, agent, agents, all, share_.features);
-    Take(all.planes, agent, agents, all, share_.planes);
-    share_.reasons = all.reasons;
-    share_.started = all.started;
+    VisitStepFields(
+        [&](const StepField& field, const auto& from, auto& to) {
+          if (field.rows == StepField::Rows::kFarms) {
+            to = from;
+          } else {
+            Take(from, agent, agents, all.reasons.size(), to);
+          }
+        },
+        all, share_);
     return share_;
   }
 
@@ -60,8 +60,7 @@ class Share {
   // [N, S, size] → [N, size]
   template <typename T>
   static void Take(const std::vector<T>& from, std::size_t agent, std::size_t agents,
-                   const StepResults& all, std::vector<T>& to) {
-    const std::size_t farms = all.reasons.size();
+                   std::size_t farms, std::vector<T>& to) {
     const std::size_t size = from.size() / (farms * agents);
     to.resize(farms * size);
     for (std::size_t farm = 0; farm < farms; ++farm) {
@@ -170,7 +169,7 @@ std::unique_ptr<Policy> MakeIndependentPolicy(const Checkpoint& checkpoint,
   if (own != spec.agents) {
     throw InputError("policy: " + checkpoint.algorithm + " of scenario " +
                      checkpoint.spec.scenario_name + " does not fit scenario " +
-                     spec.scenario_name + ": agents: it knows " + std::to_string(own) +
+                     spec.scenario_name + ": agents: the policy has " + std::to_string(own) +
                      ", the farm has " + std::to_string(spec.agents));
   }
   std::vector<std::unique_ptr<Policy>> policies;

@@ -21,10 +21,13 @@ std::size_t Entries(const EnvironmentSpec& spec) {
 
 }  // namespace
 
+std::uint64_t QTable::BytesOf(const EnvironmentSpec& spec) {
+  return static_cast<std::uint64_t>(spec.agents) * spec.state_count * kActionCount * sizeof(float);
+}
+
 QTable::QTable(const EnvironmentSpec& spec, float initial_value)
     : agents(spec.agents), states(spec.state_count) {
-  const std::uint64_t bytes =
-      static_cast<std::uint64_t>(agents) * states * kActionCount * sizeof(float);
+  const std::uint64_t bytes = BytesOf(spec);
   if (states == 0 || bytes > kMaxBytes) {
     throw InputError("scenario " + spec.scenario_name +
                      ": too many states for a table (devices, cells or agents), expected a learner "
@@ -37,7 +40,7 @@ TabularOptions TabularOptions::Parse(const std::string& text, std::string& resol
   OptionReader reader(text);
   TabularOptions options;
   options.learning_rate = reader.GetSchedule("learning_rate", options.learning_rate, 0.0, 1.0);
-  options.discount = reader.Number("discount", options.discount, 0.0, 1.0);
+  options.gamma = reader.Number("gamma", options.gamma, 0.0, 1.0);
   options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)));
   reader.Resolve("exploration", ToString(options.exploration));
   options.initial_value = reader.Number("initial_value", options.initial_value, -1e6, 1e6);
@@ -64,7 +67,7 @@ void TabularLearner<Rule>::Step(const StepResults& results, double progress,
   learning_rate_ = static_cast<float>(options_.learning_rate.At(progress));
   actions.resize(pending_.size());
   const float rate = learning_rate_;
-  const auto discount = static_cast<float>(options_.discount);
+  const auto discount = static_cast<float>(options_.gamma);
   float* const values = table_.values.data();
   float error_sum = 0.0F;
   std::int32_t learnt = 0;
@@ -164,8 +167,9 @@ std::unique_ptr<Policy> MakeTabularPolicy(const Checkpoint& checkpoint,
   const auto compare = [&](const std::string& what, auto got, auto expected) {
     if (got == expected) return;
     throw InputError("policy: " + checkpoint.algorithm + " of scenario " + own.scenario_name +
-                     " does not fit scenario " + spec.scenario_name + ": " + what + ": it knows " +
-                     std::to_string(got) + ", the farm has " + std::to_string(expected));
+                     " does not fit scenario " + spec.scenario_name + ": " + what +
+                     ": the policy has " + std::to_string(got) + ", the farm has " +
+                     std::to_string(expected));
   };
   compare("width", own.width, spec.width);
   compare("height", own.height, spec.height);

@@ -71,7 +71,7 @@ class MaddpgLearner final : public Learner {
   void Load(const Checkpoint& checkpoint) override;
 
  private:
-  std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
+  std::size_t batch() const { return static_cast<std::size_t>(options_.batch_size); }
   std::size_t agents() const { return static_cast<std::size_t>(spec_.agents); }
   std::size_t features() const { return static_cast<std::size_t>(spec_.feature_count); }
   std::size_t window() const { return static_cast<std::size_t>(options_.window); }
@@ -134,9 +134,9 @@ class MaddpgLearner final : public Learner {
 
 DeepOptions SamplingOf(const MaddpgOptions& options) {
   DeepOptions sampling;
-  sampling.priority = options.priority;
-  sampling.importance = options.importance;
-  sampling.batch = options.batch;
+  sampling.priority_exponent = options.priority_exponent;
+  sampling.importance_exponent = options.importance_exponent;
+  sampling.batch_size = options.batch_size;
   return sampling;
 }
 
@@ -149,8 +149,8 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       device_(FindDevice(options.device)),
       actors_(spec, options),
       target_actors_(spec, options),
-      critic_(spec, options.hidden),
-      target_critic_(spec, options.hidden),
+      critic_(spec, options.hidden_size),
+      target_critic_(spec, options.hidden_size),
       actor_((DrawWeights(actors_, seed, kActorStream), actors_), device_),
       judge_((DrawWeights(critic_, seed, kCriticStream), critic_), device_),
       actor_target_(target_actors_, device_),
@@ -159,8 +159,8 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       rng_({seed, 0, RngStream::kLearner, kBatchStream}),
       acting_({seed, 0, RngStream::kLearner, kActingStream}),
       carry_(EntryCount(spec) * carry_size()),
-      replay_({static_cast<std::size_t>(options.replay), EntryCount(spec), spec.agents, features(),
-               carry_size()}),
+      replay_({static_cast<std::size_t>(options.buffer_size), EntryCount(spec), spec.agents,
+               features(), carry_size()}),
       sampler_(replay_, SamplingOf(options), static_cast<std::size_t>(options.n_step), agents()),
       loss_(std::nanf("")),
       from_(MakeWindow()),
@@ -196,7 +196,8 @@ void MaddpgLearner::Step(const StepResults& results, double progress,
   sampler_.Add();
   const std::uint64_t steps = FarmSteps(results);
   steps_ += steps;
-  if (steps_ > options_.start) due_ += static_cast<double>(steps) / options_.steps_per_update;
+  if (steps_ > options_.learning_starts)
+    due_ += static_cast<double>(steps) / options_.train_interval;
   for (; due_ >= 1.0; due_ -= 1.0) Update();
   Choose(results, actions);
   replay_.SetActions(actions);
@@ -241,7 +242,7 @@ void MaddpgLearner::Draw() {
     drawn_[i] = moment;
     const JointTransition all =
         replay_.JointAt(moment.age, first, static_cast<std::size_t>(options_.n_step),
-                        static_cast<float>(options_.discount), agent_rewards_.data());
+                        static_cast<float>(options_.gamma), agent_rewards_.data());
     Fill(i, moment.age, first, from_);
     Fill(i, replay_.Age(all.to), first, to_);
     const std::size_t row = replay_.Row(moment.age, first);
@@ -273,7 +274,7 @@ void MaddpgLearner::Draw() {
 // Sets the priority of a time step to the mean error of the agents that learn from it.
 // @param errors [B, S]
 void MaddpgLearner::Reprioritise(const torch::Tensor& errors) {
-  const torch::Tensor learnt = ToDevice(weights_, {options_.batch, spec_.agents}) > 0.0F;
+  const torch::Tensor learnt = ToDevice(weights_, {options_.batch_size, spec_.agents}) > 0.0F;
   const torch::Tensor means =
       ((errors * learnt).sum(1) / learnt.sum(1).clamp_min(1)).cpu().contiguous();
   const float* error = means.data_ptr<float>();
@@ -311,22 +312,22 @@ void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Wind
 
 torch::Tensor MaddpgLearner::Observations(Window& window_of) const {
   return ToDevice(window_of.observations,
-                  {options_.window, options_.batch, spec_.agents, spec_.feature_count});
+                  {options_.window, options_.batch_size, spec_.agents, spec_.feature_count});
 }
 
 torch::Tensor MaddpgLearner::Logits(ActorTeam& actors, Window& window_of) {
   torch::Tensor carry;
   if (carry_size() > 0) {
-    carry = ToDevice(window_of.carry, {options_.batch, spec_.agents, actors.carry_size()});
+    carry = ToDevice(window_of.carry, {options_.batch_size, spec_.agents, actors.carry_size()});
   }
-  return actors.Forward(Observations(window_of),
-                        ToDevice(window_of.keeps, {options_.window, options_.batch, spec_.agents}),
-                        carry);
+  return actors.Forward(
+      Observations(window_of),
+      ToDevice(window_of.keeps, {options_.window, options_.batch_size, spec_.agents}), carry);
 }
 
 torch::Tensor MaddpgLearner::GumbelNoise() {
   for (float& number : noise_) number = Gumbel(rng_);
-  return ToDevice(noise_, {options_.batch, spec_.agents, kActionCount}).clone();
+  return ToDevice(noise_, {options_.batch_size, spec_.agents, kActionCount}).clone();
 }
 
 void MaddpgLearner::Update() {
@@ -339,17 +340,17 @@ void MaddpgLearner::Update() {
   const torch::Tensor observations = Observations(from_)[options_.window - 1];
   const torch::Tensor loss = UpdateCritic(observations);
   Check(std::isfinite(loss.item<float>()), "loss of the critic", position);
-  Check(judge_.Step(loss, options_.critic_rate.At(progress_), options_.gradient_limit),
+  Check(judge_.Step(loss, options_.critic_rate.At(progress_), options_.max_grad_norm),
         "gradient of the critic's loss", position);
   UpdateActors(observations, position);
-  Follow(actor_target_, actor_.parameters(), options_.target_rate);
-  Follow(judge_target_, judge_.parameters(), options_.target_rate);
+  Follow(actor_target_, actor_.parameters(), options_.tau);
+  Follow(judge_target_, judge_.parameters(), options_.tau);
   ++updates_;
 }
 
 torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
-  const std::vector<std::int64_t> each{options_.batch, spec_.agents};
-  const std::vector<std::int64_t> joint{options_.batch, spec_.agents, kActionCount};
+  const std::vector<std::int64_t> each{options_.batch_size, spec_.agents};
+  const std::vector<std::int64_t> joint{options_.batch_size, spec_.agents, kActionCount};
   torch::Tensor targets;
   {
     const torch::NoGradGuard no_grad;
@@ -375,13 +376,13 @@ torch::Tensor MaddpgLearner::UpdateCritic(const torch::Tensor& observations) {
   const auto error = static_cast<float>(
       ((predicted.detach() - targets).square() * weights).sum().item<double>() / scale);
   loss_ = std::isnan(loss_) ? error : loss_ + kErrorShare * (error - loss_);
-  if (options_.priority > 0.0) Reprioritise((predicted.detach() - targets).abs());
+  if (options_.priority_exponent > 0.0) Reprioritise((predicted.detach() - targets).abs());
   return (torch::smooth_l1_loss(predicted, targets, at::Reduction::None) * weights).sum();
 }
 
 // The critic is linear in an agent's own action, so its gradient is the vector of action values.
 void MaddpgLearner::UpdateActors(const torch::Tensor& observations, std::uint64_t position) {
-  const std::vector<std::int64_t> joint{options_.batch, spec_.agents, kActionCount};
+  const std::vector<std::int64_t> joint{options_.batch_size, spec_.agents, kActionCount};
   torch::Tensor slope;
   {
     const torch::NoGradGuard no_grad;
@@ -392,12 +393,12 @@ void MaddpgLearner::UpdateActors(const torch::Tensor& observations, std::uint64_
   const torch::Tensor soft = ((allowed + GumbelNoise()) / options_.temperature).softmax(2);
   const torch::Tensor hard = torch::one_hot(soft.argmax(2), kActionCount).to(torch::kFloat);
   const torch::Tensor action = hard + soft - soft.detach();
-  const torch::Tensor weights =
-      ToDevice(from_.present, {options_.batch, spec_.agents}) / std::max(1.0F, Sum(from_.present));
+  const torch::Tensor weights = ToDevice(from_.present, {options_.batch_size, spec_.agents}) /
+                                std::max(1.0F, Sum(from_.present));
   const torch::Tensor loss =
       -((action * slope).sum(2) * weights).sum() + options_.logit_penalty * logits.square().mean();
   Check(std::isfinite(loss.item<float>()), "loss of the actors", position);
-  Check(actor_.Step(loss, options_.actor_rate.At(progress_), options_.gradient_limit),
+  Check(actor_.Step(loss, options_.actor_rate.At(progress_), options_.max_grad_norm),
         "gradient of the actors' loss", position);
 }
 

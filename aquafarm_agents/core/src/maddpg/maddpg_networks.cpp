@@ -8,15 +8,16 @@ namespace aquafarm::agents {
 namespace nn = torch::nn;
 
 ActorTeam::ActorTeam(const EnvironmentSpec& spec, const MaddpgOptions& options)
-    : carry_size_(options.recurrent ? 2 * options.hidden : 0) {
+    : carry_size_(options.recurrent ? 2 * options.hidden_size : 0) {
   DeepOptions layers;
-  layers.hidden = options.hidden;
+  layers.hidden_size = options.hidden_size;
   const std::int32_t count = options.shared ? 1 : spec.agents;
   for (std::int32_t i = 0; i < count; ++i) {
     const std::string name = "actor" + std::to_string(i);
     if (options.recurrent) {
       recurrent_.push_back(register_module(
-          name, std::make_shared<RecurrentNetwork>(spec.feature_count, options.hidden, false)));
+          name,
+          std::make_shared<RecurrentNetwork>(spec.feature_count, options.hidden_size, false)));
     } else {
       plain_.push_back(register_module(name, MakeNetwork(spec, layers, 0)));
     }

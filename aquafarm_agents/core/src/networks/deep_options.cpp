@@ -14,9 +14,9 @@ constexpr std::array<std::string_view, kLossKindCount> kLosses{"huber", "mse"};
 DeepOptions Tuned(bool recurrent) {
   DeepOptions options;
   if (!recurrent) return options;
-  options.hidden = 128;
-  options.batch = 32;
-  options.target_period = 100;
+  options.hidden_size = 128;
+  options.batch_size = 32;
+  options.target_update_interval = 100;
   return options;
 }
 
@@ -28,17 +28,17 @@ constexpr double kPaperTargetRate = 0.005;
 // Sets only the values printed in Eq. 15 and Algorithm 2. The others keep the tuned defaults.
 DeepOptions Paper(bool recurrent) {
   DeepOptions options = Tuned(recurrent);
-  options.discount = kPaperDiscount;
+  options.gamma = kPaperDiscount;
   if (recurrent) {
-    options.target_rate = kPaperTargetRate;                     // line 22
-    options.steps_per_update = {ScheduleKind::kConstant, 1.0};  // lines 12 to 23
-    options.skip_connection = false;                            // line 4
+    options.tau = kPaperTargetRate;                           // line 22
+    options.train_interval = {ScheduleKind::kConstant, 1.0};  // lines 12 to 23
+    options.skip_connection = false;                          // line 4
   }
   options.loss = LossKind::kMse;
-  options.gradient_limit = 0.0;
-  options.double_q = false;
+  options.max_grad_norm = 0.0;
+  options.double_dqn = false;
   options.n_step = 1;
-  options.priority = 0.0;
+  options.priority_exponent = 0.0;
   options.reward_scale = 1.0;
   options.mask_illegal = false;
   return options;
@@ -55,25 +55,27 @@ void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
   options.paper_tuple = is_tuple;
   options.skip_connection = reader.Flag("skip_connection", options.skip_connection);
   if (is_tuple) {
-    options.sequence = 1;
+    options.sequence_length = 1;
     options.burn_in = 0;
   }
-  ReadWhole(reader, "sequence", 1, 1000, options.sequence);
+  ReadWhole(reader, "sequence_length", 1, 1000, options.sequence_length);
   ReadWhole(reader, "burn_in", 0, 1000, options.burn_in);
-  if (is_tuple && (options.sequence != 1 || options.burn_in != 0)) {
-    throw InputError("replayed: got paper_tuple with sequence=" + std::to_string(options.sequence) +
-                     " burn_in=" + std::to_string(options.burn_in) +
-                     ", expected 1 and 0, or replayed=sequences");
+  if (is_tuple && (options.sequence_length != 1 || options.burn_in != 0)) {
+    throw InputError("replayed: got paper_tuple with sequence_length=" +
+                     std::to_string(options.sequence_length) + " burn_in=" +
+                     std::to_string(options.burn_in) + ", expected 1 and 0, or replayed=sequences");
   }
   // An n-step return cannot extend beyond its sequence.
-  if (options.n_step > options.sequence) {
+  if (options.n_step > options.sequence_length) {
     throw InputError("n_step: got " + std::to_string(options.n_step) +
-                     ", expected at most sequence, which is " + std::to_string(options.sequence));
+                     ", expected at most sequence_length, which is " +
+                     std::to_string(options.sequence_length));
   }
   // With a longer burn-in, steps near an episode's beginning would never be trained on.
-  if (options.burn_in > 0 && options.burn_in >= options.sequence) {
+  if (options.burn_in > 0 && options.burn_in >= options.sequence_length) {
     throw InputError("burn_in: got " + std::to_string(options.burn_in) +
-                     ", expected less than sequence, which is " + std::to_string(options.sequence));
+                     ", expected less than sequence_length, which is " +
+                     std::to_string(options.sequence_length));
   }
 }
 
@@ -89,39 +91,38 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   const Preset preset = ReadWord(reader, "preset", Preset::kTuned, kPresets);
   DeepOptions options = preset == Preset::kPaper ? Paper(recurrent) : Tuned(recurrent);
   if (!recurrent) options.network = ReadWord(reader, "network", options.network, kNetworks);
-  ReadWhole(reader, "hidden", 1, 4096, options.hidden);
+  ReadWhole(reader, "hidden_size", 1, 4096, options.hidden_size);
   options.learning_rate = reader.GetSchedule("learning_rate", options.learning_rate, 0.0, 1.0);
-  ReadNumber(reader, "discount", 0.0, 1.0, options.discount);
+  ReadNumber(reader, "gamma", 0.0, 1.0, options.gamma);
   options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)));
   reader.Resolve("exploration", ToString(options.exploration));
-  ReadWhole(reader, "batch", 1, 65536, options.batch);
-  options.steps_per_update =
-      reader.GetSchedule("steps_per_update", options.steps_per_update, 0.01, 1e6);
-  ReadWhole(reader, "start", 0, 1e9, options.start);
-  ReadWhole(reader, "replay", 100, 1e9, options.replay);
-  ReadWhole(reader, "target_period", 1, 1e9, options.target_period);
-  ReadNumber(reader, "target_rate", 0.0, 1.0, options.target_rate);
+  ReadWhole(reader, "batch_size", 1, 65536, options.batch_size);
+  options.train_interval = reader.GetSchedule("train_interval", options.train_interval, 0.01, 1e6);
+  ReadWhole(reader, "learning_starts", 0, 1e9, options.learning_starts);
+  ReadWhole(reader, "buffer_size", 100, 1e9, options.buffer_size);
+  ReadWhole(reader, "target_update_interval", 1, 1e9, options.target_update_interval);
+  ReadNumber(reader, "tau", 0.0, 1.0, options.tau);
   options.loss = ReadWord(reader, "loss", options.loss, kLosses);
-  ReadNumber(reader, "gradient_limit", 0.0, 1e9, options.gradient_limit);
-  options.double_q = reader.Flag("double_q", options.double_q);
+  ReadNumber(reader, "max_grad_norm", 0.0, 1e9, options.max_grad_norm);
+  options.double_dqn = reader.Flag("double_dqn", options.double_dqn);
   options.dueling = reader.Flag("dueling", options.dueling);
   ReadWhole(reader, "n_step", 1, 100, options.n_step);
   ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
-  ReadNumber(reader, "average_rate", 0.0, 1.0, options.average_rate);
+  ReadNumber(reader, "ema_rate", 0.0, 1.0, options.ema_rate);
   ReadNumber(reader, "action_gap", 0.0, 0.99, options.action_gap);
   ReadNumber(reader, "repetition_penalty", 0.0, 1e6, options.repetition_penalty);
   options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
   options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
   if (options.mask_blocked && options.network == NetworkKind::kCnn) {
     throw InputError(
-        "mask_blocked: got true, expected false with network=cnn, which sees no features");
+        "mask_blocked: got true, expected false with network=cnn, which reads no features");
   }
   if (options.repetition_penalty > 0.0 && options.network == NetworkKind::kCnn) {
     throw InputError("repetition_penalty: got " + FormatNumber(options.repetition_penalty) +
-                     ", expected 0 with network=cnn, which sees no features");
+                     ", expected 0 with network=cnn, which reads no features");
   }
-  ReadNumber(reader, "priority", 0.0, 2.0, options.priority);
-  ReadNumber(reader, "importance", 0.0, 1.0, options.importance);
+  ReadNumber(reader, "priority_exponent", 0.0, 2.0, options.priority_exponent);
+  ReadNumber(reader, "importance_exponent", 0.0, 1.0, options.importance_exponent);
   if (recurrent) ReadSequences(reader, preset == Preset::kPaper, options);
   options.device = ReadDevice(reader);
   ReadWhole(reader, "threads", 1, 256, options.threads);

@@ -12,13 +12,13 @@ FlatAdam::FlatAdam(torch::nn::Module& module, torch::Device device)
   State();
 }
 
-bool FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double gradient_limit) {
+bool FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double max_grad_norm) {
   torch::Tensor gradient = parameters_.values().grad();
   gradient.zero_();
   loss.backward();
   const double norm = gradient.norm().item<double>();
   if (!std::isfinite(norm)) return false;
-  if (gradient_limit > 0.0 && norm > gradient_limit) gradient.mul_(gradient_limit / norm);
+  if (max_grad_norm > 0.0 && norm > max_grad_norm) gradient.mul_(max_grad_norm / norm);
   static_cast<torch::optim::AdamOptions&>(adam_.param_groups()[0].options()).lr(learning_rate);
   adam_.step();
   return true;

@@ -18,9 +18,9 @@ class FlatAdam {
   FlatAdam(torch::nn::Module& module, torch::Device device);
 
   /// Takes one optimizer step on `loss`.
-  /// @param gradient_limit max norm of the gradient; 0: no limit
+  /// @param max_grad_norm max norm of the gradient; 0: no limit
   /// @returns false if the gradient is not finite; the parameters are then unchanged
-  [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double gradient_limit);
+  [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double max_grad_norm);
 
   FlatParameters& parameters() { return parameters_; }
   const FlatParameters& parameters() const { return parameters_; }

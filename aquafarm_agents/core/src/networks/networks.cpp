@@ -80,9 +80,10 @@ std::shared_ptr<QNetwork> MakeNetwork(const EnvironmentSpec& spec, const DeepOpt
   std::shared_ptr<QNetwork> network;
   if (options.network == NetworkKind::kCnn) {
     network = std::make_shared<CnnNetwork>(spec.plane_count, spec.height, spec.width,
-                                           options.hidden, options.dueling);
+                                           options.hidden_size, options.dueling);
   } else {
-    network = std::make_shared<MlpNetwork>(spec.feature_count, options.hidden, options.dueling);
+    network =
+        std::make_shared<MlpNetwork>(spec.feature_count, options.hidden_size, options.dueling);
   }
   DrawWeights(*network, seed, 0);
   return network;

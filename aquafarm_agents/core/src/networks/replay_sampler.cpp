@@ -15,12 +15,12 @@ template <typename Scalar>
 ReplaySampler<Scalar>::ReplaySampler(const Replay<Scalar>& replay, const DeepOptions& options,
                                      std::size_t steps, std::size_t group)
     : replay_(replay),
-      priority_(options.priority),
-      importance_(options.importance),
+      priority_(options.priority_exponent),
+      importance_(options.importance_exponent),
       steps_(steps),
       group_(group),
       beginnings_(replay.rows()),
-      weights_(static_cast<std::size_t>(options.batch), 1.0F) {
+      weights_(static_cast<std::size_t>(options.batch_size), 1.0F) {
   if (priority_ > 0.0) priorities_ = std::make_unique<SumTree>(replay.rows());
 }
 

@@ -27,8 +27,8 @@ RowNetwork::RowNetwork(std::size_t features, const DeepOptions& options, std::ve
     : weights_(std::move(weights)),
       features_(static_cast<Eigen::Index>(features)),
       dueling_(options.dueling),
-      first_(options.hidden),
-      second_(options.hidden),
+      first_(options.hidden_size),
+      second_(options.hidden_size),
       values_(static_cast<Eigen::Index>(kActionCount)),
       state_value_(options.dueling ? 1 : 0) {
   const Eigen::Index count = (features_ + 1) * first_.size() +

@@ -10,10 +10,10 @@ namespace aquafarm::agents {
 SequenceBatch::SequenceBatch(const DeepOptions& options, std::size_t features,
                              std::size_t carry_size)
     : burn_in_(static_cast<std::size_t>(options.burn_in)),
-      steps_(static_cast<std::size_t>(options.sequence)),
+      steps_(static_cast<std::size_t>(options.sequence_length)),
       features_(features),
       carry_size_(carry_size) {
-  const auto count = static_cast<std::size_t>(options.batch);
+  const auto count = static_cast<std::size_t>(options.batch_size);
   warm_up.resize(burn_in_ * count * features);
   observations.resize((steps_ + 1) * count * features);
   carry.resize(count * carry_size);
@@ -71,7 +71,7 @@ void SequenceBatch::FillRun(std::size_t b, const Replay<float>& replay,
     next[i] = static_cast<std::int64_t>(last);
     if (!is_learnt) continue;
     const std::size_t reach = std::min(static_cast<std::size_t>(options.n_step), last - t);
-    const Transition one = replay.At(age + t, entry, reach, static_cast<float>(options.discount));
+    const Transition one = replay.At(age + t, entry, reach, static_cast<float>(options.gamma));
     actions[i] = one.action;
     rewards[i] = one.reward * static_cast<float>(options.reward_scale);
     discounts[i] = one.discount;

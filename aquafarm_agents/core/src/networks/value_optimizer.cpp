@@ -27,7 +27,7 @@ ValueOptimizer::ValueOptimizer(const DeepOptions& options, torch::nn::Module& on
                                torch::Device device)
     : options_(options), online_(online, device), target_(target, device), loss_(std::nanf("")) {
   const torch::NoGradGuard no_grad;
-  if (options.average_rate > 0.0) average_.emplace(acting, device);
+  if (options.ema_rate > 0.0) average_.emplace(acting, device);
   for (FlatParameters* const copy : {&target_, average_ ? &*average_ : &target_}) {
     copy->values().copy_(this->online().values());
     copy->values().set_requires_grad(false);
@@ -36,8 +36,8 @@ ValueOptimizer::ValueOptimizer(const DeepOptions& options, torch::nn::Module& on
 
 void ValueOptimizer::Count(std::uint64_t farm_steps, double progress) {
   steps_ += farm_steps;
-  if (steps_ > options_.start)
-    due_ += static_cast<double>(farm_steps) / options_.steps_per_update.At(progress);
+  if (steps_ > options_.learning_starts)
+    due_ += static_cast<double>(farm_steps) / options_.train_interval.At(progress);
   learning_rate_ = options_.learning_rate.At(progress);
 }
 
@@ -56,18 +56,18 @@ void ValueOptimizer::Update(const torch::Tensor& predicted, const torch::Tensor&
   const float value = loss.item<float>();
   if (!std::isfinite(value)) Fail("loss: got " + std::to_string(value), origin);
   if (updates_ % kUpdatesPerLook == 0) Measure(predicted, targets, weights);
-  if (!online_.Step(loss, learning_rate_, options_.gradient_limit)) {
-    Fail("gradient: is not finite, of a loss of " + std::to_string(value), origin);
+  if (!online_.Step(loss, learning_rate_, options_.max_grad_norm)) {
+    Fail("gradient: not finite, with a loss of " + std::to_string(value), origin);
   }
   ++updates_;
   const torch::NoGradGuard no_grad;
   if (average_) {  // arithmetic mean at first, then an exponential moving average
-    const double share = std::max(options_.average_rate, 1.0 / static_cast<double>(updates_));
+    const double share = std::max(options_.ema_rate, 1.0 / static_cast<double>(updates_));
     average_->values().lerp_(online().values(), share);
   }
-  if (options_.target_rate > 0.0) {
-    target_.values().lerp_(online().values(), options_.target_rate);
-  } else if (updates_ % options_.target_period == 0) {
+  if (options_.tau > 0.0) {
+    target_.values().lerp_(online().values(), options_.tau);
+  } else if (updates_ % options_.target_update_interval == 0) {
     target_.values().copy_(online().values());
   }
 }

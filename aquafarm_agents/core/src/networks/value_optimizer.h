@@ -31,7 +31,7 @@ struct BatchOrigin {
 class ValueOptimizer {
  public:
   /// All modules have the same architecture. `target` and `acting` start as copies of `online`.
-  /// @param acting a separate module if options.average_rate is set, else unused
+  /// @param acting a separate module if options.ema_rate is set, else unused
   ValueOptimizer(const DeepOptions& options, torch::nn::Module& online, torch::nn::Module& target,
                  torch::nn::Module& acting, torch::Device device);
 

@@ -13,8 +13,12 @@ Planner::Planner(Planner&&) noexcept = default;
 Planner& Planner::operator=(Planner&&) noexcept = default;
 std::size_t Planner::state_count() const { return solver_->state_count(); }
 
+Plan Planner::Solve(const Farm& farm, RiskSource& risks, const Task& task) {
+  return solver_->Solve(farm, risks, task);
+}
 Plan Planner::Solve(const Farm& farm, Foresight foresight, const Task& task) {
-  return solver_->Solve(farm, foresight, task);
+  DisasterRisk risks(farm, foresight);
+  return Solve(farm, risks, task);
 }
 Plan Planner::Solve(const Farm& farm, Foresight foresight) {
   AQUAFARM_CHECK_EQ(farm.ships().size(), 1U);

@@ -25,14 +25,30 @@ std::size_t PlannerSolver::Delivered(std::size_t set) const {
 }
 
 void PlannerSolver::Prepare(const Farm& farm) {
-  ListOptions(farm);
+  const bool is_prepared = IsPrepared(farm);
+  if (!is_prepared) {
+    ListOptions(farm);
+    const Layout& layout = farm.layout();
+    chart_.cells = layout.cells;
+    chart_.crash_reward = layout.crash_reward;
+    chart_.ports = layout.ports;
+    planned_devices_ = task_->devices.size();
+  }
   for (std::size_t d = 0; d < task_->devices.size(); ++d) {
     const Device& device = farm.devices()[static_cast<std::size_t>(task_->devices[d])];
     site_[d] = LinearIndex(device.cell, scenario_.width);
     value_[d] = device.value;
     health_[d] = device.health;
   }
-  SolveBound();
+  if (!is_prepared) {
+    move_reward_ = static_cast<double>(risks_->best_quiet());
+    CountMoves();
+    if (scenario_.ships.capacity > 1) SumRewards();
+  }
+  last_step_ = risks_->last_step();
+  if (task_->until > 0) last_step_ = std::min(last_step_, task_->until);
+  SumGains();
+  SumStepRewards(farm);
   best_ = kNever;
   best_layer_ = 0;
 }
@@ -50,12 +66,11 @@ double PlannerSolver::Loss(std::size_t set, float share) const {
 
 void PlannerSolver::Reach(std::int32_t step, std::uint32_t state, double value,
                           std::uint32_t parent, std::uint8_t action) {
-  if (value + bound_[state] <= best_ + kTolerance) return;
+  if (value + Bound(state, step) <= best_ + kTolerance) return;
   Open& open = open_[state];
-  const auto mark = static_cast<std::uint32_t>(step) + 1;
   std::vector<Node>& layer = layers_.back();
-  if (open.mark != mark) {
-    open = {value, static_cast<std::uint32_t>(layer.size()), mark};
+  if (open.mark != mark_) {
+    open = {value, static_cast<std::uint32_t>(layer.size()), mark_};
     layer.push_back({state, parent, action});
     next_values_.push_back(value);
   } else if (value > open.reached) {
@@ -76,7 +91,7 @@ void PlannerSolver::Complete(std::uint32_t parent, std::uint8_t action, double v
 void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   const Node node = layers_[layers_.size() - 2][index];
   const double so_far = values_[index];
-  if (so_far + bound_[node.state] <= best_ + kTolerance) return;
+  if (so_far + Bound(node.state, step - 1) <= best_ + kTolerance) return;
   const std::size_t set = node.state / cells_;
   const std::size_t cell = node.state % cells_;
   const auto parent = static_cast<std::uint32_t>(index);
@@ -86,9 +101,9 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   };
   for (const Option& option : options_[cell]) {
     const auto to = static_cast<std::size_t>(option.to);
-    const float risk = risk_.data()[to];
-    double reward = static_cast<double>(option.reward) + static_cast<double>(risk);
-    if (!option.triggers && risk == 0.0F) reward += static_cast<double>(scenario_.rewards.step);
+    const float risk = layers_of_step_->risk.data()[to];
+    double reward = option.triggers ? static_cast<double>(option.reward) + static_cast<double>(risk)
+                                    : static_cast<double>(layers_of_step_->quiet.data()[to]);
     const float crash = crash_hurts_ ? option.damage : 0.0F;
     reward -= Loss(set, crash) + Loss(set, -exposure * risk);
     if (!IsInTheWay(step, to)) {
@@ -96,7 +111,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
     }
   }
   if (IsInTheWay(step, cell)) return;
-  const float risk = risk_.data()[cell];
+  const float risk = layers_of_step_->risk.data()[cell];
   // The farm picks up the device with the lowest id in a cell.
   for (std::size_t d = 0; d < devices_; ++d) {
     if (site_[d] != static_cast<std::int32_t>(cell) || FateOf(set, d) != kWaiting) continue;
@@ -116,7 +131,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   const std::size_t unloaded = Delivered(set);
   const Cell at{static_cast<std::int32_t>(cell) % scenario_.width,
                 static_cast<std::int32_t>(cell) / scenario_.width};
-  if (unloaded == set || (layout_->bits(at) & kPortBit) == 0) return;
+  if (unloaded == set || (chart_.bits(at) & kPortBit) == 0) return;
   const double value =
       so_far + static_cast<double>(scenario_.rewards.drop_off) + static_cast<double>(risk);
   constexpr auto kDropOff = static_cast<std::uint8_t>(Action::kDropOff);
@@ -132,58 +147,52 @@ bool PlannerSolver::IsInTheWay(std::int32_t step, std::size_t cell) const {
   if (task_->others == nullptr) return false;
   const auto index = static_cast<std::int32_t>(cell);
   const Cell at{index % scenario_.width, index / scenario_.width};
-  if ((layout_->bits(at) & kPortBit) != 0) return false;
+  if ((chart_.bits(at) & kPortBit) != 0) return false;
   return task_->others->IsTaken(task_->ship, step, index);
 }
 
-Plan PlannerSolver::Solve(const Farm& farm, Foresight foresight, const Task& task) {
+Plan PlannerSolver::Solve(const Farm& farm, RiskSource& risks, const Task& task) {
   AQUAFARM_CHECK_LE(task.devices.size(), devices_);
   if (farm.over()) return {};
   task_ = &task;
+  risks_ = &risks;
   Prepare(farm);
   // A narrow search first: its result prunes the exact search.
-  Search(farm, foresight, kBeam);
+  Search(farm, kBeam);
   Plan narrow = Trace();
   if (best_ != kNever) best_ -= kSlack;
   best_layer_ = 0;
-  Search(farm, foresight, state_count());
+  Search(farm, state_count());
   return best_layer_ == 0 ? narrow : Trace();
 }
 
-void PlannerSolver::Search(const Farm& farm, Foresight foresight, std::size_t widest) {
-  FollowDisasters(farm, foresight);
+void PlannerSolver::Search(const Farm& farm, std::size_t widest) {
   for (std::size_t d = 0; d < task_->devices.size(); ++d) {
     health_[d] = farm.devices()[static_cast<std::size_t>(task_->devices[d])].health;
   }
-  std::fill(open_.begin(), open_.end(), Open{});
+  SumGains();
   layers_.clear();
   std::int32_t step = farm.step();
   ReachStart(farm);
-  std::int32_t last = LastStep(step);
-  if (task_->until > 0) last = std::min(last, task_->until);
-  while (step < last && !layers_.back().empty()) {
+  while (step < last_step_ && !layers_.back().empty()) {
+    Narrow(step, widest);
     ++step;
-    AdvanceDisasters(farm, step);
-    Narrow(widest);
+    EnterStep(farm, step);
     values_.swap(next_values_);
     next_values_.clear();
     layers_.emplace_back();
+    ++mark_;
     const std::size_t count = layers_[layers_.size() - 2].size();
     for (std::size_t index = 0; index < count; ++index) Expand(step, index);
     WearDown();
   }
-  if (step == last) EndOfTime();
-}
-
-std::int32_t PlannerSolver::LastStep(std::int32_t step) const {
-  std::int32_t longest = 0;
-  for (const Disaster& disaster : disasters_) longest = std::max(longest, disaster.steps_left);
-  return disasters_.empty() ? scenario_.step_limit : std::min(scenario_.step_limit, step + longest);
+  if (step == last_step_) EndOfTime();
 }
 
 // Devices aboard may be delivered as paid or as unpaid.
 void PlannerSolver::ReachStart(const Farm& farm) {
   layers_.emplace_back();
+  ++mark_;
   next_values_.clear();
   const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
   const auto cell = static_cast<std::size_t>(LinearIndex(ship.cell, scenario_.width));
@@ -215,15 +224,18 @@ void PlannerSolver::ReachStart(const Farm& farm) {
 }
 
 // Keeps the states of the current layer with the highest upper bounds.
-void PlannerSolver::Narrow(std::size_t widest) {
+void PlannerSolver::Narrow(std::int32_t step, std::size_t widest) {
   std::vector<Node>& layer = layers_.back();
   if (layer.size() <= widest) return;
   std::vector<std::size_t> order(layer.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto promise = [&](std::size_t i) { return next_values_[i] + bound_[layer[i].state]; };
+  std::vector<double> promises(layer.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    promises[i] = next_values_[i] + Bound(layer[i].state, step);
+  }
   std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(widest), order.end(),
                    [&](std::size_t i, std::size_t k) {
-                     return promise(i) != promise(k) ? promise(i) > promise(k) : i < k;
+                     return promises[i] != promises[k] ? promises[i] > promises[k] : i < k;
                    });
   std::vector<Node> kept(widest);
   std::vector<double> kept_values(widest);

@@ -51,19 +51,19 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
   site_.resize(devices_);
   value_.resize(devices_);
   health_.resize(devices_);
-  risk_.resize(scenario.height, scenario.width);
   open_.resize(state_count());
 }
 
 void PlannerSolver::ListOptions(const Farm& farm) {
-  layout_ = &farm.layout();
+  const Layout& layout = farm.layout();
   options_.resize(cells_);
+  best_crash_ = scenario_.rewards.island_crash;
   for (std::int32_t y = 0; y < scenario_.height; ++y) {
     for (std::int32_t x = 0; x < scenario_.width; ++x) {
       const std::int32_t here = LinearIndex({x, y}, scenario_.width);
       std::vector<Option>& options = options_[static_cast<std::size_t>(here)];
       options.clear();
-      if ((layout_->bits({x, y}) & kBlockedBits) != 0) continue;
+      if ((layout.bits({x, y}) & kBlockedBits) != 0) continue;
       std::optional<Option> edge;  // stays in the cell by a move off the map
       for (std::uint8_t action = 0; action < kMoveCount; ++action) {
         const Cell to{x + kMoves[action].x, y + kMoves[action].y};
@@ -71,10 +71,11 @@ void PlannerSolver::ListOptions(const Farm& farm) {
             to.x >= 0 && to.y >= 0 && to.x < scenario_.width && to.y < scenario_.height;
         if (!on_map) {
           edge = {here, 0.0F, 0.0F, action, false};
-        } else if ((layout_->bits(to) & kBlockedBits) != 0) {
-          const float reward = layout_->crash_reward(to.y, to.x);
+        } else if ((layout.bits(to) & kBlockedBits) != 0) {
+          const float reward = layout.crash_reward(to.y, to.x);
+          best_crash_ = std::max(best_crash_, reward);
           options.push_back(
-              {here, reward, CrashDamage(scenario_, layout_->bits(to), reward), action, true});
+              {here, reward, CrashDamage(scenario_, layout.bits(to), reward), action, true});
         } else {
           options.push_back({LinearIndex(to, scenario_.width), 0.0F, 0.0F, action, false});
         }
@@ -82,7 +83,7 @@ void PlannerSolver::ListOptions(const Farm& farm) {
       if (edge) options.push_back(*edge);
       // Staying in the cell by an illegal action, which replaces the step reward. The action chosen
       // must not pick up or drop off a device here.
-      const bool at_port = (layout_->bits({x, y}) & kPortBit) != 0;
+      const bool at_port = (layout.bits({x, y}) & kPortBit) != 0;
       options.push_back({here, scenario_.rewards.illegal, 0.0F,
                          static_cast<std::uint8_t>(at_port ? Action::kPickup : Action::kDropOff),
                          true});
@@ -90,30 +91,22 @@ void PlannerSolver::ListOptions(const Farm& farm) {
   }
 }
 
-// Updates `best` [cells] with the returns after a pickup or a drop-off in the cell.
-void PlannerSolver::AddGains(std::size_t set, std::vector<double>& best) const {
-  const auto bound = [&](std::size_t next, std::size_t cell) {
-    return next == all_gone_ ? 0.0 : bound_[next * cells_ + cell];
+// Whether the options and moves of the last plan are valid for this one.
+bool PlannerSolver::IsPrepared(const Farm& farm) const {
+  const Layout& layout = farm.layout();
+  const auto is_same = [](const auto& a, const auto& b) {
+    return a.size() == b.size() && (a == b).all();
   };
-  for (std::size_t d = 0; d < devices_; ++d) {
-    if (FateOf(set, d) != kWaiting) continue;
-    const auto cell = static_cast<std::size_t>(site_[d]);
-    for (const Fate fate : {kPaid, kUnpaid}) {
-      const std::size_t next = With(set, d, fate);
-      if (next == sets_.size()) continue;
-      const double worth =
-          fate == kPaid ? static_cast<double>(value_[d]) * static_cast<double>(health_[d]) : 0;
-      best[cell] = std::max(
-          best[cell], static_cast<double>(scenario_.rewards.pickup) + worth + bound(next, cell));
-    }
+  if (planned_devices_ != task_->devices.size() ||
+      move_reward_ != static_cast<double>(risks_->best_quiet()) ||
+      !is_same(chart_.cells, layout.cells) || !is_same(chart_.crash_reward, layout.crash_reward)) {
+    return false;
   }
-  const std::size_t unloaded = Delivered(set);
-  if (unloaded == set) return;
-  for (const Cell port : layout_->ports) {
-    const auto cell = static_cast<std::size_t>(LinearIndex(port, scenario_.width));
-    best[cell] = std::max(best[cell],
-                          static_cast<double>(scenario_.rewards.drop_off) + bound(unloaded, cell));
+  for (std::size_t d = 0; d < planned_devices_; ++d) {
+    const Device& device = farm.devices()[static_cast<std::size_t>(task_->devices[d])];
+    if (site_[d] != LinearIndex(device.cell, scenario_.width)) return false;
   }
+  return true;
 }
 
 // Unused slots of a task count as gone from the start.
@@ -124,59 +117,200 @@ bool PlannerSolver::IsOfTask(std::size_t set) const {
   return true;
 }
 
-// Computes the max further return of every state. A device's status only advances, so each set of
-// devices is solved once, the last sets first. A move costs the step reward in quiet water, or the
-// mildest risk if that costs less.
-void PlannerSolver::SolveBound() {
-  bound_.assign(state_count(), 0.0);
-  const double move = std::max(static_cast<double>(scenario_.rewards.step), kMildestRisk);
-  std::vector<std::size_t> order(sets_.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+// Lists where a set of devices changes, with the moves that follow.
+void PlannerSolver::SeedMoves(std::size_t set) {
+  const auto add = [this](std::size_t next, std::size_t cell) {
+    const std::int32_t further = next == all_gone_ ? 0 : moves_[next * cells_ + cell];
+    if (further != kUnreachable) sources_.emplace_back(further, cell);
+  };
+  sources_.clear();
+  for (std::size_t d = 0; d < devices_; ++d) {
+    if (FateOf(set, d) != kWaiting) continue;
+    const std::size_t next = With(set, d, kPaid);
+    if (next != sets_.size()) add(next, static_cast<std::size_t>(site_[d]));
+  }
+  const std::size_t unloaded = Delivered(set);
+  for (std::size_t i = 0; i < chart_.ports.size() && unloaded != set; ++i) {
+    add(unloaded, static_cast<std::size_t>(LinearIndex(chart_.ports[i], scenario_.width)));
+  }
+  std::sort(sources_.begin(), sources_.end());
+}
+
+// A device's status only advances, so each set of devices is solved once, in this order.
+std::vector<std::size_t> PlannerSolver::LastSetsFirst() const {
+  std::vector<std::size_t> order;
+  for (std::size_t set = 0; set < sets_.size(); ++set) {
+    if (IsOfTask(set) && set != all_gone_) order.push_back(set);
+  }
   std::sort(order.begin(), order.end(),
             [this](std::size_t a, std::size_t b) { return sets_[a] > sets_[b]; });
+  return order;
+}
+
+// Counts the moves that every state needs until the task is complete: for each set a breadth-first
+// search from all cells where the set changes.
+void PlannerSolver::CountMoves() {
+  moves_.assign(state_count(), kUnreachable);
+  std::fill_n(moves_.begin() + static_cast<std::ptrdiff_t>(all_gone_ * cells_), cells_, 0);
+  for (const std::size_t set : LastSetsFirst()) {
+    std::int32_t* moves = moves_.data() + set * cells_;
+    SeedMoves(set);
+    queue_.clear();
+    std::size_t seeded = 0;
+    for (std::size_t head = 0; head < queue_.size() || seeded < sources_.size();) {
+      const bool is_seed = head == queue_.size() || (seeded < sources_.size() &&
+                                                     sources_[seeded].first <= moves[queue_[head]]);
+      const std::size_t cell = is_seed ? sources_[seeded].second : queue_[head];
+      if (is_seed) {
+        const std::int32_t count = sources_[seeded++].first;
+        if (moves[cell] <= count) continue;
+        moves[cell] = count;
+      } else {
+        ++head;
+      }
+      for (const Option& option : options_[cell]) {
+        const auto to = static_cast<std::size_t>(option.to);
+        if (moves[to] <= moves[cell] + 1) continue;
+        moves[to] = moves[cell] + 1;
+        queue_.push_back(to);
+      }
+    }
+  }
+}
+
+// Updates `best` [cells] with the rewards after a pickup or a drop-off in the cell.
+void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) const {
+  const auto raise = [&](std::size_t next, std::size_t cell, float reward) {
+    const double further = next == all_gone_ ? 0.0 : rewards_[next * cells_ + cell];
+    best[cell] = std::max(best[cell], static_cast<double>(reward) + further);
+  };
+  for (std::size_t d = 0; d < devices_; ++d) {
+    if (FateOf(set, d) != kWaiting) continue;
+    const std::size_t next = With(set, d, kPaid);
+    if (next != sets_.size()) {
+      raise(next, static_cast<std::size_t>(site_[d]), scenario_.rewards.pickup);
+    }
+  }
+  const std::size_t unloaded = Delivered(set);
+  for (std::size_t i = 0; i < chart_.ports.size() && unloaded != set; ++i) {
+    raise(unloaded, static_cast<std::size_t>(LinearIndex(chart_.ports[i], scenario_.width)),
+          scenario_.rewards.drop_off);
+  }
+}
+
+// Sums the max rewards of every state until the task is complete. With a capacity above 1, one
+// drop-off may unload several devices, and each drop-off has a reward.
+void PlannerSolver::SumRewards() {
+  rewards_.assign(state_count(), kNever);
   std::vector<double> best(cells_);
-  using Entry = std::pair<double, std::size_t>;
-  std::priority_queue<Entry> queue;
-  for (const std::size_t set : order) {
-    if (set == all_gone_ || !IsOfTask(set)) continue;
-    std::fill(best.begin(), best.end(), 0.0);  // stopping costs nothing
-    AddGains(set, best);
+  std::priority_queue<std::pair<double, std::size_t>> queue;
+  for (const std::size_t set : LastSetsFirst()) {
+    std::fill(best.begin(), best.end(), kNever);
+    SeedRewards(set, best);
     for (std::size_t cell = 0; cell < cells_; ++cell) {
-      if (best[cell] > 0.0) queue.push({best[cell], cell});
+      if (best[cell] != kNever) queue.push({best[cell], cell});
     }
     while (!queue.empty()) {
       const auto [value, cell] = queue.top();
       queue.pop();
       if (value < best[cell]) continue;
-      const Cell at{static_cast<std::int32_t>(cell) % scenario_.width,
-                    static_cast<std::int32_t>(cell) / scenario_.width};
-      for (const Cell by : kMoves) {
-        const Cell from{at.x + by.x, at.y + by.y};
-        const bool on_map =
-            from.x >= 0 && from.y >= 0 && from.x < scenario_.width && from.y < scenario_.height;
-        if (!on_map || (layout_->bits(from) & kBlockedBits) != 0) continue;
-        const auto k = static_cast<std::size_t>(LinearIndex(from, scenario_.width));
-        if (value + move <= best[k]) continue;
-        best[k] = value + move;
-        queue.push({best[k], k});
+      for (const Option& option : options_[cell]) {
+        const auto to = static_cast<std::size_t>(option.to);
+        if (value + move_reward_ <= best[to]) continue;
+        best[to] = value + move_reward_;
+        queue.push({best[to], to});
       }
     }
-    std::copy(best.begin(), best.end(), bound_.begin() + static_cast<std::ptrdiff_t>(set * cells_));
+    std::copy(best.begin(), best.end(),
+              rewards_.begin() + static_cast<std::ptrdiff_t>(set * cells_));
   }
 }
 
-void PlannerSolver::FollowDisasters(const Farm& farm, Foresight foresight) {
-  disasters_ = farm.disasters();
-  tracks_ = Foresee(farm, foresight, disasters_);
+PlannerSolver::Gains PlannerSolver::GainsOf(std::size_t set) const {
+  const auto drop_off = static_cast<double>(scenario_.rewards.drop_off);
+  const auto pickup = static_cast<double>(scenario_.rewards.pickup);
+  // A pickup or drop-off replaces the step reward.
+  const auto action = -static_cast<double>(scenario_.rewards.step);
+  Gains gains;
+  std::int32_t carried = 0;
+  for (std::size_t d = 0; d < devices_; ++d) {
+    const Fate fate = FateOf(set, d);
+    if (fate == kGone) continue;
+    ++carried;
+    gains.actions += drop_off;
+    gains.if_not += std::max(0.0, drop_off) + action;
+    if (fate != kWaiting) continue;
+    const double worth = static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
+    gains.worth += worth;
+    gains.actions += pickup;
+    gains.if_not += std::max(0.0, pickup + worth) + action;
+    ++gains.steps;
+  }
+  gains.steps += scenario_.ships.capacity == 1 ? carried : carried > 0 ? 1 : 0;
+  return gains;
 }
 
-void PlannerSolver::AdvanceDisasters(const Farm& farm, std::int32_t step) {
-  for (std::size_t id = 0; id < disasters_.size(); ++id) {
-    const StreamKey key{farm.seed(), farm.episode(), RngStream::kDisasterTurn,
-                        static_cast<std::uint32_t>(id)};
-    MoveDisaster(disasters_[id], tracks_[id], key, step, scenario_.width, scenario_.height);
+void PlannerSolver::SumGains() {
+  gains_.resize(sets_.size());
+  for (std::size_t set = 0; set < sets_.size(); ++set) {
+    if (IsOfTask(set)) gains_[set] = GainsOf(set);
   }
-  FillRisk(scenario_, disasters_, risk_);
+}
+
+PlannerSolver::BestRewards PlannerSolver::BestOf(const RiskLayers& layers) const {
+  const float triggered = std::max(scenario_.rewards.illegal, best_crash_);
+  float quiet = static_cast<float>(kNever);
+  float risk = quiet;
+  for (std::size_t cell = 0; cell < cells_; ++cell) {
+    if (options_[cell].empty()) continue;  // land
+    quiet = std::max(quiet, layers.quiet.data()[cell]);
+    risk = std::max(risk, layers.risk.data()[cell]);
+  }
+  return {static_cast<double>(std::max(quiet, risk + triggered)), static_cast<double>(risk)};
+}
+
+// Sums the best rewards by step. The risks are looked up for twice the time that the task takes on
+// quiet water; later steps count as the best that the source allows.
+void PlannerSolver::SumStepRewards(const Farm& farm) {
+  constexpr std::int32_t kMargin = 32;
+  first_step_ = farm.step();
+  const auto steps = static_cast<std::size_t>(std::max(0, last_step_ - first_step_));
+  step_rewards_.assign(steps + 1, 0.0);
+  surcharges_.assign(steps + 1, 0.0);
+  const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
+  const auto cell = static_cast<std::size_t>(LinearIndex(ship.cell, scenario_.width));
+  std::size_t set = 0;  // all waiting: needs most moves
+  for (std::size_t d = task_->devices.size(); d < devices_; ++d) set = With(set, d, kGone);
+  const auto known =
+      static_cast<std::size_t>(2 * (moves_[set * cells_ + cell] + gains_[set].steps) + kMargin);
+  const double later = std::max(
+      {move_reward_, static_cast<double>(std::max(scenario_.rewards.illegal, best_crash_))});
+  for (std::size_t k = 1; k <= steps; ++k) {
+    BestRewards best{later, 0.0};
+    if (k <= known) best = BestOf(risks_->At(first_step_ + static_cast<std::int32_t>(k)));
+    step_rewards_[k] = step_rewards_[k - 1] + best.any;
+    // A step with a pickup or a drop-off earns at most the risk.
+    surcharges_[k] =
+        surcharges_[k - 1] + std::max(std::min(0.0, best.any - move_reward_), best.risk);
+  }
+}
+
+// Returns an upper bound of the return after `step`. Either the plan completes its task, after at
+// least the moves and actions that the task needs, or it lasts until the end. Each step earns at
+// most its best reward.
+double PlannerSolver::Bound(std::uint32_t state, std::int32_t step) const {
+  const Gains& gains = gains_[state / cells_];
+  const auto at = static_cast<std::size_t>(step - first_step_);
+  const double bound = gains.if_not + step_rewards_.back() - step_rewards_[at];
+  const std::int32_t moves = moves_[state];
+  const std::size_t end = at + static_cast<std::size_t>(moves + gains.steps);
+  if (end >= surcharges_.size()) return bound;  // also if unreachable
+  const double rewards = rewards_.empty() ? gains.actions + moves * move_reward_ : rewards_[state];
+  return std::max(bound, rewards + gains.worth + surcharges_[end] - surcharges_[at]);
+}
+
+void PlannerSolver::EnterStep(const Farm& farm, std::int32_t step) {
+  layers_of_step_ = &risks_->At(step);
   const float probability = scenario_.damage.crash_probability;
   const auto draws = Draw(
       {farm.seed(), farm.episode(), RngStream::kDamage, static_cast<std::uint32_t>(task_->ship)},
@@ -187,9 +321,13 @@ void PlannerSolver::AdvanceDisasters(const Farm& farm, std::int32_t step) {
 // Damages the devices that still wait at their deployed positions, after this step.
 void PlannerSolver::WearDown() {
   const float exposure = scenario_.damage.exposure_damage;
+  bool is_worn = false;
   for (std::size_t d = 0; d < task_->devices.size() && exposure > 0.0F; ++d) {
-    health_[d] = std::max(0.0F, health_[d] + exposure * risk_.data()[site_[d]]);
+    const float risk = layers_of_step_->risk.data()[site_[d]];
+    is_worn = is_worn || risk < 0.0F;
+    health_[d] = std::max(0.0F, health_[d] + exposure * risk);
   }
+  if (is_worn) SumGains();
 }
 
 }  // namespace aquafarm::agents

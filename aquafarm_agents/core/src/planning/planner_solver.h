@@ -4,10 +4,12 @@
 /// Implementation of Planner: the farm and the task as a graph (planner_solver.cpp) and the search
 /// in it (planner_search.cpp).
 
+#include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
-#include "aquafarm/agents/planning/plan.h"
+#include "aquafarm/agents/planning/risk_source.h"
 
 namespace aquafarm::agents {
 
@@ -35,7 +37,7 @@ struct Option {
 class PlannerSolver {
  public:
   PlannerSolver(const Scenario& scenario, std::int32_t slots);
-  Plan Solve(const Farm& farm, Foresight foresight, const Task& task);
+  Plan Solve(const Farm& farm, RiskSource& risks, const Task& task);
   std::size_t state_count() const { return sets_.size() * cells_; }
 
  private:
@@ -48,7 +50,14 @@ class PlannerSolver {
   struct Open {
     double reached{kNever};
     std::uint32_t layer_index{};
-    std::uint32_t mark{};  // layer in which it was reached, plus 1
+    std::uint32_t mark{};  // mark_ of the layer in which it was reached
+  };
+  // Upper bounds of the further rewards of a set of devices, without those of other steps.
+  struct Gains {
+    double worth{};        // of the waiting devices at present
+    double actions{};      // pickups and drop-offs, if all devices are delivered one by one
+    double if_not{};       // if the plan lasts until the end of the episode
+    std::int32_t steps{};  // min pickups and drop-offs until all devices are delivered
   };
 
   Fate FateOf(std::size_t set, std::size_t device) const {
@@ -59,11 +68,24 @@ class PlannerSolver {
 
   void Prepare(const Farm& farm);
   void ListOptions(const Farm& farm);
-  void SolveBound();
+  bool IsPrepared(const Farm& farm) const;
+  std::vector<std::size_t> LastSetsFirst() const;
+  void CountMoves();
+  void SeedMoves(std::size_t set);
+  void SumRewards();
+  void SeedRewards(std::size_t set, std::vector<double>& best) const;
   bool IsOfTask(std::size_t set) const;
-  void AddGains(std::size_t set, std::vector<double>& best) const;
-  void FollowDisasters(const Farm& farm, Foresight foresight);
-  void AdvanceDisasters(const Farm& farm, std::int32_t step);
+  void SumGains();
+  Gains GainsOf(std::size_t set) const;
+  void SumStepRewards(const Farm& farm);
+  // Best rewards in one step of any cell.
+  struct BestRewards {
+    double any{};   // of a step without a pickup or a drop-off
+    double risk{};  // of the risk alone
+  };
+  BestRewards BestOf(const RiskLayers& layers) const;
+  double Bound(std::uint32_t state, std::int32_t step) const;
+  void EnterStep(const Farm& farm, std::int32_t step);
   void WearDown();
   double Loss(std::size_t set, float share) const;
 
@@ -71,10 +93,9 @@ class PlannerSolver {
   void Reach(std::int32_t step, std::uint32_t state, double value, std::uint32_t parent,
              std::uint8_t action);
   void Complete(std::uint32_t parent, std::uint8_t action, double value);
-  void Search(const Farm& farm, Foresight foresight, std::size_t widest);
-  std::int32_t LastStep(std::int32_t step) const;
+  void Search(const Farm& farm, std::size_t widest);
   void ReachStart(const Farm& farm);
-  void Narrow(std::size_t widest);
+  void Narrow(std::int32_t step, std::size_t widest);
   void EndOfTime();
   Plan Trace() const;
   bool IsInTheWay(std::int32_t step, std::size_t cell) const;
@@ -88,22 +109,36 @@ class PlannerSolver {
 
   // Data of the current farm and task.
   const Task* task_{};
-  const Layout* layout_{};
-  std::vector<std::vector<Option>> options_;  // by cell
-  std::vector<std::int32_t> site_;            // by device: its cell
+  RiskSource* risks_{};
+  const RiskLayers* layers_of_step_{};
+  std::int32_t last_step_{};
   std::vector<float> value_;
-  std::vector<float> health_;  // present health of the waiting devices
-  std::vector<double> bound_;  // by state: max further return without disasters
-  std::vector<Disaster> disasters_;
-  std::vector<Track> tracks_;  // assumed tracks of the disasters
-  Grid<float> risk_;
+  std::vector<float> health_;         // present health of the waiting devices
+  std::vector<Gains> gains_;          // by set, with the present health
+  std::int32_t first_step_{};         // the farm's present step
+  std::vector<double> step_rewards_;  // by step from first_step_ on: sum of the best rewards
+  std::vector<double> surcharges_;    // by step: sum by which they fall short of move_reward_
   bool crash_hurts_{};
+
+  // Data that stay valid for the next plan on the same chart with the same devices.
+  Layout chart_;                              // its cells, crash rewards and ports
+  std::vector<std::vector<Option>> options_;  // by cell
+  float best_crash_{};                        // best reward of a crash on the chart
+  std::vector<std::int32_t> site_;            // by device: its cell
+  std::size_t planned_devices_{};             // devices of the task
+  std::vector<std::int32_t> moves_;  // by state: min moves until the task's devices are delivered
+  double move_reward_{};             // upper bound of the reward of a move
+  std::vector<double> rewards_;      // by state: max reward of moves, pickups and drop-offs until
+                                 // then; empty with a capacity of 1, where it follows from moves_
+  std::vector<std::pair<std::int32_t, std::size_t>> sources_;  // (moves, cell), for CountMoves
+  std::vector<std::size_t> queue_;
 
   // State of the search.
   std::vector<std::vector<Node>> layers_;
   std::vector<double> values_;       // of the layer that is expanded
   std::vector<double> next_values_;  // of the layer that is reached
   std::vector<Open> open_;           // by state
+  std::uint32_t mark_{};             // number of layers so far, of all searches
   double best_{kNever};
   std::size_t best_layer_{};
   std::uint32_t best_parent_{};

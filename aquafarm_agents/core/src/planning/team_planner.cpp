@@ -254,16 +254,17 @@ class TeamPlanner::Impl {
       reserved_.Add(static_cast<std::int32_t>(id), farm.step(),
                     {LinearIndex(ship.cell, scenario_.width)});
     }
+    DisasterRisk risks(farm, foresight_);
     for (const bool idle : {false, true}) {  // ships without work plan last and avoid the others
       for (std::size_t id = 0; id < agents; ++id) {
         if (!farm.ships()[id].in_play || shares[id].empty() != idle) continue;
-        PlanOne(farm, static_cast<std::int32_t>(id), shares[id], course);
+        PlanOne(farm, risks, static_cast<std::int32_t>(id), shares[id], course);
       }
     }
   }
 
-  void PlanOne(const Farm& farm, std::int32_t id, const std::vector<std::int32_t>& share,
-               PlanState& course) {
+  void PlanOne(const Farm& farm, RiskSource& risks, std::int32_t id,
+               const std::vector<std::int32_t>& share, PlanState& course) {
     Task task;
     task.ship = id;
     task.devices = share;
@@ -271,7 +272,7 @@ class TeamPlanner::Impl {
     task.others = &reserved_;
     auto& actions = course.actions[static_cast<std::size_t>(id)];
     auto& path = course.path[static_cast<std::size_t>(id)];
-    actions = planner_.Solve(farm, foresight_, task).actions;
+    actions = planner_.Solve(farm, risks, task).actions;
     // The ship is enclosed: take any move and plan again.
     if (actions.empty()) actions = {static_cast<std::uint8_t>(farm.step() % kMoveCount)};
     Cell cell = farm.ships()[static_cast<std::size_t>(id)].cell;

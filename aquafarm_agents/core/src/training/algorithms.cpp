@@ -15,6 +15,7 @@
 #include "aquafarm/agents/planning/team_planner.h"
 #include "aquafarm/agents/ppo/ppo.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/base/suggest.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 
 namespace aquafarm::agents {
@@ -143,7 +144,8 @@ const Algorithm& FindAlgorithm(const std::string& name) {
     if (name == algorithm.name) return algorithm;
     names.emplace_back(algorithm.name);
   }
-  throw InputError("algorithm: got '" + name + "', expected one of: " + Join(names));
+  throw InputError("algorithm: got '" + name + "'" + DidYouMean(name, names) +
+                   ", expected one of: " + Join(names));
 }
 
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
@@ -154,6 +156,19 @@ std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& sp
   constexpr std::uint64_t kMillion = 1'000'000;
   const std::uint64_t enough = (kStepsPerState * spec.state_count / kMillion + 1) * kMillion;
   return std::max(algorithm.default_steps, enough);
+}
+
+std::string LargeTableNote(const Algorithm& algorithm, const EnvironmentSpec& spec,
+                           const std::string& options) {
+  constexpr std::uint64_t kMegabyte = 1'000'000;
+  constexpr std::uint64_t kLarge = 256 * kMegabyte;
+  if ((algorithm.encodings(options) & kIndexBit) == 0) return "";
+  const std::uint64_t bytes = QTable::BytesOf(spec);
+  if (bytes < kLarge) return "";
+  return std::string("algorithm ") + algorithm.name + ": the table of " +
+         std::to_string(spec.state_count) + " states needs " + std::to_string(bytes / kMegabyte) +
+         " MB of memory, and each checkpoint as much on disk; algorithm:=auto chooses a network, "
+         "which needs a few MB";
 }
 
 Choice ChooseAlgorithm(const EnvironmentSpec& spec) {

@@ -97,8 +97,14 @@ void Run::All(const MakeEnvironment& make_environment) {
                                       " steps; a network may need fewer: algorithm dqn");
     }
   }
+  const std::string note =
+      LargeTableNote(algorithm, environment->spec(), LearnerOptionsOf(options_));
+  if (!note.empty()) Notify(RunPhase::kStarting, note);
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
+  for (const std::string& line : RenamedOptions(options_.options)) {
+    Notify(RunPhase::kStarting, line);
+  }
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) Notify(RunPhase::kStarting, warning);
   Train(*environment, *learner, folder);
@@ -185,7 +191,8 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
            folder.path() + ": contains no checkpoint yet; starting from the beginning");
   }
   if (trainer.Done() >= 1.0) {
-    Notify(RunPhase::kStarting, "the run has reached its limit; give steps or episodes beyond it");
+    Notify(RunPhase::kStarting,
+           "the run has reached its limit; set larger steps or episodes to continue it");
   }
   Describe(environment.spec(), learner, folder);
   const TrainingEnd end = trainer.Run(stop_, [&](const TrainingProgress& progress) {
@@ -227,7 +234,7 @@ void Run::SavePolicy(const Environment& environment, const Learner& learner,
 }
 
 void Run::Evaluate(Environment& environment, const Learner& learner, const RunFolder& folder) {
-  Notify(RunPhase::kEvaluating, "evaluating on unseen episodes");
+  Notify(RunPhase::kEvaluating, "evaluating on episodes of other seeds");
   EvaluationContext context;
   context.policy = report_.policy_path;
   context.algorithm = options_.algorithm;
@@ -294,9 +301,7 @@ void CheckAlgorithm(const RunOptions& options) {
   const Algorithm& algorithm = FindAlgorithm(options.algorithm);
   if (algorithm.make == nullptr) {
     throw InputError(options.algorithm +
-                     std::string(": there is nothing to train; let it play: "
-                                 "evaluate policy:=") +
-                     options.algorithm);
+                     " does not learn; evaluate it with policy:=" + options.algorithm);
   }
   algorithm.encodings(LearnerOptionsOf(options));  // throws on wrong options
 }

@@ -58,7 +58,9 @@ RunFolder::RunFolder(std::string path, bool resume) : path_(std::move(path)) {
       throw InputError(path_ + ": already contains a run; resume it or choose another folder");
     }
     if (resume && !holds_run) throw InputError(path_ + ": contains no run to resume");
-    const std::string probe = path_ + "/checkpoints/probe";
+    RemoveTemporaryFiles(path_);
+    RemoveTemporaryFiles(path_ + "/checkpoints");
+    const std::string probe = path_ + "/checkpoints/probe.tmp";
     WriteFileAtomically(probe, std::string(4096, '\0'));
     unlink(probe.c_str());
   } catch (...) {

@@ -25,7 +25,7 @@ SavedPolicy FindPolicy(const std::string& where) {
       const auto newest = RunFolder::NewestCheckpoint(where);
       if (!newest) {
         throw InputError(where +
-                         ": holds neither policy.ckpt nor a checkpoint; expected a run "
+                         ": contains neither policy.ckpt nor a checkpoint; expected a run "
                          "folder, a checkpoint file, random, planner or clairvoyant");
       }
       saved.path = *newest;
@@ -41,8 +41,7 @@ std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSp
   if (!version.empty() && version != spec.version) {
     throw InputError(saved.path + ": was trained by aquafarm " + version + ", expected " +
                      spec.version +
-                     ", whose farms it is to play on: train it again, or play it "
-                     "with the version it knows");
+                     ": train it again, or evaluate it with the version that trained it");
   }
   try {
     return FindAlgorithm(saved.checkpoint.algorithm).make_policy(saved.checkpoint, spec);

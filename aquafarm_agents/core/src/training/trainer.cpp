@@ -27,7 +27,7 @@ Trainer::Trainer(Environment& environment, Learner& learner, const TrainerOption
   }
   if ((options_.seed & kEvaluationSeedBit) != 0) {
     throw InputError("seed: got " + std::to_string(options_.seed) +
-                     ", expected less than 2^63; those above are for evaluation");
+                     ", expected less than 2^63; larger seeds are for evaluation");
   }
   progress_.episode_limit = options_.episodes;
   progress_.step_limit = options_.steps;
@@ -81,7 +81,7 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
   try {
     Train(stop, on_progress);
     if (!IsDone()) end = TrainingEnd::kInterrupted;
-    Save(true);  // also flushes the metrics
+    if (!is_saved_) Save(true);  // also flushes the metrics
   } catch (const EnvironmentLost& error) {
     message_ = error.what();
     end = TrainingEnd::kLost;
@@ -124,6 +124,7 @@ void Trainer::Train(const std::atomic<bool>* stop, const OnProgress& on_progress
   Report(on_progress);
   std::uint32_t calls = 0;
   while (!IsDone() && (stop == nullptr || !*stop)) {
+    is_saved_ = false;
     learner_.Step(*results_, Done(), actions_);
     results_ = &environment_.Step(actions_);
     Count(*results_);
@@ -225,6 +226,7 @@ void Trainer::Save(bool with_environment) {
   checkpoint.SetArray("returns", returns_);
   checkpoint.SetArray("successes", successes_);
   folder_->SaveCheckpoint(checkpoint);
+  is_saved_ = with_environment;
 }
 
 }  // namespace aquafarm::agents

@@ -65,11 +65,11 @@ TEST(Schedule, RefusalsSayWhatIsAllowed) {
 }
 
 TEST(OptionReader, UnknownKeysAreAnsweredWithThoseThereAre) {
-  OptionReader reader("discount=0.9 lerning_rate=0.1");
-  reader.Number("discount", 0.5, 0, 1);
+  OptionReader reader("gamma=0.9 lerning_rate=0.1");
+  reader.Number("gamma", 0.5, 0, 1);
   reader.Number("learning_rate", 0.5, 0, 1);
   EXPECT_CONTAINS(MessageOf<InputError>([&] { reader.Finish(); }),
-                  "got 'lerning_rate', expected one of: discount, learning_rate");
+                  "got 'lerning_rate', expected one of: gamma, learning_rate");
 }
 
 TEST(OptionReader, ResolvedNamesEveryOption) {
@@ -88,6 +88,31 @@ TEST(OptionReader, RefusesWordsAndRepetitions) {
                   "a: got 'yes', expected true or false");
   EXPECT_CONTAINS(MessageOf<InputError>([&] { reader.Number("b", 1, 0, 10); }),
                   "b: got 11, expected [0, 10]");
+}
+
+TEST(OptionReader, OldNamesCountAsTheNewOnes) {
+  OptionReader reader("batch=8 discount=0.5");
+  EXPECT_EQ(reader.Number("batch_size", 1, 0, 10), 8.0);
+  EXPECT_EQ(reader.Number("gamma", 1, 0, 1), 0.5);
+  reader.Finish();
+  EXPECT_EQ(reader.Resolved(), "batch_size=8 gamma=0.5");
+  EXPECT_CONTAINS(MessageOf<InputError>([] { OptionReader("batch_size=8 batch=9"); }),
+                  "batch_size is given twice, once as batch, its old name");
+}
+
+TEST(OptionReader, OldNamesAreReported) {
+  const std::vector<std::string> lines = RenamedOptions("start=5 loss=mse target_rate=0.1");
+  ASSERT_EQ(lines.size(), 2U);
+  EXPECT_EQ(lines[0], "option start is now called learning_starts");
+  EXPECT_EQ(lines[1], "option target_rate is now called tau");
+  EXPECT_TRUE(RenamedOptions("learning_starts=5 tau=0.1").empty());
+}
+
+TEST(OptionReader, RecordedOptionsGetTheCurrentNamesAndOrder) {
+  EXPECT_EQ(CanonicalOptions("batch=8 discount=0.5 hidden=4 loss=mse"),
+            "batch_size=8 gamma=0.5 hidden_size=4 loss=mse");
+  EXPECT_EQ(CanonicalOptions("start=5 threads=1"), "learning_starts=5 threads=1");
+  EXPECT_EQ(CanonicalOptions(""), "");
 }
 
 }  // namespace

@@ -18,10 +18,12 @@ namespace aquafarm::agents::test {
 namespace {
 
 constexpr const char* kSmall =
-    "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
+    "hidden_size=32 batch_size=32 learning_starts=500 buffer_size=5000 target_update_interval=50 "
+    "train_interval=4 "
     "learning_rate=linear:0.002:0.0001:1 ";
 constexpr const char* kSmallRecurrent =
-    "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=8 "
+    "hidden_size=24 batch_size=16 learning_starts=500 buffer_size=5000 target_update_interval=50 "
+    "train_interval=8 sequence_length=8 "
     "burn_in=4 learning_rate=linear:0.003:0.0001:1 ";
 
 /// Success rate of a greedy policy on unseen seeds, before and after training.
@@ -61,8 +63,9 @@ TEST(Dqn, SolvesATinyFarm) { ExpectSolves("dqn", kSmall, 12000); }
 
 TEST(Dqn, SolvesItWithEachSwitchTurnedRound) {
   for (const std::string change :
-       {"double_q=false", "dueling=true", "n_step=3", "priority=0", "loss=mse", "target_rate=0.01",
-        "average_rate=0.02", "action_gap=0.5", "repetition_penalty=0.5", "exploration=boltzmann"}) {
+       {"double_dqn=false", "dueling=true", "n_step=3", "priority_exponent=0", "loss=mse",
+        "tau=0.01", "ema_rate=0.02", "action_gap=0.5", "repetition_penalty=0.5",
+        "exploration=boltzmann"}) {
     EXPECT_NE(Resolved(kSmall + change, false), Resolved(kSmall, false)) << change;
     ExpectSolves("dqn", kSmall + change, 20000);
   }
@@ -83,7 +86,8 @@ TEST(Curiosity, GoesWithEveryLearnerOfValues) {
 
 TEST(Dqn, SolvesItFromThePlanes) {
   ExpectSolves("dqn",
-               "network=cnn hidden=16 batch=32 start=500 replay=5000 target_period=50 "
+               "network=cnn hidden_size=16 batch_size=32 learning_starts=500 buffer_size=5000 "
+               "target_update_interval=50 "
                "learning_rate=linear:0.002:0.0001:1",
                12000);
 }
@@ -92,8 +96,8 @@ TEST(RecurrentDqn, SolvesATinyFarm) { ExpectSolves("lstm_dqn", kSmallRecurrent, 
 
 TEST(RecurrentDqn, SolvesItWithEachSwitchTurnedRound) {
   for (const std::string change :
-       {"double_q=false", "dueling=true", "n_step=3", "priority=0", "loss=mse", "target_rate=0.01",
-        "average_rate=0.02", "repetition_penalty=0.5", "exploration=boltzmann"}) {
+       {"double_dqn=false", "dueling=true", "n_step=3", "priority_exponent=0", "loss=mse",
+        "tau=0.01", "ema_rate=0.02", "repetition_penalty=0.5", "exploration=boltzmann"}) {
     EXPECT_NE(Resolved(kSmallRecurrent + change, true), Resolved(kSmallRecurrent, true)) << change;
     ExpectSolves("lstm_dqn", kSmallRecurrent + change, 20000);
   }
@@ -103,7 +107,8 @@ TEST(RecurrentDqn, SolvesItWithEachSwitchTurnedRound) {
 
 TEST(RecurrentDqn, SolvesItWithThePapersTuples) {
   ExpectSolves("lstm_dqn",
-               "hidden=24 batch=64 start=500 replay=5000 target_period=50 steps_per_update=4 "
+               "hidden_size=24 batch_size=64 learning_starts=500 buffer_size=5000 "
+               "target_update_interval=50 train_interval=4 "
                "replayed=paper_tuple learning_rate=linear:0.003:0.0001:1",
                24000);
 }
@@ -142,9 +147,9 @@ float Gap(const std::string& algorithm, const std::string& options, std::uint64_
   const torch::Tensor input = torch::from_blob(seen.data(), {1, features});
   torch::Tensor values;
   if (recurrent) {
-    RecurrentNetwork network(features, parsed.hidden, parsed.dueling);
+    RecurrentNetwork network(features, parsed.hidden_size, parsed.dueling);
     FlatParameters(network, torch::kCPU).FromVector(weights);
-    const torch::Tensor empty = torch::zeros({1, 1, parsed.hidden});
+    const torch::Tensor empty = torch::zeros({1, 1, parsed.hidden_size});
     RecurrentNetwork::State state{empty, empty};
     values = network.Forward(input.unsqueeze(0), state)[0];
   } else {
@@ -204,7 +209,8 @@ TEST(Dqn, MaskBlockedKeepsShipsOffRocksIslandsAndTheMapsEdge) {
   for (const auto& [algorithm, small] :
        {std::pair{"dqn", kSmall}, std::pair{"lstm_dqn", kSmallRecurrent}, std::pair{"vdn", kSmall},
         std::pair{"independent_dqn", kSmall},
-        std::pair{"maddpg", "hidden=16 batch=8 start=100000 replay=1000 "}}) {
+        std::pair{"maddpg",
+                  "hidden_size=16 batch_size=8 learning_starts=100000 buffer_size=1000 "}}) {
     const std::string options = small + std::string("exploration=epsilon_greedy:1 ");
     const Crashes freely = CrashesIn(algorithm, options + "mask_blocked=false", 300);
     EXPECT_GT(freely.exploring, 50) << algorithm;
@@ -220,35 +226,35 @@ TEST(Dqn, MaskBlockedKeepsShipsOffRocksIslandsAndTheMapsEdge) {
 TEST(Dqn, PaperModeTurnsEverySwitchOff) {
   std::string resolved;
   const DeepOptions paper = DeepOptions::Parse("preset=paper", false, resolved);
-  EXPECT_FALSE(paper.double_q);
+  EXPECT_FALSE(paper.double_dqn);
   EXPECT_FALSE(paper.dueling);
   EXPECT_EQ(paper.n_step, 1);
-  EXPECT_EQ(paper.priority, 0.0);
-  EXPECT_EQ(paper.average_rate, 0.0);
+  EXPECT_EQ(paper.priority_exponent, 0.0);
+  EXPECT_EQ(paper.ema_rate, 0.0);
   EXPECT_EQ(paper.action_gap, 0.0);
   EXPECT_EQ(paper.repetition_penalty, 0.0);
   EXPECT_EQ(paper.reward_scale, 1.0);
   EXPECT_FALSE(paper.mask_illegal);
   EXPECT_FALSE(paper.mask_blocked);
   EXPECT_EQ(paper.loss, LossKind::kMse);
-  EXPECT_EQ(paper.gradient_limit, 0.0);
-  EXPECT_EQ(paper.discount, 0.99) << "§2.3";
-  EXPECT_EQ(paper.target_rate, 0.0) << "§3.4.3: a copy, now and then";
-  EXPECT_TRUE(DeepOptions::Parse("preset=paper double_q=true", false, resolved).double_q);
+  EXPECT_EQ(paper.max_grad_norm, 0.0);
+  EXPECT_EQ(paper.gamma, 0.99) << "§2.3";
+  EXPECT_EQ(paper.tau, 0.0) << "§3.4.3: a copy, now and then";
+  EXPECT_TRUE(DeepOptions::Parse("preset=paper double_dqn=true", false, resolved).double_dqn);
   EXPECT_CONTAINS(resolved, "preset=paper");
 }
 
 TEST(RecurrentDqn, PaperModeIsAlgorithm2) {
   std::string resolved;
   const DeepOptions paper = DeepOptions::Parse("preset=paper", true, resolved);
-  EXPECT_EQ(paper.discount, 0.99) << "§2.3";
-  EXPECT_GT(paper.target_rate, 0.0) << "line 22";
-  EXPECT_LE(paper.target_rate, 1.0);
-  EXPECT_EQ(paper.steps_per_update.kind, ScheduleKind::kConstant);
-  EXPECT_EQ(paper.steps_per_update.start, 1.0) << "lines 12 to 23";
+  EXPECT_EQ(paper.gamma, 0.99) << "§2.3";
+  EXPECT_GT(paper.tau, 0.0) << "line 22";
+  EXPECT_LE(paper.tau, 1.0);
+  EXPECT_EQ(paper.train_interval.kind, ScheduleKind::kConstant);
+  EXPECT_EQ(paper.train_interval.start, 1.0) << "lines 12 to 23";
   EXPECT_FALSE(paper.skip_connection);
   EXPECT_TRUE(paper.paper_tuple) << "line 19";
-  EXPECT_FALSE(paper.double_q) << "line 20";
+  EXPECT_FALSE(paper.double_dqn) << "line 20";
   EXPECT_EQ(paper.loss, LossKind::kMse) << "line 21";
   EXPECT_EQ(paper.exploration.kind, ExplorationKind::kEpsilonGreedy) << "line 13";
   EXPECT_FALSE(paper.mask_illegal) << "line 13: random among all actions";
@@ -268,47 +274,50 @@ TEST(RecurrentDqn, HasTheMemoryAloneBelowItsHeadWithoutTheSkipConnection) {
 
 TEST(Dqn, WrongOptionsAreAnsweredWithWhatIsAllowed) {
   for (const auto& [options, words] :
-       {std::pair{"doubel_q=true",
-                  "options: got 'doubel_q', expected one of: action_gap, average_rate"},
+       {std::pair{"doubel_dqn=true",
+                  "options: got 'doubel_dqn', expected one of: action_gap, batch_size"},
         std::pair{"network=rnn", "network: got 'rnn', expected one of: mlp, cnn"},
         std::pair{"network=cnn mask_blocked=true", "mask_blocked: got true, expected false"},
-        std::pair{"batch=0", "batch: got 0, expected [1, 65536]"},
-        std::pair{"batch=2.5", "batch: got 2.5, expected a whole number"},
+        std::pair{"batch_size=0", "batch_size: got 0, expected [1, 65536]"},
+        std::pair{"batch_size=2.5", "batch_size: got 2.5, expected a whole number"},
         std::pair{"loss=l1", "loss: got 'l1', expected one of: huber, mse"},
-        std::pair{"sequence=8", "options: got 'sequence'"},
+        std::pair{"sequence_length=8", "options: got 'sequence_length'"},
         std::pair{"device=gpu", "device: got 'gpu', expected one of: auto, cpu, cuda"}}) {
     EXPECT_CONTAINS(MessageOf<InputError>([o = options] { DqnEncodings(o); }), words);
   }
 }
 
 TEST(RecurrentDqn, WarmsUpForLessThanItLearnsFrom) {
-  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("sequence=4 burn_in=4"); }),
-                  "burn_in: got 4, expected less than sequence, which is 4");
-  RecurrentDqnEncodings("sequence=1 burn_in=0");
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([] { RecurrentDqnEncodings("sequence_length=4 burn_in=4"); }),
+      "burn_in: got 4, expected less than sequence_length, which is 4");
+  RecurrentDqnEncodings("sequence_length=1 burn_in=0");
 }
 
 TEST(RecurrentDqn, ReplaysThePapersTuplesByName) {
   for (const std::string name : {"preset=paper", "replayed=paper_tuple"}) {
     const std::string resolved = Resolved(name, true);
     EXPECT_CONTAINS(resolved, "replayed=paper_tuple");
-    EXPECT_CONTAINS(resolved, "sequence=1 ");
+    EXPECT_CONTAINS(resolved, "sequence_length=1 ");
     EXPECT_CONTAINS(resolved, "burn_in=0 ");
   }
   EXPECT_CONTAINS(
-      MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=paper_tuple sequence=8"); }),
-      "paper_tuple with sequence=8 burn_in=0, expected 1 and 0, or replayed=sequences");
+      MessageOf<InputError>(
+          [] { RecurrentDqnEncodings("replayed=paper_tuple sequence_length=8"); }),
+      "paper_tuple with sequence_length=8 burn_in=0, expected 1 and 0, or replayed=sequences");
   EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("replayed=tuples"); }),
                   "replayed: got 'tuples', expected one of: sequences, paper_tuple");
 }
 
 TEST(RecurrentDqn, SumsRewardsOverNoMoreStepsThanItLearnsFrom) {
-  EXPECT_CONTAINS(MessageOf<InputError>([] { RecurrentDqnEncodings("sequence=4 n_step=5"); }),
-                  "n_step: got 5, expected at most sequence, which is 4");
-  RecurrentDqnEncodings("sequence=4 n_step=4");
+  EXPECT_CONTAINS(
+      MessageOf<InputError>([] { RecurrentDqnEncodings("sequence_length=4 n_step=5"); }),
+      "n_step: got 5, expected at most sequence_length, which is 4");
+  RecurrentDqnEncodings("sequence_length=4 n_step=4");
 }
 
 TEST(Dqn, ALossThatIsNoNumberEndsTheTraining) {
-  const std::string options = "hidden=8 batch=8 start=10 replay=500";
+  const std::string options = "hidden_size=8 batch_size=8 learning_starts=10 buffer_size=500";
   LocalEnvironment environment(TinyFarm(), {8, kFeaturesBit, false, 1});
   const auto learner = MakeDqn(environment.spec(), 1, options);
   Checkpoint checkpoint;
@@ -329,7 +338,7 @@ TEST(DeepPolicies, ThatDoNotFitAreRefusedWithWhatDiffers) {
   for (const char* algorithm : {"dqn", "lstm_dqn"}) {
     LocalEnvironment environment(TinyFarm(), {1, kFeaturesBit, false, 1});
     const Algorithm& entry = FindAlgorithm(algorithm);
-    const auto learner = entry.make(environment.spec(), 1, "hidden=8");
+    const auto learner = entry.make(environment.spec(), 1, "hidden_size=8");
     Checkpoint checkpoint;
     checkpoint.algorithm = algorithm;
     checkpoint.options = learner->options();
@@ -339,11 +348,11 @@ TEST(DeepPolicies, ThatDoNotFitAreRefusedWithWhatDiffers) {
     EnvironmentSpec other = environment.spec();
     other.feature_names[2] = "tide";
     EXPECT_CONTAINS(MessageOf<InputError>([&] { entry.make_policy(checkpoint, other); }),
-                    "does not fit scenario tiny: feature 2: it knows " +
+                    "does not fit scenario tiny: feature 2: the policy has " +
                         environment.spec().feature_names[2] + ", the farm has tide");
     other.feature_count += 3;
     EXPECT_CONTAINS(MessageOf<InputError>([&] { entry.make_policy(checkpoint, other); }),
-                    "does not fit scenario tiny: features: it knows " +
+                    "does not fit scenario tiny: features: the policy has " +
                         std::to_string(other.feature_count - 3));
     checkpoint.sections["weights"].resize(40);
     EXPECT_THROW(entry.make_policy(checkpoint, environment.spec()), InputError);
@@ -369,7 +378,7 @@ std::vector<std::vector<std::uint8_t>> ActionsIn(Environment& environment, Polic
 
 TEST(RecurrentDqn, ForgetsAtAnEpisodesStart) {
   LocalEnvironment environment(TinyFarm(), {1, kFeaturesBit, false, 1});
-  const auto learner = MakeRecurrentDqn(environment.spec(), 1, "hidden=16");
+  const auto learner = MakeRecurrentDqn(environment.spec(), 1, "hidden_size=16");
   Checkpoint checkpoint;
   checkpoint.algorithm = "lstm_dqn";
   checkpoint.options = learner->options();

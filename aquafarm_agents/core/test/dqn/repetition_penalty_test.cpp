@@ -134,7 +134,7 @@ TEST(RepetitionPenalty, KnowASituationByFeaturesThatEveryFarmHas) {
 TEST(RepetitionPenalty, NeedFeatures) {
   EXPECT_CONTAINS(
       MessageOf<InputError>([] { DqnEncodings("network=cnn repetition_penalty=0.5"); }),
-      "repetition_penalty: got 0.5, expected 0 with network=cnn, which sees no features");
+      "repetition_penalty: got 0.5, expected 0 with network=cnn, which reads no features");
 }
 
 }  // namespace

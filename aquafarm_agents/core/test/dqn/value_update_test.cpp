@@ -19,8 +19,8 @@ constexpr int kAdamStep = 5;  // Adam steps before the update
 constexpr double kTau = 0.25;
 
 const char* const kCommon =
-    "hidden=4 start=1000000 replay=400 steps_per_update=1 learning_rate=0.01 "
-    "target_rate=0.25 exploration=epsilon_greedy:1 discount=0.9 reward_scale=0.25 threads=1 ";
+    "hidden_size=4 learning_starts=1000000 buffer_size=400 train_interval=1 learning_rate=0.01 "
+    "tau=0.25 exploration=epsilon_greedy:1 gamma=0.9 reward_scale=0.25 threads=1 ";
 
 /// A tiny farm whose episodes are truncated, or one whose disaster terminates them.
 std::shared_ptr<const Scenario> Farm(bool truncates, std::int32_t ships, bool team) {
@@ -128,7 +128,7 @@ struct Batch {
 Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   const auto& spec = update.spec;
   const std::size_t carry = update.recurrent ? 2 * kHidden : 0;
-  Replay<float> replay({static_cast<std::size_t>(update.options.replay),
+  Replay<float> replay({static_cast<std::size_t>(update.options.buffer_size),
                         static_cast<std::size_t>(spec.farms) * update.agents(), spec.agents,
                         static_cast<std::size_t>(spec.feature_count), carry});
   ReplaySampler<float> sampler(replay, update.options, steps, group);
@@ -142,7 +142,7 @@ Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   RandomStream rng({3, 0, RngStream::kLearner, 1});
   rng.Seek(position[0]);
   Batch batch;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(update.options.batch); ++i) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(update.options.batch_size); ++i) {
     batch.moments.push_back(sampler.Draw(rng, i));
   }
   const std::vector<float>& weights = sampler.ImportanceWeights(update.progress);
@@ -185,7 +185,7 @@ Return SumRewards(const Update& update, std::size_t moment, std::size_t entry, s
   for (std::size_t k = 1; k <= steps; ++k) {
     sum.to = moment + k;
     sum.reward += sum.discount * update.Reward(sum.to, entry);
-    sum.discount *= update.options.discount;
+    sum.discount *= update.options.gamma;
     if (update.Reason(sum.to, entry) == EndReason::kNone) continue;
     if (update.Reason(sum.to, entry) != EndReason::kStepLimit) sum.discount = 0.0;
     break;
@@ -222,7 +222,7 @@ void ExpectUpdate(const Update& update, const std::vector<Term>& terms,
   double norm = 0.0;
   for (const double one : gradient) norm += one * one;
   norm = std::sqrt(norm);
-  const double limit = update.options.gradient_limit;
+  const double limit = update.options.max_grad_norm;
   for (double& one : gradient) one *= limit > 0.0 && norm > limit ? limit / norm : 1.0;
   const Values mean = Doubles(update.before, "adam.mean");
   const Values expected = AdamOracle(online, gradient, mean, Doubles(update.before, "adam.square"),
@@ -267,7 +267,7 @@ void ExpectDqn(const std::string& options, bool truncates) {
     const Return sum = SumRewards(update, moment.age, moment.entry, steps);
     const Values seen = update.Seen(sum.to, moment.entry);
     const Values values = MlpOracle(target, seen, kHidden);
-    const Values chooses = update.options.double_q ? MlpOracle(online, seen, kHidden) : values;
+    const Values chooses = update.options.double_dqn ? MlpOracle(online, seen, kHidden) : values;
     const double next = values[BestOf(update, chooses, sum.to, moment.entry)];
     terms.push_back({sum.reward + sum.discount * next,
                      batch.weights[i] / static_cast<double>(batch.moments.size())});
@@ -289,8 +289,9 @@ TEST(DqnUpdate, IsEquation15) {
 TEST(DqnUpdate, IsThatOfEachSwitch) {
   const std::string plain = "preset=paper ";
   for (const char* change :
-       {"double_q=true", "n_step=3", "loss=huber", "gradient_limit=0.01", "mask_illegal=true",
-        "priority=0.6", "double_q=true n_step=2 loss=huber mask_illegal=true priority=0.6"}) {
+       {"double_dqn=true", "n_step=3", "loss=huber", "max_grad_norm=0.01", "mask_illegal=true",
+        "priority_exponent=0.6",
+        "double_dqn=true n_step=2 loss=huber mask_illegal=true priority_exponent=0.6"}) {
     for (const bool truncates : {false, true}) ExpectDqn(plain + change, truncates);
   }
 }
@@ -310,7 +311,7 @@ void ExpectVdn(const std::string& options, bool team) {
       const Return sum = SumRewards(update, age, agent, 1);
       const Values seen = update.Seen(sum.to, agent);
       const Values values = MlpOracle(target, seen, kHidden);
-      const Values chooses = update.options.double_q ? MlpOracle(online, seen, kHidden) : values;
+      const Values chooses = update.options.double_dqn ? MlpOracle(online, seen, kHidden) : values;
       // A team reward is repeated for each agent.
       term.target += sum.reward / (team ? static_cast<double>(agents) : 1.0) +
                      sum.discount * values[BestOf(update, chooses, sum.to, agent)];
@@ -333,7 +334,7 @@ void ExpectVdn(const std::string& options, bool team) {
 TEST(VdnUpdate, FitsTheSumOfTheAgentsValues) {
   for (const bool team : {false, true}) {
     ExpectVdn("preset=paper", team);
-    ExpectVdn("preset=paper double_q=true mask_illegal=true", team);
+    ExpectVdn("preset=paper double_dqn=true mask_illegal=true", team);
   }
 }
 
@@ -404,7 +405,7 @@ Run RunOf(const Update& update, const TransitionIndex& moment) {
   // Near the start of its episode a sequence begins there, with a zero state.
   if (update.IsStarted(run.warm_from, run.entry)) run.first = run.warm_from;
   run.last = run.first;
-  while (run.last - run.first < static_cast<std::size_t>(update.options.sequence) &&
+  while (run.last - run.first < static_cast<std::size_t>(update.options.sequence_length) &&
          run.last + 1 < kMoments && update.Reason(run.last, run.entry) == EndReason::kNone) {
     ++run.last;
   }
@@ -439,7 +440,7 @@ void ExpectSequences(const std::string& options, bool truncates) {
     const Run run = RunOf(update, batch.moments[i]);
     const auto values = Along(update, run, online, target, target);
     const auto chooses =
-        update.options.double_q ? Along(update, run, online, online, online) : values;
+        update.options.double_dqn ? Along(update, run, online, online, online) : values;
     for (std::size_t m = run.first; m < run.last; ++m) {
       const std::size_t reach =
           std::min(static_cast<std::size_t>(update.options.n_step), run.last - m);
@@ -467,9 +468,10 @@ void ExpectSequences(const std::string& options, bool truncates) {
 
 TEST(LstmDqnUpdate, IsThatOfItsSequences) {
   const std::string plain = "preset=paper replayed=sequences ";
-  for (const char* change :
-       {"sequence=3 burn_in=0", "sequence=3 burn_in=2", "sequence=4 burn_in=2 n_step=2",
-        "sequence=3 burn_in=1 double_q=true mask_illegal=true skip_connection=true loss=huber"}) {
+  for (const char* change : {"sequence_length=3 burn_in=0", "sequence_length=3 burn_in=2",
+                             "sequence_length=4 burn_in=2 n_step=2",
+                             "sequence_length=3 burn_in=1 double_dqn=true mask_illegal=true "
+                             "skip_connection=true loss=huber"}) {
     for (const bool truncates : {false, true}) ExpectSequences(plain + change, truncates);
   }
 }

@@ -56,6 +56,18 @@ TEST(Evaluate, MeasuresWhatHappened) {
   EXPECT_EQ(evaluation.mean_delivered_health, 1.0);
 }
 
+TEST(Evaluate, CountsEpisodesThatStartDifferently) {
+  Scripted policy;
+  LocalEnvironment same(TinyFarm(), {3, 0, false, 1});
+  const Evaluation repeated = Evaluate(same, policy, 1, 10);
+  EXPECT_EQ(repeated.distinct, 1U) << "one layout, one port, no disaster";
+  EXPECT_CONTAINS(Describe(repeated), "(10 episodes, 1 distinct)");
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.disasters.emplace_back();  // starts anywhere
+  LocalEnvironment environment(Share(scenario), {3, 0, false, 1});
+  EXPECT_EQ(Evaluate(environment, policy, 1, 10).distinct, 10U);
+}
+
 TEST(Evaluate, DoesNotDependOnTheNumberOfFarms) {
   const auto farm = Share(aquafarm::test::CrowdedScenario(2));
   std::vector<float> returns[2];
@@ -104,6 +116,7 @@ TEST_F(EvaluationFiles, HoldWhatIsNeededToDoItAgain) {
   const auto json = nlohmann::json::parse(ReadFile(folder_ + "/e.json"));
   EXPECT_EQ(json.at("seed"), 4);
   EXPECT_EQ(json.at("episodes"), 5);
+  EXPECT_EQ(json.at("distinct_episodes"), 1);
   EXPECT_EQ(json.at("scenario_hash"), 77);
   EXPECT_EQ(json.at("success_rate"), 1.0);
   std::ifstream csv(folder_ + "/e.csv");

@@ -55,7 +55,7 @@ TEST(RolloutValues, AreTheMeanOfEpisodes) {
   Scenario scenario = aquafarm::test::TinyScenario();
   scenario.layout = LayoutMode::kPerEpisode;
   EXPECT_EQ(MessageOf<InputError>([&] { OfPlanner(Share(scenario), 2); }),
-            "values: got a layout drawn per_episode, expected a fixed one to average over 2 "
+            "values: got layout.mode per_episode, expected fixed to average over 2 "
             "episodes");
 }
 

@@ -17,7 +17,7 @@ Checkpoint Example() {
   Checkpoint checkpoint;
   checkpoint.kind = Checkpoint::kTraining;
   checkpoint.algorithm = "q_learning";
-  checkpoint.options = "discount=0.97";
+  checkpoint.options = "gamma=0.97";
   checkpoint.version = "0.1.0";
   checkpoint.seed = 7;
   checkpoint.steps = 1ULL << 40U;
@@ -41,7 +41,7 @@ TEST_F(CheckpointFile, ReadsBackToTheSame) {
   EXPECT_EQ(read.sections, Example().sections);
   EXPECT_EQ(read.steps, 1ULL << 40U);
   EXPECT_EQ(read.spec.scenario_hash, 0xfedcba9876543210ULL);
-  EXPECT_EQ(read.options, "discount=0.97");
+  EXPECT_EQ(read.options, "gamma=0.97");
   EXPECT_EQ(read.spec.agents, 2);
   EXPECT_FALSE(std::filesystem::exists(path + ".tmp"));
 }
@@ -54,7 +54,7 @@ TEST_F(CheckpointFile, OfAnLstmDqnFromBeforeHasTheSkipConnection) {
   old.options = "preset=paper sequence=1 start=5000";
   WriteCheckpoint(path, old);
   EXPECT_EQ(ReadCheckpoint(path).options,
-            "preset=paper sequence=1 skip_connection=true start=5000");
+            "learning_starts=5000 preset=paper sequence_length=1 skip_connection=true");
   old.options = "preset=paper skip_connection=false";
   WriteCheckpoint(path, old);
   EXPECT_EQ(ReadCheckpoint(path).options, "preset=paper skip_connection=false");
@@ -140,25 +140,29 @@ TEST(CheckContinues, SaysWhatDiffers) {
     return MessageOf<InputError>(
         [&] { CheckContinues(checkpoint, "a.ckpt", algorithm, options, seed, now); });
   };
-  EXPECT_EQ(refuse("q_learning", "discount=0.97", 7, spec), "");
-  EXPECT_CONTAINS(refuse("sarsa", "discount=0.97", 7, spec),
-                  "a.ckpt: cannot be continued: algorithm: it has q_learning, asked for sarsa");
-  EXPECT_CONTAINS(refuse("q_learning", "discount=0.9", 7, spec),
-                  "options: it has discount=0.97, asked for discount=0.9");
-  EXPECT_CONTAINS(refuse("q_learning", "discount=0.97", 8, spec), "seed: it has 7, asked for 8");
+  EXPECT_EQ(refuse("q_learning", "gamma=0.97", 7, spec), "");
+  EXPECT_CONTAINS(
+      refuse("sarsa", "gamma=0.97", 7, spec),
+      "a.ckpt: cannot be resumed: algorithm: the checkpoint has q_learning, this run has sarsa");
+  EXPECT_CONTAINS(refuse("q_learning", "gamma=0.9", 7, spec),
+                  "options: the checkpoint has gamma=0.97, this run has gamma=0.9");
+  EXPECT_CONTAINS(refuse("q_learning", "gamma=0.97", 8, spec),
+                  "seed: the checkpoint has 7, this run has 8");
   EnvironmentSpec other = spec;
   other.scenario_name = "red_tide";
   other.scenario_hash = 1;
-  EXPECT_CONTAINS(refuse("q_learning", "discount=0.97", 7, other),
-                  "scenario: it has tiny (hash fedcba9876543210), asked for red_tide (hash "
-                  "0000000000000001)");
+  EXPECT_CONTAINS(
+      refuse("q_learning", "gamma=0.97", 7, other),
+      "scenario: the checkpoint has tiny (hash fedcba9876543210), this run has red_tide (hash "
+      "0000000000000001)");
   other = spec;
   other.version = "0.2.0";
-  EXPECT_CONTAINS(refuse("q_learning", "discount=0.97", 7, other),
-                  "version: it has 0.1.0, asked for 0.2.0");
+  EXPECT_CONTAINS(refuse("q_learning", "gamma=0.97", 7, other),
+                  "version: the checkpoint has 0.1.0, this run has 0.2.0");
   other = spec;
   other.farms = 4;
-  EXPECT_CONTAINS(refuse("q_learning", "discount=0.97", 7, other), "farms: it has 3, asked for 4");
+  EXPECT_CONTAINS(refuse("q_learning", "gamma=0.97", 7, other),
+                  "farms: the checkpoint has 3, this run has 4");
 }
 
 using SavedPolicyFile = FolderTest;
@@ -190,7 +194,7 @@ TEST_F(SavedPolicyFile, PlaysLikeTheLearnerThatSavedIt) {
   EnvironmentSpec other = environment.spec();
   other.width = 30;
   EXPECT_CONTAINS(MessageOf<InputError>([&] { MakePolicy(saved, other); }),
-                  "does not fit scenario tiny: width: it knows 5, the farm has 30");
+                  "does not fit scenario tiny: width: the policy has 5, the farm has 30");
   SavedPolicy old = saved;
   old.checkpoint.version = "0.0.1";
   EXPECT_CONTAINS(
@@ -200,7 +204,7 @@ TEST_F(SavedPolicyFile, PlaysLikeTheLearnerThatSavedIt) {
 
 TEST_F(SavedPolicyFile, AFolderWithoutAPolicyIsRefused) {
   EXPECT_CONTAINS(MessageOf<InputError>([&] { FindPolicy(folder_); }),
-                  "holds neither policy.ckpt nor a checkpoint");
+                  "contains neither policy.ckpt nor a checkpoint");
   EXPECT_EQ(FindPolicy("random").checkpoint.algorithm, "random");
 }
 

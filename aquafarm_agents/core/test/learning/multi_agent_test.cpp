@@ -17,11 +17,13 @@ namespace aquafarm::agents::test {
 namespace {
 
 constexpr const char* kSmall =
-    "hidden=32 batch=32 start=500 replay=5000 target_period=50 steps_per_update=4 "
+    "hidden_size=32 batch_size=32 learning_starts=500 buffer_size=5000 target_update_interval=50 "
+    "train_interval=4 "
     "learning_rate=linear:0.002:0.0001:1";
 
 constexpr const char* kSmallRecurrent =
-    "hidden=24 batch=16 start=500 replay=5000 target_period=50 steps_per_update=8 sequence=4 "
+    "hidden_size=24 batch_size=16 learning_starts=500 buffer_size=5000 target_update_interval=50 "
+    "train_interval=8 sequence_length=4 "
     "burn_in=2 learning_rate=linear:0.003:0.0001:1";
 
 /// Two ships at two ports, two devices, team reward.
@@ -76,7 +78,8 @@ TEST(TwoShips, AreLedHomeByLearnersOfValuesThatRemember) {
 
 // The shipped settings except for the size and a longer exploration, because the runs are short.
 const std::string kActors =
-    "start=500 replay=20000 exploration=epsilon_greedy:linear:1:0.05:0.5 hidden=";
+    "learning_starts=500 buffer_size=20000 exploration=epsilon_greedy:linear:1:0.05:0.5 "
+    "hidden_size=";
 
 TEST(TwoShips, AreLedHomeByActorsWithACriticThatSeesAll) {
   EXPECT_GE(SuccessAfter("maddpg", kActors + "64", 40000, TwoShips()), 0.98);
@@ -87,17 +90,19 @@ TEST(TwoShips, AreLedHomeByActorsWhoAreToldTheTeamsRewardAlone) {
 }
 
 TEST(TwoShips, AreLedHomeByActorsThatRemember) {
-  EXPECT_GE(
-      SuccessAfter("maddpg", kActors + "32 recurrent=true window=3 batch=32", 32000, TwoShips()),
-      0.98);
+  EXPECT_GE(SuccessAfter("maddpg", kActors + "32 recurrent=true window=3 batch_size=32", 32000,
+                         TwoShips()),
+            0.98);
 }
 
 // MADDPG as printed by Lowe et al., except that all agents share one critic: targets by the own
 // target actor, uniform replay, one network per actor.
 TEST(TwoShips, AreLedHomeByActorsAsPrinted) {
   constexpr const char* kPrinted =
-      "hidden=32 start=500 replay=20000 actor_rate=0.001 logit_penalty=0.01 best_response=false "
-      "priority=0 shared=false mask_blocked=false exploration=epsilon_greedy:linear:1:0.05:0.5";
+      "hidden_size=32 learning_starts=500 buffer_size=20000 actor_rate=0.001 logit_penalty=0.01 "
+      "best_response=false "
+      "priority_exponent=0 shared=false mask_blocked=false "
+      "exploration=epsilon_greedy:linear:1:0.05:0.5";
   EXPECT_GE(SuccessAfter("maddpg", kPrinted, 40000, TwoShips()), 0.98);
 }
 
@@ -106,7 +111,8 @@ TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
   Scenario scenario = TwoShips();
   scenario.step_limit = 5000;
   const std::string options =
-      "recurrent=true window=8 hidden=8 batch=32 start=50 replay=100 steps_per_update=2 "
+      "recurrent=true window=8 hidden_size=8 batch_size=32 learning_starts=50 buffer_size=100 "
+      "train_interval=2 "
       "shared=false";
   LocalEnvironment environment(Share(scenario), {2, kFeaturesBit, false, 1});
   const auto learner = FindAlgorithm("maddpg").make(environment.spec(), 1, options);
@@ -118,7 +124,8 @@ TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
 }
 
 TEST(Maddpg, AnActorsLossThatIsNoNumberNamesTheBatchItWasDrawnFor) {
-  const std::string options = "hidden=8 batch=8 start=10 replay=500 steps_per_update=2";
+  const std::string options =
+      "hidden_size=8 batch_size=8 learning_starts=10 buffer_size=500 train_interval=2";
   LocalEnvironment environment(Share(TwoShips()), {2, kFeaturesBit, false, 1});
   const auto learner = FindAlgorithm("maddpg").make(environment.spec(), 1, options);
   Checkpoint checkpoint;
@@ -160,25 +167,25 @@ TEST(DoneAgents, LearnNothingMoreFromATable) {
   spec.farms = 1;
   spec.agents = 2;
   spec.state_count = 3;
-  TabularLearner<QLearningRule> learner(
-      spec, 1, "learning_rate=0.5 discount=0.9 exploration=epsilon_greedy:0");
+  TabularLearner<QLearningRule> learner(spec, 1,
+                                        "learning_rate=0.5 gamma=0.9 exploration=epsilon_greedy:0");
   StepResults results;
   results.legal = {kAllActions, kAllActions};
   results.reasons = {0};
   std::vector<std::uint8_t> actions;
-  const auto tell = [&](bool started, std::uint8_t in_play, float reward) {
+  const auto step = [&](bool started, std::uint8_t in_play, float reward) {
     results.started = {started ? std::uint8_t{1} : std::uint8_t{0}};
     results.index = {0, 1};
     results.in_play = {1, in_play};
     results.rewards = {0.0F, reward};
     learner.Step(results, 0.0, actions);
   };
-  tell(true, 1, 0.0F);
-  tell(false, 0, 10.0F);  // the second agent delivers itself
+  step(true, 1, 0.0F);
+  step(false, 0, 10.0F);  // the second agent delivers itself
   const std::vector<float> once = learner.table().values;
   EXPECT_EQ(once[3 * kActionCount + kActionCount], 5.0F) << "no bootstrap past its end";
-  tell(false, 0, 99.0F);
-  tell(false, 0, 99.0F);
+  step(false, 0, 99.0F);
+  step(false, 0, 99.0F);
   EXPECT_EQ(learner.table().values, once);
 }
 
@@ -223,7 +230,7 @@ Checkpoint PolicyOf(const Learner& learner, const std::string& algorithm,
 }
 
 TEST_P(Saved, LearnersOfSeveralAgentsGoOnBitForBit) {
-  const std::string options = "hidden=8 batch=8 start=50 replay=500";
+  const std::string options = "hidden_size=8 batch_size=8 learning_starts=50 buffer_size=500";
   const Algorithm& entry = FindAlgorithm(GetParam());
   LocalEnvironment environment(Share(SmartDevices()), {2, entry.encodings(options), false, 1});
   const auto one = entry.make(environment.spec(), 1, options);
@@ -256,7 +263,7 @@ TEST_P(Saved, PoliciesForTwoShipsAreRefusedByAFarmWithFour) {
   Scenario scenario = TwoShips();
   scenario.name = "two";
   LocalEnvironment two(Share(scenario), {1, kFeaturesBit, false, 1});
-  const auto learner = entry.make(two.spec(), 1, "hidden=8");
+  const auto learner = entry.make(two.spec(), 1, "hidden_size=8");
   const Checkpoint checkpoint = PolicyOf(*learner, GetParam(), two.spec());
   EXPECT_NE(entry.make_policy(checkpoint, two.spec()), nullptr);
   scenario.name = "four";
@@ -265,7 +272,7 @@ TEST_P(Saved, PoliciesForTwoShipsAreRefusedByAFarmWithFour) {
   EXPECT_CONTAINS(
       MessageOf<InputError>([&] { entry.make_policy(checkpoint, four.spec()); }),
       GetParam() +
-          " of scenario two does not fit scenario four: agents: it knows 2, the farm has 4");
+          " of scenario two does not fit scenario four: agents: the policy has 2, the farm has 4");
 }
 
 void ExpectTheOwnShareIsEnough(const std::string& algorithm, const std::string& options) {
@@ -299,18 +306,18 @@ void ExpectTheOwnShareIsEnough(const std::string& algorithm, const std::string& 
 
 // A ship's own node has only the observations of that ship.
 TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
-  ExpectTheOwnShareIsEnough(GetParam(), "hidden=8");
+  ExpectTheOwnShareIsEnough(GetParam(), "hidden_size=8");
   if (GetParam() != "maddpg") return;
-  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 shared=false");
-  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 recurrent=true");
-  ExpectTheOwnShareIsEnough("maddpg", "hidden=8 shared=false recurrent=true");
+  ExpectTheOwnShareIsEnough("maddpg", "hidden_size=8 shared=false");
+  ExpectTheOwnShareIsEnough("maddpg", "hidden_size=8 recurrent=true");
+  ExpectTheOwnShareIsEnough("maddpg", "hidden_size=8 shared=false recurrent=true");
 }
 
 // The weights are the same on every device. On a machine with CUDA this test is weaker.
 TEST_P(Saved, PoliciesTrainedOnCudaPlayWhereThereIsNone) {
   const Algorithm& entry = FindAlgorithm(GetParam());
   LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});
-  const auto learner = entry.make(environment.spec(), 1, "hidden=8 device=cpu");
+  const auto learner = entry.make(environment.spec(), 1, "hidden_size=8 device=cpu");
   Checkpoint checkpoint = PolicyOf(*learner, GetParam(), environment.spec());
   const std::string cpu = "device=cpu";
   const std::size_t at = checkpoint.options.find(cpu);
@@ -335,7 +342,7 @@ TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
   Scenario scenario = TwoShips();
   scenario.ships.count = 3;
   LocalEnvironment environment(Share(scenario), {1, kFeaturesBit, false, 1});
-  const auto learner = FindAlgorithm("dqn").make(environment.spec(), 1, "hidden=8");
+  const auto learner = FindAlgorithm("dqn").make(environment.spec(), 1, "hidden_size=8");
   const Checkpoint checkpoint = PolicyOf(*learner, "dqn", environment.spec());
   const auto policy = FindAlgorithm("dqn").make_policy(checkpoint, environment.spec());
   StepResults results = environment.Reset(1, 0);

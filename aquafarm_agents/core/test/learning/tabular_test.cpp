@@ -39,7 +39,7 @@ struct Chain {
   }
 };
 
-constexpr const char* kByHand = "learning_rate=0.5 discount=0.9 exploration=epsilon_greedy:0";
+constexpr const char* kByHand = "learning_rate=0.5 gamma=0.9 exploration=epsilon_greedy:0";
 
 TEST(QLearning, UpdatesByEquation12) {
   Chain chain;
@@ -104,7 +104,7 @@ template <typename L>
 void ExpectLikeOracle(bool sarsa) {
   LocalEnvironment environment(Share(aquafarm::test::CrowdedScenario(2)), {3, kIndexBit, false, 1});
   const EnvironmentSpec& spec = environment.spec();
-  L learner(spec, 9, "learning_rate=0.25 discount=0.75 exploration=epsilon_greedy:0.5");
+  L learner(spec, 9, "learning_rate=0.25 gamma=0.75 exploration=epsilon_greedy:0.5");
   Oracle oracle{std::vector<float>(learner.table().values.size()), 0.25F, 0.75F, sarsa};
   std::vector<std::uint8_t> actions;
   StepResults results = environment.Reset(3);

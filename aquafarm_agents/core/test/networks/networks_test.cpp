@@ -65,7 +65,7 @@ TEST(Networks, OneRowAloneHasTheValuesOfLibtorch) {
   for (const bool dueling : {false, true}) {
     DeepOptions options;
     options.network = NetworkKind::kMlp;
-    options.hidden = 11;  // not a multiple of the SIMD width
+    options.hidden_size = 11;  // not a multiple of the SIMD width
     options.dueling = dueling;
     const auto network = MakeNetwork(spec, options, 3);
     const std::vector<float> weights = FlatParameters(*network, torch::kCPU).ToVector();
@@ -87,7 +87,7 @@ TEST(Networks, GradientsOfEveryKindAreDifferences) {
     for (const bool dueling : {false, true}) {
       DeepOptions options;
       options.network = kind;
-      options.hidden = 8;
+      options.hidden_size = 8;
       options.dueling = dueling;
       const auto network = MakeNetwork(SmallSpec(), options, 3);
       const torch::Tensor input =
@@ -243,7 +243,7 @@ TEST(Networks, HaveTheValuesAndGradientsOfTheStoredReference) {
       EnvironmentSpec spec;
       spec.feature_count = static_cast<std::int32_t>(features);
       DeepOptions options;
-      options.hidden = static_cast<std::int32_t>(hidden);
+      options.hidden_size = static_cast<std::int32_t>(hidden);
       options.dueling = dueling;
       const auto network = MakeNetwork(spec, options, 3);
       gradient = GradientAtAWave(*network, [&] {
@@ -320,7 +320,7 @@ TEST(FlatAdam, TakesNoStepDownAGradientThatIsNoNumber) {
 
 TEST(DrawWeights, KeepsToPyTorchsLimits) {
   DeepOptions options;
-  options.hidden = 128;
+  options.hidden_size = 128;
   const auto network = MakeNetwork(SmallSpec(), options, 3);
   for (const auto& item : network->named_parameters()) {
     const std::int64_t fan_in = item.key().rfind("first", 0) == 0 ? 5 : 128;

@@ -15,11 +15,11 @@ constexpr float kOver = 100.0F;  // reward of an episode's last step
 
 DeepOptions Options(std::int32_t n_step) {
   DeepOptions options;
-  options.batch = 1;
-  options.sequence = kSequence;
+  options.batch_size = 1;
+  options.sequence_length = kSequence;
   options.burn_in = kBurnIn;
   options.n_step = n_step;
-  options.discount = 1.0;
+  options.gamma = 1.0;
   options.reward_scale = 1.0;
   options.mask_blocked = false;
   return options;
@@ -107,8 +107,8 @@ TEST(ReplaySampler, DrawsMomentsOfWholeFarmsWhileAnybodyIsAtWork) {
   for (const double priority : {0.0, 0.6}) {
     Replay<float> replay({8 * kFarms * kAgents, kFarms * kAgents, kAgents, 1, 0});
     DeepOptions options = Options(1);
-    options.batch = 4;
-    options.priority = priority;
+    options.batch_size = 4;
+    options.priority_exponent = priority;
     ReplaySampler<float> sampler(replay, options, 1, kAgents);
     StepResults results;
     results.rewards = results.features = {0, 0, 0, 0};

@@ -242,6 +242,118 @@ TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {
   EXPECT_NEAR(last, 0.0, 1e-3);
 }
 
+// Returns the layers of a farm's future: the risks, and the reward of a quiet step.
+std::vector<RiskLayers> FutureOf(const Farm& farm) {
+  DisasterRisk risks(farm, Foresight::kOracle);
+  std::vector<RiskLayers> layers;
+  for (std::int32_t step = farm.step() + 1; step <= risks.last_step(); ++step) {
+    layers.push_back(risks.At(step));
+  }
+  return layers;
+}
+
+// Farms of one layout with different storms, as members of an ensemble.
+std::vector<Farm> Members(const std::shared_ptr<const Scenario>& scenario, std::uint64_t count) {
+  std::vector<Farm> members;
+  for (std::uint64_t episode = 0; episode < count; ++episode) {
+    members.emplace_back(scenario);
+    members.back().Reset(5, episode);
+  }
+  return members;
+}
+
+// Returns the max mean return of one fixed action sequence over all members, by trying every one.
+double BruteForceMean(const std::vector<Farm>& members, std::map<std::string, double>& seen) {
+  if (members[0].over()) return 0.0;
+  std::string name;
+  for (const Farm& farm : members) {
+    const Ship& ship = farm.ships()[0];
+    name += std::to_string(farm.step()) + ' ' + std::to_string(ship.cell.x) + ' ' +
+            std::to_string(ship.cell.y);
+    for (const Device& device : farm.devices()) {
+      name += ' ' + std::to_string(static_cast<int>(device.status)) + ' ' +
+              std::to_string(device.health);
+    }
+  }
+  const auto found = seen.find(name);
+  if (found != seen.end()) return found->second;
+  double best = -1e9;
+  for (std::uint8_t action = 0; action < kActionCount; ++action) {
+    std::vector<Farm> next;
+    double reward = 0.0;
+    for (const Farm& farm : members) {
+      next.emplace_back(std::make_shared<const Scenario>(farm.scenario()), farm.shared_layout());
+      next.back().Load(farm.Save());
+      next.back().Step(&action);
+      reward += static_cast<double>(next.back().ships()[0].reward);
+    }
+    best = std::max(best, reward / static_cast<double>(next.size()) + BruteForceMean(next, seen));
+  }
+  seen[name] = best;
+  return best;
+}
+
+// No other fixed sequence of actions has a better mean return over the members.
+TEST(RiskField, OfTheMeanGivesTheBestFixedPlanOfAnEnsemble) {
+  for (const float exposure : {0.0F, 0.002F}) {  // too weak to clamp health at 0
+    Scenario tiny = TinyScenario(7, exposure, 1);
+    tiny.damage.crash_probability = 1.0F;  // all members crash alike
+    const auto scenario = std::make_shared<const Scenario>(tiny);
+    std::vector<Farm> members = Members(scenario, 3);
+    // One start, as the start port of an episode is drawn; the tiny farm has one port.
+    std::vector<RiskLayers> mean = FutureOf(members[0]);
+    for (std::size_t i = 1; i < members.size(); ++i) {
+      const std::vector<RiskLayers> more = FutureOf(members[i]);
+      for (std::size_t k = 0; k < mean.size(); ++k) {
+        mean[k].risk += more[k].risk;
+        mean[k].quiet += more[k].quiet;
+      }
+    }
+    const auto count = static_cast<float>(members.size());
+    for (RiskLayers& layers : mean) {
+      layers.risk /= count;
+      layers.quiet /= count;
+    }
+    RiskField field(1, mean);
+    Planner planner(*scenario);
+    Task task;
+    task.devices = {0, 1};
+    const Plan plan = planner.Solve(members[0], field, task);
+    std::map<std::string, double> seen;
+    EXPECT_NEAR(plan.expected_return, BruteForceMean(members, seen), 1e-3) << exposure;
+    double played = 0.0;
+    for (Farm& farm : members) played += Play(farm, plan) / static_cast<double>(members.size());
+    EXPECT_NEAR(plan.expected_return, played, 1e-3) << exposure;
+  }
+}
+
+TEST(DisasterRisk, IsTheRiskOfTheFarmInAnyOrderOfSteps) {
+  const auto scenario = std::make_shared<const Scenario>(TinyScenario(30, 0.0F, 1));
+  Farm farm(scenario);
+  farm.Reset(5, 2);
+  DisasterRisk risks(farm, Foresight::kOracle);
+  EXPECT_EQ(risks.last_step(), 30);
+  std::vector<RiskLayers> layers;
+  for (std::int32_t step = 1; step <= 30; ++step) layers.push_back(risks.At(step));
+  for (std::int32_t step = 30; step >= 1; --step) {
+    const auto k = static_cast<std::size_t>(step - 1);
+    EXPECT_TRUE((risks.At(step).risk == layers[k].risk).all()) << step;
+    EXPECT_TRUE((risks.At(step).quiet == layers[k].quiet).all()) << step;
+  }
+  Farm played(scenario);
+  played.Reset(5, 2);
+  constexpr auto kHold = static_cast<std::uint8_t>(Action::kHold);
+  for (std::int32_t step = 1; step <= 20; ++step) {
+    played.Step(&kHold);
+    for (std::int32_t i = 0; i < scenario->CellCount(); ++i) {
+      const float risk = played.RiskAt({i % 4, i / 4});
+      const RiskLayers& one = layers[static_cast<std::size_t>(step - 1)];
+      EXPECT_EQ(one.risk.data()[i], risk);
+      EXPECT_EQ(one.quiet.data()[i], risk < 0.0F ? risk : scenario->rewards.step);
+    }
+  }
+}
+
 TEST(Clairvoyant, BringsEverythingHomeOnThePapersFarm) {
   const auto scenario =
       std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));

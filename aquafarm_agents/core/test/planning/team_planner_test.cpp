@@ -187,7 +187,7 @@ TEST(TeamPlanner, PlansAnewWhenABulletinArrives) {
   EXPECT_EQ(course.start, 0) << "on course";
   farm.SetDisaster(0, StillDisaster(2.0F, 3.0F, {1.5F}, {-6.0F}));
   planner.Act(farm, course, actions.data());
-  EXPECT_EQ(course.start, 1) << "planned anew";
+  EXPECT_EQ(course.start, 1) << "planned again";
 }
 
 TEST(TeamBound, OfADeviceThatDrivesItselfIsItsWayHome) {

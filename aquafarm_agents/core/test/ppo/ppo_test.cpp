@@ -201,7 +201,7 @@ TEST(Ppo, PoliciesThatDoNotFitAreRefusedWithWhatDiffers) {
   EnvironmentSpec other = environment.spec();
   other.feature_names[2] = "tide";
   EXPECT_CONTAINS(MessageOf<InputError>([&] { MakePpoPolicy(checkpoint, other); }),
-                  "does not fit scenario tiny: feature 2: it knows ");
+                  "does not fit scenario tiny: feature 2: the policy has ");
   checkpoint.sections["weights"].resize(40);
   EXPECT_CONTAINS(MessageOf<InputError>([&] { MakePpoPolicy(checkpoint, environment.spec()); }),
                   "weights: got 10 numbers, expected ");

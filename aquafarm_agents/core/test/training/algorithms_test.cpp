@@ -10,7 +10,8 @@ namespace {
 
 TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
   EXPECT_EQ(MessageOf<InputError>([] { FindAlgorithm("dqm"); }),
-            "algorithm: got 'dqm', expected one of: random, q_learning, sarsa, dqn, "
+            "algorithm: got 'dqm' (did you mean 'dqn'?), expected one of: random, q_learning, "
+            "sarsa, dqn, "
             "lstm_dqn, independent_dqn, independent_lstm_dqn, vdn, "
             "maddpg, ppo, planner, clairvoyant");
 }
@@ -41,12 +42,26 @@ TEST(Algorithms, ATableOfManyStatesIsTrainedForLonger) {
   EXPECT_EQ(steps("dqn"), 200'000U);
 }
 
+TEST(Algorithms, ALargeTableIsAnnouncedWithItsSize) {
+  EnvironmentSpec spec;
+  spec.agents = 1;
+  spec.state_count = 17'920'000;
+  EXPECT_EQ(LargeTableNote(FindAlgorithm("q_learning"), spec, ""),
+            "algorithm q_learning: the table of 17920000 states needs 716 MB of memory, and each "
+            "checkpoint as much on disk; algorithm:=auto chooses a network, which needs a few MB");
+  EXPECT_EQ(LargeTableNote(FindAlgorithm("dqn"), spec, ""), "");
+  spec.state_count = 20'000;
+  EXPECT_EQ(LargeTableNote(FindAlgorithm("q_learning"), spec, ""), "");
+}
+
 // With the default options, deep learners update too rarely for a short test.
 std::string Lively(const Algorithm& algorithm) {
   const std::string name = algorithm.name;
-  const std::string small = "hidden=8 batch=8 start=20 replay=300 priority=0.5";
-  if (name.find("lstm_dqn") != std::string::npos) return small + " sequence=4 burn_in=2";
-  if (name == "maddpg") return "hidden=8 batch=8 start=20 replay=300 recurrent=true";
+  const std::string small =
+      "hidden_size=8 batch_size=8 learning_starts=20 buffer_size=300 priority_exponent=0.5";
+  if (name.find("lstm_dqn") != std::string::npos) return small + " sequence_length=4 burn_in=2";
+  if (name == "maddpg")
+    return "hidden_size=8 batch_size=8 learning_starts=20 buffer_size=300 recurrent=true";
   if (name == "ppo") return "hidden_size=8 rollout_size=90 batch_size=32";
   return name == "dqn" || name == "independent_dqn" || name == "vdn" ? small : "";
 }
@@ -94,7 +109,7 @@ TEST(Algorithms, EachContinuesBitForBit) {
                   "hidden_size=8 rollout_size=90 batch_size=32 recurrent=true sequence_length=7");
   for (const char* name : {"dqn", "lstm_dqn"}) {
     const Algorithm& algorithm = FindAlgorithm(name);
-    ExpectContinues(algorithm, Lively(algorithm) + " average_rate=0.02 repetition_penalty=2");
+    ExpectContinues(algorithm, Lively(algorithm) + " ema_rate=0.02 repetition_penalty=2");
   }
 }
 

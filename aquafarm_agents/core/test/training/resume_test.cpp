@@ -141,7 +141,7 @@ TEST_F(Resume, ADamagedCheckpointIsRefused) {
 TEST_F(Resume, AnotherAlgorithmIsRefused) {
   TrainInProcess("run", "q_learning", false, 20);
   EXPECT_CONTAINS(MessageOf<InputError>([&] { TrainInProcess("run", "sarsa", true, 0); }),
-                  "algorithm: it has q_learning, asked for sarsa");
+                  "algorithm: the checkpoint has q_learning, this run has sarsa");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "agents_fixture.h"
 #include "aquafarm/agents/evaluation/metrics.h"
@@ -62,6 +63,17 @@ TEST_F(RunFolderTest, KeepsTheLastTwoCheckpoints) {
   EXPECT_EQ(ReadCheckpoint(*run.NewestCheckpoint()).steps, 1000U);
 }
 
+TEST_F(RunFolderTest, RemovesWhatAKilledWriterLeft) {
+  { const RunFolder run(folder_ + "/run", false); }
+  WriteFileAtomically(folder_ + "/run/run.json", "{}");
+  const std::vector<std::string> left{folder_ + "/run/checkpoints/step_7.ckpt.tmp",
+                                      folder_ + "/run/policy.ckpt.tmp"};
+  for (const std::string& path : left) std::ofstream(path) << "half";
+  const RunFolder run(folder_ + "/run", true);
+  for (const std::string& path : left) EXPECT_FALSE(std::filesystem::exists(path)) << path;
+  EXPECT_TRUE(std::filesystem::exists(folder_ + "/run/run.json"));
+}
+
 using MetricsFileTest = FolderTest;
 
 TEST_F(MetricsFileTest, ContinuesWhereTheCheckpointWas) {
@@ -87,7 +99,7 @@ TEST_F(MetricsFileTest, ContinuesWhereTheCheckpointWas) {
   }
   EXPECT_EQ(ReadFile(path), whole);
   EXPECT_CONTAINS(MessageOf<InputError>([&] { MetricsFile(path, 100000); }),
-                  "expected at least the 100000 that the checkpoint counts");
+                  "expected at least the 100000 that the checkpoint records");
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST_F(RunTest, AgentsLearnFromTheirOwnPartUnlessToldOtherwise) {
   options_.credit = "shared";
   const RunReport other = Train(make);
   EXPECT_EQ(other.code, ExitCode::kBadInput);
-  EXPECT_CONTAINS(other.status.message, "credit: it has own, asked for shared");
+  EXPECT_CONTAINS(other.status.message, "credit: the checkpoint has own, this run has shared");
   EXPECT_EQ(asked, (std::vector<int>{kOwnRewardsBit, 0}));
   options_.credit = "mine";
   EXPECT_CONTAINS(Train(make).status.message, "credit: got 'mine', expected one of: own, shared");
@@ -124,7 +124,7 @@ TEST_F(RunTest, BadOptionsEndBeforeAnythingIsMade) {
   options_.exploration = "";
   options_.options = "alpha=0.1";
   EXPECT_CONTAINS(Train().summary,
-                  "got 'alpha', expected one of: discount, exploration, "
+                  "got 'alpha', expected one of: exploration, gamma, "
                   "initial_value, learning_rate, mask_illegal");
   EXPECT_FALSE(std::filesystem::exists(options_.run_dir));
 }
@@ -189,7 +189,7 @@ TEST_F(Programs, RefuseWhatTheyDoNotKnow) {
   EXPECT_EQ(Run({AQUAFARM_TRAIN, "paper", "-d", run, "--farms", "4097"}), 2);
   EXPECT_EQ(Run({AQUAFARM_TRAIN, "--no-such-option"}), 2);
   EXPECT_EQ(Run({AQUAFARM_EVALUATE, folder_}), 2);
-  EXPECT_CONTAINS(output_, "holds neither policy.ckpt nor a checkpoint");
+  EXPECT_CONTAINS(output_, "contains neither policy.ckpt nor a checkpoint");
 }
 
 TEST_F(Programs, NameTheLastGoodCheckpointOfATrainingThatDivergedAndPlayIt) {
@@ -197,8 +197,9 @@ TEST_F(Programs, NameTheLastGoodCheckpointOfATrainingThatDivergedAndPlayIt) {
   command.insert(command.end(), {"-f", "4", "-n", "100000", "--checkpoint-period", "0"});
   // The weights grow by 1 per update until the gradients of such rewards overflow a float.
   for (const char* option :
-       {"learning_rate=1", "reward_scale=1e9", "gradient_limit=0", "loss=mse", "discount=1",
-        "target_period=1", "priority=0", "hidden=128", "batch=8", "start=500", "replay=1000"}) {
+       {"learning_rate=1", "reward_scale=1e9", "max_grad_norm=0", "loss=mse", "gamma=1",
+        "target_update_interval=1", "priority_exponent=0", "hidden_size=128", "batch_size=8",
+        "learning_starts=500", "buffer_size=1000"}) {
     command.insert(command.end(), {"-o", option});
   }
   ASSERT_EQ(Run(command), static_cast<int>(ExitCode::kDiverged)) << output_;

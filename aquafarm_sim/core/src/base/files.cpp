@@ -18,15 +18,31 @@ void NeedRegularFile(const std::string& path) {
   throw InputError(path + ": cannot read: not a regular file");
 }
 
-std::string ReadTextFile(const std::string& path) {
+namespace {
+
+// Returns the max size of a file, by its format, which the first bytes show.
+std::streamoff SizeLimit(std::ifstream& file) {
   constexpr std::streamoff kMostBytes = std::streamoff{512} << 20U;
+  constexpr std::streamoff kMostJsonBytes = std::streamoff{64} << 20U;
+  file.seekg(0);
+  char first = '\0';
+  const bool any = static_cast<bool>(file >> std::ws >> first);
+  file.clear();
+  return any && (first == '{' || first == '[') ? kMostJsonBytes : kMostBytes;
+}
+
+}  // namespace
+
+std::string ReadTextFile(const std::string& path) {
   NeedRegularFile(path);
   errno = 0;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
-  if (size > kMostBytes) {
+  const std::streamoff limit = size < 0 ? 0 : SizeLimit(file);
+  if (size > limit) {
     throw InputError(path + ": got " + std::to_string(size) + " bytes, expected at most " +
-                     std::to_string(kMostBytes));
+                     std::to_string(limit) +
+                     " in this format; cut the file to the storms or the area that you need");
   }
   std::string text(static_cast<std::size_t>(std::max<std::streamoff>(size, 0)), '\0');
   file.seekg(0);

@@ -13,7 +13,8 @@ namespace aquafarm::internal {
 void NeedRegularFile(const std::string& path);
 
 /// Reads a regular file completely. @throws InputError when it cannot be read or is larger than
-/// 512 MiB (the complete IBTrACS file has about 300 MiB)
+/// 512 MiB (the complete IBTrACS file has about 300 MiB), or than 64 MiB if it is JSON, which takes
+/// several times its size in memory
 std::string ReadTextFile(const std::string& path);
 
 }  // namespace aquafarm::internal

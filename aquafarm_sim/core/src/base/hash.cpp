@@ -4,16 +4,27 @@
 namespace aquafarm {
 
 std::uint64_t HashBytes(std::string_view bytes) {
+  return HashBytes(std::vector<std::string_view>{bytes});
+}
+
+std::uint64_t HashBytes(const std::vector<std::string_view>& parts) {
+  std::uint64_t size = 0;
+  for (const std::string_view part : parts) size += part.size();
   Hasher hasher;
-  hasher.Add(static_cast<std::uint64_t>(bytes.size()));
+  hasher.Add(size);
   std::uint64_t word = 0;
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    // Little-endian words on every machine.
-    word |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * (i % 8));
-    if (i % 8 != 7 && i + 1 != bytes.size()) continue;
-    hasher.Add(word);
-    word = 0;
+  unsigned shift = 0;
+  for (const std::string_view part : parts) {
+    for (const char byte : part) {
+      // Little-endian words on every machine.
+      word |= static_cast<std::uint64_t>(static_cast<unsigned char>(byte)) << shift;
+      shift = (shift + 8U) % 64U;
+      if (shift != 0) continue;
+      hasher.Add(word);
+      word = 0;
+    }
   }
+  if (shift != 0) hasher.Add(word);
   return hasher.value();
 }
 

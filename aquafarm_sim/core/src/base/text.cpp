@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <locale>
-#include <numeric>
 #include <sstream>
 
 namespace aquafarm::internal {
@@ -44,21 +43,6 @@ bool IsWhole(const std::string& text, bool minus) {
   const std::size_t first = minus && !text.empty() && text[0] == '-' ? 1 : 0;
   return text.size() > first && text.size() < 22 &&
          text.find_first_not_of("0123456789", first) == std::string::npos;
-}
-
-std::size_t EditDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
 }
 
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -106,19 +90,6 @@ bool Parse(const std::string& text, std::uint64_t& value) {
   }
   value = parsed;
   return true;
-}
-
-std::optional<std::string> Nearest(const std::string& text, const std::vector<std::string>& names) {
-  std::optional<std::string> best;
-  std::size_t least = std::min<std::size_t>(3, text.size() / 2 + 1);
-  if (text.size() > 100) return best;
-  for (const std::string& name : names) {
-    const std::size_t distance = EditDistance(text, name);
-    if (distance >= least) continue;
-    least = distance;
-    best = name;
-  }
-  return best;
 }
 
 std::string List(const std::vector<std::string>& names) {

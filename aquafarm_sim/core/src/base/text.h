@@ -31,9 +31,6 @@ bool Parse(const std::string& text, std::int32_t& value);
 
 bool Parse(const std::string& text, std::uint64_t& value);
 
-/// Returns the name nearest to a mistyped one; nullopt if none is near.
-std::optional<std::string> Nearest(const std::string& text, const std::vector<std::string>& names);
-
 /// Joins names as "a, b, c".
 std::string List(const std::vector<std::string>& names);
 

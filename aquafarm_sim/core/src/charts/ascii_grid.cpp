@@ -101,18 +101,26 @@ bool ReadHeaderLine(const std::vector<std::string_view>& words, Header& header,
                                                   "YLLCORNER", "NODATA_VALUE"};
   if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
     place.Fail(internal::Quoted(name) +
-               ": is no key of a grid, expected ncols, nrows, cellsize, xllcenter, yllcenter, "
+               ": unknown key, expected ncols, nrows, cellsize, xllcenter, yllcenter, "
                "xllcorner, yllcorner, xlower, ylower or nodata_value");
   }
   if (header.Has(key)) place.Fail(key + ": is there twice");
   const std::string axis = key.substr(0, 4);  // XLLC or YLLC
   for (const std::string& other : {axis + "ENTER", axis + "ORNER"}) {
-    if (header.Has(other)) place.Fail(key + ": is there beside " + other + ", expected one");
+    if (header.Has(other)) place.Fail(key + ": appears together with " + other + ", expected one");
   }
   header.entries[key] = {
       internal::ReadNumber(words[name_first ? 1 : 0], key.c_str(), -1.0e9, 1.0e9, place),
       place.line};
   return true;
+}
+
+// Splits a line into words. The words of a huge line would take several times its memory.
+std::vector<std::string_view> WordsOf(std::string_view line, const ParseContext& place) {
+  constexpr std::size_t kMostBytes = std::size_t{16} << 20U;
+  if (line.size() <= kMostBytes) return internal::SplitWords(line);
+  place.Fail("got a line of " + std::to_string(line.size()) + " bytes, expected at most " +
+             std::to_string(kMostBytes) + ": a row of the grid in each line");
 }
 
 }  // namespace
@@ -143,7 +151,7 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
   std::vector<std::string_view> words;
   bool more = false;
   while ((more = lines.Next(line))) {
-    words = internal::SplitWords(line);
+    words = WordsOf(line, place);
     if (!words.empty() && !ReadHeaderLine(words, header, place)) break;
   }
   if (place.line == 0) place.line = 1;
@@ -183,7 +191,7 @@ AsciiGrid ParseAsciiGrid(const std::string& text, const std::string& origin_name
           value == nodata ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value);
     }
     more = lines.Next(line);
-    words = more ? internal::SplitWords(line) : std::vector<std::string_view>();
+    words = more ? WordsOf(line, place) : std::vector<std::string_view>();
   }
   if (count < wanted) {
     place.Fail("got " + std::to_string(count) + " values, expected the " + std::to_string(wanted) +

@@ -131,7 +131,7 @@ Cell NearestShore(const Terrain& terrain, Cell wanted, const std::vector<Cell>& 
   }
   if (nearest == nullptr) {
     throw InputError("port: got (" + std::to_string(wanted.x) + ", " + std::to_string(wanted.y) +
-                     "), expected free water at a shore, of which the chart has none" +
+                     "), expected free water at a shore; the chart has none" +
                      (taken.empty() ? "" : " left"));
   }
   return *nearest;

@@ -265,6 +265,7 @@ Coast ParseCoast(const std::string& text, const std::string& origin_name) {
   Coast coast;
   const std::string clean = internal::CleanJson(text);
   ParseContext place(origin_name, coast.warnings);
+  place.locate_bytes = clean.size();
   place.locate = [&clean](const std::string& path) { return internal::LineOfJson(clean, path); };
   const Json document = internal::ParseJson(clean, place);
   place.line = 0;

@@ -74,14 +74,14 @@ std::int8_t Occupancy(const MapYaml& map, std::uint8_t grey, bool opaque) {
 
 // Writes to a temporary file first, so that `path` never contains an incomplete file.
 void WriteFile(const std::string& path, const std::string& bytes) {
-  const std::string beside = path + ".part";
-  std::ofstream file(beside, std::ios::binary | std::ios::trunc);
+  const std::string temporary = path + ".part";
+  std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
   std::error_code error;
-  if (file) fs::rename(beside, path, error);
+  if (file) fs::rename(temporary, path, error);
   if (!file || error) {
-    std::remove(beside.c_str());
+    std::remove(temporary.c_str());
     throw InputError(path + ": cannot write");
   }
 }
@@ -90,9 +90,9 @@ void WriteFile(const std::string& path, const std::string& bytes) {
 
 MapFile LoadMap(const std::string& yaml_path) {
   const MapYaml yaml = internal::ParseMapYaml(internal::ReadTextFile(yaml_path), yaml_path);
-  const fs::path beside = fs::path(yaml_path).parent_path() / yaml.image;
+  const fs::path image_path = fs::path(yaml_path).parent_path() / yaml.image;
   const internal::MapImage image =
-      internal::ParseMapImage(internal::ReadTextFile(beside.string()), beside.string());
+      internal::ParseMapImage(internal::ReadTextFile(image_path.string()), image_path.string());
   MapFile map;
   map.cell_size_m = yaml.resolution;
   std::copy(yaml.origin.begin(), yaml.origin.end(), map.origin.begin());

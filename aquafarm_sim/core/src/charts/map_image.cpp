@@ -112,7 +112,7 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
     }
     image.grey.data()[i] = static_cast<std::uint8_t>(white == 255 ? value : value * 255 / white);
   }
-  if (text && header.HasMore()) place.Fail("got more pixels than its size says");
+  if (text && header.HasMore()) place.Fail("got more pixels than its size states");
   return image;
 }
 
@@ -123,7 +123,7 @@ MapImage ParseWithStb(const std::string& bytes, const ParseContext& place) {
   int height = 0;
   int channels = 0;
   const auto refuse = [&place] {
-    place.Fail(std::string("got no picture that can be read (") + stbi_failure_reason() +
+    place.Fail(std::string("got an unreadable image (") + stbi_failure_reason() +
                "), expected PGM, PNG or BMP");
   };
   if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) refuse();
@@ -131,7 +131,7 @@ MapImage ParseWithStb(const std::string& bytes, const ParseContext& place) {
   constexpr std::size_t kMostPacking = 2048;
   const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   if (width > kMaxMapSide || height > kMaxMapSide || pixels / kMostPacking > bytes.size()) {
-    place.Fail("got a claim of " + std::to_string(width) + " x " + std::to_string(height) +
+    place.Fail("got a size of " + std::to_string(width) + " x " + std::to_string(height) +
                " pixels in " + std::to_string(bytes.size()) + " bytes");
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> loaded(

@@ -196,7 +196,8 @@ std::array<float, 2> HeadingVector(std::int32_t heading_deg) {
 }
 
 Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t seed,
-                       std::uint64_t episode, std::int32_t width, std::int32_t height) {
+                       std::uint64_t episode, std::int32_t width, std::int32_t height,
+                       const std::vector<Waypoint>* track) {
   Disaster disaster;
   disaster.kind = spec.kind;
   disaster.border = spec.border;
@@ -220,9 +221,10 @@ Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t 
   disaster.y = spec.start ? (*spec.start)[1] : y;
   disaster.heading_deg = spec.heading_deg.value_or(heading);
   SetMotion(disaster);
-  if (!spec.track.empty()) {
+  const std::vector<Waypoint>& followed = track != nullptr ? *track : spec.track;
+  if (!followed.empty()) {
     disaster.waypoint = 0;
-    FollowTrack(disaster, spec.track, 0);
+    FollowTrack(disaster, followed, 0);
   }
   return disaster;
 }

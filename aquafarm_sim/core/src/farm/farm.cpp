@@ -7,6 +7,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/grid/action.h"
+#include "aquafarm/storms/draw_storm.h"
 
 namespace aquafarm {
 namespace {
@@ -47,6 +48,11 @@ Farm::Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layou
   ship_index_.reserve(ships_.capacity());
   devices_.reserve(static_cast<std::size_t>(scenario_->devices.Total()));
   disasters_.reserve(scenario_->disasters.size());
+  drawn_.resize(scenario_->disasters.size());
+  storms_.resize(scenario_->disasters.size());
+  for (const DisasterSpec& spec : scenario_->disasters) {
+    draws_storms_ = draws_storms_ || spec.storms.has_value();
+  }
   ResetTracks();
   Reset(0, 0);
 }
@@ -60,6 +66,31 @@ void Farm::ResetTracks() {
   tracks_changed_ = false;
 }
 
+void Farm::DrawStorms() {
+  const double x = (scenario_->width - 1) / 2.0;
+  const double y = (scenario_->height - 1) / 2.0;
+  for (std::size_t id = 0; id < scenario_->disasters.size(); ++id) {
+    const std::optional<StormsSpec>& storms = scenario_->disasters[id].storms;
+    if (!storms) continue;
+    const DrawnStorm drawn =
+        DrawStorm(*storms, record_.seed, record_.episode, static_cast<std::int32_t>(id), x, y);
+    storms_[id] = drawn.storm;
+    tracks_[id].reset();
+    if (drawn_[id] == nullptr || drawn_[id].use_count() > 1) {
+      drawn_[id] = std::make_shared<std::vector<Waypoint>>();
+    }
+    storm_errors_.assign(1, drawn.errors);
+    placer_.Place(drawn.storm->path, storm_errors_, storms->risks, *drawn_[id]);
+    tracks_[id] = drawn_[id];
+  }
+}
+
+const ArchivedStorm* Farm::DrawnStormOf(std::int32_t disaster) const {
+  return disaster < static_cast<std::int32_t>(storms_.size())
+             ? storms_[static_cast<std::size_t>(disaster)]
+             : nullptr;
+}
+
 void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
   const bool draw = own_layout_ != nullptr && (scenario_->layout == LayoutMode::kPerEpisode ||
                                                own_layout_->cells.size() == 0);
@@ -68,6 +99,7 @@ void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
   record_.seed = seed;
   record_.episode = episode;
   if (tracks_changed_) ResetTracks();
+  if (draws_storms_) DrawStorms();
 
   devices_.clear();
   for (const PlacedDevice& placed : layout_->devices) {
@@ -103,7 +135,8 @@ void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
   disasters_.clear();
   for (std::size_t id = 0; id < scenario_->disasters.size(); ++id) {
     disasters_.push_back(SpawnDisaster(scenario_->disasters[id], static_cast<std::int32_t>(id),
-                                       seed, episode, scenario_->width, scenario_->height));
+                                       seed, episode, scenario_->width, scenario_->height,
+                                       tracks_[id].get()));
   }
   IssueBulletins();
 }

@@ -25,9 +25,12 @@ std::string NotInRange(std::string_view text, const char* name, T min, T max) {
 
 std::string ParseContext::Located(const std::string& value_path) const {
   // Each search reads the file again, so only a limited number of messages contain the line.
-  constexpr int kMostSearches = 200;
+  constexpr std::size_t kMostSearches = 200;
+  constexpr std::size_t kMostBytes = std::size_t{128} << 20U;
   if (!locate) return file_ + ":" + std::to_string(line) + ": ";
-  if (++searches_ > kMostSearches) return file_ + ": ";
+  ++searches_;
+  const bool affordable = searches_ == 1 || searches_ * locate_bytes <= kMostBytes;
+  if (searches_ > kMostSearches || !affordable) return file_ + ": ";
   return file_ + ":" + std::to_string(locate(value_path)) + ": ";
 }
 std::string ParseContext::At(const std::string& what) const {

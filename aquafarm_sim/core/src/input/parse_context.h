@@ -37,6 +37,7 @@ class ParseContext {
   std::int32_t line{};  ///< 0: `locate` determines it on demand
   std::string path;     ///< path of a value in JSON, reported before the error
   std::function<std::int32_t(const std::string& path)> locate;
+  std::size_t locate_bytes{};  ///< length of the text that `locate` reads
 
   /// @throws InputError "file:line: what", with a path "file:line: path.what"
   [[noreturn]] void Fail(const std::string& what) const;
@@ -73,7 +74,7 @@ class ParseContext {
   const std::string& file_;
   std::vector<std::string>& warnings_;
   std::map<std::string, Repeated> repeated_;
-  mutable int searches_{};
+  mutable std::size_t searches_{};
 };
 
 /// Reads one point with `read()`. @returns false if its time or position is invalid: it is left out

@@ -31,7 +31,7 @@ bool HasKey(std::string_view text, std::string_view key) {
 std::string_view ToString(TrackFormat value) {
   return internal::NameOf(value, std::array<std::string_view, kTrackFormatCount>{
                                      "CMA best track", "JMA best track", "ATCF b-deck", "IBTrACS",
-                                     "bulletin", "weather service track"});
+                                     "bulletin", "weather service track", "storm archive"});
 }
 
 std::optional<TrackFormat> DetectTrackFormat(const std::string& text) {
@@ -39,6 +39,7 @@ std::optional<TrackFormat> DetectTrackFormat(const std::string& text) {
   const std::string_view whole = rest;
   const std::string_view first = internal::TakeLine(rest);
   if (first.substr(0, 5) == "66666") return DetectBestTrack(rest);
+  if (first.substr(0, 16) == "aquafarm-storms ") return TrackFormat::kArchive;
   if (first.substr(0, 4) == "SID,") return TrackFormat::kIbtracs;
   std::vector<std::string_view> fields;
   internal::SplitFields(first.substr(0, 1000), fields);

@@ -44,6 +44,11 @@ FarmBatch::FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farm
   views_.resize(static_cast<std::size_t>(threads_));
 }
 
+StepShape FarmBatch::shape() const {
+  return {farms_.size(), static_cast<std::size_t>(agents_),
+          static_cast<std::size_t>(encoder_.feature_count()), encoder_.planes_size()};
+}
+
 void FarmBatch::Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output) {
   for (std::int32_t i = 0; i < farms(); ++i) {
     Start(i, seed, first_episode + static_cast<std::uint64_t>(i),

@@ -19,7 +19,7 @@
 #include "aquafarm/sea/sea_field.h"
 #include "aquafarm/storms/notices.h"
 #include "aquafarm/storms/presets.h"
-#include "aquafarm/storms/reader.h"
+#include "aquafarm/tracks/reader.h"
 #include "base/files.h"
 #include "base/text.h"
 #include "base/time.h"
@@ -51,8 +51,13 @@ class Builder {
     CheckSize("size", request.height);
     internal::Check("cell", request.cell_size_m, internal::Interval<double>{0.01, 1.0e6});
     internal::Check("sea_level", request.sea_level, internal::Interval<float>{-1.0e5F, 1.0e5F});
-    if (!request.center && (!request.track.empty() || !request.port_places.empty())) {
-      throw InputError("center: got nothing, expected the place of the ranch for its storm");
+    if (!request.archive.files.empty() && !request.track.empty()) {
+      throw InputError("archive: got an archive and a track, expected one of them");
+    }
+    const bool storm = !request.track.empty() || !request.archive.files.empty();
+    if (!request.center && (storm || !request.port_places.empty())) {
+      throw InputError(
+          "center: got none, expected the position of the ranch, which a storm requires");
     }
   }
 
@@ -65,12 +70,21 @@ class Builder {
     SayNotices();
     plan_.step_limit = StepLimit();
     Write();
+    if (!request_.archive.files.empty()) SelectStorms();
     if (IsForNetworks()) Write();
     if (!request_.value.empty()) ValueDevices();
     return std::move(ranch_);
   }
 
  private:
+  // Replaces the archives in the written text by the storms in reach, which its reader selected.
+  void SelectStorms() {
+    const StormsSpec& storms = *ranch_.scenario.disasters.front().storms;
+    plan_.archive = storms.tracks;
+    Say(internal::ArchiveLine(request_.archive.files, storms));
+    Write();
+  }
+
   void Write() {
     ranch_.yaml = internal::WriteRanch(request_, plan_, ranch_.decided);
     ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
@@ -91,7 +105,7 @@ class Builder {
     }
     plan_.waterways = true;
     const std::string many = states == 0 ? "more than 268435456" : std::to_string(states);
-    Say("states: " + many + ", many for a table; features tell networks the way by water");
+    Say("states: " + many + ", many for a table; features give networks the routes by water");
     return true;
   }
 
@@ -121,7 +135,7 @@ class Builder {
   // The origin is the centre of cell (0, 0); the requested place is the middle of the ranch.
   GeoFrame Frame() {
     if (!request_.center) {
-      throw InputError("center: got nothing, expected the place of the ranch on the chart");
+      throw InputError("center: got none, expected the position of the ranch on the chart");
     }
     const GeoPoint corner = GeoFrame(*request_.center, plan_.cell_size_m)
                                 .ToGeo(-(width() - 1) / 2.0, -(height() - 1) / 2.0);
@@ -264,7 +278,7 @@ class Builder {
     track = Continued(track, file.format);
     if (track.fixes.size() == 1) {
       Fail(track.fixes[0], "got the only point of " + (track.name.empty() ? track.id : track.name) +
-                               ", expected two or more to know how the storm moves");
+                               ", expected at least two, which define its motion");
     }
     plan_.storm = ToRings(track, request_.reduction);
     const bool blank = file.format == TrackFormat::kIbtracs && plan_.storm.estimated > 0;
@@ -284,6 +298,14 @@ class Builder {
         std::max(1.0, std::round(plan_.cell_size_m / (request_.speed_kn * kMpsPerKnot))));
     internal::Check("step", plan_.step_s, internal::Interval<double>{0.001, 1.0e6});
     plan_.start = request_.start.value_or(0);
+    if (!request_.archive.files.empty()) {
+      constexpr double kWatched_s = 48 * 3600.0;
+      plan_.archive_steps = duration_ = StepsToCover(kWatched_s, plan_.step_s);
+      return Say(
+          Text("time: %g s a step; a storm is nearest 18 to 30 hours after the start, over "
+               "after %d steps",
+               plan_.step_s, duration_));
+    }
     if (request_.track.empty()) return Say(Text("time: %g s a step; no storm", plan_.step_s));
     const StormTrack track = ReadTrack();
     const double half_diagonal_km =
@@ -315,28 +337,11 @@ class Builder {
     ReadForecasts(track, end);
   }
 
-  // Keeps the forecasts from the newest one issued by the start, of the agency that each bulletin
-  // lists first.
   void ReadForecasts(const StormTrack& track, std::int64_t end) {
     if (request_.forecasts.empty()) return;
     std::vector<StormForecast>& kept = plan_.forecasts;
-    for (StormForecast forecast : internal::SameStorm("forecasts", forecasts_, track).forecasts) {
-      auto& fixes = forecast.fixes;
-      fixes.erase(std::remove_if(fixes.begin(), fixes.end(),
-                                 [&](const StormFix& fix) { return fix.time <= forecast.issued; }),
-                  fixes.end());
-      const bool second = !kept.empty() && kept.back().issued == forecast.issued;
-      if (second || fixes.empty() || forecast.issued >= end) continue;
-      if (forecast.issued <= plan_.start) kept.clear();
-      kept.push_back(std::move(forecast));
-    }
-    const auto ends = [](const StormForecast& one) { return one.fixes.back().time; };
-    if (!kept.empty() && ends(kept.front()) <= plan_.start) {
-      ranch_.warnings.push_back("forecasts: that of " + FormatTime(kept.front().issued) +
-                                " ends at " + FormatTime(ends(kept.front())) +
-                                ", by the start, and is left out");
-      kept.erase(kept.begin());
-    }
+    kept = internal::ForecastsDuring(internal::SameStorm("forecasts", forecasts_, track).forecasts,
+                                     plan_.start, end, ranch_.warnings);
     if (kept.empty()) {
       throw InputError("forecasts: got no forecast points of the storm between " +
                        FormatTime(plan_.start) + " and " + FormatTime(end) + " in " +

@@ -104,11 +104,11 @@ void NeedValues(const SeaField& field, const Layer& layer, const RanchArea& ranc
                     field.extent[3] - middle};
   const std::string what = path + ": " + field.name;
   if (!file.Meets(ExtentOf(ranch))) {
-    RefuseElsewhere(what, file, ranch, "check --center, or give another file to --sea");
+    RefuseElsewhere(what, file, ranch, "check --center, or use another file with --sea");
   }
   throw InputError(what +
-                   ": has no value on this ranch, expected one on some cell; its cells there " +
-                   "are land or missing: give another file to --sea");
+                   ": got no value on this ranch, expected at least one; its cells there are " +
+                   "land or missing: use another file with --sea");
 }
 
 std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,

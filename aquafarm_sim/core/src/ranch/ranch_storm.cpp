@@ -119,6 +119,41 @@ PassageReport Report(const StormRings& storm, const Passage& passage,
   return report;
 }
 
+std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& forecasts,
+                                           std::int64_t start, std::int64_t end,
+                                           std::vector<std::string>& warnings) {
+  std::vector<StormForecast> kept;
+  for (StormForecast forecast : forecasts) {
+    auto& fixes = forecast.fixes;
+    fixes.erase(std::remove_if(fixes.begin(), fixes.end(),
+                               [&](const StormFix& fix) { return fix.time <= forecast.issued; }),
+                fixes.end());
+    const bool second = !kept.empty() && kept.back().issued == forecast.issued;
+    if (second || fixes.empty() || forecast.issued >= end) continue;
+    if (forecast.issued <= start) kept.clear();
+    kept.push_back(std::move(forecast));
+  }
+  const auto ends = [](const StormForecast& one) { return one.fixes.back().time; };
+  if (!kept.empty() && ends(kept.front()) <= start) {
+    warnings.push_back("forecasts: the forecast of " + FormatTime(kept.front().issued) +
+                       " ends at " + FormatTime(ends(kept.front())) +
+                       ", before the start, and is ignored");
+    kept.erase(kept.begin());
+  }
+  return kept;
+}
+
+std::string ArchiveLine(const std::vector<std::string>& files, const StormsSpec& storms) {
+  std::string names;
+  for (const std::string& file : files) names += (names.empty() ? "" : ", ") + FileName(file);
+  const auto of = [](const std::vector<ArchivedStorm>& some, Range<std::int32_t> years) {
+    return Text("%d storms of %d to %d", static_cast<int>(some.size()), years.min, years.max);
+  };
+  return "archive: " + names + ": " + of(storms.library->training, storms.years) +
+         " for training, " + of(storms.library->evaluation, storms.evaluation_years) +
+         " for evaluation alone; credit their source";
+}
+
 std::string CheckStart(std::int64_t start, std::int64_t end, const StormRings& storm,
                        const Passage& passage) {
   if (end <= start) {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/storms/reader.h"
 #include "aquafarm/storms/to_disaster.h"
+#include "aquafarm/tracks/reader.h"
 
 namespace aquafarm::internal {
 
@@ -28,6 +28,16 @@ struct PassageReport {
 /// @param storm with at least one waypoint
 PassageReport Report(const StormRings& storm, const Passage& passage,
                      const StormKnowledge& knowledge);
+
+/// Returns the forecasts of an episode from the newest one issued by its start, each with the
+/// points after its issue, of the agency that each bulletin lists first.
+/// @param warnings receives one about a forecast that ends before the start
+std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& forecasts,
+                                           std::int64_t start, std::int64_t end,
+                                           std::vector<std::string>& warnings);
+
+/// Reports the storms that an archive gives a ranch, in one line.
+std::string ArchiveLine(const std::vector<std::string>& files, const StormsSpec& storms);
 
 /// Checks a start against the time of a storm.
 /// @param end UTC at which the storm has left the ranch, or at which its known track ends

@@ -33,7 +33,8 @@ class Writer {
     Line("description: " +
          InQuotes("A ranch" +
                   (request_.chart.empty() ? "" : " on the chart " + FileName(request_.chart)) +
-                  (request_.track.empty()
+                  (plan_.archive_steps > 0 ? " with another recorded storm in every episode."
+                   : request_.track.empty()
                        ? " in calm weather."
                        : " while " + plan_.storm_text + " passes." + ForecastNote())));
     Line("grid:");
@@ -50,7 +51,9 @@ class Writer {
          Text(", step_limit: %d}", plan_.step_limit));
     WriteLayout();
     Line(Text("ships: {count: %d, capacity: 1}", request_.ships));
-    if (!plan_.storm.waypoints.empty() || !plan_.presets.empty()) Line("disasters:");
+    const bool archive = plan_.archive_steps > 0;
+    if (archive || !plan_.storm.waypoints.empty() || !plan_.presets.empty()) Line("disasters:");
+    if (archive) WriteArchive();
     if (!plan_.storm.waypoints.empty()) WriteStorm();
     for (const DisasterSpec& disaster : plan_.presets) WritePreset(disaster);
     Line(plan_.waterways ? "view: {mode: full, waterways: true}" : "view: {mode: full}");
@@ -128,23 +131,58 @@ class Writer {
          Text("\n    duration: %d", disaster.duration));
   }
 
-  void WriteStorm() {
-    const GradeRisks& table = DefaultGradeRisks();
-    Line("  - kind: typhoon");
+  // Risks of the rings for grades 1 to 4; with fewer rings, those of the outer ones.
+  static std::string RiskTable(std::size_t rings) {
     std::string rows;
-    for (const std::vector<float>& row : table) {
-      rows += rows.empty() ? "[" : ", ";
-      const std::size_t rings = plan_.storm.wind_kt.size();
-      for (std::size_t k = row.size() - rings; k < row.size(); ++k) {
-        rows += (k == row.size() - rings ? "[" : ", ") + Format(row[k]);
-      }
-      rows += "]";
+    for (const std::vector<float>& row : DefaultGradeRisks()) {
+      rows += (rows.empty() ? "[" : ", ") +
+              Numbers({row.end() - static_cast<std::ptrdiff_t>(rings), row.end()});
     }
+    return rows + "]";
+  }
+
+  // Written with the storms in reach, so that the scenario needs no other file.
+  void WriteArchive() {
+    const ArchiveRequest& archive = request_.archive;
+    const auto range = [](Range<std::int32_t> years) {
+      return Text("[%d, %d]", years.min, years.max);
+    };
+    Line("  - kind: typhoon");
+    Line("    grade_risks: " + RiskTable(kMaxStormRings) +
+         "  # grades 1 to 4, rings of 64, 50, 34 kt");
+    Line(Text("    duration: %d\n    storms:", plan_.archive_steps));
+    Line("      years: " + range(archive.years));
+    Line("      evaluation_years: " + range(archive.evaluation_years.value_or(
+                                          Range<std::int32_t>{archive.years.max + 1, kLastYear})));
+    Line("      within_km: " + Format(archive.within_km));
+    Line("      approach_h: 24");
+    Line(
+        "      perturbation: {along_km: 50, across_km: 50, start_h: 6, intensity: 0.1, size: "
+        "0.35}");
+    if (plan_.archive.empty()) {
+      std::string files;
+      for (const std::string& file : archive.files) {
+        files += (files.empty() ? "" : ", ") + InQuotes(std::filesystem::absolute(file).string());
+      }
+      return Line("      archive: [" + files + "]");
+    }
+    Line("      tracks: |");
+    std::string_view rest = plan_.archive;
+    while (!rest.empty()) {
+      const std::size_t end = rest.find('\n');
+      Line("        " + std::string(rest.substr(0, end)));
+      rest.remove_prefix(std::min(rest.size(), end + 1));
+    }
+  }
+
+  void WriteStorm() {
+    Line("  - kind: typhoon");
     std::string winds;
     for (const std::int32_t wind_kt : plan_.storm.wind_kt) {
       winds += (winds.empty() ? "" : ", ") + std::to_string(wind_kt);
     }
-    Line("    grade_risks: [" + rows.substr(1) + "]  # grades 1 to 4, rings of " + winds + " kt");
+    Line("    grade_risks: " + RiskTable(plan_.storm.wind_kt.size()) +
+         "  # grades 1 to 4, rings of " + winds + " kt");
     Line(Text("    duration: %d\n    track:", plan_.storm_steps));
     for (const StormWaypoint& waypoint : plan_.storm.waypoints) {
       std::string radii;

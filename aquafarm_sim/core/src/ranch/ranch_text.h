@@ -32,6 +32,8 @@ struct RanchPlan {
   std::int32_t storm_steps{};
   std::vector<StormForecast> forecasts;  ///< of the storm, sorted by time of issue
   std::vector<DisasterSpec> presets;
+  std::string archive;  ///< the storms of --archive in reach, as text; empty: not yet selected
+  std::int32_t archive_steps{};  ///< duration of an episode with one of them; 0: no archive
   std::vector<NamedLayer> layers;
   std::vector<std::string> sea_units;  ///< one for each layer
   bool waterways{};

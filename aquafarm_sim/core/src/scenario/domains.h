@@ -32,6 +32,8 @@ struct TextOf {
   std::size_t min_bytes{};
   std::size_t max_bytes{};
 };
+/// Text of many lines, written as a block of lines.
+struct LinesOf : TextOf {};
 /// A cell of the largest possible farm. ValidateScenario checks that it is on the actual map.
 struct AnyCell {};
 struct AnyFlag {};

@@ -26,6 +26,15 @@ void YamlWriter::Line(const char* key, const std::string& value) {
   text_ += '\n';
 }
 
+void YamlWriter::Block(const char* key, const std::string& lines) {
+  Line(key, "|");
+  std::istringstream text(lines);
+  for (std::string line; std::getline(text, line);) {
+    text_.append(depth_, ' ');
+    text_ += "  " + line + "\n";
+  }
+}
+
 std::string YamlWriter::Value(const std::string& value) {
   std::string text = "\"";
   for (const char c : value) {

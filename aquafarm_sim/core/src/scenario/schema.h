@@ -25,6 +25,7 @@ inline constexpr std::size_t kMaxListed = 100000;     ///< islands or rocks; no 
 inline constexpr std::size_t kMaxSeaValues = 200000;  ///< limits a file to a few MB
 inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::size_t kMaxWaypoints = 10000;
+inline constexpr std::size_t kMaxArchiveBytes = 2U << 20U;
 inline constexpr std::int32_t kMaxDevices = 1000;
 inline constexpr std::int32_t kMaxPorts = 256;
 inline constexpr std::int32_t kMaxSteps = 10000000;  // below 2^24, so exact as a float
@@ -60,6 +61,8 @@ struct WorldFrame {
   double step_duration_s{};
   double cell_size_m{};
   std::string folder;  ///< folder of the scenario file; other file names are relative to it
+  double x{};          ///< middle of the farm [cells]
+  double y{};
 };
 
 /// Converts a UTC time to steps. @throws FieldError when the scenario has no start
@@ -94,6 +97,12 @@ std::vector<float> ByRule(const std::string& rule, const std::vector<SeaLayer>& 
 /// Checks one value per cell. @throws FieldError for a value that is not 0, NaN or in `range`
 void CheckPerCell(const std::string& path, const std::vector<float>& values, std::int32_t width,
                   Interval<float> range);
+
+/// Reads archives of storms and keeps those in reach of the farm.
+/// @param files empty if storms.tracks holds the text of an archive
+/// @throws FieldError for an unreadable file, or if no storm of the years comes in reach
+void Resolve(const std::vector<std::string>& files, const WorldFrame* frame,
+             const std::string& path, DisasterSpec& disaster);
 
 /// Returns the largest radius of each ring.
 inline std::vector<float> Largest(const std::vector<QuadrantRadii>& quadrants) {
@@ -176,16 +185,52 @@ void VisitForecast(Archive& a, F& forecast, const WorldFrame* frame) {
             [&](auto& b, auto& point) { VisitForecastPoint(b, point, frame); });
 }
 
+/// Sets the state of a tracked disaster to that of its first waypoint.
+inline void SetFirst(DisasterSpec& disaster) {
+  const Waypoint& first = disaster.track.front();
+  if (!disaster.grade_risks.empty()) disaster.risks = first.risks;
+  disaster.grade = first.grade;
+  disaster.radii = first.radii;
+  disaster.quadrants = first.quadrants;
+}
+
+template <typename Archive, typename S>
+void VisitStorms(Archive& a, S& storms, std::vector<std::string>& files) {
+  constexpr Interval<std::int32_t> kYear{kFirstYear, kLastYear};
+  constexpr Interval<double> kHours{0.0, 240.0};
+  constexpr Interval<double> kKm{0.0, 2000.0};
+  constexpr Interval<double> kFactor{0.0, 1.0};
+  a.Field("years", storms.years, kYear, Need::kRequired);
+  a.Field("evaluation_years", storms.evaluation_years, kYear, Need::kRequired);
+  a.Field("within_km", storms.within_km, kKm);
+  a.Field("approach_h", storms.approach_h, kHours);
+  a.Struct("perturbation", [&](auto& b) {
+    b.Field("along_km", storms.perturbation.along_km, kKm);
+    b.Field("across_km", storms.perturbation.across_km, kKm);
+    b.Field("start_h", storms.perturbation.start_h, kHours);
+    b.Field("intensity", storms.perturbation.intensity, kFactor);
+    b.Field("size", storms.perturbation.size, kFactor);
+  });
+  if constexpr (Archive::kReads) {
+    const bool from_files = a.Has("archive", false);
+    a.Field("archive", files, ListOf<TextOf>{{1, 1000}, 1, 100});
+    a.When(!from_files, "there is no archive");
+  }
+  a.Field("tracks", storms.tracks, LinesOf{{0, kMaxArchiveBytes}}, Need::kRequired);
+  a.Always();
+}
+
 template <typename Archive, typename D>
 void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
-  const bool tracked = a.Has("track", !disaster.track.empty());
+  const bool drawn = a.Has("storms", disaster.storms.has_value());
+  const bool tracked = drawn || a.Has("track", !disaster.track.empty());
   const ListOf<Interval<float>> risks{kRisk, 1, kMaxRings};
   const bool graded = a.Has("grade_risks", !disaster.grade_risks.empty());
   const bool by_quadrant = a.Has("quadrants", !disaster.quadrants.empty());
   a.Field("kind", disaster.kind, OneOfNames{}, Need::kRequired);
   a.When(!graded, "there are no grade_risks");
   a.Field("risks", disaster.risks, risks);
-  a.When(tracked && graded, "there is a track");
+  a.When(tracked && graded, "there is a track or storms");
   a.Field("grade_risks", disaster.grade_risks,
           ListOf<ListOf<Interval<float>>>{risks, graded ? 4U : 0U, 4});
   a.Always();
@@ -206,20 +251,32 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   a.Field("radius_growth", disaster.radius_growth, Interval<float>{-100.0F, 100.0F});
   a.Field("border", disaster.border, OneOfNames{});
   a.Field("start", disaster.start, kPlace);
-  a.When(Archive::kReads ? tracked : !disaster.forecasts.empty(), "there is a track");
+  a.When(Archive::kReads ? tracked && !drawn : !disaster.forecasts.empty(), "there is a track");
   a.Structs("forecasts", disaster.forecasts, {0, kMaxWaypoints},
             [&](auto& b, auto& forecast) { VisitForecast(b, forecast, frame); });
   a.Always();
   if (!tracked) return;
+  if (drawn) {
+    if constexpr (Archive::kReads) {
+      if (a.Has("track", false)) {
+        throw FieldError(Join(a.path(), "track"), "is used only where there are no storms");
+      }
+    }
+    std::vector<std::string> files;
+    a.Optional("storms", disaster.storms,
+               [&files](auto& b, auto& storms) { VisitStorms(b, storms, files); });
+    if constexpr (Archive::kReads) {
+      Resolve(files, frame, Join(a.path(), "storms"), disaster);
+      SetFirst(disaster);
+    }
+    return;
+  }
   a.Structs("track", disaster.track, {1, kMaxWaypoints}, [&](auto& b, auto& waypoint) {
     if constexpr (Archive::kReads) waypoint.risks = disaster.risks;
     VisitWaypoint(b, waypoint, frame, disaster.grade_risks);
   });
   if constexpr (Archive::kReads) {  // a tracked disaster starts in the state of its first waypoint
-    if (graded) disaster.risks = disaster.track.front().risks;
-    disaster.grade = disaster.track.front().grade;
-    disaster.radii = disaster.track.front().radii;
-    disaster.quadrants = disaster.track.front().quadrants;
+    SetFirst(disaster);
   }
 }
 
@@ -377,7 +434,12 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
     b.Field("step_limit", s.step_limit, Interval<std::int32_t>{1, kMaxSteps});
   });
   frame = {s.origin ? std::optional<GeoFrame>(GeoFrame(*s.origin, s.cell_size_m)) : std::nullopt,
-           s.start_time, s.step_duration_s, s.cell_size_m, frame.folder};
+           s.start_time,
+           s.step_duration_s,
+           s.cell_size_m,
+           frame.folder,
+           (s.width - 1) / 2.0,
+           (s.height - 1) / 2.0};
   a.Struct("layout", [&](auto& b) {
     b.Field("mode", s.layout, OneOfNames{});
     b.When(s.layout == LayoutMode::kFixed, "mode is fixed");

@@ -254,9 +254,9 @@ void CheckPlaces(const Scenario& scenario) {
   std::int32_t free = occupancy.FreeCells();
   const bool drawn_ports = scenario.ports.cells.empty();
   CheckFits("layout.ports.count", drawn_ports ? scenario.ports.count : 0, free, "");
-  CheckFits("layout.devices.count", chosen ? 0 : devices.count, free, " beside the ports");
+  CheckFits("layout.devices.count", chosen ? 0 : devices.count, free, " next to the ports");
   CheckFits("layout.rocks.count[1]", scenario.rocks.cells.empty() ? scenario.rocks.count.max : 0,
-            free, " beside the ports and devices");
+            free, " next to the ports and devices");
 }
 
 void CheckForecast(const Scenario& scenario) {

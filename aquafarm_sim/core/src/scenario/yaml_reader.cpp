@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "aquafarm/base/suggest.h"
 #include "base/text.h"
 #include "base/time.h"
 
@@ -144,11 +145,9 @@ const YAML::Node* YamlReader::Take(const char* key) {
 void YamlReader::Finish() const {
   for (const auto& [key, node] : nodes_) {
     if (std::find(allowed_.begin(), allowed_.end(), key) != allowed_.end()) continue;
-    const std::optional<std::string> nearest = Nearest(key, allowed_);
-    throw FieldError(Join(path_, Shortened(key)),
-                     "unknown key '" + Shortened(key) + "'" +
-                         (nearest ? " (did you mean '" + *nearest + "'?)" : "") +
-                         "; allowed: " + List(allowed_));
+    throw FieldError(Join(path_, Shortened(key)), "unknown key '" + Shortened(key) + "'" +
+                                                      DidYouMean(key, allowed_) +
+                                                      "; allowed: " + List(allowed_));
   }
 }
 
@@ -195,9 +194,7 @@ std::size_t YamlReader::ReadName(const std::string& path, const YAML::Node& node
   const std::string text = node.IsScalar() ? node.Scalar() : "";
   const auto found = std::find(names.begin(), names.end(), text);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  const std::optional<std::string> nearest = Nearest(text, names);
-  throw Refusal(path, node,
-                "one of " + List(names) + (nearest ? " (did you mean '" + *nearest + "'?)" : ""));
+  throw Refusal(path, node, "one of " + List(names) + DidYouMean(text, names));
 }
 
 void ReadYaml(const std::string& text, const std::string& origin_name, const std::string& what,

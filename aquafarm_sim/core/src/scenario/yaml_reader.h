@@ -105,6 +105,7 @@ class YamlReader {
   }
   static std::string Expected(bool, AnyFlag) { return "true or false"; }
   static std::string Expected(const std::string&, TextOf) { return "a text"; }
+  static std::string Expected(const std::string&, LinesOf) { return "a text"; }
   static std::string Expected(float, NumberOrNone) { return "a number or .nan"; }
   static std::string Expected(std::int64_t, UtcTime) {
     return "a UTC time as 2021-07-24T12:00:00Z";

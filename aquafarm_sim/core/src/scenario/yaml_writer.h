@@ -26,6 +26,9 @@ class YamlWriter {
   void Field(const char* key, std::int64_t value, UtcTime, Need = Need::kOptional) {
     if (used_) Line(key, FormatTime(value));
   }
+  void Field(const char* key, const std::string& value, LinesOf, Need = Need::kOptional) {
+    if (used_) Block(key, value);
+  }
   template <typename Visit>
   void Struct(const char* key, const Visit& visit) {
     if (!used_) return;
@@ -53,6 +56,7 @@ class YamlWriter {
 
  private:
   void Line(const char* key, const std::string& value);
+  void Block(const char* key, const std::string& lines);
 
   static std::string Value(float value) { return std::isnan(value) ? ".nan" : Format(value); }
   static std::string Value(double value) { return Format(value); }

@@ -11,7 +11,8 @@
 namespace aquafarm {
 
 Layer Evaluate(const std::string& expression, const std::vector<NamedLayer>& layers) {
-  if (layers.empty()) throw InputError("got no layer to evaluate '" + expression + "' on");
+  if (layers.empty())
+    throw InputError("got no sea layer, expected at least one for expression '" + expression + "'");
   Layer result(layers[0].layer.rows(), layers[0].layer.cols());
   std::vector<double> values(layers.size());
   try {

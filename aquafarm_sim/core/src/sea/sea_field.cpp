@@ -115,7 +115,8 @@ Dimension ReadDimension(const NcFile& file, int dimension, const std::string& va
   }
   int dimension_of_coordinate = -1;
   file.Need(nc_inq_vardimid(file.id(), found.coordinate, &dimension_of_coordinate), found.name);
-  if (dimension_of_coordinate != dimension) file.Fail(found.name + ": is along another dimension");
+  if (dimension_of_coordinate != dimension)
+    file.Fail(found.name + ": has another dimension than its name");
   file.Need(nc_get_var_double(file.id(), found.coordinate, found.at.data()), found.name);
   const double scale = file.Number(found.coordinate, "scale_factor").value_or(1.0);
   const double offset = file.Number(found.coordinate, "add_offset").value_or(0.0);
@@ -146,11 +147,12 @@ std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const st
   for (const Dimension& d : dimensions) {
     const bool along = d.axis == Axis::kLatitude || d.axis == Axis::kLongitude;
     if (d.axis == Axis::kOther && d.at.size() > 1) {
-      file.Fail(name + ": dimension " + d.name + " is none of time, depth, latitude, longitude");
+      file.Fail(name + ": got dimension " + d.name +
+                ", expected time, depth, latitude or longitude");
     }
     if (along && !std::is_sorted(d.at.begin(), d.at.end()) &&
         !std::is_sorted(d.at.rbegin(), d.at.rend())) {
-      file.Fail(d.name + ": got coordinates up and down, expected them in order");
+      file.Fail(d.name + ": got coordinates that rise and fall, expected one order");
     }
     const auto again = std::adjacent_find(d.at.begin(), d.at.end());
     if (along && again != d.at.end()) {
@@ -217,7 +219,7 @@ std::pair<double, double> TimeUnits(const NcFile& file, const Dimension& time) {
                                                                        : 0.0;
   if (!zero || seconds == 0.0) {
     file.Fail(time.name + ": units: got " + internal::Quoted(units) +
-              ", expected such as 'hours since 2000-01-01 00:00:00'");
+              ", expected for example 'hours since 2000-01-01 00:00:00'");
   }
   return {seconds, static_cast<double>(*zero)};
 }
@@ -350,7 +352,8 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
   }
   const std::size_t rows = count[along_latitude];
   const std::size_t columns = count[along_longitude];
-  if (rows * columns > kMostValues) file.Fail(field.name + ": is too fine for this ranch");
+  if (rows * columns > kMostValues)
+    file.Fail(field.name + ": its resolution is too fine for this ranch");
   std::vector<float> values(rows * columns);
   file.Need(nc_get_vara_float(file.id(), variable, first.data(), count.data(), values.data()),
             field.name);

@@ -207,6 +207,7 @@ NoticeFile ParseNotices(const std::string& text, const std::string& origin_name)
     place.line = 1;
     place.Fail("got " + look.words + kExpected);
   }
+  place.locate_bytes = clean.size();
   place.locate = [&clean](const std::string& path) { return internal::LineOfJson(clean, path); };
   const Json document = internal::ParseJson(clean, place);
   const JsonObject answer(document, "", place);
@@ -217,7 +218,7 @@ NoticeFile ParseNotices(const std::string& text, const std::string& origin_name)
   if (answer.Find({"anchors"}) != nullptr) {
     file.notices = ReadAnchorages(answer, place);
     if (answer.Find({"warning"}) != nullptr) {
-      place.WarnValue("warning", "is not read beside anchors");
+      place.WarnValue("warning", "is ignored in a file with anchors");
     }
   } else if (answer.Find({"warning"}) != nullptr) {
     file.notices = ReadWarnings(answer, place);

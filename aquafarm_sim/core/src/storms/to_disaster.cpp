@@ -1,197 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/storms/to_disaster.h"
 
-#include <GeographicLib/Geodesic.hpp>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "aquafarm/base/check.h"
-#include "base/name_of.h"
+#include "aquafarm/tracks/place_storm.h"
 #include "base/text.h"
 #include "base/time.h"
-#include "grid/longitude.h"
 
 namespace aquafarm {
-namespace {
-
-using Quadrants = std::array<double, 4>;
-
-double Largest(const Quadrants& quadrants) {
-  return *std::max_element(quadrants.begin(), quadrants.end());
-}
-
-// Returns the quadrants of a ring; unless they are kept, all have the radius of the circle.
-Quadrants Reduced(const WindRing& ring, RingReduction reduction) {
-  Quadrants quadrants = ring.radius_km;
-  if (reduction == RingReduction::kQuadrants) return quadrants;
-  double squares = 0.0;
-  for (const double radius : quadrants) squares += radius * radius;
-  quadrants.fill(reduction == RingReduction::kLargest ? Largest(quadrants)
-                                                      : std::sqrt(squares / kQuadrantCount));
-  return quadrants;
-}
-
-bool Speaks(const StormTrack& track, std::int32_t wind_kt) {
-  return std::any_of(track.fixes.begin(), track.fixes.end(),
-                     [wind_kt](const StormFix& fix) { return fix.Ring(wind_kt) != nullptr; });
-}
-
-std::vector<std::int32_t> WindsOf(const StormTrack& track) {
-  if (Speaks(track, 30) && !Speaks(track, 34)) return {50, 30};
-  return {64, 50, 34};
-}
-
-// Distance of a place from a storm, and the quadrant of the storm that contains it.
-struct Offset {
-  double distance_km{};
-  std::size_t quadrant{};
-};
-
-Offset From(GeoPoint storm, GeoPoint place) {
-  double distance_m = 0.0;
-  double bearing_deg = 0.0;  // in [-180, 180]
-  double unused = 0.0;
-  GeographicLib::Geodesic::WGS84().Inverse(storm.latitude, storm.longitude, place.latitude,
-                                           place.longitude, distance_m, bearing_deg, unused);
-  const double turned = bearing_deg < 0.0 ? bearing_deg + 360.0 : bearing_deg;
-  return {distance_m / 1000.0, static_cast<std::size_t>(turned / 90.0) % 4};
-}
-
-double Between(double a, double b, double part) { return a + (b - a) * part; }
-
-GeoPoint Between(GeoPoint a, GeoPoint b, double part) {
-  double step = b.longitude - a.longitude;
-  if (step > 180.0) step -= 360.0;
-  if (step < -180.0) step += 360.0;
-  return {Between(a.latitude, b.latitude, part),
-          internal::NormalLongitude(a.longitude + step * part)};
-}
-
-// Returns the waypoints on the ranch's side of the globe, from the first to the last.
-std::vector<StormWaypoint> Facing(const StormRings& storm, const GeoFrame& frame) {
-  const auto faces = [&frame](const StormWaypoint& at) { return frame.Faces(at.position); };
-  const auto& all = storm.waypoints;
-  const auto first = std::find_if(all.begin(), all.end(), faces);
-  const auto last = std::find_if(all.rbegin(), all.rend(), faces).base();
-  if (first == all.end()) {
-    throw InputError(
-        "storm: got a track on the far side of the globe, expected one that comes "
-        "within 60 degrees of the ranch");
-  }
-  if (!std::all_of(first, last, faces)) {
-    throw InputError(
-        "storm: got a track that leaves the ranch's side of the globe and comes back, "
-        "expected one within 60 degrees of the ranch");
-  }
-  return {first, last};
-}
-
-}  // namespace
 
 std::int32_t StepsToCover(double span_s, double step_duration_s) {
   const double steps = std::ceil(span_s / step_duration_s);
   if (steps <= 1.0e7) return std::max(1, static_cast<std::int32_t>(std::max(steps, 1.0)));
   throw InputError("duration: got " + internal::Format(steps) +
                    " steps, expected at most 10000000; the storm is too long for such steps");
-}
-
-std::string_view ToString(RingReduction value) {
-  return internal::NameOf(value, std::array<std::string_view, kRingReductionCount>{
-                                     "equal_area", "largest", "quadrants"});
-}
-
-StormRings ToRings(const StormTrack& track, RingReduction reduction) {
-  StormRings storm;
-  storm.wind_kt = WindsOf(track);
-  for (StormFix fix : track.fixes) {
-    StormWaypoint waypoint;
-    waypoint.time = fix.time;
-    waypoint.position = fix.position;
-    waypoint.grade = fix.grade;
-    waypoint.pressure_hpa = fix.pressure_hpa;
-    waypoint.wind_mps = fix.wind_mps;
-    waypoint.forecast = fix.forecast;
-    // Without a wind, use the lower limit of the grade. Below TS there are no rings.
-    if (!fix.wind_mps && fix.grade >= StormGrade::kTropicalStorm) {
-      fix.wind_mps = LowestWindOf(fix.grade);
-    }
-    const bool weak = fix.wind_below_mps || fix.grade == StormGrade::kTropicalDepression;
-    Quadrants outer{};
-    waypoint.silent = !weak;
-    for (auto wind = storm.wind_kt.rbegin(); wind != storm.wind_kt.rend(); ++wind) {
-      waypoint.estimated = EstimateRing(fix, *wind) || waypoint.estimated;
-      const WindRing* ring = fix.Ring(*wind);
-      waypoint.silent = waypoint.silent && ring == nullptr;
-      waypoint.estimated = waypoint.estimated || (ring != nullptr && ring->estimated);
-      Quadrants radii = ring == nullptr ? Quadrants{} : Reduced(*ring, reduction);
-      for (std::size_t q = 0; q < radii.size() && !waypoint.radii_km.empty(); ++q) {
-        radii[q] = std::min(radii[q], outer[q]);
-      }
-      outer = radii;
-      waypoint.radii_km.push_back(Largest(radii));
-      waypoint.quadrants_km.push_back(radii);
-    }
-    std::reverse(waypoint.radii_km.begin(), waypoint.radii_km.end());
-    std::reverse(waypoint.quadrants_km.begin(), waypoint.quadrants_km.end());
-    if (reduction != RingReduction::kQuadrants) waypoint.quadrants_km.clear();
-    storm.estimated += waypoint.estimated ? 1 : 0;
-    storm.silent += waypoint.silent ? 1 : 0;
-    storm.waypoints.push_back(std::move(waypoint));
-  }
-  return storm;
-}
-
-std::optional<StormWaypoint> StormRings::At(std::int64_t time) const {
-  if (waypoints.empty() || time < waypoints.front().time || time > waypoints.back().time) {
-    return std::nullopt;
-  }
-  auto next = std::upper_bound(waypoints.begin(), waypoints.end(), time,
-                               [](std::int64_t t, const StormWaypoint& w) { return t < w.time; });
-  if (next == waypoints.end()) return waypoints.back();
-  const StormWaypoint& from = *(next - 1);
-  const double part =
-      static_cast<double>(time - from.time) / static_cast<double>(next->time - from.time);
-  StormWaypoint now = from;
-  now.time = time;
-  now.position = Between(from.position, next->position, part);
-  now.forecast = from.forecast || (part > 0.0 && next->forecast);
-  now.silent = from.silent || (part > 0.0 && next->silent);
-  for (std::size_t k = 0; k < now.radii_km.size(); ++k) {
-    now.radii_km[k] = Between(from.radii_km[k], next->radii_km[k], part);
-    if (now.quadrants_km.empty()) continue;
-    for (std::size_t q = 0; q < 4; ++q) {
-      now.quadrants_km[k][q] = Between(from.quadrants_km[k][q], next->quadrants_km[k][q], part);
-    }
-    now.radii_km[k] = Largest(now.quadrants_km[k]);
-  }
-  return now;
-}
-
-std::int32_t BorrowRings(const StormTrack& from, StormTrack& track) {
-  constexpr std::int64_t kLongestGap_s = 6 * 3600;
-  std::int32_t given = 0;
-  for (StormFix& fix : track.fixes) {
-    const auto next = std::lower_bound(
-        from.fixes.begin(), from.fixes.end(), fix.time,
-        [](const StormFix& other, std::int64_t time) { return other.time < time; });
-    if (!fix.rings.empty() || next == from.fixes.end()) continue;
-    const auto last = next->time == fix.time || next == from.fixes.begin() ? next : next - 1;
-    if (last->time > fix.time || next->time - last->time > kLongestGap_s) continue;
-    const auto span = static_cast<double>(next->time - last->time);
-    const double part = span > 0.0 ? static_cast<double>(fix.time - last->time) / span : 0.0;
-    for (WindRing ring : last->rings) {
-      const WindRing* later = next->Ring(ring.wind_kt);
-      if (later == nullptr) continue;
-      for (std::size_t q = 0; q < ring.radius_km.size(); ++q) {
-        ring.radius_km[q] = Between(ring.radius_km[q], later->radius_km[q], part);
-      }
-      ring.estimated = ring.estimated || later->estimated;
-      AddRing(ring, fix.rings);
-    }
-    given += fix.rings.empty() ? 0 : 1;
-  }
-  return given;
 }
 
 const GradeRisks& DefaultGradeRisks() {
@@ -204,31 +28,11 @@ const GradeRisks& DefaultGradeRisks() {
 
 DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const GeoFrame& frame,
                         double cell_size_m, double step_duration_s, std::int64_t start_time) {
-  AQUAFARM_CHECK_GE(storm.waypoints.size(), 1U);
   DisasterSpec disaster;
   disaster.kind = DisasterKind::kTyphoon;
-  for (const StormWaypoint& from : Facing(storm, frame)) {
-    const std::array<double, 2> place = frame.ToGrid(from.position);
-    Waypoint waypoint;
-    waypoint.step =
-        static_cast<float>(static_cast<double>(from.time - start_time) / step_duration_s);
-    waypoint.x = static_cast<float>(place[0]);
-    waypoint.y = static_cast<float>(place[1]);
-    waypoint.grade = DisasterGrade(from.grade);
-    const auto cells = [cell_size_m](double km) {
-      return static_cast<float>(km * 1000.0 / cell_size_m);
-    };
-    for (const double radius_km : from.radii_km) waypoint.radii.push_back(cells(radius_km));
-    for (const Quadrants& ring : from.quadrants_km) {
-      waypoint.quadrants.push_back(
-          {cells(ring[0]), cells(ring[1]), cells(ring[2]), cells(ring[3])});
-    }
-    std::vector<float> row = risks[static_cast<std::size_t>(waypoint.grade - 1)];
-    const std::size_t rings = from.radii_km.size();
-    if (row.size() < rings) row.insert(row.begin(), rings - row.size(), row.front());
-    waypoint.risks.assign(row.end() - static_cast<std::ptrdiff_t>(rings), row.end());
-    disaster.track.push_back(std::move(waypoint));
-  }
+  StormPlacer placer;
+  disaster.track =
+      placer.Place(ToPath(storm, frame, cell_size_m, step_duration_s, start_time), {}, risks);
   const Waypoint& first = disaster.track.front();
   disaster.grade = first.grade;
   disaster.radii = first.radii;
@@ -237,80 +41,6 @@ DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const 
   disaster.grade_risks = risks;
   disaster.duration = StepsToCover(static_cast<double>(disaster.track.back().step), 1.0);
   return disaster;
-}
-
-const StormForecast* NewestForecast(const StormTrack& track) {
-  AQUAFARM_CHECK_GE(track.fixes.size(), 1U);
-  constexpr std::int64_t kStale_s = 24 * 3600;
-  const StormFix& now = track.fixes.back();
-  const StormForecast* newest = nullptr;
-  for (const StormForecast& forecast : track.forecasts) {
-    if (forecast.fixes.back().time <= now.time || forecast.issued + kStale_s < now.time) continue;
-    if (newest == nullptr || forecast.issued > newest->issued) newest = &forecast;
-  }
-  return newest;
-}
-
-StormTrack WithForecast(const StormTrack& track, NoForecast otherwise) {
-  StormTrack whole = track;
-  const StormForecast* const newest = NewestForecast(track);
-  const StormFix& now = track.fixes.back();
-  if (newest != nullptr) {
-    for (StormFix fix : newest->fixes) {
-      if (fix.time <= now.time) continue;
-      const StormFix& before = whole.fixes.back();
-      if (!fix.wind_mps && fix.rings.empty()) {
-        fix.wind_mps = before.wind_mps;
-        fix.rings = before.rings;
-        for (WindRing& ring : fix.rings) ring.estimated = true;
-        if (fix.grade == StormGrade::kUnknown) fix.grade = before.grade;
-      }
-      fix.forecast = true;
-      whole.fixes.push_back(std::move(fix));
-    }
-    return whole;
-  }
-  if (otherwise == NoForecast::kEnd) return whole;
-  constexpr std::int64_t kAhead_s = 24 * 3600;
-  StormFix later = now;
-  later.time += kAhead_s;
-  later.forecast = true;
-  if (now.heading_deg && now.speed_kmh) {
-    GeographicLib::Geodesic::WGS84().Direct(now.position.latitude, now.position.longitude,
-                                            *now.heading_deg,
-                                            *now.speed_kmh * static_cast<double>(kAhead_s) / 3.6,
-                                            later.position.latitude, later.position.longitude);
-  }
-  whole.fixes.push_back(std::move(later));
-  return whole;
-}
-
-StormKnowledge KnowledgeOf(const StormTrack& recorded, const StormTrack& whole) {
-  StormKnowledge knowledge;
-  for (const StormFix& fix : recorded.fixes) {
-    if (!fix.forecast) knowledge.recorded_until = fix.time;
-  }
-  knowledge.known_until = whole.fixes.back().time;
-  if (const StormForecast* newest = NewestForecast(recorded)) {
-    knowledge.issued = newest->issued;
-    knowledge.agency = newest->agency;
-  }
-  return knowledge;
-}
-
-std::string Describe(const StormKnowledge& knowledge) {
-  using internal::FormatTime;
-  const std::string recorded = FormatTime(knowledge.recorded_until);
-  const std::string until = FormatTime(knowledge.known_until);
-  if (knowledge.recorded_until == 0) return "not recorded, forecast until " + until;
-  if (knowledge.known_until == knowledge.recorded_until) return "known until " + recorded + " only";
-  if (knowledge.issued == 0) {
-    return "known until " + recorded +
-           " only; no forecast: it is assumed to keep its motion, wind and rings until " + until;
-  }
-  return "recorded until " + recorded + ", then forecast until " + until + " (issued " +
-         FormatTime(knowledge.issued) + (knowledge.agency.empty() ? "" : " by ") +
-         knowledge.agency + ")";
 }
 
 DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, std::int32_t id,
@@ -340,43 +70,6 @@ DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, st
   }
   disaster.duration = StepsToCover(left, 1.0);
   return disaster;
-}
-
-Passage ClosestApproach(const StormRings& storm, GeoPoint place, double margin_km) {
-  constexpr std::int64_t kStep_s = 600;
-  Passage passage;
-  passage.nearest_km = 1.0e9;
-  if (storm.waypoints.empty()) return passage;
-  const std::int64_t start = storm.waypoints.front().time;
-  const std::int64_t end = storm.waypoints.back().time;
-  for (std::int64_t step = 0; step * kStep_s < end - start + kStep_s; ++step) {
-    const std::int64_t time = std::min(start + step * kStep_s, end);
-    const StormWaypoint now = *storm.At(time);
-    const auto [distance, quadrant] = From(now.position, place);
-    if (distance < passage.nearest_km) {
-      passage.nearest_km = distance;
-      passage.nearest_time = time;
-      passage.nearest_forecast = now.forecast;
-    }
-    if (now.silent && distance <= kLargestGale_km + margin_km) {
-      if (passage.unknown[0] == 0) passage.unknown[0] = time;
-      passage.unknown[1] = time;
-    }
-    for (std::size_t k = 0; k < now.radii_km.size(); ++k) {
-      const double radius_km =
-          now.quadrants_km.empty() ? now.radii_km[k] : now.quadrants_km[k][quadrant];
-      if (radius_km <= 0.0 || distance > radius_km + margin_km) continue;
-      passage.over_at_start = passage.over_at_start || time == start;
-      passage.over_at_end = time == end;
-      passage.worst_wind_kt = std::max(passage.worst_wind_kt, storm.wind_kt[k]);
-      if (passage.first == 0) passage.first = time;
-      passage.last = time;
-      passage.widest_h += static_cast<double>(kStep_s) / 3600.0;
-      break;
-    }
-  }
-  passage.nearest_at_end = passage.nearest_time == end;
-  return passage;
 }
 
 }  // namespace aquafarm

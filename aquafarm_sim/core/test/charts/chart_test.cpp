@@ -68,7 +68,7 @@ TEST(Ports, LieAtTheNearestShoreWater) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
-                 "port: got (1, 1), expected free water at a shore, of which the chart has none");
+                 "port: got (1, 1), expected free water at a shore; the chart has none");
   }
 }
 
@@ -96,7 +96,7 @@ TEST(Coast, FillsPolygonsAndLeavesTheirLakes) {
   const GeoFrame frame({29.9966, 121.9957}, 964.6);
   const LandShare share = ShareOfLand(coast, frame, 12, 8);
   EXPECT_EQ(share(1, 1), 1.0F);
-  EXPECT_EQ(share(0, 0), 0.0F) << "the island's corner lies beside the cell's middle";
+  EXPECT_EQ(share(0, 0), 0.0F) << "the island's corner does not reach the cell's centre";
   EXPECT_NEAR(share(3, 3), 0.1F, 0.1F) << "most of the lake";
   EXPECT_NEAR(share(3, 0), 0.07F, 0.14F);
   EXPECT_EQ(share(1, 7), 0.0F);

@@ -147,7 +147,7 @@ TEST_F(MapFiles, RefusePicturesThatAreNot) {
   Write("m.pgm", std::string("P5 2 1 9\n") + '\1' + '\x0b');
   EXPECT_EQ(Refused(), "m.pgm:1: pixel: got 11, expected one from 0 to 9");
   Write("m.pgm", "P2 2 1 255\n1 2 3\n");
-  EXPECT_EQ(Refused(), "m.pgm:2: got more pixels than its size says");
+  EXPECT_EQ(Refused(), "m.pgm:2: got more pixels than its size states");
   Write("m.pgm", "P5\n65536 65536\n255\n1234");
   EXPECT_EQ(Refused(), "m.pgm:2: width: got '65536', expected a whole number in [1, 16384]");
   Write("m.pgm", "P5\n16384 16384\n255\n1234");
@@ -161,7 +161,7 @@ TEST_F(MapFiles, RefusePicturesThatAreNot) {
   Write("m.pgm", "P5\n2 2");
   EXPECT_EQ(Refused(), "m.pgm:2: greatest value: got '', expected a whole number in [1, 65535]");
   Write("m.pgm", "GIF89a");
-  EXPECT_EQ(Refused().substr(0, 48), "m.pgm:1: got no picture that can be read (unknow");
+  EXPECT_EQ(Refused().substr(0, 40), "m.pgm:1: got an unreadable image (unknow");
   fs::remove(folder_ / "m.pgm");
   EXPECT_EQ(Refused(), "m.pgm: cannot read: No such file or directory");
   ASSERT_EQ(mkfifo(Path("m.pgm").c_str(), 0600), 0);
@@ -319,17 +319,30 @@ TEST(AsciiGrids, AreRefusedWithTheirLine) {
   EXPECT_EQ(refused("ncols 3\n", "").substr(0, 23), "x:6: NCOLS: got nothing");
   EXPECT_EQ(refused(kGrid, "").substr(0, 23), "x:1: NCOLS: got nothing");
   EXPECT_EQ(refused("cellsize", "cellsise").substr(0, 39),
-            "x:5: 'cellsise': is no key of a grid, e");
+            "x:5: 'cellsise': unknown key, expected ");
   EXPECT_EQ(refused("nrows 2", "ncols 2"), "x:2: NCOLS: is there twice");
   EXPECT_EQ(refused("ncols 3", "ncols 3.9"), "x:1: NCOLS: got 3.9, expected a whole number");
   EXPECT_EQ(refused("ncols 3", "ncols 0"), "x:1: NCOLS: got 0, expected a number in [1, 16384]");
   EXPECT_EQ(refused("cellsize 0.01", "cellsize -1"),
             "x:5: CELLSIZE: got -1, expected a number in [1e-06, 1000000]");
   EXPECT_EQ(refused("cellsize", "xllcenter 122\ncellsize"),
-            "x:5: XLLCENTER: is there beside XLLCORNER, expected one");
+            "x:5: XLLCENTER: appears together with XLLCORNER, expected one");
   const std::string number = "expected a number in [-1000000000, 1000000000]";
   EXPECT_EQ(refused("1 -2 3", "1 nan 3"), "x:7: value: got 'nan', " + number);
   EXPECT_EQ(refused("1 -2 3", "null -2 3"), "x:7: value: got 'null', " + number);
+}
+
+TEST(AsciiGrids, OfOneHugeLineAreRefused) {
+  const std::string line(std::size_t{16 << 20} + 1, ' ');
+  try {
+    ParseAsciiGrid("ncols 2\n" + line, "x");
+    FAIL() << "was read";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "x:2: got a line of 16777217 bytes, expected at most 16777216: a row of the grid in "
+        "each line");
+  }
 }
 
 TEST(AsciiGrids, InDegreesLieOnTheGlobe) {

@@ -5,43 +5,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <numeric>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/validate.h"
+#include "count_allocations.h"
 #include "tiny_farms.h"
-
-namespace {
-std::atomic<long> allocations{0};
-std::atomic<std::size_t> allocated_bytes{0};
-}  // namespace
-
-// Counts the allocations of the complete program, so that a test can check that stepping does not
-// allocate. Not inlined, because gcc would then report a mismatch of new and free.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  allocated_bytes += size;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++allocations;
-  allocated_bytes += size;
-  const auto align = static_cast<std::size_t>(alignment);
-  if (void* memory = std::aligned_alloc(align, (size + align - 1) / align * align)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-  std::free(memory);
-}
 
 namespace aquafarm {
 namespace {

@@ -241,7 +241,7 @@ TEST(View, KnownRiskIsTheWorstOfWhatIsKnown) {
   View view;
   Observe(farm, 0, view);
   EXPECT_EQ(KnownRiskAt(view, {2, 0}), -6.0F);
-  EXPECT_EQ(KnownRiskAt(view, {25, 25}), 0.0F) << "nobody has told it";
+  EXPECT_EQ(KnownRiskAt(view, {25, 25}), 0.0F) << "not reported yet";
 }
 
 }  // namespace

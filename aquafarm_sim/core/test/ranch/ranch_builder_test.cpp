@@ -112,9 +112,10 @@ TEST(Ranch, TakesItsSizeFromAGridInMetres) {
 TEST(Ranch, IsRefusedWithTheReason) {
   RanchRequest request = Request();
   request.center.reset();
-  EXPECT_EQ(Refused(request), "center: got nothing, expected the place of the ranch for its storm");
+  EXPECT_EQ(Refused(request),
+            "center: got none, expected the position of the ranch, which a storm requires");
   request.track.clear();
-  EXPECT_EQ(Refused(request), "center: got nothing, expected the place of the ranch on the chart");
+  EXPECT_EQ(Refused(request), "center: got none, expected the position of the ranch on the chart");
   request = Request();
   request.storm = "Rai";
   EXPECT_EQ(Refused(request).substr(0, 37), "storm: got 'Rai', expected one of: 71");

@@ -113,7 +113,7 @@ TEST_F(RanchFit, AFieldElsewhereIsRefusedWithBothPlaces) {
             path_.string() +
                 ": t: got latitude 29.000 to 31.000, longitude 121.000 to 123.000, expected the "
                 "ranch at latitude 9.774 to 10.226, longitude 149.772 to 150.228; check --center, "
-                "or give another file to --sea");
+                "or use another file with --sea");
 }
 
 TEST_F(RanchFit, APortOutsideTheRanchIsNamed) {

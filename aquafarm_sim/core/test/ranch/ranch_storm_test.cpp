@@ -10,7 +10,7 @@
 
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/grid/geo_frame.h"
-#include "aquafarm/storms/reader.h"
+#include "aquafarm/tracks/reader.h"
 #include "ranch_request.h"
 
 namespace aquafarm {
@@ -93,12 +93,12 @@ TEST(Ranch, LeavesOutAForecastThatEndsBeforeItsStart) {
   request.start = kMidnight + 2 * kHour_s;
   const BuiltRanch ranch = WithBulletins(request, 2021, {{-6, 20}, {0, 2}, {4, 22}});
   EXPECT_TRUE(Says(ranch.warnings,
-                   "forecasts: that of 2021-07-25T00:00:00Z ends at 2021-07-25T02:00:00Z, by the "
-                   "start, and is left out"));
+                   "forecasts: the forecast of 2021-07-25T00:00:00Z ends at 2021-07-25T02:00:00Z, "
+                   "before the start, and is ignored"));
   EXPECT_EQ(ranch.scenario.disasters[0].forecasts.size(), 1U);
   try {
     WithBulletins(request, 2021, {{-6, 20}, {0, 1}});
-    FAIL() << "was made with forecasts that nobody is told";
+    FAIL() << "accepted forecasts that no agent receives";
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()).substr(0, 100),
               "forecasts: got no forecast points of the storm between 2021-07-25T02:00:00Z and "
@@ -151,8 +151,8 @@ TEST(Ranch, RefusesAFixFarAwayWithItsLine) {
     {"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122.2, "speed": 30}]}])";
   EXPECT_EQ(Refused(request), path.string() +
                                   ": 2021-07-25T06:00:00Z: got the only point of "
-                                  "In-fa, expected two or more to know how the storm "
-                                  "moves");
+                                  "In-fa, expected at least two, which define its "
+                                  "motion");
   fs::remove(path);
 }
 

@@ -64,8 +64,8 @@ TEST(RealFiles, OfBulletinsHaveNoForecastsToTell) {
   request.storm = "IN-FA";
   request.forecasts = (data / "bulletins" / "202106.json").string();
   EXPECT_EQ(Refused(request),
-            "forecasts: got no forecast points of the storm between 2021-07-24T11:00:00Z and "
-            "2021-07-26T01:00:00Z in "
+            "forecasts: got no forecast points of the storm between 2021-07-24T09:00:00Z and "
+            "2021-07-26T13:00:00Z in "
             "202106.json, expected bulletins with forecast points");
 }
 

@@ -37,7 +37,7 @@ TEST(Program, SaysWhatToTrainWith) {
   };
   EXPECT_EQ(now("--devices 3"), "\n");
   EXPECT_EQ(now("--devices 14"), "\n");
-  EXPECT_EQ(now("--devices 15"), " algorithm:=dqn options:=steps_per_update=4 steps:=1200000\n");
+  EXPECT_EQ(now("--devices 15"), " algorithm:=dqn options:=train_interval=4 steps:=1200000\n");
   EXPECT_EQ(now("--devices 3 --ships 2"), " algorithm:=auto\n");
   fs::remove(path);
 }
@@ -57,16 +57,42 @@ TEST(Program, MakesAFileAndSaysWhatItDecided) {
   fs::remove(path);
 }
 
+TEST(Program, MakesARanchWithAStormOfAnArchiveInEveryEpisode) {
+  const fs::path path = fs::temp_directory_path() / ("gulf_" + std::to_string(getpid()) + ".yaml");
+  const std::string archive =
+      (fs::path(AQUAFARM_CORE_DIR).parent_path() / "scenarios" / "archives" / "zhoushan_cma.txt")
+          .string();
+  const std::string place = "--center 30.1,122.7 --archive " + archive;
+  const auto [code, text] = RunApp(place + " --years 1990:2009 --within 250 -o " + path.string());
+  EXPECT_EQ(code, 0) << text;
+  EXPECT_NE(text.find("archive: zhoushan_cma.txt: "), std::string::npos) << text;
+  const Scenario scenario = LoadScenario(path.string());
+  const StormsSpec& storms = *scenario.disasters.at(0).storms;
+  EXPECT_EQ(storms.years.min, 1990);
+  EXPECT_EQ(storms.evaluation_years.min, 2010);
+  EXPECT_EQ(storms.within_km, 250.0);
+  EXPECT_GE(storms.library->training.size(), 20U);
+  EXPECT_NE(storms.tracks.find("storm 2106 2 CMA | In-fa"), std::string::npos);
+  fs::remove(path);
+  EXPECT_EQ(RunApp(place + " --years 1990").second,
+            "years: got '1990', expected FIRST:LAST as 1979:2009\n");
+  EXPECT_NE(
+      RunApp(place + " --years 1990:1990 --within 10").second.find("storms none of these years"),
+      std::string::npos);
+  EXPECT_NE(RunApp("--archive " + archive + " --years 1990:2009").second.find("center: got none"),
+            std::string::npos);
+}
+
 TEST(Program, RefusesWrongArguments) {
   const std::vector<std::pair<const char*, const char*>> cases{
       {"--center 30", "center: got '30', expected LATITUDE,LONGITUDE in degrees"},
       {"--center 95,120", "expected a latitude in [-90, 90] and a longitude in [-180, 360]"},
       {"--size 25", "size: got '25', expected WIDTHxHEIGHT in cells"},
       {"--size 1x25", "size: got '1x25', expected whole numbers in [2, 4096]"},
-      {"--cell 20furlongs", "cell: got '20furlongs', expected a length as 200m or 0.2km"},
+      {"--cell 20furlongs", "cell: got '20furlongs', expected a length such as 200m or 0.2km"},
       {"--layout explicit", "layout: got 'explicit', expected one of uniform, linear, random"},
       {"--sea salt:so --value 3", "sea: got 'salt:so', expected NAME=FILE:VARIABLE"},
-      {"--value 3", "value: got no layer to evaluate '3' on"},
+      {"--value 3", "value: got no sea layer, expected at least one for expression '3'"},
       {"--rings oval --track x",
        "rings: got 'oval', expected one of equal_area, largest, quadrants"},
       {"--storm Rai", "--storm requires --track"},
@@ -105,10 +131,10 @@ TEST(Program, RefusesASizeForAChartWithItsOwn) {
   const std::string chart = "--ports 2 --chart " + path.string();
   const auto [size_code, size] = RunApp(chart + " --size 9x9");
   EXPECT_EQ(size_code, 2);
-  EXPECT_EQ(size, "size: got '9x9', expected none, as the chart has its own\n");
+  EXPECT_EQ(size, "size: got '9x9', expected no value: the chart defines it\n");
   const auto [cell_code, cell] = RunApp(chart + " --cell 1km");
   EXPECT_EQ(cell_code, 2);
-  EXPECT_EQ(cell, "cell: got '1km', expected none, as the chart has its own\n");
+  EXPECT_EQ(cell, "cell: got '1km', expected no value: the chart defines it\n");
   EXPECT_EQ(RunApp(chart).first, 0);
   fs::remove(path);
 }

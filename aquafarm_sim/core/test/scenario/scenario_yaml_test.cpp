@@ -227,7 +227,7 @@ disasters:
 
 TEST(Documentation, NamesEveryKey) {
   std::ifstream file(AQUAFARM_CORE_DIR "/../../docs/scenario.md");
-  if (!file) GTEST_SKIP() << "no docs beside this copy of the core";
+  if (!file) GTEST_SKIP() << "this copy of the core has no docs";
   const std::string docs((std::istreambuf_iterator<char>(file)), {});
   std::istringstream keys(ToYaml(UnusualScenario()) + ToYaml(test::TinyScenario()) +
                           "time:\nlatitude:\nlongitude:\nradii_km:\npressure_hpa:\nwind_mps:\n"

@@ -208,7 +208,7 @@ TEST_F(SeaFields, HaveAVerticalAxisOfAnyNameThatCfKnows) {
   EXPECT_EQ(Refused(),
             "s: units: got 'hPa', expected metres, km, cm or dbar, to find a depth among 3");
   Write(with({{"long_name", "s"}}));
-  EXPECT_EQ(Refused(), "so: dimension s is none of time, depth, latitude, longitude");
+  EXPECT_EQ(Refused(), "so: got dimension s, expected time, depth, latitude or longitude");
 }
 
 TEST_F(SeaFields, HaveSidesByAnyUnitsThatCfKnows) {
@@ -331,7 +331,7 @@ TEST_F(SeaFields, AreRefusedWithTheReason) {
   shape.time_units = "fortnights since 2021-07-25";
   Write(shape);
   EXPECT_EQ(Refused(),
-            "time: units: got 'fortnights since 2021-07-25', expected such as 'hours "
+            "time: units: got 'fortnights since 2021-07-25', expected for example 'hours "
             "since 2000-01-01 00:00:00'");
   std::ofstream(path_) << "not a netCDF file";
   EXPECT_EQ(Refused(), "got 'not a netCDF file', expected a netCDF file");
@@ -355,7 +355,7 @@ TEST_F(SeaFields, WithCoordinatesThatAreNoneAreRefused) {
   EXPECT_EQ(refused({30.1, 30.2, 30.3}, {122.2, 122.2, 122.1}),
             "lon: got 122.2 twice, expected it once");
   EXPECT_EQ(refused({30.1, 30.3, 30.2}, {122.1, 122.2, 122.3}),
-            "lat: got coordinates up and down, expected them in order");
+            "lat: got coordinates that rise and fall, expected one order");
 }
 
 TEST_F(SeaFields, WithTextForANumberAreRefused) {

@@ -31,7 +31,7 @@ class CutFiles : public testing::Test {
     } catch (const InputError& error) {
       const std::string what = std::string(error.what()).substr(path_.size() + 2);
       if (what.substr(0, 6) == "is cut") return what;
-      EXPECT_EQ(what, "so: dimension time is none of time, depth, latitude, longitude");
+      EXPECT_EQ(what, "so: got dimension time, expected time, depth, latitude or longitude");
     }
     return "is whole";
   }
@@ -42,9 +42,9 @@ class CutFiles : public testing::Test {
   }
 
   /// Writes a field "so" of shorts along time, lat and lon (2 x 2 x columns). Time is unlimited if
-  /// `records`. With `beside`, adds a variable of bytes along time. Time has no coordinate values,
-  /// so a complete file is rejected for that reason.
-  void Write(int kind, std::size_t columns, bool records, bool beside) const {
+  /// `records`. With `with_quality`, adds a variable of bytes along time. Time has no coordinate
+  /// values, so a complete file is rejected for that reason.
+  void Write(int kind, std::size_t columns, bool records, bool with_quality) const {
     int file = 0;
     std::array<int, 3> dims{};
     std::array<int, 4> variables{};
@@ -55,7 +55,7 @@ class CutFiles : public testing::Test {
     nc_def_var(file, "lat", NC_DOUBLE, 1, &dims[1], &variables[0]);
     nc_def_var(file, "lon", NC_DOUBLE, 1, &dims[2], &variables[1]);
     nc_def_var(file, "so", NC_SHORT, 3, dims.data(), &variables[2]);
-    if (beside) nc_def_var(file, "quality", NC_BYTE, 1, dims.data(), &variables[3]);
+    if (with_quality) nc_def_var(file, "quality", NC_BYTE, 1, dims.data(), &variables[3]);
     ASSERT_EQ(nc_enddef(file), NC_NOERR);
     const std::array<double, 3> places{30.0, 30.1, 30.2};
     const std::array<double, 3> lengths{122.0, 122.1, 122.2};
@@ -66,7 +66,7 @@ class CutFiles : public testing::Test {
     const std::array<short, 12> values{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
     ASSERT_EQ(nc_put_vara_short(file, variables[2], first.data(), count.data(), values.data()),
               NC_NOERR);
-    if (beside) {
+    if (with_quality) {
       const std::array<signed char, 2> marks{1, 2};
       nc_put_vara_schar(file, variables[3], first.data(), count.data(), marks.data());
     }

@@ -143,7 +143,7 @@ TEST(Notices, BesideAnchoragesAreSaidNotToBeRead) {
   std::string text = Sample("anchorage.json");
   text.insert(text.find('{') + 1, "\"warning\": [{}],");
   EXPECT_EQ(ParseNotices(text, "x.json").warnings,
-            std::vector<std::string>{"x.json:1: warning: is not read beside anchors"});
+            std::vector<std::string>{"x.json:1: warning: is ignored in a file with anchors"});
 }
 
 TEST(Notices, MayHaveKeysThatOtherFilesHave) {

@@ -8,7 +8,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/disaster.h"
 #include "aquafarm/scenario/validate.h"
-#include "aquafarm/storms/reader.h"
+#include "aquafarm/tracks/reader.h"
 #include "shared_data.h"
 
 namespace aquafarm {

@@ -220,7 +220,7 @@ inline void CheckChunkInfo(const BagRecords& info, const Connections& connection
   const std::size_t count = info.Get<std::uint32_t>("count");
   if (chunk == chunks.end() || info.Get<std::uint32_t>("ver") != 1 ||
       info.data().size() != count * kBytes) {
-    throw Damage("what is told of a chunk" + info.Where());
+    throw Damage("wrong chunk info" + info.Where());
   }
   std::map<std::uint32_t, std::uint32_t> counts;
   for (std::size_t i = 0; i < count; ++i) {
@@ -237,7 +237,7 @@ inline void CheckChunkInfo(const BagRecords& info, const Connections& connection
   }
   if (counts != chunk->second.Counts() || ordered(info.Get<std::uint64_t>("start_time")) != first ||
       ordered(info.Get<std::uint64_t>("end_time")) != last) {
-    throw Damage("what is told of a chunk" + info.Where());
+    throw Damage("wrong chunk info" + info.Where());
   }
   for (const auto& [connection, messages] : counts) {
     if (connections.count(connection) == 0) throw Damage("a message of no topic" + info.Where());
@@ -254,7 +254,7 @@ inline void CheckStructure(const std::string& path) {
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   if (status.type() == std::filesystem::file_type::not_found) {
-    throw aquafarm::InputError(path + ": there is no such file");
+    throw aquafarm::InputError(path + ": no such file");
   }
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     throw rosbag::BagIOException("no regular file");  // opening another kind may wait forever
@@ -271,7 +271,7 @@ inline void CheckStructure(const std::string& path) {
   records.Next();
   records.Expect(BagOp::kBag);
   if (records.Has("encryptor") && !records.Text("encryptor").empty()) {
-    throw aquafarm::InputError(path + ": encrypted; 'rosbag decrypt' it first");
+    throw aquafarm::InputError(path + ": encrypted; run 'rosbag decrypt' first");
   }
   const std::uint64_t index = records.Get<std::uint64_t>("index_pos");
   const std::uint32_t chunk_count = records.Get<std::uint32_t>("chunk_count");
@@ -310,7 +310,7 @@ inline void CheckStructure(const std::string& path) {
     records.Expect(BagOp::kChunkInfo);
     CheckChunkInfo(records, connections, chunks);
   }
-  if (!records.AtEnd()) throw Damage("more than its index tells of");
+  if (!records.AtEnd()) throw Damage("more chunks than its index lists");
 }
 
 }  // namespace internal

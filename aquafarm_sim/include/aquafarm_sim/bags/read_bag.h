@@ -153,10 +153,10 @@ void OpenBag(rosbag::Bag& bag, const std::string& path) {
   } catch (const aquafarm::InputError&) {
     throw;
   } catch (const rosbag::BagUnindexedException&) {
-    throw aquafarm::InputError(path + ": its recording was killed; 'rosbag reindex' it first");
+    throw aquafarm::InputError(path + ": its recorder was killed; run 'rosbag reindex' first");
   } catch (const internal::Damage& damage) {
     throw aquafarm::InputError(path + ": damaged: " + damage.what() +
-                               "; 'rosbag reindex' may mend its index");
+                               "; 'rosbag reindex' may repair its index");
   } catch (const std::exception& error) {  // from rosbag, its plugins, times and the file mapping
     throw aquafarm::InputError(path + ": damaged or not a bag: " + error.what());
   }

@@ -25,7 +25,7 @@
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/observation/encoder.h"
 #include "aquafarm/observation/view.h"
-#include "aquafarm/storms/track.h"
+#include "aquafarm/tracks/track.h"
 
 namespace aquafarm_sim {
 

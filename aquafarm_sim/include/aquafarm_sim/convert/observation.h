@@ -79,8 +79,8 @@ inline void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Sce
     if ((device.self_propelled != 0) == layout.devices[id].self_propelled) continue;
     throw aquafarm::InputError("observation: device " + std::to_string(id) +
                                (device.self_propelled != 0
-                                    ? " drives itself, expected one that is fetched"
-                                    : " is fetched, expected one that drives itself"));
+                                    ? " is self-propelled, expected one that a ship fetches"
+                                    : " is fetched by a ship, expected a self-propelled one"));
   }
   if (message.disasters.size() < scenario.disasters.size()) {
     throw aquafarm::InputError("observation: got " + std::to_string(message.disasters.size()) +

@@ -29,7 +29,7 @@ struct ReplayParams {
   bool keep_alive{};      ///< true: keeps running at the end and shows the last picture
 };
 
-/// @throws std::invalid_argument with the parameter, its value and the allowed values
+/// @throws InputError with the parameter, its value and the allowed values; also for an unknown one
 ReplayParams ReadReplayParams(const ros::NodeHandle& node);
 
 class ReplayNode {

@@ -26,7 +26,7 @@ struct VizParams {
 };
 
 /// Reads the parameters.
-/// @throws std::invalid_argument with the parameter, its value and the allowed values
+/// @throws InputError with the parameter, its value and the allowed values; also for an unknown one
 VizParams ReadVizParams(const ros::NodeHandle& node);
 
 /// Publishes `markers`, `moves`, `image`, `image/compressed` and each ship's `ship_<id>/route`, max

@@ -3,6 +3,7 @@
 
 /// Formats parts of a state as short texts for pictures and the panel.
 
+#include <aquafarm_msgs/CommandResult.h>
 #include <aquafarm_msgs/FarmState.h>
 
 #include <array>
@@ -17,6 +18,10 @@ std::string ActionName(std::uint8_t action);
 
 /// Name of an outcome: "crash", "edge", …; empty for OK.
 std::string OutcomeName(std::uint8_t outcome);
+
+/// The result of an executed command: "done, step 5", "illegal pickup, -10, step 5"; paced:
+/// "accepted for step 6", because its result is not known yet.
+std::string DescribeResult(const aquafarm_msgs::CommandResult& result);
 
 /// Name of a device status: "deployed", "aboard" or "delivered".
 std::string StatusName(std::uint8_t status);

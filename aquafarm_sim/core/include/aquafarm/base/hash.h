@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <vector>
 
 namespace aquafarm {
 
@@ -35,5 +36,8 @@ class Hasher {
 
 /// Returns a checksum of bytes; the result is the same on every machine.
 std::uint64_t HashBytes(std::string_view bytes);
+
+/// Returns the checksum of the parts joined, without joining them.
+std::uint64_t HashBytes(const std::vector<std::string_view>& parts);
 
 }  // namespace aquafarm

@@ -21,7 +21,13 @@ enum class RngStream : std::uint8_t {
   kExploration,  ///< random choices of an agent
   kLearner,      ///< initial weights, replay samples
   kForecast,     ///< direction of forecast errors
+  kStorm,        ///< storm of an archive, and its displacement
 };
+
+/// Set in every evaluation seed, clear in every training seed. Storms of an archive's evaluation
+/// years are drawn for the former only.
+inline constexpr std::uint64_t kEvaluationSeedBit = 1ULL << 63U;
+constexpr bool IsEvaluationSeed(std::uint64_t seed) { return (seed & kEvaluationSeedBit) != 0; }
 
 /// Identifies an independent sequence of draws.
 struct StreamKey {
@@ -62,6 +68,15 @@ class RandomStream {
   float Uniform(float min, float max) { return min + (max - min) * Unit(); }
   /// Uniform in [0, count).
   std::uint32_t Below(std::uint32_t count) { return ToBelow(Next(), count); }
+
+  /// Approximately normal with mean 0 and standard deviation 1, in [-3.47, 3.47]: the sum of four
+  /// uniform draws. Bit-identical on every machine.
+  double Normal() {
+    constexpr double kScale = 1.7320508075688772;  // 1 / standard deviation of the sum
+    double sum = -2.0;
+    for (int i = 0; i < 4; ++i) sum += static_cast<double>(Unit());
+    return kScale * sum;
+  }
 
   const StreamKey& key() const { return key_; }
   /// Number of draws taken so far.

@@ -87,8 +87,10 @@ struct Disaster : ObservableDisaster {
 using Track = std::shared_ptr<const std::vector<Waypoint>>;
 
 /// Creates a disaster at the start of an episode. Unset fields of its spec are drawn at random.
+/// @param track that it follows instead of spec.track; null: spec.track
 Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t seed,
-                       std::uint64_t episode, std::int32_t width, std::int32_t height);
+                       std::uint64_t episode, std::int32_t width, std::int32_t height,
+                       const std::vector<Waypoint>* track = nullptr);
 
 /// Advances a disaster to step `step` (the first move of an episode is to step 1): turns, moves,
 /// grows and ages it. A disaster that has ended does not move.

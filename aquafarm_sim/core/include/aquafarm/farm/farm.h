@@ -3,7 +3,8 @@
 
 /// One episode on one farm (Algorithm 1; rules in docs/model.md). A step, in this order:
 ///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Reward →
-///   Finish. Step never allocates, and Reset only after SetDisaster or Load has set a track.
+///   Finish. Step never allocates. Reset allocates only after SetDisaster or Load
+///   has set a track, or if another owner still holds the drawn storm's track.
 
 #include <cstdint>
 #include <memory>
@@ -15,8 +16,11 @@
 #include "aquafarm/grid/action.h"
 #include "aquafarm/grid/reward.h"
 #include "aquafarm/scenario/scenario.h"
+#include "aquafarm/tracks/place_storm.h"
 
 namespace aquafarm {
+
+class Hasher;
 
 /// A rescue ship, or a self-propelled device that acts as a ship.
 struct Ship {
@@ -119,6 +123,14 @@ class Farm {
   /// equal hashes on every machine.
   std::uint64_t Hash() const;
 
+  /// Returns a hash of the layout, ships, devices and disasters, without seed and episode number.
+  /// Right after Reset it identifies the start of an episode: two episodes with equal hashes differ
+  /// at most in later random draws.
+  std::uint64_t StartHash() const;
+
+  /// Returns the storm that a disaster drew in this episode; nullptr for a disaster without storms.
+  const ArchivedStorm* DrawnStormOf(std::int32_t disaster) const;
+
   /// Serializes an episode in progress as CBOR bytes.
   std::string Save() const;
   /// Restores a saved episode, which then continues bit-identically.
@@ -149,6 +161,8 @@ class Farm {
   void Finish();
   void CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits);
   void ResetTracks();
+  void DrawStorms();
+  void HashState(Hasher& hasher) const;
   Track Owned(std::size_t id, std::vector<Waypoint> track) const;
   void CheckConsistent() const;
   bool Occupied(std::int32_t index) const;
@@ -165,6 +179,11 @@ class Farm {
   std::vector<Disaster> disasters_;
   std::vector<Track> tracks_;
   bool tracks_changed_{};  // by SetDisaster or Load during this episode
+  std::vector<std::shared_ptr<std::vector<Waypoint>>> drawn_;  // by disaster; null: no storms
+  std::vector<const ArchivedStorm*> storms_;                   // by disaster
+  bool draws_storms_{};
+  StormPlacer placer_;
+  std::vector<StormErrors> storm_errors_;  // of the storm that is placed
   EpisodeRecord record_;
   std::int32_t remaining_{};  // devices not yet delivered
 };

@@ -15,8 +15,9 @@ enum class TrackFormat : std::uint8_t {
   kIbtracs,   ///< IBTrACS v04 CSV
   kBulletin,  ///< typhoon bulletin, including Zhejiang's (tfbh or tfid, points with radius7…)
   kWeatherService,  ///< storm-track response of a weather service (track with windRadius30 …)
+  kArchive,         ///< archive of aquafarm (tracks/archive.h)
 };
-inline constexpr int kTrackFormatCount = 6;
+inline constexpr int kTrackFormatCount = 7;
 std::string_view ToString(TrackFormat value);
 
 /// Detects the format of a text from its content; nullopt if it is not a track file. CMA and JMA

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "aquafarm/grid/action.h"
+#include "aquafarm/observation/features.h"
 #include "aquafarm/observation/view.h"
 
 namespace aquafarm {
@@ -60,21 +61,17 @@ class Encoder {
   void Planes(const View& view, std::uint8_t* out) const;
 
  private:
-  float* Ways(const View& view, float* out) const;  // returns the end of the written range
-  void AddWayNames(std::vector<std::string>& names) const;
-  void Courses(const View& view, float* out) const;
-  float* Blocked(const Layout& layout, Cell self, float* out) const;
   std::uint32_t IndexOf(std::int32_t code, Cell cell) const;
 
   const Scenario& scenario_;
+  std::vector<FeatureGroup> groups_;
+  FeatureScales scales_;
   std::vector<std::int32_t> status_rank_;  // by base-3 code; kNone: more aboard than capacity
   std::vector<std::int32_t> status_code_;  // by rank
   std::uint32_t state_count_{};
   std::int32_t feature_count_{};
   std::int32_t fetchable_{};  // devices that are not self-propelled
   std::size_t planes_size_{};
-  float scale_{};                        // 1 / longer side
-  float horizon_{};                      // steps of the longest episode
   std::vector<std::uint8_t> sea_plane_;  // risk of the sea itself; empty if there is none
 };
 

@@ -13,12 +13,13 @@
 
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/grid/action.h"
+#include "aquafarm/grid/step_fields.h"
 #include "aquafarm/observation/encoder.h"
 
 namespace aquafarm {
 
-/// Destination buffers of a step's results; N farms × S agents, row-major. Null pointers are
-/// skipped.
+/// Destination buffers of a step's results (step_fields.h); N farms × S agents, row-major. Null
+/// pointers are skipped.
 struct BatchOutput {
   float* rewards{};          ///< [N, S]
   float* terms{};            ///< [N, S, kRewardTermCount]
@@ -58,6 +59,8 @@ class FarmBatch {
   std::int32_t farms() const { return static_cast<std::int32_t>(farms_.size()); }
   /// S of BatchOutput: ships and self-propelled devices of one farm.
   std::int32_t agents() const { return agents_; }
+  /// Sizes of the results of a step.
+  StepShape shape() const;
   const Scenario& scenario() const { return *scenario_; }
   /// Encoder of the index, the features and the planes.
   const Encoder& encoder() const { return encoder_; }

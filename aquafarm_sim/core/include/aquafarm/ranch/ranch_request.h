@@ -17,6 +17,15 @@ struct SeaLayerRequest {
   std::string variable;  ///< name or standard_name
 };
 
+/// Recorded storms, one of which is drawn in every episode.
+struct ArchiveRequest {
+  std::vector<std::string> files;   ///< of tracks; empty: no archive
+  Range<std::int32_t> years{0, 0};  ///< of storms for training
+  /// Of storms for evaluation; if unset, all years after `years`.
+  std::optional<Range<std::int32_t>> evaluation_years;
+  double within_km{300.0};  ///< max distance of a storm's closest approach to the middle
+};
+
 /// Inputs of BuildRanch. Unset fields get defaults, which are listed in the result.
 struct RanchRequest {
   std::string name{"my_ranch"};
@@ -35,6 +44,8 @@ struct RanchRequest {
   /// File of bulletins with forecast points. Agents receive these forecasts, while the storm
   /// follows the track. If empty, agents receive the present motion of the storm.
   std::string forecasts;
+
+  ArchiveRequest archive;  ///< instead of `track`
 
   std::vector<std::string> disasters;  ///< other disasters, in the format of presets.h
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@
 #include "aquafarm/grid/geo_frame.h"
 #include "aquafarm/scenario/enums.h"
 #include "aquafarm/scenario/limits.h"
+#include "aquafarm/tracks/storm_library.h"
+#include "aquafarm/tracks/waypoint.h"
 
 namespace aquafarm {
 
@@ -75,23 +78,6 @@ struct DeviceSpec {
   }
 };
 
-/// Radii of a ring to the north-east, south-east, south-west and north-west [cells]; 0: no ring in
-/// that quadrant.
-using QuadrantRadii = std::array<float, 4>;
-
-/// A timed waypoint of a disaster. Between two waypoints everything except grade is interpolated.
-struct Waypoint {
-  float step{};  ///< steps since the episode's start; may be negative
-  float x{};     ///< [cells]
-  float y{};
-  std::int32_t grade{1};
-  std::vector<float> radii;  ///< [cells], ascending; one per risk of the disaster
-  std::vector<float> risks;  ///< one per radius
-  /// Radii by quadrant, one entry per ring; `radii` then holds the largest radius of each ring.
-  /// Empty if all rings are circles.
-  std::vector<QuadrantRadii> quadrants{};
-};
-
 /// Forecast position of a disaster at a step.
 struct ForecastPoint {
   float step{};  ///< steps since the episode's start
@@ -105,8 +91,28 @@ struct IssuedForecast {
   std::vector<ForecastPoint> points;  ///< in order of time, all after the step of issue
 };
 
-/// Risks of the rings for grades 1 to 4, worst risk first; empty if unset.
-using GradeRisks = std::vector<std::vector<float>>;
+/// Standard deviations by which a drawn storm differs from the recorded one.
+struct StormPerturbation {
+  double along_km{};   ///< of its positions, along its motion
+  double across_km{};  ///< of its positions, across its motion
+  double start_h{};    ///< largest shift of its closest approach in time [hours], uniform
+  double intensity{};  ///< of the factor of its wind
+  double size{};       ///< of the logarithm of the factor of its radii
+};
+
+/// Recorded storms, one of which a disaster follows in each episode (storms/draw_storm.h).
+struct StormsSpec {
+  Range<std::int32_t> years;             ///< of storms for training
+  Range<std::int32_t> evaluation_years;  ///< of storms for evaluation; apart from `years`
+  double within_km{300.0};  ///< max distance of the closest approach to the middle of the farm
+  double approach_h{24.0};  ///< hours from step 0 to the closest approach
+  StormPerturbation perturbation;
+  std::string tracks;  ///< the storms in reach, as text of an archive (tracks/archive.h)
+  /// The storms of `tracks` on the farm and the risks of grades 1 to 4, set by the reader of
+  /// scenarios.
+  std::shared_ptr<const StormLibrary> library;
+  GradeRisks risks;
+};
 
 /// DisasterInfo of §2.1 and the parameters of its motion.
 struct DisasterSpec {
@@ -127,6 +133,9 @@ struct DisasterSpec {
   /// Forecasts issued by an authority, in order of issue. Agents observe the newest one issued; the
   /// disaster itself follows the track. Requires a track; see forecast.h.
   std::vector<IssuedForecast> forecasts{};
+  /// If set, every episode draws a storm and follows it instead of `track`, which then holds the
+  /// first storm as recorded.
+  std::optional<StormsSpec> storms{};
 };
 
 /// The rewards of §2.5.

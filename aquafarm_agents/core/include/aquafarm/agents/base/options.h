@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Parser of learner options, for example "discount=0.97 learning_rate=linear:0.2:0.05:1".
+/// Parser of learner options, for example "gamma=0.97 learning_rate=linear:0.2:0.05:1".
 
 #include <map>
 #include <string>
@@ -16,7 +16,8 @@ namespace aquafarm::agents {
 /// Reads options by key, with defaults. Finish() rejects options that were never read.
 class OptionReader {
  public:
-  /// @param text key=value pairs, separated by blanks or commas
+  /// @param text key=value pairs, separated by blanks or commas; an old name of an option counts as
+  ///   its new name
   /// @throws InputError on any other syntax and on duplicate keys
   explicit OptionReader(const std::string& text);
 
@@ -42,5 +43,14 @@ class OptionReader {
   std::map<std::string, std::string> given_;
   std::map<std::string, std::string> resolved_;
 };
+
+/// Returns options with the current names instead of old ones, sorted by key. For the options that
+/// checkpoints of earlier versions recorded.
+/// @param text as written by OptionReader::Resolved
+std::string CanonicalOptions(const std::string& text);
+
+/// Returns one line for each old name in `text`, for example "option batch is now called
+/// batch_size". @throws InputError as OptionReader
+std::vector<std::string> RenamedOptions(const std::string& text);
 
 }  // namespace aquafarm::agents

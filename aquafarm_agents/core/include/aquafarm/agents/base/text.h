@@ -10,7 +10,7 @@ namespace aquafarm::agents {
 
 /// Parses the complete text as a number.
 /// @param what prefix of error messages
-/// @throws InputError "discount: got 'x', expected a number"
+/// @throws InputError "gamma: got 'x', expected a number"
 double ParseNumber(const std::string& text, const std::string& what);
 
 /// Shortest decimal text that parses back to the same number.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// DQN (Mnih et al. 2015; §3.4.3, Eq. 15): a network for Q(s, ·), trained from a replay buffer with
-/// a target network,
+/// DQN (Mnih et al. 2015; paper §3.4.3, Eq. 15, see docs/model.md): a network for Q(s, ·), trained
+/// from a replay buffer with a target network,
 ///
 ///   y = r + γ max over a' of Q_target(s', a')        y = r after termination
 ///   loss = (y − Q(s, a))², or the Huber loss
@@ -21,7 +21,7 @@ namespace aquafarm::agents {
 /// Returns the EncodingBits that a DQN with these options requires. @throws InputError if an option
 /// is wrong
 std::uint8_t DqnEncodings(const std::string& options);
-/// @throws InputError if an option is wrong
+/// Returns a DQN that has not learnt yet. @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
 /// Value decomposition (VDN, Sunehag et al. 2018): one network acts for all agents. The sum of
@@ -32,6 +32,7 @@ std::unique_ptr<Learner> MakeDqn(const EnvironmentSpec& spec, std::uint64_t seed
 /// @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakeVdn(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
+/// Returns the greedy policy of a checkpoint of DQN or VDN.
 /// @throws InputError if the policy does not fit farms of `spec`, with the reason
 std::unique_ptr<Policy> MakeDqnPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 

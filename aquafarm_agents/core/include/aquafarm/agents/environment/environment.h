@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "aquafarm/grid/action.h"
+#include "aquafarm/grid/step_fields.h"
 
 namespace aquafarm::agents {
 
@@ -24,10 +25,10 @@ namespace aquafarm::agents {
 /// scenario gives every agent the team's sum. kStatesBit requests the complete farm states; only
 /// planners use it.
 enum EncodingBits : std::uint8_t {
-  kIndexBit = 1,
-  kFeaturesBit = 2,
-  kPlanesBit = 4,
-  kOwnRewardsBit = 16,
+  kIndexBit = kIndexField,
+  kFeaturesBit = kFeaturesField,
+  kPlanesBit = kPlanesField,
+  kOwnRewardsBit = kTermsField,
   kStatesBit = 128
 };
 
@@ -67,7 +68,7 @@ struct EpisodeResult {
 };
 
 /// Results of one Reset or Step. Owned by the environment and valid until its next call. Arrays are
-/// row-major.
+/// row-major; step_fields.h lists them.
 struct StepResults {
   /// True if this transition is the last one of the agent at entry farm · S + agent.
   bool IsDone(std::size_t entry, std::size_t farm) const {
@@ -75,6 +76,7 @@ struct StepResults {
   }
 
   std::vector<float> rewards;          ///< [N, S]
+  std::vector<float> terms;            ///< [N, S, kRewardTermCount]; empty unless requested
   std::vector<std::uint8_t> outcomes;  ///< [N, S] Outcome
   std::vector<ActionMask> legal;       ///< [N, S] for the next step
   std::vector<std::uint8_t> in_play;   ///< [N, S] 0 if this agent is done until the next episode
@@ -102,10 +104,8 @@ class EnvironmentLost : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Computes each agent's individual reward as the sum of its reward terms.
-/// @param terms [N, S, kRewardTermCount]
-/// @param rewards [N, S]
-void AddUpTerms(const std::vector<float>& terms, std::vector<float>& rewards);
+/// Replaces each agent's reward by the sum of its own reward terms. @param results with terms
+void UseOwnRewards(StepResults& results);
 
 class Environment {
  public:

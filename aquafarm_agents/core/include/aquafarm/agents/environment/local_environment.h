@@ -25,12 +25,12 @@ class LocalEnvironment final : public Environment {
   const FarmBatch& batch() const { return batch_; }
 
  private:
-  BatchOutput Output();
+  void Complete();
   void CollectFinished();
 
   FarmBatch batch_;
   EnvironmentSpec spec_;
-  std::vector<float> terms_;  // [N, S, kRewardTermCount]; empty unless own rewards are requested
+  bool own_rewards_{};
   bool with_states_{};
   StepResults results_;
   BatchOutput output_;

@@ -13,11 +13,12 @@
 
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/agents/environment/policy.h"
+#include "aquafarm/base/rng.h"
 
 namespace aquafarm::agents {
 
-/// Set in every evaluation seed, clear in every training seed.
-inline constexpr std::uint64_t kEvaluationSeedBit = 1ULL << 63U;
+/// The bit that distinguishes the seeds of training and of evaluation (base/rng.h).
+using aquafarm::kEvaluationSeedBit;
 /// Seed of the farms for an evaluation with `seed`.
 constexpr std::uint64_t EvaluationSeed(std::uint64_t seed) { return seed | kEvaluationSeedBit; }
 
@@ -33,7 +34,10 @@ struct Evaluation {
   double mean_crashes{};
   double mean_steps_in_disaster{};
   double wall_s{};
-  bool complete{};                   ///< false if it was stopped early
+  bool complete{};  ///< false if it was stopped early
+  /// Number of different starts among the episodes: layout, ships, devices and storm. Episodes with
+  /// equal starts repeat each other for a deterministic policy, except for later random draws.
+  std::size_t distinct{};
   std::optional<double> mean_bound;  ///< of these episodes (team_bound.h), if requested
 };
 
@@ -63,7 +67,8 @@ struct EvaluationContext {
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context);
 
-/// "success 100.0 %, return 243.1 per episode, 4.02 per step, 60.4 steps (1000 episodes)"
+/// "success 100.0 %, return 243.1 per episode, 4.02 per step, 60.4 steps (1000 episodes, 998
+/// distinct)"
 std::string Describe(const Evaluation& evaluation);
 
 }  // namespace aquafarm::agents

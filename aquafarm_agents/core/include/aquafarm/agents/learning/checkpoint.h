@@ -20,6 +20,7 @@ namespace aquafarm::agents {
 
 inline constexpr std::uint32_t kCheckpointFormat = 2;
 
+/// Content of a checkpoint file: a learner during a training, or a policy.
 struct Checkpoint {
   // Metadata.
   std::string kind;          ///< kTraining or kPolicy
@@ -64,8 +65,8 @@ void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint);
 /// @throws InputError if it is missing, is not a checkpoint, is damaged or has another format
 Checkpoint ReadCheckpoint(const std::string& path);
 
-/// Checks that a checkpoint was written by a training with the same settings.
-/// @param path prefix of error messages
+/// Checks that a training with the given settings can resume from a checkpoint.
+/// @param path file name of the checkpoint, for messages
 /// @throws InputError naming the difference
 void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
                     const std::string& algorithm, const std::string& options, std::uint64_t seed,

@@ -31,6 +31,8 @@ struct QTable {
   std::size_t Row(std::int32_t agent, std::uint32_t state) const {
     return (static_cast<std::size_t>(agent) * states + state) * kActionCount;
   }
+  /// Returns the size of the table of a farm [bytes]; 0 if it has no tabular states.
+  static std::uint64_t BytesOf(const EnvironmentSpec& spec);
   /// Max size of a table [bytes].
   inline static constexpr std::uint64_t kMaxBytes = std::uint64_t{4} << 30U;
 };
@@ -47,7 +49,7 @@ struct SarsaRule {
 /// Hyperparameters of a tabular learner. The defaults are tuned on the shipped farms.
 struct TabularOptions {
   Schedule learning_rate{ScheduleKind::kLinear, 0.5, 0.02, 1.0};
-  double discount{0.97};
+  double gamma{0.97};
   ExplorationOptions exploration;
   double initial_value{0.0};  ///< of every entry; optimistic (high) values promote exploration
   bool mask_illegal{false};   ///< mask ILLEGAL actions when acting and bootstrapping

@@ -27,30 +27,30 @@ std::string_view ToString(LossKind value);
 /// disabled.
 struct DeepOptions {
   NetworkKind network{NetworkKind::kMlp};
-  std::int32_t hidden{256};  ///< units of a hidden layer; of the LSTM when recurrent
+  std::int32_t hidden_size{256};  ///< units of a hidden layer; of the LSTM when recurrent
   Schedule learning_rate{ScheduleKind::kLinear, 5e-4, 1e-5, 1.0};  ///< learning rate of Adam
-  double discount{0.97};
+  double gamma{0.97};
   ExplorationOptions exploration{
       ExplorationKind::kEpsilonGreedy, {ScheduleKind::kLinear, 1.0, 0.005, 0.1}, {}};
-  std::int32_t batch{64};  ///< transitions, or sequences, per update
-  Schedule steps_per_update{ScheduleKind::kConstant, 2.0};  ///< farm steps between updates
-  std::uint64_t start{5000};                                ///< farm steps before the first update
-  std::uint64_t replay{100000};                             ///< capacity in transitions
-  std::uint64_t target_period{250};  ///< updates between hard copies to the target network
-  double target_rate{0.0};           ///< soft target update rate per update; 0: hard copies
+  std::int32_t batch_size{64};                            ///< transitions, or sequences, per update
+  Schedule train_interval{ScheduleKind::kConstant, 2.0};  ///< farm steps between updates
+  std::uint64_t learning_starts{5000};                    ///< farm steps before the first update
+  std::uint64_t buffer_size{100000};                      ///< capacity in transitions
+  std::uint64_t target_update_interval{250};  ///< updates between hard copies to the target network
+  double tau{0.0};  ///< soft target update rate per update; 0: hard copies
   LossKind loss{LossKind::kHuber};
-  double gradient_limit{10.0};  ///< max norm of the gradient; 0: no limit
+  double max_grad_norm{10.0};  ///< max norm of the gradient; 0: no limit
 
   // Extensions beyond §3.4.3, with their sources.
-  bool double_q{true};        ///< van Hasselt et al. 2016
-  bool dueling{false};        ///< Wang et al. 2016
-  std::int32_t n_step{1};     ///< Sutton 1988; 1 disables it
-  double priority{0.6};       ///< exponent α of Schaul et al. 2016; 0: uniform
-  double importance{0.4};     ///< initial exponent β of Schaul et al. 2016; rises to 1
-  double reward_scale{0.05};  ///< factor of the rewards; 1: unscaled
+  bool double_dqn{true};            ///< van Hasselt et al. 2016
+  bool dueling{false};              ///< Wang et al. 2016
+  std::int32_t n_step{1};           ///< Sutton 1988; 1 disables it
+  double priority_exponent{0.6};    ///< exponent α of Schaul et al. 2016; 0: uniform
+  double importance_exponent{0.4};  ///< initial exponent β of Schaul et al. 2016; rises to 1
+  double reward_scale{0.05};        ///< factor of the rewards; 1: unscaled
   /// Rate of the moving average of the weights; the agents then act by the average (Polyak and
   /// Juditsky 1992). It is the arithmetic mean for the first 1 / rate updates. 0 disables it.
-  double average_rate{0.0};
+  double ema_rate{0.0};
   /// α of advantage learning (Baird 1999; Bellemare et al. 2016): subtracts
   /// α · (max_a Q − Q(s, a)) from the target, so that approximation errors change the greedy action
   /// less often. 0 disables it.
@@ -62,7 +62,8 @@ struct DeepOptions {
   bool mask_blocked{false};  ///< also mask moves onto a charted rock, an island or off the map
 
   // Recurrent networks only (R2D2: Kapturowski et al. 2019).
-  std::int32_t sequence{4};    ///< training steps per sequence; replayed=paper_tuple: 1, burn_in 0
+  std::int32_t sequence_length{
+      4};                      ///< training steps per sequence; replayed=paper_tuple: 1, burn_in 0
   std::int32_t burn_in{2};     ///< steps before them that only warm up the recurrent state
   bool skip_connection{true};  ///< around the LSTM; the paper has none
   /// Replays single tuples with the stored state of either end, as Algorithm 2 prints it.

@@ -13,12 +13,14 @@
 /// equals the value clamped at zero.
 ///
 ///   forward in time, max return so far per state ──> pruned if the state cannot beat the best
-///   complete plan even without any further disaster (a bound solved once, independent of time)
+///   complete plan: it needs a min number of moves, and each step earns at most the best reward
+///   that any cell has in that step
 
 #include <cstdint>
 #include <memory>
 
 #include "aquafarm/agents/planning/plan.h"
+#include "aquafarm/agents/planning/risk_source.h"
 #include "aquafarm/farm/farm.h"
 
 namespace aquafarm::agents {
@@ -41,6 +43,9 @@ class Planner {
   std::size_t state_count() const;
 
   /// Returns the best plan from the farm's present state; empty if its episode is over.
+  /// @param risks of the steps after the farm's present one; see risk_source.h
+  Plan Solve(const Farm& farm, RiskSource& risks, const Task& task);
+  /// As above, with the risks of the farm's own disasters.
   Plan Solve(const Farm& farm, Foresight foresight, const Task& task);
   /// As above, for the only ship of a farm, which does all the work.
   Plan Solve(const Farm& farm, Foresight foresight);

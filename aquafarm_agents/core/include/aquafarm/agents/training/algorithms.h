@@ -40,6 +40,11 @@ const Algorithm& FindAlgorithm(const std::string& name);
 std::uint64_t DefaultSteps(const Algorithm& algorithm, const EnvironmentSpec& spec,
                            const std::string& options);
 
+/// Returns a line about a table that needs at least 256 MB, with its size and the alternative;
+/// empty for smaller tables and for networks.
+std::string LargeTableNote(const Algorithm& algorithm, const EnvironmentSpec& spec,
+                           const std::string& options);
+
 /// The name for which ChooseAlgorithm selects the algorithm.
 inline constexpr const char* kAutoAlgorithm = "auto";
 

@@ -107,6 +107,7 @@ class Trainer {
   Clock::time_point start_;
   Clock::time_point reported_;
   Clock::time_point saved_;
+  bool is_saved_{};  ///< true if the newest checkpoint holds the present state
   std::uint64_t reported_steps_{};
   double done_at_start_{};
 };

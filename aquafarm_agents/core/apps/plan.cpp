@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plans which ship fetches which device before a storm, and how likely it succeeds. No ROS.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+
+#include "app.h"
+#include "aquafarm/agents/base/exit_code.h"
+#include "aquafarm/agents/base/storage.h"
+#include "aquafarm/agents/base/text.h"
+#include "aquafarm/agents/rescue/plan_report.h"
+#include "aquafarm/ranch/ranch_builder.h"
+
+namespace aquafarm::agents {
+namespace {
+
+struct Arguments {
+  std::string ranch;
+  std::string coast;
+  std::string place;
+  std::vector<std::string> ports;
+  std::int32_t size{40};
+  double cell_m{500.0};
+  std::string at;
+  std::string depart{"+0h"};
+  double utc_offset_h{};
+  std::string json;
+  std::string command;
+  std::string scenarios{ScenarioFolder()};
+  RescueRequest request;
+};
+
+GeoPoint Place(const std::string& option, const std::string& text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) {
+    throw InputError(option + ": got '" + text + "', expected LATITUDE,LONGITUDE in degrees");
+  }
+  const GeoPoint place{ParseNumber(text.substr(0, comma), option),
+                       ParseNumber(text.substr(comma + 1), option)};
+  if (std::abs(place.latitude) <= 90.0 && std::abs(place.longitude) <= 360.0) return place;
+  throw InputError(option + ": got '" + text +
+                   "', expected a latitude in [-90, 90] and a longitude");
+}
+
+// Parses "+6h", "6h" or "90min".
+double Seconds(const std::string& option, const std::string& text) {
+  const std::size_t from = !text.empty() && text[0] == '+' ? 1 : 0;
+  const std::size_t unit = text.find_first_not_of("0123456789.", from);
+  const std::string word = unit == std::string::npos ? "" : text.substr(unit);
+  if (word != "h" && word != "min") {
+    throw InputError(option + ": got '" + text + "', expected a time as +6h or +90min");
+  }
+  return ParseNumber(text.substr(from, unit - from), option) * (word == "h" ? 3600.0 : 60.0);
+}
+
+std::shared_ptr<const Scenario> LoadRanch(const Arguments& arguments) {
+  if (!arguments.ranch.empty()) {
+    return std::make_shared<const Scenario>(FindScenario(arguments.ranch, arguments.scenarios));
+  }
+  if (arguments.coast.empty() || arguments.place.empty() || arguments.request.devices.empty()) {
+    throw InputError("ranch: got none, expected RANCH.yaml, or --coast, --place and --devices");
+  }
+  RanchRequest ranch;
+  ranch.name = "ranch";
+  ranch.chart = arguments.coast;
+  ranch.center = Place("place", arguments.place);
+  ranch.width = ranch.height = arguments.size;
+  ranch.cell_size_m = arguments.cell_m;
+  ranch.devices = 1;
+  for (const std::string& port : arguments.ports) ranch.port_places.push_back(Place("port", port));
+  const BuiltRanch built = BuildRanch(ranch);
+  for (const std::string& warning : built.warnings) {
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  }
+  return std::make_shared<const Scenario>(built.scenario);
+}
+
+std::vector<std::pair<std::string, std::string>> Inputs(const Arguments& arguments) {
+  std::vector<std::pair<std::string, std::string>> inputs;
+  const auto add = [&](const char* role, const std::string& path) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(path, ignored)) inputs.emplace_back(role, path);
+  };
+  add("ranch", arguments.ranch);
+  add("coast", arguments.coast);
+  add("bulletin", arguments.request.bulletin);
+  add("storm", arguments.request.storm);
+  add("devices", arguments.request.devices);
+  add("ships", arguments.request.ships_file);
+  return inputs;
+}
+
+int Run(Arguments& arguments) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point began = Clock::now();
+  RescueRequest& request = arguments.request;
+  request.depart_s = Seconds("depart", arguments.depart);
+  if (!arguments.at.empty()) request.at = ParseUtc("at", arguments.at);
+  request.now = std::time(nullptr);
+  RescueCase rescue = MakeRescueCase(LoadRanch(arguments), request);
+  const Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
+  const PlanReport report = MakeReport(rescue, ensemble);
+  std::fputs(ToText(rescue, report).c_str(), stdout);
+  if (!arguments.json.empty()) {
+    PlanProvenance provenance;
+    provenance.command = arguments.command;
+    provenance.computed_at = *request.now;
+    provenance.compute_s = std::chrono::duration<double>(Clock::now() - began).count();
+    provenance.inputs = Inputs(arguments);
+    WriteFileAtomically(arguments.json, ToJson(rescue, ensemble, report, provenance));
+    std::printf("written: %s\n", arguments.json.c_str());
+  }
+  return static_cast<int>(report.result);
+}
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  RescueRequest& request = arguments.request;
+  app.option_defaults()->always_capture_default();
+  app.add_option("ranch", arguments.ranch, "scenario file or name of a shipped scenario");
+  app.add_option("--coast", arguments.coast, "coast (GeoJSON) or chart, instead of a scenario");
+  app.add_option("--place", arguments.place, "LATITUDE,LONGITUDE of the ranch, with --coast");
+  app.add_option("--ports", arguments.ports, "LATITUDE,LONGITUDE of ports, with --coast");
+  app.add_option("--size", arguments.size, "cells per side, with --coast")
+      ->check(CLI::Range(2, 400));
+  app.add_option("--cell", arguments.cell_m, "metres per cell, with --coast")
+      ->check(CLI::Range(10.0, 10000.0));
+  app.add_option("--bulletin", request.bulletin, "bulletins of the storm with its forecast");
+  app.add_option("--storm", request.storm, "recorded track: plans as at --at (a hindcast)");
+  app.add_option("--storm-name", request.storm_name, "storm in that file, if it has several");
+  app.add_option("--at", arguments.at,
+                 "start of the plan, UTC as 2021-07-24T12:00:00Z; default: now, or the newest "
+                 "report of an old bulletin");
+  app.add_option("--devices", request.devices,
+                 "CSV: name,latitude,longitude,kind,value[,damaged]; default: those of the ranch");
+  app.add_option("--ships-file", request.ships_file,
+                 "CSV: name,latitude,longitude[,speed_kn,capacity,ready]");
+  app.add_option("--ships", request.ships, "number of ships, spread over the ports")
+      ->check(CLI::Range(0, 64));
+  app.add_option("--speed", request.speed_kn, "knots")->check(CLI::Range(0.1, 60.0));
+  app.add_option("--capacity", request.capacity, "devices aboard")->check(CLI::Range(1, 100));
+  app.add_option("--depart", arguments.depart, "earliest departure after the start, as +6h");
+  app.add_option("--abort-wind", request.abort_wind_kt, "knots of wind at which ships stop")
+      ->check(CLI::Range(10.0, 100.0));
+  app.add_option("--members", request.members, "possible storms")->check(CLI::Range(10, 20000));
+  app.add_option("--seed", request.seed, "of the possible storms");
+  app.add_option("--risk-averse", request.risk_averse,
+                 "share of the worst cases whose mean loss is minimized, as 0.05; 0: the mean")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--currency", request.currency, "of the devices' values, as CNY");
+  app.add_option("--utc-offset", arguments.utc_offset_h,
+                 "hours of the local time; default: by longitude")
+      ->check(CLI::Range(-14.0, 14.0));
+  app.add_option("--json", arguments.json, "write plan.json here");
+  app.add_option("--scenarios", arguments.scenarios, "folder of the shipped scenarios");
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  for (int i = 1; i < argc; ++i) arguments.command += std::string(" ") + argv[i];
+  arguments.command = "aquafarm_plan" + arguments.command;
+  CLI::App app("Plans which ship fetches which device before a storm comes.", "aquafarm_plan");
+  app.footer(
+      "exit codes: 0 ships leave, 2 bad argument or file, 3 cannot write, 10 nothing can be "
+      "saved,\n"
+      "11 the storm reaches no device in the known time, 12 unknown whether it does,\n"
+      "13 ships leave but the bulletin is older than 12 hours");
+  AddOptions(app, arguments);
+  try {
+    app.parse(argc, argv);
+    if (app.get_option("--utc-offset")->count() > 0) {
+      arguments.request.utc_offset_h = arguments.utc_offset_h;
+    }
+    return Run(arguments);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kBadInput);
+  } catch (const StorageError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kStorage);
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents
+
+int main(int argc, char** argv) { return aquafarm::agents::Main(argc, argv); }

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The future risks that a plan assumes. A planner reads them from a RiskSource and never moves
+/// disasters itself, so the same exact search runs on the true future, on a forecast, and on the
+/// mean of an ensemble of futures.
+///
+/// Mean of an ensemble: disasters do not react to ships, so the expected reward of a fixed plan is
+/// its reward under the mean layers below. The same holds for damage while health is not clamped at
+/// 0: the loss of health is linear in the risk.
+
+#include <cstdint>
+#include <vector>
+
+#include "aquafarm/agents/planning/plan.h"
+#include "aquafarm/farm/farm.h"
+#include "aquafarm/grid/grid.h"
+
+namespace aquafarm::agents {
+
+/// Risks of one step, [H, W].
+struct RiskLayers {
+  Grid<float> risk;   ///< risk at each cell; 0 or negative
+  Grid<float> quiet;  ///< reward of a step without any other term: the risk, else the step reward
+};
+
+/// Risks by step.
+class RiskSource {
+ public:
+  RiskSource() = default;
+  RiskSource(const RiskSource&) = delete;
+  RiskSource& operator=(const RiskSource&) = delete;
+  virtual ~RiskSource() = default;
+
+  /// Returns the risks of a step, after the disasters have moved. The reference is valid until the
+  /// next call. @param step after the farm's present step, at most last_step()
+  virtual const RiskLayers& At(std::int32_t step) = 0;
+  /// Returns the last step of a plan, after which the disasters or the episode have ended.
+  virtual std::int32_t last_step() const = 0;
+  /// Returns an upper bound of `quiet` at all cells and steps.
+  virtual float best_quiet() const = 0;
+};
+
+/// The risks of a farm's disasters and sea, from its present step on. Keeps the layers of the first
+/// steps, so that several searches compute them once.
+class DisasterRisk final : public RiskSource {
+ public:
+  /// @param farm must outlive the object and must not step meanwhile
+  DisasterRisk(const Farm& farm, Foresight foresight);
+  const RiskLayers& At(std::int32_t step) override;
+  std::int32_t last_step() const override { return last_step_; }
+  float best_quiet() const override;
+
+ private:
+  void Advance();
+
+  const Farm& farm_;
+  std::vector<Disaster> disasters_;  // state at step moved_to_
+  std::vector<Track> tracks_;
+  std::int32_t moved_to_{};
+  std::int32_t last_step_{};
+  std::vector<RiskLayers> kept_;  // of the steps after the farm's present one
+  std::size_t max_kept_{};
+  std::vector<Disaster> after_kept_;  // state of the disasters after the last kept step
+  RiskLayers layers_;                 // of step moved_to_, where it is not kept
+};
+
+/// Given layers, such as the mean of an ensemble.
+class RiskField final : public RiskSource {
+ public:
+  /// @param first_step step of layers[0] @param layers at least one, all of one shape
+  RiskField(std::int32_t first_step, std::vector<RiskLayers> layers);
+  const RiskLayers& At(std::int32_t step) override;
+  std::int32_t last_step() const override;
+  float best_quiet() const override { return best_quiet_; }
+
+ private:
+  std::int32_t first_step_;
+  std::vector<RiskLayers> layers_;
+  float best_quiet_{};
+};
+
+}  // namespace aquafarm::agents

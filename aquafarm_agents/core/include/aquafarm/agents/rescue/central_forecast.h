@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The storm that an ensemble varies, and the size of the ensemble.
+
+#include <cstdint>
+#include <vector>
+
+#include "aquafarm/agents/rescue/forecast_errors.h"
+#include "aquafarm/scenario/scenario.h"
+#include "aquafarm/tracks/storm_path.h"
+
+namespace aquafarm::agents {
+
+/// A storm as an authority forecasts it, or as it was recorded later (a hindcast).
+struct CentralForecast {
+  StormPath path;              ///< step 0 is the start of the plan, steps are those of the ensemble
+  std::vector<double> lead_h;  ///< by point: hours after the issue; 0 or negative if recorded
+  GradeRisks risks;            ///< of grades 1 to 4
+};
+
+/// Size and resolution of an ensemble.
+struct EnsembleOptions {
+  std::int32_t members{1000};
+  std::uint64_t seed{1};
+  ForecastErrors errors;
+  std::int32_t width{};  ///< of the ranch [cells]
+  std::int32_t height{};
+  double cell_size_km{};
+  double step_s{};       ///< length of a step
+  std::int32_t steps{};  ///< steps 0 … steps - 1 at times 0 … (steps - 1) · step_s
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Many possible futures of one storm, and what each of them does to a ranch.
+///
+///   central forecast ──> + errors that grow with lead time (forecast_errors.h) ──> members
+///   member ──> rings of wind over the cells in each step ──> arrival of each ring at each cell,
+///              probability of each ring by step and cell, exposure of the devices
+///
+/// Members do not depend on their number: member i of a seed is the same in every ensemble.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "aquafarm/agents/planning/risk_source.h"
+#include "aquafarm/agents/rescue/central_forecast.h"
+#include "aquafarm/grid/cell.h"
+
+namespace aquafarm::agents {
+
+/// Mean and spread of the members at one point of the central forecast.
+struct EnsembleSpread {
+  double time_s{};  ///< after the start of the plan
+  double lead_h{};
+  std::array<double, 2> center{};  ///< of the central forecast [cells]
+  double along_km{};               ///< standard deviation
+  double across_km{};
+  double radius70_km{};  ///< distance from the central forecast of 70 % of the members
+  double wind_mps{};
+  double size_log{};
+};
+
+/// The members. All arrays are computed by the constructor.
+class Ensemble {
+ public:
+  /// Step that stands for "not within the known time".
+  static constexpr std::int16_t kNoArrival = std::numeric_limits<std::int16_t>::max();
+
+  /// @param sites cells whose exposure is needed
+  /// @throws InputError if there are too many steps or members
+  Ensemble(const CentralForecast& forecast, const EnsembleOptions& options,
+           const std::vector<Cell>& sites);
+
+  const EnsembleOptions& options() const { return options_; }
+  std::int32_t members() const { return options_.members; }
+  std::int32_t steps() const { return options_.steps; }
+  std::int32_t rings() const { return rings_; }
+
+  /// First step at which a ring covers a cell, [members]; kNoArrival if it does not.
+  const std::int16_t* Arrival(std::int32_t ring, Cell cell) const {
+    const auto cells = static_cast<std::size_t>(options_.width * options_.height);
+    const auto index = static_cast<std::size_t>(cell.y * options_.width + cell.x);
+    return arrival_.data() +
+           (static_cast<std::size_t>(ring) * cells + index) * static_cast<std::size_t>(members());
+  }
+  /// Sum of |risk| at a site over the steps 0 … `step`, [members].
+  const float* Exposure(std::size_t site, std::int32_t step) const {
+    const auto count = static_cast<std::size_t>(members());
+    const auto at = static_cast<std::size_t>(step);
+    return exposure_.data() + (site * static_cast<std::size_t>(steps()) + at) * count;
+  }
+  /// Number of members whose ring covers each cell at a step, [H, W].
+  const std::uint16_t* Covered(std::int32_t ring, std::int32_t step) const {
+    const auto cells = static_cast<std::size_t>(options_.width * options_.height);
+    return covered_.data() + static_cast<std::size_t>(ring * steps() + step) * cells;
+  }
+  /// Number of members whose ring covers at least one cell at a step.
+  std::int32_t Touching(std::int32_t ring, std::int32_t step) const {
+    return touching_[static_cast<std::size_t>(ring * steps() + step)];
+  }
+  /// Spread at the points of the central forecast.
+  const std::vector<EnsembleSpread>& spread() const { return spread_; }
+
+  /// Mean layers of all members, for the exact planner: layer i belongs to step first_step + i.
+  /// @param step_reward reward of a step without risk
+  RiskField MeanRisk(std::int32_t first_step, float step_reward) const;
+
+ private:
+  EnsembleOptions options_;
+  std::int32_t rings_{};
+  std::vector<std::int16_t> arrival_;   // [rings, cells, members]
+  std::vector<float> exposure_;         // [sites, steps, members]
+  std::vector<std::uint16_t> covered_;  // [rings, steps, cells]
+  std::vector<std::int32_t> touching_;  // [rings, steps]
+  std::vector<float> risk_sum_;         // [steps, cells], over the members
+  std::vector<EnsembleSpread> spread_;
+
+  friend class EnsembleBuilder;
+};
+
+}  // namespace aquafarm::agents

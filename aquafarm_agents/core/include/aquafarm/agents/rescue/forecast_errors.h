@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Published errors of storm forecasts, by lead time.
+///
+/// | lead time [h]             | 0    | 24   | 48    | 72    | 96    | 120   |
+/// |---------------------------|------|------|-------|-------|-------|-------|
+/// | mean position error [km]  | 14.1 | 66.2 | 119.5 | 176.3 | 244.3 | 328.5 |
+/// | mean wind error [m/s]     | 1.4  | 4.37 | 6.5   | 7.78  |       |       |
+///
+/// Positions: China Meteorological Administration in 2015 (Verification on forecasts of tropical
+/// cyclones over western North Pacific in 2015, Meteorological Monthly 43(4), 2017, abstract).
+/// Winds: middle of the range of four centres in 2012 (Chen, Yu and Cao 2013, Meteorological
+/// Monthly 39(10), 1350-1358, abstract); at lead time 0 the National Meteorological Centre in 2021
+/// (Verification on typhoon forecasts … in 2022, Meteorological Monthly 50(5), 2024, abstract).
+/// Between and after these lead times errors are linear.
+///
+/// Assumed, because the sources give mean errors alone: errors are normal, of the same size along
+/// and across the track, and correlated along the track by exp(-difference of lead times / 48 h).
+/// An error along the track is the error of the time of arrival. All radii of a storm have one
+/// log-normal factor with the spread of recorded radii about EstimateRadius (tracks/wind_radii.h).
+
+#include <vector>
+
+namespace aquafarm::agents {
+
+/// Statistics of forecast errors; the defaults are those of the table above.
+struct ForecastErrors {
+  std::vector<double> position_lead_h{0.0, 24.0, 48.0, 72.0, 96.0, 120.0};
+  std::vector<double> position_km{14.1, 66.2, 119.5, 176.3, 244.3, 328.5};  ///< mean distance
+  std::vector<double> wind_lead_h{0.0, 24.0, 48.0, 72.0};
+  std::vector<double> wind_mps{1.4, 4.37, 6.5, 7.78};  ///< mean absolute error
+  double correlation_h{48.0};  ///< e-folding difference of lead times [assumed]
+  double size_factor{1.0};     ///< factor of the spread of radii [assumed]
+  double scale{1.0};           ///< factor of all errors: 0.5 halves them, 0 removes them
+};
+
+/// Standard deviations at one lead time.
+struct ForecastSpread {
+  double position_km{};  ///< along the track, and the same across it
+  double wind_mps{};
+};
+
+/// Returns the spread at a lead time. A normal error in two directions with standard deviation s
+/// has the mean distance s · sqrt(pi / 2), and a normal error in one direction has the mean
+/// absolute value s · sqrt(2 / pi).
+/// @param lead_h hours after the forecast was issued; negative: as at 0
+ForecastSpread SpreadAt(const ForecastErrors& errors, double lead_h);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The complete result of a rescue plan, as text for people and as JSON for programs
+/// (aquafarm_bringup/python/aquafarm_plan/plan.schema.json).
+
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/rescue/rescue_case.h"
+#include "aquafarm/agents/rescue/what_if.h"
+
+namespace aquafarm::agents {
+
+/// What a plan comes to; the exit code of aquafarm_plan.
+enum class PlanResult : std::uint8_t {
+  kPlan = 0,             ///< ships leave
+  kNothingSaved = 10,    ///< winds come, and no ship can save anything
+  kStormStaysAway = 11,  ///< no member of the ensemble reaches a device in the known time
+  kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near
+  kBulletinOld = 13,     ///< ships leave by the plan, but the bulletin is older than 12 hours
+};
+
+/// Where a plan comes from.
+struct PlanProvenance {
+  std::string command;
+  std::int64_t computed_at{};  ///< UTC [s since 1970]
+  double compute_s{};
+  std::vector<std::pair<std::string, std::string>> inputs;  ///< role and path of the files
+};
+
+/// A case with its plan.
+struct PlanReport {
+  PlanResult result{};
+  std::string text;  ///< the result in one sentence
+  RescuePlan plan;
+  std::vector<std::vector<Deadline>> deadlines;  ///< by device, for kDeadlineShares
+  std::vector<WhatIf> what_if;
+};
+/// Chances for which deadlines are given.
+inline constexpr std::array<double, 3> kDeadlineShares{0.95, 0.8, 0.5};
+
+/// Plans a case. May add warnings to it.
+PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble);
+
+/// Returns the time after which no ship should leave: the latest deadline of all devices with a
+/// chance of at least 50 %; nullopt if none.
+std::optional<double> NoDepartureAfter(const PlanReport& report);
+
+/// Returns the plan as text of about a page, in local time and UTC.
+std::string ToText(const RescueCase& rescue, const PlanReport& report);
+/// Returns the plan as JSON (aquafarm_bringup/python/aquafarm_plan/plan.schema.json).
+std::string ToJson(const RescueCase& rescue, const Ensemble& ensemble, const PlanReport& report,
+                   const PlanProvenance& provenance);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The rescue plan: who fetches what, when, and how likely it succeeds (issue: rescue_problem.h).
+///
+/// A plan is a sequence of trips for each ship. A ship leaves as soon as it is ready, takes the
+/// shortest ways, fetches up to its capacity, and delivers at the nearest open port or at the one
+/// on the way to the next device. Later departures are never better, since ships fail by a time.
+///
+///   per ship: sequences of trips, extended device by device, each with the members in which
+///   the ship still works ──> best value per set of devices ──> best disjoint sets of all ships
+///
+/// The value of a plan is additive over devices, so the combination is exact. The search keeps the
+/// best kWidth partial sequences of each length; with fewer it is exhaustive (`is_exhaustive`), and
+/// the plan is the best of this class. `bound` limits the value of any plan: each device is fetched
+/// by its fastest ship, without the others, and fails only in members whose winds are at its site
+/// before that ship can be there.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "aquafarm/agents/rescue/rescue_order.h"
+#include "aquafarm/agents/rescue/rescue_problem.h"
+
+namespace aquafarm::agents {
+
+struct ShipRoute {
+  std::int32_t ship{};
+  double km{};
+  std::vector<RescueOrder> orders;
+  std::vector<TimedCell> path;
+};
+
+/// Distribution over the members.
+struct LossSummary {
+  double mean{};
+  double standard_error{};
+  double q05{};
+  double q50{};
+  double q95{};
+  double cvar05{};  ///< mean of the worst 5 % of the members
+};
+/// @param losses one per member, at least one
+LossSummary Summarize(std::vector<float> losses);
+/// Returns the mean of the worst share of the values, the last one in part. @param share in (0, 1]
+double MeanOfWorst(std::vector<float> losses, double share);
+
+/// What a plan means for one device.
+struct DeviceOutcome {
+  std::int32_t ship{kNone};  ///< kNone: it is left behind
+  std::int32_t port{kNone};
+  double fetch_s{};
+  double deliver_s{};
+  double home{};                    ///< probability that it reaches a port
+  std::vector<double> home_before;  ///< by ring: that it is in port before the ring is at its site
+  double mean_loss{};
+  double mean_loss_idle{};  ///< if no ship leaves
+};
+
+struct RescuePlan {
+  std::vector<ShipRoute> routes;         ///< of the ships that leave
+  std::vector<DeviceOutcome> devices;    ///< by device
+  std::vector<float> loss;               ///< by member
+  std::vector<float> loss_idle;          ///< by member, if no ship leaves
+  std::vector<std::uint8_t> home_count;  ///< by member: devices in port at the end
+  double saved{};                        ///< mean value saved, compared with no departure
+  double bound{};                        ///< no plan saves more
+  bool is_exhaustive{};
+};
+
+/// Makes the best plan.
+/// @throws InputError if the numbers of the problem do not fit together
+RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble);
+
+/// Latest departure to a device.
+struct Deadline {
+  double probability{};           ///< min chance that the device comes home
+  std::optional<double> leave_s;  ///< after the start of the plan; nullopt: no departure has it
+  bool is_open{};  ///< no winds stop the ship in so many members: leave_s is set by the end of the
+                   ///< known time
+  std::int32_t ship{kNone};
+};
+/// Returns, by device and probability, the latest departure of any ship that fetches this device
+/// first and brings it to the nearest open port. A ship that leaves at this time succeeds in at
+/// least this share of the members; one that leaves a step later does not.
+std::vector<std::vector<Deadline>> Deadlines(const RescueProblem& problem, const Ensemble& ensemble,
+                                             const std::vector<double>& probabilities);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/farm/cell_bits.h"
+#include "aquafarm/scenario/enums.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/tracks/track.h"
+#include "rescue/case_parts.h"
+#include "rescue/csv.h"
+#include "rescue/sea_routes.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr double kHour_s = 3600.0;
+
+std::string Where(GeoPoint place) {
+  return Short(place.latitude, 4) + " N " + Short(place.longitude, 4) + " E";
+}
+
+// Returns the water cell of a place in a row.
+Cell WaterCell(const CsvRow& row, const std::string& name, const RescueCase& rescue) {
+  const GeoPoint place{row.Number("latitude", -90.0, 90.0), row.Number("longitude", -180.0, 360.0)};
+  const Grid<std::uint8_t>& water = rescue.problem.water;
+  const auto fail = [&](const std::string& what) {
+    throw InputError(row.where() + ": " + name + ": got " + Where(place) + ", " + what);
+  };
+  if (!rescue.frame.Faces(place)) fail("expected a place on the chart of the ranch");
+  const std::array<double, 2> at = rescue.frame.ToGrid(place);
+  const Cell cell{static_cast<std::int32_t>(std::lround(at[0])),
+                  static_cast<std::int32_t>(std::lround(at[1]))};
+  const bool on_map = cell.x >= 0 && cell.y >= 0 && cell.x < water.cols() && cell.y < water.rows();
+  if (!on_map) {
+    fail("expected a place on the chart of the ranch, " + Where(rescue.frame.ToGeo(0, 0)) + " to " +
+         Where(rescue.frame.ToGeo(static_cast<double>(water.cols() - 1),
+                                  static_cast<double>(water.rows() - 1))));
+  }
+  if (water(cell.y, cell.x) == 0) {
+    fail("which is land or rock in cell (" + std::to_string(cell.x) + ", " +
+         std::to_string(cell.y) + "), expected water");
+  }
+  return cell;
+}
+
+std::string KindOf(const CsvRow& row) {
+  std::string names;
+  const std::string kind = row.Text("kind");
+  for (int i = 0; i < kDeviceKindCount; ++i) {
+    const auto one = std::string(ToString(static_cast<DeviceKind>(i)));
+    if (one == kind) return kind;
+    names += (i > 0 ? ", " : "") + one;
+  }
+  throw InputError(row.where() + ": kind: got '" + kind + "', expected one of: " + names);
+}
+
+void RequireNewName(const std::string& name, const CsvRow& row,
+                    const std::vector<std::string>& names) {
+  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) return;
+  throw InputError(row.where() + ": name: got '" + name + "', expected a name of its own");
+}
+
+void ReadDevices(const RescueRequest& request, RescueCase& rescue) {
+  std::vector<RescueDevice>& devices = rescue.problem.devices;
+  if (request.devices.empty()) {
+    for (const PlacedDevice& placed : rescue.layout.devices) {
+      devices.push_back({"D" + std::to_string(devices.size() + 1),
+                         std::string(ToString(placed.kind)), placed.cell,
+                         static_cast<double>(placed.value),
+                         1.0 - static_cast<double>(rescue.scenario->devices.health)});
+    }
+    return;
+  }
+  const CsvTable table(request.devices, {"name", "latitude", "longitude", "kind", "value"},
+                       {"damaged"});
+  std::vector<std::string> names;
+  for (const CsvRow& row : table.rows()) {
+    RescueDevice device;
+    device.name = row.Text("name");
+    RequireNewName(device.name, row, names);
+    names.push_back(device.name);
+    device.kind = KindOf(row);
+    device.cell = WaterCell(row, device.name, rescue);
+    device.value = row.Number("value", 0.0, 1.0e12);
+    if (!row.Text("damaged").empty()) device.damage_before = row.Number("damaged", 0.0, 1.0);
+    const SeaRoutes routes(rescue.problem.water, {device.cell, rescue.problem.ports[0].cell});
+    if (!std::isfinite(routes.Length(0, 1))) {
+      throw InputError(row.where() + ": " + device.name +
+                       ": no way by water leads to the ports; check its position");
+    }
+    devices.push_back(std::move(device));
+  }
+}
+
+// Returns when a ship is ready [s after the start]: the UTC time of its row, else the fallback.
+double ReadyOf(const CsvRow& row, std::int64_t start, double fallback_s) {
+  const std::string text = row.Text("ready");
+  if (text.empty()) return fallback_s;
+  const std::string what = row.where() + ": ready";
+  const double ready_s = static_cast<double>(ParseUtc(what, text) - start);
+  return std::max(ready_s, fallback_s);  // ready before the plan begins
+}
+
+void ReadShips(const RescueRequest& request, RescueCase& rescue) {
+  const Scenario& scenario = *rescue.scenario;
+  const double farm_speed_kn = scenario.cell_size_m / scenario.step_duration_s / kMpsPerKnot;
+  const double speed_kn = request.speed_kn.value_or(farm_speed_kn);
+  const std::int32_t capacity = request.capacity.value_or(scenario.ships.capacity);
+  const auto& ports = rescue.problem.ports;
+  std::vector<RescueShip>& ships = rescue.problem.ships;
+  if (request.ships_file.empty()) {
+    const std::int32_t count = request.ships.value_or(scenario.ships.count);
+    for (std::int32_t i = 0; i < count; ++i) {
+      const RescuePort& port = ports[static_cast<std::size_t>(i) % ports.size()];
+      ships.push_back(
+          {"ship " + std::to_string(i + 1), port.cell, speed_kn, capacity, request.depart_s});
+    }
+    return;
+  }
+  const CsvTable table(request.ships_file, {"name", "latitude", "longitude"},
+                       {"speed_kn", "capacity", "ready"});
+  std::vector<std::string> names;
+  for (const CsvRow& row : table.rows()) {
+    RescueShip ship;
+    ship.name = row.Text("name");
+    RequireNewName(ship.name, row, names);
+    names.push_back(ship.name);
+    ship.cell = WaterCell(row, ship.name, rescue);
+    ship.speed_kn = row.Text("speed_kn").empty() ? speed_kn : row.Number("speed_kn", 0.1, 60.0);
+    ship.capacity = capacity;
+    if (!row.Text("capacity").empty()) {
+      ship.capacity = static_cast<std::int32_t>(row.Number("capacity", 1.0, 100.0));
+    }
+    ship.ready_s = ReadyOf(row, rescue.start, request.depart_s);
+    ships.push_back(std::move(ship));
+  }
+  if (request.ships && static_cast<std::size_t>(*request.ships) != ships.size()) {
+    throw InputError("ships: got " + std::to_string(*request.ships) + ", expected " +
+                     std::to_string(ships.size()) + ", as in " + request.ships_file);
+  }
+}
+
+}  // namespace
+
+void ReadFleet(const RescueRequest& request, RescueCase& rescue) {
+  const Scenario& scenario = *rescue.scenario;
+  RescueProblem& problem = rescue.problem;
+  problem.water.resize(scenario.height, scenario.width);
+  for (std::int32_t y = 0; y < scenario.height; ++y) {
+    for (std::int32_t x = 0; x < scenario.width; ++x) {
+      problem.water(y, x) = (rescue.layout.bits({x, y}) & kBlockedBits) == 0 ? 1 : 0;
+    }
+  }
+  problem.cell_size_km = scenario.cell_size_m / 1000.0;
+  for (const Cell port : rescue.layout.ports) {
+    const auto letter = static_cast<char>('A' + problem.ports.size() % 26);
+    const std::size_t round = problem.ports.size() / 26;
+    problem.ports.push_back(
+        {"port " + std::string(1, letter) + (round > 0 ? std::to_string(round + 1) : ""), port,
+         true});
+  }
+  ReadDevices(request, rescue);
+  ReadShips(request, rescue);
+  problem.handling_s = scenario.step_duration_s;
+  problem.exposure_damage = static_cast<double>(scenario.damage.exposure_damage) *
+                            rescue.ensemble.step_s / scenario.step_duration_s;
+  problem.risk_averse = request.risk_averse;
+}
+
+}  // namespace aquafarm::agents

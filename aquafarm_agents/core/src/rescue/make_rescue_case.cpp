@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "aquafarm/agents/rescue/rescue_case.h"
+#include "aquafarm/base/check.h"
+#include "rescue/case_parts.h"
+
+namespace aquafarm::agents {
+namespace {
+
+// Returns the ring whose winds stop ships: the strongest one with at most the limit, else the
+// weakest, to be on the safe side.
+std::int32_t AbortRing(const StormPath& path, double limit_kt) {
+  for (std::size_t ring = 0; ring < path.rings; ++ring) {
+    if (path.wind_kt[ring] <= limit_kt) return static_cast<std::int32_t>(ring);
+  }
+  return static_cast<std::int32_t>(path.rings) - 1;
+}
+
+void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
+  const auto add = [&](const std::string& what, const std::string& value, const std::string& basis,
+                       const std::string& source) {
+    rescue.assumptions.push_back({what, value, basis, source});
+  };
+  const StormPath& path = rescue.forecast.path;
+  const auto ring = static_cast<std::size_t>(rescue.problem.abort_ring);
+  add("A ship stops work for good when winds of this force have reached its cell",
+      std::to_string(path.wind_kt[ring]) + " kt", "given",
+      "--abort-wind " + Short(request.abort_wind_kt, 0) + "; the ring at or below it is used");
+  add("Mean position error of the forecast after 24, 48, 72, 96 and 120 h",
+      "66.2, 119.5, 176.3, 244.3, 328.5 km", "published",
+      "China Meteorological Administration in 2015: Meteorological Monthly 43(4), 2017");
+  add("Mean wind error of the forecast after 24, 48 and 72 h", "4.4, 6.5, 7.8 m/s", "published",
+      "Middle of four centres in 2012: Chen, Yu and Cao, Meteorological Monthly 39(10), 2013");
+  add("Spread of the radii of a storm's winds", "log-normal, one factor per storm", "estimated",
+      "Spread of recorded radii about the estimate by wind and latitude (docs/data.md)");
+  add("Position errors along and across the track", "normal, equal, correlated by exp(-dt / 48 h)",
+      "assumed", "The published statistics give mean distances alone");
+  add("Damage of a device at its site",
+      Short(100.0 * static_cast<double>(rescue.scenario->damage.exposure_damage), 3) +
+          " % of its value per unit of risk and " + Short(rescue.scenario->step_duration_s, 0) +
+          " s",
+      "assumed", "damage.exposure_damage of the ranch");
+  add("A device that is not delivered", "takes the damage of the whole storm at its site",
+      "assumed", "Also if it is aboard a ship that stopped");
+  add("Speed of the ships",
+      Short(rescue.problem.ships.empty() ? 0.0 : rescue.problem.ships[0].speed_kn, 1) + " kn",
+      request.speed_kn || !request.ships_file.empty() ? "given" : "assumed",
+      "with and without a device in tow; one cell per step of the ranch unless given");
+  add("Time for a pickup or a drop-off", Short(rescue.problem.handling_s / 60.0, 0) + " min",
+      "assumed", "one step of the ranch");
+  add("Local time",
+      "UTC" + std::string(rescue.utc_offset_min < 0 ? "-" : "+") +
+          Short(std::abs(rescue.utc_offset_min) / 60.0, 1) + " h",
+      request.utc_offset_h ? "given" : "assumed", "from the longitude unless given");
+}
+
+}  // namespace
+
+std::string Short(double value, int digits) {
+  char text[64];
+  const int count = std::snprintf(text, sizeof(text), "%.*f", digits, value);
+  return {text, static_cast<std::size_t>(std::max(0, count))};
+}
+
+RescueCase MakeRescueCase(std::shared_ptr<const Scenario> scenario, const RescueRequest& request) {
+  if (!scenario->origin) {
+    throw InputError(scenario->name + ": got no grid.origin, expected the place of the ranch");
+  }
+  RescueCase rescue;
+  rescue.scenario = std::move(scenario);
+  rescue.frame = GeoFrame(*rescue.scenario->origin, rescue.scenario->cell_size_m);
+  rescue.currency = request.currency;
+  LayoutGenerator(*rescue.scenario).Generate(0, 0, rescue.layout);
+  const double offset_h =
+      request.utc_offset_h.value_or(std::round(rescue.scenario->origin->longitude / 15.0));
+  rescue.utc_offset_min = static_cast<std::int32_t>(std::lround(60.0 * offset_h));
+  ReadStorm(request, rescue);
+  ReadFleet(request, rescue);
+  rescue.problem.abort_ring = AbortRing(rescue.forecast.path, request.abort_wind_kt);
+  ListAssumptions(request, rescue);
+  return rescue;
+}
+
+}  // namespace aquafarm::agents

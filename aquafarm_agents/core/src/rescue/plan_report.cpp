@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/rescue/plan_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "rescue/case_parts.h"
+
+namespace aquafarm::agents {
+namespace {
+
+std::string Percent(double share) { return Short(100.0 * share, 0) + " %"; }
+
+std::string Money(const RescueCase& rescue, double value) {
+  return Short(value, std::abs(value) < 1000.0 ? 1 : 0) +
+         (rescue.currency.empty() ? "" : " " + rescue.currency);
+}
+
+// Returns "07-24 20:30 (12:30Z)", local time first.
+std::string Clock(const RescueCase& rescue, double time_s) {
+  const std::int64_t utc = rescue.start + std::llround(time_s);
+  const std::string local = FormatUtc(utc + 60 * rescue.utc_offset_min);
+  return local.substr(5, 5) + " " + local.substr(11, 5) + " (" + FormatUtc(utc).substr(11, 5) +
+         "Z)";
+}
+
+bool IsReached(const RescueCase& rescue, const Ensemble& ensemble) {
+  for (const RescueDevice& device : rescue.problem.devices) {
+    const std::int16_t* arrival = ensemble.Arrival(ensemble.rings() - 1, device.cell);
+    const auto end = arrival + ensemble.members();
+    if (std::any_of(arrival, end, [](std::int16_t a) { return a != Ensemble::kNoArrival; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
+  const StormRecord& storm = rescue.storm;
+  const std::string until = FormatUtc(
+      rescue.start + static_cast<std::int64_t>((ensemble.steps() - 1) * ensemble.options().step_s));
+  if (!IsReached(rescue, ensemble)) {
+    const bool is_unknown = storm.passage.unknown[0] != 0;
+    report.result = is_unknown ? PlanResult::kStormUnknown : PlanResult::kStormStaysAway;
+    report.text = is_unknown
+                      ? "It is unknown whether the storm reaches the devices: its wind and radii "
+                        "are unknown from " +
+                            FormatUtc(storm.passage.unknown[0]) + "."
+                      : "No winds of the storm reach a device in any of " +
+                            std::to_string(ensemble.members()) + " futures until " + until +
+                            ". What follows is unknown: plan again with the next bulletin.";
+    rescue.warnings.push_back({is_unknown ? "storm_unknown" : "storm_stays_away",
+                               is_unknown ? "stop" : "warning", report.text,
+                               "Get the next bulletin."});
+  } else if (report.plan.routes.empty()) {
+    report.result = PlanResult::kNothingSaved;
+    report.text = rescue.problem.ships.empty()
+                      ? "There is no ship, so nothing can be saved."
+                      : "No ship can bring a device to a port before the winds that stop ships: "
+                        "nothing can be saved.";
+    rescue.warnings.push_back(
+        {"nothing_can_be_saved", "stop", report.text, "Keep the ships in port."});
+  } else {
+    report.result = storm.age_h >= 12.0 ? PlanResult::kBulletinOld : PlanResult::kPlan;
+    report.text = std::to_string(report.plan.routes.size()) + " of " +
+                  std::to_string(rescue.problem.ships.size()) + " ships leave and save " +
+                  Money(rescue, report.plan.saved) + " of " +
+                  Money(rescue, Summarize(report.plan.loss_idle).mean) + " on average.";
+  }
+}
+
+void AddRoutes(const RescueCase& rescue, const PlanReport& report, std::string& text) {
+  const RescueProblem& problem = rescue.problem;
+  for (const ShipRoute& route : report.plan.routes) {
+    const RescueShip& ship = problem.ships[static_cast<std::size_t>(route.ship)];
+    text += "\n" + ship.name + ", " + Short(route.km, 1) + " km\n";
+    for (const RescueOrder& order : route.orders) {
+      text += "  " + Clock(rescue, order.time_s) + "  ";
+      if (order.kind == OrderKind::kLeave) {
+        text += "leave " + (order.port == kNone
+                                ? std::string("its position")
+                                : problem.ports[static_cast<std::size_t>(order.port)].name);
+      } else if (order.kind == OrderKind::kFetch) {
+        text += "fetch " + problem.devices[static_cast<std::size_t>(order.device)].name;
+      } else {
+        text += "deliver at " + problem.ports[static_cast<std::size_t>(order.port)].name;
+      }
+      text += "  [" + Percent(order.probability) + "]\n";
+    }
+  }
+}
+
+void AddDevices(const RescueCase& rescue, const PlanReport& report, std::string& text) {
+  text += "\ndevice: chance to be in port; latest departure with 95, 80, 50 %; mean loss\n";
+  for (std::size_t d = 0; d < rescue.problem.devices.size(); ++d) {
+    const DeviceOutcome& outcome = report.plan.devices[d];
+    text += "  " + rescue.problem.devices[d].name + ": " +
+            (outcome.ship == kNone ? "left behind" : Percent(outcome.home)) + ";";
+    for (const Deadline& deadline : report.deadlines[d]) {
+      text += " " +
+              (!deadline.leave_s  ? std::string("none")
+               : deadline.is_open ? std::string("open")
+                                  : Clock(rescue, *deadline.leave_s)) +
+              (deadline.probability == kDeadlineShares.back() ? ";" : ",");
+    }
+    text += " " + Money(rescue, outcome.mean_loss) + " (" + Money(rescue, outcome.mean_loss_idle) +
+            " if it stays)\n";
+  }
+}
+
+}  // namespace
+
+std::optional<double> NoDepartureAfter(const PlanReport& report) {
+  std::optional<double> latest;
+  for (const std::vector<Deadline>& of_device : report.deadlines) {
+    const std::optional<double>& leave_s = of_device.back().leave_s;
+    if (leave_s && (!latest || *leave_s > *latest)) latest = leave_s;
+  }
+  return latest;
+}
+
+PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble) {
+  PlanReport report;
+  report.plan = PlanRescue(rescue.problem, ensemble);
+  report.deadlines =
+      Deadlines(rescue.problem, ensemble, {kDeadlineShares.begin(), kDeadlineShares.end()});
+  report.what_if = CompareChanges(rescue.problem, ensemble, report.plan);
+  Judge(rescue, ensemble, report);
+  const auto rank = [](const RescueWarning& one) {
+    return one.severity == "stop" ? 0 : one.severity == "warning" ? 1 : 2;
+  };
+  std::stable_sort(
+      rescue.warnings.begin(), rescue.warnings.end(),
+      [&](const RescueWarning& a, const RescueWarning& b) { return rank(a) < rank(b); });
+  return report;
+}
+
+std::string ToText(const RescueCase& rescue, const PlanReport& report) {
+  std::string text = report.text + "\n";
+  for (const RescueWarning& warning : rescue.warnings) {
+    if (warning.text == report.text) continue;
+    text += warning.severity + ": " + warning.text +
+            (warning.advice.empty() ? "" : " " + warning.advice) + "\n";
+  }
+  AddRoutes(rescue, report, text);
+  AddDevices(rescue, report, text);
+  const LossSummary loss = Summarize(report.plan.loss);
+  text += "\nloss: mean " + Money(rescue, loss.mean) + ", 5 to 95 %: " + Money(rescue, loss.q05) +
+          " to " + Money(rescue, loss.q95) +
+          "; mean of the worst 5 %: " + Money(rescue, loss.cvar05) + "\n";
+  if (const std::optional<double> last = NoDepartureAfter(report)) {
+    text += "no ship should leave after " + Clock(rescue, *last) + "\n";
+  }
+  text += "\nwhat if: mean loss, change\n";
+  for (const WhatIf& row : report.what_if) {
+    text += "  " + row.text +
+            (row.is_possible ? ": " + Money(rescue, row.loss.mean) + ", " +
+                                   (row.difference > 0.0 ? "+" : "") + Money(rescue, row.difference)
+                             : "") +
+            "\n";
+  }
+  text += "times: local (UTC); chances: shares of " + std::to_string(report.plan.loss.size()) +
+          " possible storms\n";
+  return text;
+}
+
+}  // namespace aquafarm::agents

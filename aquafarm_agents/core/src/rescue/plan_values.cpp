@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rescue/plan_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "aquafarm/agents/rescue/rescue_plan.h"
+
+namespace aquafarm::agents {
+
+double Rounded(double value, double unit) { return std::round(value / unit) * unit; }
+double Share(double value) { return std::clamp(Rounded(value, 1e-4), 0.0, 1.0); }
+double Money(double value) { return Rounded(value, 0.01); }
+double Km(double value) { return Rounded(value, 0.001); }
+Json OfCell(Cell cell) { return Json::array({cell.x, cell.y}); }
+Json OfId(std::int32_t id) { return id == kNone ? Json(nullptr) : Json(id); }
+Json OfPlace(GeoPoint place) {
+  return {{"latitude", Rounded(place.latitude, 1e-6)},
+          {"longitude", Rounded(place.longitude, 1e-6)}};
+}
+std::string Hex(std::uint64_t value) {
+  char text[17];
+  std::snprintf(text, sizeof(text), "%016llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+Json LossOf(std::vector<float> losses) {
+  const LossSummary summary = Summarize(losses);
+  std::sort(losses.begin(), losses.end());
+  Json exceedance = Json::array();
+  const std::size_t count = losses.size();
+  const std::size_t points = std::min<std::size_t>(count, 100);
+  for (std::size_t k = 0; k < points; ++k) {
+    const double loss =
+        static_cast<double>(losses[k * (count - 1) / std::max<std::size_t>(1, points - 1)]);
+    const auto above =
+        losses.end() - std::upper_bound(losses.begin(), losses.end(), static_cast<float>(loss));
+    Json point{Money(loss), Share(static_cast<double>(above) / static_cast<double>(count))};
+    if (exceedance.empty() || exceedance.back() != point) exceedance.push_back(std::move(point));
+  }
+  return {{"mean", Money(summary.mean)}, {"standard_error", summary.standard_error},
+          {"q05", Money(summary.q05)},   {"q50", Money(summary.q50)},
+          {"q95", Money(summary.q95)},   {"cvar05", Money(summary.cvar05)},
+          {"exceedance", exceedance}};
+}
+
+Json WarningsOf(const RescueCase& rescue) {
+  Json list = Json::array();
+  for (const RescueWarning& one : rescue.warnings) {
+    list.push_back({{"code", one.code},
+                    {"severity", one.severity},
+                    {"text", one.text},
+                    {"advice", one.advice}});
+  }
+  return list;
+}
+
+Json AssumptionsOf(const RescueCase& rescue) {
+  Json list = Json::array();
+  for (const RescueAssumption& one : rescue.assumptions) {
+    list.push_back(
+        {{"what", one.what}, {"value", one.value}, {"basis", one.basis}, {"source", one.source}});
+  }
+  return list;
+}
+
+}  // namespace aquafarm::agents

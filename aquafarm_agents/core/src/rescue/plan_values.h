@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Values of plan.json.
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/rescue/rescue_case.h"
+#include "aquafarm/grid/cell.h"
+#include "aquafarm/grid/geo_frame.h"
+
+namespace aquafarm::agents {
+
+using Json = nlohmann::ordered_json;
+
+double Rounded(double value, double unit);
+/// A probability, to four digits.
+double Share(double value);
+double Money(double value);
+double Km(double value);
+Json OfCell(Cell cell);
+/// null for kNone.
+Json OfId(std::int32_t id);
+Json OfPlace(GeoPoint place);
+std::string Hex(std::uint64_t value);
+/// Summary and exceedance curve. @param losses one per member, at least one
+Json LossOf(std::vector<float> losses);
+Json WarningsOf(const RescueCase& rescue);
+Json AssumptionsOf(const RescueCase& rescue);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rescue/trip_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/grid/action.h"
+#include "aquafarm/tracks/track.h"
+
+namespace aquafarm::agents {
+namespace {
+
+std::vector<Cell> PlacesOf(const RescueProblem& problem) {
+  std::vector<Cell> places;
+  const auto add = [&](const std::string& name, Cell cell) {
+    const bool on_map = cell.x >= 0 && cell.y >= 0 && cell.x < problem.water.cols() &&
+                        cell.y < problem.water.rows();
+    if (!on_map || problem.water(cell.y, cell.x) == 0) {
+      throw InputError(name + ": got cell (" + std::to_string(cell.x) + ", " +
+                       std::to_string(cell.y) + "), expected water on the map");
+    }
+    places.push_back(cell);
+  };
+  for (const RescueDevice& device : problem.devices) add(device.name, device.cell);
+  for (const RescuePort& port : problem.ports) add(port.name, port.cell);
+  for (const RescueShip& ship : problem.ships) add(ship.name, ship.cell);
+  return places;
+}
+
+}  // namespace
+
+std::int32_t CountAlive(const Alive& alive) {
+  return std::accumulate(alive.begin(), alive.end(), std::int32_t{0});
+}
+
+TripModel::TripModel(const RescueProblem& problem, const Ensemble& ensemble)
+    : problem_(problem), ensemble_(ensemble), routes_(problem.water, PlacesOf(problem)) {
+  AQUAFARM_CHECK_LT(problem.abort_ring, ensemble.rings());
+  const auto members = static_cast<std::size_t>(ensemble.members());
+  loss_.resize(problem.devices.size() * static_cast<std::size_t>(ensemble.steps()) * members);
+  float* loss = loss_.data();
+  for (std::size_t device = 0; device < problem.devices.size(); ++device) {
+    const RescueDevice& one = problem.devices[device];
+    const auto value = static_cast<float>(one.value);
+    const auto left = static_cast<float>(1.0 - one.damage_before);
+    const auto rate = static_cast<float>(problem.exposure_damage);
+    for (std::int32_t step = 0; step < ensemble.steps(); ++step) {
+      const float* exposure = ensemble.Exposure(device, step);
+      for (std::size_t member = 0; member < members; ++member) {
+        *loss++ = value * std::min(left, rate * exposure[member]);
+      }
+    }
+  }
+}
+
+double TripModel::Pace(std::size_t ship) const {
+  return problem_.cell_size_km * 1000.0 / (problem_.ships[ship].speed_kn * kMpsPerKnot);
+}
+
+// Returns the last step that has begun at a time; beyond the known time the number of steps.
+std::int32_t TripModel::StepOf(double time_s) const {
+  const double step = std::floor(std::max(0.0, time_s) / ensemble_.options().step_s);
+  return static_cast<std::int32_t>(std::min(step, static_cast<double>(ensemble_.steps())));
+}
+
+void TripModel::Stay(Cell cell, double until_s, Alive& alive) const {
+  const std::int32_t step = StepOf(until_s);
+  if (step >= ensemble_.steps()) {
+    std::fill(alive.begin(), alive.end(), std::int16_t{0});
+    return;
+  }
+  const std::int16_t* arrival = ensemble_.Arrival(problem_.abort_ring, cell);
+  const auto now = static_cast<std::int16_t>(step);
+  std::int16_t* works = alive.data();
+  const std::size_t count = alive.size();
+  for (std::size_t member = 0; member < count; ++member) {
+    const auto calm = static_cast<std::int16_t>(arrival[member] > now ? 1 : 0);
+    works[member] = static_cast<std::int16_t>(works[member] & calm);
+  }
+}
+
+void TripModel::Move(std::size_t ship, std::size_t from, std::size_t to, double& time_s,
+                     Alive& alive) const {
+  const SeaRoute& route = routes_.Between(from, to);
+  const double pace = Pace(ship);
+  for (std::size_t i = 0; i + 1 < route.cells.size(); ++i) {
+    Stay(route.cells[i], time_s + route.length[i + 1] * pace, alive);
+  }
+  time_s += route.length.back() * pace + problem_.handling_s;
+  Stay(route.cells.back(), time_s, alive);
+}
+
+const float* TripModel::LossUntil(std::size_t device, double time_s) const {
+  const auto step = static_cast<std::size_t>(std::min(StepOf(time_s), ensemble_.steps() - 1));
+  return loss_.data() + (device * static_cast<std::size_t>(ensemble_.steps()) + step) *
+                            static_cast<std::size_t>(ensemble_.members());
+}
+
+const float* TripModel::LossIdle(std::size_t device) const {
+  return LossUntil(device, std::numeric_limits<double>::max());
+}
+
+double TripModel::Saved(std::size_t device, double time_s, const Alive& alive) const {
+  const float* idle = LossIdle(device);
+  const float* until = LossUntil(device, time_s);
+  float saved = 0.0F;
+  for (std::size_t member = 0; member < alive.size(); ++member) {
+    saved += static_cast<float>(alive[member]) * (idle[member] - until[member]);
+  }
+  return static_cast<double>(saved) / static_cast<double>(alive.size());
+}
+
+std::int32_t TripModel::NearestPort(std::size_t place) const {
+  std::int32_t best = kNone;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t port = 0; port < problem_.ports.size(); ++port) {
+    const double length = routes_.Length(place, PlaceOfPort(port));
+    if (!problem_.ports[port].is_open || length >= nearest) continue;
+    nearest = length;
+    best = static_cast<std::int32_t>(port);
+  }
+  return best;
+}
+
+double TripModel::BoundOf(std::size_t device) const {
+  const std::int32_t port = NearestPort(PlaceOfDevice(device));
+  if (port == kNone) return 0.0;
+  double fetch_s = std::numeric_limits<double>::infinity();
+  double deliver_s = fetch_s;
+  const double back =
+      routes_.Length(PlaceOfDevice(device), PlaceOfPort(static_cast<std::size_t>(port)));
+  for (std::size_t ship = 0; ship < problem_.ships.size(); ++ship) {
+    const double out = routes_.Length(PlaceOfShip(ship), PlaceOfDevice(device));
+    const double fetched = problem_.ships[ship].ready_s + out * Pace(ship) + problem_.handling_s;
+    fetch_s = std::min(fetch_s, fetched);
+    deliver_s = std::min(deliver_s, fetched + back * Pace(ship) + problem_.handling_s);
+  }
+  if (!std::isfinite(deliver_s)) return 0.0;
+  Alive alive(static_cast<std::size_t>(ensemble_.members()), 1);
+  Stay(problem_.devices[device].cell, fetch_s, alive);
+  return Saved(device, deliver_s, alive);
+}
+
+std::vector<TimedCell> TripModel::FirstTrip(std::size_t ship, std::size_t device) const {
+  const std::int32_t port = NearestPort(PlaceOfDevice(device));
+  const SeaRoute& out = routes_.Between(PlaceOfShip(ship), PlaceOfDevice(device));
+  if (port == kNone || out.cells.empty()) return {};
+  const SeaRoute& back =
+      routes_.Between(PlaceOfDevice(device), PlaceOfPort(static_cast<std::size_t>(port)));
+  const double pace = Pace(ship);
+  std::vector<TimedCell> left;
+  double time_s = 0.0;
+  for (const SeaRoute* route : {&out, &back}) {
+    for (std::size_t i = 0; i + 1 < route->cells.size(); ++i) {
+      left.push_back({route->cells[i], time_s + route->length[i + 1] * pace});
+    }
+    time_s += route->length.back() * pace + problem_.handling_s;
+    left.push_back({route->cells.back(), time_s});
+  }
+  return left;
+}
+
+}  // namespace aquafarm::agents

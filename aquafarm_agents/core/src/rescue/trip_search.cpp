@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rescue/trip_search.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace aquafarm::agents {
+namespace {
+
+// Partial sequences of one length that the search keeps.
+constexpr std::size_t kWidth = 6000;
+
+constexpr DeviceSet Bit(std::size_t device) { return DeviceSet{1} << device; }
+
+class TripSearch {
+ public:
+  TripSearch(const TripModel& model, std::size_t ship, std::size_t alternatives)
+      : model_(model), ship_(ship), alternatives_(alternatives) {
+    for (std::size_t d = 0; d < Devices(); ++d) bound_.push_back(model.BoundOf(d));
+    std::vector<Node> layer(1);
+    Node& start = layer[0];
+    start.place = model.PlaceOfShip(ship);
+    start.time_s = Ship().ready_s;
+    start.alive.assign(static_cast<std::size_t>(model.ensemble().members()), 1);
+    model.Stay(Ship().cell, start.time_s, start.alive);
+    if (CountAlive(start.alive) == 0) layer.clear();
+    while (!layer.empty()) {
+      std::vector<Node> next;
+      for (const Node& node : layer) Expand(node, next);
+      Narrow(next);
+      layer = std::move(next);
+    }
+  }
+  TripTable Take() { return std::move(table_); }
+
+ private:
+  struct Node {
+    std::size_t place{};
+    double time_s{};
+    double saved{};
+    DeviceSet taken{};  // fetched or delivered
+    DeviceSet aboard{};
+    std::vector<TripStop> stops;
+    Alive alive;
+  };
+
+  const RescueShip& Ship() const { return model_.problem().ships[ship_]; }
+  std::size_t Devices() const { return model_.problem().devices.size(); }
+  static std::int32_t Count(DeviceSet set) {
+    std::int32_t count = 0;
+    for (; set != 0; set &= set - 1) ++count;
+    return count;
+  }
+
+  void Expand(const Node& node, std::vector<Node>& next) {
+    if (Count(node.aboard) < Ship().capacity) {
+      for (std::size_t d = 0; d < Devices(); ++d) {
+        if ((node.taken & Bit(d)) == 0 && bound_[d] > 0.0) Fetch(node, d, next);
+      }
+    }
+    if (node.aboard == 0) return;
+    for (const std::size_t port : PortsAfter(node)) Deliver(node, port, next);
+  }
+
+  // Returns the nearest open port, and those on the way to the devices that still wait.
+  std::vector<std::size_t> PortsAfter(const Node& node) const {
+    const std::int32_t nearest = model_.NearestPort(node.place);
+    if (nearest == kNone) return {};
+    std::vector<std::size_t> ports{static_cast<std::size_t>(nearest)};
+    const SeaRoutes& routes = model_.routes();
+    for (std::size_t d = 0; d < Devices(); ++d) {
+      if ((node.taken & Bit(d)) != 0) continue;
+      std::size_t best = ports[0];
+      const auto length = [&](std::size_t port) {
+        return routes.Length(node.place, model_.PlaceOfPort(port)) +
+               routes.Length(model_.PlaceOfPort(port), model_.PlaceOfDevice(d));
+      };
+      for (std::size_t port = 0; port < model_.problem().ports.size(); ++port) {
+        if (model_.problem().ports[port].is_open && length(port) < length(best)) best = port;
+      }
+      if (std::find(ports.begin(), ports.end(), best) == ports.end()) ports.push_back(best);
+    }
+    return ports;
+  }
+
+  bool Go(const Node& node, std::size_t place, TripStop stop, Node& child) const {
+    if (model_.routes().Between(node.place, place).cells.empty()) return false;
+    child = node;
+    child.place = place;
+    child.stops.push_back(stop);
+    model_.Move(ship_, node.place, place, child.time_s, child.alive);
+    return CountAlive(child.alive) > 0;
+  }
+
+  void Fetch(const Node& node, std::size_t device, std::vector<Node>& next) const {
+    Node child;
+    if (!Go(node, model_.PlaceOfDevice(device), {OrderKind::kFetch, device}, child)) return;
+    child.taken |= Bit(device);
+    child.aboard |= Bit(device);
+    next.push_back(std::move(child));
+  }
+
+  void Deliver(const Node& node, std::size_t port, std::vector<Node>& next) {
+    Node child;
+    if (!Go(node, model_.PlaceOfPort(port), {OrderKind::kDeliver, port}, child)) return;
+    for (std::size_t d = 0; d < Devices(); ++d) {
+      if ((child.aboard & Bit(d)) != 0) child.saved += model_.Saved(d, child.time_s, child.alive);
+    }
+    if (child.saved <= node.saved) return;  // it saves nothing more
+    child.aboard = 0;
+    Record(child);
+    next.push_back(std::move(child));
+  }
+
+  void Record(const Node& node) {
+    std::vector<TripPlan>& plans = table_.plans[node.taken];
+    const auto at = std::find_if(plans.begin(), plans.end(),
+                                 [&](const TripPlan& plan) { return plan.saved < node.saved; });
+    if (at == plans.end() && plans.size() >= alternatives_) return;
+    plans.insert(at, {node.taken, node.saved, node.stops});
+    if (plans.size() > alternatives_) plans.pop_back();
+  }
+
+  double Promise(const Node& node) const {
+    double promise = node.saved;
+    for (std::size_t d = 0; d < Devices(); ++d) {
+      if ((node.taken & Bit(d)) == 0 || (node.aboard & Bit(d)) != 0) promise += bound_[d];
+    }
+    return promise - 1e-9 * node.time_s;  // with equal promises the earlier one
+  }
+
+  void Narrow(std::vector<Node>& layer) {
+    if (layer.size() <= kWidth) return;
+    table_.is_exhaustive = false;
+    std::vector<double> promises;
+    for (const Node& node : layer) promises.push_back(Promise(node));
+    std::vector<std::size_t> order(layer.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::nth_element(order.begin(), order.begin() + kWidth, order.end(),
+                     [&](std::size_t a, std::size_t b) {
+                       return promises[a] != promises[b] ? promises[a] > promises[b] : a < b;
+                     });
+    std::vector<Node> kept;
+    for (std::size_t i = 0; i < kWidth; ++i) kept.push_back(std::move(layer[order[i]]));
+    layer = std::move(kept);
+  }
+
+  const TripModel& model_;
+  std::size_t ship_;
+  std::size_t alternatives_;
+  std::vector<double> bound_;  // by device
+  TripTable table_;
+};
+
+}  // namespace
+
+TripTable SearchTrips(const TripModel& model, std::size_t ship, std::size_t alternatives) {
+  return TripSearch(model, ship, alternatives).Take();
+}
+
+}  // namespace aquafarm::agents

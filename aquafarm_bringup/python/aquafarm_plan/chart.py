@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Geometry of the ranch's map in SVG: coast, symbols, routes, labels, isolines of probability."""
+import math
+
+import contourpy
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+from .document import Clock, percent
+from .labels import Label, place
+from .words import kind_name, left_reason, left_word, letter
+
+WIDTH, MAX_HEIGHT = 760.0, 860.0  # of the drawing [px]
+LEVELS = (10, 50, 90)  # isolines [%]
+NICE = (1, 2, 5)
+LABEL_SIZE = 18.0
+MANY_DEVICES = 10  # with more of them, labels have one line
+MANY_DEVICES = 10  # with more, labels have one line
+
+
+class Frame:
+    """Converts map coordinates in cells to pixels of the drawing."""
+
+    def __init__(self, ranch):
+        self.scale = min(WIDTH / ranch["width"], MAX_HEIGHT / ranch["height"])
+        self.width, self.height = self.scale * ranch["width"], self.scale * ranch["height"]
+
+    def px(self, x, y):
+        return (x + 0.5) * self.scale, self.height - (y + 0.5) * self.scale
+
+    def path(self, points, closed=False):
+        """Path data of points in cells."""
+        return svg_path([self.px(x, y) for x, y in points], closed)
+
+
+def svg_path(points, closed=False):
+    """Path data of points in pixels."""
+    text = "M" + "L".join(f"{x:.1f} {y:.1f}" for x, y in points)
+    return text + "Z" if closed else text
+
+
+def chart(plan):
+    """Everything that templates/map.svg draws, in pixels."""
+    frame = Frame(plan["ranch"])
+    routes = [_route(plan, frame, route) for route in plan["plan"]["routes"]]
+    devices = [_device(plan, frame, device) for device in plan["devices"]]
+    ports = [{"letter": letter(port["id"]), "name": port["name"], "xy": frame.px(*port["cell"])}
+             for port in plan["ports"]]
+    return {
+        "frame": frame, "coast": _coast(plan["ranch"], frame),
+        "rocks": [frame.px(*cell) for cell in plan["ranch"]["rocks"]], "ports": ports,
+        "devices": devices, "routes": routes, "labels": _labels(plan, frame, devices, ports,
+                                                                routes),
+        "ticks": _ticks(plan["ranch"],
+                        frame), "scale_bar": _scale_bar(plan["ranch"],
+                                                        frame), "hazard": isolines(plan, frame)
+    }
+
+
+def _coast(ranch, frame):
+    """Outlines of the land cells with rounded corners."""
+    if not ranch["land"]:
+        return ""
+    fine, pad = 4, 2
+    mask = np.zeros((ranch["height"] + 2 * pad, ranch["width"] + 2 * pad))
+    for x, y in ranch["land"]:
+        mask[y + pad, x + pad] = 1
+    # Land at the border of the map continues beyond it.
+    mask[:pad], mask[-pad:] = mask[pad], mask[-pad - 1]
+    mask[:, :pad], mask[:, -pad:] = mask[:, pad:pad + 1], mask[:, -pad - 1:-pad]
+    smooth = gaussian_filter(np.kron(mask, np.ones((fine, fine))), 0.28 * fine)
+    closed = np.pad(smooth, 1)
+    # Sample i of the fine grid, which starts at 1, is centred in cell (i - 0.5) / fine - 0.5 - pad.
+    return _outlines(closed, 0.45, frame, lambda i: (i - 0.5) / fine - 0.5 - pad)
+
+
+def _outlines(field, level, frame, to_cells):
+    """Path data of the closed outlines of the area of a padded field that is above a level."""
+    lines = contourpy.contour_generator(z=field).lines(level)
+    return "".join(frame.path(to_cells(line), True) for line in lines)
+
+
+def _device(plan, frame, device):
+    left = next((one for one in plan["plan"]["left_behind"] if one["device"] == device["id"]), None)
+    return {
+        "id": device["id"], "name": device["name"], "kind": device["kind"],
+        "kind_name": kind_name(device["kind"]), "xy": frame.px(*device["cell"]),
+        "home": percent(device["odds"]["home"]), "left": device["order"] is None,
+        "fate": left_word(plan, device["id"]),
+        "reason": left_reason(plan, left) if left else "",
+        "ship": (device["order"] or {}).get("ship")
+    }
+
+
+def _offset(points, distance):
+    """A line parallel to a line in pixels, to starboard, so that out and home stay apart."""
+    points = np.array(points)
+    if len(points) < 2:
+        return points
+    along = np.gradient(points, axis=0)
+    norm = np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    return points + distance * np.stack([-along[:, 1], along[:, 0]], 1) / norm
+
+
+def _route(plan, frame, route):
+    """Legs between orders; `late` in [0, 1] is the time of the leg, for the shade."""
+    clock = Clock(plan["clock"])
+    ends = [clock.seconds(order["time"]) for order in route["orders"]]
+    last = max(route["path"][-1][2], 1) if route["path"] else 1
+    first = min(one["path"][0][2] for one in plan["plan"]["routes"] if one["path"])
+    shift = (0.12 + 0.10 * route["ship"]) * frame.scale
+    legs = []
+    for begin, end in zip(ends, ends[1:]):
+        points = [frame.px(x, y) for x, y, s in route["path"] if begin - 1 <= s <= end + 1]
+        if len(points) > 1:
+            line = _offset(points, min(shift, 9))
+            legs.append({
+                "d": svg_path(line), "points": line, "late": round(
+                    (begin - first) / max(last - first, 1), 2), "arrow": _arrow(line)
+            })
+    return {"ship": route["ship"], "name": plan["ships"][route["ship"]]["name"], "legs": legs}
+
+
+def _arrow(line):
+    """Position and heading [degrees] in the middle of a line."""
+    steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
+    k = int(np.searchsorted(np.cumsum(steps), steps.sum() / 2))
+    k = min(k, len(steps) - 1)
+    (x0, y0), (x1, y1) = line[k], line[k + 1]
+    return (x0 + x1) / 2, (y0 + y1) / 2, math.degrees(math.atan2(y1 - y0, x1 - x0))
+
+
+def _badges(plan):
+    """Letter of the ship and place in its order of fetching, such as A2, by device."""
+    badges = {}
+    for route in plan["plan"]["routes"]:
+        fetched = [one["device"] for one in route["orders"] if one["action"] == "fetch"]
+        badges.update(
+            {device: f"{letter(route['ship'])}{i}" for i, device in enumerate(fetched, 1)})
+    return badges
+
+
+def samples(line, gap=7.0):
+    """Points at most `gap` pixels apart along a line."""
+    for (x0, y0), (x1, y1) in zip(line, line[1:]):
+        n = max(1, math.ceil(math.hypot(x1 - x0, y1 - y0) / gap))
+        for i in range(n):
+            yield x0 + (x1 - x0) * i / n, y0 + (y1 - y0) * i / n
+
+
+def _labels(plan, frame, devices, ports, routes):
+    points = [(*frame.px(x, y), 4.0) for x, y in plan["ranch"]["land"]]
+    points += [(*frame.px(x, y), 8.0) for x, y in plan["ranch"]["rocks"]]
+    for one in devices + ports:
+        points += [(one["xy"][0] + dx, one["xy"][1] + dy, 60.0) for dx in (-8, 0, 8)
+                   for dy in (-8, 0, 8)]
+    points += [(x, y, 2.5) for route in routes for leg in route["legs"]
+               for x, y in samples(leg["points"])]
+    clock, badges = Clock(plan["clock"]), _badges(plan)
+    labels = []
+    for one, device in zip(devices, plan["devices"]):
+        lines = ([f"{one['name']} {one['home']}", f"fetch {clock.time(device['order']['fetch'])}"]
+                 if device["order"] else [one["name"], one["fate"]])
+        lines = lines[:1] if len(devices) > MANY_DEVICES else lines
+        labels.append(
+            Label(lines,
+                  one["xy"],
+                  16,
+                  LABEL_SIZE,
+                  name=f"device-{one['id']}",
+                  badge=badges.get(one["id"], ""),
+                  ship=one["ship"] or 0))
+    labels += [Label([port["name"]], port["xy"], 13, LABEL_SIZE - 2, name="port") for port in ports]
+    return place(labels, points, frame.width, frame.height)
+
+
+def nice(target):
+    """The largest of 1, 2, 5 × 10^n that is not above a target."""
+    power = 10.0**math.floor(math.log10(target))
+    return max(n * power for n in NICE if n * power <= target * 1.0001)
+
+
+def _scale_bar(ranch, frame):
+    """Bars of a round length in km and in nautical miles."""
+    px_per_km = frame.scale * 1000 / ranch["cell_size_m"]
+    bars = []
+    for unit, km in (("km", 1.0), ("nm", 1.852)):
+        length = nice(frame.width * 0.22 / px_per_km / km)
+        bars.append({"px": length * km * px_per_km, "text": f"{length:g} {unit}"})
+    return bars
+
+
+def _ticks(ranch, frame):
+    """Ticks of longitude along the lower border and of latitude along the left border."""
+    south_west, south_east, _, north_west = ranch["corners"]
+    west, east = south_west["longitude"], south_east["longitude"]
+    south, north = south_west["latitude"], north_west["latitude"]
+    minutes = [
+        step for step in (1, 2, 5, 10, 15, 30, 60, 120, 300) if (east - west) * 60 / step <= 6.5
+    ][:1] or [600]
+    step = minutes[0] / 60
+
+    def inside(low, high):
+        edge = 0.04 * (high - low)  # room for half of a text
+        return [
+            n * step for n in range(math.ceil((low + edge) / step),
+                                    math.floor((high - edge) / step) + 1)
+        ]
+
+    return {
+        "x": [((v - west) / (east - west) * frame.width, _degrees(v, "E", "W"))
+              for v in inside(west, east)],
+        "y": [(frame.height * (north - v) / (north - south), _degrees(v, "N", "S"))
+              for v in inside(south, north)]
+    }
+
+
+def _degrees(value, positive, negative):
+    minutes = round(abs(value) * 60)
+    return f"{minutes // 60}°{minutes % 60:02}′{positive if value >= 0 else negative}"
+
+
+def isolines(plan, frame):
+    """Per frame: time and, per ring, the outlines of the area with at least 10, 50 and 90 %."""
+    ranch, clock, result = plan["ranch"], Clock(plan["clock"]), []
+    for one in plan["hazard"]["frames"]:
+        rings = []
+        for grid in one["percent"]:
+            outlines = []
+            if grid:
+                # Repeat the border once and close the area outside of the map.
+                field = np.pad(
+                    np.pad(np.array(grid, float).reshape(ranch["height"], ranch["width"]),
+                           1,
+                           mode="edge"), 1)
+                outlines = [
+                    _outlines(field, level - 0.5, frame, lambda i: i - 2) for level in LEVELS
+                ]
+            rings.append(outlines)
+        result.append({"s": clock.seconds(one["time"]), "rings": rings})
+    return result

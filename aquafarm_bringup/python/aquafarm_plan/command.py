@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command `plan`: runs aquafarm_plan and makes the page and the GeoJSON of its plan file."""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+
+from . import geojson, page
+from .document import PlanError, load
+
+BAD_INPUT = 2
+EPILOG = """All other arguments go to aquafarm_plan; its help follows.
+
+exit codes: those of aquafarm_plan, also listed in docs/plan.md
+"""
+
+
+def main(arguments):
+    """Returns the exit code: that of aquafarm_plan, or 2 if the page cannot be made."""
+    parser = argparse.ArgumentParser(
+        prog="aquafarm plan",
+        allow_abbrev=False,
+        add_help=False,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        description="Plans the rescue of a ranch's devices before a storm: who fetches what, when, "
+        "and how sure is it?",
+        usage="./aquafarm plan RANCH.yaml [--bulletin FILE | --storm FILE --at TIME] [-o plan.html]"
+    )
+    parser.add_argument("-o",
+                        "--output",
+                        default="plan.html",
+                        type=pathlib.Path,
+                        help="page to write (default: plan.html); plan.json and plan.geojson are "
+                        "written to the same folder, under the same name")
+    parser.add_argument("--from",
+                        dest="source",
+                        type=pathlib.Path,
+                        metavar="PLAN.json",
+                        help="make the page of a plan file that exists; nothing is planned")
+    parser.add_argument("--open", action="store_true", help="open the page, if there is a display")
+    parser.add_argument("-h", "--help", action="store_true", help="show this help and exit")
+    options, rest = parser.parse_known_args(arguments)
+    try:
+        if options.help or not (rest or options.source):
+            parser.print_help()
+            sys.stdout.flush()
+            return run([program(), "--help"]) if options.help else BAD_INPUT
+        return make(options, rest)
+    except (PlanError, OSError) as error:
+        print(f"aquafarm plan: {error}", file=sys.stderr)
+        return BAD_INPUT
+
+
+def make(options, rest):
+    """Plans, unless a plan file is given, and writes the page and the GeoJSON."""
+    output = options.output.with_suffix(options.output.suffix or ".html")
+    if output.suffix.lower() in (".json", ".geojson"):
+        raise PlanError(f"-o: got {output}, expected the name of the page, such as plan.html")
+    if not output.resolve().parent.is_dir():
+        raise PlanError(f"-o: there is no folder {output.resolve().parent}; make it first")
+    if options.source:
+        if rest:
+            raise PlanError(f"--from: got also {' '.join(rest)}, expected no other arguments")
+        code, source = 0, options.source
+    else:
+        source = output.with_suffix(".json")
+        before = stamp(source)
+        code = run([program(), *rest, "--json", str(source)])
+        if stamp(source) == before:  # the input was refused, with a message
+            return code or BAD_INPUT
+    plan = load(source)
+    write(output, page.render(plan))
+    write(output.with_suffix(".geojson"), geojson.text(plan))
+    print(f"page       {output.resolve().as_uri()}")
+    print(f"routes     {output.with_suffix('.geojson')} (GeoJSON, for QGIS)", flush=True)
+    if options.open and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        subprocess.Popen(["xdg-open", str(output)],
+                         stdout=subprocess.DEVNULL,
+                         stderr=subprocess.DEVNULL,
+                         start_new_session=True)
+    return code
+
+
+def stamp(path):
+    """What changes when a file is written again; None if there is none."""
+    try:
+        status = path.stat()
+    except FileNotFoundError:
+        return None
+    return status.st_ino, status.st_mtime_ns, status.st_size
+
+
+def write(path, text):
+    """Writes a file whole or not at all."""
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)
+
+
+def program():
+    """Path of aquafarm_plan: AQUAFARM_PLAN, or that of the workspace."""
+    if os.environ.get("AQUAFARM_PLAN"):
+        return os.environ["AQUAFARM_PLAN"]
+    import roslib.packages  # only here: a page of an existing plan file needs no ROS
+    found = roslib.packages.find_node("aquafarm_agents", "aquafarm_plan")
+    if not found:
+        raise PlanError("aquafarm_agents has no aquafarm_plan; build the workspace first")
+    return found[0]
+
+
+def run(command):
+    """Exit code of a program that shares this one's streams."""
+    return subprocess.run(command, check=False).returncode

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Geometry of the other drawings: the storm's region, the timeline and the loss curve."""
+import datetime
+import math
+
+from .chart import nice, samples, svg_path
+from .document import Clock, amount, parse_time
+from .labels import Label, place, shorten
+from .words import is_unknown, letter, order_text
+
+REGION = 430.0  # side of the region's drawing [px]
+LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
+HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 34.0
+CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
+
+
+def region(plan):
+    """The storm's track, its error and its rings around the ranch, in pixels."""
+    clock, ranch = Clock(plan["clock"]), plan["ranch"]
+    cell_km = ranch["cell_size_m"] / 1000
+    middle = [(ranch["width"] - 1) / 2, (ranch["height"] - 1) / 2]
+    first, last = clock.start - datetime.timedelta(hours=18), clock.end
+    points = [p for p in plan["storm"]["points"] if first <= parse_time(p["time"]) <= last]
+    points = points or plan["storm"]["points"][-1:]
+    if not points:
+        return None
+    errors = [e for e in plan["ensemble"]["errors"] if parse_time(e["time"]) <= last]
+    reach = [(middle[0], middle[1], 40 / cell_km)]
+    reach += [(*p["at"], 30 / cell_km) for p in points]
+    reach += [(*e["centre"], e["radius70_km"] / cell_km) for e in errors]
+    west, east = min(x - r for x, _, r in reach), max(x + r for x, _, r in reach)
+    south, north = min(y - r for _, y, r in reach), max(y + r for _, y, r in reach)
+    side = 1.06 * max(1.5 * (east - west), north - south)
+    scale = REGION / side
+
+    def px(x, y):
+        # Most labels stand to the right of the track.
+        left = 0.25 * (side - east + west)
+        return (x - west + left) * scale, ((south + north + side) / 2 - y) * scale
+
+    drawn = [{
+        "xy": px(*p["at"]), "source": p["source"], "time": clock.day_time(p["time"]),
+        "wind": p["wind_mps"]
+    } for p in points]
+    rings, caption = _region_rings(plan, points, px, scale / cell_km, clock)
+    bar = [{"px": n * km / cell_km * scale, "text": f"{n:g} {unit}"}
+           for unit, km in (("km", 1), ("nm", 1.852)) for n in [nice(side * cell_km * 0.25 / km)]]
+    lines = {
+        source: svg_path([px(*p["at"]) for p in part]) for source, part in _parts(points)
+        if len(part) > 1
+    }
+    corner = px(-0.5, ranch["height"] - 0.5)
+    box = {
+        "x": corner[0], "y": corner[1], "w": max(ranch["width"] * scale, 5),
+        "h": max(ranch["height"] * scale, 5)
+    }
+    return {
+        "side": REGION, "points": drawn, "lines": lines, "rings": rings, "scale_bar": bar,
+        "cone": _cone(errors, px, scale / cell_km), "ranch": box, "caption": caption,
+        "labels": _region_labels(plan, drawn, rings, box)
+    }
+
+
+def _region_labels(plan, drawn, rings, box):
+    """The ranch's name, times and winds at the fixes, and names at the rings."""
+    centre = (box["x"] + box["w"] / 2, box["y"] + box["h"] / 2)
+    labels = [Label(["ranch"], centre, box["w"] / 2 + 2, 14, name="ranch-name")]
+    for one in drawn[::max(1, math.ceil(len(drawn) / 7))]:
+        wind = "" if one["wind"] is None else f", {one['wind']:.0f} m/s"
+        labels.append(
+            Label([one["time"].split(" ", 1)[1] + wind], one["xy"], 6, 12, name=one["source"]))
+    for ring in rings[:len(plan["rings"])]:
+        x, y = ring["xy"][0], ring["xy"][1] + ring["r"]
+        labels.append(Label([plan["rings"][ring["ring"]]["name"]], (x, y), 1, 12, name="ring"))
+    points = [(*one["xy"], 30.0) for one in drawn] + [(*centre, 90.0)]
+    points += [(x, y, 3.0) for a, b in zip(drawn, drawn[1:])
+               for x, y in samples([a["xy"], b["xy"]])]
+    return place(labels, points, REGION, REGION - 36)
+
+
+def _parts(points):
+    """(source, points) of the stretches of a track; each begins where the one before ends."""
+    for source in ("recorded", "forecast", "assumed"):
+        part = [i for i, p in enumerate(points) if p["source"] == source]
+        if part:
+            yield source, points[max(part[0] - 1, 0):part[-1] + 1]
+
+
+def _region_rings(plan, points, px, px_per_km, clock):
+    """(rings, caption): rings at two forecast positions at most, so that they stay apart."""
+    future = [p for p in points if parse_time(p["time"]) > clock.start and any(p["radii_km"])]
+    chosen = future[len(future) // 3::max(1, len(future) // 2)][:2] or [p for p in points[-1:]]
+    rings = [{
+        "xy": px(*p["at"]), "r": radius * px_per_km, "ring": i, "time": clock.day_time(p["time"])
+    } for p in chosen for i, radius in enumerate(p["radii_km"]) if radius]
+    times = " and ".join(clock.day_time(p["time"]) for p in chosen)
+    return rings, f"Rings at {times}." if rings else "No radius of its winds is known."
+
+
+def _cone(errors, px, px_per_km):
+    """Circles of the forecast error and the tangents between neighbours, as shapes of one union."""
+    circles = [(*px(*e["centre"]), e["radius70_km"] * px_per_km) for e in errors]
+    shapes = [
+        f"M{x - r:.1f} {y:.1f}a{r:.1f} {r:.1f} 0 1 0 {2 * r:.1f} 0"
+        f"a{r:.1f} {r:.1f} 0 1 0 {-2 * r:.1f} 0Z"
+        for x, y, r in circles if r > 0
+    ]
+    for (x0, y0, r0), (x1, y1, r1) in zip(circles, circles[1:]):
+        gap = math.hypot(x1 - x0, y1 - y0)
+        if gap <= abs(r1 - r0) or gap == 0:
+            continue
+        heading, spread = math.atan2(y1 - y0, x1 - x0), math.acos((r0 - r1) / gap)
+        corner = [(x + r * math.cos(heading + side), y + r * math.sin(heading + side))
+                  for x, y, r, side in ((x0, y0, r0, spread), (x1, y1, r1, spread),
+                                        (x1, y1, r1, -spread), (x0, y0, r0, -spread))]
+        shapes.append(svg_path(corner, True))
+    return shapes
+
+
+def horizon_s(plan):
+    """End of the timeline: a little after the last event that matters [s after the start]."""
+    clock = Clock(plan["clock"])
+    end = (clock.end - clock.start).total_seconds()
+    events = [clock.seconds(o["time"]) for r in plan["plan"]["routes"] for o in r["orders"]]
+    events += [clock.seconds(a["q50"]) for d in plan["devices"] for a in d["arrival"] if a["q50"]]
+    events += [clock.seconds(t) for t in (plan["deadlines"]["no_departure_after"], ) if t]
+    return min(end, max(events) + 3 * 3600) if events else end
+
+
+def shown_hazard(plan):
+    """The hazard over time; empty if it is zero throughout or, for unknown winds, means nothing."""
+    times = plan["hazard"]["timeline"]
+    shown = any(any(one["probability"]) for one in times) and not is_unknown(plan)
+    return times if shown else []
+
+
+def timeline(plan):
+    """Probability of each ring over the ranch above one row of orders per ship."""
+    clock, (width, left) = Clock(plan["clock"]), LINE
+    end = max(horizon_s(plan), 3600)
+    inner = width - left - 26
+
+    def x_of(seconds):
+        return left + inner * min(max(seconds / end, 0), 1)
+
+    curves = []
+    for i, ring in enumerate(plan["rings"]):
+        points = [(x_of(clock.seconds(one["time"])),
+                   HAZARD_HEIGHT * (1 - one["probability"][i]) + 8)
+                  for one in shown_hazard(plan) if 0 <= clock.seconds(one["time"]) <= end]
+        if points:
+            base = HAZARD_HEIGHT + 8
+            curves.append({
+                "name": ring["name"], "line": svg_path(points), "ring": i,
+                "area": svg_path([(points[0][0], base), *points, (points[-1][0], base)], True)
+            })
+    rows = [
+        _row(plan, route, clock, x_of, HAZARD_HEIGHT + 22 + i * ROW)
+        for i, route in enumerate(plan["plan"]["routes"])
+    ]
+    height = HAZARD_HEIGHT + 22 + max(len(rows), 1) * ROW + AXIS
+    last = plan["deadlines"]["no_departure_after"]
+    return {
+        "width": width, "height": height, "left": left, "right": width - 26, "top": 8,
+        "base": HAZARD_HEIGHT + 8, "axis": height - AXIS, "curves": curves, "rows": rows,
+        "ticks": _time_ticks(clock, end, x_of), "end_s": end,
+        "last": {"x": x_of(clock.seconds(last)), "text": clock.time(last)} if last else None
+    }
+
+
+def _row(plan, route, clock, x_of, y):
+    bars = []
+    for before, order in zip(route["orders"], route["orders"][1:]):
+        x0, x1 = x_of(clock.seconds(before["time"])), x_of(clock.seconds(order["time"]))
+        waits = order["action"] in ("leave", "wait")  # in port, until the next departure
+        if waits and x1 - x0 < 1:
+            continue
+        name = (plan["devices"][order["device"]]["name"] if order["action"] == "fetch" else
+                letter(order["port"]) if order["port"] is not None else "")
+        bars.append({
+            "x": x0, "w": max(x1 - x0, 1), "text": name if x1 - x0 > 9 * len(name) + 3 else "",
+            "kind": "wait" if waits else order["action"],
+            "title": f"{order_text(plan, order)}, {clock.time(order['time'])}"
+        })
+    return {
+        "y": y, "ship": route["ship"], "bars": bars,
+        "name": shorten(plan["ships"][route["ship"]]["name"], LINE[1] - 34, 14)
+    }
+
+
+def _time_ticks(clock, end, x_of):
+    """Ticks at round local hours, with the date at midnight and at the first one."""
+    step = next((h for h in (1, 2, 3, 6, 12, 24, 48) if end / 3600 / h <= 13), 96)
+    local = clock.local(clock.at(0)).replace(minute=0, second=0)
+    ticks = []
+    for hour in range(0, int(end // 3600) + 2):
+        moment = local + datetime.timedelta(hours=hour)
+        seconds = (moment - clock.start).total_seconds()
+        if 0 <= seconds <= end and moment.hour % min(step, 24) == 0:
+            text = f"{moment:%a} {moment.day} {moment:%b}" if moment.hour == 0 or not ticks else ""
+            utc = moment.astimezone(datetime.timezone.utc)
+            ticks.append({
+                "x": x_of(seconds), "time": f"{moment:%H:%M}", "utc": f"{utc:%H:%M}", "date": text
+            })
+    return ticks
+
+
+def curve(plan):
+    """Exceedance curves of the loss: with the plan, and if no ship leaves."""
+    width, height, left, lower = CURVE
+    loss = plan["loss"]
+    top = max([x for name in ("with_plan", "idle") for x, _ in loss[name]["exceedance"]] + [0.0])
+    top = top or max(loss["insured"], 1.0)
+
+    def px(x, p):
+        return left + (width - left - 54) * x / top, 10 + (height - lower - 10) * (1 - p)
+
+    lines = []
+    for name in ("idle", "with_plan"):
+        steps, before = [], None
+        for x, p in [[0.0, 1.0]] + loss[name]["exceedance"]:
+            if before is not None:
+                steps.append(px(x, before))
+            steps.append(px(x, p))
+            before = p
+        lines.append({"name": name, "d": svg_path(steps), "mean": px(loss[name]["mean"], 0)[0]})
+    step = nice(top / 4)
+    ticks = [{"x": px(i * step, 0)[0], "text": amount(i * step, None)}
+             for i in range(int(top / step) + 1)]
+    return {
+        "width": width, "height": height, "left": left, "base": px(0, 0)[1], "top": px(0, 1)[1],
+        "right": width - 54, "lines": lines, "ticks": ticks,
+        "shares": [{"y": px(0, p)[1], "text": f"{p:.0%}".replace("%", " %")}
+                   for p in (0, .25, .5, .75, 1)], "twentieth": px(0, 0.05)[1]
+    }

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Places labels of a map in free space."""
+import dataclasses
+import math
+import unicodedata
+
+CHAR_WIDTH = 0.58  # of the font size, mean of a bold sans-serif face
+WIDE = ("W", "F")  # East Asian characters as wide as the font size
+
+
+def text_width(text, size):
+    """Approximate width of a text [px]."""
+    return size * sum(1.0 if unicodedata.east_asian_width(c) in WIDE else CHAR_WIDTH for c in text)
+
+
+def shorten(text, width, size):
+    """A text of at most a width [px], with an ellipsis if it was cut."""
+    if text_width(text, size) <= width:
+        return text
+    while text and text_width(text + "…", size) > width:
+        text = text[:-1]
+    return text.rstrip() + "…"
+
+
+@dataclasses.dataclass
+class Label:
+    """A text next to a point; x and y are its lower left corner once it is placed [px]."""
+    lines: list
+    anchor: tuple
+    clearance: float  # radius of the symbol at the anchor [px]
+    size: float = 13.0
+    x: float = 0.0
+    y: float = 0.0
+    leader: str = ""  # path data of the line to a label that is far away
+    name: str = ""
+    badge: str = ""  # text in a box before the first line
+    ship: int = 0  # of the badge
+
+    @property
+    def width(self):
+        return self.indent + max(text_width(line, self.size) for line in self.lines)
+
+    @property
+    def indent(self):
+        return (0.75 * len(self.badge) + 0.8) * self.size if self.badge else 0.0
+
+    @property
+    def height(self):
+        return len(self.lines) * self.size * 1.15
+
+
+def place(labels, points, width, height):
+    """Sets the position of each label: the candidate that covers the fewest symbols and routes.
+
+    Earlier labels have priority.
+
+    @param points (x, y, weight) of what must stay visible: symbols and samples of routes
+    @param width, height size of the map [px]
+    """
+    taken = []
+    for label in labels:
+        best = min(_candidates(label),
+                   key=lambda box: _cost(box, label, taken, points, width, height))
+        label.x, label.y = best[0], best[1] + label.height
+        label.leader = _leader(best, label)
+        taken.append((*best[:2], best[0] + label.width, best[1] + label.height))
+    return labels
+
+
+def _leader(box, label):
+    """A line from the symbol's rim to the label's nearest point; empty if they are close."""
+    x, y = label.anchor
+    near_x = min(max(x, box[0]), box[0] + label.width)
+    near_y = min(max(y, box[1]), box[1] + label.height)
+    gap = math.hypot(near_x - x, near_y - y)
+    if gap <= label.clearance + 0.8 * label.size:
+        return ""
+    share = (label.clearance + 1) / gap
+    return (f"M{x + share * (near_x - x):.1f} {y + share * (near_y - y):.1f}"
+            f"L{near_x:.1f} {near_y:.1f}")
+
+
+def _candidates(label):
+    """Upper left corners around the anchor, with a rank: right first, then above, below, left."""
+    for ring, distance in enumerate((0, 14, 30, 50, 74)):
+        for turn, angle in enumerate((0, -45, 45, 90, -90, 180, -135, 135)):
+            dx, dy = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+            reach = label.clearance + 3 + distance
+            x = label.anchor[0] + dx * reach + (dx - 1) / 2 * label.width
+            y = label.anchor[1] + dy * reach + (dy - 1) / 2 * label.height
+            yield x, y, 2.0 * ring + 0.2 * turn
+
+
+def _cost(box, label, taken, points, width, height):
+    x0, y0, rank = box
+    x1, y1 = x0 + label.width, y0 + label.height
+    cost = rank
+    if x0 < 2 or y0 < 2 or x1 > width - 2 or y1 > height - 2:
+        cost += 1000
+    for a0, b0, a1, b1 in taken:
+        across, along = min(x1, a1) - max(x0, a0), min(y1, b1) - max(y0, b0)
+        if across > -2 and along > -2:
+            cost += 200
+    margin = 2
+    return cost + sum(weight for x, y, weight in points
+                      if x0 - margin < x < x1 + margin and y0 - margin < y < y1 + margin)

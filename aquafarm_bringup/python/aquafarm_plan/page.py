@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Renders a plan file as one self-contained HTML page."""
+import json
+import pathlib
+
+import jinja2
+import markupsafe
+
+from . import chart, figures, words
+from .document import Clock, amount, percent
+
+# Not a PackageLoader: in a devel space the package is a stub that extends its path.
+TEMPLATES = pathlib.Path(__file__).with_name("templates")
+BASIS = {
+    "recorded": "recorded", "forecast": "forecast", "published": "published",
+    "estimated": "estimated", "assumed": "assumed", "given": "given by you"
+}
+
+
+def render(plan):
+    """The page as text."""
+    clock, currency = Clock(plan["clock"]), plan["loss"]["currency"]
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(TEMPLATES),
+                                     autoescape=True,
+                                     trim_blocks=True,
+                                     lstrip_blocks=True,
+                                     undefined=jinja2.StrictUndefined)
+    environment.filters.update(pct=percent,
+                               money=lambda v, sign=False: amount(v, currency, sign),
+                               number=lambda v: amount(v, None),
+                               gap=lambda v: amount(v, None, True),
+                               t=clock.time,
+                               dt=clock.day_time,
+                               utc=clock.utc,
+                               utc_full=clock.utc_full,
+                               letter=words.letter,
+                               kind=words.kind_name)
+    drawing, line = chart.chart(plan), figures.timeline(plan)
+    departures = _departures(plan)
+    first = min(
+        (clock.seconds(r["orders"][0]["time"]) for r in plan["plan"]["routes"] if r["orders"]),
+        default=0.0)
+    return environment.get_template("plan.html").render(
+        plan=plan,
+        clock=clock,
+        map=drawing,
+        timeline=line,
+        region=figures.region(plan),
+        curve=figures.curve(plan),
+        answers=words.answers(plan),
+        basis=BASIS,
+        order_text=lambda order: words.order_text(plan, order),
+        ship_name=lambda i: plan["ships"][i]["name"],
+        fate=lambda i: words.left_word(plan, i),
+        left_reason=lambda left: words.left_reason(plan, left),
+        deadline_text=lambda one: words.deadline_text(plan, one),
+        no_rings=words.no_rings(plan),
+        unknown=words.is_unknown(plan),
+        device_name=lambda i: plan["devices"][i]["name"],
+        departures=departures,
+        first_s=int(first),
+        compass=compass,
+        data=_data(plan, clock, drawing, line))
+
+
+def _data(plan, clock, drawing, line):
+    """What the slider's script reads: a JSON text that is safe inside of a script element."""
+    routes = []
+    for route in plan["plan"]["routes"]:
+        points = [[round(v, 1) for v in drawing["frame"].px(x, y)] + [s]
+                  for x, y, s in route["path"]]
+        events = [[clock.seconds(o["time"]), o["action"], o["device"],
+                   o.get("devices", [])] for o in route["orders"]]
+        routes.append({"ship": route["ship"], "path": points, "events": events})
+    data = {
+        "start_ms": int(clock.start.timestamp() * 1000), "offset_min": clock.offset_min,
+        "zone": clock.zone, "end_s": line["end_s"], "left": line["left"], "right": line["right"],
+        "routes": routes, "hazard": drawing["hazard"],
+        "rings": [ring["name"] for ring in plan["rings"]], "no_rings": words.no_rings(plan),
+        "timeline": [[clock.seconds(one["time"]), one["probability"]]
+                     for one in figures.shown_hazard(plan)]
+    }
+    text = json.dumps(data, separators=(",", ":"))
+    return markupsafe.Markup(text.replace("<", "\\u003c").replace("&", "\\u0026"))
+
+
+def _departures(plan):
+    """When the ship of each device leaves, by device."""
+    leaves = {}
+    for route in plan["plan"]["routes"]:
+        for order in route["orders"]:
+            if order["action"] == "fetch":
+                leaves[order["device"]] = route["orders"][0]["time"]
+    return leaves
+
+
+def compass(bearing_deg):
+    """The compass point of a bearing."""
+    return ("N", "NE", "E", "SE", "S", "SW", "W", "NW")[round(bearing_deg / 45) % 8]

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The plan in sentences: orders and the five answers of the first screen."""
+from .document import Clock, amount, percent, sampling_error
+
+KINDS = {
+    "temporary_breeding": "temporary cage", "monitoring": "monitoring buoy",
+    "breeding_release": "release cage", "deep_water_breeding": "deep-water cage"
+}
+
+
+def kind_name(kind):
+    """Name of a device kind; an unknown kind keeps its own, without underscores."""
+    return KINDS.get(kind, kind.replace("_", " "))
+
+
+def letter(number):
+    """A, B, … Z, AA of a port or ship."""
+    text = ""
+    while number >= 0:
+        text = chr(ord("A") + number % 26) + text
+        number = number // 26 - 1
+    return text
+
+
+def is_unknown(plan):
+    """Whether the storm's winds are unknown, so that no number of the plan is an all-clear."""
+    return plan["outcome"]["kind"] == "storm_unknown"
+
+
+def left_word(plan, device):
+    """Fate of a device without an order."""
+    if is_unknown(plan):
+        return "unknown"
+    safe = any(left["device"] == device and left["reason"] == "safe_in_place"
+               for left in plan["plan"]["left_behind"])
+    return "stays in place" if safe else "left behind"
+
+
+def left_reason(plan, left):
+    """Why a device is left behind, without its name at the start."""
+    if is_unknown(plan):
+        return "the storm's winds are unknown"
+    name = plan["devices"][left["device"]]["name"]
+    return left["text"].removeprefix(f"{name}: ")
+
+
+def deadline_text(plan, deadline):
+    """Latest departure of a deadline, as in a table."""
+    if is_unknown(plan):
+        return "unknown"
+    if not deadline["leave"]:
+        return "no departure has it"
+    day_time = Clock(plan["clock"]).day_time(deadline["leave"])
+    return f"no limit before {day_time}" if deadline.get("open") else day_time
+
+
+def device_names(plan, ids):
+    names = [plan["devices"][i]["name"] for i in ids]
+    return ", ".join(names)
+
+
+def some(parts, separator, limit=3):
+    """Joins parts, of a long list the first ones and the number of the others."""
+    more = len(parts) - limit
+    if more <= 1:
+        return separator.join(parts)
+    return separator.join(parts[:limit]) + f" and {more} more, see the orders"
+
+
+def order_text(plan, order):
+    """An order as an imperative, such as `fetch F3`."""
+    port = plan["ports"][order["port"]]["name"] if order["port"] is not None else "its position"
+    if order["action"] == "leave":
+        return f"leave {port}"
+    if order["action"] == "fetch":
+        return f"fetch {plan['devices'][order['device']]['name']}"
+    if order["action"] == "deliver":
+        ids = order.get("devices") or [i for i in [order["device"]] if i is not None]
+        return f"deliver {device_names(plan, ids)} at {port}" if ids else f"return to {port}"
+    return f"wait in {port}" if order["port"] is not None else "wait"
+
+
+def no_rings(plan):
+    """Sentence in the place of the curves if no ring reaches the ranch."""
+    if is_unknown(plan):
+        return "Unknown: the storm's winds are not known."
+    end = Clock(plan["clock"]).day_time(plan["clock"]["end"])
+    return f"No ring reaches the ranch before {end} in these futures."
+
+
+def answers(plan):
+    """(question, answer, remark) of each of the five questions."""
+    return [_first(plan), _leave(plan), _lose(plan), _sure(plan), _one_more(plan)]
+
+
+def _first(plan):
+    clock, firsts = Clock(plan["clock"]), []
+    for route in plan["plan"]["routes"]:
+        fetch = next((one for one in route["orders"] if one["action"] == "fetch"), None)
+        if fetch:
+            firsts.append((fetch["time"], f"{plan['devices'][fetch['device']]['name']} with "
+                           f"{plan['ships'][route['ship']]['name']} ({clock.time(fetch['time'])})"))
+    left = plan["plan"]["left_behind"]
+    remark = " ".join(f"{word.capitalize()}: {device_names(plan, ids)}."
+                      for word in ("left behind", "stays in place", "unknown")
+                      for ids in [[one["device"] for one in left
+                                   if left_word(plan, one["device"]) == word]] if ids)
+    answer = some([text for _, text in sorted(firsts)], "; ") or "Nothing."
+    return "What do I fetch first?", answer, remark or "No device is left behind."
+
+
+def _leave(plan):
+    clock, deadlines = Clock(plan["clock"]), plan["deadlines"]
+    leaves = [(order["time"], plan["ships"][route["ship"]]["name"])
+              for route in plan["plan"]["routes"] for order in route["orders"][:1]]
+    away = plan["outcome"]["kind"] == "storm_stays_away"
+    if is_unknown(plan):
+        return ("When must the ships leave?", "Unknown.",
+                "The storm's winds are not known. Get a bulletin with winds or radii.")
+    if not leaves:
+        answer = "No ship needs to leave now." if away else "No ship should leave."
+    elif len({time for time, _ in leaves}) == 1:
+        who = ("Every ship" if len(leaves) == len(plan["ships"]) else some(
+            [name for _, name in leaves], " and "))
+        answer = f"{who} at {clock.day_time(leaves[0][0])}."
+    else:
+        answer = some([f"{name} at {clock.day_time(time)}" for time, name in sorted(leaves)],
+                      "; ") + "."
+    last = deadlines["no_departure_after"]
+    if last:
+        remark = f"{_latest(plan, clock)}From {clock.day_time(last)} on, no ship should leave."
+    elif away:
+        remark = f"{_horizon(plan, clock)} Plan again at the next bulletin."
+    else:
+        remark = "No departure is advised at any time of this plan."
+    return "When must the ships leave?", answer, remark
+
+
+def _horizon(plan, clock):
+    """Until when the storm is known."""
+    until = plan["storm"]["forecast_until"] or plan["storm"]["recorded_until"]
+    return f"Nothing is known after {clock.day_time(until)}."
+
+
+def _latest(plan, clock):
+    """The 80 % deadlines of the devices that are fetched first."""
+    parts = []
+    for route in plan["plan"]["routes"]:
+        first = next((one["device"] for one in route["orders"] if one["action"] == "fetch"), None)
+        for one in plan["devices"][first]["deadlines"] if first is not None else []:
+            if one["probability"] == 0.8 and one["leave"] and not one.get("open"):
+                parts.append(f"{plan['devices'][first]['name']} {clock.time(one['leave'])}")
+    return f"Latest departure for an 80 % chance: {some(parts, ', ')}. " if parts else ""
+
+
+def _lose(plan):
+    loss = plan["loss"]
+    mine, idle, currency = loss["with_plan"], loss["idle"], loss["currency"]
+    if is_unknown(plan):
+        return "What do I lose?", "Unknown.", plan["outcome"]["text"]
+    if mine["mean"] == 0 and mine["cvar05"] == 0:
+        return ("What do I lose?", f"Nothing in these {plan['ensemble']['members']:,} futures.",
+                _horizon(plan, Clock(plan["clock"])))
+    answer = f"{amount(mine['mean'], currency)} of {amount(loss['insured'], currency)} on average."
+    remark = (f"One time in twenty more than {amount(mine['q95'], currency)}. "
+              f"If no ship leaves: {amount(idle['mean'], currency)} on average.")
+    if not currency:
+        remark += " In the devices' units of value; the ranch names no currency."
+    return "What do I lose?", answer, remark
+
+
+def _sure(plan):
+    members, devices = plan["ensemble"]["members"], plan["devices"]
+    planned = [one for one in devices if one["order"]]
+    if not planned:
+        answer = "Not at all." if is_unknown(plan) else "No device is fetched."
+        return ("How sure is it?", answer,
+                f"Computed over {members:,} possible storms. The assumptions are on the last page.")
+    worst = min(planned, key=lambda one: one["odds"]["home"])
+    best = max(planned, key=lambda one: one["odds"]["home"])
+    if len(planned) == 1:
+        answer = f"{worst['name']} comes home in {percent(worst['odds']['home'])} of the futures."
+    else:
+        answer = (
+            f"Each fetched device comes home in {percent(worst['odds']['home'])} ({worst['name']}) to "
+            f"{percent(best['odds']['home'])} ({best['name']}) of the futures.")
+    error = 100 * sampling_error(worst["odds"]["home"], members)
+    base = plan["what_if"][0]["all_home"] if plan["what_if"] else None
+    every = (f"All {len(devices)} devices: {percent(base)}. "
+             if base is not None and len(planned) == len(devices) else "")
+    return (
+        "How sure is it?", answer,
+        f"{every}{members:,} possible storms, sampling error at most {max(error, 1):.0f} points.")
+
+
+def _one_more(plan):
+    question, currency = "What does one more ship bring?", plan["loss"]["currency"]
+    row = next((one for one in plan["what_if"] if one["change"] == "ships+1"), None)
+    if not row or not row["possible"] or not row["difference"]:
+        return question, "Not computed.", row["text"] if row else "The plan has no such comparison."
+    gap = row["difference"]
+    interval = (
+        f"95 % interval {amount(-gap['high'], currency)} to {amount(-gap['low'], currency)}, "
+        "before the cost of the ship.")
+    if gap["high"] >= 0:
+        return question, "No gain that these futures can show.", interval
+    return question, f"{amount(-gap['mean'], currency)} less loss on average.", interval

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Suggests a name in place of a mistyped one. Header only, so that programs that do not link the
+/// core may use it.
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <vector>
+
+namespace aquafarm {
+
+/// Returns the least number of letters to insert, remove or replace to make `b` of `a` (Levenshtein
+/// 1966).
+inline std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+/// Returns " (did you mean 'NAME'?)" with the first of the names that need the fewest edits; empty
+/// if each needs three or more, or more than half of the letters of `text`.
+inline std::string DidYouMean(const std::string& text, const std::vector<std::string>& names) {
+  constexpr std::size_t kLongest = 100;
+  std::size_t limit = std::min<std::size_t>(3, text.size() / 2 + 1);
+  std::string words;
+  if (text.size() > kLongest) return words;
+  for (const std::string& name : names) {
+    const std::size_t distance = EditDistance(text, name);
+    if (name.empty() || distance >= limit) continue;
+    limit = distance;
+    words = " (did you mean '" + name + "'?)";
+  }
+  return words;
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The fields of a step's results, listed once. They are the members of every struct that holds
+/// such results, with equal names: BatchOutput (pointers), the StepResults of learners and the
+/// message StepResult (arrays). Every array is flat and row-major.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "aquafarm/grid/reward.h"
+
+namespace aquafarm {
+
+/// Bits by which a request asks for optional fields. The message StepResult has the same.
+enum StepFieldBits : std::uint8_t {
+  kIndexField = 1,
+  kFeaturesField = 2,
+  kPlanesField = 4,
+  kHashesField = 8,
+  kTermsField = 16,
+};
+
+/// Sizes of the results of one step.
+struct StepShape {
+  std::size_t farms{};     ///< N
+  std::size_t agents{};    ///< S, per farm
+  std::size_t features{};  ///< F, per agent
+  std::size_t planes{};    ///< P · H · W, per agent
+};
+
+/// One field of a step's results.
+struct StepField {
+  enum class Rows : std::uint8_t { kFarms, kAgents };  ///< N, or N · S
+  enum class Columns : std::uint8_t { kOne, kTerms, kFeatures, kPlanes };
+
+  const char* name;  ///< of the member
+  Rows rows;
+  Columns columns;   ///< values per row
+  std::uint8_t bit;  ///< StepFieldBits; 0: always returned
+
+  bool IsIn(std::uint8_t bits) const { return bit == 0 || (bits & bit) != 0; }
+  /// Returns the number of values of the whole field.
+  std::size_t Size(const StepShape& shape) const {
+    const std::size_t count = shape.farms * (rows == Rows::kAgents ? shape.agents : 1);
+    switch (columns) {
+      case Columns::kTerms:
+        return count * kRewardTermCount;
+      case Columns::kFeatures:
+        return count * shape.features;
+      case Columns::kPlanes:
+        return count * shape.planes;
+      default:
+        return count;
+    }
+  }
+};
+
+/// Calls visit(field, member…) for every field, with its member of each of the given structs.
+template <typename Visit, typename... Results>
+void VisitStepFields(const Visit& visit, Results&... results) {
+  using Columns = StepField::Columns;
+  constexpr auto kFarms = StepField::Rows::kFarms;
+  constexpr auto kAgents = StepField::Rows::kAgents;
+  visit(StepField{"rewards", kAgents, Columns::kOne, 0}, results.rewards...);
+  visit(StepField{"terms", kAgents, Columns::kTerms, kTermsField}, results.terms...);
+  visit(StepField{"outcomes", kAgents, Columns::kOne, 0}, results.outcomes...);
+  visit(StepField{"legal", kAgents, Columns::kOne, 0}, results.legal...);
+  visit(StepField{"in_play", kAgents, Columns::kOne, 0}, results.in_play...);
+  visit(StepField{"reasons", kFarms, Columns::kOne, 0}, results.reasons...);
+  visit(StepField{"started", kFarms, Columns::kOne, 0}, results.started...);
+  visit(StepField{"hashes", kFarms, Columns::kOne, kHashesField}, results.hashes...);
+  visit(StepField{"index", kAgents, Columns::kOne, kIndexField}, results.index...);
+  visit(StepField{"features", kAgents, Columns::kFeatures, kFeaturesField}, results.features...);
+  visit(StepField{"planes", kAgents, Columns::kPlanes, kPlanesField}, results.planes...);
+}
+
+}  // namespace aquafarm

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Draws the storm of an episode from the storms of a scenario.
+
+#include <cstdint>
+
+#include "aquafarm/scenario/scenario.h"
+#include "aquafarm/tracks/place_storm.h"
+
+namespace aquafarm {
+
+/// A storm of an archive and its displacement in one episode.
+struct DrawnStorm {
+  const ArchivedStorm* storm{};
+  StormErrors errors;
+};
+
+/// Draws a storm with equal probability: of the evaluation years if `seed` is an evaluation seed
+/// (rng.h), else of the years for training. The displaced storm's closest approach to (x, y) is at
+/// approach_h, shifted by at most perturbation.start_h.
+/// @param disaster id of the disaster @param x, y middle of the farm [cells]
+DrawnStorm DrawStorm(const StormsSpec& storms, std::uint64_t seed, std::uint64_t episode,
+                     std::int32_t disaster, double x, double y);
+
+}  // namespace aquafarm

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// A storm in the units of a farm: its rings along its track, in cells and steps. It is computed
+/// once per storm and farm; place_storm.h then displaces it many times at low cost.
+///
+///   StormTrack ──ToRings──> StormRings ──ToPath──> StormPath ──PlaceStorm──> waypoints
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "aquafarm/grid/geo_frame.h"
+#include "aquafarm/tracks/storm_rings.h"
+
+namespace aquafarm {
+
+/// Max number of rings of a storm: 64, 50 and 34 kt.
+inline constexpr std::size_t kMaxStormRings = 3;
+
+/// A fix of a storm on a farm.
+struct StormPoint {
+  double step{};  ///< steps since the start of the path
+  double x{};     ///< [cells]
+  double y{};
+  double east{};  ///< (east, north): unit vector of the motion; (0, 1) without motion
+  double north{1.0};
+  double latitude{};  ///< [degrees]
+  double wind_mps{};  ///< or the lowest wind of the grade; 0 if both are unknown
+  std::int32_t averaging_min{};
+  StormGrade grade{};
+  std::array<double, kMaxStormRings> radius{};     ///< [cells], the strongest wind first
+  std::array<double, kMaxStormRings> median_km{};  ///< of EstimateRadius for the wind
+  std::array<std::array<double, kQuadrantCount>, kMaxStormRings> quadrants{};  ///< [cells]
+};
+
+/// A storm on a farm.
+struct StormPath {
+  std::array<std::int32_t, kMaxStormRings> wind_kt{};  ///< the strongest first
+  std::size_t rings{};                                 ///< number of rings
+  bool by_quadrant{};                                  ///< `quadrants` of the points apply
+  double cell_size_km{1.0};
+  double step_duration_s{1.0};
+  std::vector<StormPoint> points;  ///< in order of time
+};
+
+/// Converts the part of a storm on the farm's side of the globe.
+/// @param start_time UTC of step 0 of the path [s since 1970]
+/// @throws InputError for a storm that never comes within 60 degrees of the frame's origin, or that
+///   leaves this area and comes back
+StormPath ToPath(const StormRings& storm, const GeoFrame& frame, double cell_size_m,
+                 double step_duration_s, std::int64_t start_time);
+
+/// Closest approach of a path to a point, linear between fixes.
+struct PathApproach {
+  double step{};
+  double distance{};  ///< [cells]
+};
+/// @param x, y the point [cells]
+/// @param along, across displacement of every fix, relative to its motion [cells]
+PathApproach ClosestApproach(const StormPath& path, double x, double y, double along = 0.0,
+                             double across = 0.0);
+
+}  // namespace aquafarm

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// The records of a saved episode: the fields of each, listed once for writing and reading.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/farm/farm.h"
+
+namespace aquafarm::internal {
+
+using nlohmann::json;
+
+template <typename Enum>
+std::int32_t Int(Enum value) {
+  return static_cast<std::int32_t>(value);
+}
+
+// Returns whether the rings may have changed since the last bulletin was issued.
+inline bool TellsRings(const Disaster& disaster) {
+  return disaster.radius_growth != 0.0F && disaster.bulletin.step != kNone;
+}
+
+// Archives that write a record to JSON and read it back. Each Visit lists the fields of one record.
+
+class Writer {
+ public:
+  static constexpr bool kReads = false;
+  template <typename T>
+  void Field(const char* key, const T& value) {
+    state[key] = ToJson(value);
+  }
+  /// Several values under one key.
+  template <typename... T>
+  void Fields(const char* key, const T&... values) {
+    state[key] = json::array({ToJson(values)...});
+  }
+  /// A field that states of older versions lack.
+  template <typename T>
+  void Added(const char* key, const T& value) {
+    Field(key, value);
+  }
+
+  json state = json::object();
+
+ private:
+  template <typename T>
+  static json ToJson(const T& value) {
+    if constexpr (std::is_enum_v<T>) {
+      return Int(value);
+    } else if constexpr (std::is_same_v<T, Cell>) {
+      return json::array({value.x, value.y});
+    } else {
+      return value;
+    }
+  }
+};
+
+class Reader {
+ public:
+  static constexpr bool kReads = true;
+  explicit Reader(const json& from) : state(from) {}
+  template <typename T>
+  void Field(const char* key, T& value) {
+    FromJson(state.at(key), value);
+  }
+  template <typename... T>
+  void Fields(const char* key, T&... values) {
+    const json& list = state.at(key);
+    std::size_t i = 0;
+    (FromJson(list.at(i++), values), ...);
+  }
+  template <typename T>
+  void Added(const char* key, T& value) {
+    if (state.contains(key)) Field(key, value);
+  }
+
+  const json& state;
+
+ private:
+  template <typename T>
+  static void FromJson(const json& j, T& value) {
+    if constexpr (std::is_enum_v<T>) {
+      const int code = j.get<int>();
+      if (code < 0 || code >= CountOf(value)) {
+        throw InputError("state: an enumeration value out of range");
+      }
+      value = static_cast<T>(code);
+    } else if constexpr (std::is_same_v<T, Cell>) {
+      value = {j.at(0).get<std::int32_t>(), j.at(1).get<std::int32_t>()};
+    } else {
+      j.get_to(value);
+    }
+  }
+  static int CountOf(Action) { return kActionCount + 1; }
+  static int CountOf(Outcome) { return kOutcomeCount; }
+  static int CountOf(DeviceKind) { return kDeviceKindCount; }
+  static int CountOf(DeviceStatus) { return kDeviceStatusCount; }
+  static int CountOf(DisasterKind) { return kDisasterKindCount; }
+  static int CountOf(Border) { return kBorderCount; }
+  static int CountOf(EndReason) { return kEndReasonCount; }
+};
+
+// The fields of a record in saved states, for both archives.
+template <typename Record>
+struct FieldsOf;
+
+template <>
+struct FieldsOf<Ship> {
+  template <typename Archive, typename S>
+  static void Visit(Archive& a, S& ship) {
+    auto& t = ship.terms;
+    a.Field("cell", ship.cell);
+    a.Field("own_device", ship.own_device);
+    a.Field("aboard", ship.aboard);
+    a.Field("in_play", ship.in_play);
+    a.Field("action", ship.action);
+    a.Field("outcome", ship.outcome);
+    a.Fields("terms", t.crash, t.disaster, t.pickup, t.drop_off, t.illegal, t.collision, t.step);
+    a.Field("reward", ship.reward);
+    a.Field("return", ship.episode_return);
+  }
+};
+
+template <>
+struct FieldsOf<Device> {
+  template <typename Archive, typename D>
+  static void Visit(Archive& a, D& device) {
+    a.Field("cell", device.cell);
+    a.Field("value", device.value);
+    a.Field("health", device.health);
+    a.Field("carrier", device.carrier);
+    a.Field("kind", device.kind);
+    a.Field("status", device.status);
+    a.Field("self_propelled", device.self_propelled);
+  }
+};
+
+template <>
+struct FieldsOf<EpisodeRecord> {
+  template <typename Archive, typename R>
+  static void Visit(Archive& a, R& record) {
+    a.Field("seed", record.seed);
+    a.Field("episode", record.episode);
+    a.Field("steps", record.steps);
+    a.Field("return", record.episode_return);
+    a.Field("delivered", record.delivered);
+    a.Field("devices", record.devices);
+    a.Field("delivered_health", record.delivered_health);
+    a.Field("crashes", record.crashes);
+    a.Field("collisions", record.collisions);
+    a.Field("steps_in_disaster", record.steps_in_disaster);
+    a.Field("reason", record.reason);
+  }
+};
+
+// The radii of quadrants and those told by the last bulletin are written only where they differ
+// from what the other fields give.
+template <>
+struct FieldsOf<Disaster> {
+  template <typename Archive, typename D>
+  static void Visit(Archive& a, D& d) {
+    auto& b = d.bulletin;
+    a.Field("kind", d.kind);
+    a.Field("border", d.border);
+    a.Field("grade", d.grade);
+    a.Field("rings", d.rings);
+    a.Field("radius", d.radius);
+    a.Field("radius_squared", d.radius_squared);
+    a.Field("risk", d.risk);
+    a.Fields("centre", d.x, d.y);
+    a.Fields("motion", d.dx, d.dy);
+    a.Field("speed", d.speed);
+    a.Field("heading_deg", d.heading_deg);
+    a.Field("turn_threshold", d.turn_threshold);
+    a.Field("radius_growth", d.radius_growth);
+    a.Field("margin", d.margin);
+    a.Field("steps_left", d.steps_left);
+    a.Field("waypoint", d.waypoint);
+    a.Field("draws", d.draws);
+    a.Fields("bulletin", b.x, b.y, b.speed);
+    a.Fields("bulletin_when", b.heading_deg, b.step);
+    if constexpr (!Archive::kReads) {
+      if (d.by_quadrant) a.Field("quadrants", d.quadrant);
+      if (TellsRings(d)) a.Fields("bulletin_rings", b.radius, b.quadrant);
+    }
+  }
+};
+
+// Fills the rings by quadrant and those of the last bulletin.
+inline void ReadRings(Reader& a, Disaster& d) {
+  d.by_quadrant = a.state.contains("quadrants");
+  if (d.by_quadrant) {
+    decltype(d.quadrant) sides{};
+    a.Field("quadrants", sides);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(d.rings); ++k) {
+      SetRing(d, k, {sides[0][k], sides[1][k], sides[2][k], sides[3][k]});
+    }
+  }
+  d.SnapshotRings();
+  if (a.state.contains("bulletin_rings")) {
+    a.Fields("bulletin_rings", d.bulletin.radius, d.bulletin.quadrant);
+  } else if (TellsRings(d)) {
+    throw InputError(
+        "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin told "
+        "them, which states saved by older versions lack");
+  }
+}
+
+// Forged bytes must not cause out-of-bounds access or an endless search.
+inline void CheckDisaster(const Disaster& d) {
+  const auto is_heading = [](std::int32_t degrees) { return degrees >= 0 && degrees <= 359; };
+  if (!is_heading(d.heading_deg)) throw InputError("state: heading out of range");
+  if (!is_heading(d.bulletin.heading_deg)) throw InputError("state: bulletin heading out of range");
+  bool finite = true;
+  const auto check = [&finite](const auto& values) {
+    for (const float value : values) finite = finite && std::isfinite(value);
+  };
+  check(std::array<float, 10>{d.x, d.y, d.dx, d.dy, d.speed, d.radius_growth, d.margin,
+                              d.bulletin.x, d.bulletin.y, d.bulletin.speed});
+  for (const auto& values : {d.radius, d.radius_squared, d.risk, d.bulletin.radius}) check(values);
+  for (const auto& side : d.bulletin.quadrant) check(side);
+  for (const auto& side : d.quadrant) check(side);
+  if (!finite) throw InputError("state: a disaster's number is not finite");
+}
+
+inline Disaster DisasterFrom(const json& j) {
+  Disaster d;
+  Reader reader(j);
+  FieldsOf<Disaster>::Visit(reader, d);
+  if (d.rings < 0 || d.rings > kMaxRings) throw InputError("state: disaster rings out of range");
+  ReadRings(reader, d);
+  CheckDisaster(d);
+  return d;
+}
+
+inline json TrackToJson(const std::vector<Waypoint>& track) {
+  json points = json::array();
+  for (const Waypoint& point : track) {
+    points.push_back({point.step, point.x, point.y, point.grade, point.radii, point.risks});
+    if (!point.quadrants.empty()) points.back().push_back(point.quadrants);
+  }
+  return points;
+}
+
+inline std::vector<Waypoint> TrackFromJson(const json& points) {
+  std::vector<Waypoint> track;
+  for (const json& point : points) {
+    track.push_back({point.at(0).get<float>(), point.at(1).get<float>(), point.at(2).get<float>(),
+                     point.at(3).get<std::int32_t>(), point.at(4).get<std::vector<float>>(),
+                     point.at(5).get<std::vector<float>>(),
+                     point.size() > 6 ? point.at(6).get<std::vector<QuadrantRadii>>()
+                                      : std::vector<QuadrantRadii>()});
+  }
+  return track;
+}
+
+template <typename Record>
+json Written(const Record& record) {
+  Writer writer;
+  FieldsOf<Record>::Visit(writer, record);
+  return std::move(writer.state);
+}
+
+template <typename Record>
+json Written(const std::vector<Record>& records) {
+  json list = json::array();
+  for (const Record& record : records) list.push_back(Written(record));
+  return list;
+}
+
+template <typename Record>
+Record Read(const json& j) {
+  Reader reader(j);
+  Record record;
+  FieldsOf<Record>::Visit(reader, record);
+  return record;
+}
+
+}  // namespace aquafarm::internal

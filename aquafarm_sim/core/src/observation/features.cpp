@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/observation/features.h"
+
+#include <algorithm>
+#include <initializer_list>
+
+#include "aquafarm/grid/action.h"
+#include "observation/risk_raster.h"
+
+namespace aquafarm {
+namespace {
+
+constexpr std::int32_t kWayFeatures = 3;
+
+// Returns the max length of an episode [steps].
+float Horizon(const Scenario& scenario) {
+  std::int32_t horizon = 0;
+  for (const DisasterSpec& disaster : scenario.disasters) {
+    horizon = std::max(horizon, disaster.duration);
+  }
+  if (horizon == 0) return static_cast<float>(scenario.step_limit);
+  return static_cast<float>(std::min(horizon, scenario.step_limit));
+}
+
+// Returns THING0.PART, THING0.OTHER, THING1.PART, … for `count` things.
+std::vector<std::string> Numbered(const std::string& thing, std::int32_t count,
+                                  std::initializer_list<const char*> parts) {
+  std::vector<std::string> names;
+  for (std::int32_t id = 0; id < count; ++id) {
+    for (const char* part : parts) names.push_back(thing + std::to_string(id) + '.' + part);
+  }
+  return names;
+}
+
+std::vector<std::string> ForEachMove(const std::string& what) {
+  std::vector<std::string> names;
+  for (int move = 0; move < kMoveCount; ++move) {
+    names.push_back(what + std::string(ToString(static_cast<Action>(move))));
+  }
+  return names;
+}
+
+// The writers copy the scales first, because `out` might alias them.
+
+void WriteSelf(const FeatureScales& scales, const View& view, float* out) {
+  const float scale = scales.length;
+  const float horizon = scales.time;
+  out[0] = 2.0F * static_cast<float>(view.self.x) * scale - 1.0F;
+  out[1] = 2.0F * static_cast<float>(view.self.y) * scale - 1.0F;
+  // A disaster that is set in play may last longer than the scenario's own.
+  out[2] = std::max(0.0F, 1.0F - static_cast<float>(view.step) / horizon);
+  out[3] = static_cast<float>(view.capacity - view.aboard) / static_cast<float>(view.capacity);
+  out[4] = KnownRiskAt(view, view.self) * kRiskScale;
+}
+
+// Writes whether each move leads off the map or into a rock or island.
+void WriteBlocked(const FeatureScales&, const View& view, float* out) {
+  const std::int32_t width = view.scenario->width;
+  const std::int32_t height = view.scenario->height;
+  const Cell self = view.self;
+  const std::uint8_t* const here = view.layout->cells.data() + LinearIndex(self, width);
+  const auto is_blocked = [=](Cell move) {
+    return (here[LinearIndex(move, width)] & kBlockedBits) != 0;
+  };
+  const bool inside = self.x > 0 && self.x < width - 1 && self.y > 0 && self.y < height - 1;
+  if (inside) {  // the common case, without a branch per move
+    for (const Cell move : kMoves) *out++ = static_cast<float>(is_blocked(move));
+    return;
+  }
+  for (const Cell move : kMoves) {
+    const Cell to{self.x + move.x, self.y + move.y};
+    const bool off = to.x < 0 || to.x >= width || to.y < 0 || to.y >= height;
+    *out++ = static_cast<float>(off || is_blocked(move));
+  }
+}
+
+void WriteDevices(const FeatureScales& scales, const View& view, float* out) {
+  const float scale = scales.length;
+  for (const KnownDevice& device : view.devices) {
+    *out++ = static_cast<float>(device.cell.x - view.self.x) * scale;
+    *out++ = static_cast<float>(device.cell.y - view.self.y) * scale;
+    *out++ = device.status == DeviceStatus::kDeployed ? 1.0F : 0.0F;
+    *out++ = device.aboard_self ? 1.0F : 0.0F;
+    *out++ = device.health * device.value * kValueScale;
+  }
+}
+
+void WritePorts(const FeatureScales& scales, const View& view, float* out) {
+  const float scale = scales.length;
+  for (const Cell port : view.layout->ports) {
+    *out++ = static_cast<float>(port.x - view.self.x) * scale;
+    *out++ = static_cast<float>(port.y - view.self.y) * scale;
+  }
+}
+
+// Writes the disasters of the scenario by id.
+void WriteDisasters(const FeatureScales& scales, const View& view, float* out) {
+  constexpr std::size_t kCount = 7;
+  const float scale = scales.length;
+  for (std::size_t id = 0; id < view.scenario->disasters.size(); ++id, out += kCount) {
+    const KnownDisaster& known = view.disasters[id];
+    if (!known.known || !known.belief.active()) {
+      std::fill_n(out, kCount, 0.0F);
+      continue;
+    }
+    const ObservableDisaster& disaster = known.belief;
+    out[0] = 1.0F;
+    out[1] = (disaster.x - static_cast<float>(view.self.x)) * scale;
+    out[2] = (disaster.y - static_cast<float>(view.self.y)) * scale;
+    out[3] = disaster.dx;
+    out[4] = disaster.dy;
+    out[5] = disaster.reach() * scale;
+    out[6] = known.age == 0 ? 0.0F
+                            : static_cast<float>(known.age) /
+                                  static_cast<float>(view.scenario->view.bulletin_period);
+  }
+}
+
+void WriteOthers(const FeatureScales& scales, const View& view, float* out) {
+  const float scale = scales.length;
+  for (const KnownShip& other : view.others) {
+    const bool seen = other.visible;
+    *out++ = seen ? 1.0F : 0.0F;
+    *out++ = seen ? static_cast<float>(other.cell.x - view.self.x) * scale : 0.0F;
+    *out++ = seen ? static_cast<float>(other.cell.y - view.self.y) * scale : 0.0F;
+    *out++ = seen ? static_cast<float>(other.aboard) / static_cast<float>(view.capacity) : 0.0F;
+  }
+}
+
+void WriteIdentity(const FeatureScales&, const View& view, float* out) {
+  std::fill_n(out, view.scenario->AgentCount(), 0.0F);
+  out[view.ship] = 1.0F;
+}
+
+// Writes the next move and the number of moves left to every port and every deployed device.
+void WriteWays(const FeatureScales& scales, const View& view, float* out) {
+  const float scale = scales.length;
+  const Layout& layout = *view.layout;
+  const auto cell = static_cast<std::size_t>(LinearIndex(view.self, view.scenario->width));
+  const RouteEntry* way = layout.ways.data() + cell * layout.way_count();
+  // Also encodes unreachable targets.
+  const std::int32_t farthest = 2 * (view.scenario->width + view.scenario->height);
+  const auto write = [&] {
+    *out++ = static_cast<float>(way->east);
+    *out++ = static_cast<float>(way->north);
+    *out++ = static_cast<float>(std::min(way->steps, farthest)) * scale;
+    ++way;
+  };
+  for (std::size_t port = 0; port < layout.ports.size(); ++port) write();
+  for (const KnownDevice& device : view.devices) {
+    if (device.self_propelled) continue;
+    if (device.status == DeviceStatus::kDeployed) {
+      write();
+    } else {
+      out = std::fill_n(out, kWayFeatures, 0.0F);
+      ++way;
+    }
+  }
+}
+
+std::vector<std::string> WayNames(const Scenario& scenario) {
+  std::vector<std::string> names;
+  const auto add = [&names](const char* thing, std::int32_t id) {
+    for (const char* part : {".way_east", ".way_north", ".way_steps"}) {
+      names.push_back(thing + std::to_string(id) + part);
+    }
+  };
+  for (std::int32_t i = 0; i < scenario.PortCount(); ++i) add("port", i);
+  for (std::int32_t i = 0; i < scenario.devices.Total(); ++i) {
+    const bool fetched = scenario.devices.placement == DevicePlacement::kExplicit
+                             ? !scenario.devices.sites[static_cast<std::size_t>(i)].self_propelled
+                             : i < scenario.FetchableCount();
+    if (fetched) add("device", i);
+  }
+  return names;
+}
+
+// Writes the forecast risk after one step of each move, and the mean forecast risk over the steps
+// of each straight course and of staying. A ship stops at the edge of the map.
+void WriteCourses(const FeatureScales&, const View& view, float* out) {
+  CourseRisks risks(*view.scenario, view.self);
+  for (const KnownDisaster& known : view.disasters) {
+    if (known.known && known.belief.active()) {
+      risks.MaxWith(known.belief, static_cast<float>(known.age));
+    }
+  }
+  risks.Write(out, out + kMoveCount);
+}
+
+std::vector<std::string> CourseNames() {
+  std::vector<std::string> names = ForEachMove("risk.");
+  const std::vector<std::string> courses = ForEachMove("course.");
+  names.insert(names.end(), courses.begin(), courses.end());
+  names.emplace_back("course.stay");
+  return names;
+}
+
+}  // namespace
+
+FeatureScales ScalesOf(const Scenario& scenario) {
+  return {1.0F / static_cast<float>(std::max(scenario.width, scenario.height)), Horizon(scenario)};
+}
+
+std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
+  const auto disasters = static_cast<std::int32_t>(scenario.disasters.size());
+  const std::int32_t agents = scenario.AgentCount();
+  std::vector<FeatureGroup> groups{
+      {"self", {"self.x", "self.y", "time_left", "free_capacity", "risk_here"}, WriteSelf},
+      {"blocked", ForEachMove("blocked."), WriteBlocked},
+      {"devices",
+       Numbered("device", scenario.devices.Total(),
+                {"east", "north", "deployed", "aboard", "worth"}),
+       WriteDevices},
+      {"ports", Numbered("port", scenario.PortCount(), {"east", "north"}), WritePorts},
+      {"disasters",
+       Numbered("disaster", disasters,
+                {"known", "east", "north", "motion_east", "motion_north", "reach", "age"}),
+       WriteDisasters},
+      {"others", Numbered("other", agents - 1, {"visible", "east", "north", "aboard"}),
+       WriteOthers},
+      // With these one network can control all agents. A single agent needs none.
+      {"identity", Numbered("agent", agents > 1 ? agents : 0, {"self"}), WriteIdentity}};
+  if (scenario.view.waterways) groups.push_back({"waterways", WayNames(scenario), WriteWays});
+  if (scenario.view.courses) groups.push_back({"courses", CourseNames(), WriteCourses});
+  const auto is_empty = [](const FeatureGroup& group) { return group.names.empty(); };
+  groups.erase(std::remove_if(groups.begin(), groups.end(), is_empty), groups.end());
+  return groups;
+}
+
+}  // namespace aquafarm

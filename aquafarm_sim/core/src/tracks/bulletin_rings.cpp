@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tracks/bulletin_rings.h"
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "input/json_object.h"
+
+namespace aquafarm::internal {
+namespace {
+
+using Json = nlohmann::json;
+
+}  // namespace
+
+std::array<double, kQuadrantCount> ReadQuadrants(
+    const Json& value, const std::string& path, const std::array<const char*, kQuadrantCount>& keys,
+    std::int32_t wind_kt, const std::array<double, kQuadrantCount>& otherwise,
+    ParseContext& place) {
+  const JsonObject object(value, path, place);
+  std::array<double, kQuadrantCount> radius_km = otherwise;
+  std::size_t said = 0;
+  for (std::size_t q = 0; q < keys.size(); ++q) {
+    const std::string upper = Upper(keys[q]);
+    const auto one = object.TryNumber({keys[q], upper.c_str()}, 0.0, kMostRadius_km);
+    radius_km[q] = one.value_or(otherwise[q]);
+    said += one ? 1 : 0;
+  }
+  const bool all = *std::max_element(otherwise.begin(), otherwise.end()) > 0.0;
+  const std::string wind = std::to_string(wind_kt) + " kt: ";
+  if (said == 0 && !IsBlank(value)) {
+    place.WarnValue(path, wind + "has none of the quadrants " + keys[0] + ", " + keys[1] + ", " +
+                              keys[2] + " and " + keys[3]);
+  } else if (said > 0 && said < keys.size()) {
+    place.WarnValue(path, wind + "not every quadrant is said; the others are given " +
+                              (all ? "the radius that is said of all" : "0"));
+  }
+  return radius_km;
+}
+
+void AddSaidRing(std::int32_t wind_kt, const std::array<double, kQuadrantCount>& radius_km,
+                 StormFix& fix) {
+  const bool given = *std::max_element(radius_km.begin(), radius_km.end()) > 0.0;
+  const bool blows = !fix.wind_mps || *fix.wind_mps >= wind_kt * kMpsPerKnot;
+  if (given || !blows) AddRing({wind_kt, radius_km, false}, fix.rings);
+}
+
+}  // namespace aquafarm::internal

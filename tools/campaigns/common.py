@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What all campaigns share: limits, counts, programs and processes."""
+import collections
+import os
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SCENARIOS = ROOT / "aquafarm_sim" / "scenarios"
+MOST_SHOWN = 20  # failures that are printed whole
+
+
+class NotBuilt(Exception):
+    """A program that the campaign needs is missing."""
+
+
+class Campaign:
+    """One run of a campaign: its limits, its random numbers and its counts."""
+
+    def __init__(self, name, seconds, count, seed, workspace):
+        self.name = name
+        self.seconds = seconds
+        self.count = count
+        self.workspace = workspace
+        self.rng = random.Random(seed)
+        self.seed = seed
+        self.tried = collections.Counter()
+        self.failures = []
+        self._begin = time.monotonic()
+
+    def elapsed(self):
+        return time.monotonic() - self._begin
+
+    def more(self, done):
+        """Whether to begin try number `done`."""
+        return done < self.count if self.count else self.elapsed() < self.seconds
+
+    def attempt(self, what, number=1):
+        """Counts tries of a kind."""
+        self.tried[what] += number
+
+    def fail(self, what):
+        """Records a failure; the text must say how to repeat it."""
+        self.failures.append(what)
+        if len(self.failures) <= MOST_SHOWN:
+            print(f"FAILED {what}", file=sys.stderr, flush=True)
+
+    def check(self, holds, what):
+        """Records a failure unless `holds`; returns `holds`."""
+        if not holds:
+            self.fail(what)
+        return holds
+
+    def program(self, name):
+        """Path of a built program: of a core, or of the workspace."""
+        for place in ("core/aquafarm_sim", "core/aquafarm_agents", "devel/lib/aquafarm_sim",
+                      "devel/lib/aquafarm_agents"):
+            path = self.workspace / place / name
+            if path.is_file() and os.access(path, os.X_OK):
+                return path
+        raise NotBuilt(f"no program {name} in {self.workspace}; build it with ./aquafarm test --fast "
+                       "or ./aquafarm build, or give --workspace")
+
+    def report(self):
+        """Prints what was tried and what failed; returns the exit code."""
+        for what, number in sorted(self.tried.items()):
+            print(f"{self.name}: {number:,} {what}")
+        hidden = len(self.failures) - MOST_SHOWN
+        if hidden > 0:
+            print(f"{self.name}: {hidden} more failures are not shown")
+        print(f"{self.name}: {len(self.failures)} failures in {self.elapsed():.0f} s, seed {self.seed}")
+        if not self.tried:
+            print(f"{self.name}: nothing was tried", file=sys.stderr)
+            return 1
+        return 1 if self.failures else 0
+
+
+def execute(*command, seconds=60, **options):
+    """Runs a command; returns (exit code, output), with code None after the time limit."""
+    try:
+        done = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=seconds,
+                              check=False, **options)
+    except subprocess.TimeoutExpired as error:
+        return None, (error.stdout or b"").decode(errors="replace")
+    return done.returncode, done.stdout.decode(errors="replace")
+
+
+def left_over(folder):
+    """Temporary files in a folder and below."""
+    return sorted(str(path) for path in pathlib.Path(folder).rglob("*")
+                  if path.name.endswith((".tmp", ".active", ".part", ".swp")))
+
+
+def remove(folder):
+    """Removes a folder, if it exists."""
+    shutil.rmtree(folder, ignore_errors=True)

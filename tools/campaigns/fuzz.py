@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Gives readers mutated and huge files. The fuzz targets of the cores read mutated samples (libFuzzer
+if they were built with AQUAFARM_FUZZ, else fuzz/mutate.cpp); the programs read huge ones."""
+import json
+import pathlib
+import re
+import resource
+import subprocess
+import tempfile
+
+from campaigns import common
+
+TARGETS = ("chart", "hazard_file", "map_yaml", "preset", "scenario", "checkpoint")
+ROUND_S = 20        # libFuzzer's time for each target in a round
+CHANGES = 20_000    # mutations of a target in a round, without libFuzzer
+MOST_S = 20         # a program may read a file for so long [s of a processor]
+MOST_MEMORY = 1 << 30
+DATA = common.ROOT / "aquafarm_sim" / "core" / "test"
+
+
+def corpus(name):
+    """Folders with samples for a target, as in the CMakeLists.txt of its core."""
+    if name == "checkpoint":
+        old = common.ROOT / "aquafarm_agents" / "core" / "test" / "data" / "version_0_1_0"
+        return [old / run for run in ("dqn", "lstm_dqn", "maddpg", "q_learning", "sarsa")]
+    if name == "scenario":
+        return [DATA / "invalid_scenarios", common.SCENARIOS]
+    return [DATA / f"fuzz_{name}"] if name in ("map_yaml", "preset") else [DATA / "data"]
+
+
+def run_target(campaign, name, seed):
+    """Runs a target for one round and counts the inputs."""
+    program = campaign.program(f"fuzz_{name}")
+    with tempfile.TemporaryDirectory(prefix="aquafarm_fuzz_") as place:
+        if b"LLVMFuzzerRunDriver" in program.read_bytes():
+            words = [f"-max_total_time={ROUND_S}", f"-seed={seed}", "-rss_limit_mb=1024",
+                     "-timeout=20", "-print_final_stats=1", "-max_len=65536", place]
+        else:
+            words = [f"--seed={seed}", CHANGES]
+        code, output = common.execute(program, *words, *corpus(name), seconds=ROUND_S * 30,
+                                      cwd=place)
+        inputs = re.search(r"stat::number_of_executed_units: (\d+)|inputs: (\d+)", output)
+        campaign.attempt(f"inputs of fuzz_{name}", int(inputs.group(1) or inputs.group(2))
+                         if inputs else 0)
+        if not campaign.check(code == 0, f"fuzz_{name}: seed {seed}: exit code {code}: "
+                              f"{output[-600:]}"):
+            for found in pathlib.Path(place).glob("crash-*"):
+                kept = pathlib.Path.cwd() / f"fuzz_{name}_{found.name}"
+                kept.write_bytes(found.read_bytes())
+                print(f"kept {kept}")
+
+
+def bulletin(points):
+    """A bulletin with a storm of so many points, of which each but the first is refused."""
+    point = json.dumps({"time": "2021-07-25T14:00:00", "lat": 30, "lng": 122, "pressure": 50})
+    return ('[{"tfbh": "202106", "points": [' + ",\n".join([point] * points) + "]}]").encode()
+
+
+def huge_files():
+    """Yields (name, arguments, bytes) of files that once took minutes or gigabytes."""
+    yield "bulletin.json", ["--track", "--center", "30,122"], bulletin(150_000_000 // 75)
+    yield "line.json", ["--track", "--center", "30,122"], b"[" + b" " * 500_000_000 + b"]"
+    yield "deep.json", ["--chart", "--center", "30,122"], b"[" * 100_000_000
+    yield "bst.txt", ["--track", "--center", "30,122"], \
+        b"66666 0000 01 0012 0000 0 6 (nameless) 20200101\n" + \
+        b"2019072500 1 297 1230 1000 12\n" * 3_000_000
+    yield "sea.asc", ["--chart", "--center", "30,122"], \
+        b"ncols 20000\nnrows 20000\nxllcorner 122\nyllcorner 30\ncellsize 0.001\n" + b"1 " * 50_000_000
+    yield "image.pgm", ["--chart", "--center", "30,122"], b"P5 60000 60000 255\n" + bytes(1000)
+
+
+def limit_memory():
+    """Lets this process have MOST_MEMORY of address space; a program that needs more fails."""
+    resource.setrlimit(resource.RLIMIT_AS, (MOST_MEMORY, MOST_MEMORY))
+
+
+def read_huge(campaign, name, arguments, content):
+    """One program reads one huge file; it must end in time, in memory and with a line."""
+    with tempfile.TemporaryDirectory(prefix="aquafarm_fuzz_") as place:
+        path = pathlib.Path(place) / name
+        path.write_bytes(content)
+        program = campaign.program("aquafarm_scenario")
+        words = [program, *arguments[1:], arguments[0], path]
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        process = subprocess.Popen([str(word) for word in words], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                   preexec_fn=limit_memory)
+        try:
+            output = process.communicate(timeout=30 * MOST_S)[0].decode(errors="replace")
+        except subprocess.TimeoutExpired:
+            process.kill()
+            output = process.communicate()[0].decode(errors="replace")
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds = used.ru_utime + used.ru_stime - before.ru_utime - before.ru_stime
+    what = f"{name} of {len(content) >> 20} MiB"
+    campaign.attempt("huge files")
+    campaign.check(process.returncode in (0, 2), f"{what}: exit code {process.returncode}: "
+                   f"{output[-300:]}")
+    campaign.check(seconds < MOST_S, f"{what}: took {seconds:.0f} s, expected less than {MOST_S}")
+
+
+def run(campaign):
+    """Count is the number of rounds over the targets; huge files are read in the first."""
+    number = 0
+    while campaign.more(number):
+        for name in TARGETS:
+            run_target(campaign, name, campaign.seed + number)
+        number += 1
+    for name, arguments, content in huge_files():
+        read_huge(campaign, name, arguments, content)

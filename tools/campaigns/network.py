@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trains through a proxy that delays, cuts and repeats service calls. A master in front of the real
+one hands out the proxy's address. Each command must be applied exactly once: the trained policy and
+the episodes must equal those of a training without the proxy, bit for bit."""
+import contextlib
+import pathlib
+import socket
+import socketserver
+import tempfile
+import threading
+import time
+import urllib.parse
+import xmlrpc.client
+import xmlrpc.server
+
+from campaigns import ros
+
+STEPS = 16_000       # of a training; each call steps 16 farms
+LIMIT_S = 1200
+DELAY_S = 0.2
+# How often a call is treated so, one in:
+DELAY, REPEAT, REPEAT_LATE, CUT_BEFORE, CUT_AFTER = 60, 20, 40, 60, 60
+
+
+class Proxy(socketserver.ThreadingTCPServer):
+    """Passes TCPROS service calls on, and treats some of them badly."""
+
+    allow_reuse_address = True
+    daemon_threads = True
+
+    def __init__(self, campaign, target):
+        super().__init__(("127.0.0.1", 0), Handler)
+        self.campaign = campaign
+        self.target = target
+        self.lock = threading.Lock()
+        threading.Thread(target=self.serve_forever, daemon=True).start()
+
+    def one_in(self, number, what):
+        """Whether to treat this call so; counts it."""
+        with self.lock:
+            chosen = self.campaign.rng.randrange(number) == 0
+            self.campaign.attempt(what, int(chosen))
+        return chosen
+
+    def call_again(self, greeting, request, delay_s):
+        """Sends a call once more over a connection of its own, and drops the answer."""
+        time.sleep(delay_s)
+        with contextlib.suppress(OSError), socket.create_connection(self.target, timeout=30) as line:
+            line.sendall(greeting)
+            ros.receive_frame(line)
+            line.sendall(request)
+            receive_answer(line)
+
+
+class Handler(socketserver.BaseRequestHandler):
+    """One connection of a client: the header, then requests, each with its answer."""
+
+    def handle(self):
+        proxy = self.server
+        with contextlib.suppress(OSError), socket.create_connection(proxy.target) as server:
+            greeting = ros.receive_frame(self.request)
+            server.sendall(greeting)
+            self.request.sendall(ros.receive_frame(server))
+            while True:
+                request = ros.receive_frame(self.request)
+                proxy.campaign.attempt("calls through the proxy")
+                if proxy.one_in(CUT_BEFORE, "calls cut before they arrived"):
+                    return
+                if proxy.one_in(DELAY, f"calls delayed by {DELAY_S} s"):
+                    time.sleep(DELAY_S)
+                if proxy.one_in(REPEAT, "calls repeated at once"):
+                    proxy.call_again(greeting, request, 0.0)
+                if proxy.one_in(REPEAT_LATE, "calls repeated after later ones"):
+                    threading.Thread(target=proxy.call_again, daemon=True,
+                                     args=(greeting, request, DELAY_S)).start()
+                server.sendall(request)
+                answer = receive_answer(server)
+                if proxy.one_in(CUT_AFTER, "answers lost"):
+                    return
+                self.request.sendall(answer)
+
+
+def receive_answer(connection):
+    """Reads the answer of a service: a byte of success and a frame."""
+    return ros.receive(connection, 1) + ros.receive_frame(connection)
+
+
+class Master(xmlrpc.server.SimpleXMLRPCServer):
+    """Passes calls on to the real master, and hands out proxies in place of services."""
+
+    daemon_threads = True
+
+    def __init__(self, campaign, uri):
+        super().__init__(("127.0.0.1", 0), logRequests=False, allow_none=True)
+        self.campaign = campaign
+        self.real = uri
+        self.proxies = {}
+        self.register_instance(self)
+        self.uri = f"http://127.0.0.1:{self.server_address[1]}"
+        threading.Thread(target=self.serve_forever, daemon=True).start()
+
+    def _dispatch(self, method, arguments):
+        answer = getattr(xmlrpc.client.ServerProxy(self.real), method)(*arguments)
+        if method != "lookupService" or answer[0] != 1:
+            return answer
+        place = urllib.parse.urlparse(answer[2])
+        target = (place.hostname, place.port)
+        if target not in self.proxies:
+            self.proxies[target] = Proxy(self.campaign, target)
+        return [*answer[:2], f"rosrpc://127.0.0.1:{self.proxies[target].server_address[1]}"]
+
+
+def train(campaign, folder, run, through_proxy):
+    """One training with a new sim node; returns its results, or None after a failure."""
+    folder.mkdir()
+    with ros.Ros(campaign, folder) as ranch:
+        ranch.sim("aquafarm")
+        master = Master(campaign, ranch.uri) if through_proxy else None
+        process = ranch.train("aquafarm", run, STEPS, uri=master.uri if master else None)
+        code = process.wait(timeout=LIMIT_S)
+        campaign.check(code == 0, f"{run}: exit code {code}: {ranch.log(run)[-1500:]}")
+        return ranch.results(run) if code == 0 else None
+
+
+def run(campaign):
+    """Count is the number of trainings through the proxy."""
+    with tempfile.TemporaryDirectory(prefix="aquafarm_network_") as place:
+        place = pathlib.Path(place)
+        expected = train(campaign, place / "plain", "plain", False)
+        number = 0
+        while expected and campaign.more(number):
+            name = f"proxy_{number}"
+            got = train(campaign, place / name, name, True)
+            if got is None:
+                return
+            campaign.attempt("trainings compared")
+            for file, content in expected.items():
+                campaign.check(got[file] == content, f"{name}: {file} differs, seed {campaign.seed}")
+            number += 1

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Takes disk, permissions, descriptors and memory from the programs. Each must succeed, or end with
+an exit code, a readable line, and nothing half-written."""
+import contextlib
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import tempfile
+
+from campaigns import common
+
+LIMIT_S = 300
+UNPRIVILEGED_ID = 65534
+# What no user should see: a raw exception, a sanitizer's report, a Python traceback.
+RAW = re.compile(r"terminate called|what\(\):|Traceback|ERROR: AddressSanitizer|internal error")
+# Steps of a training that takes a second and writes some checkpoints.
+TRAINING = ("-a", "q_learning", "-n", "300000", "--checkpoint-period", "0.05", "--evaluate", "20",
+            "--random", "0", "--scenarios", str(common.SCENARIOS))
+
+
+def limits(**values):
+    """Returns a preexec_fn that sets limits; a file that grows too large gives an error, no signal."""
+    def apply():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        for name, value in values.items():
+            resource.setrlimit(getattr(resource, f"RLIMIT_{name}"), (value, value))
+    return {"preexec_fn": apply, "restore_signals": False}
+
+
+def as_nobody():
+    """Returns options that take the rights of root away; writing to a read-only folder then fails."""
+    if os.geteuid() != 0:
+        return {}
+    return {"user": UNPRIVILEGED_ID, "group": UNPRIVILEGED_ID, "extra_groups": []}
+
+
+@contextlib.contextmanager
+def small_disk(folder, kilobytes):
+    """Mounts a file system of some kilobytes; yields None if this process may not mount."""
+    folder.mkdir()
+    done = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", str(folder)],
+                          check=False, capture_output=True)
+    try:
+        yield folder if done.returncode == 0 else None
+    finally:
+        if done.returncode == 0:
+            subprocess.run(["umount", "-l", str(folder)], check=False)
+
+
+def judge(campaign, what, folder, code, words):
+    """Records a failure unless a program under a limit behaved."""
+    campaign.attempt("programs under a limit")
+    campaign.attempt("refusals" if code else "successes")
+    lines = [line for line in words.splitlines() if line.strip()]
+    shown = " | ".join(lines[-3:])
+    campaign.check(code is not None, f"{what}: still running after {LIMIT_S} s")
+    campaign.check(code is None or code >= 0, f"{what}: ended by signal {-(code or 0)}: {shown}")
+    campaign.check(not RAW.search(words), f"{what}: raw words: {shown}")
+    if code:
+        campaign.check(bool(lines), f"{what}: exit code {code} and no word")
+    if folder.is_dir():
+        campaign.check(not common.left_over(folder), f"{what}: left {common.left_over(folder)}")
+
+
+def train(campaign, what, folder, **options):
+    """Trains under a limit and judges it; then resumes without it if there is something to resume."""
+    trainer = campaign.program("aquafarm_train")
+    code, words = common.execute(trainer, "paper", *TRAINING, "-d", folder, seconds=LIMIT_S, **options)
+    judge(campaign, what, folder, code, words)
+    if code and any(folder.glob("checkpoints/step_*.ckpt")):
+        evaluate = campaign.program("aquafarm_evaluate")
+        code, words = common.execute(evaluate, folder, "-e", "2", seconds=LIMIT_S)
+        campaign.check(code == 0, f"{what}: its checkpoint cannot be played: {words[-300:]}")
+        campaign.attempt("checkpoints played afterwards")
+
+
+def build_ranch(campaign, what, folder, output, **options):
+    """Runs the program that writes a scenario, which needs no libtorch."""
+    program = campaign.program("aquafarm_scenario")
+    code, words = common.execute(program, "--center", "30,122", "-o", output, seconds=LIMIT_S,
+                                 **options)
+    judge(campaign, what, folder, code, words)
+    return code
+
+
+def disk_full(campaign, place):
+    kilobytes = campaign.rng.choice([16, 64, 300, 900, 1500, 2500])
+    with small_disk(place / "disk", kilobytes) as disk:
+        if disk is None:
+            campaign.attempt("full disks left out: no right to mount")
+        else:
+            train(campaign, f"training on a disk of {kilobytes} kB", disk / "run")
+            # Leaves less room than a scenario takes.
+            free = os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize
+            (disk / "filler").write_bytes(bytes(max(0, free - 4096)))
+            output = disk / "ranch.yaml"
+            if build_ranch(campaign, "aquafarm scenario on a full disk", disk, output) != 0:
+                campaign.check(not output.exists(), "aquafarm scenario: half a file on a full disk")
+
+
+def file_size(campaign, place):
+    size = campaign.rng.choice([100, 4096, 100_000, 400_000])
+    train(campaign, f"training with files of at most {size} bytes", place / "run",
+          **limits(FSIZE=size))
+
+
+def read_only(campaign, place):
+    closed = place / "closed"
+    closed.mkdir(mode=0o555)
+    place.chmod(0o755)
+    train(campaign, "training in a read-only folder", closed / "run", **as_nobody())
+    code = build_ranch(campaign, "aquafarm scenario into a read-only folder", closed,
+                       closed / "ranch.yaml", **as_nobody())
+    campaign.check(code != 0, "aquafarm scenario: wrote into a read-only folder")
+
+
+def descriptors(campaign, place):
+    number = campaign.rng.randint(4, 12)
+    train(campaign, f"training with {number} descriptors", place / "run", **limits(NOFILE=number))
+
+
+def memory(campaign, place):
+    megabytes = campaign.rng.choice([60, 150, 400, 700, 900, 1100, 1500])
+    train(campaign, f"training with {megabytes} MB of address space", place / "run",
+          **limits(AS=megabytes << 20))
+    megabytes = campaign.rng.choice([20, 30, 40, 60, 100])
+    build_ranch(campaign, f"aquafarm scenario with {megabytes} MB of address space", place,
+                place / "ranch.yaml", **limits(AS=megabytes << 20))
+
+
+def run(campaign):
+    """Count is the number of limits tried, each of one kind."""
+    kinds = [disk_full, read_only, descriptors, file_size, memory]
+    number = 0
+    while campaign.more(number):
+        with tempfile.TemporaryDirectory(prefix="aquafarm_resources_") as place:
+            kinds[number % len(kinds)](campaign, pathlib.Path(place))
+        number += 1

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A ROS master, sim nodes and trainings for a campaign, on free ports of the loopback address."""
+import os
+import pathlib
+import socket
+import struct
+import subprocess
+import time
+import xmlrpc.client
+
+from campaigns import common
+
+START_LIMIT_S = 120
+
+
+def free_port():
+    """Returns a port that is currently unused."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Ros:
+    """A master in a folder; leaving the context ends all its processes."""
+
+    def __init__(self, campaign, folder):
+        self.campaign = campaign
+        self.folder = pathlib.Path(folder)
+        self.uri = f"http://127.0.0.1:{free_port()}"
+        self.processes = []
+        self.environment = dict(os.environ, ROS_IP="127.0.0.1", ROS_HOME=str(self.folder),
+                                ROS_LOG_DIR=str(self.folder / "log"))
+
+    def __enter__(self):
+        self.start("rosmaster", "rosmaster", "--core", "-p", self.uri.rsplit(":", 1)[1])
+        self.wait_for(lambda: self.master().getPid("/campaign"), "the master")
+        return self
+
+    def __exit__(self, *_):
+        for process in reversed(self.processes):
+            process.terminate()
+        for process in reversed(self.processes):
+            try:
+                process.wait(timeout=20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+    def master(self):
+        return xmlrpc.client.ServerProxy(self.uri)
+
+    def start(self, log, *words, uri=None):
+        """Starts a program with its output in a file; returns the process."""
+        with open(self.folder / f"{log}.log", "ab") as output:
+            process = subprocess.Popen(
+                [str(word) for word in words], stdin=subprocess.DEVNULL, stdout=output,
+                stderr=subprocess.STDOUT, cwd=self.folder,
+                env=dict(self.environment, ROS_MASTER_URI=uri or self.uri))
+        self.processes.append(process)
+        return process
+
+    def log(self, name):
+        return (self.folder / f"{name}.log").read_text(errors="replace")
+
+    def wait_for(self, what, name, limit_s=START_LIMIT_S):
+        """Waits for a value that is true. @raises TimeoutError with the ends of the logs"""
+        end = time.monotonic() + limit_s
+        while True:
+            try:
+                value = what()
+                if value:
+                    return value
+            except OSError:
+                pass
+            if time.monotonic() > end:
+                logs = "".join(f"\n{path.name}: {path.read_text(errors='replace')[-400:]}"
+                               for path in self.folder.glob("*.log"))
+                raise TimeoutError(f"{name} did not come up within {limit_s} s{logs}")
+            time.sleep(0.05)
+
+    def service(self, name):
+        """URI of a service, or an empty text."""
+        code, _, uri = self.master().lookupService("/campaign", name)
+        return uri if code == 1 else ""
+
+    def sim(self, namespace, *arguments):
+        """Starts a sim node and waits until it serves."""
+        process = self.start(f"sim_{namespace}", self.campaign.program("sim_node"),
+                             f"__ns:=/{namespace}", "__name:=sim",
+                             f"_scenario:={common.SCENARIOS / 'paper.yaml'}", "_farms:=16",
+                             *arguments)
+        self.wait_for(lambda: self.service(f"/{namespace}/step"), "the sim node")
+        return process
+
+    def train(self, namespace, run, steps, uri=None):
+        """Starts a training of a table with the farms of a namespace."""
+        return self.start(run, self.campaign.program("train_node"), f"__ns:=/{namespace}",
+                          "__name:=train", "_algorithm:=q_learning", f"_steps:={steps}",
+                          f"_run_dir:={self.folder / run}", "_evaluation_episodes:=0",
+                          "_random_episodes:=0", "_values_period_s:=0", "_sim_timeout_s:=60",
+                          uri=uri)
+
+    def results(self, run):
+        """The files that must not depend on what happened to the connections."""
+        return {name: (self.folder / run / name).read_bytes()
+                for name in ("policy.ckpt", "metrics.csv")}
+
+
+def receive(connection, size):
+    """Reads so many bytes. @raises ConnectionError at the end of the stream"""
+    data = b""
+    while len(data) < size:
+        part = connection.recv(size - len(data))
+        if not part:
+            raise ConnectionError("closed")
+        data += part
+    return data
+
+
+def receive_frame(connection):
+    """Reads a TCPROS frame: its length in four bytes, and its content."""
+    head = receive(connection, 4)
+    return head + receive(connection, struct.unpack("<I", head)[0])
+
+
+def header(**fields):
+    """A TCPROS connection header."""
+    lines = [f"{key}={value}".encode() for key, value in fields.items()]
+    body = b"".join(struct.pack("<I", len(line)) + line for line in lines)
+    return struct.pack("<I", len(body)) + body

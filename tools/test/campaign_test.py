@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Each campaign in a short form. ./aquafarm test names the workspace; without one they are skipped."""
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+CAMPAIGN = pathlib.Path(__file__).resolve().parents[1] / "campaign"
+WORKSPACE = os.environ.get("AQUAFARM_CAMPAIGNS", "")
+LIMIT_S = 900
+# Each takes seconds on an idle machine; fuzzing and soaking have ctest targets of their own.
+SHORT = {"soak": 1, "kill": 2, "resources": 5, "network": 1, "concurrency": 1}
+
+
+def campaign(*words):
+    return subprocess.run([CAMPAIGN, *map(str, words)], capture_output=True, text=True,
+                          timeout=LIMIT_S, check=False)
+
+
+@pytest.mark.skipif(not WORKSPACE, reason="AQUAFARM_CAMPAIGNS names no workspace")
+@pytest.mark.parametrize("name", SHORT)
+def test_campaign_finds_no_failure(name):
+    done = campaign(name, "--count", SHORT[name], "--workspace", WORKSPACE)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert f"{name}: 0 failures in " in done.stdout
+
+
+def test_a_failure_is_reported_with_exit_code_1(tmp_path):
+    programs = tmp_path / "core" / "aquafarm_sim"
+    programs.mkdir(parents=True)
+    (programs / "farm_soak").write_text("#!/bin/sh\necho 'x.yaml: 5 steps, 1 episodes'; exit 1\n")
+    (programs / "farm_soak").chmod(0o755)
+    done = campaign("soak", "--count", 1, "--workspace", tmp_path)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert "FAILED farm_soak 200000 1: exit code 1: ['x.yaml: 5 steps, 1 episodes']" in done.stderr
+    assert "soak: 1 failures in " in done.stdout
+
+
+def test_a_program_that_is_not_built_is_named(tmp_path):
+    done = campaign("kill", "--workspace", tmp_path)
+    assert done.returncode == 2
+    assert f"no program aquafarm_train in {tmp_path}" in done.stderr

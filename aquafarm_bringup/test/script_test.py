@@ -32,14 +32,30 @@ def run(*command, **options):
                           check=False, **options)
 
 
+def copy_script(tree, old, new):
+    """Copies the script and its functions into a folder, with one text replaced; returns the copy.
+
+    The text must occur exactly once.
+    """
+    count = 0
+    for source in [SCRIPT, *(SCRIPT.parent / "tools" / "commands").glob("*.sh")]:
+        text = source.read_text()
+        count += text.count(old)
+        target = tree / source.relative_to(SCRIPT.parent)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text.replace(old, new))
+        target.chmod(0o755)
+    assert count == 1, f"{old!r}: got {count} places, expected 1"
+    return tree / "aquafarm"
+
+
 def built_tree(folder):
     """Makes a copy of the script with a workspace that counts as built; returns it and its
     environment."""
     ws, tree = folder / "ws", folder / "tree"
     for part in (ws / "src", ws / "build", ws / "devel", tree):
         part.mkdir(parents=True)
-    copy = tree / "aquafarm"
-    copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "false -C"))
+    copy = copy_script(tree, "catkin_make -C", "false -C")
     (tree / "aquafarm_bringup").symlink_to(PACKAGE)
     (ws / "src" / "aquafarm").symlink_to(tree)
     (ws / "build" / "CMakeCache.txt").write_text(
@@ -255,8 +271,7 @@ class ScriptTest(unittest.TestCase):
             for part in ("src", "build", "devel"):
                 (ws / part).mkdir(parents=True)
             (tree / "aquafarm_x").mkdir(parents=True)
-            copy = tree / "aquafarm"
-            copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "echo -C"))
+            copy = copy_script(tree, "catkin_make -C", "echo -C")
             cache = ws / "build" / "CMakeCache.txt"
 
             def words(root, home=ws / "src", build_type="Release"):
@@ -283,7 +298,7 @@ class ScriptTest(unittest.TestCase):
             ws, copy = folder / "ws", folder / "tree" / "aquafarm"
             for part in ("ws/src", "ws/build", "tree/aquafarm_x"):
                 (folder / part).mkdir(parents=True)
-            copy.write_text(SCRIPT.read_text().replace("catkin_make -C", "echo -C"))
+            copy_script(copy.parent, "catkin_make -C", "echo -C")
             (ws / "src" / "aquafarm").symlink_to(copy.parent)
             (ws / "build" / "CMakeCache.txt").write_text(
                 f"CMAKE_BUILD_TYPE:STRING=Release\nCMAKE_HOME_DIRECTORY:INTERNAL={ws / 'src'}\n")
@@ -326,14 +341,10 @@ class ScriptTest(unittest.TestCase):
     def test_without_root_setup_says_what_to_install_and_ends(self):
         with tempfile.TemporaryDirectory() as folder:
             os.chmod(folder, 0o755)
-            copy = pathlib.Path(folder, "aquafarm")
-            text = SCRIPT.read_text().replace("packages=(", "packages=(\n  no-such-thing", 1)
-            copy.write_text(text)
-            copy.chmod(0o755)
+            copy = copy_script(pathlib.Path(folder), "\npackages=(", "\npackages=(\n  no-such-thing")
             done = run("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", copy, "setup")
         self.assertEqual(3, done.returncode, done.stdout)
         self.assertIn("apt-get install --no-install-recommends no-such-thing\n", done.stdout)
-
 
     @unittest.skipUnless(os.geteuid() == 0, "needs root, as setup does")
     def test_without_apt_setup_says_what_to_install_and_ends(self):
@@ -343,8 +354,8 @@ class ScriptTest(unittest.TestCase):
             for tool in ("bash", "dirname", "realpath", "nproc", "dpkg-query", "comm", "sed", "sort",
                          "id", "cat", "mkdir"):
                 os.symlink(shutil.which(tool), tools / tool)
-            copy = pathlib.Path(folder, "aquafarm")
-            text = SCRIPT.read_text().replace("packages=(", "packages=(\n  no-such-thing", 1)
+            copy = copy_script(pathlib.Path(folder), "\npackages=(", "\npackages=(\n  no-such-thing")
+            text = copy.read_text()
             self.assertIn("export PATH=/usr/bin:/bin:$PATH\n", text)
             copy.write_text(text.replace("export PATH=/usr/bin:/bin:$PATH\n", ""))
             done = run(tools / "bash", copy, "setup", env={"PATH": str(tools)})

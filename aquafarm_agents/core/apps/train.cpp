@@ -41,18 +41,17 @@ void Print(const RunStatus& status) {
   std::fflush(stdout);
 }
 
-int Main(int argc, char** argv) {
+struct Arguments {
   RunOptions options;
   ScenarioChoice scenario;
   std::vector<std::string> settings;
   EnvironmentOptions environment;
-  environment.farms = 0;
-  CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume continues.");
-  app.footer(ListAlgorithms() +
-             "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 130 "
-             "interrupted and saved");
-  app.option_defaults()->always_capture_default();
-  app.add_option("scenario", scenario.name, "scenario file, or the name of a shipped one");
+};
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  RunOptions& options = arguments.options;
+  app.add_option("scenario", arguments.scenario.name,
+                 "scenario file, or the name of a shipped one");
   app.add_option("-a,--algorithm", options.algorithm, "learner by name, or auto");
   app.add_option("-e,--episodes", options.episodes, "limit of episodes; 0: none");
   app.add_option("-n,--steps", options.steps,
@@ -60,10 +59,11 @@ int Main(int argc, char** argv) {
                  "eight a state of a large table");
   app.add_option("-s,--seed", options.seed, "seed of episodes and exploration");
   app.add_option(
-         "-f,--farms", environment.farms,
+         "-f,--farms", arguments.environment.farms,
          "number of parallel farms; 0: the algorithm's default, 256 for ppo and 16 for others")
       ->check(CLI::Range(0, kMaxFarms));
-  app.add_option("-t,--threads", environment.threads, "number of threads that step the farms")
+  app.add_option("-t,--threads", arguments.environment.threads,
+                 "number of threads that step the farms")
       ->check(CLI::Range(1, 256));
   app.add_option("-d,--run-dir", options.run_dir, "run folder; empty: a new one under ./runs");
   app.add_flag("-r,--resume", options.resume,
@@ -72,7 +72,7 @@ int Main(int argc, char** argv) {
       "-x,--exploration", options.exploration,
       "such as epsilon_greedy:linear:1:0.05:0.5, boltzmann:1 or icm+boltzmann:1; empty: the "
       "algorithm's");
-  app.add_option("-o,--set", settings, "option of the learner, key=value");
+  app.add_option("-o,--set", arguments.settings, "option of the learner, key=value");
   app.add_option("--credit", options.credit,
                  "where the scenario shares the reward, agents learn from their own part of it, or "
                  "from the sum: own, shared");
@@ -81,14 +81,27 @@ int Main(int argc, char** argv) {
                  "greedy evaluation episodes at the end; 0 disables them");
   app.add_option("--random", options.random_episodes,
                  "RANDOM episodes for comparison; 0 disables them");
-  AddScenarioOptions(app, scenario);
+  AddScenarioOptions(app, arguments.scenario);
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  RunOptions& options = arguments.options;
+  EnvironmentOptions& environment = arguments.environment;
+  environment.farms = 0;
+  CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume continues.");
+  app.footer(ListAlgorithms() +
+             "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 130 "
+             "interrupted and saved");
+  app.option_defaults()->always_capture_default();
+  AddOptions(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const int code = app.exit(error);
     return code == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
   }
-  for (const std::string& setting : settings) options.options += " " + setting;
+  for (const std::string& setting : arguments.settings) options.options += " " + setting;
   options.arguments.assign(argv, argv + argc);
   if (options.run_dir.empty()) options.run_dir = NewRunFolder();
 
@@ -98,7 +111,7 @@ int Main(int argc, char** argv) {
       [&](std::uint8_t encodings) {
         environment.encodings = encodings;
         if (environment.farms == 0) environment.farms = DefaultFarms(options.algorithm);
-        return std::make_unique<LocalEnvironment>(scenario.Load(), environment);
+        return std::make_unique<LocalEnvironment>(arguments.scenario.Load(), environment);
       },
       Print, &stop_requested);
   std::fprintf(report.code == ExitCode::kOk ? stdout : stderr, "%s", report.summary.c_str());

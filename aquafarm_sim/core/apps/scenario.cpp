@@ -176,19 +176,18 @@ void Run(const Arguments& arguments) {
               arguments.output.c_str(), Learner(ranch.scenario).c_str());
 }
 
-int Main(int argc, char** argv) {
-  Arguments arguments;
+void AddPlaceOptions(CLI::App& app, Arguments& arguments) {
   RanchRequest& ranch = arguments.ranch;
-  CLI::App app("Makes a ranch from a chart, a place and a storm, shows it and what it decided.",
-               "aquafarm scenario");
-  app.footer("exit codes: 0 made, 2 bad argument or file");
-  app.option_defaults()->always_capture_default();
   app.add_option("--chart", ranch.chart,
                  "GeoJSON coast, map_server YAML or ASCII grid of heights; empty: open sea");
   app.add_option("--center", arguments.center, "LATITUDE,LONGITUDE of the ranch's middle");
-  CLI::Option* size = app.add_option("--size", arguments.size, "WIDTHxHEIGHT in cells");
-  CLI::Option* cell = app.add_option("--cell", arguments.cell, "side of a cell, as 200m or 0.2km");
+  app.add_option("--size", arguments.size, "WIDTHxHEIGHT in cells");
+  app.add_option("--cell", arguments.cell, "side of a cell, as 200m or 0.2km");
   app.add_option("--sea-level", ranch.sea_level, "heights above it are land (ASCII grids)");
+}
+
+void AddStormOptions(CLI::App& app, Arguments& arguments) {
+  RanchRequest& ranch = arguments.ranch;
   CLI::Option* track =
       app.add_option("--track", ranch.track, "file with the storm's track; empty: calm");
   app.add_option("--storm", ranch.storm, "name or number of the storm in that file")->needs(track);
@@ -217,6 +216,10 @@ int Main(int argc, char** argv) {
   app.add_option("--rings", arguments.rings,
                  "quadrants of winds: circles of equal_area or largest, or as quadrants")
       ->needs(track);
+}
+
+void AddRanchOptions(CLI::App& app, Arguments& arguments) {
+  RanchRequest& ranch = arguments.ranch;
   app.add_option(
       "--disaster", ranch.disasters,
       "another disaster as KIND:KEY=NUMBER,… such as wave:height_m=4,radius_km=5; kinds: "
@@ -233,9 +236,13 @@ int Main(int argc, char** argv) {
   app.add_option("--step", ranch.step_s, "seconds a step, instead of --speed");
   app.add_option("--lead", ranch.lead_h, "hours before the widest ring comes")
       ->check(CLI::Range(0.0, 240.0))
-      ->needs(track);
+      ->needs(app.get_option("--track"));
   app.add_option("--start", arguments.start, "UTC as 2021-07-24T12:00:00Z, instead of --lead");
   app.add_option("--seed", ranch.seed, "of the layout");
+}
+
+void AddSeaOptions(CLI::App& app, Arguments& arguments) {
+  RanchRequest& ranch = arguments.ranch;
   CLI::Option* sea = app.add_option("--sea", arguments.sea,
                                     "NAME=FILE:VARIABLE of a netCDF field; any number of times");
   app.add_option("--sea-depth", ranch.sea_depth_m, "metres below the surface of those fields");
@@ -249,14 +256,26 @@ int Main(int argc, char** argv) {
                  "warnings or anchorage forecasts (JSON), said where they are in force");
   app.add_option("--write-map", arguments.map, "write the chart for map_server to this .yaml");
   app.add_option("-o,--output", arguments.output, "scenario file; empty: only shown");
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Makes a ranch from a chart, a place and a storm, shows it and what it decided.",
+               "aquafarm scenario");
+  app.footer("exit codes: 0 made, 2 bad argument or file");
+  app.option_defaults()->always_capture_default();
+  AddPlaceOptions(app, arguments);
+  AddStormOptions(app, arguments);
+  AddRanchOptions(app, arguments);
+  AddSeaOptions(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    arguments.own_size = size->count() > 0;
-    arguments.own_cell = cell->count() > 0;
+    arguments.own_size = app.count("--size") > 0;
+    arguments.own_cell = app.count("--cell") > 0;
     Run(arguments);
     return 0;
   } catch (const InputError& error) {

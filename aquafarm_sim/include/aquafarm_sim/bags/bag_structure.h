@@ -245,40 +245,15 @@ inline void CheckChunkInfo(const BagRecords& info, const Connections& connection
   chunks.erase(chunk);
 }
 
-/// Checks that the index of a bag agrees with its content. A bag without an index passes, because
-/// rosbag reports it.
-/// @throws Damage or rosbag::BagException if the bag is damaged or not a bag of version 2.0
-/// @throws aquafarm::InputError if the bag is encrypted or the file does not exist
-inline void CheckStructure(const std::string& path) {
-  static constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  if (status.type() == std::filesystem::file_type::not_found) {
-    throw aquafarm::InputError(path + ": no such file");
-  }
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw rosbag::BagIOException("no regular file");  // opening another kind may wait forever
-  }
-  std::ifstream readable(path, std::ios::binary | std::ios::ate);
-  if (!readable || readable.tellg() <= static_cast<std::streamoff>(kBegin.size())) return;
-  namespace interprocess = boost::interprocess;
-  const interprocess::file_mapping file(path.c_str(), interprocess::read_only);
-  const interprocess::mapped_region region(file, interprocess::read_only);
-  const std::string_view bytes(static_cast<const char*>(region.get_address()), region.get_size());
-  if (bytes.substr(0, kBegin.size()) != kBegin)
-    throw rosbag::BagFormatException("no bag of version 2.0");
-  BagRecords records(bytes, kBegin.size());
-  records.Next();
-  records.Expect(BagOp::kBag);
-  if (records.Has("encryptor") && !records.Text("encryptor").empty()) {
-    throw aquafarm::InputError(path + ": encrypted; run 'rosbag decrypt' first");
-  }
+/// Compares the index behind the header record with the content of the chunks.
+/// @throws Damage if they disagree
+inline void CheckIndex(BagRecords& records, std::size_t bytes) {
   const std::uint64_t index = records.Get<std::uint64_t>("index_pos");
   const std::uint32_t chunk_count = records.Get<std::uint32_t>("chunk_count");
   const std::uint32_t connection_count = records.Get<std::uint32_t>("conn_count");
   if (index == 0) return;  // the recording was killed
   // No recording of a ranch is compressed this much. Reading such a bag would take hours.
-  const std::uint64_t most_bytes = (std::uint64_t{1} << 30U) + 4'000 * std::uint64_t{bytes.size()};
+  const std::uint64_t most_bytes = (std::uint64_t{1} << 30U) + 4'000 * std::uint64_t{bytes};
   std::uint64_t all_bytes = 0;
   std::map<std::uint64_t, ChunkMessages> chunks;
   Connections connections;
@@ -311,6 +286,37 @@ inline void CheckStructure(const std::string& path) {
     CheckChunkInfo(records, connections, chunks);
   }
   if (!records.AtEnd()) throw Damage("more chunks than its index lists");
+}
+
+/// Checks that the index of a bag agrees with its content. A bag without an index passes, because
+/// rosbag reports it.
+/// @throws Damage or rosbag::BagException if the bag is damaged or not a bag of version 2.0
+/// @throws aquafarm::InputError if the bag is encrypted or the file does not exist
+inline void CheckStructure(const std::string& path) {
+  static constexpr std::string_view kBegin{"#ROSBAG V2.0\n"};
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    throw aquafarm::InputError(path + ": no such file");
+  }
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw rosbag::BagIOException("no regular file");  // opening another kind may wait forever
+  }
+  std::ifstream readable(path, std::ios::binary | std::ios::ate);
+  if (!readable || readable.tellg() <= static_cast<std::streamoff>(kBegin.size())) return;
+  namespace interprocess = boost::interprocess;
+  const interprocess::file_mapping file(path.c_str(), interprocess::read_only);
+  const interprocess::mapped_region region(file, interprocess::read_only);
+  const std::string_view bytes(static_cast<const char*>(region.get_address()), region.get_size());
+  if (bytes.substr(0, kBegin.size()) != kBegin)
+    throw rosbag::BagFormatException("no bag of version 2.0");
+  BagRecords records(bytes, kBegin.size());
+  records.Next();
+  records.Expect(BagOp::kBag);
+  if (records.Has("encryptor") && !records.Text("encryptor").empty()) {
+    throw aquafarm::InputError(path + ": encrypted; run 'rosbag decrypt' first");
+  }
+  CheckIndex(records, bytes.size());
 }
 
 }  // namespace internal

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <opencv2/imgproc.hpp>
+#include <string>
 
 #include "aquafarm_viz/base/checks.h"
 #include "draw/symbols.h"
@@ -10,27 +12,6 @@ namespace aquafarm_viz {
 namespace {
 
 using aquafarm_msgs::FarmSpec;
-
-// Returns the coverage of the map's pixels by islands. Coasts are rounded within their cells.
-cv::Mat1b IslandCoverage(const FarmSpec& spec, const Layout& layout) {
-  cv::Mat1b land(layout.map.size(), std::uint8_t{0});
-  const double cell_px = layout.view.cell_px();
-  for (const auto& cell : spec.islands) {
-    if (!InGrid(spec, cell.x, cell.y)) continue;
-    const cv::Point2d middle = layout.view.ToPixel(cell.x, cell.y) + cv::Point2d(0.5, 0.5);
-    const cv::Point low(cvRound(middle.x - cell_px / 2), cvRound(middle.y - cell_px / 2));
-    const cv::Point high(cvRound(middle.x + cell_px / 2), cvRound(middle.y + cell_px / 2));
-    land(cv::Rect(low, cv::Point(std::max(high.x, low.x + 1), std::max(high.y, low.y + 1))) &
-         cv::Rect({0, 0}, land.size())) = 255;
-  }
-  if (cell_px < 3.0 || spec.islands.empty()) return land;
-  const double sigma = 0.27 * cell_px;
-  // The border pixels are replicated, so that an island at the edge of the farm extends beyond it.
-  cv::GaussianBlur(land, land, {}, sigma, sigma, cv::BORDER_REPLICATE);
-  const double steepness = std::max(1.0, 1.7 * sigma);
-  land.convertTo(land, -1, steepness, 127.5 * (1.0 - steepness));
-  return land;
-}
 
 // Returns the distance to the nearest zero pixel of `away_from` [cells]; large if there is none.
 cv::Mat1f DistanceCells(const cv::Mat1b& away_from, double cell_px) {
@@ -99,24 +80,88 @@ void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px) {
   if (radius_px >= 4.0) StrokeShape(image, kBody, placing, Bgr(kRockDark), 1);
 }
 
-void DrawAxes(cv::Mat& image, const Layout& layout, const Fonts& fonts) {
+// Writes a label below the map, centred on a column of it.
+void LabelColumn(cv::Mat& image, const std::string& text, double column, const Layout& layout,
+                 const Fonts& fonts) {
+  fonts.small.Draw(image, text,
+                   {layout.map.x + cvRound(column) - fonts.small.Width(text) / 2,
+                    layout.map.y + layout.map.height + layout.Px(4) + fonts.small.cap_height()},
+                   Bgr(kFaint));
+}
+
+// Writes a label to the left of the map, centred on a row of it.
+void LabelRow(cv::Mat& image, const std::string& text, double row, const Layout& layout,
+              const Fonts& fonts) {
+  fonts.small.Draw(image, text,
+                   {layout.map.x - layout.Px(5) - fonts.small.Width(text),
+                    layout.map.y + cvRound(row) + fonts.small.cap_height() / 2},
+                   Bgr(kFaint));
+}
+
+// Returns minutes of arc as 30°06'N.
+std::string DegreesText(int minutes, char positive, char negative) {
+  const int all = std::abs(minutes);
+  const std::string rest = std::to_string(all % 60);
+  return std::to_string(all / 60) + "\u00b0" + (rest.size() < 2 ? "0" : "") + rest + "'" +
+         (minutes < 0 ? negative : positive);
+}
+
+// Calls draw(minutes, position) for each tick of an axis that begins at `start_deg` and has
+// `px_per_deg` pixels a degree.
+template <typename Draw>
+void ForTicks(double start_deg, double px_per_deg, int length_px, double least_px, Draw draw) {
+  int step = 1;
+  for (const int minutes : {1, 2, 5, 10, 15, 30, 60, 120, 300, 600}) {
+    step = minutes;
+    if (px_per_deg * minutes / 60.0 >= least_px) break;
+  }
+  const auto first = static_cast<int>(std::ceil(start_deg * 60.0 / step));
+  for (int tick = first;; ++tick) {
+    const double at = (tick * step / 60.0 - start_deg) * px_per_deg;
+    if (at > length_px) break;
+    draw(tick * step, at);
+  }
+}
+
+// Latitude and longitude in the plane that touches the ellipsoid at cell (0, 0). Over 100 km the
+// error is below 1 % of the distance.
+void DrawGeographicAxes(cv::Mat& image, const FarmSpec& spec, const Layout& layout,
+                        const Fonts& fonts) {
+  const double latitude = spec.origin_latitude_deg * CV_PI / 180.0;
+  const double m_per_lat = 111132.95 - 559.85 * std::cos(2.0 * latitude);  // WGS 84 [m/degree]
+  const double m_per_lon = 111412.88 * std::cos(latitude) - 93.5 * std::cos(3.0 * latitude);
+  const double px_per_m = layout.view.cell_px() / spec.cell_size_m;
+  const double half_m = spec.cell_size_m / 2.0;
+  const double west = spec.origin_longitude_deg - half_m / m_per_lon;
+  const double south = spec.origin_latitude_deg - half_m / m_per_lat;
+  ForTicks(west, m_per_lon * px_per_m, layout.map.width, 60.0 * layout.unit,
+           [&](int minutes, double at) {
+             LabelColumn(image, DegreesText(minutes, 'E', 'W'), at, layout, fonts);
+             Tint(image,
+                  {layout.map.x + cvRound(at), layout.map.y + layout.map.height, 1, layout.Px(3)},
+                  Bgr(kFaint), 1.0);
+           });
+  ForTicks(south, m_per_lat * px_per_m, layout.map.height, 34.0 * layout.unit,
+           [&](int minutes, double at) {
+             LabelRow(image, DegreesText(minutes, 'N', 'S'), layout.map.height - at, layout, fonts);
+             Tint(image,
+                  {layout.map.x - layout.Px(3), layout.map.y + layout.map.height - cvRound(at),
+                   layout.Px(3), 1},
+                  Bgr(kFaint), 1.0);
+           });
+}
+
+void DrawAxes(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
+  if (spec.has_origin && std::abs(spec.origin_latitude_deg) < 85.0) {
+    return DrawGeographicAxes(image, spec, layout, fonts);
+  }
   const MapView& view = layout.view;
   const int step = TickStep(view.cell_px(), 34.0 * layout.unit);
   for (int x = 0; x < view.width(); x += step) {
-    const std::string text = std::to_string(x);
-    const int middle = layout.map.x + cvRound(view.ToPixel(x, 0).x);
-    fonts.small.Draw(image, text,
-                     {middle - fonts.small.Width(text) / 2,
-                      layout.map.y + layout.map.height + layout.Px(4) + fonts.small.cap_height()},
-                     Bgr(kFaint));
+    LabelColumn(image, std::to_string(x), view.ToPixel(x, 0).x, layout, fonts);
   }
   for (int y = 0; y < view.height(); y += step) {
-    const std::string text = std::to_string(y);
-    const int middle = layout.map.y + cvRound(view.ToPixel(0, y).y);
-    fonts.small.Draw(image, text,
-                     {layout.map.x - layout.Px(5) - fonts.small.Width(text),
-                      middle + fonts.small.cap_height() / 2},
-                     Bgr(kFaint));
+    LabelRow(image, std::to_string(y), view.ToPixel(0, y).y, layout, fonts);
   }
 }
 
@@ -140,8 +185,10 @@ void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_
       image,
       cv::Rect(left.x + half, left.y + 1, std::max(1, length - half - 1), std::max(1, tall - 2)),
       Bgr(kPanel), cv::FILLED);
-  const std::string text = length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
-                                              : Number(length_m, length_m < 1.0 ? 3 : 0) + " m";
+  constexpr double kNauticalMile_m = 1852.0;
+  std::string text = length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
+                                        : Number(length_m, length_m < 1.0 ? 3 : 0) + " m";
+  if (length_m >= 100.0) text += " = " + Number(length_m / kNauticalMile_m, 2) + " nmi";
   fonts.small.Draw(image, text, {left.x, left.y - layout.Px(4)}, Bgr(kWords));
 }
 
@@ -156,6 +203,26 @@ void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fo
 }
 
 }  // namespace
+
+cv::Mat1b IslandCoverage(const FarmSpec& spec, const Layout& layout) {
+  cv::Mat1b land(layout.map.size(), std::uint8_t{0});
+  const double cell_px = layout.view.cell_px();
+  for (const auto& cell : spec.islands) {
+    if (!InGrid(spec, cell.x, cell.y)) continue;
+    const cv::Point2d middle = layout.view.ToPixel(cell.x, cell.y) + cv::Point2d(0.5, 0.5);
+    const cv::Point low(cvRound(middle.x - cell_px / 2), cvRound(middle.y - cell_px / 2));
+    const cv::Point high(cvRound(middle.x + cell_px / 2), cvRound(middle.y + cell_px / 2));
+    land(cv::Rect(low, cv::Point(std::max(high.x, low.x + 1), std::max(high.y, low.y + 1))) &
+         cv::Rect({0, 0}, land.size())) = 255;
+  }
+  if (cell_px < 3.0 || spec.islands.empty()) return land;
+  const double sigma = 0.27 * cell_px;
+  // The border pixels are replicated, so that an island at the edge of the farm extends beyond it.
+  cv::GaussianBlur(land, land, {}, sigma, sigma, cv::BORDER_REPLICATE);
+  const double steepness = std::max(1.0, 1.7 * sigma);
+  land.convertTo(land, -1, steepness, 127.5 * (1.0 - steepness));
+  return land;
+}
 
 void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
   if (layout.panel.empty()) return;
@@ -217,7 +284,7 @@ cv::Mat DrawBackground(const FarmSpec& spec, const Layout& layout, const Fonts& 
       image,
       cv::Rect(layout.map.x - 1, layout.map.y - 1, layout.map.width + 2, layout.map.height + 2),
       Bgr(kRule), 1);
-  DrawAxes(image, layout, fonts);
+  DrawAxes(image, spec, layout, fonts);
   for (const int y : {layout.top.height - 1, layout.bottom.y}) {
     cv::rectangle(image, cv::Rect(0, y, size.width, 1), Bgr(kRule), cv::FILLED);
   }

@@ -135,7 +135,9 @@ void DrawTrails(cv::Mat& map, const FarmState& state, const Trail& trail, const 
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       const double age = double(way->places.size() - 1 - i) / Trail::kLength;
-      const Rgb color = Mix(Rgb{0xd8, 0xf1, 0xff}, kSeaDeep, 0.15 + 0.75 * age);
+      const Rgb fresh =
+          state.ships.size() > 1 ? Mix(kPaper, ShipColor(ship.id), 0.6) : Rgb{0xd8, 0xf1, 0xff};
+      const Rgb color = Mix(fresh, kSeaDeep, 0.15 + 0.75 * age);
       DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
                layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color),
                layout.Px(age < 0.35 ? 2.0 : 1.0));
@@ -153,8 +155,10 @@ void DrawRoutes(cv::Mat& map, const FarmState& state, const Trail& route, const 
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       if (Trail::IsGap(way->places[i - 1], way->places[i])) continue;
       const double share = double(i) / double(way->places.size());
-      const Rgb color =
-          share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share) : Mix(kMiddle, kLast, 2.0 * share - 1.0);
+      const Rgb color = state.ships.size() > 1
+                            ? Mix(kPaper, ShipColor(ship.id), 0.25 + 0.75 * share)
+                        : share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share)
+                                      : Mix(kMiddle, kLast, 2.0 * share - 1.0);
       DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
                layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color), layout.Px(2.5));
     }

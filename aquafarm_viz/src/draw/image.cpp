@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "aquafarm_viz/base/checks.h"
+#include "draw/region.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -19,6 +20,7 @@ using aquafarm_msgs::FarmState;
 bool SameBackground(const FarmSpec& a, const FarmSpec& b) {
   const auto same_cell = [](const auto& c, const auto& d) { return c.x == d.x && c.y == d.y; };
   return a.width == b.width && a.height == b.height && a.cell_size_m == b.cell_size_m &&
+         a.scenario_hash == b.scenario_hash &&
          std::equal(a.islands.begin(), a.islands.end(), b.islands.begin(), b.islands.end(),
                     same_cell) &&
          std::equal(a.rocks.begin(), a.rocks.end(), b.rocks.begin(), b.rocks.end(),
@@ -50,9 +52,11 @@ struct FarmPainter::Parts {
   FarmSpec drawn;   // spec of the background
   std::string sea;  // sea layer of the background
   cv::Mat background;
-  std::optional<MoveSigns> moves;  // for the layout; nullopt before the first use
-  Values values;                   // values drawn in `valued`
-  cv::Mat valued;                  // map of the background with V_π; empty if not drawn yet
+  std::vector<std::vector<TrackPoint>> tracks;  // of the background's scenario
+  cv::Mat1b land;                               // IslandCoverage of the background
+  std::optional<MoveSigns> moves;               // for the layout; nullopt before the first use
+  Values values;                                // values drawn in `valued`
+  cv::Mat valued;  // map of the background with V_π; empty if not drawn yet
   cv::Mat image;
 
   /// Clears the cache if the values or the background have changed.
@@ -83,6 +87,8 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
     cv::Mat below = background(p.layout.map);
     if (!sea.empty()) DrawSea(below, spec, sea, p.layout, p.fonts);
     p.background = background;
+    p.tracks = ReadTracks(spec.scenario_yaml);
+    p.land = IslandCoverage(spec, p.layout);
     p.drawn = spec;
     p.sea = sea;
   }
@@ -103,7 +109,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
     }
   }
   if (layers.trail && overlays.trail != nullptr) DrawTrails(map, state, *overlays.trail, p.layout);
-  if (layers.risk) ShadeDisasters(map, state, p.layout);
+  if (layers.risk) ShadeDisasters(map, state, p.land, p.layout);
   if (layers.route && overlays.route != nullptr) DrawRoutes(map, state, *overlays.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
   if (layers.moves && values != nullptr) {
@@ -116,7 +122,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   DrawShips(map, spec, state, overlays.trail, p.layout, p.fonts);
   if (overlays.choice != nullptr) DrawChoice(map, state, *overlays.choice, p.layout, p.fonts);
   if (layers.values && values != nullptr) DrawValueScale(map, *values, p.layout, p.fonts);
-  DrawWords(p.image, spec, state, overlays, p.layout, p.fonts);
+  DrawWords(p.image, spec, state, overlays, p.tracks, p.layout, p.fonts);
   return p.image;
 }
 

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <opencv2/imgproc.hpp>
 
 #include "aquafarm_viz/scene/labels.h"
+#include "draw/nautical.h"
+#include "draw/region.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -23,12 +25,13 @@ std::string WorldTime(const FarmSpec& spec, const FarmState& state) {
     const std::uint32_t seconds = state.world_time.sec;
     return Count(seconds / 3600) + " h " + std::to_string(seconds / 60 % 60) + " min";
   }
-  const std::time_t seconds = state.world_time.sec;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &utc);
-  return text.data();
+  const std::time_t utc = state.world_time.sec;
+  std::string text = TimeText(utc, "%Y-%m-%d %H:%M UTC");
+  if (!spec.has_origin) return text;
+  const int zone = NauticalZone(spec.origin_longitude_deg);
+  if (zone == 0) return text;
+  return text + TimeText(utc + zone * 3600, " (%H:%M UTC") + (zone > 0 ? "+" : "-") +
+         std::to_string(std::abs(zone)) + ")";
 }
 
 // Draws pieces of text one after another until the width is used up.
@@ -128,6 +131,8 @@ class Panel {
   int RowPx() const { return layout_.Px(17); }
   cv::Point2d SymbolAt() const { return {double(left_ + layout_.Px(7)), y_ + RowPx() / 2.0}; }
   cv::Mat& image() { return image_; }
+  /// The part between the lists and the legend.
+  cv::Rect Room() const { return {left_, y_ + layout_.Px(8), right_ - left_, end_ - y_}; }
 
   void Heading(const std::string& text, const std::string& right_text) {
     y_ += layout_.Px(5);
@@ -183,7 +188,8 @@ void ListDevices(Panel& panel, const FarmState& state, const Layout& layout) {
   }
 }
 
-void ListDisasters(Panel& panel, const FarmState& state, const Layout& layout, int rows) {
+void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state, const Layout& layout,
+                   int rows) {
   static constexpr std::array<const char*, 5> kGrades{"", "blue", "yellow", "orange", "red"};
   int shown = 0;
   panel.Heading("DISASTERS", "");
@@ -198,11 +204,11 @@ void ListDisasters(Panel& panel, const FarmState& state, const Layout& layout, i
                : disaster.grade < kGrades.size() ? kGrades[disaster.grade]
                                                  : "",
                over ? kFaint : GradeColor(disaster.grade));
-    panel.Detail(disaster.speed > 0.0F ? CompassPoint(disaster.heading_deg) + ", " +
-                                             Number(disaster.speed, 2) + " a step"
-                                       : "stands still",
-                 "", kFaint);
-    const std::string left = over ? "" : Count(std::uint64_t(disaster.steps_left)) + " steps left";
+    panel.Detail(MotionText(spec, disaster.heading_deg, disaster.speed), "", kFaint);
+    const std::string left =
+        over                  ? ""
+        : spec.has_start_time ? "ends in " + HoursText(disaster.steps_left * spec.step_duration_s)
+                              : Count(std::uint64_t(disaster.steps_left)) + " steps left";
     panel.Detail(disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago", "",
                  kFaint);
   }
@@ -214,7 +220,8 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
   int rows = panel.RowsLeft();
   std::size_t left_out = 0;
   for (const auto& ship : state.ships) {
-    if (!ship.visible || rows < 3) {
+    const bool is_last = &ship == &state.ships.back();
+    if (!ship.visible || rows < (is_last ? 2 : 3)) {
       ++left_out;
       continue;
     }
@@ -247,8 +254,11 @@ void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const
                                                        "the disaster has ended", "step limit"};
   const std::string text = kReasons[state.reason < kReasons.size() ? state.reason : 0U];
   const int width = fonts.title.Width(text) + layout.Px(28);
-  const cv::Rect plate(layout.map.x + (layout.map.width - width) / 2, layout.map.y + layout.Px(12),
-                       width, layout.Px(28));
+  const bool has_top = !layout.top.empty();  // else it covers a part of the map
+  const cv::Rect plate = has_top ? cv::Rect(layout.top.width - width - layout.Px(10), layout.Px(23),
+                                            width, layout.top.height - layout.Px(25))
+                                 : cv::Rect(layout.map.x + (layout.map.width - width) / 2,
+                                            layout.map.y + layout.Px(12), width, layout.Px(28));
   const bool success = state.reason == FarmState::ALL_RETRIEVED;
   Tint(image, plate, Bgr(success ? Rgb{0x12, 0x6b, 0x3a} : kInk), 0.85);
   cv::rectangle(image, plate, Bgr(success ? kGood : kFaint), 1);
@@ -261,16 +271,18 @@ void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const
 }  // namespace
 
 void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
-               const Overlays& overlays, const Layout& layout, const Fonts& fonts) {
-  DrawEnd(image, state, layout, fonts);
-  if (layout.panel.empty()) return;
+               const Overlays& overlays, const std::vector<std::vector<TrackPoint>>& tracks,
+               const Layout& layout, const Fonts& fonts) {
+  if (layout.panel.empty()) return DrawEnd(image, state, layout, fonts);
   DrawTop(image, spec, state, layout, fonts);
+  DrawEnd(image, state, layout, fonts);
   DrawRewardLine(image, state, layout, fonts);
   if (overlays.training != nullptr) DrawTrainingLine(image, *overlays.training, layout, fonts);
   Panel panel(image, layout, fonts);
   ListDevices(panel, state, layout);
-  ListDisasters(panel, state, layout, std::max(3, panel.RowsLeft() - 7));
+  ListDisasters(panel, spec, state, layout, std::max(3, panel.RowsLeft() - 7));
   ListShips(panel, state, layout);
+  DrawRegion(image, panel.Room(), spec, state, tracks, layout, fonts);
 }
 
 }  // namespace aquafarm_viz

@@ -17,6 +17,8 @@
 
 namespace aquafarm_viz {
 
+struct TrackPoint;
+
 /// The layout of a picture. A part with an empty rectangle is not drawn.
 struct Layout {
   double unit{1.0};  ///< pixels per design unit: 1 in a picture of 640 x 640
@@ -61,8 +63,15 @@ void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layou
 void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::string& name,
              const Layout& layout, const Fonts& fonts);
 
-/// Shades the rings of all disasters on the map. Where they overlap the worst risk counts.
-void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Layout& layout);
+/// Returns the coverage of the map's pixels by islands: 0 water, 255 land. Coasts are rounded
+/// within their cells.
+cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layout);
+
+/// Draws the rings of all disasters on the map: an outline, a tint and a pattern for each kind of
+/// disaster. Where they overlap the worst risk counts.
+/// @param land  IslandCoverage; fainter over land
+void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const cv::Mat1b& land,
+                    const Layout& layout);
 
 /// Draws each disaster's centre and heading, or a pointer at the border if it is outside the map.
 void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
@@ -152,10 +161,13 @@ void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 /// Draws the symbol of a device with a dark rim.
 void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded);
 
-/// Draws the text above and below the map, the lists of the panel and the end of the episode.
+/// Draws the text above and below the map, the lists and the region of the panel, and the end of
+/// the episode.
+/// @param tracks  of the scenario's disasters, see ReadTracks
 void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Overlays& overlays,
-               const Layout& layout, const Fonts& fonts);
+               const std::vector<std::vector<TrackPoint>>& tracks, const Layout& layout,
+               const Fonts& fonts);
 
 inline constexpr Rgb kPanel{0x10, 0x1d, 0x2a};  ///< background of text
 inline constexpr Rgb kRule{0x2b, 0x3d, 0x4f};   ///< thin lines between parts

@@ -338,7 +338,7 @@ Marker RingBand(const Maker& maker, const DisasterState& disaster, int ring) {
   Marker band = maker.Make("ring", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
                            kRingLayer, disaster.x, disaster.y);
   const double severity = Severity(disaster.risks[i]);
-  band.color = Color(SeverityColor(severity), 0.30 + 0.25 * severity);
+  band.color = Color(SeverityColor(severity), 0.14 + 0.20 * severity);
   AddBand(band, ring == 0 ? QuadrantRadii{} : RingMetres(maker, disaster, i - 1),
           RingMetres(maker, disaster, i));
   return band;

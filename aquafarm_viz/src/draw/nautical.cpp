@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "draw/nautical.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/base/text.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr double kHour_s = 3600.0;
+
+}  // namespace
+
+std::string DistanceText(double metres) {
+  return metres >= 10000.0  ? Number(metres / 1000.0, 0) + " km"
+         : metres >= 1000.0 ? Number(metres / 1000.0, 1) + " km"
+                            : Number(metres, 0) + " m";
+}
+
+std::string PointFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y) {
+  const double east = x - (spec.width - 1) / 2.0;
+  const double north = y - (spec.height - 1) / 2.0;
+  return CompassPoint(static_cast<int>(std::lround(std::atan2(east, north) * 180.0 / CV_PI)));
+}
+
+double MetresFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y) {
+  return spec.cell_size_m * std::hypot(x - (spec.width - 1) / 2.0, y - (spec.height - 1) / 2.0);
+}
+
+int NauticalZone(double longitude_deg) {
+  return std::clamp(static_cast<int>(std::lround(longitude_deg / 15.0)), -12, 12);
+}
+
+std::string TimeText(std::time_t utc, const char* format) {
+  std::tm parts{};
+  gmtime_r(&utc, &parts);
+  std::array<char, 48> text{};
+  std::strftime(text.data(), text.size(), format, &parts);
+  return text.data();
+}
+
+std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step) {
+  if (!(cells_a_step > 0.0)) return "stands still";
+  const std::string point = CompassPoint(heading_deg);
+  if (!spec.has_origin || !(spec.step_duration_s > 0.0)) {
+    return point + ", " + Number(cells_a_step, 2) + " a step";
+  }
+  const double km_h = cells_a_step * spec.cell_size_m / 1000.0 / (spec.step_duration_s / kHour_s);
+  return point + " at " + Number(km_h, km_h < 10.0 ? 1 : 0) + " km/h";
+}
+
+std::string HoursText(double seconds) {
+  const double hours = seconds / kHour_s;
+  return Number(hours, hours < 10.0 ? 1 : 0) + " h";
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Distances, bearings and times as words; private to this package.
+
+#include <aquafarm_msgs/FarmSpec.h>
+
+#include <ctime>
+#include <string>
+
+namespace aquafarm_viz {
+
+/// Returns a distance such as "850 m", "1.8 km" or "89 km".
+std::string DistanceText(double metres);
+
+/// Returns the compass point from the middle of the farm to a point [cells], such as "SE".
+std::string PointFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y);
+
+/// Returns the distance from the middle of the farm to a point [m]; x and y in cells.
+double MetresFromFarm(const aquafarm_msgs::FarmSpec& spec, double x, double y);
+
+/// Returns the hours by which the nautical time zone of a longitude is ahead of UTC, [-12, 12]. It
+/// may differ from the legal time.
+int NauticalZone(double longitude_deg);
+
+/// Returns a time in UTC by a format of strftime.
+std::string TimeText(std::time_t utc, const char* format);
+
+/// Returns the compass bearing and the speed of a moving centre, such as "NW at 18 km/h"; in cells
+/// per step on a farm without a geographic position; "stands still" at speed 0.
+std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step);
+
+/// Returns a duration such as "31 h" or "4.5 h".
+std::string HoursText(double seconds);
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "draw/region.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <opencv2/core.hpp>
+
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/draw/image.h"
+#include "draw/nautical.h"
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::DisasterState;
+
+constexpr ImageSize kSize{640, 640};
+constexpr const char* kTrack = R"(
+disasters:
+  - kind: red_tide
+  - kind: typhoon
+    track:
+      - {step: 0, x: 100, y: -200, radii: [10], grade: 3}
+      - {step: 10, x: 40, y: 12, radii: [10], grade: 3}
+      - {step: 30, x: -160, y: 12, radii: [10], grade: 3}
+)";
+
+cv::Mat Panel(const cv::Mat& image) { return image(cv::Rect(490, 250, 150, 200)).clone(); }
+
+TEST(Region, ReadsTheTracksOfAScenario) {
+  const auto tracks = ReadTracks(kTrack);
+  ASSERT_EQ(tracks.size(), 2U);
+  EXPECT_TRUE(tracks[0].empty());
+  ASSERT_EQ(tracks[1].size(), 3U);
+  EXPECT_EQ(tracks[1][1].x, 40.0);
+  EXPECT_TRUE(ReadTracks("").empty());
+  EXPECT_TRUE(ReadTracks("disasters: [{track: [{step: first}]}]").empty());
+}
+
+TEST(Region, InterpolatesATrack) {
+  const auto track = ReadTracks(kTrack)[1];
+  EXPECT_DOUBLE_EQ(TrackAt(track, 5.0).x, 70.0);
+  EXPECT_DOUBLE_EQ(TrackAt(track, 5.0).y, -94.0);
+  EXPECT_DOUBLE_EQ(TrackAt(track, -9.0).y, -200.0) << "before the track";
+  EXPECT_DOUBLE_EQ(TrackAt(track, 99.0).x, -160.0) << "behind it";
+}
+
+TEST(Region, FindsWhereAStormIsNearest) {
+  const auto spec = test::MakeSpec();  // 25 x 25 cells: the middle is (12, 12)
+  const auto track = ReadTracks(kTrack)[1];
+  const TrackPoint nearest = ClosestApproach(spec, track, 0.0);
+  EXPECT_EQ(nearest.step, 13.0);  // x falls by 10 a step from 40 at step 10
+  EXPECT_DOUBLE_EQ(MetresFromFarm(spec, nearest.x, nearest.y), 2.0 * spec.cell_size_m);
+  EXPECT_EQ(ClosestApproach(spec, track, 20.0).step, 20.0) << "it moves away";
+}
+
+TEST(Region, IsShownForAFarDisasterAlone) {
+  auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.disasters = {test::MakeDisaster(0, 12.0F, 12.0F)};
+  const cv::Mat near = Panel(DrawFarm(spec, state, kSize));
+  state.disasters[0].x = 34.0F;
+  EXPECT_LT(cv::norm(near, Panel(DrawFarm(spec, state, kSize)), cv::NORM_INF), 1.0)
+      << "the map's pointer is enough";
+  state.disasters[0].x = 300.0F;
+  EXPECT_GT(cv::norm(near, Panel(DrawFarm(spec, state, kSize))), 1000.0);
+  state.disasters[0].steps_left = 0;
+  auto calm = state;
+  calm.disasters[0].x = 12.0F;
+  EXPECT_EQ(cv::norm(Panel(DrawFarm(spec, calm, kSize)), Panel(DrawFarm(spec, state, kSize))), 0.0)
+      << "it is over";
+}
+
+TEST(Region, ShowsATrackOnlyWhereItIsTheDisasters) {
+  auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.step = 0;
+  state.ships.clear();  // leaves room for the inset
+  state.disasters = {test::MakeDisaster(0, -90.0F, 12.0F), test::MakeDisaster(1, 100.0F, -200.0F)};
+  const cv::Mat without = Panel(DrawFarm(spec, state, kSize));
+  spec.scenario_yaml = kTrack;
+  EXPECT_GT(cv::norm(without, Panel(DrawFarm(spec, state, kSize))), 1000.0);
+  auto seen = state;
+  seen.observer = 0;
+  EXPECT_EQ(cv::norm(without, Panel(DrawFarm(spec, seen, kSize))), 0.0) << "a ship knows no track";
+  auto replaced = state;
+  replaced.disasters[1].x = 103.0F;
+  auto no_track = spec;
+  no_track.scenario_yaml.clear();
+  EXPECT_EQ(
+      cv::norm(Panel(DrawFarm(no_track, replaced, kSize)), Panel(DrawFarm(spec, replaced, kSize))),
+      0.0)
+      << "set_disaster has moved it";
+}
+
+// Mean colour of a part of the map.
+cv::Scalar MeanAt(const cv::Mat& image, double x, double y, double cells) {
+  const MapPlace place = PlaceMap(25, 25, kSize);
+  const cv::Point2d at = place.view.ToPixel(x, y);
+  const int half = static_cast<int>(cells * place.view.cell_px() / 2.0);
+  return cv::mean(image(place.map)(
+      cv::Rect(static_cast<int>(at.x) - half, static_cast<int>(at.y) - half, 2 * half, 2 * half)));
+}
+
+TEST(Rings, LeaveTheWaterBlue) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.ships.clear();
+  state.devices.clear();
+  state.disasters = {test::MakeDisaster(0, 16.0F, 16.0F)};
+  state.disasters[0].radii = {0.1F, 0.2F, 60.0F};
+  state.disasters[0].risks = {-20.0F, -12.0F, -5.0F};
+  const cv::Scalar water = MeanAt(DrawFarm(spec, state, kSize), 20.0, 20.0, 4.0);
+  EXPECT_GT(water[0], water[2] + 15.0) << "more blue than red in the gale";
+}
+
+TEST(Rings, HaveAPatternForEachKind) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  state.disasters = {test::MakeDisaster(0, 16.0F, 16.0F)};
+  state.disasters[0].speed = 0.0F;
+  std::vector<cv::Mat> drawn;
+  for (std::uint8_t kind = DisasterState::TYPHOON; kind <= DisasterState::CHEMICAL_SPILL; ++kind) {
+    state.disasters[0].kind = kind;
+    const cv::Mat image = DrawFarm(spec, state, kSize);
+    const MapPlace place = PlaceMap(25, 25, kSize);
+    const cv::Point2d at = place.view.ToPixel(19.0, 19.0);  // apart from the sign at the centre
+    drawn.push_back(image(place.map)(cv::Rect(int(at.x) - 14, int(at.y) - 14, 28, 28)).clone());
+    for (std::size_t i = 0; i + 1 < drawn.size(); ++i) {
+      EXPECT_GT(cv::norm(drawn[i], drawn.back()), 100.0) << i << " and " << int(kind);
+    }
+  }
+}
+
+TEST(Nautical, WritesDistancesBearingsAndTimes) {
+  auto spec = test::MakeSpec();
+  EXPECT_EQ(DistanceText(850.0), "850 m");
+  EXPECT_EQ(DistanceText(1840.0), "1.8 km");
+  EXPECT_EQ(DistanceText(89400.0), "89 km");
+  EXPECT_EQ(PointFromFarm(spec, 112.0, 12.0), "E");
+  EXPECT_EQ(PointFromFarm(spec, 2.0, 2.0), "SW");
+  EXPECT_EQ(NauticalZone(122.7), 8);
+  EXPECT_EQ(NauticalZone(-3.0), 0);
+  EXPECT_EQ(NauticalZone(-179.9), -12);
+  EXPECT_EQ(HoursText(27000.0), "7.5 h");
+  EXPECT_EQ(HoursText(136800.0), "38 h");
+  EXPECT_EQ(TimeText(1627095600, "%d %b %H:%M UTC"), "24 Jul 03:00 UTC");
+  spec.has_origin = false;
+  EXPECT_EQ(MotionText(spec, 315, 0.5), "NW, 0.50 a step");
+  EXPECT_EQ(MotionText(spec, 315, 0.0), "stands still");
+  spec.has_origin = true;
+  spec.cell_size_m = 1000.0;
+  spec.step_duration_s = 480.0;
+  EXPECT_EQ(MotionText(spec, 90, 2.4), "E at 18 km/h");
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

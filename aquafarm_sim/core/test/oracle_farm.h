@@ -52,7 +52,7 @@ class OracleFarm {
     for (std::size_t i = 0; i < ships.size(); ++i) ActOne(i, actions[i], after);
     for (std::size_t d = 0; d < devices.size(); ++d) {
       if (devices[d].delivered) continue;
-      const float risk = Risk(after, PlaceOf(d));
+      const float risk = Risk(after, PlaceOf(d), layout_.devices[d].kind);
       devices[d].health =
           std::max(0.0F, devices[d].health + scenario_.damage.exposure_damage * risk);
     }
@@ -102,7 +102,9 @@ class OracleFarm {
   EndReason reason{};
 
  private:
-  static float Risk(const Farm& farm, std::pair<int, int> at) {
+  // Without a kind of device, risks have no factors.
+  static float Risk(const Farm& farm, std::pair<int, int> at,
+                    std::optional<DeviceKind> kind = std::nullopt) {
     float worst = 0.0F;
     for (const Disaster& disaster : farm.disasters()) {
       if (disaster.steps_left <= 0) continue;
@@ -115,7 +117,11 @@ class OracleFarm {
       const float dy = disaster.y - static_cast<float>(at.second);
       for (const auto& [radius, risk] : rings) {
         if (dx * dx + dy * dy > radius * radius) continue;
-        worst = std::min(worst, risk);
+        const auto& kinds = farm.scenario().damage.kinds;
+        const float factor = kind ? kinds.at(static_cast<std::size_t>(*kind))
+                                        .at(static_cast<std::size_t>(disaster.kind))
+                                  : 1.0F;
+        worst = std::min(worst, risk * factor);
         break;
       }
     }

@@ -38,6 +38,7 @@ void PlannerSolver::Prepare(const Farm& farm) {
     const Device& device = farm.devices()[static_cast<std::size_t>(task_->devices[d])];
     site_[d] = LinearIndex(device.cell, scenario_.width);
     value_[d] = device.value;
+    kind_[d] = device.kind;
     health_[d] = device.health;
   }
   if (!is_prepared) {
@@ -60,6 +61,18 @@ double PlannerSolver::Loss(std::size_t set, float share) const {
     if (FateOf(set, d) == kPaid) {
       loss += static_cast<double>(share) * static_cast<double>(value_[d]);
     }
+  }
+  return loss;
+}
+
+// Returns the value that the paid devices aboard lose by the risk at a cell in this step.
+double PlannerSolver::Wear(std::size_t set, std::size_t cell) const {
+  const float exposure = scenario_.damage.exposure_damage;
+  double loss = 0.0;
+  for (std::size_t d = 0; d < task_->devices.size() && exposure > 0.0F; ++d) {
+    if (FateOf(set, d) != kPaid) continue;
+    const float share = -exposure * damaging_[d][cell];
+    loss += static_cast<double>(share) * static_cast<double>(value_[d]);
   }
   return loss;
 }
@@ -95,7 +108,6 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   const std::size_t set = node.state / cells_;
   const std::size_t cell = node.state % cells_;
   const auto parent = static_cast<std::uint32_t>(index);
-  const float exposure = scenario_.damage.exposure_damage;
   const auto state = [this](std::size_t of_set, std::size_t at) {
     return static_cast<std::uint32_t>(of_set * cells_ + at);
   };
@@ -105,7 +117,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
     double reward = option.triggers ? static_cast<double>(option.reward) + static_cast<double>(risk)
                                     : static_cast<double>(layers_of_step_->quiet.data()[to]);
     const float crash = crash_hurts_ ? option.damage : 0.0F;
-    reward -= Loss(set, crash) + Loss(set, -exposure * risk);
+    reward -= Loss(set, crash) + Wear(set, to);
     if (!IsInTheWay(step, to)) {
       Reach(step, state(set, to), so_far + reward, parent, option.action);
     }
@@ -119,7 +131,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
       const std::size_t next = With(set, d, fate);
       if (next == sets_.size()) continue;
       double reward = static_cast<double>(scenario_.rewards.pickup) + static_cast<double>(risk) -
-                      Loss(next, -exposure * risk);
+                      Wear(next, cell);
       if (fate == kPaid) {
         reward += static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
       }

@@ -50,6 +50,8 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
   }
   site_.resize(devices_);
   value_.resize(devices_);
+  kind_.resize(devices_);
+  damaging_.resize(devices_);
   health_.resize(devices_);
   open_.resize(state_count());
 }
@@ -311,6 +313,9 @@ double PlannerSolver::Bound(std::uint32_t state, std::int32_t step) const {
 
 void PlannerSolver::EnterStep(const Farm& farm, std::int32_t step) {
   layers_of_step_ = &risks_->At(step);
+  for (std::size_t d = 0; d < task_->devices.size(); ++d) {
+    damaging_[d] = layers_of_step_->Damaging(kind_[d]).data();
+  }
   const float probability = scenario_.damage.crash_probability;
   const auto draws = Draw(
       {farm.seed(), farm.episode(), RngStream::kDamage, static_cast<std::uint32_t>(task_->ship)},
@@ -323,7 +328,7 @@ void PlannerSolver::WearDown() {
   const float exposure = scenario_.damage.exposure_damage;
   bool is_worn = false;
   for (std::size_t d = 0; d < task_->devices.size() && exposure > 0.0F; ++d) {
-    const float risk = layers_of_step_->risk.data()[site_[d]];
+    const float risk = damaging_[d][site_[d]];
     is_worn = is_worn || risk < 0.0F;
     health_[d] = std::max(0.0F, health_[d] + exposure * risk);
   }

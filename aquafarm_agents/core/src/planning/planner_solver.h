@@ -88,6 +88,7 @@ class PlannerSolver {
   void EnterStep(const Farm& farm, std::int32_t step);
   void WearDown();
   double Loss(std::size_t set, float share) const;
+  double Wear(std::size_t set, std::size_t cell) const;
 
   void Expand(std::int32_t step, std::size_t index);
   void Reach(std::int32_t step, std::uint32_t state, double value, std::uint32_t parent,
@@ -113,11 +114,13 @@ class PlannerSolver {
   const RiskLayers* layers_of_step_{};
   std::int32_t last_step_{};
   std::vector<float> value_;
-  std::vector<float> health_;         // present health of the waiting devices
-  std::vector<Gains> gains_;          // by set, with the present health
-  std::int32_t first_step_{};         // the farm's present step
-  std::vector<double> step_rewards_;  // by step from first_step_ on: sum of the best rewards
-  std::vector<double> surcharges_;    // by step: sum by which they fall short of move_reward_
+  std::vector<DeviceKind> kind_;
+  std::vector<const float*> damaging_;  // by device: its layer of damaging risks of this step
+  std::vector<float> health_;           // present health of the waiting devices
+  std::vector<Gains> gains_;            // by set, with the present health
+  std::int32_t first_step_{};           // the farm's present step
+  std::vector<double> step_rewards_;    // by step from first_step_ on: sum of the best rewards
+  std::vector<double> surcharges_;      // by step: sum by which they fall short of move_reward_
   bool crash_hurts_{};
 
   // Data that stay valid for the next plan on the same chart with the same devices.

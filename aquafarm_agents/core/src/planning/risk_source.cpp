@@ -23,17 +23,40 @@ std::int32_t LastStep(const Farm& farm) {
 
 }  // namespace
 
+std::vector<DeviceKind> KindsThatMatter(const Farm& farm) {
+  const DamageSpec& damage = farm.scenario().damage;
+  std::vector<DeviceKind> kinds;
+  if (damage.exposure_damage == 0.0F) return kinds;
+  for (int code = 0; code < kDeviceKindCount; ++code) {
+    const auto kind = static_cast<DeviceKind>(code);
+    const auto is_equal = [](float factor) { return factor == 1.0F; };
+    const auto& factors = damage.FactorsOf(kind);
+    if (std::all_of(factors.begin(), factors.end(), is_equal)) continue;
+    const auto is_of_kind = [kind](const Device& device) {
+      return device.kind == kind && device.status != DeviceStatus::kDelivered;
+    };
+    const std::vector<Device>& devices = farm.devices();
+    if (std::any_of(devices.begin(), devices.end(), is_of_kind)) kinds.push_back(kind);
+  }
+  return kinds;
+}
+
 DisasterRisk::DisasterRisk(const Farm& farm, Foresight foresight)
     : farm_(farm),
       disasters_(farm.disasters()),
       tracks_(Foresee(farm, foresight, disasters_)),
+      kinds_(KindsThatMatter(farm)),
       moved_to_(farm.step()),
       last_step_(LastStep(farm)),
       after_kept_(disasters_) {
   const Scenario& scenario = farm.scenario();
-  const std::size_t bytes = static_cast<std::size_t>(scenario.CellCount()) * 2 * sizeof(float);
+  const std::size_t bytes =
+      static_cast<std::size_t>(scenario.CellCount()) * (2 + kinds_.size()) * sizeof(float);
   max_kept_ = std::max(std::size_t{1}, kKeptBytes / bytes);
   layers_.risk.resize(scenario.height, scenario.width);
+  for (const DeviceKind kind : kinds_) {
+    layers_.by_kind[static_cast<std::size_t>(kind)].resize(scenario.height, scenario.width);
+  }
 }
 
 const RiskLayers& DisasterRisk::At(std::int32_t step) {
@@ -57,6 +80,9 @@ void DisasterRisk::Advance() {
     MoveDisaster(disasters_[id], tracks_[id], key, moved_to_, scenario.width, scenario.height);
   }
   FillRisk(scenario, disasters_, layers_.risk);
+  for (const DeviceKind kind : kinds_) {
+    FillDamagingRisk(scenario, disasters_, kind, layers_.by_kind[static_cast<std::size_t>(kind)]);
+  }
   layers_.quiet = (layers_.risk < 0.0F).select(layers_.risk, scenario.rewards.step);
   if (kept_.size() == max_kept_) return;
   kept_.push_back(layers_);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "aquafarm/agents/planning/risk_source.h"
 #include "aquafarm/base/check.h"
 #include "planning/water_distance.h"
 
@@ -39,18 +40,20 @@ class Trip {
     ListWaits(farm.ships().size() > 1);
   }
 
-  /// Advances by one step. @param risk [H, W] of this step
-  void Step(const Grid<float>& risk) {
+  DeviceKind kind() const { return device_.kind; }
+
+  /// Advances by one step. @param risk, damaging [H, W] of this step, the latter for the device
+  void Step(const Grid<float>& risk, const Grid<float>& damaging) {
     StartTrips();
-    PickUpAndDropOff(risk);
+    PickUpAndDropOff(risk, damaging);
     const double exposure = static_cast<double>(scenario_.damage.exposure_damage);
-    Spread(risk, 0.0, empty_);
-    Spread(risk, exposure * static_cast<double>(device_.value), laden_);
-    Spread(risk, 0.0, bare_);
+    Spread(risk, nullptr, 0.0, empty_);
+    Spread(risk, &damaging, exposure * static_cast<double>(device_.value), laden_);
+    Spread(risk, nullptr, 0.0, bare_);
     laden_[site_] = std::max(laden_[site_], picked_up_for_value_);
     bare_[site_] = std::max(bare_[site_], picked_up_bare_);
     if (!device_.self_propelled) {
-      health_ = std::max(0.0F, health_ + scenario_.damage.exposure_damage * risk.data()[site_]);
+      health_ = std::max(0.0F, health_ + scenario_.damage.exposure_damage * damaging.data()[site_]);
     }
   }
 
@@ -112,7 +115,7 @@ class Trip {
     for (const Cell port : layout_.ports) empty_[Index(port)] = std::max(empty_[Index(port)], 0.0);
   }
 
-  void PickUpAndDropOff(const Grid<float>& risk) {
+  void PickUpAndDropOff(const Grid<float>& risk, const Grid<float>& damaging) {
     for (const Cell port : layout_.ports) {
       const auto here = static_cast<double>(risk(port.y, port.x));
       const double held = std::max(laden_[Index(port)], bare_[Index(port)]);
@@ -121,35 +124,40 @@ class Trip {
     picked_up_for_value_ = picked_up_bare_ = kNever;
     if (device_.self_propelled || empty_[site_] == kNever) return;
     const auto here = static_cast<double>(risk.data()[site_]);
-    const double wear =
-        static_cast<double>(scenario_.damage.exposure_damage * device_.value) * here;
+    const double wear = static_cast<double>(scenario_.damage.exposure_damage * device_.value) *
+                        static_cast<double>(damaging.data()[site_]);
     picked_up_bare_ = empty_[site_] + static_cast<double>(scenario_.rewards.pickup) + Risk(here);
     picked_up_for_value_ = picked_up_bare_ + worth() + wear;
     best_ = std::max(best_, picked_up_bare_);  // without a delivery
   }
 
   // One move, or one step of waiting, from every cell. Each cell keeps the max return of all routes
-  // to it.
-  void Spread(const Grid<float>& risk, double value_per_risk, std::vector<double>& values) {
+  // to it. @param damaging nullptr if no device is aboard
+  void Spread(const Grid<float>& risk, const Grid<float>* damaging, double value_per_risk,
+              std::vector<double>& values) {
     std::fill(next_.begin(), next_.end(), kNever);
     for (std::int32_t y = 0; y < scenario_.height; ++y) {
       for (std::int32_t x = 0; x < scenario_.width; ++x) {
         const double value = values[Index({x, y})];
         if (value == kNever) continue;
-        const double here = Price(risk, {x, y}, value_per_risk, wait_[Index({x, y})]);
-        Raise({x, y}, value + here);
+        const auto wear = [&](Cell at) {
+          return damaging == nullptr
+                     ? 0.0
+                     : static_cast<double>((*damaging)(at.y, at.x)) * value_per_risk;
+        };
+        Raise({x, y}, value + Price(risk, {x, y}, wait_[Index({x, y})]) + wear({x, y}));
         ForEachNeighbour({x, y}, [&](Cell to) {
           if ((layout_.bits(to) & kBlockedBits) != 0) return;
-          Raise(to, value + Price(risk, to, value_per_risk, move_));
+          Raise(to, value + Price(risk, to, move_) + wear(to));
         });
       }
     }
     values.swap(next_);
   }
   // Returns the reward of a step that ends in `to`. @param quiet reward in quiet water
-  double Price(const Grid<float>& risk, Cell to, double value_per_risk, double quiet) const {
+  double Price(const Grid<float>& risk, Cell to, double quiet) const {
     const auto here = static_cast<double>(risk(to.y, to.x));
-    return here < 0.0 ? Risk(here) + here * value_per_risk : quiet;
+    return here < 0.0 ? Risk(here) : quiet;
   }
   // Returns the reward of a risk. A ship with several devices pays it once, so it is then ignored.
   double Risk(double here) const { return shares_way_ ? 0.0 : here; }
@@ -194,7 +202,12 @@ double TeamBound(const Farm& farm) {
   std::vector<Trip> trips;
   for (std::size_t id = 0; id < farm.devices().size(); ++id) trips.emplace_back(farm, id, to_port);
   std::vector<Disaster> disasters = farm.disasters();
-  Grid<float> risk(scenario.height, scenario.width);
+  RiskLayers layers;
+  layers.risk.resize(scenario.height, scenario.width);
+  const std::vector<DeviceKind> kinds = KindsThatMatter(farm);
+  for (const DeviceKind kind : kinds) {
+    layers.by_kind[static_cast<std::size_t>(kind)].resize(scenario.height, scenario.width);
+  }
   bool over = false;
   for (std::int32_t step = 1; step <= scenario.step_limit && !over; ++step) {
     for (std::size_t id = 0; id < disasters.size(); ++id) {
@@ -202,14 +215,17 @@ double TeamBound(const Farm& farm) {
                           static_cast<std::uint32_t>(id)};
       MoveDisaster(disasters[id], farm.tracks()[id], key, step, scenario.width, scenario.height);
     }
-    FillRisk(farm.scenario(), disasters, risk);
+    FillRisk(farm.scenario(), disasters, layers.risk);
+    for (const DeviceKind kind : kinds) {
+      FillDamagingRisk(scenario, disasters, kind, layers.by_kind[static_cast<std::size_t>(kind)]);
+    }
     over = !disasters.empty() &&
            std::none_of(disasters.begin(), disasters.end(),
                         [](const Disaster& disaster) { return disaster.active(); });
     bool goes_on = false;
     for (Trip& trip : trips) {
       if (trip.IsOver()) continue;
-      trip.Step(risk);
+      trip.Step(layers.risk, layers.Damaging(trip.kind()));
       goes_on = true;
     }
     over = over || !goes_on;

@@ -55,6 +55,17 @@ std::string KindOf(const CsvRow& row) {
   throw InputError(row.where() + ": kind: got '" + kind + "', expected one of: " + names);
 }
 
+// Returns the factor of the damage that a typhoon does to a kind of device.
+double FactorOf(const Scenario& scenario, const std::string& kind) {
+  for (int i = 0; i < kDeviceKindCount; ++i) {
+    const auto one = static_cast<DeviceKind>(i);
+    if (ToString(one) != kind) continue;
+    constexpr auto kTyphoon = static_cast<std::size_t>(DisasterKind::kTyphoon);
+    return static_cast<double>(scenario.damage.FactorsOf(one)[kTyphoon]);
+  }
+  return 1.0;
+}
+
 void RequireNewName(const std::string& name, const CsvRow& row,
                     const std::vector<std::string>& names) {
   if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) return;
@@ -161,6 +172,9 @@ void ReadFleet(const RescueRequest& request, RescueCase& rescue) {
          true});
   }
   ReadDevices(request, rescue);
+  for (RescueDevice& device : problem.devices) {
+    device.damage_factor = FactorOf(scenario, device.kind);
+  }
   ReadShips(request, rescue);
   problem.handling_s = scenario.step_duration_s;
   problem.exposure_damage = static_cast<double>(scenario.damage.exposure_damage) *

@@ -43,7 +43,10 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
       Short(100.0 * static_cast<double>(rescue.scenario->damage.exposure_damage), 3) +
           " % of its value per unit of risk and " + Short(rescue.scenario->step_duration_s, 0) +
           " s",
-      "assumed", "damage.exposure_damage of the ranch");
+      "assumed",
+      rescue.scenario->damage.DependsOnKinds()
+          ? "damage.exposure_damage of the ranch, times damage.kinds of the device in a typhoon"
+          : "damage.exposure_damage of the ranch");
   add("A device that is not delivered", "takes the damage of the whole storm at its site",
       "assumed", "Also if it is aboard a ship that stopped");
   add("Speed of the ships",

@@ -47,7 +47,7 @@ TripModel::TripModel(const RescueProblem& problem, const Ensemble& ensemble)
     const RescueDevice& one = problem.devices[device];
     const auto value = static_cast<float>(one.value);
     const auto left = static_cast<float>(1.0 - one.damage_before);
-    const auto rate = static_cast<float>(problem.exposure_damage);
+    const auto rate = static_cast<float>(problem.exposure_damage * one.damage_factor);
     for (std::int32_t step = 0; step < ensemble.steps(); ++step) {
       const float* exposure = ensemble.Exposure(device, step);
       for (std::size_t member = 0; member < members; ++member) {

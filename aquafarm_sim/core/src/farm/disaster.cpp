@@ -204,7 +204,10 @@ Disaster SpawnDisaster(const DisasterSpec& spec, std::int32_t id, std::uint64_t 
   disaster.grade = spec.grade;
   disaster.rings = static_cast<std::int32_t>(spec.radii.size());
   SetRings(disaster, spec.radii, spec.quadrants);
-  std::copy(spec.risks.begin(), spec.risks.end(), disaster.risk.begin());
+  const GradeRisks by_grade = spec.grade_factors.empty() ? GradeRisks{} : RisksByGrade(spec);
+  const std::vector<float>& risks =
+      by_grade.empty() ? spec.risks : by_grade[static_cast<std::size_t>(spec.grade - 1)];
+  std::copy(risks.begin(), risks.end(), disaster.risk.begin());
   disaster.speed = spec.speed;
   disaster.turn_threshold =
       static_cast<std::uint32_t>(static_cast<double>(spec.turn_probability) * 2147483648.0);
@@ -273,6 +276,16 @@ void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& trac
       radii[q] = between(from.quadrants[k][q], to.quadrants[k][q]);
     }
     SetRing(disaster, k, radii);
+  }
+}
+
+void FillDamagingRisk(const Scenario& scenario, const std::vector<Disaster>& disasters,
+                      DeviceKind kind, Grid<float>& risk) {
+  const auto& factors = scenario.damage.FactorsOf(kind);
+  for (std::int32_t y = 0; y < risk.rows(); ++y) {
+    for (std::int32_t x = 0; x < risk.cols(); ++x) {
+      risk(y, x) = std::min(DamagingRiskAt(disasters, {x, y}, factors), scenario.SeaRiskAt({x, y}));
+    }
   }
 }
 

@@ -350,7 +350,7 @@ void Farm::Damage() {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     Device& device = devices_[i];
     if (device.status == DeviceStatus::kDelivered) continue;
-    const float risk = RiskAt(CellOf(static_cast<std::int32_t>(i)));
+    const float risk = DamagingRiskAt(CellOf(static_cast<std::int32_t>(i)), device.kind);
     device.health = Clamped(device.health + exposure * risk);
   }
 }
@@ -391,6 +391,11 @@ void Farm::Finish() {
 
 float Farm::RiskAt(Cell cell) const {
   return std::min(aquafarm::RiskAt(disasters_, cell), scenario_->SeaRiskAt(cell));
+}
+
+float Farm::DamagingRiskAt(Cell cell, DeviceKind kind) const {
+  return std::min(aquafarm::DamagingRiskAt(disasters_, cell, scenario_->damage.FactorsOf(kind)),
+                  scenario_->SeaRiskAt(cell));
 }
 
 ActionMask Farm::LegalActions(std::int32_t id) const {

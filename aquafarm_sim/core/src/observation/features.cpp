@@ -11,6 +11,7 @@ namespace aquafarm {
 namespace {
 
 constexpr std::int32_t kWayFeatures = 3;
+constexpr float kGradeScale = 1.0F / 4.0F;  // 1 / worst grade
 
 // Returns the max length of an episode [steps].
 float Horizon(const Scenario& scenario) {
@@ -195,6 +196,42 @@ std::vector<std::string> CourseNames() {
   return names;
 }
 
+// Writes the kinds of the devices and of the known disasters, one-hot, and the disasters' grades.
+void WriteKinds(const FeatureScales&, const View& view, float* out) {
+  for (const KnownDevice& device : view.devices) {
+    std::fill_n(out, kDeviceKindCount, 0.0F);
+    out[static_cast<std::size_t>(device.kind)] = 1.0F;
+    out += kDeviceKindCount;
+  }
+  for (std::size_t id = 0; id < view.scenario->disasters.size(); ++id) {
+    const KnownDisaster& known = view.disasters[id];
+    std::fill_n(out, kDisasterKindCount + 1, 0.0F);
+    if (known.known && known.belief.active()) {
+      out[static_cast<std::size_t>(known.belief.kind)] = 1.0F;
+      out[kDisasterKindCount] = static_cast<float>(known.belief.grade) * kGradeScale;
+    }
+    out += kDisasterKindCount + 1;
+  }
+}
+
+std::vector<std::string> KindNames(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (std::int32_t id = 0; id < scenario.devices.Total(); ++id) {
+    for (int kind = 0; kind < kDeviceKindCount; ++kind) {
+      names.push_back("device" + std::to_string(id) + '.' +
+                      std::string(ToString(static_cast<DeviceKind>(kind))));
+    }
+  }
+  for (std::size_t id = 0; id < scenario.disasters.size(); ++id) {
+    const std::string disaster = "disaster" + std::to_string(id) + '.';
+    for (int kind = 0; kind < kDisasterKindCount; ++kind) {
+      names.push_back(disaster + std::string(ToString(static_cast<DisasterKind>(kind))));
+    }
+    names.push_back(disaster + "grade");
+  }
+  return names;
+}
+
 }  // namespace
 
 FeatureScales ScalesOf(const Scenario& scenario) {
@@ -222,6 +259,7 @@ std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
       {"identity", Numbered("agent", agents > 1 ? agents : 0, {"self"}), WriteIdentity}};
   if (scenario.view.waterways) groups.push_back({"waterways", WayNames(scenario), WriteWays});
   if (scenario.view.courses) groups.push_back({"courses", CourseNames(), WriteCourses});
+  if (scenario.view.kinds) groups.push_back({"kinds", KindNames(scenario), WriteKinds});
   const auto is_empty = [](const FeatureGroup& group) { return group.names.empty(); };
   groups.erase(std::remove_if(groups.begin(), groups.end(), is_empty), groups.end());
   return groups;

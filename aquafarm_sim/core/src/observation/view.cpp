@@ -16,22 +16,32 @@ float SquaredDistance(Cell a, float x, float y) {
   return dx * dx + dy * dy;
 }
 
-// Returns whether a point is within `radius` of any sensor.
-bool IsSeen(const std::vector<Cell>& sensor_positions, float x, float y, float radius) {
-  return std::any_of(sensor_positions.begin(), sensor_positions.end(),
-                     [&](Cell eye) { return SquaredDistance(eye, x, y) <= radius * radius; });
+// Returns whether any sensor sees a thing at a point. @param reach radius of the thing [cells]
+bool IsSeen(const std::vector<Sensor>& sensors, float x, float y, float reach) {
+  return std::any_of(sensors.begin(), sensors.end(), [&](const Sensor& sensor) {
+    const float range = sensor.radius + reach;
+    return SquaredDistance(sensor.cell, x, y) <= range * range;
+  });
 }
 
-bool IsSeen(const std::vector<Cell>& sensor_positions, Cell cell, float radius) {
-  return IsSeen(sensor_positions, static_cast<float>(cell.x), static_cast<float>(cell.y), radius);
+bool IsSeen(const std::vector<Sensor>& sensors, Cell cell) {
+  return IsSeen(sensors, static_cast<float>(cell.x), static_cast<float>(cell.y), 0.0F);
 }
 
-void CollectSensorPositions(const Farm& farm, Cell self, std::vector<Cell>& sensor_positions) {
-  sensor_positions.clear();
-  sensor_positions.push_back(self);
-  if (!farm.scenario().view.shared_sight) return;
+// In full view the sensors are not used.
+void CollectSensors(const Farm& farm, Cell self, std::vector<Sensor>& sensors) {
+  const ViewSpec& view = farm.scenario().view;
+  sensors.clear();
+  sensors.push_back({self, view.sensor_radius});
   for (const Ship& ship : farm.ships()) {
-    if (ship.in_play) sensor_positions.push_back(ship.cell);
+    if (view.shared_sight && ship.in_play) sensors.push_back({ship.cell, view.sensor_radius});
+  }
+  if (view.monitoring_radius == 0.0F) return;
+  for (const Device& device : farm.devices()) {
+    const bool in_place = device.status == DeviceStatus::kDeployed && !device.self_propelled;
+    if (device.kind == DeviceKind::kMonitoring && in_place && device.health > 0.0F) {
+      sensors.push_back({device.cell, view.monitoring_radius});
+    }
   }
 }
 
@@ -68,14 +78,12 @@ void ApplyForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
 }
 
 void ObserveDisaster(const Farm& farm, std::size_t id, bool full,
-                     const std::vector<Cell>& sensor_positions, KnownDisaster& known) {
+                     const std::vector<Sensor>& sensors, KnownDisaster& known) {
   const Disaster& disaster = farm.disasters()[id];
-  const ViewSpec& view = farm.scenario().view;
   known.belief = disaster;
   known.age = 0;
   // A ship observes a disaster if its edge is within sensor range ([decided], see docs/model.md).
-  const float range = view.sensor_radius + disaster.reach();
-  known.visible = full || IsSeen(sensor_positions, disaster.x, disaster.y, range);
+  known.visible = full || IsSeen(sensors, disaster.x, disaster.y, disaster.reach());
   known.known = known.visible || disaster.bulletin.step != kNone;
   if (known.visible || !known.known) return;
   const Bulletin& bulletin = disaster.bulletin;
@@ -97,7 +105,6 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   const std::vector<Ship>& ships = farm.ships();
   const Ship& self = ships[static_cast<std::size_t>(ship)];
   const bool full = scenario.view.mode == ViewMode::kFull;
-  const float radius = scenario.view.sensor_radius;
   view.ship = ship;
   view.self = self.cell;
   view.in_play = self.in_play;
@@ -106,7 +113,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   view.capacity = scenario.ships.capacity;
   view.scenario = &scenario;
   view.layout = &farm.layout();
-  CollectSensorPositions(farm, view.self, view.sensor_positions);
+  CollectSensors(farm, view.self, view.sensors);
 
   view.others.resize(ships.size() - 1);
   for (std::size_t id = 0, k = 0; id < ships.size(); ++id) {
@@ -115,8 +122,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     known.id = static_cast<std::int32_t>(id);
     known.cell = ships[id].cell;
     known.aboard = ships[id].aboard;
-    known.visible =
-        ships[id].in_play && (full || IsSeen(view.sensor_positions, known.cell, radius));
+    known.visible = ships[id].in_play && (full || IsSeen(view.sensors, known.cell));
   }
 
   view.devices.resize(farm.devices().size());
@@ -124,9 +130,10 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
     const Device& device = farm.devices()[id];
     KnownDevice& known = view.devices[id];
     const Cell cell = farm.CellOf(static_cast<std::int32_t>(id));
-    const bool visible = full || IsSeen(view.sensor_positions, cell, radius);
+    const bool visible = full || IsSeen(view.sensors, cell);
     // Out of sight only the cell where the device was deployed is known.
     known.cell = visible ? cell : view.layout->devices[id].cell;
+    known.kind = device.kind;
     known.status = device.status;
     known.aboard_self = device.carrier == ship;
     known.self_propelled = device.self_propelled;
@@ -137,7 +144,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
 
   view.disasters.resize(farm.disasters().size());
   for (std::size_t id = 0; id < view.disasters.size(); ++id) {
-    ObserveDisaster(farm, id, full, view.sensor_positions, view.disasters[id]);
+    ObserveDisaster(farm, id, full, view.sensors, view.disasters[id]);
     if (view.disasters[id].known) ApplyForecast(farm, id, view.disasters[id]);
   }
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "aquafarm/scenario/damage_defaults.h"
 #include "base/text.h"
 #include "base/time.h"
 
@@ -56,6 +57,7 @@ class Writer {
     if (archive) WriteArchive();
     if (!plan_.storm.waypoints.empty()) WriteStorm();
     for (const DisasterSpec& disaster : plan_.presets) WritePreset(disaster);
+    WriteDamage();
     Line(plan_.waterways ? "view: {mode: full, waterways: true}" : "view: {mode: full}");
     if (!plan_.layers.empty()) WriteSeas();
     return std::move(yaml_);
@@ -91,6 +93,24 @@ class Writer {
       Line("      ]");
     }
     if (!request_.sea_risk.empty()) Line("  risk: " + InQuotes(request_.sea_risk));
+  }
+
+  // Writes the factors of the damage by kinds that are not 1.
+  void WriteDamage() {
+    Line("damage:\n  kinds:  # factors of the damage, docs/data.md");
+    for (int device = 0; device < kDeviceKindCount; ++device) {
+      std::string factors;
+      for (int disaster = 0; disaster < kDisasterKindCount; ++disaster) {
+        const float factor =
+            kRealDamage[static_cast<std::size_t>(device)][static_cast<std::size_t>(disaster)];
+        if (factor == 1.0F) continue;
+        factors += (factors.empty() ? "{" : ", ") +
+                   std::string(ToString(static_cast<DisasterKind>(disaster))) + ": " +
+                   Format(factor);
+      }
+      if (factors.empty()) continue;
+      Line("    " + std::string(ToString(static_cast<DeviceKind>(device))) + ": " + factors + "}");
+    }
   }
 
   static std::string CellList(const std::vector<Cell>& cells) {

@@ -5,6 +5,16 @@
 
 namespace aquafarm {
 
+GradeRisks RisksByGrade(const DisasterSpec& disaster) {
+  GradeRisks risks = disaster.grade_risks;
+  if (!risks.empty()) return risks;
+  for (const float factor : disaster.grade_factors) {
+    std::vector<float>& row = risks.emplace_back(disaster.risks);
+    for (float& risk : row) risk = std::clamp(risk * factor, kWorstRisk, kMildestRisk);
+  }
+  return risks;
+}
+
 std::int32_t Scenario::SelfPropelledCount() const {
   if (devices.placement != DevicePlacement::kExplicit) return devices.self_propelled;
   return static_cast<std::int32_t>(

@@ -16,6 +16,7 @@
 #include "aquafarm/grid/geo_frame.h"
 #include "aquafarm/scenario/limits.h"
 #include "scenario/domains.h"
+#include "scenario/schema_kinds.h"
 
 namespace aquafarm::internal {
 
@@ -233,7 +234,8 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   a.When(tracked && graded, "there is a track or storms");
   a.Field("grade_risks", disaster.grade_risks,
           ListOf<ListOf<Interval<float>>>{risks, graded ? 4U : 0U, 4});
-  a.Always();
+  VisitGradeFactors(a, disaster, !graded && !drawn,
+                    graded ? "there are no grade_risks" : "there are no storms");
   a.Field("duration", disaster.duration, Interval<std::int32_t>{1, kMaxSteps});
   a.When(!tracked, "there is no track");
   a.Field("grade", disaster.grade, kGrade);
@@ -271,9 +273,10 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
     }
     return;
   }
+  const GradeRisks by_grade = Archive::kReads ? RisksByGrade(disaster) : GradeRisks{};
   a.Structs("track", disaster.track, {1, kMaxWaypoints}, [&](auto& b, auto& waypoint) {
     if constexpr (Archive::kReads) waypoint.risks = disaster.risks;
-    VisitWaypoint(b, waypoint, frame, disaster.grade_risks);
+    VisitWaypoint(b, waypoint, frame, by_grade);
   });
   if constexpr (Archive::kReads) {  // a tracked disaster starts in the state of its first waypoint
     SetFirst(disaster);
@@ -350,6 +353,7 @@ void VisitRewardsAndDamage(Archive& a, S& s) {
     b.Field("crash_probability", s.damage.crash_probability, kShare);
     b.Field("island_damage", s.damage.island_damage, kShare);
     b.Field("exposure_damage", s.damage.exposure_damage, kShare);
+    VisitDamageKinds(b, s.damage);
   });
 }
 
@@ -368,6 +372,7 @@ void VisitView(Archive& a, S& s) {
     b.Always();
     b.Field("waterways", s.view.waterways, AnyFlag{});
     b.Field("courses", s.view.courses, AnyFlag{});
+    VisitViewKinds(b, s.view);
   });
 }
 

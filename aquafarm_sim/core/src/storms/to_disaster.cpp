@@ -48,7 +48,9 @@ DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, st
   if (!scenario.origin || !scenario.start_time) {
     throw InputError("bulletin: needs a ranch with grid.origin and time.start");
   }
-  const auto graded = [](const DisasterSpec& one) { return !one.grade_risks.empty(); };
+  const auto graded = [](const DisasterSpec& one) {
+    return !one.grade_risks.empty() || !one.grade_factors.empty();
+  };
   const auto& all = scenario.disasters;
   auto model = all.begin() + std::min(id, static_cast<std::int32_t>(all.size()));
   const bool by_quadrant = model != all.end() && !model->quadrants.empty();
@@ -57,7 +59,7 @@ DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, st
   const StormRings storm =
       ToRings(whole, by_quadrant ? RingReduction::kQuadrants : RingReduction::kEqualArea);
   DisasterSpec disaster =
-      ToDisaster(storm, model == all.end() ? DefaultGradeRisks() : model->grade_risks,
+      ToDisaster(storm, model == all.end() ? DefaultGradeRisks() : RisksByGrade(*model),
                  GeoFrame(*scenario.origin, scenario.cell_size_m), scenario.cell_size_m,
                  scenario.step_duration_s, *scenario.start_time);
   const double left = std::ceil(static_cast<double>(disaster.track.back().step)) - step_now;

@@ -467,6 +467,17 @@ TEST(Oracle, AgreesOnRandomFarmsWithSeveralShipsAndSelfPropelledDevices) {
   }
 }
 
+TEST(Oracle, AgreesOnRandomFarmsWhereKindsMatter) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Scenario scenario = CrowdedScenario(2, 1);
+    RandomStream rng({seed, 0, RngStream::kLayout, 0});
+    for (auto& row : scenario.damage.kinds) {
+      for (float& factor : row) factor = rng.Uniform(0.0F, 3.0F);
+    }
+    CompareWithOracle(scenario, seed);
+  }
+}
+
 TEST(Hash, IsThatOfTheEpisodeNotOfWhatWasPlayedBefore) {
   Farm farm = MakeFarm(CrowdedScenario(2));
   farm.Reset(7, 3);

@@ -127,6 +127,27 @@ TEST(Features, AreAsManyAsNamedOnEveryFarm) {
   EXPECT_EQ(FeaturesOf(crowded, 4).size(), 5U + 8 + 5 * 5 + 2 * 2 + 2 * 7 + 4 * 4 + 5);
 }
 
+TEST(Features, OfKindsAreThoseOfDevicesAndKnownDisasters) {
+  Scenario scenario = TinyScenario();
+  scenario.devices.sites.push_back({{2, 3}, DeviceKind::kDeepWaterBreeding, 80.0F, false});
+  scenario.disasters = {StillDisaster(4, 2, {1}, {-10}), StillDisaster(90, 90, {1}, {-10})};
+  scenario.disasters[0].kind = DisasterKind::kRedTide;
+  scenario.disasters[0].grade = 3;
+  scenario.view = {ViewMode::kPartial, 5.0F, 0, 0.0F};
+  const std::size_t without = FeaturesOf(MakeFarm(scenario), 0).size();
+  scenario.view.kinds = true;
+  Farm farm = MakeFarm(scenario);
+  EXPECT_EQ(FeaturesOf(farm, 0).size(), without + 2 * 4 + 2 * 7);
+  EXPECT_EQ(Feature(farm, "device0.monitoring"), 1.0F);
+  EXPECT_EQ(Feature(farm, "device0.deep_water_breeding"), 0.0F);
+  EXPECT_EQ(Feature(farm, "device1.deep_water_breeding"), 1.0F);
+  EXPECT_EQ(Feature(farm, "disaster0.red_tide"), 1.0F);
+  EXPECT_EQ(Feature(farm, "disaster0.typhoon"), 0.0F);
+  EXPECT_EQ(Feature(farm, "disaster0.grade"), 0.75F);
+  EXPECT_EQ(Feature(farm, "disaster1.typhoon"), 0.0F) << "not known";
+  EXPECT_EQ(Feature(farm, "disaster1.grade"), 0.0F);
+}
+
 TEST(Features, HaveNoNegativeTimeLeftUnderALongerDisasterSetInPlay) {
   Scenario scenario = TinyScenario();
   scenario.disasters = {StillDisaster(20, 20, {1}, {-5})};

@@ -233,6 +233,112 @@ TEST(PartialView, NetworkedAgentsSeeWithEachOthersSensors) {
   EXPECT_TRUE(view.disasters[0].visible);
 }
 
+// A buoy at (20, 20) with a radius of 5, and a cage, all far from the ship at (2, 0).
+Scenario BuoyScenario() {
+  Scenario scenario = PartialScenario();
+  scenario.view.bulletin_period = 0;
+  scenario.view.monitoring_radius = 5.0F;
+  scenario.devices.sites = {{{20, 20}, DeviceKind::kMonitoring, 80.0F, false},
+                            {{10, 10}, DeviceKind::kTemporaryBreeding, 80.0F, false}};
+  return scenario;
+}
+
+TEST(MonitoringDevice, SeesExactlyItsRadiusFarForAllShips) {
+  for (const auto& [cell, seen] :
+       {std::pair{Cell{25, 20}, true}, std::pair{Cell{23, 24}, true},
+        std::pair{Cell{26, 20}, false}, std::pair{Cell{24, 24}, false}}) {
+    Scenario scenario = BuoyScenario();
+    scenario.ships.count = 2;
+    scenario.devices.sites.push_back({cell, DeviceKind::kBreedingRelease, 80.0F, false});
+    const Farm farm = MakeFarm(scenario);
+    for (const std::int32_t ship : {0, 1}) {
+      View view;
+      Observe(farm, ship, view);
+      EXPECT_EQ(view.devices[2].health_known, seen) << cell.x << ' ' << cell.y;
+      EXPECT_TRUE(view.devices[0].health_known) << "the buoy itself";
+      EXPECT_FALSE(view.devices[1].health_known) << "a cage sees nothing";
+    }
+  }
+}
+
+TEST(MonitoringDevice, SeesADisasterWhenItsEdgeIsInRange) {
+  for (const auto& [x, visible] : {std::pair{27.0F, true}, std::pair{27.25F, false}}) {
+    Scenario scenario = BuoyScenario();
+    scenario.disasters = {StillDisaster(x, 20.0F, {2}, {-5})};
+    View view;
+    const Farm farm = MakeFarm(scenario);
+    Observe(farm, 0, view);
+    EXPECT_EQ(view.disasters[0].visible, visible) << x;
+  }
+}
+
+TEST(MonitoringDevice, SeesOnlyWhileItIsInPlaceAndWhole) {
+  Scenario scenario = BuoyScenario();
+  scenario.devices.sites[0].cell = {2, 1};
+  scenario.disasters = {StillDisaster(7.5F, 1.0F, {1}, {-5})};
+  Farm farm = MakeFarm(scenario);
+  View view;
+  Observe(farm, 0, view);
+  EXPECT_TRUE(view.disasters[0].visible);
+  StepOne(farm, Action::kNorth);
+  ASSERT_EQ(StepOne(farm, Action::kPickup).aboard, 1);
+  Observe(farm, 0, view);
+  EXPECT_FALSE(view.disasters[0].visible) << "aboard, 5.5 cells from the ship's sensor of 3";
+
+  scenario.devices.health = 0.05F;
+  scenario.disasters.push_back(StillDisaster(2.0F, 1.0F, {1}, {-20}));
+  Farm stormy = MakeFarm(scenario);
+  Observe(stormy, 0, view);
+  EXPECT_TRUE(view.disasters[0].visible);
+  StepOne(stormy, Action::kHold);
+  EXPECT_EQ(stormy.devices()[0].health, 0.0F);
+  Observe(stormy, 0, view);
+  EXPECT_FALSE(view.disasters[0].visible) << "destroyed";
+
+  scenario = BuoyScenario();
+  scenario.devices.sites[0].self_propelled = true;
+  scenario.disasters = {StillDisaster(20.0F, 26.0F, {1}, {-5})};
+  Observe(MakeFarm(scenario), 0, view);
+  EXPECT_FALSE(view.disasters[0].visible) << "a device that moves is not in place";
+}
+
+TEST(MonitoringDevice, ChangesNothingInFullViewOrWithoutARadius) {
+  Scenario scenario = BuoyScenario();
+  scenario.view.monitoring_radius = 0.0F;
+  View view;
+  Observe(MakeFarm(scenario), 0, view);
+  EXPECT_FALSE(view.devices[0].health_known);
+  EXPECT_EQ(view.sensors.size(), 1U);
+}
+
+// Compares the sight over all cells of a farm with a search by whole numbers.
+TEST(MonitoringDevice, AgreesWithASlowOracleOnEveryCell) {
+  for (const std::int32_t radius : {1, 4, 7}) {
+    Scenario scenario = BuoyScenario();
+    scenario.view.monitoring_radius = static_cast<float>(radius);
+    scenario.ships.count = 2;
+    scenario.devices.sites.push_back({{4, 22}, DeviceKind::kMonitoring, 80.0F, false});
+    scenario.devices.sites.push_back({{27, 6}, DeviceKind::kMonitoring, 80.0F, true});
+    Farm farm = MakeFarm(scenario);
+    const auto is_within = [](Cell a, Cell b, std::int32_t range) {
+      return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) <= range * range;
+    };
+    std::int32_t seen = 0;
+    for (std::int32_t i = 0; i < scenario.CellCount(); ++i) {
+      const Cell cell{i % scenario.width, i / scenario.width};
+      if ((farm.layout().bits(cell) & kBlockedBits) != 0 || cell == Cell{27, 6}) continue;
+      farm.PlaceShip(1, cell);
+      View view;
+      Observe(farm, 0, view);
+      const bool expected = is_within(farm.ships()[0].cell, cell, 3) ||
+                            is_within({20, 20}, cell, radius) || is_within({4, 22}, cell, radius);
+      EXPECT_EQ(view.others[0].visible, expected) << cell.x << ' ' << cell.y;
+      seen += view.others[0].visible ? 1 : 0;
+    }
+    EXPECT_GT(seen, 2 * radius * radius);
+  }
+}
+
 TEST(View, KnownRiskIsTheWorstOfWhatIsKnown) {
   Scenario scenario = PartialScenario();
   scenario.view.bulletin_period = 0;

@@ -231,7 +231,7 @@ TEST(Documentation, NamesEveryKey) {
   const std::string docs((std::istreambuf_iterator<char>(file)), {});
   std::istringstream keys(ToYaml(UnusualScenario()) + ToYaml(test::TinyScenario()) +
                           "time:\nlatitude:\nlongitude:\nradii_km:\npressure_hpa:\nwind_mps:\n"
-                          "grade_risks:\n");
+                          "grade_risks:\ngrade_factors:\nmonitoring_radius:\n");
   for (std::string line; std::getline(keys, line);) {
     const std::size_t first = line.find_first_not_of(" -");
     const std::string key = line.substr(first, line.find(':') - first);

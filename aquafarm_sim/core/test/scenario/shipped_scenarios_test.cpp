@@ -9,6 +9,7 @@
 
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/grid/geo_frame.h"
+#include "aquafarm/scenario/damage_defaults.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "shared_data.h"
 
@@ -38,6 +39,13 @@ TEST(Shipped, AreThese) {
                                 "paper_plain", "partial", "procedural", "red_tide", "smart_devices",
                                 "truncated", "two_squads", "zhoushan_danas_2019",
                                 "zhoushan_infa_2021", "zhoushan_mitag_2019", "zhoushan_storms"}));
+}
+
+TEST(Shipped, RealRanchesAloneHaveTheirDamageByKinds) {
+  for (const std::string& name : ShippedNames()) {
+    const bool real = name.find("zhoushan") == 0;
+    EXPECT_EQ(Load(name).damage.kinds, real ? kRealDamage : kEqualDamage) << name;
+  }
 }
 
 class Shipped : public testing::TestWithParam<std::string> {};

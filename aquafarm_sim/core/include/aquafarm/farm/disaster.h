@@ -147,6 +147,24 @@ inline float RiskAt(const std::vector<Disaster>& disasters, Cell cell) {
   return worst;
 }
 
+/// Returns the risk that damages a device at a cell: of the disasters' risks there, each times the
+/// factor of its kind, the worst. May be below kWorstRisk.
+/// @param factors of the device's kind, by kind of disaster (DamageSpec::FactorsOf)
+inline float DamagingRiskAt(const std::vector<Disaster>& disasters, Cell cell,
+                            const std::array<float, kDisasterKindCount>& factors) {
+  float worst = 0.0F;
+  for (const Disaster& disaster : disasters) {
+    const float risk = RiskOf(disaster, static_cast<float>(cell.x), static_cast<float>(cell.y)) *
+                       factors[static_cast<std::size_t>(disaster.kind)];
+    worst = risk < worst ? risk : worst;
+  }
+  return worst;
+}
+
+/// Fills the grid [H, W] of the risk of disasters and sea that damages a kind of device.
+void FillDamagingRisk(const Scenario& scenario, const std::vector<Disaster>& disasters,
+                      DeviceKind kind, Grid<float>& risk);
+
 /// Fills the risk grid [H, W] of disasters and sea, for drawing, publishing and planning.
 void FillRisk(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk);
 

@@ -108,6 +108,9 @@ class Farm {
 
   /// Returns the current worst risk of disasters and sea at a cell of the map; 0 or negative.
   float RiskAt(Cell cell) const;
+  /// Returns the current risk of disasters and sea that damages a kind of device at a cell of the
+  /// map: that of RiskAt, with each disaster's risk times its factor of damage.kinds.
+  float DamagingRiskAt(Cell cell, DeviceKind kind) const;
 
   /// Returns the current cell of a device: its own cell, or the cell of its carrier.
   Cell CellOf(std::int32_t device) const {

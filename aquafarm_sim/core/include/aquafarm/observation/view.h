@@ -5,7 +5,8 @@
 /// everything. A partial view contains the chart and the cells and status of all devices; it
 /// contains health, other ships and disasters only within sensor_radius. For disasters outside of
 /// it, the last bulletin and its age apply. Networked agents (shared_sight) use the sensors of all
-/// agents in play and know their cells.
+/// agents in play and know their cells. A monitoring device in place (deployed, not self-propelled,
+/// health above 0) sees for all ships within monitoring_radius.
 
 #include <cstdint>
 #include <vector>
@@ -21,8 +22,15 @@ struct KnownShip {
   std::int32_t aboard{};  ///< devices aboard; meaningless when not visible
 };
 
+/// A place from which a ship observes.
+struct Sensor {
+  Cell cell{};
+  float radius{};  ///< [cells]
+};
+
 struct KnownDevice {
   Cell cell{};
+  DeviceKind kind{};
   DeviceStatus status{};
   bool aboard_self{};  ///< aboard the observing ship
   bool self_propelled{};
@@ -51,8 +59,7 @@ struct View {
   std::vector<KnownDisaster> disasters;
   const Scenario* scenario{};
   const Layout* layout{};
-  std::vector<Cell> sensor_positions;  ///< cells of the sensors: its own cell, or the cells of all
-                                       ///< networked agents
+  std::vector<Sensor> sensors;  ///< its own, those of networked agents and of monitoring devices
 };
 
 /// Fills `view` with the current observation of `ship`.

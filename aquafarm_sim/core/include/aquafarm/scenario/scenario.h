@@ -130,6 +130,9 @@ struct DisasterSpec {
   std::vector<Waypoint> track;                ///< if not empty, replaces speed and heading
   std::vector<QuadrantRadii> quadrants{};     ///< as in Waypoint
   GradeRisks grade_risks{};                   ///< also used for bulletins that arrive later
+  /// Factors of `risks` for grades 1 to 4, instead of grade_risks; empty: grades change no risk.
+  /// A waypoint's own risks stay as they are.
+  std::vector<float> grade_factors{};
   /// Forecasts issued by an authority, in order of issue. Agents observe the newest one issued; the
   /// disaster itself follows the track. Requires a track; see forecast.h.
   std::vector<IssuedForecast> forecasts{};
@@ -137,6 +140,10 @@ struct DisasterSpec {
   /// first storm as recorded.
   std::optional<StormsSpec> storms{};
 };
+
+/// Returns the risks of the rings for grades 1 to 4: grade_risks, or risks times grade_factors,
+/// clamped to [kWorstRisk, kMildestRisk]. Empty if the grade changes no risk.
+GradeRisks RisksByGrade(const DisasterSpec& disaster);
 
 /// The rewards of §2.5.
 struct RewardSpec {
@@ -149,10 +156,30 @@ struct RewardSpec {
   RewardSharing sharing{RewardSharing::kIndividual};
 };
 
+/// Factors of the damage that a kind of disaster does to a kind of device: [device][disaster].
+using DamageFactors = std::array<std::array<float, kDisasterKindCount>, kDeviceKindCount>;
+/// Factors of 1 everywhere: kinds do not matter.
+inline constexpr DamageFactors kEqualDamage = [] {
+  DamageFactors factors{};
+  for (auto& row : factors) {
+    for (float& factor : row) factor = 1.0F;
+  }
+  return factors;
+}();
+
 struct DamageSpec {
   float crash_probability{1.0F};
   float island_damage{0.2F};      ///< health that devices aboard lose in a crash into an island
   float exposure_damage{0.001F};  ///< health lost per step and unit of |risk|
+  /// Factors of exposure_damage. The risk of the sea itself has none.
+  DamageFactors kinds{kEqualDamage};
+
+  /// Returns the factors for a kind of device, by kind of disaster.
+  const std::array<float, kDisasterKindCount>& FactorsOf(DeviceKind kind) const {
+    return kinds[static_cast<std::size_t>(kind)];
+  }
+  /// Returns whether the damage depends on kinds.
+  bool DependsOnKinds() const { return kinds != kEqualDamage; }
 };
 
 /// Observation settings of the agents (§2.3).
@@ -164,6 +191,10 @@ struct ViewSpec {
   bool shared_sight{};               ///< agents are networked and share all observations
   bool waterways{};  ///< features include the shortest routes by water to ports and devices
   bool courses{};    ///< features include the forecast risk along each course
+  bool kinds{};      ///< features include the kinds of devices, and kinds and grades of disasters
+  /// Radius in which a monitoring device in place sees for all ships in partial view [cells]; 0: it
+  /// sees nothing
+  float monitoring_radius{};
   /// Mean error of a disaster's forecast position after 24, 48 and 72 hours [km]. Agents observe a
   /// forecast track with this mean error; the disaster itself follows the track. If empty, agents
   /// observe the current motion instead. See forecast.h.

@@ -9,6 +9,7 @@
 /// its reward under the mean layers below. The same holds for damage while health is not clamped at
 /// 0: the loss of health is linear in the risk.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,7 +23,19 @@ namespace aquafarm::agents {
 struct RiskLayers {
   Grid<float> risk;   ///< risk at each cell; 0 or negative
   Grid<float> quiet;  ///< reward of a step without any other term: the risk, else the step reward
+  /// Risk that damages each kind of device (Farm::DamagingRiskAt). An empty layer stands for
+  /// `risk`.
+  std::array<Grid<float>, kDeviceKindCount> by_kind;
+
+  /// Returns the risk that damages a kind of device.
+  const Grid<float>& Damaging(DeviceKind kind) const {
+    const Grid<float>& layer = by_kind[static_cast<std::size_t>(kind)];
+    return layer.size() == 0 ? risk : layer;
+  }
 };
+
+/// Returns the kinds of a farm's devices whose damage depends on the kind of the disaster.
+std::vector<DeviceKind> KindsThatMatter(const Farm& farm);
 
 /// Risks by step.
 class RiskSource {
@@ -57,6 +70,7 @@ class DisasterRisk final : public RiskSource {
   const Farm& farm_;
   std::vector<Disaster> disasters_;  // state at step moved_to_
   std::vector<Track> tracks_;
+  std::vector<DeviceKind> kinds_;  // that have layers of their own
   std::int32_t moved_to_{};
   std::int32_t last_step_{};
   std::vector<RiskLayers> kept_;  // of the steps after the farm's present one

@@ -14,7 +14,8 @@
 /// continue after the storm, nor beyond the time until which the storm is known.
 ///
 /// **Damage.** Each step, a device in a risk r loses the share `exposure_damage` · |r| of its
-/// value, at its site until it is delivered, at most what is left of its value.
+/// value, times the factor of its kind in a typhoon, at its site until it is delivered, at most
+/// what is left of its value.
 
 #include <cstdint>
 #include <string>
@@ -30,8 +31,9 @@ struct RescueDevice {
   std::string name;
   std::string kind;
   Cell cell{};
-  double value{};          ///< in a currency, or in units of value
-  double damage_before{};  ///< share of the value that was lost before the plan, [0, 1]
+  double value{};             ///< in a currency, or in units of value
+  double damage_before{};     ///< share of the value that was lost before the plan, [0, 1]
+  double damage_factor{1.0};  ///< of its kind in a typhoon (DamageSpec::kinds)
 };
 
 struct RescuePort {

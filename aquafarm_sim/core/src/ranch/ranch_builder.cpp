@@ -447,20 +447,15 @@ class Builder {
   void ValueDevices() {
     Layout layout;
     LayoutGenerator(ranch_.scenario).Generate(request_.seed, 0, layout);
-    std::string sites = "  devices:\n    placement: explicit\n    sites:\n";
     for (const PlacedDevice& device : layout.devices) {
       const float worth = value_(device.cell.y, device.cell.x);
       if (!(worth >= 0.0F && worth <= 10000.0F)) {
         throw InputError("value: got " + Format(worth) + " at the device at " +
                          CellText(device.cell) + ", expected a number in [0, 10000]");
       }
-      sites += "      - {cell: " + CellText(device.cell) +
-               ", kind: " + std::string(ToString(device.kind)) + ", value: " + Format(worth) +
-               "}\n";
+      plan_.sites.push_back({device.cell, device.kind, worth, false});
     }
-    const std::string line = internal::DevicesLine(request_);
-    ranch_.yaml.replace(ranch_.yaml.find(line), line.size(), sites);
-    ranch_.scenario = ParseScenario(ranch_.yaml, request_.name);
+    Write();
   }
 
   const RanchRequest& request_;

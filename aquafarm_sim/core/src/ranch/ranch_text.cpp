@@ -131,7 +131,20 @@ class Writer {
                                      : "  rocks: {cells: " + CellList(plan_.terrain.rocks) + "}");
     Line(plan_.ports.empty() ? Text("  ports: {count: %d}", request_.ports)
                              : "  ports: {cells: " + CellList(plan_.ports) + "}");
-    yaml_ += DevicesLine(request_);
+    WriteDevices();
+  }
+
+  void WriteDevices() {
+    if (plan_.sites.empty()) {
+      Line("  devices: {placement: " + std::string(ToString(request_.placement)) +
+           Text(", count: %d}", request_.devices));
+      return;
+    }
+    Line("  devices:\n    placement: explicit\n    sites:");
+    for (const DeviceSite& site : plan_.sites) {
+      Line("      - {cell: " + CellText(site.cell) + ", kind: " + std::string(ToString(site.kind)) +
+           (site.value ? ", value: " + Format(*site.value) : "") + "}");
+    }
   }
 
   static std::string Numbers(const std::vector<float>& values) {
@@ -258,11 +271,6 @@ class Writer {
 std::string WriteRanch(const RanchRequest& request, const RanchPlan& plan,
                        const std::vector<std::string>& decided) {
   return Writer(request, plan, decided).Write();
-}
-
-std::string DevicesLine(const RanchRequest& request) {
-  return "  devices: {placement: " + std::string(ToString(request.placement)) +
-         Text(", count: %d}\n", request.devices);
 }
 
 std::string CellText(Cell cell) { return Text("[%d, %d]", cell.x, cell.y); }

@@ -25,9 +25,10 @@ struct RanchPlan {
   std::int64_t start{};  ///< UTC of step 0, if there is a storm or a requested start
   std::int32_t step_limit{};
   Terrain terrain;
-  std::vector<Cell> ports;  ///< empty: drawn at random
-  StormRings storm;         ///< without waypoints: calm weather
-  std::string storm_text;   ///< description of the storm, for people
+  std::vector<Cell> ports;        ///< empty: drawn at random
+  std::vector<DeviceSite> sites;  ///< empty: drawn at random
+  StormRings storm;               ///< without waypoints: calm weather
+  std::string storm_text;         ///< description of the storm, for people
   StormKnowledge knowledge;
   std::int32_t storm_steps{};
   std::vector<StormForecast> forecasts;  ///< of the storm, sorted by time of issue
@@ -42,9 +43,6 @@ struct RanchPlan {
 /// @param decided lines for people, written as comments
 std::string WriteRanch(const RanchRequest& request, const RanchPlan& plan,
                        const std::vector<std::string>& decided);
-
-/// Returns the line of the file for randomly drawn devices.
-std::string DevicesLine(const RanchRequest& request);
 
 template <typename... Args>
 std::string Text(const char* format, Args... args) {

@@ -90,6 +90,29 @@ TEST(OldBag, OfVersion010IsVerifiedInSpiteOfItsOtherComments) {
   EXPECT_EQ(1U, check.episodes);
 }
 
+TEST(OldBag, HasZerosForTheFieldsThatItLacks) {
+  const std::string path = AQUAFARM_SIM_TEST_DATA "/version_0_1_0.bag";
+  std::size_t states = 0;
+  float joint_return = 0.0F;
+  ReadingBag(path, [&] {
+    rosbag::Bag bag;
+    OpenBag<FarmState, EpisodeSummary>(bag, path);
+    for (const auto& message : rosbag::View(bag)) {
+      if (const auto state = Instantiate<FarmState>(message)) {
+        ++states;
+        joint_return = state->joint_return;
+        EXPECT_EQ(0.0, state->total_distance);
+        EXPECT_EQ(0.0F, state->ships.at(0).terms.energy);
+      } else if (const auto summary = Instantiate<EpisodeSummary>(message)) {
+        EXPECT_EQ(joint_return, summary->episode_return);
+        EXPECT_EQ(0.0, summary->distance);
+        EXPECT_NE(0, summary->reason);  // the field after the added ones
+      }
+    }
+  });
+  EXPECT_GT(states, 5U);
+}
+
 TEST_F(EpisodeBag, ASecondSpecThatDiffersIsFound) {
   const std::string path = Changed(OneBag(), true, [](auto*, auto*, auto*) { return true; });
   FarmSpec spec;

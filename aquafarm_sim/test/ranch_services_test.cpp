@@ -79,7 +79,9 @@ TEST(RanchServices, ArraysHaveTheStatedLengths) {
   EXPECT_EQ(3U, bare.terminated.size());
   EXPECT_TRUE(bare.terms.empty() && bare.index.empty() && bare.planes.empty());
   const auto full = StepAll(*ranch, std::vector<std::uint8_t>(6, kHold), 31).result;
-  EXPECT_EQ(42U, full.terms.size());
+  EXPECT_EQ(48U, full.terms.size());
+  EXPECT_EQ(6U, full.energy.size());
+  EXPECT_EQ(6U, full.distance.size());
   EXPECT_EQ(6U, full.index.size());
   EXPECT_EQ(3U, full.hashes.size());
 }

@@ -159,7 +159,9 @@ class SimNodeTest(unittest.TestCase):
         self.assertTrue(first.ok, first.message)
         self.assertEqual(first, call("step", actions=[0, 0, 0], sequence=77, encodings=31))
         self.assertEqual(1, state().step)
-        self.assertEqual(21, len(first.result.terms))
+        self.assertEqual(24, len(first.result.terms))
+        self.assertEqual(3, len(first.result.energy))
+        self.assertEqual(3, len(first.result.distance))
 
     def test_spec_and_chart_are_latched_and_again_at_each_episode(self):
         spec = message("spec", FarmSpec)

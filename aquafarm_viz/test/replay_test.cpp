@@ -114,6 +114,21 @@ TEST_F(Replay, AJumpBringsTheSpecTheWholeWayAndTheStepLast) {
   for (std::size_t i = 0; i < steps.size(); ++i) EXPECT_EQ(steps[i], 2 * i);
 }
 
+TEST_F(Replay, ABagOfVersion010IsShownWithTheMessagesOfThisOne) {
+  if (!fs::exists(OLD_BAG)) GTEST_SKIP() << "this copy of the package has no aquafarm_sim";
+  const ReplayTape tape(OLD_BAG);
+  EXPECT_GT(tape.steps().size(), 5U);
+  int states = 0;
+  for (const auto& message : tape.messages()) {
+    if (!IsState(message)) continue;
+    ++states;
+    const std::string now = ros::message_traits::md5sum<aquafarm_msgs::FarmState>();
+    EXPECT_NE(message.getMD5Sum(), now);
+    EXPECT_EQ(AdvertiseOptionsOf(message, 1).md5sum, now);
+  }
+  EXPECT_GT(states, 5);
+}
+
 TEST_F(Replay, WakesAndRoutesAfterAJumpAreThoseOfPlayingThrough) {
   const ReplayTape tape(MakeBag());
   const auto step = *tape.Find(tape.steps().front(), 14, 60);

@@ -12,6 +12,8 @@ from aquafarm_benchmark.protocol import PAPER_TABLE
 
 _EVALUATED = ("return_per_episode", "return_per_step", "success_rate", "steps_per_episode",
               "crashes_per_episode", "steps_in_disaster_per_episode", "delivered_health")
+# Absent in evaluations of version 0.1.0.
+_ADDED = ("energy_kwh_per_episode", "distance_km_per_episode")
 
 
 def write_atomically(path, text):
@@ -40,6 +42,8 @@ def read_run(folder):
     run = {name: evaluation[name] for name in _EVALUATED}
     run.update(seed=int(folder.name.rsplit("_", maxsplit=1)[-1]), folder=folder, curve=curve,
                convergence=None, settled=None, evaluation=evaluation)
+    for name in _ADDED:
+        run[name] = evaluation.get(name)
     # Evaluations of version 0.1.0 have no count of distinct starts.
     run["distinct_episodes"] = evaluation.get("distinct_episodes")
     run["evaluation_episodes"] = evaluation["episodes"]
@@ -79,6 +83,8 @@ def summarise(contestant, runs, optimum, training_episodes):
            "paper_row": contestant.paper_row}
     for name in _EVALUATED:
         row[name] = float(column(name).mean())
+    for name in _ADDED:
+        row[name] = None if None in [run[name] for run in runs] else float(column(name).mean())
     row["success_worst"] = float(column("success_rate").min())
     row["return_iqm"] = measures.interquartile_mean(returns)
     row["return_interval"] = _interval(returns)
@@ -181,7 +187,7 @@ def write(folder, settings, rows, runs):
                "stability", "stability_low", "stability_high", "settled", "stability_settled", "rank", "ea_paper", "ea_normalised",
                "return_per_episode", "return_iqm", "return_low", "return_high",
                "share_of_optimum", "steps_per_episode", "crashes_per_episode",
-               "steps_in_disaster_per_episode", "training_steps", "evaluation_episodes",
+               "steps_in_disaster_per_episode", *_ADDED, "training_steps", "evaluation_episodes",
                "distinct_episodes"]
     lines = [",".join(columns)]
     for row in rows:
@@ -191,7 +197,7 @@ def write(folder, settings, rows, runs):
         lines.append(",".join("" if flat[name] is None else str(flat[name]) for name in columns))
     write_atomically(folder / "table.csv", "\n".join(lines) + "\n")
 
-    run_columns = ["seed", "convergence", "settled", *_EVALUATED]
+    run_columns = ["seed", "convergence", "settled", *_EVALUATED, *_ADDED]
     lines = [",".join(["name", *run_columns])]
     for name, of_one in runs.items():
         for run in of_one:

@@ -72,6 +72,8 @@ EpisodeResult FromMsg(const aquafarm_msgs::EpisodeSummary& message) {
   result.crashes = message.crashes;
   result.collisions = message.collisions;
   result.steps_in_disaster = message.steps_in_disaster;
+  result.energy = message.energy;
+  result.distance = message.distance;
   result.reason = static_cast<aquafarm::EndReason>(message.reason);
   return result;
 }

@@ -73,6 +73,8 @@ def show_episodes(run, folder, episodes):
             ("success_rate", "success", "{:.1%}"), ("steps_per_episode", "steps", "{:.1f}"),
             ("crashes_per_episode", "crashes", "{:.2f}"),
             ("steps_in_disaster_per_episode", "steps in disaster", "{:.2f}"),
+            ("energy_kwh_per_episode", "energy, kWh", "{:.2f}"),
+            ("distance_km_per_episode", "distance, km", "{:.2f}"),
             ("delivered_health", "health of what came home", "{:.3f}"))
     table = page.table(["mean of an episode", ""], [
         (name, form.format(summary[key])) for key, name, form in keys if key in summary])

@@ -51,6 +51,8 @@ py::dict DictOf(const EpisodeRecord& record, std::int32_t farm) {
   one["crashes"] = record.crashes;
   one["collisions"] = record.collisions;
   one["steps_in_disaster"] = record.steps_in_disaster;
+  one["energy"] = record.energy;
+  one["distance"] = record.distance;
   one["reason"] = ToString(record.reason);
   one["success"] = record.Success();
   return one;

@@ -103,8 +103,9 @@ void DefineBatch(py::module_& module) {
   py::class_<Batch>(module, "FarmBatch", R"(Many farms of one scenario, stepped together.
 
 `buffers` holds the arrays named in `write`; reset and step write into them and copy nothing.
-N farms, S agents: rewards float32 [N, S], terms float32 [N, S, 7], outcomes uint8 [N, S], legal
-uint16 [N, S], in_play uint8 [N, S], reasons uint8 [N], started uint8 [N], hashes uint64 [N], index uint32 [N, S],
+N farms, S agents: rewards float32 [N, S], terms float32 [N, S, 8], energy float32 [N, S] (kWh),
+distance float32 [N, S] (km), outcomes uint8 [N, S], legal uint16 [N, S], in_play uint8 [N, S],
+reasons uint8 [N], started uint8 [N], hashes uint64 [N], index uint32 [N, S],
 features float32 [N, S, F], planes uint8 [N, S, P, H, W].
 A farm whose reason is not 0 ignores the action of the next step and starts its next episode.)")
       .def(py::init([](std::shared_ptr<Scenario> scenario, const py::object& farms,

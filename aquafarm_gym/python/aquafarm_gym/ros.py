@@ -153,7 +153,8 @@ class RosFarms:
         self._finished = [
             {**{key: getattr(one, key) for key in (
                 "farm", "seed", "episode", "steps", "episode_return", "devices", "delivered",
-                "delivered_health", "crashes", "collisions", "steps_in_disaster")},
+                "delivered_health", "crashes", "collisions", "steps_in_disaster",
+                "energy", "distance")},
              "reason": core.REASONS[one.reason], "success": bool(one.success)}
             for one in result.finished]
 

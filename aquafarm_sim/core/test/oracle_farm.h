@@ -27,6 +27,8 @@ class OracleFarm {
     Outcome outcome{};
     RewardTerms terms;
     float reward{};
+    double km{};
+    double kwh{};
   };
   struct OracleDevice {
     std::pair<int, int> site;
@@ -49,6 +51,11 @@ class OracleFarm {
   /// @param after the farm under test after the same step; its disasters are used as they are
   void Step(const std::vector<Action>& actions, const Farm& after) {
     ++steps;
+    std::vector<std::pair<int, int>> moved_from;
+    for (OracleShip& ship : ships) {
+      moved_from.push_back(ship.at);
+      ship.km = ship.kwh = 0.0;
+    }
     for (std::size_t i = 0; i < ships.size(); ++i) ActOne(i, actions[i], after);
     for (std::size_t d = 0; d < devices.size(); ++d) {
       if (devices[d].delivered) continue;
@@ -68,8 +75,10 @@ class OracleFarm {
       if (quiet.count(ship.outcome) == 1 && !handled && ship.terms.disaster == 0.0F) {
         ship.terms.step = scenario_.rewards.step;
       }
+      Consume(ship, moved_from[i]);
       const RewardTerms& t = ship.terms;
-      ship.reward = t.crash + t.disaster + t.pickup + t.drop_off + t.illegal + t.collision + t.step;
+      ship.reward = t.crash + t.disaster + t.pickup + t.drop_off + t.illegal + t.collision +
+                    t.step + t.energy;
       sum += ship.reward;
     }
     if (scenario_.rewards.sharing == RewardSharing::kTeam) {
@@ -102,6 +111,19 @@ class OracleFarm {
   EndReason reason{};
 
  private:
+  void Consume(OracleShip& ship, std::pair<int, int> from) const {
+    ship.km = std::hypot(ship.at.first - from.first, ship.at.second - from.second) *
+              scenario_.cell_size_m / 1000.0;
+    if (!scenario_.energy) return;
+    const bool is_device = ship.is_device.has_value();
+    const EnergyFigures& f = is_device ? scenario_.energy->self_propelled : scenario_.energy->ships;
+    const double load =
+        is_device ? 1.0 : 1.0 + f.per_device * static_cast<double>(ship.hold.size());
+    const double sea = 1.0 + f.rough_sea * static_cast<double>(ship.terms.disaster) / -20.0;
+    ship.kwh = f.idle_per_step + f.per_km * ship.km * load * sea;
+    ship.terms.energy = static_cast<float>(-scenario_.energy->weight * ship.kwh);
+  }
+
   // Without a kind of device, risks have no factors.
   static float Risk(const Farm& farm, std::pair<int, int> at,
                     std::optional<DeviceKind> kind = std::nullopt) {

@@ -56,12 +56,28 @@ std::string Missing(std::uint64_t first, std::uint64_t last) {
   return "steps " + Number(first) + " to " + Number(last) + " are missing";
 }
 
+/// Definitions of an earlier version in a bag, by type.
+using Definitions = std::map<std::string, std::string>;
+
+Definitions OlderDefinitions(const rosbag::Bag& bag) {
+  Definitions definitions;
+  rosbag::View view(bag);
+  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
+    if (IsOlderMessage(connection->datatype, connection->md5sum)) {
+      definitions.emplace(connection->datatype, connection->msg_def);
+    }
+  }
+  return definitions;
+}
+
 /// Simulates one episode of a bag in parallel with reading it.
 class Simulation {
  public:
+  /// @param definitions of the bag's messages
   /// @throws InputError if the spec does not contain a valid scenario
-  explicit Simulation(const FarmSpec& spec)
-      : scenario_(std::make_shared<const aquafarm::Scenario>(
+  Simulation(const FarmSpec& spec, const Definitions& definitions)
+      : definitions_(definitions),
+        scenario_(std::make_shared<const aquafarm::Scenario>(
             aquafarm::ParseScenario(spec.scenario_yaml, "spec.scenario_yaml"))),
         farm_(scenario_),
         spec_stamp_(spec.header.stamp) {
@@ -74,7 +90,7 @@ class Simulation {
     FarmSpec simulated;
     ToMsg(farm_, encoder, spec.farms, aquafarm::ToYaml(*scenario_), {}, simulated);
     simulated.header = spec.header;
-    const std::string difference = FirstDifference(spec, simulated);
+    const std::string difference = Difference(spec, simulated);
     return difference.empty() ? "" : "spec." + difference;
   }
 
@@ -95,14 +111,14 @@ class Simulation {
     FarmState simulated;
     ToMsg(farm_, context, simulated);
     simulated.header = state.header;
-    const std::string difference = FirstDifference(state, simulated);
+    const std::string difference = Difference(state, simulated);
     return difference.empty() ? "" : "state." + difference;
   }
 
   std::string Check(const EpisodeSummary& summary) const {
     EpisodeSummary simulated = ToMsg(farm_.record(), summary.farm, {});
     simulated.header = summary.header;
-    const std::string difference = FirstDifference(summary, simulated);
+    const std::string difference = Difference(summary, simulated);
     return difference.empty() ? "" : "episode." + difference;
   }
 
@@ -166,6 +182,17 @@ class Simulation {
     return "";
   }
 
+  // Compares the fields that the bag's definition has.
+  template <typename Message>
+  std::string Difference(Message got, Message& simulated) const {
+    const auto found = definitions_.find(ros::message_traits::datatype<Message>());
+    if (found == definitions_.end()) return FirstDifference(got, simulated);
+    DropAddedFields(found->second, got);  // where a bag has messages of two versions
+    DropAddedFields(found->second, simulated);
+    return FirstDifference(got, simulated);
+  }
+
+  const Definitions& definitions_;
   std::shared_ptr<const aquafarm::Scenario> scenario_;
   Farm farm_;
   ros::Time spec_stamp_;
@@ -183,8 +210,11 @@ class Checker {
  public:
   /// @param path path of the bag, for error messages
   Checker(std::map<Key, FarmSpec> specs, std::multimap<Key, EpisodeSummary> summaries,
-          std::string path)
-      : specs_(std::move(specs)), summaries_(std::move(summaries)), path_(std::move(path)) {}
+          Definitions definitions, std::string path)
+      : specs_(std::move(specs)),
+        summaries_(std::move(summaries)),
+        definitions_(std::move(definitions)),
+        path_(std::move(path)) {}
 
   /// @returns false at the first difference
   bool Take(const rosbag::MessageInstance& message, bool is_chart) {
@@ -261,7 +291,7 @@ class Checker {
     key_ = key;
     const auto spec = specs_.find(key);
     if (spec == specs_.end()) return Compared(step, "the bag holds no spec of this episode");
-    NamingBag(path_, [&] { simulation_.emplace(spec->second); });
+    NamingBag(path_, [&] { simulation_.emplace(spec->second, definitions_); });
     return Compared(0, simulation_->Check(spec->second));
   }
 
@@ -274,6 +304,7 @@ class Checker {
 
   const std::map<Key, FarmSpec> specs_;
   std::multimap<Key, EpisodeSummary> summaries_;  // summaries that are not yet compared
+  const Definitions definitions_;
   const std::string path_;
   Key key_;  // key of the simulated episode
   std::optional<Simulation> simulation_;
@@ -340,7 +371,8 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
     auto specs = ReadSpecs(bag, ranch + names::kSpec, refused.difference);
     CheckVersions(specs, path);
     if (!refused.difference.empty()) return refused;
-    Checker checker(std::move(specs), ReadSummaries(bag, ranch + names::kEpisode), path);
+    Checker checker(std::move(specs), ReadSummaries(bag, ranch + names::kEpisode),
+                    OlderDefinitions(bag), path);
     const std::string chart = ranch + names::kChart;
     rosbag::View view(bag, rosbag::TopicQuery({ranch + names::kState, ranch + names::kSavedState,
                                                chart, ranch + names::kRisk}));

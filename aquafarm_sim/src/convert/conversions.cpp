@@ -36,6 +36,10 @@ void FillShip(const aquafarm::Farm& farm, std::int32_t id, aquafarm_msgs::ShipSt
   message.terms = ToMsg(ship.terms);
   message.reward = ship.reward;
   message.episode_return = ship.episode_return;
+  message.energy = ship.energy;
+  message.distance = ship.distance;
+  message.episode_energy = ship.episode_energy;
+  message.episode_distance = ship.episode_distance;
   message.legal_actions = farm.LegalActions(id);
 }
 
@@ -132,13 +136,16 @@ void FillPlaces(const aquafarm::Farm& farm, aquafarm_msgs::FarmSpec& message) {
   }
 }
 
-void FillRewards(const aquafarm::RewardSpec& rewards, aquafarm_msgs::RewardTable& message) {
+// @param weight of energy
+void FillRewards(const aquafarm::RewardSpec& rewards, double weight,
+                 aquafarm_msgs::RewardTable& message) {
   message.island_crash = rewards.island_crash;
   message.pickup = rewards.pickup;
   message.drop_off = rewards.drop_off;
   message.illegal = rewards.illegal;
   message.collision = rewards.collision;
   message.step = rewards.step;
+  message.energy = static_cast<float>(weight);
   message.team = rewards.sharing == aquafarm::RewardSharing::kTeam;
 }
 
@@ -189,6 +196,7 @@ aquafarm_msgs::RewardTerms ToMsg(const aquafarm::RewardTerms& terms) {
   message.illegal = terms.illegal;
   message.collision = terms.collision;
   message.step = terms.step;
+  message.energy = terms.energy;
   return message;
 }
 
@@ -238,11 +246,16 @@ void ToMsg(const aquafarm::Farm& farm, const MessageContext& context,
   FillEpisode(farm, context, message);
   message.ships.resize(farm.ships().size());
   message.joint_reward = 0.0F;
+  message.joint_energy = message.joint_distance = 0.0;
   for (std::size_t i = 0; i < farm.ships().size(); ++i) {
     FillShip(farm, static_cast<std::int32_t>(i), message.ships[i]);
     message.joint_reward += farm.ships()[i].terms.Total();
+    message.joint_energy += farm.ships()[i].energy;
+    message.joint_distance += farm.ships()[i].distance;
   }
   message.joint_return = farm.record().episode_return;
+  message.total_energy = farm.record().energy;
+  message.total_distance = farm.record().distance;
   message.devices.resize(farm.devices().size());
   for (std::size_t i = 0; i < farm.devices().size(); ++i) {
     message.devices[i] = ToMsg(farm, static_cast<std::int32_t>(i));
@@ -283,6 +296,10 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::View& view, const Message
   message.observer = view.ship;
   message.joint_reward = self.reward;
   message.joint_return = self.episode_return;
+  message.joint_energy = self.energy;
+  message.joint_distance = self.distance;
+  message.total_energy = self.episode_energy;
+  message.total_distance = self.episode_distance;
 }
 
 void ToMsg(const aquafarm::Farm& farm, const aquafarm::Encoder& encoder, std::int32_t farms,
@@ -319,7 +336,7 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::Encoder& encoder, std::in
   message.agents = static_cast<std::int32_t>(farm.ships().size());
   message.capacity = scenario.ships.capacity;
   FillPlaces(farm, message);
-  FillRewards(scenario.rewards, message.rewards);
+  FillRewards(scenario.rewards, scenario.energy ? scenario.energy->weight : 0.0, message.rewards);
   message.state_count = encoder.state_count();
   message.feature_count = encoder.feature_count();
   message.feature_names = encoder.feature_names();
@@ -343,6 +360,8 @@ aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record, std::
   message.crashes = record.crashes;
   message.collisions = record.collisions;
   message.steps_in_disaster = record.steps_in_disaster;
+  message.energy = record.energy;
+  message.distance = record.distance;
   message.reason = static_cast<std::uint8_t>(record.reason);
   message.terminated = aquafarm::IsTerminated(record.reason);
   message.truncated = aquafarm::IsTruncated(record.reason);

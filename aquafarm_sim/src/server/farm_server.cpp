@@ -122,6 +122,7 @@ aquafarm_msgs::CommandResult FarmServer::Refuse(std::int32_t ship, std::uint8_t 
   Describe(ship >= 0 && ship < agents_ ? ship : aquafarm::kNone, result);
   result.reward = 0.0F;
   result.terms = aquafarm_msgs::RewardTerms();
+  result.energy = result.distance = 0.0;
   result.code = code;
   result.message = message;
   return result;
@@ -146,6 +147,7 @@ aquafarm_msgs::CommandResult FarmServer::AcceptPaced(const ShipCommand& command)
   slot.answer.code = Outcome::ACCEPTED;
   slot.answer.reward = 0.0F;
   slot.answer.terms = aquafarm_msgs::RewardTerms();
+  slot.answer.energy = slot.answer.distance = 0.0;
   ++slot.answer.step;
   return slot.answer;
 }
@@ -325,6 +327,8 @@ void FarmServer::Describe(std::int32_t ship, aquafarm_msgs::CommandResult& resul
   const aquafarm::Ship& of = farm.ships()[static_cast<std::size_t>(ship)];
   result.reward = of.reward;
   result.terms = ToMsg(of.terms);
+  result.energy = of.energy;
+  result.distance = of.distance;
   result.legal_actions = farm.LegalActions(ship);
 }
 

@@ -3,7 +3,6 @@
 
 #include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/Outcome.h>
-#include <rosbag/player.h>
 #include <rosgraph_msgs/Clock.h>
 
 #include <algorithm>
@@ -66,8 +65,8 @@ ReplayNode::ReplayNode(ros::NodeHandle node, const ReplayParams& params)
   for (const rosbag::MessageInstance& message : tape_.messages()) {
     const std::string& topic = message.getTopic();
     if (topics_.count(topic) != 0 || IsDrawn(message)) continue;
-    ros::AdvertiseOptions options = rosbag::createAdvertiseOptions(
-        message, IsState(message) ? ReplayTape::kQueueOfStates : kQueue);
+    ros::AdvertiseOptions options =
+        AdvertiseOptionsOf(message, IsState(message) ? ReplayTape::kQueueOfStates : kQueue);
     // A late subscriber gets the last message. States are not latched.
     options.latch =
         message.getDataType() != ros::message_traits::datatype<aquafarm_msgs::FarmState>();
@@ -113,7 +112,7 @@ void ReplayNode::PublishClock() {
 void ReplayNode::Publish(std::size_t position) {
   const rosbag::MessageInstance& message = tape_.messages()[position];
   const auto topic = topics_.find(message.getTopic());
-  if (topic != topics_.end()) topic->second.publish(message);
+  if (topic != topics_.end()) PublishMessage(message, topic->second);
 }
 
 void ReplayNode::Tick() {

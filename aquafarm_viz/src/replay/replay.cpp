@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_viz/replay/replay.h"
 
+#include <aquafarm_msgs/EpisodeSummary.h>
 #include <aquafarm_msgs/FarmSpec.h>
+#include <rosbag/player.h>
 
 #include <algorithm>
 #include <map>
@@ -13,6 +15,7 @@
 namespace aquafarm_viz {
 namespace {
 
+using aquafarm_msgs::EpisodeSummary;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 namespace traits = ros::message_traits;
@@ -29,7 +32,51 @@ bool EndsWith(const std::string& text, const std::string& end) {
 // Returns the part of a topic before its last name.
 std::string Namespace(const std::string& topic) { return topic.substr(0, topic.rfind('/') + 1); }
 
+// Messages of an earlier version are published as those of this one. The types are those of
+// kOlderMessages.
+
+template <typename Message>
+bool IsOlder(const rosbag::MessageInstance& message) {
+  return message.getDataType() == ros::message_traits::datatype<Message>() &&
+         aquafarm_sim::IsOlderMessage(message.getDataType(), message.getMD5Sum());
+}
+
+template <typename... Messages>
+ros::AdvertiseOptions OptionsOf(const rosbag::MessageInstance& message, std::uint32_t queue) {
+  ros::AdvertiseOptions options = rosbag::createAdvertiseOptions(message, queue);
+  const auto set = [&](const char* md5sum, const char* definition) {
+    options.md5sum = md5sum;
+    options.message_definition = definition;
+  };
+  ((IsOlder<Messages>(message)
+        ? set(ros::message_traits::md5sum<Messages>(), ros::message_traits::definition<Messages>())
+        : void()),
+   ...);
+  return options;
+}
+
+// Returns whether it was a message of an earlier version.
+template <typename... Messages>
+bool PublishOlder(const rosbag::MessageInstance& message, const ros::Publisher& publisher) {
+  const auto publish = [&](const auto& translated) {
+    if (translated) publisher.publish(*translated);
+    return true;
+  };
+  return ((IsOlder<Messages>(message) && publish(aquafarm_sim::Instantiate<Messages>(message))) ||
+          ...);
+}
+
 }  // namespace
+
+ros::AdvertiseOptions AdvertiseOptionsOf(const rosbag::MessageInstance& message,
+                                         std::uint32_t queue) {
+  return OptionsOf<FarmSpec, FarmState, EpisodeSummary>(message, queue);
+}
+
+void PublishMessage(const rosbag::MessageInstance& message, const ros::Publisher& publisher) {
+  if (PublishOlder<FarmSpec, FarmState, EpisodeSummary>(message, publisher)) return;
+  publisher.publish(message);
+}
 
 bool IsState(const rosbag::MessageInstance& message) {
   return Is<FarmState>(message) && !EndsWith(message.getTopic(), "/observation");

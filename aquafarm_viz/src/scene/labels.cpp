@@ -84,18 +84,19 @@ std::string MissingSteps(std::uint64_t count) {
          " missing; 'verify' says which";
 }
 
-std::array<std::pair<const char*, float>, 7> RewardTermsOf(const aquafarm_msgs::FarmState& state) {
-  std::array<std::pair<const char*, float>, 7> sums{{{"crash", 0.0F},
+std::array<std::pair<const char*, float>, 8> RewardTermsOf(const aquafarm_msgs::FarmState& state) {
+  std::array<std::pair<const char*, float>, 8> sums{{{"crash", 0.0F},
                                                      {"disaster", 0.0F},
                                                      {"pickup", 0.0F},
                                                      {"drop-off", 0.0F},
                                                      {"illegal", 0.0F},
                                                      {"collision", 0.0F},
-                                                     {"step", 0.0F}}};
+                                                     {"step", 0.0F},
+                                                     {"energy", 0.0F}}};
   for (const auto& ship : state.ships) {
     const auto& terms = ship.terms;
-    const std::array<float, 7> own{terms.crash,   terms.disaster,  terms.pickup, terms.drop_off,
-                                   terms.illegal, terms.collision, terms.step};
+    const std::array<float, 8> own{terms.crash,   terms.disaster,  terms.pickup, terms.drop_off,
+                                   terms.illegal, terms.collision, terms.step,   terms.energy};
     for (std::size_t i = 0; i < own.size(); ++i) sums[i].second += own[i];
   }
   return sums;

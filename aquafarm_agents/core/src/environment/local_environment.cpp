@@ -26,6 +26,8 @@ EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
   result.crashes = record.crashes;
   result.collisions = record.collisions;
   result.steps_in_disaster = record.steps_in_disaster;
+  result.energy = record.energy;
+  result.distance = record.distance;
   result.reason = record.reason;
   return result;
 }

@@ -29,6 +29,8 @@ void Summarise(Evaluation& evaluation) {
     evaluation.success_rate += result.Success() ? 1.0 : 0.0;
     evaluation.mean_crashes += result.crashes;
     evaluation.mean_steps_in_disaster += result.steps_in_disaster;
+    evaluation.mean_energy += result.energy;
+    evaluation.mean_distance += result.distance;
     evaluation.mean_delivered_health += static_cast<double>(result.delivered_health);
     delivering += result.delivered > 0 ? 1.0 : 0.0;
   }
@@ -39,6 +41,8 @@ void Summarise(Evaluation& evaluation) {
   evaluation.success_rate /= count;
   evaluation.mean_crashes /= count;
   evaluation.mean_steps_in_disaster /= count;
+  evaluation.mean_energy /= count;
+  evaluation.mean_distance /= count;
   if (delivering > 0.0) evaluation.mean_delivered_health /= delivering;
 }
 
@@ -62,6 +66,8 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
                          {"delivered_health", evaluation.mean_delivered_health},
                          {"crashes_per_episode", evaluation.mean_crashes},
                          {"steps_in_disaster_per_episode", evaluation.mean_steps_in_disaster},
+                         {"energy_kwh_per_episode", evaluation.mean_energy},
+                         {"distance_km_per_episode", evaluation.mean_distance},
                          {"wall_s", evaluation.wall_s}};
   if (evaluation.mean_bound) json["upper_bound_per_episode"] = *evaluation.mean_bound;
   return json;
@@ -129,9 +135,11 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
 
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context) {
-  std::string rows = std::string(kEpisodeColumns) + "\n";
+  std::string rows = std::string(kEpisodeColumns) + "," + kAddedEpisodeColumns + "\n";
   for (const EpisodeResult& result : evaluation.episodes) {
     AppendEpisode(result, rows);
+    rows += ',';
+    AppendAdded(result, rows);
     rows += '\n';
   }
   WriteFileAtomically(prefix + ".csv", rows);

@@ -24,6 +24,14 @@ void Put(T value, std::string& text) {
   text.append(digits, static_cast<std::size_t>(end - digits));
 }
 
+// Returns whether the first line of a file names the added columns.
+bool HasAdded(int file) {
+  std::string line(1024, '\0');
+  const ssize_t got = pread(file, line.data(), line.size(), 0);
+  line.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  return line.substr(0, line.find('\n')).find(kAddedEpisodeColumns) != std::string::npos;
+}
+
 }  // namespace
 
 void AppendEpisode(const EpisodeResult& result, std::string& text) {
@@ -46,16 +54,22 @@ void AppendEpisode(const EpisodeResult& result, std::string& text) {
   text += result.Success() ? ",1" : ",0";
 }
 
+void AppendAdded(const EpisodeResult& result, std::string& text) {
+  Put(result.energy, text);
+  text += ',';
+  Put(result.distance, text);
+}
+
 MetricsFile::MetricsFile(std::string path) : path_(std::move(path)) {
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file_ < 0) throw StorageError(ErrnoText(path_, "cannot be written"));
-  buffer_ =
-      std::string("number,total_steps,") + kEpisodeColumns + ",exploration,learning_rate,loss\n";
+  buffer_ = std::string("number,total_steps,") + kEpisodeColumns +
+            ",exploration,learning_rate,loss," + kAddedEpisodeColumns + "\n";
   buffer_.reserve(2 * kFlushBytes);
 }
 
 MetricsFile::MetricsFile(std::string path, std::uint64_t size) : path_(std::move(path)) {
-  file_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+  file_ = open(path_.c_str(), O_RDWR | O_CLOEXEC);
   if (file_ < 0) throw StorageError(ErrnoText(path_, "cannot be continued"));
   struct stat status {};
   const bool known = fstat(file_, &status) == 0;
@@ -69,6 +83,7 @@ MetricsFile::MetricsFile(std::string path, std::uint64_t size) : path_(std::move
                      " bytes, expected at least the " + std::to_string(size) +
                      " that the checkpoint records");
   }
+  has_added_ = HasAdded(file_);
   flushed_ = size;
   buffer_.reserve(2 * kFlushBytes);
 }
@@ -90,6 +105,10 @@ void MetricsFile::Append(std::uint64_t number, std::uint64_t total_steps,
   Put(status.learning_rate, buffer_);
   buffer_ += ',';
   Put(status.loss, buffer_);
+  if (has_added_) {
+    buffer_ += ',';
+    AppendAdded(result, buffer_);
+  }
   buffer_ += '\n';
   if (buffer_.size() >= kFlushBytes) Flush();
 }

@@ -27,12 +27,15 @@ std::size_t PlannerSolver::Delivered(std::size_t set) const {
 void PlannerSolver::Prepare(const Farm& farm) {
   const bool is_prepared = IsPrepared(farm);
   if (!is_prepared) {
+    PriceEnergy(farm);
     ListOptions(farm);
     const Layout& layout = farm.layout();
     chart_.cells = layout.cells;
     chart_.crash_reward = layout.crash_reward;
     chart_.ports = layout.ports;
     planned_devices_ = task_->devices.size();
+    const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
+    planned_self_propelled_ = ship.own_device != kNone;
   }
   for (std::size_t d = 0; d < task_->devices.size(); ++d) {
     const Device& device = farm.devices()[static_cast<std::size_t>(task_->devices[d])];
@@ -44,7 +47,9 @@ void PlannerSolver::Prepare(const Farm& farm) {
   if (!is_prepared) {
     move_reward_ = static_cast<double>(risks_->best_quiet());
     CountMoves();
-    if (scenario_.ships.capacity > 1) SumRewards();
+    const bool costs_energy = idle_cost_ > 0.0 || km_cost_ > 0.0;
+    rewards_.clear();
+    if (scenario_.ships.capacity > 1 || costs_energy) SumRewards();
   }
   last_step_ = risks_->last_step();
   if (task_->until > 0) last_step_ = std::min(last_step_, task_->until);
@@ -117,7 +122,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
     double reward = option.triggers ? static_cast<double>(option.reward) + static_cast<double>(risk)
                                     : static_cast<double>(layers_of_step_->quiet.data()[to]);
     const float crash = crash_hurts_ ? option.damage : 0.0F;
-    reward -= Loss(set, crash) + Wear(set, to);
+    reward -= Loss(set, crash) + Wear(set, to) + EnergyCost(set, option, risk);
     if (!IsInTheWay(step, to)) {
       Reach(step, state(set, to), so_far + reward, parent, option.action);
     }
@@ -131,7 +136,7 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
       const std::size_t next = With(set, d, fate);
       if (next == sets_.size()) continue;
       double reward = static_cast<double>(scenario_.rewards.pickup) + static_cast<double>(risk) -
-                      Wear(next, cell);
+                      Wear(next, cell) - idle_cost_;
       if (fate == kPaid) {
         reward += static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
       }
@@ -144,8 +149,8 @@ void PlannerSolver::Expand(std::int32_t step, std::size_t index) {
   const Cell at{static_cast<std::int32_t>(cell) % scenario_.width,
                 static_cast<std::int32_t>(cell) / scenario_.width};
   if (unloaded == set || (chart_.bits(at) & kPortBit) == 0) return;
-  const double value =
-      so_far + static_cast<double>(scenario_.rewards.drop_off) + static_cast<double>(risk);
+  const double value = so_far + static_cast<double>(scenario_.rewards.drop_off) +
+                       static_cast<double>(risk) - idle_cost_;
   constexpr auto kDropOff = static_cast<std::uint8_t>(Action::kDropOff);
   if (unloaded == all_gone_) {
     Complete(parent, kDropOff, value);

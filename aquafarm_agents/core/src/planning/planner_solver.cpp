@@ -10,6 +10,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/disaster.h"
+#include "aquafarm/farm/energy.h"
 #include "planning/water_distance.h"
 
 namespace aquafarm::agents {
@@ -72,21 +73,23 @@ void PlannerSolver::ListOptions(const Farm& farm) {
         const bool on_map =
             to.x >= 0 && to.y >= 0 && to.x < scenario_.width && to.y < scenario_.height;
         if (!on_map) {
-          edge = {here, 0.0F, 0.0F, action, false};
+          edge = {here, 0.0F, 0.0F, 0.0, action, false};
         } else if ((layout.bits(to) & kBlockedBits) != 0) {
           const float reward = layout.crash_reward(to.y, to.x);
           best_crash_ = std::max(best_crash_, reward);
           options.push_back(
-              {here, reward, CrashDamage(scenario_, layout.bits(to), reward), action, true});
+              {here, reward, CrashDamage(scenario_, layout.bits(to), reward), 0.0, action, true});
         } else {
-          options.push_back({LinearIndex(to, scenario_.width), 0.0F, 0.0F, action, false});
+          const double km =
+              MoveLength(static_cast<Action>(action)) * scenario_.cell_size_m / 1000.0;
+          options.push_back({LinearIndex(to, scenario_.width), 0.0F, 0.0F, km, action, false});
         }
       }
       if (edge) options.push_back(*edge);
       // Staying in the cell by an illegal action, which replaces the step reward. The action chosen
       // must not pick up or drop off a device here.
       const bool at_port = (layout.bits({x, y}) & kPortBit) != 0;
-      options.push_back({here, scenario_.rewards.illegal, 0.0F,
+      options.push_back({here, scenario_.rewards.illegal, 0.0F, 0.0,
                          static_cast<std::uint8_t>(at_port ? Action::kPickup : Action::kDropOff),
                          true});
     }
@@ -99,7 +102,9 @@ bool PlannerSolver::IsPrepared(const Farm& farm) const {
   const auto is_same = [](const auto& a, const auto& b) {
     return a.size() == b.size() && (a == b).all();
   };
+  const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
   if (planned_devices_ != task_->devices.size() ||
+      planned_self_propelled_ != (ship.own_device != kNone) ||
       move_reward_ != static_cast<double>(risks_->best_quiet()) ||
       !is_same(chart_.cells, layout.cells) || !is_same(chart_.crash_reward, layout.crash_reward)) {
     return false;
@@ -117,6 +122,26 @@ bool PlannerSolver::IsOfTask(std::size_t set) const {
     if (FateOf(set, d) != kGone) return false;
   }
   return true;
+}
+
+// A self-propelled device carries itself, without a load.
+void PlannerSolver::PriceEnergy(const Farm& farm) {
+  load_.assign(sets_.size(), 1.0);
+  idle_cost_ = km_cost_ = rough_sea_ = 0.0;
+  if (!scenario_.energy || scenario_.energy->weight == 0.0) return;
+  const EnergySpec& energy = *scenario_.energy;
+  const Ship& ship = farm.ships()[static_cast<std::size_t>(task_->ship)];
+  const bool is_ship = ship.own_device == kNone;
+  const EnergyFigures& figures = is_ship ? energy.ships : energy.self_propelled;
+  idle_cost_ = energy.weight * figures.idle_per_step;
+  km_cost_ = energy.weight * figures.per_km;
+  rough_sea_ = figures.rough_sea / static_cast<double>(kWorstRisk);
+  for (std::size_t set = 0; set < sets_.size() && is_ship; ++set) {
+    for (std::size_t d = 0; d < devices_; ++d) {
+      const Fate fate = FateOf(set, d);
+      if (fate == kPaid || fate == kUnpaid) load_[set] += figures.per_device;
+    }
+  }
 }
 
 // Lists where a set of devices changes, with the moves that follow.
@@ -184,7 +209,7 @@ void PlannerSolver::CountMoves() {
 void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) const {
   const auto raise = [&](std::size_t next, std::size_t cell, float reward) {
     const double further = next == all_gone_ ? 0.0 : rewards_[next * cells_ + cell];
-    best[cell] = std::max(best[cell], static_cast<double>(reward) + further);
+    best[cell] = std::max(best[cell], static_cast<double>(reward) - idle_cost_ + further);
   };
   for (std::size_t d = 0; d < devices_; ++d) {
     if (FateOf(set, d) != kWaiting) continue;
@@ -200,8 +225,9 @@ void PlannerSolver::SeedRewards(std::size_t set, std::vector<double>& best) cons
   }
 }
 
-// Sums the max rewards of every state until the task is complete. With a capacity above 1, one
-// drop-off may unload several devices, and each drop-off has a reward.
+// Sums the max rewards of every state until the task is complete, in calm water. With a capacity
+// above 1, one drop-off may unload several devices, and each drop-off has a reward. With energy, a
+// move costs what its length and its load cost.
 void PlannerSolver::SumRewards() {
   rewards_.assign(state_count(), kNever);
   std::vector<double> best(cells_);
@@ -218,8 +244,9 @@ void PlannerSolver::SumRewards() {
       if (value < best[cell]) continue;
       for (const Option& option : options_[cell]) {
         const auto to = static_cast<std::size_t>(option.to);
-        if (value + move_reward_ <= best[to]) continue;
-        best[to] = value + move_reward_;
+        const double further = value + move_reward_ - EnergyCost(set, option, 0.0F);
+        if (further <= best[to]) continue;
+        best[to] = further;
         queue.push({best[to], to});
       }
     }
@@ -290,7 +317,7 @@ void PlannerSolver::SumStepRewards(const Farm& farm) {
   for (std::size_t k = 1; k <= steps; ++k) {
     BestRewards best{later, 0.0};
     if (k <= known) best = BestOf(risks_->At(first_step_ + static_cast<std::int32_t>(k)));
-    step_rewards_[k] = step_rewards_[k - 1] + best.any;
+    step_rewards_[k] = step_rewards_[k - 1] + best.any - idle_cost_;
     // A step with a pickup or a drop-off earns at most the risk.
     surcharges_[k] =
         surcharges_[k - 1] + std::max(std::min(0.0, best.any - move_reward_), best.risk);

@@ -30,6 +30,7 @@ struct Option {
   std::int32_t to{};
   float reward{};  // of a crash or an illegal action; 0 for a quiet move
   float damage{};  // health lost aboard in a crash
+  double km{};     // distance covered
   std::uint8_t action{};
   bool triggers{};  // a crash or an illegal action, which replaces the step reward, even if it is 0
 };
@@ -67,6 +68,12 @@ class PlannerSolver {
   std::size_t Delivered(std::size_t set) const;
 
   void Prepare(const Farm& farm);
+  void PriceEnergy(const Farm& farm);
+  // Returns the cost of the energy of a step with an action of the list.
+  double EnergyCost(std::size_t set, const Option& option, float risk) const {
+    const double sea = 1.0 + rough_sea_ * static_cast<double>(risk);
+    return idle_cost_ + km_cost_ * load_[set] * option.km * sea;
+  }
   void ListOptions(const Farm& farm);
   bool IsPrepared(const Farm& farm) const;
   std::vector<std::size_t> LastSetsFirst() const;
@@ -123,16 +130,24 @@ class PlannerSolver {
   std::vector<double> surcharges_;      // by step: sum by which they fall short of move_reward_
   bool crash_hurts_{};
 
+  // Costs of energy in the reward (farm/energy.h); 0 without energy.
+  double idle_cost_{};        // of a step
+  double km_cost_{};          // of a kilometre without load in calm water
+  double rough_sea_{};        // added to a factor of 1 per unit of (negative) risk
+  std::vector<double> load_;  // by set: factor for the devices aboard
+
   // Data that stay valid for the next plan on the same chart with the same devices.
   Layout chart_;                              // its cells, crash rewards and ports
   std::vector<std::vector<Option>> options_;  // by cell
   float best_crash_{};                        // best reward of a crash on the chart
   std::vector<std::int32_t> site_;            // by device: its cell
   std::size_t planned_devices_{};             // devices of the task
+  bool planned_self_propelled_{};             // the task's ship is a device
   std::vector<std::int32_t> moves_;  // by state: min moves until the task's devices are delivered
   double move_reward_{};             // upper bound of the reward of a move
   std::vector<double> rewards_;      // by state: max reward of moves, pickups and drop-offs until
-                                 // then; empty with a capacity of 1, where it follows from moves_
+                                     // then; empty with a capacity of 1 and no energy, where it
+                                     // follows from moves_
   std::vector<std::pair<std::int32_t, std::size_t>> sources_;  // (moves, cell), for CountMoves
   std::vector<std::size_t> queue_;
 

@@ -9,11 +9,13 @@
 
 #include "aquafarm/agents/planning/risk_source.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/farm/energy.h"
 #include "planning/water_distance.h"
 
 namespace aquafarm::agents {
 namespace {
 
+const double kDiagonal = MoveLength(Action::kNorthEast);
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
 /// The best trip for one device, searched forward in time.
@@ -38,6 +40,9 @@ class Trip {
       bare_[site_] = 0.0;
     }
     ListWaits(farm.ships().size() > 1);
+    if (!scenario_.energy || shares_way_) return;
+    energy_ = device_.self_propelled ? scenario_.energy->self_propelled : scenario_.energy->ships;
+    weight_ = scenario_.energy->weight;
   }
 
   DeviceKind kind() const { return device_.kind; }
@@ -47,9 +52,10 @@ class Trip {
     StartTrips();
     PickUpAndDropOff(risk, damaging);
     const double exposure = static_cast<double>(scenario_.damage.exposure_damage);
-    Spread(risk, nullptr, 0.0, empty_);
-    Spread(risk, &damaging, exposure * static_cast<double>(device_.value), laden_);
-    Spread(risk, nullptr, 0.0, bare_);
+    const std::int32_t aboard = device_.self_propelled ? 0 : 1;
+    Spread(risk, nullptr, 0.0, 0, empty_);
+    Spread(risk, &damaging, exposure * static_cast<double>(device_.value), aboard, laden_);
+    Spread(risk, nullptr, 0.0, aboard, bare_);
     laden_[site_] = std::max(laden_[site_], picked_up_for_value_);
     bare_[site_] = std::max(bare_[site_], picked_up_bare_);
     if (!device_.self_propelled) {
@@ -119,22 +125,23 @@ class Trip {
     for (const Cell port : layout_.ports) {
       const auto here = static_cast<double>(risk(port.y, port.x));
       const double held = std::max(laden_[Index(port)], bare_[Index(port)]);
-      best_ = std::max(best_, held + drop_off() + Risk(here));
+      best_ = std::max(best_, held + drop_off() + Risk(here) - EnergyCost(0.0, 0, 0.0F));
     }
     picked_up_for_value_ = picked_up_bare_ = kNever;
     if (device_.self_propelled || empty_[site_] == kNever) return;
     const auto here = static_cast<double>(risk.data()[site_]);
     const double wear = static_cast<double>(scenario_.damage.exposure_damage * device_.value) *
                         static_cast<double>(damaging.data()[site_]);
-    picked_up_bare_ = empty_[site_] + static_cast<double>(scenario_.rewards.pickup) + Risk(here);
+    picked_up_bare_ = empty_[site_] + static_cast<double>(scenario_.rewards.pickup) + Risk(here) -
+                      EnergyCost(0.0, 0, 0.0F);
     picked_up_for_value_ = picked_up_bare_ + worth() + wear;
     best_ = std::max(best_, picked_up_bare_);  // without a delivery
   }
 
   // One move, or one step of waiting, from every cell. Each cell keeps the max return of all routes
-  // to it. @param damaging nullptr if no device is aboard
+  // to it. @param damaging nullptr if no device is aboard @param aboard devices aboard
   void Spread(const Grid<float>& risk, const Grid<float>* damaging, double value_per_risk,
-              std::vector<double>& values) {
+              std::int32_t aboard, std::vector<double>& values) {
     std::fill(next_.begin(), next_.end(), kNever);
     for (std::int32_t y = 0; y < scenario_.height; ++y) {
       for (std::int32_t x = 0; x < scenario_.width; ++x) {
@@ -145,10 +152,13 @@ class Trip {
                      ? 0.0
                      : static_cast<double>((*damaging)(at.y, at.x)) * value_per_risk;
         };
-        Raise({x, y}, value + Price(risk, {x, y}, wait_[Index({x, y})]) + wear({x, y}));
+        Raise({x, y}, value + Price(risk, {x, y}, wait_[Index({x, y})]) + wear({x, y}) -
+                          EnergyCost(0.0, aboard, 0.0F));
         ForEachNeighbour({x, y}, [&](Cell to) {
           if ((layout_.bits(to) & kBlockedBits) != 0) return;
-          Raise(to, value + Price(risk, to, move_) + wear(to));
+          const double km = (to.x != x && to.y != y ? kDiagonal : 1.0) * cell_km_;
+          Raise(to, value + Price(risk, to, move_) + wear(to) -
+                        EnergyCost(km, aboard, risk(to.y, to.x)));
         });
       }
     }
@@ -158,6 +168,10 @@ class Trip {
   double Price(const Grid<float>& risk, Cell to, double quiet) const {
     const auto here = static_cast<double>(risk(to.y, to.x));
     return here < 0.0 ? Risk(here) : quiet;
+  }
+  // Returns the cost of the energy of a step; 0 for a ship with several devices.
+  double EnergyCost(double km, std::int32_t aboard, float risk) const {
+    return weight_ == 0.0 ? 0.0 : weight_ * EnergyOf(energy_, km, aboard, risk);
   }
   // Returns the reward of a risk. A ship with several devices pays it once, so it is then ignored.
   double Risk(double here) const { return shares_way_ ? 0.0 : here; }
@@ -173,6 +187,9 @@ class Trip {
   std::size_t site_;
   float health_;
   bool shares_way_{};
+  EnergyFigures energy_;
+  double weight_{0.0};  // of energy
+  double cell_km_{scenario_.cell_size_m / 1000.0};
   double move_{};
   double best_{0.0};           // 0: the device is not fetched
   std::vector<double> empty_;  // max return so far, by cell: without the device

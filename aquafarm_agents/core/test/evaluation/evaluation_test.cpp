@@ -119,10 +119,15 @@ TEST_F(EvaluationFiles, HoldWhatIsNeededToDoItAgain) {
   EXPECT_EQ(json.at("distinct_episodes"), 1);
   EXPECT_EQ(json.at("scenario_hash"), 77);
   EXPECT_EQ(json.at("success_rate"), 1.0);
+  EXPECT_EQ(json.at("energy_kwh_per_episode"), 0.0);
+  EXPECT_NEAR(json.at("distance_km_per_episode").get<double>(), evaluation.episodes[0].distance,
+              1e-9);
+  EXPECT_GT(evaluation.episodes[0].distance, 1.0);
   std::ifstream csv(folder_ + "/e.csv");
   std::string line;
   std::getline(csv, line);
   EXPECT_CONTAINS(line, "farm,seed,episode,steps,return");
+  EXPECT_CONTAINS(line, ",success,energy_kwh,distance_km");
   int rows = 0;
   while (std::getline(csv, line)) {
     EXPECT_CONTAINS(line, ",all_retrieved,1");

@@ -72,6 +72,41 @@ TEST(Clairvoyant, EqualsBruteForceWhereAStepCostsMoreThanARisk) {
   }
 }
 
+// Diagonals, loads, rough sea and waiting have prices of the order of the other rewards.
+TEST(Clairvoyant, EqualsBruteForceWithEnergy) {
+  const EnergyFigures light{0.7, 0.5, 1.0, 0.2};
+  for (const double weight : {0.3, 2.0, 12.0}) {
+    for (const std::int32_t capacity : {1, 2}) {
+      SCOPED_TRACE(std::to_string(weight) + " capacity " + std::to_string(capacity));
+      Scenario scenario = TinyScenario(9, 0.02F, capacity);
+      scenario.energy = EnergySpec{weight, {1.0, 0.8, 0.6, 0.1}, light};
+      ExpectBruteForce(scenario, 4);
+      scenario.cell_size_m = 250.0;
+      scenario.energy->ships = light;
+      ExpectBruteForce(scenario, 2);
+    }
+  }
+}
+
+TEST(Clairvoyant, PrefersTheShorterOfTwoWaysWithEqualMoves) {
+  Scenario scenario = TinyScenario(40, 0.0F, 1);
+  scenario.islands.clear();
+  scenario.rocks.cells = {{0, 2}};
+  scenario.ports.cells = {{0, 0}};
+  scenario.devices.sites = {{{3, 0}, DeviceKind::kMonitoring, 60.0F, false}};
+  scenario.disasters.clear();
+  scenario.step_limit = 40;
+  scenario.energy = EnergySpec{0.01, {1.0, 0.0, 0.0, 0.0}, {}};
+  const auto shared = test::Share(scenario);
+  Farm farm(shared);
+  farm.Reset(1, 0);
+  Planner planner(*shared);
+  Play(farm, planner.Solve(farm, Foresight::kOracle));
+  EXPECT_EQ(farm.reason(), EndReason::kAllRetrieved);
+  EXPECT_EQ(farm.record().steps, 8);
+  EXPECT_DOUBLE_EQ(farm.record().distance, 6.0);  // any diagonal would be longer
+}
+
 // A self-propelled device waits next to a rock until the storm has left its port. A step costs 9.
 Scenario WaitingScenario(float illegal, float rock) {
   Scenario scenario = TinyScenario(5, 0.0F, 1);
@@ -97,6 +132,12 @@ TEST(Clairvoyant, EqualsBruteForceWhereAnIllegalActionOrACrashIsFree) {
   Scenario lenient = TinyScenario(6, 0.0F, 1);
   lenient.rewards.illegal = 0.0F;
   ExpectBruteForce(lenient, 3);
+}
+
+TEST(Clairvoyant, EqualsBruteForceWithTheEnergyOfASelfPropelledDevice) {
+  Scenario scenario = WaitingScenario(-10.0F, -5.0F);
+  scenario.energy = EnergySpec{2.0, {50.0, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.6, 0.5}};
+  ExpectBruteForce(scenario, 1);
 }
 
 TEST(TeamBound, HoldsWhereWaitingOnTheWayIsCheaperThanAStep) {

@@ -81,6 +81,8 @@ TEST_F(MetricsFileTest, ContinuesWhereTheCheckpointWas) {
   EpisodeResult result;
   result.reason = EndReason::kStepLimit;
   result.episode_return = 0.1F;
+  result.energy = 2.5;
+  result.distance = 0.75;
   std::uint64_t size = 0;
   {
     MetricsFile metrics(path);
@@ -91,7 +93,7 @@ TEST_F(MetricsFileTest, ContinuesWhereTheCheckpointWas) {
     EXPECT_EQ(std::filesystem::file_size(path), metrics.size());
   }
   const std::string whole = ReadFile(path);
-  EXPECT_CONTAINS(whole, "\n1,10,0,0,0,0,0.1,0,0,0,0,0,0,step_limit,0,0.25,0.125,0.5\n");
+  EXPECT_CONTAINS(whole, "\n1,10,0,0,0,0,0.1,0,0,0,0,0,0,step_limit,0,0.25,0.125,0.5,2.5,0.75\n");
   {
     MetricsFile metrics(path, size);
     metrics.Append(2, 20, result, {});
@@ -100,6 +102,21 @@ TEST_F(MetricsFileTest, ContinuesWhereTheCheckpointWas) {
   EXPECT_EQ(ReadFile(path), whole);
   EXPECT_CONTAINS(MessageOf<InputError>([&] { MetricsFile(path, 100000); }),
                   "expected at least the 100000 that the checkpoint records");
+}
+
+TEST_F(MetricsFileTest, OfVersion010ContinuesWithItsOwnColumns) {
+  const std::string path = folder_ + "/metrics.csv";
+  const std::string header =
+      std::string("number,total_steps,") + kEpisodeColumns + ",exploration,learning_rate,loss\n";
+  std::ofstream(path) << header;
+  EpisodeResult result;
+  result.energy = 2.5;
+  {
+    MetricsFile metrics(path, header.size());
+    metrics.Append(1, 10, result, {0.5F, 0.25F, 0.125F});
+    metrics.Sync();
+  }
+  EXPECT_EQ(ReadFile(path), header + "1,10,0,0,0,0,0,0,0,0,0,0,0,none,0,0.25,0.125,0.5\n");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/farm/energy.h"
 #include "aquafarm/grid/action.h"
 #include "aquafarm/storms/draw_storm.h"
 
@@ -156,6 +157,7 @@ void Farm::Step(const std::uint8_t* actions) {
     Act(static_cast<std::int32_t>(id), static_cast<Action>(actions[id]));
   }
   Damage();
+  Consume();
   Reward();
   Finish();
 }
@@ -192,6 +194,8 @@ void Farm::IssueBulletins() {
 void Farm::Act(std::int32_t id, Action action) {
   Ship& ship = ships_[static_cast<std::size_t>(id)];
   ship.terms = RewardTerms{};
+  ship.energy = 0.0;
+  ship.distance = 0.0;
   ship.action = action;
   if (!ship.in_play) {
     ship.outcome = Outcome::kOutOfPlay;
@@ -260,6 +264,7 @@ void Farm::Move(Ship& ship, std::int32_t id, Action action) {
     return;
   }
   ship.outcome = Outcome::kOk;
+  ship.distance = MoveLength(action) * scenario_->cell_size_m / 1000.0;
   ship.cell = to;
   ship_index_[static_cast<std::size_t>(id)] = index;
   if (ship.own_device != kNone) devices_[static_cast<std::size_t>(ship.own_device)].cell = to;
@@ -352,6 +357,25 @@ void Farm::Damage() {
     if (device.status == DeviceStatus::kDelivered) continue;
     const float risk = DamagingRiskAt(CellOf(static_cast<std::int32_t>(i)), device.kind);
     device.health = Clamped(device.health + exposure * risk);
+  }
+}
+
+void Farm::Consume() {
+  for (Ship& ship : ships_) {
+    if (ship.outcome == Outcome::kOutOfPlay) continue;
+    if (scenario_->energy) {
+      const EnergySpec& energy = *scenario_->energy;
+      const bool is_ship = ship.own_device == kNone;
+      // A ship moves with the devices that it has aboard after its action: a pickup and a drop-off
+      // cover no distance.
+      ship.energy = EnergyOf(is_ship ? energy.ships : energy.self_propelled, ship.distance,
+                             ship.aboard, RiskAt(ship.cell));
+      if (energy.weight > 0.0) ship.terms.energy = static_cast<float>(-energy.weight * ship.energy);
+    }
+    ship.episode_energy += ship.energy;
+    ship.episode_distance += ship.distance;
+    record_.energy += ship.energy;
+    record_.distance += ship.distance;
   }
 }
 

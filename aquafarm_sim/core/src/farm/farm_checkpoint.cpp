@@ -119,6 +119,9 @@ void Farm::HashState(Hasher& hasher) const {
     hasher.Add(ship.own_device, ship.aboard);
     hasher.Add(ship.reward, ship.episode_return);
     hasher.Add(Int(ship.outcome), ship.in_play ? 1 : 0);
+    if (scenario_->energy) {  // part of the features
+      hasher.Add(static_cast<float>(ship.energy), static_cast<float>(ship.episode_energy));
+    }
   }
   for (const Device& device : devices_) {
     hasher.Add(device.cell.x, device.cell.y);
@@ -233,7 +236,8 @@ void Farm::CheckConsistent() const {
     const Ship& ship = ships_[i];
     fits = fits && on_map(ship.cell) && ship.aboard == aboard[i] &&
            ship.aboard <= scenario_->ships.capacity && std::isfinite(ship.reward) &&
-           std::isfinite(ship.episode_return);
+           std::isfinite(ship.episode_return) && std::isfinite(ship.energy + ship.distance) &&
+           std::isfinite(ship.episode_energy + ship.episode_distance);
   }
   fits = fits && record_.steps >= 0 && record_.steps <= scenario_->step_limit &&
          record_.devices == static_cast<std::int32_t>(devices_.size());

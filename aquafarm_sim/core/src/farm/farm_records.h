@@ -125,6 +125,11 @@ struct FieldsOf<Ship> {
     a.Fields("terms", t.crash, t.disaster, t.pickup, t.drop_off, t.illegal, t.collision, t.step);
     a.Field("reward", ship.reward);
     a.Field("return", ship.episode_return);
+    a.Added("energy_term", t.energy);
+    a.Added("energy", ship.energy);
+    a.Added("distance", ship.distance);
+    a.Added("episode_energy", ship.episode_energy);
+    a.Added("episode_distance", ship.episode_distance);
   }
 };
 
@@ -157,6 +162,8 @@ struct FieldsOf<EpisodeRecord> {
     a.Field("collisions", record.collisions);
     a.Field("steps_in_disaster", record.steps_in_disaster);
     a.Field("reason", record.reason);
+    a.Added("energy", record.energy);
+    a.Added("distance", record.distance);
   }
 };
 

@@ -125,6 +125,8 @@ void FarmBatch::WriteOne(std::int32_t i, std::int32_t thread, bool started,
     if (output.terms != nullptr) {
       std::memcpy(output.terms + k * kRewardTermCount, &ship.terms, sizeof(ship.terms));
     }
+    if (output.energy != nullptr) output.energy[k] = static_cast<float>(ship.energy);
+    if (output.distance != nullptr) output.distance[k] = static_cast<float>(ship.distance);
     if (output.outcomes != nullptr) output.outcomes[k] = static_cast<std::uint8_t>(ship.outcome);
     if (output.legal != nullptr) output.legal[k] = one.LegalActions(id);
     if (output.in_play != nullptr) output.in_play[k] = ship.in_play ? 1 : 0;

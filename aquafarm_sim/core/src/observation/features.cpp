@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <initializer_list>
 
+#include "aquafarm/farm/energy.h"
 #include "aquafarm/grid/action.h"
 #include "observation/risk_raster.h"
 
@@ -133,6 +134,10 @@ void WriteIdentity(const FeatureScales&, const View& view, float* out) {
   out[view.ship] = 1.0F;
 }
 
+void WriteEnergy(const FeatureScales& scales, const View& view, float* out) {
+  out[0] = static_cast<float>(view.energy) * scales.energy;
+}
+
 // Writes the next move and the number of moves left to every port and every deployed device.
 void WriteWays(const FeatureScales& scales, const View& view, float* out) {
   const float scale = scales.length;
@@ -235,7 +240,15 @@ std::vector<std::string> KindNames(const Scenario& scenario) {
 }  // namespace
 
 FeatureScales ScalesOf(const Scenario& scenario) {
-  return {1.0F / static_cast<float>(std::max(scenario.width, scenario.height)), Horizon(scenario)};
+  FeatureScales scales{1.0F / static_cast<float>(std::max(scenario.width, scenario.height)),
+                       Horizon(scenario)};
+  if (scenario.energy) {
+    const EnergyFigures& figures =
+        scenario.ships.count > 0 ? scenario.energy->ships : scenario.energy->self_propelled;
+    const double per_step = EnergyOf(figures, scenario.cell_size_m / 1000.0, 0, 0.0F);
+    if (per_step > 0.0) scales.energy = 1.0F / (static_cast<float>(per_step) * scales.time);
+  }
+  return scales;
 }
 
 std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
@@ -257,6 +270,9 @@ std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
        WriteOthers},
       // With these one network can control all agents. A single agent needs none.
       {"identity", Numbered("agent", agents > 1 ? agents : 0, {"self"}), WriteIdentity}};
+  // Only where the reward depends on it.
+  const bool costs_energy = scenario.energy && scenario.energy->weight > 0.0;
+  if (costs_energy) groups.push_back({"energy", {"energy_used"}, WriteEnergy});
   if (scenario.view.waterways) groups.push_back({"waterways", WayNames(scenario), WriteWays});
   if (scenario.view.courses) groups.push_back({"courses", CourseNames(), WriteCourses});
   if (scenario.view.kinds) groups.push_back({"kinds", KindNames(scenario), WriteKinds});

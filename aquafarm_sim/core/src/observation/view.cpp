@@ -110,6 +110,7 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   view.in_play = self.in_play;
   view.step = farm.step();
   view.aboard = self.aboard;
+  view.energy = self.episode_energy;
   view.capacity = scenario.ships.capacity;
   view.scenario = &scenario;
   view.layout = &farm.layout();

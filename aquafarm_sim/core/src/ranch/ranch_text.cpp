@@ -58,6 +58,7 @@ class Writer {
     if (!plan_.storm.waypoints.empty()) WriteStorm();
     for (const DisasterSpec& disaster : plan_.presets) WritePreset(disaster);
     WriteDamage();
+    WriteEnergy();
     Line(plan_.waterways ? "view: {mode: full, waterways: true}" : "view: {mode: full}");
     if (!plan_.layers.empty()) WriteSeas();
     return std::move(yaml_);
@@ -70,6 +71,14 @@ class Writer {
     const bool forecast =
         std::any_of(all.begin(), all.end(), [](const StormWaypoint& one) { return one.forecast; });
     return forecast ? " The storm is " + Describe(plan_.knowledge) + "." : "";
+  }
+
+  // Of a small workboat at about 4 kn (docs/data.md).
+  void WriteEnergy() {
+    constexpr double kOnBoard_kW = 2.0;
+    const double idle_kwh = kOnBoard_kW * plan_.step_s / 3600.0;
+    Line("energy: {per_km: 1.2, per_device: 0.5, rough_sea: 0.5, idle_per_step: " +
+         Short(idle_kwh, 4) + "}  # kWh, no part of the reward");
   }
 
   void Line(const std::string& line) { yaml_ += line + "\n"; }

@@ -357,6 +357,26 @@ void VisitRewardsAndDamage(Archive& a, S& s) {
   });
 }
 
+template <typename Archive, typename F>
+void VisitEnergyFigures(Archive& a, F& figures, bool carries) {
+  constexpr Interval<double> kEnergy{0.0, 1.0e6};
+  constexpr Interval<double> kFactor{0.0, 1000.0};
+  a.Field("per_km", figures.per_km, kEnergy);
+  if (carries) a.Field("per_device", figures.per_device, kFactor);
+  a.Field("rough_sea", figures.rough_sea, kFactor);
+  a.Field("idle_per_step", figures.idle_per_step, kEnergy);
+}
+
+template <typename Archive, typename S>
+void VisitEnergy(Archive& a, S& s) {
+  a.Optional("energy", s.energy, [](auto& b, auto& energy) {
+    b.Field("weight", energy.weight, Interval<double>{0.0, 1000.0});
+    VisitEnergyFigures(b, energy.ships, true);
+    b.Struct("self_propelled",
+             [&](auto& c) { VisitEnergyFigures(c, energy.self_propelled, false); });
+  });
+}
+
 template <typename Archive, typename S>
 void VisitView(Archive& a, S& s) {
   a.Struct("view", [&](auto& b) {
@@ -461,6 +481,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
   a.Structs("disasters", s.disasters, {0, kMaxDisasters},
             [&](auto& b, auto& disaster) { VisitDisaster(b, disaster, &frame); });
   VisitRewardsAndDamage(a, s);
+  VisitEnergy(a, s);
   VisitView(a, s);
   VisitSeas(a, s, frame);
 }

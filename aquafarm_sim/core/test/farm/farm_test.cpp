@@ -441,7 +441,13 @@ void CompareWithOracle(const Scenario& scenario, std::uint64_t seed) {
       for (std::size_t i = 0; i < oracle.ships.size(); ++i) {
         const Ship& ship = farm.ships()[i];
         ASSERT_EQ(ship.outcome, oracle.ships[i].outcome) << where << " ship " << i;
-        ASSERT_EQ(ship.reward, oracle.ships[i].reward) << where << " ship " << i;
+        if (scenario.energy) {
+          ASSERT_FLOAT_EQ(ship.reward, oracle.ships[i].reward) << where << " ship " << i;
+        } else {
+          ASSERT_EQ(ship.reward, oracle.ships[i].reward) << where << " ship " << i;
+        }
+        ASSERT_NEAR(ship.energy, oracle.ships[i].kwh, 1e-9) << where << " ship " << i;
+        ASSERT_NEAR(ship.distance, oracle.ships[i].km, 1e-9) << where << " ship " << i;
         ASSERT_EQ(ship.cell, (Cell{oracle.ships[i].at.first, oracle.ships[i].at.second})) << where;
         ASSERT_EQ(static_cast<std::size_t>(ship.aboard), oracle.ships[i].hold.size()) << where;
       }
@@ -453,6 +459,12 @@ void CompareWithOracle(const Scenario& scenario, std::uint64_t seed) {
       ASSERT_EQ(farm.reason(), oracle.reason) << where;
     }
   }
+}
+
+TEST(Oracle, AgreesOnTheEnergyOfShipsAndSelfPropelledDevices) {
+  Scenario scenario = CrowdedScenario(3, 2);
+  scenario.energy = EnergySpec{0.3, {1.5, 0.4, 0.6, 0.2}, {0.7, 0.0, 0.9, 0.05}};
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) CompareWithOracle(scenario, seed);
 }
 
 TEST(Oracle, AgreesOnRandomFarmsWithOneShip) {

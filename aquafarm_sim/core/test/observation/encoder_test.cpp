@@ -165,6 +165,22 @@ TEST(Features, HaveNoNegativeTimeLeftUnderALongerDisasterSetInPlay) {
   EXPECT_FALSE(farm.over()) << "the longer disaster keeps the episode going";
 }
 
+// The scale is the energy of 400 straight moves of 1 km with 2 + 0.5 kWh.
+TEST(Features, HaveTheEnergyUsedWhereItIsInTheReward) {
+  Scenario scenario = TinyScenario();
+  scenario.step_limit = 400;
+  scenario.energy = EnergySpec{0.0, {2.0, 0.5, 0.4, 0.5}, {}};
+  EXPECT_EQ(FeaturesOf(MakeFarm(scenario), 0).size(), 5U + 8 + 5 + 2);
+  scenario.energy->weight = 0.1;
+  Farm farm = MakeFarm(scenario);
+  EXPECT_EQ(FeaturesOf(farm, 0).size(), 5U + 8 + 5 + 2 + 1);
+  EXPECT_EQ(Feature(farm, "energy_used"), 0.0F);
+  StepOne(farm, Action::kNorth);
+  EXPECT_NEAR(Feature(farm, "energy_used"), 1.0F / 400.0F, 1e-8F);
+  StepOne(farm, Action::kHold);
+  EXPECT_NEAR(Feature(farm, "energy_used"), 1.2F / 400.0F, 1e-8F);
+}
+
 TEST(Features, TellSeveralAgentsApartAndWhatTheOthersCarry) {
   Scenario scenario = TinyScenario();
   scenario.ships.count = 2;

@@ -24,6 +24,8 @@ struct Buffers {
     const auto k = n * static_cast<std::size_t>(batch.agents());
     rewards.resize(k);
     terms.resize(k * kRewardTermCount);
+    energy.resize(k);
+    distance.resize(k);
     outcomes.resize(k);
     legal.resize(k);
     in_play.resize(k);
@@ -35,11 +37,11 @@ struct Buffers {
     planes.resize(k * batch.encoder().planes_size());
   }
   BatchOutput View() {
-    return {rewards.data(), terms.data(),    outcomes.data(), legal.data(),
-            in_play.data(), reasons.data(),  started.data(),  hashes.data(),
+    return {rewards.data(), terms.data(),    energy.data(),  distance.data(), outcomes.data(),
+            legal.data(),   in_play.data(),  reasons.data(), started.data(),  hashes.data(),
             index.data(),   features.data(), planes.data()};
   }
-  std::vector<float> rewards, terms, features;
+  std::vector<float> rewards, terms, energy, distance, features;
   std::vector<std::uint8_t> outcomes, in_play, reasons, started, planes;
   std::vector<ActionMask> legal;
   std::vector<std::uint64_t> hashes;

@@ -148,6 +148,7 @@ Scenario UnusualScenario() {
   s.rewards.pickup = 0.1F;
   s.rewards.sharing = RewardSharing::kTeam;
   s.damage.exposure_damage = std::nextafter(0.001F, 1.0F);
+  s.energy = EnergySpec{0.1, {1.0 / 3.0, 0.5, 0.25, 0.1}, {0.7, 0.0, 0.3, 1e-9}};
   s.view = {ViewMode::kPartial, 7.7F, 3, 1.0e-30F, true, true};
   s.disasters[0].heading_deg = 359;
   s.disasters[0].start = {{-3.3F, 1.0e5F}};
@@ -178,6 +179,8 @@ TEST(Writer, GivesTextThatReadsBackToTheSameBits) {
   EXPECT_EQ(back.start_time, s.start_time);
   EXPECT_EQ(back.layout_seed, s.layout_seed);
   EXPECT_EQ(back.damage.exposure_damage, s.damage.exposure_damage);
+  EXPECT_EQ(back.energy->ships.per_km, s.energy->ships.per_km);
+  EXPECT_EQ(back.energy->self_propelled.idle_per_step, s.energy->self_propelled.idle_per_step);
   EXPECT_EQ(back.view.bulletin_noise, s.view.bulletin_noise);
   EXPECT_EQ(back.view.shared_sight, s.view.shared_sight);
   EXPECT_EQ(back.view.waterways, s.view.waterways);

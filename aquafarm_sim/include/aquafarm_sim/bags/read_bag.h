@@ -7,24 +7,30 @@
 #include <aquafarm_msgs/FarmSpec.h>
 #include <ros/exception.h>
 #include <ros/message_traits.h>
+#include <ros/serialization.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <boost/make_shared.hpp>
 #include <boost/shared_ptr.hpp>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm_sim/bags/bag_structure.h"
+#include "aquafarm_sim/bags/translate_message.h"
 #include "aquafarm_sim/names.h"
 
 namespace aquafarm_sim {
@@ -112,7 +118,8 @@ auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
 using SameText = bool(const std::string& type, const std::string& in_bag,
                       const std::string& in_this_version);
 
-/// Checks that the bag's definitions of the given message types equal those of this version.
+/// Checks that the bag's definitions of the given message types equal those of this version or of
+/// an earlier one that it can read (translate_message.h).
 /// @param is_same_text compares the text of a definition, comments included, with this version's;
 ///        nullptr: only the md5 sums are compared
 /// @throws aquafarm::InputError if a topic of one of these types has another definition
@@ -124,7 +131,7 @@ void CheckMessages(const rosbag::Bag& bag, const std::string& path,
   for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
     const auto is_other = [&](const char* type, const char* md5sum, const char* definition) {
       if (connection->datatype != type) return false;
-      return connection->md5sum != md5sum ||
+      return (connection->md5sum != md5sum && !IsOlderMessage(type, connection->md5sum)) ||
              (is_same_text != nullptr && !is_same_text(type, connection->msg_def, definition));
     };
     if (!(is_other(traits::datatype<Messages>(), traits::md5sum<Messages>(),
@@ -139,7 +146,8 @@ void CheckMessages(const rosbag::Bag& bag, const std::string& path,
 }
 
 /// Opens a bag after checking its lengths and offsets, on which rosbag's reader would crash.
-/// @tparam Messages message types to read; their definitions must equal those of this version
+/// @tparam Messages message types to read; their definitions must be those of this version or of
+///         an earlier one that it can read
 /// @throws aquafarm::InputError with a message of one line that contains the bag's path
 template <typename... Messages>
 void OpenBag(rosbag::Bag& bag, const std::string& path) {
@@ -163,12 +171,92 @@ void OpenBag(rosbag::Bag& bag, const std::string& path) {
   CheckMessages<Messages...>(bag, path);
 }
 
-/// Returns a message of a bag; null if it has another type.
+namespace internal {
+
+/// Returns the translator from a definition of an earlier version to that of this one, or back.
+/// @throws Damage if the definition is not one of an earlier version
+template <typename Message>
+const MessageTranslator& TranslatorOf(const std::string& definition, bool is_back) {
+  namespace traits = ros::message_traits;
+  thread_local std::map<std::pair<std::string, bool>, MessageTranslator> known;
+  const std::pair<std::string, bool> key{definition, is_back};
+  const auto found = known.find(key);
+  if (found != known.end()) return found->second;
+  const std::string now = traits::definition<Message>();
+  constexpr std::size_t kMaxKept = 16;
+  if (known.size() == kMaxKept) known.clear();
+  try {
+    return known
+        .try_emplace(key, traits::datatype<Message>(), is_back ? now : definition,
+                     is_back ? definition : now)
+        .first->second;
+  } catch (const TranslationError& error) {
+    throw Damage(std::string(traits::datatype<Message>()) + ": " + error.what());
+  }
+}
+
+/// Translates a serialized message. @throws Damage if the bytes do not fit its definition
+inline std::vector<std::uint8_t> Translated(const MessageTranslator& translator,
+                                            const std::vector<std::uint8_t>& bytes) {
+  try {
+    return translator.Translate(bytes);
+  } catch (const TranslationError& error) {
+    throw Damage(error.what());
+  }
+}
+
+template <typename Message>
+std::vector<std::uint8_t> Serialized(const Message& message) {
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, message);
+  return bytes;
+}
+
+template <typename Message>
+void Deserialize(std::vector<std::uint8_t>& bytes, Message& message) {
+  ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::deserialize(stream, message);
+}
+
+}  // namespace internal
+
+/// Returns a message of a bag, of this version's definition or of an earlier one; null if it has
+/// another type. Fields that the earlier definition lacks are zero.
 /// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
-  if (message.getMD5Sum() != ros::message_traits::md5sum<Message>()) return nullptr;
-  return internal::Bounded(0, [&] { return message.instantiate<Message>(); });
+  namespace traits = ros::message_traits;
+  if (message.getMD5Sum() == traits::md5sum<Message>()) {
+    return internal::Bounded(0, [&] { return message.instantiate<Message>(); });
+  }
+  if (message.getDataType() != traits::datatype<Message>() ||
+      !IsOlderMessage(message.getDataType(), message.getMD5Sum())) {
+    return nullptr;
+  }
+  const MessageTranslator& translator =
+      internal::TranslatorOf<Message>(message.getMessageDefinition(), false);
+  return internal::Bounded(0, [&] {
+    std::vector<std::uint8_t> bytes(message.size());
+    ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    message.write(stream);
+    std::vector<std::uint8_t> translated = internal::Translated(translator, bytes);
+    auto result = boost::make_shared<Message>();
+    internal::Deserialize(translated, *result);
+    return result;
+  });
+}
+
+/// Sets the fields that a definition of an earlier version lacks to zero, as Instantiate does.
+/// @param definition of the type in a bag; empty: nothing changes
+/// @throws an exception that ReadingBag converts to InputError
+template <typename Message>
+void DropAddedFields(const std::string& definition, Message& message) {
+  if (definition.empty() || definition == ros::message_traits::definition<Message>()) return;
+  const auto old = internal::Translated(internal::TranslatorOf<Message>(definition, true),
+                                        internal::Serialized(message));
+  auto bytes = internal::Translated(internal::TranslatorOf<Message>(definition, false), old);
+  internal::Deserialize(bytes, message);
 }
 
 /// Calls `work`, which opens and reads a bag with OpenBag and Instantiate.

@@ -4,6 +4,8 @@
 /// Random access to the messages and steps of a recorded bag.
 
 #include <aquafarm_msgs/FarmState.h>
+#include <ros/advertise_options.h>
+#include <ros/publisher.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
@@ -20,6 +22,13 @@ namespace aquafarm_viz {
 /// Returns true if a message is the state of a ranch. Observations of ships have the same type and
 /// give false.
 bool IsState(const rosbag::MessageInstance& message);
+
+/// Returns the options of a topic for messages of a bag. Messages of an earlier version are
+/// published as those of this one.
+ros::AdvertiseOptions AdvertiseOptionsOf(const rosbag::MessageInstance& message,
+                                         std::uint32_t queue);
+/// Publishes a message of a bag. @param publisher advertised with AdvertiseOptionsOf
+void PublishMessage(const rosbag::MessageInstance& message, const ros::Publisher& publisher);
 
 /// The messages of a bag in time order, and the positions of its steps among them.
 class ReplayTape {

@@ -42,6 +42,6 @@ std::string Signed(double value);
 std::string MissingSteps(std::uint64_t count);
 
 /// Returns the reward terms of the last step with their names, each summed over ships.
-std::array<std::pair<const char*, float>, 7> RewardTermsOf(const aquafarm_msgs::FarmState& state);
+std::array<std::pair<const char*, float>, 8> RewardTermsOf(const aquafarm_msgs::FarmState& state);
 
 }  // namespace aquafarm_viz

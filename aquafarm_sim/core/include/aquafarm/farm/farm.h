@@ -2,8 +2,8 @@
 #pragma once
 
 /// One episode on one farm (Algorithm 1; rules in docs/model.md). A step, in this order:
-///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Reward →
-///   Finish. Step never allocates. Reset allocates only after SetDisaster or Load
+///   MoveDisasters → Act (ships in id order; the lower id has right of way) → Damage → Consume →
+///   Reward → Finish. Step never allocates. Reset allocates only after SetDisaster or Load
 ///   has set a track, or if another owner still holds the drawn storm's track.
 
 #include <cstdint>
@@ -30,9 +30,13 @@ struct Ship {
   bool in_play{true};              ///< false once a self-propelled device is delivered
   Action action{Action::kHold};    ///< in the last step
   Outcome outcome{Outcome::kHeld};
-  RewardTerms terms;       ///< of this ship in the last step, before sharing
-  float reward{};          ///< in the last step, after sharing
-  float episode_return{};  ///< sum of rewards
+  RewardTerms terms;          ///< of this ship in the last step, before sharing
+  float reward{};             ///< in the last step, after sharing
+  float episode_return{};     ///< sum of rewards
+  double energy{};            ///< consumed in the last step [kWh]
+  double distance{};          ///< travelled in the last step [km]
+  double episode_energy{};    ///< sum of energy [kWh]
+  double episode_distance{};  ///< sum of distance [km]
 };
 
 /// State of a device in an episode.
@@ -58,6 +62,8 @@ struct EpisodeRecord {
   std::int32_t crashes{};
   std::int32_t collisions{};
   std::int32_t steps_in_disaster{};  ///< ship-steps spent at a risk
+  double energy{};                   ///< consumed by all ships [kWh]
+  double distance{};                 ///< travelled by all ships [km]
   EndReason reason{};
   /// Returns whether every device was delivered.
   bool Success() const { return reason == EndReason::kAllRetrieved; }
@@ -160,6 +166,7 @@ class Farm {
   void PickUp(Ship& ship, std::int32_t id);
   void DropOff(Ship& ship, std::int32_t id);
   void Damage();
+  void Consume();
   void Reward();
   void Finish();
   void CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits);

@@ -15,16 +15,19 @@ struct RewardTerms {
   float drop_off{};  ///< includes health × value of each device delivered
   float illegal{};
   float collision{};
-  float step{};  ///< applied only when no other term applies
+  float step{};    ///< applied only when no other term applies, except energy
+  float energy{};  ///< -weight × the energy of the step; 0 without EnergySpec
 
   /// Returns the sum of the terms, added in declaration order.
-  float Total() const { return crash + disaster + pickup + drop_off + illegal + collision + step; }
+  float Total() const {
+    return crash + disaster + pickup + drop_off + illegal + collision + step + energy;
+  }
 };
-inline constexpr int kRewardTermCount = 7;
+inline constexpr int kRewardTermCount = 8;
 static_assert(sizeof(RewardTerms) == kRewardTermCount * sizeof(float));
 
 /// Names of the terms, in declaration order.
 inline constexpr std::array<std::string_view, kRewardTermCount> kRewardTermNames{
-    "crash", "disaster", "pickup", "drop_off", "illegal", "collision", "step"};
+    "crash", "disaster", "pickup", "drop_off", "illegal", "collision", "step", "energy"};
 
 }  // namespace aquafarm

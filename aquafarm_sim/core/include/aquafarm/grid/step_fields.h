@@ -64,6 +64,8 @@ void VisitStepFields(const Visit& visit, Results&... results) {
   constexpr auto kAgents = StepField::Rows::kAgents;
   visit(StepField{"rewards", kAgents, Columns::kOne, 0}, results.rewards...);
   visit(StepField{"terms", kAgents, Columns::kTerms, kTermsField}, results.terms...);
+  visit(StepField{"energy", kAgents, Columns::kOne, 0}, results.energy...);
+  visit(StepField{"distance", kAgents, Columns::kOne, 0}, results.distance...);
   visit(StepField{"outcomes", kAgents, Columns::kOne, 0}, results.outcomes...);
   visit(StepField{"legal", kAgents, Columns::kOne, 0}, results.legal...);
   visit(StepField{"in_play", kAgents, Columns::kOne, 0}, results.in_play...);

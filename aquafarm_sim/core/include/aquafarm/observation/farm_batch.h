@@ -23,6 +23,8 @@ namespace aquafarm {
 struct BatchOutput {
   float* rewards{};          ///< [N, S]
   float* terms{};            ///< [N, S, kRewardTermCount]
+  float* energy{};           ///< [N, S] consumed in the step [kWh]
+  float* distance{};         ///< [N, S] travelled in the step [km]
   std::uint8_t* outcomes{};  ///< [N, S] Outcome
   ActionMask* legal{};       ///< [N, S] legal actions of the next step
   std::uint8_t* in_play{};   ///< [N, S] 0: a delivered self-propelled device, whose agent is done

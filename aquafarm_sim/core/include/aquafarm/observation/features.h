@@ -17,6 +17,9 @@ inline constexpr float kValueScale = 1.0F / 100.0F;  ///< 1 / max device value o
 struct FeatureScales {
   float length{};  ///< 1 / longer side [1/cells]
   float time{};    ///< max length of an episode [steps]
+  /// 1 / energy of a ship that moves straight, without load and in calm water, for that time
+  /// [1/kWh]; 0 without energy
+  float energy{};
 };
 
 /// Consecutive features that one function writes.

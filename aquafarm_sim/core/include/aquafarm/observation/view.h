@@ -54,6 +54,7 @@ struct View {
   std::int32_t step{};
   std::int32_t aboard{};
   std::int32_t capacity{};
+  double energy{};                ///< consumed in this episode [kWh]
   std::vector<KnownShip> others;  ///< in id order, without the observing ship
   std::vector<KnownDevice> devices;
   std::vector<KnownDisaster> disasters;

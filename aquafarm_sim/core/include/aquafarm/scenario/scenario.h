@@ -182,6 +182,21 @@ struct DamageSpec {
   bool DependsOnKinds() const { return kinds != kEqualDamage; }
 };
 
+/// Energy consumption of a kind of vessel (farm/energy.h).
+struct EnergyFigures {
+  double per_km{};         ///< in calm water without load [kWh/km]
+  double per_device{};     ///< added to a factor of 1 for each device aboard
+  double rough_sea{};      ///< added to a factor of 1 at the worst risk, in proportion to the risk
+  double idle_per_step{};  ///< in each step, moving or not [kWh]
+};
+
+/// Energy consumption of all agents.
+struct EnergySpec {
+  double weight{};  ///< subtracted from the reward per kWh
+  EnergyFigures ships;
+  EnergyFigures self_propelled;  ///< of self-propelled devices; per_device has no effect
+};
+
 /// Observation settings of the agents (§2.3).
 struct ViewSpec {
   ViewMode mode{ViewMode::kFull};
@@ -241,6 +256,7 @@ struct Scenario {
   std::vector<DisasterSpec> disasters;
   RewardSpec rewards;
   DamageSpec damage;
+  std::optional<EnergySpec> energy;  ///< if unset, energy is 0
   ViewSpec view;
   std::optional<SeaSpec> seas;
 

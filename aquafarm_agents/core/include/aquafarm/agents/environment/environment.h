@@ -63,6 +63,8 @@ struct EpisodeResult {
   std::int32_t crashes{};
   std::int32_t collisions{};
   std::int32_t steps_in_disaster{};
+  double energy{};    ///< of all ships [kWh]
+  double distance{};  ///< of all ships [km]
   EndReason reason{};
   bool Success() const { return reason == EndReason::kAllRetrieved; }
 };
@@ -77,6 +79,8 @@ struct StepResults {
 
   std::vector<float> rewards;          ///< [N, S]
   std::vector<float> terms;            ///< [N, S, kRewardTermCount]; empty unless requested
+  std::vector<float> energy;           ///< [N, S] consumed in the step [kWh]
+  std::vector<float> distance;         ///< [N, S] travelled in the step [km]
   std::vector<std::uint8_t> outcomes;  ///< [N, S] Outcome
   std::vector<ActionMask> legal;       ///< [N, S] for the next step
   std::vector<std::uint8_t> in_play;   ///< [N, S] 0 if this agent is done until the next episode

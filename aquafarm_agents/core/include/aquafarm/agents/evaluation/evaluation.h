@@ -33,6 +33,8 @@ struct Evaluation {
   double mean_delivered_health{};  ///< over episodes with a delivery; 0 if there are none
   double mean_crashes{};
   double mean_steps_in_disaster{};
+  double mean_energy{};    ///< of all ships per episode [kWh]
+  double mean_distance{};  ///< of all ships per episode [km]
   double wall_s{};
   bool complete{};  ///< false if it was stopped early
   /// Number of different starts among the episodes: layout, ships, devices and storm. Episodes with
@@ -63,7 +65,8 @@ struct EvaluationContext {
   std::int32_t farms{};
 };
 
-/// Writes `<prefix>.csv` (kEpisodeColumns) and `<prefix>.json`. @throws StorageError
+/// Writes `<prefix>.csv` (kEpisodeColumns, kAddedEpisodeColumns) and `<prefix>.json`. @throws
+/// StorageError
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context);
 

@@ -15,11 +15,17 @@ inline constexpr const char* kEpisodeColumns =
     "farm,seed,episode,steps,return,delivered,devices,delivered_health,crashes,collisions,"
     "steps_in_disaster,reason,success";
 
+/// Columns that files of version 0.1.0 lack, at the end of each line.
+inline constexpr const char* kAddedEpisodeColumns = "energy_kwh,distance_km";
+
 /// Appends an episode in the order of kEpisodeColumns. Numbers parse back to the same bits.
 void AppendEpisode(const EpisodeResult& result, std::string& text);
+/// Appends the columns kAddedEpisodeColumns.
+void AppendAdded(const EpisodeResult& result, std::string& text);
 
 /// metrics.csv: one line per episode, `number,total_steps,<kEpisodeColumns>,exploration,
-/// learning_rate,loss`. It contains no wall time, so that a resumed run writes the same bytes.
+/// learning_rate,loss,<kAddedEpisodeColumns>`. A file of version 0.1.0 continues without the last
+/// ones. It contains no wall time, so that a resumed run writes the same bytes.
 class MetricsFile {
  public:
   /// Creates the file, or truncates an existing one. @throws StorageError
@@ -43,6 +49,7 @@ class MetricsFile {
  private:
   std::string path_;
   int file_{-1};
+  bool has_added_{true};  // the columns kAddedEpisodeColumns
   std::uint64_t flushed_{};
   std::string buffer_;
 };

@@ -54,7 +54,7 @@ TEST(MessageTranslator, FillsAddedFieldsWithZerosAndKeepsTheRest) {
   Bytes expected{7, 0, 0, 0};
   expected.insert(expected.end(), 8, 0);  // first
   expected.insert(expected.end(), {2, 0, 0, 0});
-  for (const std::uint8_t id : {1, 2}) {
+  for (const std::uint8_t id : {std::uint8_t{1}, std::uint8_t{2}}) {
     expected.insert(expected.end(), {0, id, 0});
     expected.insert(expected.end(), 4 + 8, 0);  // inner
   }

@@ -158,7 +158,7 @@ check_arguments() {
     code=2 die "replay: got no bag, expected bag:=FILE, such as one that ./aquafarm record wrote"
   [[ $1 != evaluate || " ${*:2}" == *" policy:="* ]] ||
     code=2 die "evaluate: got no policy, and $PWD/runs holds no trained run; expected \
-policy:=RUN_FOLDER, or policy:=random, planner or clairvoyant"
+policy:=RUN_FOLDER, or policy:=random, planner, clairvoyant, do_nothing or fetch_by_value"
   for argument in "${@:2}"; do
     value=${argument#*:=}
     case $argument in

@@ -195,7 +195,7 @@ inline void RunEnvironmentContract(Environment& environment, int steps = 600,
   ExpectBadBytesAreRefused(environment);
   const std::vector<std::uint8_t> too_few(Entries(spec) - 1, 0);
   EXPECT_THROW(environment.Step(too_few), LogicError);
-  EXPECT_THROW(environment.Step(std::vector<std::uint8_t>(Entries(spec), kActionCount)),
+  EXPECT_THROW(environment.Step(std::vector<std::uint8_t>(Entries(spec), kActionCount + 1)),
                LogicError);
   EXPECT_FALSE(environment.ConsumeRestart());
 }

@@ -138,7 +138,8 @@ const StepResults& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first
 const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions) {
   AQUAFARM_CHECK_EQ(actions.size(),
                     static_cast<std::size_t>(spec_.farms) * static_cast<std::size_t>(spec_.agents));
-  AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), aquafarm::kActionCount);
+  AQUAFARM_CHECK_LE(*std::max_element(actions.begin(), actions.end()),
+                    static_cast<int>(aquafarm::Action::kHold));
   step_.request.actions.assign(actions.begin(), actions.end());
   step_.request.encodings = encodings_;
   step_.request.sequence = ++sequence_;

@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "aquafarm_viz/scene/labels.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -150,7 +151,7 @@ void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
     const std::uint8_t action = choice.actions[id];
     const int bearing = MoveBearingDeg(action);
     words += ' ';
-    words += bearing >= 0 ? CompassPoint(bearing) : action == 8 ? "pickup" : "drop-off";
+    words += ActionName(action);
     if (id < choice.values.size()) words += " (V " + Number(choice.values[id], 1) + ")";
     const cv::Point2d at = layout.view.ToPixel(ship.x, ship.y);
     const double radius = layout.ship_radius_px();

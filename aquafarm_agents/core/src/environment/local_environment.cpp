@@ -96,7 +96,8 @@ const StepResults& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t fir
 
 const StepResults& LocalEnvironment::Step(const std::vector<std::uint8_t>& actions) {
   AQUAFARM_CHECK_EQ(actions.size(), results_.rewards.size());
-  AQUAFARM_CHECK_LT(*std::max_element(actions.begin(), actions.end()), kActionCount);
+  AQUAFARM_CHECK_LE(*std::max_element(actions.begin(), actions.end()),
+                    static_cast<int>(Action::kHold));
   batch_.Step(actions.data(), output_);
   Complete();
   CollectFinished();

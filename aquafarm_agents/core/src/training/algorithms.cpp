@@ -6,11 +6,13 @@
 #include "aquafarm/agents/base/options.h"
 #include "aquafarm/agents/curiosity/curiosity.h"
 #include "aquafarm/agents/dqn/dqn.h"
+#include "aquafarm/agents/learning/do_nothing.h"
 #include "aquafarm/agents/learning/independent.h"
 #include "aquafarm/agents/learning/random_policy.h"
 #include "aquafarm/agents/learning/tabular.h"
 #include "aquafarm/agents/maddpg/maddpg.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
+#include "aquafarm/agents/planning/fetch_by_value.h"
 #include "aquafarm/agents/planning/planner_policy.h"
 #include "aquafarm/agents/planning/team_planner.h"
 #include "aquafarm/agents/ppo/ppo.h"
@@ -31,6 +33,12 @@ template <Foresight foresight>
 std::unique_ptr<Policy> MakePlannerPolicy(const Checkpoint&, const EnvironmentSpec& spec) {
   if (spec.agents > 1) return std::make_unique<TeamPlannerPolicy>(spec, foresight);
   return std::make_unique<PlannerPolicy>(spec, foresight);
+}
+
+// A policy that needs nothing but the farms' specification.
+template <typename T>
+std::unique_ptr<Policy> MakeBuiltIn(const Checkpoint&, const EnvironmentSpec& spec) {
+  return std::make_unique<T>(spec);
 }
 
 std::unique_ptr<Policy> MakeRandomPolicy(const Checkpoint& checkpoint,
@@ -134,6 +142,10 @@ const std::vector<Algorithm>& Algorithms() {
        0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kPersistence>},
       {"clairvoyant", "plans with the disasters' true future: for one ship the best there can be",
        false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kOracle>},
+      {"do_nothing", "every ship holds its cell; the reference for what a rescue saves", false, 0,
+       WithoutOptions<0>, nullptr, MakeBuiltIn<DoNothingPolicy>},
+      {"fetch_by_value", "each ship fetches the most valuable device that it can still bring home",
+       false, 0, WithoutOptions<kStatesBit>, nullptr, MakeBuiltIn<FetchByValuePolicy>},
   };
   return algorithms;
 }

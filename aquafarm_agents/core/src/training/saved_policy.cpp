@@ -26,7 +26,8 @@ SavedPolicy FindPolicy(const std::string& where) {
       if (!newest) {
         throw InputError(where +
                          ": contains neither policy.ckpt nor a checkpoint; expected a run "
-                         "folder, a checkpoint file, random, planner or clairvoyant");
+                         "folder, a checkpoint file, random, planner, clairvoyant, do_nothing or "
+                         "fetch_by_value");
       }
       saved.path = *newest;
     }

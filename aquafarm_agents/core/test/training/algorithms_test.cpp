@@ -13,7 +13,7 @@ TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
             "algorithm: got 'dqm' (did you mean 'dqn'?), expected one of: random, q_learning, "
             "sarsa, dqn, "
             "lstm_dqn, independent_dqn, independent_lstm_dqn, vdn, "
-            "maddpg, ppo, planner, clairvoyant");
+            "maddpg, ppo, planner, clairvoyant, do_nothing, fetch_by_value");
 }
 
 TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {

@@ -17,7 +17,8 @@ struct SavedPolicy {
 };
 
 /// Finds a policy by path or name.
-/// @param where a run folder, a policy or checkpoint file, or random, planner or clairvoyant
+/// @param where a run folder, a policy or checkpoint file, or random, planner, clairvoyant,
+/// do_nothing or fetch_by_value
 /// @throws InputError if there is no such policy, or the file is damaged
 SavedPolicy FindPolicy(const std::string& where);
 

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+#include "aquafarm/agents/environment/policy.h"
+#include "aquafarm/grid/action.h"
+
+namespace aquafarm::agents {
+
+/// Every ship holds its cell in every step: the reference for what a rescue saves.
+class DoNothingPolicy final : public Policy {
+ public:
+  explicit DoNothingPolicy(const EnvironmentSpec& spec)
+      : agents_(static_cast<std::size_t>(spec.agents)) {}
+  std::uint8_t encodings() const override { return 0; }
+  void Begin(std::uint64_t, std::int32_t farms) override {
+    entries_ = agents_ * static_cast<std::size_t>(farms);
+  }
+  void Act(const StepResults&, std::vector<std::uint8_t>& actions) override {
+    actions.assign(entries_, static_cast<std::uint8_t>(Action::kHold));
+  }
+
+ private:
+  std::size_t agents_;
+  std::size_t entries_{};
+};
+
+}  // namespace aquafarm::agents

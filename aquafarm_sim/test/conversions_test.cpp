@@ -143,6 +143,8 @@ TEST(Conversions, AnObservationBringsTheViewBack) {
     scenario.view.sensor_radius = 3.0F;
     scenario.view.bulletin_period = 7;
     scenario.view.bulletin_noise = 1.5F;
+    scenario.view.kinds = true;
+    scenario.energy = aquafarm::EnergySpec{0.1, {1.0, 0.5, 0.5, 0.2}, {2.0, 0.0, 0.5, 0.1}};
     aquafarm::Farm farm = aquafarm::test::MakeFarm(scenario);
     const aquafarm::Encoder encoder(farm.scenario());
     const auto features = static_cast<std::size_t>(encoder.feature_count());

@@ -93,6 +93,7 @@ inline void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Sce
   view.step = static_cast<std::int32_t>(message.step);
   view.aboard = static_cast<std::int32_t>(self.aboard.size());
   view.capacity = scenario.ships.capacity;
+  view.energy = self.episode_energy;
   view.scenario = &scenario;
   view.layout = &layout;
   view.others.clear();
@@ -107,6 +108,7 @@ inline void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Sce
   for (std::size_t id = 0; id < message.devices.size(); ++id) {
     const aquafarm_msgs::DeviceState& device = message.devices[id];
     view.devices[id] = {{device.x, device.y},
+                        layout.devices[id].kind,
                         static_cast<aquafarm::DeviceStatus>(device.status),
                         device.carrier == message.observer,
                         device.self_propelled != 0,

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trade-off of return against energy: evaluates a policy on a scenario with several weights of
+energy and writes one line per weight to a CSV file.
+
+usage: energy_curve.py SCENARIO.yaml POLICY EPISODES OUT.csv [WEIGHT ...]
+
+The figures of energy are those of a small workboat (docs/data.md), unless the scenario has its
+own. The return is that without the term of energy. aquafarm_evaluate must be on the PATH.
+"""
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+WEIGHTS = (0.0, 0.2, 1.0, 3.0, 10.0)
+ON_BOARD_KW = 2.0
+
+
+def energy_block(text, weight):
+    """Returns the scenario with a block `energy` that has the weight."""
+    lines = text.splitlines()
+    for i, line in enumerate(lines):
+        if line.startswith("energy: {"):
+            lines[i] = line.replace("{", f"{{weight: {weight:g}, ", 1)
+            return "\n".join(lines) + "\n"
+        if line.startswith("energy:"):
+            sys.exit("energy_curve: got a block energy of several lines, expected none or one line")
+    idle = ON_BOARD_KW * 180 / 3600  # a step of 180 s, the default
+    return text + (f"\nenergy: {{weight: {weight:g}, per_km: 1.2, per_device: 0.5, "
+                   f"rough_sea: 0.5, idle_per_step: {idle:g}}}\n")
+
+
+def measure(text, policy, episodes, weight):
+    """Returns the mean return without energy, energy, distance, success and steps."""
+    with tempfile.TemporaryDirectory() as folder:
+        scenario = pathlib.Path(folder) / "scenario.yaml"
+        scenario.write_text(energy_block(text, weight), encoding="utf-8")
+        subprocess.run(["aquafarm_evaluate", policy, str(scenario), "-e", str(episodes), "-w",
+                        f"{folder}/evaluation"], check=True)
+        one = json.loads(pathlib.Path(f"{folder}/evaluation.json").read_text(encoding="utf-8"))
+    energy = one["energy_kwh_per_episode"]
+    return {"policy": policy, "weight": f"{weight:g}", "episodes": one["episodes"],
+            "return_without_energy": f"{one['return_per_episode'] + weight * energy:.3f}",
+            "energy_kwh": f"{energy:.3f}", "distance_km": f"{one['distance_km_per_episode']:.3f}",
+            "success_rate": f"{one['success_rate']:g}",
+            "steps": f"{one['steps_per_episode']:.2f}"}
+
+
+def main():
+    if len(sys.argv) < 5:
+        sys.exit(__doc__)
+    text = pathlib.Path(sys.argv[1]).read_text(encoding="utf-8")
+    weights = [float(word) for word in sys.argv[5:]] or WEIGHTS
+    rows = [measure(text, sys.argv[2], int(sys.argv[3]), weight) for weight in weights]
+    with open(sys.argv[4], "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+if __name__ == "__main__":
+    main()

@@ -45,16 +45,16 @@ DisasterRisk::DisasterRisk(const Farm& farm, Foresight foresight)
     : farm_(farm),
       disasters_(farm.disasters()),
       tracks_(Foresee(farm, foresight, disasters_)),
-      kinds_(KindsThatMatter(farm)),
       moved_to_(farm.step()),
       last_step_(LastStep(farm)),
       after_kept_(disasters_) {
   const Scenario& scenario = farm.scenario();
+  const std::vector<DeviceKind> kinds = KindsThatMatter(farm);
   const std::size_t bytes =
-      static_cast<std::size_t>(scenario.CellCount()) * (2 + kinds_.size()) * sizeof(float);
+      static_cast<std::size_t>(scenario.CellCount()) * (2 + kinds.size()) * sizeof(float);
   max_kept_ = std::max(std::size_t{1}, kKeptBytes / bytes);
   layers_.risk.resize(scenario.height, scenario.width);
-  for (const DeviceKind kind : kinds_) {
+  for (const DeviceKind kind : kinds) {
     layers_.by_kind[static_cast<std::size_t>(kind)].resize(scenario.height, scenario.width);
   }
 }
@@ -79,10 +79,7 @@ void DisasterRisk::Advance() {
                         static_cast<std::uint32_t>(id)};
     MoveDisaster(disasters_[id], tracks_[id], key, moved_to_, scenario.width, scenario.height);
   }
-  FillRisk(scenario, disasters_, layers_.risk);
-  for (const DeviceKind kind : kinds_) {
-    FillDamagingRisk(scenario, disasters_, kind, layers_.by_kind[static_cast<std::size_t>(kind)]);
-  }
+  FillRisks(scenario, disasters_, layers_.risk, layers_.by_kind);
   layers_.quiet = (layers_.risk < 0.0F).select(layers_.risk, scenario.rewards.step);
   if (kept_.size() == max_kept_) return;
   kept_.push_back(layers_);

@@ -221,8 +221,7 @@ double TeamBound(const Farm& farm) {
   std::vector<Disaster> disasters = farm.disasters();
   RiskLayers layers;
   layers.risk.resize(scenario.height, scenario.width);
-  const std::vector<DeviceKind> kinds = KindsThatMatter(farm);
-  for (const DeviceKind kind : kinds) {
+  for (const DeviceKind kind : KindsThatMatter(farm)) {
     layers.by_kind[static_cast<std::size_t>(kind)].resize(scenario.height, scenario.width);
   }
   bool over = false;
@@ -232,10 +231,7 @@ double TeamBound(const Farm& farm) {
                           static_cast<std::uint32_t>(id)};
       MoveDisaster(disasters[id], farm.tracks()[id], key, step, scenario.width, scenario.height);
     }
-    FillRisk(farm.scenario(), disasters, layers.risk);
-    for (const DeviceKind kind : kinds) {
-      FillDamagingRisk(scenario, disasters, kind, layers.by_kind[static_cast<std::size_t>(kind)]);
-    }
+    FillRisks(scenario, disasters, layers.risk, layers.by_kind);
     over = !disasters.empty() &&
            std::none_of(disasters.begin(), disasters.end(),
                         [](const Disaster& disaster) { return disaster.active(); });

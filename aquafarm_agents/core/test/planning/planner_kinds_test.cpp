@@ -82,6 +82,25 @@ TEST(PlannerOfKinds, EqualsBruteForceWhereAStormGrowsStronger) {
   ExpectBruteForce(scenario, 4);
 }
 
+// Energy in the reward, kinds, rings by quadrant, and a storm whose grade rises.
+TEST(PlannerOfKinds, EqualsBruteForceWithEverythingOn) {
+  for (const std::int32_t capacity : {1, 2}) {
+    SCOPED_TRACE(capacity);
+    Scenario scenario = KindsScenario(8, 0.02F, capacity);
+    scenario.energy = EnergySpec{0.7, {1.0, 0.8, 0.6, 0.1}, {1.0, 0.8, 0.6, 0.1}};
+    DisasterSpec& storm = scenario.disasters[0];
+    storm.grade_factors = {0.5F, 0.75F, 1.0F, 1.5F};
+    storm.quadrants = {{0.8F, 0.0F, 0.5F, 0.8F}, {3.0F, 0.5F, 1.7F, 1.0F}};
+    storm.radii = {0.8F, 3.0F};
+    const GradeRisks risks = RisksByGrade(storm);
+    storm.track = {{0.0F, -1.0F, 1.0F, 2, storm.radii, risks[1], storm.quadrants},
+                   {4.0F, 1.0F, 2.0F, 3, storm.radii, risks[2], storm.quadrants},
+                   {8.0F, 3.0F, 1.0F, 4, storm.radii, risks[3], storm.quadrants}};
+    storm.grade = 2;
+    ExpectBruteForce(scenario, 3);
+  }
+}
+
 // Disasters that keep their motion, so that the assumption of `planner` is the truth.
 TEST(PlannerOfKinds, OfTheHeadingEqualsBruteForceWhereDisastersKeepIt) {
   Scenario scenario = KindsScenario(8, 0.02F, 1);

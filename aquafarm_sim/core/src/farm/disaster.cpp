@@ -279,20 +279,32 @@ void FollowTrack(ObservableDisaster& disaster, const std::vector<Waypoint>& trac
   }
 }
 
-void FillDamagingRisk(const Scenario& scenario, const std::vector<Disaster>& disasters,
-                      DeviceKind kind, Grid<float>& risk) {
-  const auto& factors = scenario.damage.FactorsOf(kind);
-  for (std::int32_t y = 0; y < risk.rows(); ++y) {
-    for (std::int32_t x = 0; x < risk.cols(); ++x) {
-      risk(y, x) = std::min(DamagingRiskAt(disasters, {x, y}, factors), scenario.SeaRiskAt({x, y}));
-    }
-  }
-}
-
 void FillRisk(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk) {
   for (std::int32_t y = 0; y < risk.rows(); ++y) {
     for (std::int32_t x = 0; x < risk.cols(); ++x) {
       risk(y, x) = std::min(RiskAt(disasters, {x, y}), scenario.SeaRiskAt({x, y}));
+    }
+  }
+}
+
+void FillRisks(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk,
+               DamagingRisks& by_kind) {
+  FillRisk(scenario, disasters, risk);
+  for (std::size_t kind = 0; kind < by_kind.size(); ++kind) {
+    Grid<float>& damaging = by_kind[kind];
+    if (damaging.size() == 0) continue;
+    const auto& factors = scenario.damage.kinds[kind];
+    for (Eigen::Index y = 0; y < risk.rows(); ++y) {
+      for (Eigen::Index x = 0; x < risk.cols(); ++x) {
+        // Most cells are calm. Elsewhere the risk of a single disaster is known already.
+        const Cell cell{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+        const float worst = risk(y, x);
+        const bool is_alone = disasters.size() == 1 && !scenario.seas;
+        damaging(y, x) = worst == 0.0F ? 0.0F
+                         : is_alone ? worst * factors[static_cast<std::size_t>(disasters[0].kind)]
+                                    : std::min(DamagingRiskAt(disasters, cell, factors),
+                                               scenario.SeaRiskAt(cell));
+      }
     }
   }
 }

@@ -161,11 +161,15 @@ inline float DamagingRiskAt(const std::vector<Disaster>& disasters, Cell cell,
   return worst;
 }
 
-/// Fills the grid [H, W] of the risk of disasters and sea that damages a kind of device.
-void FillDamagingRisk(const Scenario& scenario, const std::vector<Disaster>& disasters,
-                      DeviceKind kind, Grid<float>& risk);
-
 /// Fills the risk grid [H, W] of disasters and sea, for drawing, publishing and planning.
 void FillRisk(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk);
+
+/// Risk grids by kind of device; a grid is empty if its kind is not needed.
+using DamagingRisks = std::array<Grid<float>, kDeviceKindCount>;
+
+/// As FillRisk; also fills the grids [H, W] in `by_kind` that are not empty with the risk that
+/// damages each kind (DamagingRiskAt).
+void FillRisks(const Scenario& scenario, const std::vector<Disaster>& disasters, Grid<float>& risk,
+               DamagingRisks& by_kind);
 
 }  // namespace aquafarm

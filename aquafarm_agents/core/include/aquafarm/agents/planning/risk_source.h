@@ -9,7 +9,6 @@
 /// its reward under the mean layers below. The same holds for damage while health is not clamped at
 /// 0: the loss of health is linear in the risk.
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -25,7 +24,7 @@ struct RiskLayers {
   Grid<float> quiet;  ///< reward of a step without any other term: the risk, else the step reward
   /// Risk that damages each kind of device (Farm::DamagingRiskAt). An empty layer stands for
   /// `risk`.
-  std::array<Grid<float>, kDeviceKindCount> by_kind;
+  DamagingRisks by_kind;
 
   /// Returns the risk that damages a kind of device.
   const Grid<float>& Damaging(DeviceKind kind) const {
@@ -70,7 +69,6 @@ class DisasterRisk final : public RiskSource {
   const Farm& farm_;
   std::vector<Disaster> disasters_;  // state at step moved_to_
   std::vector<Track> tracks_;
-  std::vector<DeviceKind> kinds_;  // that have layers of their own
   std::int32_t moved_to_{};
   std::int32_t last_step_{};
   std::vector<RiskLayers> kept_;  // of the steps after the farm's present one

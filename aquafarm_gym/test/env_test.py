@@ -24,7 +24,7 @@ if not WHY_NOT:
     import gymnasium
     import numpy as np
     from aquafarm_gym import (ActionMaskInObservation, FarmEnv, FarmParallelEnv, FarmVectorEnv,
-                              TeamVectorEnv, VectorActionMaskInObservation)
+                              TeamVectorEnv, VectorActionMaskInObservation, spaces)
     from gymnasium.utils.env_checker import data_equivalence
 
 REEF = str(pathlib.Path(__file__).resolve().parent / "data" / "reef.yaml")
@@ -76,6 +76,40 @@ class EnvTest(unittest.TestCase):
                 for _ in range(200):
                     seen = env.step(env.action_space.sample())[0]
                     self.assertTrue(env.observation_space.contains(seen), path)
+
+    def test_kinds_grades_and_energy_lie_within_their_space(self):
+        scenario = core.Scenario.parse("""
+name: kinds
+time: {step_limit: 60}
+disasters:
+  - {kind: red_tide, grade: 4, grade_factors: [0.5, 0.75, 1, 1.5], radii: [3, 9, 20]}
+  - {kind: oil_spill, grade: 1}
+damage: {exposure_damage: 0.001, kinds: {monitoring: {red_tide: 0}}}
+energy: {weight: 0.1, per_km: 1, per_device: 0.5, rough_sea: 1, idle_per_step: 0.1}
+view: {mode: partial, monitoring_radius: 4, kinds: true}
+""", "kinds")
+        env = TeamVectorEnv(4, scenario, "features")
+        names = core.FarmBatch(scenario).feature_names
+        self.assertEqual(14 + 12, sum(name.split(".")[-1] in spaces.KINDS or ".grade" in name
+                                      for name in names))
+        env.reset(seed=1)
+        env.action_space.seed(1)
+        for _ in range(200):
+            seen = env.step(env.action_space.sample())[0]
+            self.assertTrue(env.observation_space.contains(seen))
+
+    def test_bad_kinds_are_refused_in_one_line(self):
+        for keys, words in (
+                ("damage: {kinds: {buoy: {wave: 2}}}",
+                 "kinds:2: damage.kinds.buoy: unknown key 'buoy'; allowed: temporary_breeding, "
+                 "monitoring, breeding_release, deep_water_breeding"),
+                ("damage: {kinds: {monitoring: {wave: -1}}}",
+                 "kinds:2: damage.kinds.monitoring.wave: got -1, expected [0, 100]"),
+                ("view: {mode: partial, monitoring_radius: far}",
+                 "kinds:2: view.monitoring_radius: got 'far', expected a number in [0, 1e+06]")):
+            with self.assertRaises(ValueError) as refusal:
+                core.Scenario.parse(f"name: x\n{keys}\n", "kinds")
+            self.assertEqual(words, str(refusal.exception))
 
     def test_infos_have_the_same_keys_and_numbers_at_every_step(self):
         env = FarmEnv(short_paper())

@@ -37,6 +37,8 @@ bool Works(const RescueProblem& problem, const Ensemble& ensemble, const ShipRou
 
 // Another computation of odds and losses: each member by itself, from the path alone.
 TEST_F(Rescue, OddsAndLossesAreThoseOfFollowingThePathInEachMember) {
+  problem_.devices[0].damage_factor = 0.5;
+  problem_.devices[1].damage_factor = 1.5;
   const RescuePlan plan = PlanRescue(problem_, ensemble_);
   ASSERT_FALSE(plan.routes.empty());
   std::vector<double> loss(400);
@@ -53,7 +55,8 @@ TEST_F(Rescue, OddsAndLossesAreThoseOfFollowingThePathInEachMember) {
         step = static_cast<std::int32_t>(std::floor(outcome.deliver_s / 600.0));
       }
       const auto exposure = static_cast<double>(ensemble_.Exposure(d, step)[member]);
-      loss[member] += device.value * std::min(1.0 - device.damage_before, 0.004 * exposure);
+      loss[member] += device.value *
+                      std::min(1.0 - device.damage_before, 0.004 * device.damage_factor * exposure);
     }
     EXPECT_NEAR(outcome.home, home / 400.0, 1e-9) << device.name;
   }

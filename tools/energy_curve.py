@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Trade-off of return against energy: evaluates a policy on a scenario with several weights of
-energy and writes one line per weight to a CSV file.
+energy, writes one line per weight to a CSV file, and draws the curve next to it (.svg).
 
 usage: energy_curve.py SCENARIO.yaml POLICY EPISODES OUT.csv [WEIGHT ...]
 
@@ -49,6 +49,34 @@ def measure(text, policy, episodes, weight):
             "steps": f"{one['steps_per_episode']:.2f}"}
 
 
+def draw(rows, path):
+    """Draws return against energy; a point per weight."""
+    points = [(float(row["energy_kwh"]), float(row["return_without_energy"])) for row in rows]
+    low, high = ([pick(axis) for axis in zip(*points)] for pick in (min, max))
+    width, height, left, top = 640, 360, 80, 30
+    scale = [size / max(b - a, 1e-9) for size, a, b in zip((500, 260), low, high)]
+
+    def place(point):
+        return (left + (point[0] - low[0]) * scale[0],
+                top + 260 - (point[1] - low[1]) * scale[1])
+
+    marks = []
+    for row, point in zip(rows, points):
+        x, y = place(point)
+        marks.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="#1b4f78"/>'
+                     f'<text x="{x + 7:.1f}" y="{y - 7:.1f}">{row["weight"]}</text>')
+    line = " ".join(f"{x:.1f},{y:.1f}" for x, y in map(place, points))
+    path.write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
+        f'font-family="sans-serif" font-size="13">'
+        f'<rect width="{width}" height="{height}" fill="white"/>'
+        f'<polyline points="{line}" fill="none" stroke="#1b4f78"/>{"".join(marks)}'
+        f'<text x="{left}" y="{height - 15}">energy per episode [kWh], {low[0]:.1f} to '
+        f'{high[0]:.1f}; at each point: weight</text>'
+        f'<text transform="translate(25 {height - 50}) rotate(-90)">return without energy, '
+        f'{low[1]:.1f} to {high[1]:.1f}</text></svg>\n', encoding="utf-8")
+
+
 def main():
     if len(sys.argv) < 5:
         sys.exit(__doc__)
@@ -59,6 +87,7 @@ def main():
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
         writer.writerows(rows)
+    draw(rows, pathlib.Path(sys.argv[4]).with_suffix(".svg"))
 
 
 if __name__ == "__main__":

@@ -80,10 +80,10 @@ TEST(Clairvoyant, EqualsBruteForceWithEnergy) {
       SCOPED_TRACE(std::to_string(weight) + " capacity " + std::to_string(capacity));
       Scenario scenario = TinyScenario(9, 0.02F, capacity);
       scenario.energy = EnergySpec{weight, {1.0, 0.8, 0.6, 0.1}, light};
-      ExpectBruteForce(scenario, 4);
+      ExpectBruteForce(scenario, 2);
       scenario.cell_size_m = 250.0;
       scenario.energy->ships = light;
-      ExpectBruteForce(scenario, 2);
+      ExpectBruteForce(scenario, 1);
     }
   }
 }

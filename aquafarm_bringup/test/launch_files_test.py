@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every launch file parses, documents its arguments and stays on the loopback address. Every field
 of a message has a comment."""
+import os
 import pathlib
 import re
 import subprocess
@@ -26,6 +27,9 @@ VARIANTS = {
     "agent": [["ship:=3", "episodes:=2"]],
     "sim": [["headless:=true"], ["policy:=random"]],
     "record": [["of:=train"], ["of:=evaluate", "bag:=/tmp/day.bag"], ["policy:=none"]],
+    "plan": [["scenario:=two_squads", "bulletin:=in", "devices:=d.csv", "ships_file:=/s.csv"],
+             ["sim:=true", "headless:=true", "scenario:=my/ranch.yaml", "policy:=planner",
+              "storm:=/s.txt", "storm_name:=0903", "at:=2021-07-24T12:00:00Z"]],
     "replay": [["bag:=/tmp/none.bag", "headless:=true", "loop:=true"],
                ["bag:=/tmp/none.bag", "policy:=random", "start_step:=17"]],
 }
@@ -41,8 +45,8 @@ class LaunchFilesTest(unittest.TestCase):
 
     def test_the_launch_files_are_there(self):
         names = {path.stem for path in FILES}
-        self.assertLessEqual({"train", "evaluate", "benchmark", "sim", "play", "record", "replay",
-                              "agents", "agent"}, names)
+        self.assertLessEqual({"train", "evaluate", "benchmark", "plan", "sim", "play", "record",
+                              "replay", "agents", "agent"}, names)
 
     def test_every_argument_says_what_it_is_and_has_a_default(self):
         for path in FILES:
@@ -64,7 +68,8 @@ class LaunchFilesTest(unittest.TestCase):
 
     def test_roslaunch_refuses_an_argument_that_does_not_exist(self):
         for name, argument, hint in (("train", "algorthm:=sarsa", "algorithm"),
-                                     ("sim", "polcy:=random", "policy")):
+                                     ("sim", "polcy:=random", "policy"),
+                                     ("plan", "buletin:=x", "bulletin")):
             done = subprocess.run(["roslaunch", PACKAGE, f"{name}.launch", argument],
                                   capture_output=True, text=True, timeout=LIMIT_S, check=False)
             self.assertNotEqual(0, done.returncode, done.stdout)
@@ -151,6 +156,21 @@ class LaunchFilesTest(unittest.TestCase):
         self.assertEqual(["/tmp/run"], made_of(*recorded, "report:=/tmp/run"))
         self.assertEqual(["none"], made_of("train.launch", "report:=none"))
         self.assertEqual(["benchmark"], made_of("benchmark.launch"))
+
+    def test_plan_takes_files_from_the_folder_of_roslaunch(self):
+        def values(*arguments):
+            parameters = load(LAUNCH / "plan.launch", arguments).params
+            return {name.rsplit("/", 1)[1]: parameter.value
+                    for name, parameter in parameters.items() if "/plan/" in name}
+
+        here = os.environ["PWD"]
+        plan = values("scenario:=my_ranch.yaml", "bulletin:=in", "storm_name:=0903")
+        self.assertEqual((f"{here}/my_ranch.yaml", f"{here}/in", "0903", ""),
+                         tuple(plan[name] for name in ("scenario", "bulletin", "storm_name",
+                                                       "devices")))
+        self.assertEqual("two_squads", values("scenario:=two_squads")["scenario"])
+        self.assertEqual("", values("scenario:=two_squads", "sim:=true")["scenario"])
+        self.assertEqual("", values()["scenario"])
 
     def test_replay_runs_no_farm(self):
         nodes = load(LAUNCH / "replay.launch", ["bag:=/tmp/none.bag"]).nodes

@@ -105,6 +105,101 @@ TEST(RanchModel, ADisasterBeginsAtTheShipWithRisksByItsGrade) {
   EXPECT_EQ(model.NextDisaster(), 1);
 }
 
+// Two ships and three devices; the plan starts on 2021-07-24 at 08:00 local time.
+aquafarm_msgs::RescuePlanPtr Plan() {
+  using aquafarm_msgs::RescueOrder;
+  auto plan = boost::make_shared<aquafarm_msgs::RescuePlan>();
+  plan->text = "1 of 2 ships leave.";
+  plan->utc_offset_min = 480;
+  plan->start = ros::Time(1627084800, 0);
+  plan->no_departure_after = plan->start + ros::Duration(5.5 * 3600.0);
+  plan->ports.resize(1);
+  plan->ports[0].name = "port A";
+  plan->ships.resize(2);
+  plan->devices.resize(3);
+  for (int i = 0; i < 3; ++i) {
+    auto& device = plan->devices[static_cast<std::size_t>(i)];
+    device.name = "D" + std::to_string(i + 1);
+    device.ship = i == 1 ? 0 : -1;
+    device.home = 0.874F;
+    device.left_reason = i == 0 ? "too_late" : i == 2 ? "safe_in_place" : "";
+    device.deadlines.resize(3);
+    for (std::size_t k = 0; k < 3; ++k) {
+      device.deadlines[k].probability = k == 0 ? 0.95F : k == 1 ? 0.8F : 0.5F;
+      device.deadlines[k].possible = k > 0;
+      device.deadlines[k].open = k == 2;
+      device.deadlines[k].leave = plan->start + ros::Duration(3600.0);
+    }
+  }
+  aquafarm_msgs::RescueRoute route;
+  for (const std::uint8_t action : {RescueOrder::LEAVE, RescueOrder::FETCH, RescueOrder::DELIVER}) {
+    RescueOrder order;
+    order.action = action;
+    order.stamp = plan->start + ros::Duration(8.0 * 3600.0 * action);
+    order.port = action == RescueOrder::FETCH ? -1 : 0;
+    order.device = action == RescueOrder::FETCH ? 1 : -1;
+    if (action == RescueOrder::DELIVER) order.devices = {1};
+    order.probability = 1.0F - 0.1F * static_cast<float>(action);
+    route.orders.push_back(order);
+  }
+  plan->routes = {route};
+  plan->ships[0].name = "ship 1";
+  plan->ships[1].id = 1;
+  plan->ships[1].name = "ship 2";
+  return plan;
+}
+
+TEST(PlanText, TheNextOrderIsThatOfTheTime) {
+  const auto plan = Plan();
+  using Rows = std::vector<PlanRow>;
+  const auto at = [&](double hours) {
+    return PlanShips(*plan, plan->start + ros::Duration(3600.0 * hours));
+  };
+  EXPECT_EQ(at(0.0),
+            (Rows{{"ship 1", "leave port A", "08:00", "> 99 %"}, {"ship 2", "stay", "", ""}}));
+  EXPECT_EQ(at(0.1)[0], (PlanRow{"ship 1", "fetch D2", "16:00", "90 %"}));
+  EXPECT_EQ(at(9.0)[0], (PlanRow{"ship 1", "deliver D2 at port A", "25 Jul 00:00", "80 %"}));
+  EXPECT_EQ(at(17.0)[0], (PlanRow{"ship 1", "all done", "", ""}));
+  EXPECT_EQ(at(0.0)[0].size(), PlanShipColumns().size());
+}
+
+TEST(PlanText, DevicesHaveTheirOddsAndDeadlines) {
+  const auto plan = Plan();
+  const auto rows = PlanDevices(*plan);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0], (PlanRow{"D1", "left behind", "none", "09:00", "no limit"}));
+  EXPECT_EQ(rows[1], (PlanRow{"D2", "87 %", "none", "09:00", "no limit"}));
+  EXPECT_EQ(rows[2][1], "stays");
+  EXPECT_EQ(rows[0].size(), PlanDeviceColumns().size());
+  plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
+  EXPECT_EQ(PlanDevices(*plan)[1], (PlanRow{"D2", "unknown", "unknown", "unknown", "unknown"}));
+}
+
+TEST(PlanText, TheHeadlineNamesWhatIsOutdated) {
+  const auto plan = Plan();
+  EXPECT_EQ(PlanHeadline(*plan), "plan: 1 of 2 ships leave. No ship should leave after 13:30.");
+  plan->fault = "b.json: bad; this plan is of a.json";
+  plan->warnings.resize(1);
+  plan->warnings[0].severity = "stop";
+  plan->warnings[0].text = "The bulletin is 14 hours old.";
+  EXPECT_EQ(PlanHeadline(*plan),
+            "plan: 1 of 2 ships leave. No ship should leave after 13:30. The bulletin is 14 hours "
+            "old. OUTDATED: b.json: bad; this plan is of a.json");
+}
+
+TEST(RanchModel, APlanThatFollowsTheRanchHasItsTime) {
+  RanchModel model = Filled();
+  auto plan = Plan();
+  model.Take(aquafarm_msgs::RescuePlanConstPtr(plan));
+  EXPECT_EQ(model.PlanNow(), plan->start);
+  auto state = boost::make_shared<aquafarm_msgs::FarmState>(test::MakeState());
+  state->world_time = plan->start + ros::Duration(600.0);
+  EXPECT_EQ(model.Take(aquafarm_msgs::FarmStateConstPtr(state)), "");
+  EXPECT_EQ(model.PlanNow(), plan->start);
+  plan->follows_ranch = true;
+  EXPECT_EQ(model.PlanNow(), state->world_time);
+}
+
 // Records the requests of the buttons as text.
 struct Asked {
   std::vector<std::string> words;
@@ -146,6 +241,30 @@ TEST(RanchWidget, EachButtonAsksForWhatItSays) {
             (std::vector<std::string>{"pause 1 0", "pause 0 0", "pause 1 1", "pace '' 4",
                                       "reset 31", "jump 17", "drive 0 0", "drive 0 7", "drive 0 10",
                                       "drive 0 8", "drive 0 9", "disaster 1 3"}));
+}
+
+TEST(RanchWidget, ShowsDeadlinesAndTheNextOrderOnceThereIsAPlan) {
+  RanchModel model = Filled();
+  Asked asked;
+  RanchWidget widget(model, asked.Buttons());
+  auto* ships = widget.findChild<QTableWidget*>("plan_ships");
+  auto* devices = widget.findChild<QTableWidget*>("plan_devices");
+  auto* line = widget.findChild<QLabel*>("plan");
+  ASSERT_TRUE(ships != nullptr && devices != nullptr && line != nullptr);
+  EXPECT_TRUE(ships->isHidden() && devices->isHidden() && line->isHidden());
+  const auto plan = Plan();
+  plan->text = "<b>1</b> of 2 ships leave.";
+  model.Take(aquafarm_msgs::RescuePlanConstPtr(plan));
+  widget.Refresh();
+  EXPECT_FALSE(ships->isHidden() || devices->isHidden() || line->isHidden());
+  EXPECT_EQ(line->textFormat(), Qt::PlainText);
+  EXPECT_EQ(line->text().toStdString(), PlanHeadline(*plan));
+  ASSERT_EQ(ships->rowCount(), 2);
+  EXPECT_EQ(ships->item(0, 1)->text(), "leave port A");
+  EXPECT_EQ(ships->item(1, 1)->text(), "stay");
+  ASSERT_EQ(devices->rowCount(), 3);
+  EXPECT_EQ(devices->item(1, 1)->text(), "87 %");
+  EXPECT_EQ(devices->item(1, 3)->text(), "09:00");
 }
 
 int Count(const QImage& image, QRgb color) {

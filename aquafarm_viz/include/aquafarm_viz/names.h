@@ -8,6 +8,7 @@ namespace aquafarm_viz::names {
 inline constexpr char kSpec[] = "spec";
 inline constexpr char kState[] = "state";
 inline constexpr char kTraining[] = "training";
+inline constexpr char kPlan[] = "plan";
 inline constexpr char kValuePoints[] = "values/points";
 inline constexpr char kChoice[] = "choice";
 inline constexpr char kMarkers[] = "markers";

@@ -57,6 +57,11 @@ RanchPanel::RanchPanel(QWidget* parent)
         model_.Take(training);
         changed_ = true;
       });
+  plan_ = node_.subscribe<aquafarm_msgs::RescuePlan>(
+      names::kPlan, 2, [this](const aquafarm_msgs::RescuePlanConstPtr& plan) {
+        model_.Take(plan);
+        changed_ = true;
+      });
   connect(&timer_, &QTimer::timeout, this, [this] {
     // Also without new messages, because the window size may have changed.
     if (rviz_ != nullptr && model_.shown().spec) {

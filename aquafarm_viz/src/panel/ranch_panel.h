@@ -35,6 +35,7 @@ class RanchPanel : public rviz::Panel {
   ros::Subscriber spec_;
   ros::Subscriber state_;
   ros::Subscriber training_;
+  ros::Subscriber plan_;
   rviz::VisualizationManager* rviz_{};  // null outside rviz, where vis_manager_ is not set
   WholeView whole_view_;
   QTimer timer_;

@@ -55,6 +55,12 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   reward_ = AddLine(all);
   all->addWidget(ships_ = MakeTable(RanchModel::ShipColumns(), 2), 1);
   all->addWidget(devices_ = MakeTable(RanchModel::DeviceColumns(), 4), 2);
+  plan_ = AddLine(all);
+  plan_->setObjectName("plan");
+  all->addWidget(plan_ships_ = MakeTable(PlanShipColumns(), 2), 1);
+  plan_ships_->setObjectName("plan_ships");
+  all->addWidget(plan_devices_ = MakeTable(PlanDeviceColumns(), 4), 2);
+  plan_devices_->setObjectName("plan_devices");
   training_ = AddLine(all);
   all->addWidget(curve_ = new CurveWidget(), 2);
   AddTime(all);
@@ -188,6 +194,21 @@ void RanchWidget::Refresh() {
   Fill(ships_, model_.Ships());
   Fill(devices_, model_.Devices());
   curve_->Show(model_.curve());
+  // A plan takes the room of a curve that has no points.
+  curve_->setVisible(model_.plan() == nullptr || !model_.curve().empty());
+  RefreshPlan();
+}
+
+void RanchWidget::RefreshPlan() {
+  const auto& plan = model_.plan();
+  for (QWidget* part : {static_cast<QWidget*>(plan_), static_cast<QWidget*>(plan_ships_),
+                        static_cast<QWidget*>(plan_devices_)}) {
+    part->setVisible(plan != nullptr);
+  }
+  if (plan == nullptr) return;
+  plan_->setText(Text(PlanHeadline(*plan)));
+  Fill(plan_ships_, PlanShips(*plan, model_.PlanNow()));
+  Fill(plan_devices_, PlanDevices(*plan));
 }
 
 void RanchWidget::Tell(const std::string& line) { told_->setText(Text(line)); }

@@ -43,6 +43,7 @@ class RanchWidget : public QWidget {
  private:
   QLabel* AddLine(QBoxLayout* layout);
   QPushButton* AddButton(QBoxLayout* layout, const QString& text, std::function<void()> act);
+  void RefreshPlan();
   void AddTime(QBoxLayout* layout);
   void AddPlaces(QBoxLayout* layout);
   void AddHelm(QBoxLayout* layout);
@@ -56,6 +57,9 @@ class RanchWidget : public QWidget {
   QLabel* told_;
   QTableWidget* ships_;
   QTableWidget* devices_;
+  QLabel* plan_;
+  QTableWidget* plan_ships_;
+  QTableWidget* plan_devices_;
   CurveWidget* curve_;
   QSpinBox* ship_{};
 };

@@ -82,6 +82,11 @@ std::string RanchModel::TrainingLine() const {
   return text;
 }
 
+ros::Time RanchModel::PlanNow() const {
+  const bool follows = plan_->follows_ranch && shown().state != nullptr;
+  return follows ? std::max(plan_->start, shown().state->world_time) : plan_->start;
+}
+
 const RanchModel::Row& RanchModel::ShipColumns() {
   static const Row columns{"ship", "cell", "action", "aboard", "reward", "return"};
   return columns;

@@ -12,4 +12,9 @@ int RunTrainNode();
 /// @returns an ExitCode
 int RunPolicyNode();
 
+/// Plans the rescue of a ranch's devices again at every bulletin and every change of the ranch, in
+/// a thread of its own. Publishes `plan`, a path for each ship, markers and a chart.
+/// @returns an ExitCode
+int RunPlanNode();
+
 }  // namespace aquafarm_agents

@@ -6,6 +6,7 @@
 #include <aquafarm_msgs/DisasterInfo.h>
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/RescuePlan.h>
 #include <aquafarm_msgs/TrainingStatus.h>
 
 #include <cstdint>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "aquafarm_viz/scene/pairing.h"
+#include "aquafarm_viz/scene/plan_text.h"
 
 namespace aquafarm_viz {
 
@@ -34,6 +36,7 @@ class RanchModel {
   std::string Take(const aquafarm_msgs::FarmSpecConstPtr& spec) { return pairing_.AddSpec(spec); }
   std::string Take(const aquafarm_msgs::FarmStateConstPtr& state);
   void Take(const aquafarm_msgs::TrainingStatusConstPtr& training);
+  void Take(const aquafarm_msgs::RescuePlanConstPtr& plan) { plan_ = plan; }
 
   /// Returns "paper   episode 12   step 17 / 5,000   return −42.5", or "no ranch yet" before the
   /// first state.
@@ -49,6 +52,12 @@ class RanchModel {
   static const Row& DeviceColumns();
   std::vector<Row> Ships() const;
   std::vector<Row> Devices() const;
+
+  /// Returns the last rescue plan; null before the first one.
+  const aquafarm_msgs::RescuePlanConstPtr& plan() const { return plan_; }
+  /// Returns the time of the plan's next orders: that of the ranch if the plan follows it, else the
+  /// plan's start.
+  ros::Time PlanNow() const;
 
   const std::vector<CurvePoint>& curve() const { return curve_; }
   const Shown& shown() const { return pairing_.shown(); }
@@ -67,6 +76,7 @@ class RanchModel {
  private:
   Pairing pairing_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
+  aquafarm_msgs::RescuePlanConstPtr plan_;
   std::vector<CurvePoint> curve_;
   std::uint64_t every_{1};  // keeps one of this many received points
   std::uint64_t came_{};

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Plans again while a ranch runs: replaces ships and devices of a case by their present state.
+
+#include <cstdint>
+#include <vector>
+
+#include "aquafarm/agents/rescue/rescue_case.h"
+#include "aquafarm/grid/action.h"
+#include "aquafarm/grid/cell.h"
+
+namespace aquafarm::agents {
+
+/// A rescue ship of a running ranch.
+struct ShipNow {
+  Cell cell{};
+  std::vector<std::int32_t> aboard;  ///< ids of devices
+};
+
+/// A device of a running ranch.
+struct DeviceNow {
+  bool is_deployed{true};  ///< false: aboard a ship, or in port
+  bool self_propelled{};   ///< it moves by itself and is not planned
+  double health{1.0};      ///< [0, 1]
+};
+
+/// State of a running ranch.
+struct FleetState {
+  std::uint64_t seed{};  ///< of the episode, whose layout is drawn again
+  std::uint64_t episode{};
+  std::vector<ShipNow> ships;      ///< by id, rescue ships alone
+  std::vector<DeviceNow> devices;  ///< by id, all of them
+};
+
+/// Replaces the layout, the ships and the devices of a case by those of a running ranch.
+///
+/// Devices keep their names D1, D2, … by id; the plan leaves out those that are aboard, in port or
+/// self-propelled, and says so in notes. A ship with devices aboard first delivers them at the
+/// nearest open port: the plan begins there, once it is done. `damage_before` is what the device's
+/// health lacks.
+///
+/// @param request of the case; without files of devices and ships
+/// @throws InputError if the state does not fit the scenario, or the request names such files
+void UseFleet(const RescueRequest& request, const FleetState& fleet, RescueCase& rescue);
+
+}  // namespace aquafarm::agents

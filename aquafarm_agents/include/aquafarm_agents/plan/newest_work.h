@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace aquafarm_agents {
+
+/// Works on requests in a thread of its own. The newest request wins: one that waits is replaced
+/// by the next. Request is the type of a request.
+///
+///   Ask(a)  Ask(b)  Ask(c)          b is replaced while a is worked on
+///   [work a .........][pause][work c ..]
+template <typename Request>
+class NewestWork {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// @param work is called in the thread; must not throw
+  /// @param min_period between the starts of two calls of `work`
+  NewestWork(std::function<void(const Request&)> work, std::chrono::duration<double> min_period)
+      : work_(std::move(work)), min_period_(min_period), thread_([this] { Run(); }) {}
+  NewestWork(const NewestWork&) = delete;
+  NewestWork& operator=(const NewestWork&) = delete;
+  /// Waits for the end of the present call. A waiting request is dropped.
+  ~NewestWork() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ending_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+
+  /// Never waits for work.
+  void Ask(Request request) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      waiting_ = std::move(request);
+    }
+    changed_.notify_all();
+  }
+
+  /// Returns whether a request waits or is worked on.
+  bool busy() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return waiting_.has_value() || working_;
+  }
+
+ private:
+  void Run() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    Clock::time_point next = Clock::now();
+    while (true) {
+      changed_.wait(lock, [this] { return ending_ || waiting_; });
+      // Requests that arrive during the pause replace the waiting one.
+      changed_.wait_until(lock, next, [this] { return ending_; });
+      if (ending_) return;
+      if (Clock::now() < next) continue;
+      const Request request = std::move(*waiting_);
+      waiting_.reset();
+      working_ = true;
+      next = Clock::now() + std::chrono::duration_cast<Clock::duration>(min_period_);
+      lock.unlock();
+      work_(request);
+      lock.lock();
+      working_ = false;
+    }
+  }
+
+  const std::function<void(const Request&)> work_;
+  const std::chrono::duration<double> min_period_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<Request> waiting_;
+  bool working_{};
+  bool ending_{};
+  std::thread thread_;  // last: it uses all others
+};
+
+}  // namespace aquafarm_agents

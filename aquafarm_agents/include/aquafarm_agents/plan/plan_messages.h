@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// A rescue plan (plan.json) as messages. The functions do not depend on nodes.
+
+#include <aquafarm_msgs/RescuePlan.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <nav_msgs/Path.h>
+
+#include <cstdint>
+#include <string>
+
+namespace aquafarm_agents {
+
+/// A plan file as messages.
+struct PlanMessages {
+  aquafarm_msgs::RescuePlan plan;  ///< without header, fault, follows_ranch, episode and step
+  nav_msgs::OccupancyGrid chart;   ///< 100 land and rocks, 0 water, as the topic chart; no header
+};
+
+/// Converts the content of a plan file (plan.schema.json). A null becomes NaN, time 0 or id -1.
+/// @param where name of the file for errors
+/// @throws InputError "plan.json: ...; expected a plan file of version 1"
+PlanMessages ReadPlan(const std::string& json, const std::string& where);
+
+/// Returns the way of a ship in frame map [m], with the time of each cell; no poses if it stays.
+/// The orientation of a pose points to the next cell.
+nav_msgs::Path PathOfShip(const aquafarm_msgs::RescuePlan& plan, std::int32_t ship);
+
+}  // namespace aquafarm_agents

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_agents/plan/plan_keeper.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "aquafarm/agents/rescue/plan_report.h"
+
+namespace aquafarm_agents {
+namespace {
+
+namespace agents = aquafarm::agents;
+using aquafarm_msgs::RescuePlan;
+
+bool SameFiles(const std::vector<StampedFile>& a, const std::vector<StampedFile>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const StampedFile& one, const StampedFile& other) {
+                      return one.path == other.path && one.stamp == other.stamp;
+                    });
+}
+
+bool SameFleet(const PlanInputs& a, const PlanInputs& b) {
+  if (a.fleet.has_value() != b.fleet.has_value()) return false;
+  return !a.fleet || (a.fleet->seed == b.fleet->seed && a.fleet->episode == b.fleet->episode &&
+                      a.step == b.step);
+}
+
+std::vector<std::pair<std::string, std::string>> InputFiles(const agents::RescueRequest& request) {
+  std::vector<std::pair<std::string, std::string>> files;
+  const auto add = [&files](const char* role, const std::string& path) {
+    if (!path.empty() && !StampOf(path).stamp.empty()) files.emplace_back(role, path);
+  };
+  add("bulletin", request.bulletin);
+  add("storm", request.storm);
+  add("devices", request.devices);
+  add("ships", request.ships_file);
+  return files;
+}
+
+}  // namespace
+
+bool SamePlan(const PlanInputs& a, const PlanInputs& b) {
+  return a.scenario == b.scenario && SameFiles(a.bulletins, b.bulletins) &&
+         SameFiles(a.files, b.files) && SameFleet(a, b) && a.refresh == b.refresh &&
+         a.request.at == b.request.at;
+}
+
+PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point began = Clock::now();
+  const auto seconds = [began] {
+    return std::chrono::duration<double>(Clock::now() - began).count();
+  };
+  agents::RescueRequest request = inputs.request;
+  request.bulletin = bulletin;
+  agents::RescueCase rescue = agents::MakeRescueCase(inputs.scenario, request);
+  if (inputs.fleet) agents::UseFleet(request, *inputs.fleet, rescue);
+  const bool is_done = rescue.problem.devices.empty();
+  const agents::Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
+  const agents::PlanReport report = agents::MakeReport(rescue, ensemble);
+  agents::PlanProvenance provenance;
+  provenance.command = inputs.command;
+  provenance.computed_at = request.now.value_or(rescue.start);
+  provenance.inputs = InputFiles(request);
+  PlanMessages messages =
+      ReadPlan(agents::ToJson(rescue, ensemble, report, provenance), "the plan");
+  messages.plan.compute_s = seconds();
+  if (is_done) {  // the core takes this for a storm that reaches no device
+    messages.plan.result = RescuePlan::PLAN;
+    messages.plan.text = "Every device is in port or aboard: there is nothing left to fetch.";
+    auto& warnings = messages.plan.warnings;
+    warnings.erase(std::remove_if(warnings.begin(), warnings.end(),
+                                  [](const auto& one) { return one.code == "storm_stays_away"; }),
+                   warnings.end());
+  }
+  return messages;
+}
+
+bool PlanKeeper::Update(const PlanInputs& inputs) {
+  const bool is_new = !inputs_ || !SamePlan(*inputs_, inputs);
+  const auto stamp_before = plan_.plan.computed_at;
+  const std::string fault_before = plan_.plan.fault;
+  if (!inputs_) {
+    plan_.plan.result = RescuePlan::NONE;
+    plan_.plan.text = "There is no plan yet.";
+  }
+  bool has_planned = false;
+  if (is_new && inputs.scenario && (!inputs.bulletins.empty() || !inputs.request.storm.empty())) {
+    const std::string good_before = good_;
+    refused_ = TryAll(inputs);
+    has_planned = refused_.empty() || !good_.empty();
+  }
+  inputs_ = inputs;
+  plan_.plan.fault = inputs.fault;
+  if (!refused_.empty()) plan_.plan.fault += (inputs.fault.empty() ? "" : "; ") + refused_;
+  return has_planned || stamp_before != plan_.plan.computed_at || fault_before != plan_.plan.fault;
+}
+
+// Returns why the newest bulletin is not in the plan; empty if it is.
+std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
+  const std::string newest = inputs.bulletins.empty() ? "" : inputs.bulletins[0].path;
+  std::string why;
+  try {
+    Use(MakePlan(inputs, newest), inputs);
+    good_ = newest;
+    return "";
+  } catch (const std::exception& error) {
+    why = error.what();
+  }
+  const bool has_other = !good_.empty() && good_ != newest && !StampOf(good_).stamp.empty();
+  if (has_other) {
+    try {
+      Use(MakePlan(inputs, good_), inputs);
+      return why + "; this plan is of " + good_;
+    } catch (const std::exception&) {  // then neither can be planned with
+    }
+  }
+  if (plan_.plan.result == RescuePlan::NONE) return why;
+  return why + "; this plan is an earlier one";
+}
+
+void PlanKeeper::Use(PlanMessages plan, const PlanInputs& inputs) {
+  plan_ = std::move(plan);
+  plan_.plan.follows_ranch = inputs.fleet.has_value();
+  plan_.plan.episode = inputs.fleet ? inputs.fleet->episode : 0;
+  plan_.plan.step = inputs.fleet ? inputs.step : 0;
+}
+
+}  // namespace aquafarm_agents

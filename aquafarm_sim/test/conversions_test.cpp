@@ -92,6 +92,24 @@ TEST(Conversions, StateSaysWhatTheFarmIs) {
   EXPECT_EQ(farm.Hash(), state.hash);
 }
 
+TEST(Conversions, SpecInMidEpisodeDescribesTheStart) {
+  auto scenario = std::make_shared<Scenario>(aquafarm::test::CrowdedScenario(2));
+  Farm farm(scenario);
+  farm.Reset(4, 7);
+  const aquafarm::Encoder encoder(*scenario);
+  aquafarm_msgs::FarmSpec start;
+  ToMsg(farm, encoder, 1, "x", Context(), start);
+  ASSERT_EQ(2U, start.disasters.size());
+  EXPECT_FLOAT_EQ(farm.disasters()[0].x, start.disasters[0].x);
+  aquafarm::test::RandomSteps(farm, 60, 5);
+  farm.SetDisaster(2, aquafarm::test::StillDisaster(1, 1, {1}, {-5}));
+  aquafarm_msgs::FarmSpec later;
+  ToMsg(farm, encoder, 1, "x", Context(), later);
+  EXPECT_EQ(start.devices, later.devices);
+  EXPECT_EQ(start.disasters, later.disasters);
+  EXPECT_EQ(start.ports, later.ports);
+}
+
 TEST(Conversions, SpecCarriesChartDevicesAndScenario) {
   auto scenario = std::make_shared<const Scenario>(aquafarm::test::TinyScenario());
   const Farm farm(scenario);

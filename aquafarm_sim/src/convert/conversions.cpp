@@ -2,6 +2,7 @@
 #include "aquafarm_sim/convert/conversions.h"
 
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "aquafarm/base/check.h"
@@ -105,6 +106,16 @@ void FillEpisode(const aquafarm::Farm& farm, const MessageContext& context,
   message.terminated = aquafarm::IsTerminated(farm.reason());
   message.truncated = aquafarm::IsTruncated(farm.reason());
   message.reason = static_cast<std::uint8_t>(farm.reason());
+}
+
+// Returns a farm at the start of the episode of `farm`, with the same layout.
+aquafarm::Farm StartOf(const aquafarm::Farm& farm) {
+  // The scenario outlives the returned farm, which lives as long as the conversion.
+  const std::shared_ptr<const aquafarm::Scenario> scenario(std::shared_ptr<void>(),
+                                                           &farm.scenario());
+  aquafarm::Farm start(scenario, farm.shared_layout());
+  start.Reset(farm.seed(), farm.episode());
+  return start;
 }
 
 void FillPlaces(const aquafarm::Farm& farm, aquafarm_msgs::FarmSpec& message) {
@@ -335,7 +346,7 @@ void ToMsg(const aquafarm::Farm& farm, const aquafarm::Encoder& encoder, std::in
   message.ships = scenario.ships.count;
   message.agents = static_cast<std::int32_t>(farm.ships().size());
   message.capacity = scenario.ships.capacity;
-  FillPlaces(farm, message);
+  FillPlaces(StartOf(farm), message);
   FillRewards(scenario.rewards, scenario.energy ? scenario.energy->weight : 0.0, message.rewards);
   message.state_count = encoder.state_count();
   message.feature_count = encoder.feature_count();

@@ -3,7 +3,6 @@
 
 #include <ros/console.h>
 #include <ros/init.h>
-#include <rosgraph_msgs/Clock.h>
 
 #include <chrono>
 #include <thread>
@@ -47,7 +46,18 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
   ros::NodeHandle node(node_handle);
   const std::uint32_t queue = params_.record ? kRecordQueue : kQueue;
   if (params_.publish_clock) {
-    clock_ = node.advertise<rosgraph_msgs::Clock>(names::kClock, queue, true);
+    // Not latched: a latched message is sent to a late subscriber by another thread, which may be
+    // after newer ones, so the clock of a recording would go back.
+    const ros::SubscriberStatusCallback greet =
+        [this](const ros::SingleSubscriberPublisher& subscriber) {
+          const std::lock_guard<std::mutex> lock(message_mutex_);
+          if (clock_message_.clock.isZero()) {
+            Wake();
+          } else {
+            subscriber.publish(clock_message_);
+          }
+        };
+    clock_ = node.advertise<rosgraph_msgs::Clock>(names::kClock, queue, greet);
   }
   spec_ = node.advertise<aquafarm_msgs::FarmSpec>(names::kSpec, queue, true);
   chart_ = node.advertise<nav_msgs::OccupancyGrid>(names::kChart, queue, true);
@@ -232,9 +242,8 @@ void FarmPublisher::FillFrames(const RanchView& view) {
 
 void FarmPublisher::Send() {
   if (params_.publish_clock) {
-    rosgraph_msgs::Clock clock;
-    clock.clock = context_.stamp;
-    clock_.publish(clock);
+    clock_message_.clock = context_.stamp;
+    clock_.publish(clock_message_);
   }
   const aquafarm::Scenario& scenario = ranch_.scenario();
   if (episode_is_new_) {

@@ -11,6 +11,7 @@
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <rosgraph_msgs/Clock.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
 
@@ -91,6 +92,7 @@ class FarmPublisher : public RanchListener {
   bool episode_is_new_{};
   std::chrono::steady_clock::time_point next_record_;  // limits recording to the rate of rosbag
   MessageContext context_;
+  rosgraph_msgs::Clock clock_message_;  // the last one sent
   aquafarm_msgs::FarmSpec spec_message_;
   nav_msgs::OccupancyGrid chart_message_;
   std::vector<aquafarm::Disaster> disasters_;  // copy for the risk grid, used without a lock

@@ -69,8 +69,8 @@ class BenchmarkTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def start(self, output, *arguments, episodes=150):
-        return Program(self, program("aquafarm_agents", "aquafarm_benchmark"), DATA / "tiny.yaml",
+    def start(self, output, *arguments, episodes=150, scenario=DATA / "tiny.yaml"):
+        return Program(self, program("aquafarm_agents", "aquafarm_benchmark"), scenario,
                        "--output", self.folder / output, "--runs", "2", "--episodes", episodes,
                        "--evaluation-episodes", "30", "--programs",
                        pathlib.Path(program("aquafarm_agents", "aquafarm_train")).parent,
@@ -104,6 +104,30 @@ class BenchmarkTest(unittest.TestCase):
         pictures = {path.stem: path for path in (self.folder / "out/figures").glob("*.png")}
         self.assertEqual(FIGURES, set(pictures))
         self.check_evaluation_figure(everything, rows)
+
+    def test_with_money_it_reports_losses_and_their_references(self):
+        scenario = self.folder / "insured.yaml"
+        scenario.write_text((DATA / "tiny.yaml").read_text() + "money:\n  device_values: "
+                            "{monitoring: 1000.01, temporary_breeding: 500.5}\n  ship_hour: 7\n")
+        one = self.start("out", "--algorithms", "random", episodes=50, scenario=scenario)
+        self.assertEqual(0, one.code(180), one.words())
+        rows = {row["name"]: row["money"] for row in
+                json.loads((self.folder / "out/results.json").read_text())["table"]}
+        self.assertEqual({"random", "do_nothing", "fetch_by_value", "clairvoyant"}, set(rows))
+        self.assertEqual(rows["do_nothing"]["insured"], rows["do_nothing"]["loss"])
+        self.assertEqual(0.0, rows["do_nothing"]["operating_cost"])
+        self.assertLess(rows["fetch_by_value"]["loss"], rows["do_nothing"]["loss"])
+        # The evaluation program has an implementation of its own.
+        for name in ("do_nothing", "fetch_by_value"):
+            path = self.folder / f"out/runs/{name}/seed_1/evaluation.json"
+            other = json.loads(path.read_text())["money"]
+            for key, same in (("loss", other["loss_per_episode"]), ("var", other["var"]["value"]),
+                              ("cvar", other["cvar"]["value"]),
+                              ("distinct_episodes", other["distinct_episodes"])):
+                self.assertAlmostEqual(same, rows[name][key], places=6, msg=f"{name} {key}")
+        for name in ("losses.csv", "losses.md", "exceedance.csv", "figures/losses.png"):
+            self.assertTrue((self.folder / "out" / name).exists(), name)
+        self.assertIn("Losses per episode in CNY", one.words())
 
     def check_evaluation_figure(self, everything, rows):
         """Compares the bars of the evaluation figure with results.json."""

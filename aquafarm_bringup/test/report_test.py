@@ -247,6 +247,26 @@ class ReportTest(unittest.TestCase):
             self.assertIn(word, page.words)
         self.assertEqual([""], self.too_wide(page.text))
 
+    def test_with_money_it_shows_losses_next_to_the_references(self):
+        self.assertNotIn("Losses", self.page.words, "the scenario of the other tests has no money")
+        scenario = self.folder / "insured.yaml"
+        scenario.write_text(SCENARIO + "money: {device_values: {temporary_breeding: 5000.5}}\n")
+        trained = self.folder / "insured"
+        code, words = run("aquafarm_agents", "aquafarm_train", scenario, "--algorithm",
+                          "q_learning", "--episodes", 60, "--run-dir", trained, "--evaluate", 0,
+                          "--random", 0)
+        self.assertEqual(0, code, words)
+        code, words = run("aquafarm_bringup", "make_report", trained, "--episodes", 20)
+        self.assertEqual(0, code, words)
+        page = Page(trained / "report.html")
+        for word in ("Losses", "do nothing", "fetch by value", "loss x [CNY]",
+                     "temporary breeding", "VaR 5 %"):
+            self.assertIn(word, page.text)
+        # Without a rescue the only device is lost in each episode.
+        self.assertIn("<td>do nothing</td><td>5,000</td><td>0</td><td>0</td><td>5,000</td>",
+                      page.text)
+        self.assertEqual([""], self.too_wide(page.text))
+
     def test_a_launch_ends_with_the_report(self):
         folder = self.folder / "launched"
         with Ranch("train", f"scenario:={self.scenario}", "episodes:=40", "farms:=4",

@@ -78,9 +78,14 @@ ExitCode Run(Arguments arguments) {
         std::printf("%zu of %d episodes played\n", over, arguments.episodes);
         std::fflush(stdout);
       },
-      arguments.policy_seed);
+      arguments.policy_seed,
+      [&environment](std::int32_t farm) {
+        return environment.batch().farm(farm).record().accounts;
+      });
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
+  const std::string losses = DescribeLosses(evaluation);
+  if (!losses.empty()) std::printf("%s\n", losses.c_str());
   std::fflush(stdout);  // before steps that may still fail
   if (arguments.bound && evaluation.complete) {
     evaluation.mean_bound = MeanBound(scenario, evaluation);

@@ -14,7 +14,7 @@ import tempfile
 import time
 
 from aquafarm_benchmark import results, runs
-from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES
+from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES, REFERENCES
 
 _OK, _FAILED, _BAD_INPUT, _STORAGE, _INTERRUPTED = 0, 1, 2, 3, 130
 _EPILOG = """exit codes: 0 all is there, 1 some runs failed (the others are kept), 2 bad argument,
@@ -226,7 +226,8 @@ _FARM_KEYS = ("scenario", "scenario_hash", "version")
 
 
 def look_at_farm(options):
-    """Returns name, hash and version of the farm; raises BadInput if the scenario is invalid."""
+    """Returns name, hash and version of the farm, and whether it has money; raises BadInput if the
+    scenario is invalid."""
     evaluate = find_program("aquafarm_evaluate", options.programs)
     with tempfile.TemporaryDirectory(prefix="aquafarm_") as folder:
         one = subprocess.run([evaluate, "random", options.scenario, "--episodes", "1",
@@ -236,7 +237,7 @@ def look_at_farm(options):
             lines = one.stderr.strip().splitlines()
             raise BadInput(lines[-1] if lines else f"scenario: got '{options.scenario}'")
         found = json.loads(pathlib.Path(folder, "one.json").read_text())
-    return {key: found[key] for key in _FARM_KEYS}
+    return {key: found[key] for key in _FARM_KEYS}, "money" in found
 
 
 def _require_alike(name, of_one):
@@ -249,11 +250,14 @@ def _require_alike(name, of_one):
 
 def run(options):
     """Runs the complete protocol: trains, evaluates, writes and draws."""
+    farm, has_money = look_at_farm(options)
+    names = set(options.algorithms)
+    if has_money:
+        names.update(one.name for one in REFERENCES)
     contestants = [one.for_episodes(options.episodes)
-                   for one in PROFILES[options.profile].contestants
-                   if one.name in options.algorithms]
+                   for one in PROFILES[options.profile].contestants if one.name in names]
     folder = options.output.resolve()
-    settings = settings_of(options, contestants, look_at_farm(options))
+    settings = settings_of(options, contestants, farm)
     lock = claim(folder, settings)
     jobs = make_jobs(options, [*contestants, OPTIMUM], folder)
     is_whole = not any(job.resumes or runs.is_complete(job.result) for job in jobs)
@@ -305,10 +309,12 @@ def _conclude(folder, contestants, found, settings, episodes):
         figures.draw_repeated(pictures / "repeated_trainings.png", trained, found, optimum)
         figures.draw_mean_score(pictures / "mean_score.png", trained, found)
     figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
+    if any(row["money"] for row in rows):
+        figures.draw_losses(pictures / "losses.png", everyone, rows)
     for one in everyone:
         figures.draw_route(pictures / f"route_{one.name}.png", one.label,
                            folder / "runs" / one.name / "seed_1" / "route.json")
-    print(results.table(rows))
+    print(results.table(rows) + results.money_table(rows))
 
 
 def _processor():

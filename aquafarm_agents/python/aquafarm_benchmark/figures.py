@@ -12,7 +12,7 @@ import numpy as np  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.patches import Polygon  # noqa: E402
 
-from aquafarm_benchmark import measures  # noqa: E402
+from aquafarm_benchmark import losses, measures  # noqa: E402
 
 _DIRECTIONS = {"north": (0, 1), "south": (0, -1), "west": (-1, 0), "east": (1, 0),
                "north_west": (-1, 1), "north_east": (1, 1), "south_west": (-1, -1),
@@ -134,12 +134,12 @@ def draw_square_error(path, contestants, runs):
 def plot_square_error(axes, contestants, runs):
     """Mean over the runs of the squared TD error by episode, without RANDOM."""
     for one in contestants:
-        losses = _curves(runs[one.name], "loss")
-        known = np.isfinite(losses).any(axis=0)
+        errors = _curves(runs[one.name], "loss")
+        known = np.isfinite(errors).any(axis=0)
         if not known.any():
             continue
-        episodes = np.arange(1, losses.shape[1] + 1)[known]
-        axes.plot(episodes, np.nanmean(losses[:, known], axis=0), color=one.colour,
+        episodes = np.arange(1, errors.shape[1] + 1)[known]
+        axes.plot(episodes, np.nanmean(errors[:, known], axis=0), color=one.colour,
                   label=one.label)
     axes.set_yscale("log")
     if axes.lines:
@@ -193,6 +193,49 @@ def plot_evaluation(axes, contestants, rows):
     axes.set_yscale("symlog", linthresh=100.0)
     axes.margins(y=0.15)
     axes.set_xticks(range(len(contestants)), [one.label for one in contestants], rotation=15)
+
+
+def draw_losses(path, contestants, rows):
+    """Exceedance curves of the losses, next to the mean loss by kind of device."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(13, 4.5), layout="constrained")
+    unit = next(row["money"]["currency"] for row in rows if row["money"])
+    _label(left, "Exceedance of losses", "probability of a larger loss", f"loss x [{unit}]")
+    plot_exceedance(left, contestants, rows)
+    _label(right, "Mean loss by kind of device", f"loss per episode [{unit}]", "")
+    plot_loss_by_kind(right, contestants, rows)
+    _save(figure, path)
+
+
+def _with_money(contestants, rows):
+    by_name = {row["name"]: row["money"] for row in rows}
+    return [(one, by_name[one.name]) for one in contestants if by_name.get(one.name)]
+
+
+def plot_exceedance(axes, contestants, rows):
+    """P(loss > x) by x, a step curve from probability 1 at 0, with CVaR as a mark at 5 %."""
+    for one, money in _with_money(contestants, rows):
+        x, probability = money["exceedance"]
+        axes.step([0.0, *x], [1.0 if x[0] > 0.0 else probability[0], *probability], where="post",
+                  color=one.colour, label=one.label)
+        axes.plot(money["cvar"], losses.TAIL, marker="v", color=one.colour)
+    axes.axhline(losses.TAIL, color="black", linewidth=0.5, linestyle="--")
+    axes.set_ylim(-0.02, 1.02)
+    axes.legend(loc="best")
+
+
+def plot_loss_by_kind(axes, contestants, rows):
+    """One group of bars per kind: damaged, and lost on top of it, a bar for each contestant."""
+    shown = _with_money(contestants, rows)
+    kinds = sorted({kind for _, money in shown for kind in money["by_kind"]})
+    width = 0.8 / max(1, len(shown))
+    for place, (one, money) in enumerate(shown):
+        x = np.arange(len(kinds)) + width * (place - (len(shown) - 1) / 2.0)
+        parts = {part: np.array([money["by_kind"].get(kind, {}).get(part, 0.0) for kind in kinds])
+                 for part in ("damaged", "lost")}
+        axes.bar(x, parts["damaged"], width, color=one.colour, label=one.label)
+        axes.bar(x, parts["lost"], width, bottom=parts["damaged"], color=one.colour, alpha=0.5)
+    axes.set_xticks(range(len(kinds)), [kind.replace("_", " ") for kind in kinds], rotation=15)
+    axes.legend(loc="best", title="dark: damaged, light: lost")
 
 
 def draw_repeated(path, contestants, runs, optimum):

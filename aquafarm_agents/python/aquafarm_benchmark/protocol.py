@@ -107,6 +107,14 @@ CONTESTANTS = (
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )
+# The references of losses, which take part if the scenario has money.
+REFERENCES = (
+    Contestant("do_nothing", "do nothing", "#7f7f7f", learns=False, cost=0.05, repeats=False,
+               named_only=True),
+    Contestant("fetch_by_value", "fetch by value", "#8c564b", learns=False, cost=0.1,
+               repeats=False, named_only=True),
+)
+CONTESTANTS += REFERENCES
 OPTIMUM = Contestant("clairvoyant", "clairvoyant", "#000000", learns=False, cost=0.2, repeats=False)
 
 # The farm of `paper` with the plain observation: no precomputed routes, no lookahead risk.

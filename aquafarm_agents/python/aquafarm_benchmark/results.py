@@ -7,7 +7,7 @@ import os
 
 import numpy as np
 
-from aquafarm_benchmark import measures
+from aquafarm_benchmark import losses, measures
 from aquafarm_benchmark.protocol import PAPER_TABLE
 
 _EVALUATED = ("return_per_episode", "return_per_step", "success_rate", "steps_per_episode",
@@ -47,6 +47,7 @@ def read_run(folder):
     # Evaluations of version 0.1.0 have no count of distinct starts.
     run["distinct_episodes"] = evaluation.get("distinct_episodes")
     run["evaluation_episodes"] = evaluation["episodes"]
+    run["money"] = losses.read(folder / "evaluation.csv")
     settings = folder / "run.json"
     run["training"] = json.loads(settings.read_text()) if settings.exists() else {}
     if run["training"]:
@@ -108,6 +109,10 @@ def summarise(contestant, runs, optimum, training_episodes):
     row["evaluation_episodes"] = runs[0]["evaluation_episodes"]
     counts = [run["distinct_episodes"] for run in runs]
     row["distinct_episodes"] = None if None in counts else min(counts)
+    row["money"] = None
+    if all(run["money"] for run in runs):
+        row["money"] = losses.summarise(losses.pool([run["money"] for run in runs]),
+                                        runs[0]["evaluation"]["money"]["currency"])
     return row
 
 
@@ -171,6 +176,61 @@ def table(rows):
     return "\n".join(lines) + "\n"
 
 
+def money_table(rows):
+    """Returns the losses as Markdown; empty without money."""
+    rows = [row for row in rows if row["money"]]
+    if not rows:
+        return ""
+    def interval(bounds):
+        return "" if any(map(math.isnan, bounds)) else f" ({bounds[0]:,.0f} … {bounds[1]:,.0f})"
+
+    unit = rows[0]["money"]["currency"]
+    lines = [f"\nLosses per episode in {unit} (loss = insured - saved).\n",
+             "| | insured | saved | damaged | lost | loss ± standard error | operating cost | "
+             "VaR 5 %, 95 % interval | CVaR 5 %, 95 % interval | distinct episodes |",
+             "| --- " * 10 + "|"]
+    for row in rows:
+        money = row["money"]
+        error = money["standard_error"]
+        lines.append("| " + " | ".join((
+            row["label"], *(f"{money[part]:,.0f}" for part in ("insured", "saved", "damaged",
+                                                               "lost")),
+            f"{money['loss']:,.0f} ± {_text(error, '{:,.0f}')}",
+            f"{money['operating_cost']:,.0f}",
+            f"{money['var']:,.0f}{interval(money['var_interval'])}",
+            f"{money['cvar']:,.0f}{interval(money['cvar_interval'])}",
+            f"{money['distinct_episodes']} of {money['episodes']}")) + " |")
+    return "\n".join(lines) + "\n"
+
+
+_MONEY_COLUMNS = ("insured", "saved", "damaged", "lost", "loss", "standard_error",
+                  "operating_cost", "var", "var_low", "var_high", "cvar", "cvar_low", "cvar_high",
+                  "episodes", "distinct_episodes")
+
+
+def write_losses(folder, rows):
+    """Writes losses.csv (a line per row and kind of device; the kind "all" has the tail) and
+    exceedance.csv (points of the curves). Writes nothing without money."""
+    rows = [row for row in rows if row["money"]]
+    if not rows:
+        return
+    lines = [",".join(("name", "kind", "currency", *_MONEY_COLUMNS))]
+    points = ["name,loss,probability_of_more"]
+    for row in rows:
+        money = dict(row["money"])
+        for name in ("var", "cvar"):
+            money[f"{name}_low"], money[f"{name}_high"] = money[f"{name}_interval"]
+        kinds = {"all": money, **{kind: dict(parts, loss=parts["damaged"] + parts["lost"])
+                                  for kind, parts in money["by_kind"].items()}}
+        for kind, values in kinds.items():
+            lines.append(",".join((row["name"], kind, money["currency"], *(
+                "" if math.isnan(values.get(c, math.nan)) else str(values[c])
+                for c in _MONEY_COLUMNS))))
+        points += [f"{row['name']},{x},{p}" for x, p in zip(*money["exceedance"])]
+    write_atomically(folder / "losses.csv", "\n".join(lines) + "\n")
+    write_atomically(folder / "exceedance.csv", "\n".join(points) + "\n")
+
+
 _TABLE_NOTES = """
 Rows in italics: Table 1 of the paper as printed, with the rank of Eq. 16 in brackets. Its unit of
 convergence is timesteps; the paper's protocol (§4.2) counts episodes, and so do the other rows.
@@ -206,12 +266,16 @@ def write(folder, settings, rows, runs):
     write_atomically(folder / "runs.csv", "\n".join(lines) + "\n")
 
     everything = {"settings": settings, "table": rows,
-                  "runs": {name: [_without(run, "curve", "folder", "training") for run in of_one]
+                  "runs": {name: [_without(run, "curve", "folder", "training", "money")
+                                  for run in of_one]
                            for name, of_one in runs.items()}}
     text = json.dumps(_without_nan(everything), indent=2, allow_nan=False)
     write_atomically(folder / "results.json", text + "\n")
     notes = _TABLE_NOTES if any(row["paper_row"] for row in rows) else ""
     write_atomically(folder / "table.md", table(rows) + notes)
+    write_losses(folder, rows)
+    if any(row["money"] for row in rows):
+        write_atomically(folder / "losses.md", money_table(rows))
 
 
 def _without(run, *names):

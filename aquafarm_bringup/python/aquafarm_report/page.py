@@ -57,6 +57,13 @@ def table(head, rows):
             "".join(line("td", row) for row in rows) + "</table></div>")
 
 
+def markdown_table(text):
+    """The Markdown table of a text; an empty first head is "learner"."""
+    rows = [[cell.strip().strip("*") for cell in line.strip().strip("|").split("|")]
+            for line in text.splitlines() if line.startswith("|")]
+    return table([cell or "learner" for cell in rows[0]], rows[2:])
+
+
 def picture(path, caption):
     return (f'<figure><img src="{embed(path)}" alt="{escape(caption)}">'
             f"<figcaption>{escape(caption)}</figcaption></figure>")

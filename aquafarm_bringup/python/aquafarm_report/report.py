@@ -78,8 +78,15 @@ def show_episodes(run, folder, episodes):
             ("delivered_health", "health of what came home", "{:.3f}"))
     table = page.table(["mean of an episode", ""], [
         (name, form.format(summary[key])) for key, name, form in keys if key in summary])
+    losses = []
+    if "money" in summary:
+        from aquafarm_report import money  # needs seconds to load, and few scenarios have it
+
+        losses = [money.show((summary["algorithm"], folder / "evaluation.csv"),
+                             run / "scenario.yaml", folder, episodes,
+                             summary["money"]["currency"])]
     return summary, [
-        page.section(f"Greedy play, {count_text(summary, len(rows))}", table),
+        page.section(f"Greedy play, {count_text(summary, len(rows))}", table), *losses,
         page.section("The ranch", page.picture(chart, "at the start of an episode")),
         page.section("Best, median and worst episode",
                      f'<div class="films">{"".join(shown)}</div>')]
@@ -106,13 +113,6 @@ def report_run(run, folder, episodes):
                                   (run / "scenario.yaml").read_text(encoding="utf-8"))))
 
 
-def read_table(path):
-    """Header and rows of table.md."""
-    rows = [[cell.strip().strip("*") for cell in line.strip().strip("|").split("|")]
-            for line in path.read_text(encoding="utf-8").splitlines() if line.startswith("|")]
-    return [cell or "learner" for cell in rows[0]], rows[2:]
-
-
 def best_run(benchmark):
     """First existing run folder, by decreasing return of the learner; None if there is none."""
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
@@ -135,6 +135,10 @@ def report_benchmark(benchmark, folder, episodes):
         (settings.get("version", "–"), "version")])
     figures = [page.picture(path, path.stem.replace("_", " "))
                for path in sorted((benchmark / "figures").glob("*.png"))]
+    losses = []
+    if (benchmark / "losses.md").is_file():
+        losses = [page.section("Losses", page.markdown_table(
+            (benchmark / "losses.md").read_text(encoding="utf-8")))]
     run = best_run(benchmark)
     shown = []
     if run is not None:
@@ -144,9 +148,9 @@ def report_benchmark(benchmark, folder, episodes):
     seeds = sorted({run["seed"] for of_one in results["runs"].values() for run in of_one})
     return page.page(
         f"Benchmark on {settings.get('scenario', 'a ranch')}", tiles,
-        page.section("Table 1, the paper's and ours", page.table(*read_table(benchmark /
-                                                                             "table.md"))),
-        page.section("Figures", *figures), *shown,
+        page.section("Table 1, the paper's and ours", page.markdown_table(
+            (benchmark / "table.md").read_text(encoding="utf-8"))),
+        *losses, page.section("Figures", *figures), *shown,
         page.section("Configuration", f"<p>Seeds of the trainings: {page.escape(seeds)}</p>",
                      page.details("benchmark.json", json.dumps(settings, indent=2))))
 

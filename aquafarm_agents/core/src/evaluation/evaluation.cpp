@@ -2,10 +2,11 @@
 #include "aquafarm/agents/evaluation/evaluation.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <unordered_set>
+#include <unordered_map>
 
 #include "aquafarm/agents/base/storage.h"
 #include "aquafarm/agents/evaluation/metrics.h"
@@ -46,6 +47,41 @@ void Summarise(Evaluation& evaluation) {
   if (delivering > 0.0) evaluation.mean_delivered_health /= delivering;
 }
 
+// Null, as JSON has no NaN.
+nlohmann::json NumberOrNull(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json ToJson(const Losses& losses, const Ledger& sums) {
+  return {{"insured", losses.Mean(sums.insured)},
+          {"saved", losses.Mean(sums.saved)},
+          {"damaged", losses.Mean(sums.damaged)},
+          {"lost", losses.Mean(sums.lost)}};
+}
+
+nlohmann::json ToJson(const Losses& losses) {
+  const auto estimate = [](const Estimate& of) -> nlohmann::json {
+    return {{"value", of.value}, {"low", NumberOrNull(of.low)}, {"high", NumberOrNull(of.high)}};
+  };
+  nlohmann::json json = {{"currency", losses.currency},
+                         {"episodes", losses.episodes},
+                         {"distinct_episodes", losses.distinct},
+                         {"per_episode", ToJson(losses, losses.Total())},
+                         {"loss_per_episode", losses.mean_loss},
+                         {"loss_standard_error", NumberOrNull(losses.standard_error)},
+                         {"operating_cost_per_episode", losses.Mean(losses.operating_cost)},
+                         {"tail", 1.0 / static_cast<double>(kTailInverse)},
+                         {"var", estimate(losses.var)},
+                         {"cvar", estimate(losses.cvar)},
+                         {"exceedance", losses.exceedance}};
+  for (std::size_t kind = 0; kind < losses.by_kind.size(); ++kind) {
+    if (losses.by_kind[kind].insured == 0) continue;
+    json["by_kind"][std::string(ToString(static_cast<DeviceKind>(kind)))] =
+        ToJson(losses, losses.by_kind[kind]);
+  }
+  return json;
+}
+
 nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& context) {
   nlohmann::json json = {{"policy", context.policy},
                          {"algorithm", context.algorithm},
@@ -69,19 +105,27 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
                          {"energy_kwh_per_episode", evaluation.mean_energy},
                          {"distance_km_per_episode", evaluation.mean_distance},
                          {"wall_s", evaluation.wall_s}};
+  if (evaluation.losses) json["money"] = ToJson(*evaluation.losses);
   if (evaluation.mean_bound) json["upper_bound_per_episode"] = *evaluation.mean_bound;
   return json;
 }
 
-// Episodes depend on scenario, seed and number alone, also behind ROS, so they can be started here.
-std::size_t CountDistinct(const EnvironmentSpec& spec, const Evaluation& evaluation) {
+// Sets what depends on the starts of the episodes. Episodes depend on scenario, seed and number
+// alone, also behind ROS, so they can be started here.
+// @param accounts [episodes]; empty if they are unknown
+void CompareStarts(const EnvironmentSpec& spec, std::vector<Accounts> accounts,
+                   Evaluation& evaluation) {
   Farm farm(std::make_shared<const Scenario>(ParseScenario(spec.scenario_yaml, "scenario")));
-  std::unordered_set<std::uint64_t> starts;
+  std::unordered_map<std::uint64_t, std::size_t> index;  // by the hash of a start
+  std::vector<std::size_t> starts;
   for (const EpisodeResult& result : evaluation.episodes) {
     farm.Reset(result.seed, result.episode);
-    starts.insert(farm.StartHash());
+    starts.push_back(index.emplace(farm.StartHash(), index.size()).first->second);
   }
-  return starts.size();
+  evaluation.distinct = index.size();
+  if (!farm.scenario().money || accounts.empty()) return;
+  evaluation.losses = SummariseLosses(std::move(accounts), std::move(starts),
+                                      farm.scenario().money->currency, evaluation.seed);
 }
 
 }  // namespace
@@ -89,7 +133,7 @@ std::size_t CountDistinct(const EnvironmentSpec& spec, const Evaluation& evaluat
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop,
                     const std::function<void(std::size_t over)>& on_progress,
-                    std::optional<std::uint64_t> policy_seed) {
+                    std::optional<std::uint64_t> policy_seed, const AccountsOf& accounts_of) {
   AQUAFARM_CHECK_GE(episodes, 1);
   const auto start = std::chrono::steady_clock::now();
   auto told = start;
@@ -99,6 +143,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
   const std::uint64_t rng = policy_seed.value_or(evaluation.seed);
   std::vector<EpisodeResult> results(count);
   std::vector<std::uint8_t> is_over(count);
+  std::vector<std::optional<Accounts>> accounts(count);
   std::size_t over = 0;
   policy.Begin(rng, environment.spec().farms);
   std::vector<std::uint8_t> actions;
@@ -110,6 +155,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
       if (result.episode >= count || is_over[result.episode] != 0) continue;
       results[result.episode] = result;
       is_over[result.episode] = 1;
+      if (accounts_of) accounts[result.episode] = accounts_of(result.farm);
       ++over;
     }
     const auto present = std::chrono::steady_clock::now();
@@ -122,11 +168,14 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
       now = &environment.Reset(evaluation.seed);
     }
   }
+  std::vector<Accounts> known;
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_over[i] != 0) evaluation.episodes.push_back(results[i]);
+    if (is_over[i] == 0) continue;
+    evaluation.episodes.push_back(results[i]);
+    if (accounts[i]) known.push_back(*accounts[i]);
   }
   evaluation.complete = over == count;
-  evaluation.distinct = CountDistinct(environment.spec(), evaluation);
+  CompareStarts(environment.spec(), std::move(known), evaluation);
   Summarise(evaluation);
   evaluation.wall_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -135,11 +184,16 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
 
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context) {
-  std::string rows = std::string(kEpisodeColumns) + "," + kAddedEpisodeColumns + "\n";
-  for (const EpisodeResult& result : evaluation.episodes) {
-    AppendEpisode(result, rows);
+  std::string rows = std::string(kEpisodeColumns) + "," + kAddedEpisodeColumns;
+  if (evaluation.losses) rows += AccountColumns();
+  rows += '\n';
+  for (std::size_t i = 0; i < evaluation.episodes.size(); ++i) {
+    AppendEpisode(evaluation.episodes[i], rows);
     rows += ',';
-    AppendAdded(result, rows);
+    AppendAdded(evaluation.episodes[i], rows);
+    if (evaluation.losses) {
+      AppendAccounts(evaluation.losses->starts[i], evaluation.losses->accounts[i], rows);
+    }
     rows += '\n';
   }
   WriteFileAtomically(prefix + ".csv", rows);
@@ -153,6 +207,20 @@ std::string Describe(const Evaluation& evaluation) {
                 "(%zu episodes, %zu distinct)",
                 100.0 * evaluation.success_rate, evaluation.mean_return, evaluation.return_per_step,
                 evaluation.mean_steps, evaluation.episodes.size(), evaluation.distinct);
+  return text;
+}
+
+std::string DescribeLosses(const Evaluation& evaluation) {
+  if (!evaluation.losses) return "";
+  const Losses& losses = *evaluation.losses;
+  char text[400];
+  std::snprintf(text, sizeof(text),
+                "loss %.2f ± %.2f %s of %.2f insured, operating cost %.2f, VaR 5 %% %.2f "
+                "[%.2f, %.2f], CVaR 5 %% %.2f [%.2f, %.2f]",
+                losses.mean_loss, losses.standard_error, losses.currency.c_str(),
+                losses.Mean(losses.Total().insured), losses.Mean(losses.operating_cost),
+                losses.var.value, losses.var.low, losses.var.high, losses.cvar.value,
+                losses.cvar.low, losses.cvar.high);
   return text;
 }
 

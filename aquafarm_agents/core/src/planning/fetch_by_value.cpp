@@ -28,6 +28,12 @@ std::int32_t StepsLeft(const Farm& farm) {
   return std::min(left, longest);
 }
 
+// Returns the value by which devices are chosen: the insured one where the scenario has money.
+double ValueOf(const Farm& farm, std::size_t device) {
+  if (farm.scenario().money) return static_cast<double>(farm.layout().devices[device].insured);
+  return static_cast<double>(farm.devices()[device].value);
+}
+
 bool IsOnMap(const Farm& farm, Cell cell) {
   return cell.x >= 0 && cell.y >= 0 && cell.x < farm.scenario().width &&
          cell.y < farm.scenario().height;
@@ -70,7 +76,7 @@ void FetchByValue::Choose(const Farm& farm, std::int32_t id) {
   const std::vector<std::int32_t> moves = WaterDistance(farm.layout(), {ship.cell});
   std::int32_t chosen = kNone;
   std::int32_t nearest = 0;
-  float best = 0.0F;
+  double best = 0.0;
   for (std::size_t i = 0; i < farm.devices().size(); ++i) {
     const Device& device = farm.devices()[i];
     const auto candidate = static_cast<std::int32_t>(i);
@@ -80,10 +86,10 @@ void FetchByValue::Choose(const Farm& farm, std::int32_t id) {
                     [candidate](const Errand& other) { return other.device == candidate; });
     const std::int32_t away = moves[IndexOf(farm, device.cell)];
     if (is_taken || !CanBringHome(farm, candidate, away)) continue;
-    const bool is_better =
-        chosen == kNone || device.value > best || (device.value == best && away < nearest);
+    const double value = ValueOf(farm, i);
+    const bool is_better = chosen == kNone || value > best || (value == best && away < nearest);
     if (!is_better) continue;
-    best = device.value;
+    best = value;
     nearest = away;
     chosen = candidate;
   }

@@ -159,6 +159,7 @@ void Farm::Step(const std::uint8_t* actions) {
   Damage();
   Consume();
   Reward();
+  if (scenario_->money) CountShipSteps();
   Finish();
 }
 
@@ -411,6 +412,31 @@ void Farm::Finish() {
   } else if (record_.steps >= scenario_->step_limit) {
     record_.reason = EndReason::kStepLimit;
   }
+  if (over() && scenario_->money) record_.accounts = SettleAccounts();
+}
+
+// A ship is moored if it is in a port at the end of a step in which it did not move.
+void Farm::CountShipSteps() {
+  for (const Ship& ship : ships_) {
+    const bool moved = ship.outcome == Outcome::kOk && ship.action < Action::kPickup;
+    const bool is_moored = !moved && (layout_->bits(ship.cell) & kPortBit) != 0;
+    if (ship.own_device == kNone && !is_moored) ++record_.ship_steps;
+  }
+}
+
+Accounts Farm::SettleAccounts() const {
+  const MoneySpec& money = *scenario_->money;
+  Accounts accounts;
+  for (std::size_t id = 0; id < devices_.size(); ++id) {
+    const Device& device = devices_[id];
+    accounts.by_kind[static_cast<std::size_t>(device.kind)] +=
+        Settle(money, layout_->devices[id].insured, device.health, scenario_->devices.health,
+               device.status == DeviceStatus::kDelivered);
+  }
+  const double hours = record_.ship_steps * scenario_->step_duration_s / 3600.0;
+  accounts.ship_cost = ToCents(hours * money.ship_hour);
+  accounts.energy_cost = ToCents(record_.energy * money.kwh);
+  return accounts;
 }
 
 float Farm::RiskAt(Cell cell) const {

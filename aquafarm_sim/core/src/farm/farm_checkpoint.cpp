@@ -210,6 +210,7 @@ void Farm::Load(const std::string& bytes) {
     loaded.CheckConsistent();
     loaded.IndexShips();
     RequireSame("hash", loaded.Hash(), state.at("hash").get<std::uint64_t>());
+    if (loaded.over() && scenario_->money) loaded.record_.accounts = loaded.SettleAccounts();
   } catch (const json::exception& error) {
     throw InputError(std::string("state: damaged bytes: ") + error.what());
   }
@@ -240,7 +241,8 @@ void Farm::CheckConsistent() const {
            std::isfinite(ship.episode_energy + ship.episode_distance);
   }
   fits = fits && record_.steps >= 0 && record_.steps <= scenario_->step_limit &&
-         record_.devices == static_cast<std::int32_t>(devices_.size());
+         record_.devices == static_cast<std::int32_t>(devices_.size()) && record_.ship_steps >= 0 &&
+         record_.ship_steps <= record_.steps * scenario_->ships.count;
   for (std::size_t i = 0; i < disasters_.size(); ++i) {
     const std::vector<Waypoint>& track = *tracks_[i];
     fits = fits && in_list(disasters_[i].waypoint, track.size());

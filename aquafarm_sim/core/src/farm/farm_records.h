@@ -162,6 +162,7 @@ struct FieldsOf<EpisodeRecord> {
     a.Field("collisions", record.collisions);
     a.Field("steps_in_disaster", record.steps_in_disaster);
     a.Field("reason", record.reason);
+    if (Archive::kReads || record.ship_steps != 0) a.Added("ship_steps", record.ship_steps);
     a.Added("energy", record.energy);
     a.Added("distance", record.distance);
   }

@@ -192,6 +192,11 @@ bool LayoutGenerator::DrawDevices(RandomStream& rng, Layout& layout) {
       device.kind = spec.kinds[i % spec.kinds.size()];
       device.self_propelled = i + static_cast<std::size_t>(spec.self_propelled) >= count;
     }
+    if (scenario_.money) {
+      const bool has_site = spec.placement == DevicePlacement::kExplicit;
+      device.insured =
+          InsuredValue(*scenario_.money, device.kind, has_site ? &spec.sites[i] : nullptr);
+    }
   }
   return true;
 }

@@ -40,6 +40,7 @@ inline constexpr Interval<float> kRisk{kWorstRisk, kMildestRisk};
 inline constexpr Interval<float> kPenalty{-1000.0F, 0.0F};
 inline constexpr Interval<float> kReward{-10000.0F, 10000.0F};
 inline constexpr Interval<float> kDeviceValue{0.0F, 10000.0F};
+inline constexpr Interval<double> kAmount{0.0, 1.0e9};  // so that sums of cents are exact
 inline constexpr Interval<std::int32_t> kGrade{1, 4};
 inline constexpr Interval<std::int32_t> kAlong{0, kMaxSide - 1};
 inline constexpr Interval<std::int32_t> kSide{1, kMaxSide};
@@ -333,6 +334,7 @@ void VisitDevices(Archive& a, S& s) {
       c.Field("kind", site.kind, OneOfNames{}, Need::kRequired);
       c.Field("value", site.value, kDeviceValue);
       c.Field("self_propelled", site.self_propelled, AnyFlag{});
+      c.Field("insured_value", site.insured_value, kAmount);
     });
     b.Always();
   });
@@ -442,6 +444,22 @@ void VisitSeas(Archive& a, S& s, const WorldFrame& frame) {
   });
 }
 
+template <typename Archive, typename S>
+void VisitMoney(Archive& a, S& s) {
+  a.Optional("money", s.money, [](auto& b, auto& money) {
+    b.Field("currency", money.currency, TextOf{1, 10});
+    b.Struct("device_values", [&](auto& c) {
+      for (std::size_t kind = 0; kind < money.device_values.size(); ++kind) {
+        const std::string key(ToString(static_cast<DeviceKind>(kind)));
+        c.Field(key.c_str(), money.device_values[kind], kAmount);
+      }
+    });
+    b.Field("ship_hour", money.ship_hour, kAmount);
+    b.Field("kwh", money.kwh, Interval<double>{0.0, 1.0e6});
+    b.Field("at_sea_loss", money.at_sea_loss, Interval<double>{0.0, 1.0});
+  });
+}
+
 /// @param frame filled as soon as grid and time are known; required by the disasters' tracks
 template <typename Archive, typename S>
 void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
@@ -484,6 +502,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
   VisitEnergy(a, s);
   VisitView(a, s);
   VisitSeas(a, s, frame);
+  VisitMoney(a, s);
 }
 
 /// Archive that checks values in memory, including unused ones.

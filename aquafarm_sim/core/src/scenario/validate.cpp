@@ -281,6 +281,28 @@ void CheckForecast(const Scenario& scenario) {
   }
 }
 
+void CheckCents(const std::string& path, double amount) {
+  const double cents = amount * 100.0;
+  if (std::abs(cents - std::round(cents)) < 1.0e-4) return;
+  throw FieldError(path, "got " + Format(amount) + ", expected at most two decimals");
+}
+
+void CheckMoney(const Scenario& scenario) {
+  const std::vector<DeviceSite>& sites = scenario.devices.sites;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    if (!sites[i].insured_value) continue;
+    const std::string path = At("layout.devices.sites", i) + ".insured_value";
+    if (!scenario.money) throw FieldError(path, "is used only where there is money");
+    CheckCents(path, *sites[i].insured_value);
+  }
+  if (!scenario.money) return;
+  const auto& values = scenario.money->device_values;
+  for (std::size_t kind = 0; kind < values.size(); ++kind) {
+    CheckCents("money.device_values." + std::string(ToString(static_cast<DeviceKind>(kind))),
+               values[kind]);
+  }
+}
+
 void CheckAgents(const Scenario& scenario) {
   const DeviceSpec& devices = scenario.devices;
   if (devices.Total() == 0) {
@@ -317,6 +339,7 @@ void ValidateScenario(const Scenario& scenario) {
   CheckPlaces(scenario);
   CheckSeas(scenario);
   CheckForecast(scenario);
+  CheckMoney(scenario);
 }
 
 }  // namespace aquafarm

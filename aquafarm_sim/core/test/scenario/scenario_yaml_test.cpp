@@ -160,6 +160,7 @@ Scenario UnusualScenario() {
   tracked.grade = 4;
   tracked.radii = tracked.track[0].radii;
   s.disasters.push_back(tracked);
+  s.money = MoneySpec{"EUR", {1.01, 2.0, 3.99, 1.0e9}, 1200.5, 1.25, 0.25};
   s.hash = HashScenario(s);
   return s;
 }
@@ -179,6 +180,11 @@ TEST(Writer, GivesTextThatReadsBackToTheSameBits) {
   EXPECT_EQ(back.start_time, s.start_time);
   EXPECT_EQ(back.layout_seed, s.layout_seed);
   EXPECT_EQ(back.damage.exposure_damage, s.damage.exposure_damage);
+  EXPECT_EQ(back.money->currency, s.money->currency);
+  EXPECT_EQ(back.money->device_values, s.money->device_values);
+  EXPECT_EQ(back.money->ship_hour, s.money->ship_hour);
+  EXPECT_EQ(back.money->kwh, s.money->kwh);
+  EXPECT_EQ(back.money->at_sea_loss, s.money->at_sea_loss);
   EXPECT_EQ(back.energy->ships.per_km, s.energy->ships.per_km);
   EXPECT_EQ(back.energy->self_propelled.idle_per_step, s.energy->self_propelled.idle_per_step);
   EXPECT_EQ(back.view.bulletin_noise, s.view.bulletin_noise);
@@ -196,11 +202,15 @@ TEST(Writer, GivesTextThatReadsBackToTheSameBits) {
 TEST(Writer, KeepsExplicitPlaces) {
   Scenario s = test::TinyScenario();
   s.devices.sites.push_back({{4, 4}, DeviceKind::kBreedingRelease, std::nullopt, true});
+  s.devices.sites[1].insured_value = 12345.67;
+  s.money.emplace();
   const Scenario back = ParseScenario(ToYaml(s), "again");
   ASSERT_EQ(back.devices.sites.size(), 2U);
   EXPECT_EQ(back.devices.sites[0].value, 80.0F);
   EXPECT_EQ(back.devices.sites[1].value, std::nullopt);
   EXPECT_TRUE(back.devices.sites[1].self_propelled);
+  EXPECT_EQ(back.devices.sites[0].insured_value, std::nullopt);
+  EXPECT_EQ(back.devices.sites[1].insured_value, 12345.67);
   EXPECT_EQ(back.rocks.cells, s.rocks.cells);
   EXPECT_EQ(back.ports.cells, s.ports.cells);
   EXPECT_EQ(back.islands[0].width, 2);

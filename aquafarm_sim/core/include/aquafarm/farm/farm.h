@@ -8,9 +8,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "aquafarm/farm/accounts.h"
 #include "aquafarm/farm/disaster.h"
 #include "aquafarm/farm/layout.h"
 #include "aquafarm/grid/action.h"
@@ -62,6 +64,8 @@ struct EpisodeRecord {
   std::int32_t crashes{};
   std::int32_t collisions{};
   std::int32_t steps_in_disaster{};  ///< ship-steps spent at a risk
+  std::int32_t ship_steps{};  ///< steps of rescue ships not moored in a port; 0 without money
+  std::optional<Accounts> accounts;  ///< set when an episode with money ends
   double energy{};                   ///< consumed by all ships [kWh]
   double distance{};                 ///< travelled by all ships [km]
   EndReason reason{};
@@ -169,6 +173,8 @@ class Farm {
   void Consume();
   void Reward();
   void Finish();
+  void CountShipSteps();
+  Accounts SettleAccounts() const;
   void CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits);
   void ResetTracks();
   void DrawStorms();

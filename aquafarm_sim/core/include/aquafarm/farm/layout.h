@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "aquafarm/base/rng.h"
+#include "aquafarm/farm/accounts.h"
 #include "aquafarm/farm/cell_bits.h"
 #include "aquafarm/farm/route_table.h"
 #include "aquafarm/grid/action.h"
@@ -23,6 +24,7 @@ struct PlacedDevice {
   DeviceKind kind{};
   float value{};
   bool self_propelled{};
+  Cents insured{};  ///< 0 if the scenario has no money
 };
 
 /// A chart and the objects on it.

@@ -60,6 +60,7 @@ struct DeviceSite {
   DeviceKind kind{};
   std::optional<float> value;  ///< if unset, drawn from DeviceSpec::value
   bool self_propelled{};
+  std::optional<double> insured_value{};  ///< if unset, MoneySpec::device_values of the kind
 };
 
 /// Devices: `count` devices placed by `placement`, with kinds cycled from `kinds`; or `sites`.
@@ -197,6 +198,17 @@ struct EnergySpec {
   EnergyFigures self_propelled;  ///< of self-propelled devices; per_device has no effect
 };
 
+/// Values and prices in a currency. farm/accounts.h explains what they are used for. They are not
+/// part of rewards and observations.
+struct MoneySpec {
+  std::string currency{"CNY"};                           ///< name of the unit; has no effect
+  std::array<double, kDeviceKindCount> device_values{};  ///< insured value by DeviceKind
+  double ship_hour{};       ///< price of an hour in which a rescue ship is not moored in a port
+  double kwh{};             ///< price of a kWh of the energy that all agents consume
+  double at_sea_loss{1.0};  ///< share of a device's remaining value that is lost if it is at sea
+                            ///< when the episode ends, [0, 1]
+};
+
 /// Observation settings of the agents (§2.3).
 struct ViewSpec {
   ViewMode mode{ViewMode::kFull};
@@ -259,6 +271,7 @@ struct Scenario {
   std::optional<EnergySpec> energy;  ///< if unset, energy is 0
   ViewSpec view;
   std::optional<SeaSpec> seas;
+  std::optional<MoneySpec> money;  ///< if unset, episodes have no accounts
 
   /// Hash of the canonical file text, set by the reader; equal for equivalent files.
   std::uint64_t hash{};

@@ -13,6 +13,7 @@
 
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/agents/environment/policy.h"
+#include "aquafarm/agents/evaluation/losses.h"
 #include "aquafarm/base/rng.h"
 
 namespace aquafarm::agents {
@@ -40,8 +41,13 @@ struct Evaluation {
   /// Number of different starts among the episodes: layout, ships, devices and storm. Episodes with
   /// equal starts repeat each other for a deterministic policy, except for later random draws.
   std::size_t distinct{};
+  /// Accounts of the episodes; unset if the scenario has no money, or if they are unknown.
+  std::optional<Losses> losses;
   std::optional<double> mean_bound;  ///< of these episodes (team_bound.h), if requested
 };
+
+/// Returns the accounts of a farm whose episode has just ended; nullopt if it has no money.
+using AccountsOf = std::function<std::optional<Accounts>(std::int32_t farm)>;
 
 /// Plays episodes 0 … episodes − 1 of EvaluationSeed(seed). For a deterministic policy the result
 /// does not depend on the number of farms, except for the rounding of a network, which may differ
@@ -49,10 +55,13 @@ struct Evaluation {
 /// @param stop may be set by a signal handler; null if the evaluation cannot be stopped
 /// @param on_progress called periodically with the number of finished episodes
 /// @param policy_seed of the policy's random numbers; by default the seed of the episodes
+/// @param accounts_of called once for each episode; empty if they are unknown, as behind ROS
+///        services. Without accounts there are no losses.
 Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed,
                     std::int32_t episodes, const std::atomic<bool>* stop = nullptr,
                     const std::function<void(std::size_t over)>& on_progress = {},
-                    std::optional<std::uint64_t> policy_seed = std::nullopt);
+                    std::optional<std::uint64_t> policy_seed = std::nullopt,
+                    const AccountsOf& accounts_of = {});
 
 /// Inputs of an evaluation. WriteEvaluation stores them so that it can be repeated.
 struct EvaluationContext {
@@ -65,13 +74,16 @@ struct EvaluationContext {
   std::int32_t farms{};
 };
 
-/// Writes `<prefix>.csv` (kEpisodeColumns, kAddedEpisodeColumns) and `<prefix>.json`. @throws
-/// StorageError
+/// Writes `<prefix>.csv` (kEpisodeColumns, kAddedEpisodeColumns, with losses also AccountColumns)
+/// and `<prefix>.json`. @throws StorageError
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context);
 
 /// "success 100.0 %, return 243.1 per episode, 4.02 per step, 60.4 steps (1000 episodes, 998
 /// distinct)"
 std::string Describe(const Evaluation& evaluation);
+/// "loss 1234.50 ± 8.10 CNY of 5000.00 insured, VaR 5 % 2000.00 [1900.00, 2100.00], …" as one line;
+/// empty without losses.
+std::string DescribeLosses(const Evaluation& evaluation);
 
 }  // namespace aquafarm::agents

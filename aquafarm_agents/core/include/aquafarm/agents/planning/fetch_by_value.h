@@ -7,8 +7,9 @@
 ///   that it can still bring to a port before the episode ends; of equal values the nearest one
 ///   a ship without such a device returns to the nearest port and unloads there
 ///
-/// Routes are the shortest ones by water. Disasters are ignored, except that the episode ends with
-/// them. A ship keeps its device until it is aboard or can no longer be brought home. A
+/// The value is the insured one (farm/accounts.h) if the scenario has money, else the one of
+/// rewards. Routes are the shortest ones by water. Disasters are ignored, except that the episode
+/// ends with them. A ship keeps its device until it is aboard or can no longer be brought home. A
 /// self-propelled device sails to the nearest port.
 
 #include <cstdint>

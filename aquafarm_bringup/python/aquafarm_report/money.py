@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Losses of a run's policy next to those of doing nothing and of fetching by value."""
+import io
+import pathlib
+
+from aquafarm_benchmark import figures, losses, results
+from aquafarm_benchmark.protocol import REFERENCES, Contestant
+
+from aquafarm_report import films, page
+
+_COLOUR = "#1b4f78"  # of the run's own policy
+
+
+def compare(own, scenario, folder, episodes, currency):
+    """Contestants and rows (see results.money_table) of the run and of the references.
+
+    own: name and evaluation.csv of the run's policy; scenario: its scenario file
+    """
+    name, path = own
+    contestants = [Contestant(name, name, _COLOUR), *REFERENCES]
+    paths = [path]
+    for one in REFERENCES:
+        prefix = pathlib.Path(folder) / one.name
+        films.call("aquafarm_agents", "aquafarm_evaluate", one.name, scenario, "--episodes",
+                   episodes, "--seed", films.SEED, "--write", prefix)
+        paths.append(prefix.with_suffix(".csv"))
+    rows = [{"name": one.name, "label": one.label,
+             "money": losses.summarise(losses.read(path), currency)}
+            for one, path in zip(contestants, paths)]
+    return contestants, rows
+
+
+def draw(contestants, rows):
+    """Exceedance curves and the loss by kind of device, as SVG."""
+    figure, (curves, bars) = figures.plt.subplots(2, 1, figsize=(7, 8))
+    figures.plot_exceedance(curves, contestants, rows)
+    currency = rows[0]["money"]["currency"]
+    curves.set_xlabel(f"loss x [{currency}]")
+    curves.set_ylabel("probability of a larger loss")
+    figures.plot_loss_by_kind(bars, contestants, rows)
+    bars.set_ylabel(f"loss per episode [{currency}]")
+    figure.tight_layout()
+    text = io.StringIO()
+    figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
+    figures.plt.close(figure)
+    svg = text.getvalue()
+    return f'<div class="chart">{svg[svg.index("<svg"):]}</div>'
+
+
+def show(own, scenario, folder, episodes, currency):
+    """Section of a report."""
+    contestants, rows = compare(own, scenario, folder, episodes, currency)
+    note = (f"<p>Per episode, in {page.escape(currency)}. Insured = saved + damaged + lost; loss = "
+            "damaged + lost. Triangles: CVaR, the mean loss of the worst 5 %.</p>")
+    return page.section("Losses", note, page.markdown_table(results.money_table(rows)),
+                        draw(contestants, rows))

@@ -51,7 +51,7 @@ class AgentNodesTest(unittest.TestCase):
     def sim(self, scenario, *parameters):
         self.ranch = start_sim(self, self.namespace, scenario, *parameters)
         self.get_state = rospy.ServiceProxy(f"{self.namespace}/get_state", GetState)
-        self.get_state.wait_for_service(20)
+        self.get_state.wait_for_service(60)
 
     def agent(self, ship, policy, *parameters, name=None, before=()):
         return Program(self, *before, program("aquafarm_agents", "policy_node"),
@@ -73,7 +73,7 @@ class AgentNodesTest(unittest.TestCase):
     def state(self):
         return self.get_state().state
 
-    def wait_until(self, condition, what, limit_s=30):
+    def wait_until(self, condition, what, limit_s=60):
         end = time.monotonic() + limit_s
         while not condition(self.state()):
             self.assertLess(time.monotonic(), end, f"timed out waiting for {what}")
@@ -214,7 +214,7 @@ class AgentNodesTest(unittest.TestCase):
 
     def test_a_ship_driven_by_what_the_whole_farm_tells_is_held_until_its_node_ends(self):
         self.sim(WIDE, "_pace:=paced", "_rate_hz:=0.02", "_claim_timeout_s:=5")
-        rospy.wait_for_service(f"{self.namespace}/ship_1/claim", 20)
+        rospy.wait_for_service(f"{self.namespace}/ship_1/claim", 60)
         claim = rospy.ServiceProxy(f"{self.namespace}/ship_1/claim", Claim)
         run = self.agent(1, "planner")
         run.wait_for(lambda: claim(release=True).holder == f"{self.namespace}/agent_1", "its ship")

@@ -111,7 +111,7 @@ class PolicyNodeTest(unittest.TestCase):
     def test_paused_and_resumed_it_drives_on(self):
         start_sim(self, self.namespace, PAIR)
         pause = rospy.ServiceProxy(f"{self.namespace}/pause", Pause)
-        pause.wait_for_service(20)
+        pause.wait_for_service(60)
         run = self.drive("_policy:=random", "_episodes:=200")
         run.wait_for(lambda: "episode 1" in run.words(), "an episode")
         self.assertTrue(pause(paused=True).ok)

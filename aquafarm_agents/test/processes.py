@@ -49,7 +49,7 @@ class Program:
         """Sends a signal."""
         self.process.send_signal(number)
 
-    def interrupt(self, limit_s=30.0):
+    def interrupt(self, limit_s=LIMIT_S):
         """Ends the program and its child processes like Ctrl-C."""
         if self.process.poll() is None:
             self.send(signal.SIGINT)

@@ -99,7 +99,7 @@ class TrainNodeTest(unittest.TestCase):
                          wait_s=2)
         run.wait_for(lambda: newest_checkpoint(self.folder / "run"), "a checkpoint")
         sim.send(signal.SIGSTOP)
-        self.assertEqual(4, run.code(20), run.words())
+        self.assertEqual(4, run.code(), run.words())
         self.assertIn("the sim node is gone; waiting up to 2 s", run.words())
         self.assertIn(f"saved in {self.folder / 'run'}", run.words())
 
@@ -110,7 +110,7 @@ class TrainNodeTest(unittest.TestCase):
         run.wait_for(lambda: metrics.exists() and metrics.stat().st_size > 4096, "episodes")
         sim.send(signal.SIGKILL)
         sim.process.wait()
-        run.wait_for(lambda: "the sim node is gone" in run.words(), "a word of the loss", 5)
+        run.wait_for(lambda: "the sim node is gone" in run.words(), "a word of the loss")
         start_sim(self, self.namespace, TINY)
         self.assertEqual(0, run.code(), run.words())
         self.assertIn("continuing with fresh episodes", run.words())
@@ -121,7 +121,7 @@ class TrainNodeTest(unittest.TestCase):
 
     def test_it_waits_while_a_ship_is_held_by_another(self):
         start_sim(self, self.namespace, TINY, "_claim_timeout_s:=3600")
-        rospy.wait_for_service(f"{self.namespace}/ship_0/claim", 20)
+        rospy.wait_for_service(f"{self.namespace}/ship_0/claim", 60)
         claim = rospy.ServiceProxy(f"{self.namespace}/ship_0/claim", Claim)
         self.assertTrue(claim(release=False).ok)
         run = self.train("run", "_steps:=1000")

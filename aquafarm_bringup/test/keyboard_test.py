@@ -50,7 +50,7 @@ class KeyboardTest(unittest.TestCase):
 
     def test_without_a_terminal_it_says_what_it_needs(self):
         done = subprocess.run([str(PATH)], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                              text=True, timeout=20, check=False)
+                              text=True, timeout=60, check=False)
         self.assertEqual(2, done.returncode)
         self.assertIn("input is not a terminal", done.stderr)
 

@@ -49,12 +49,12 @@ class MainJobTest(unittest.TestCase):
         pictures = set()
         with Ranch("replay", f"bag:={bag}", "headless:=true", port=free_port()) as ranch:
             os.environ.update(ranch.environment)
-            ranch.wait_for(rosgraph.is_master_online, 15)
+            ranch.wait_for(rosgraph.is_master_online, 60)
             rospy.init_node("main_job_test", disable_signals=True)
             subscriber = rospy.Subscriber("/aquafarm/image", Image,
                                           lambda image: pictures.add(hash(bytes(image.data))))
             self.addCleanup(subscriber.unregister)
-            ranch.wait_for(lambda: len(pictures) > 3, 30)
+            ranch.wait_for(lambda: len(pictures) > 3, 60)
 
     def test_a_policy_for_in_fa_beats_random_and_its_bag_replays(self):
         run, greedy, chance = self.train()

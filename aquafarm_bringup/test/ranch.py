@@ -57,7 +57,7 @@ class Ranch:
     def __exit__(self, *_):
         self.interrupt()
         try:
-            self._process.wait(timeout=30)
+            self._process.wait(timeout=60)
         except subprocess.TimeoutExpired:
             os.killpg(self._process.pid, signal.SIGKILL)
             self._process.wait()

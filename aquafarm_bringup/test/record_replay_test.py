@@ -81,12 +81,12 @@ class RecordReplayTest(unittest.TestCase):
         images, compressed = [], []
         with Ranch("replay", f"bag:={self.bag}", "headless:=true", port=PORT) as ranch:
             os.environ.update(ranch.environment)
-            ranch.wait_for(rosgraph.is_master_online, 15)
+            ranch.wait_for(rosgraph.is_master_online, 60)
             rospy.init_node("replay_test", disable_signals=True)
             rospy.Subscriber("/aquafarm/image", Image, images.append)
             rospy.Subscriber("/aquafarm/image/compressed", CompressedImage, compressed.append)
             ranch.wait_for(
-                lambda: compressed and len({bytes(image.data) for image in images}) > 1, 30)
+                lambda: compressed and len({bytes(image.data) for image in images}) > 1, 60)
             nodes = rosgraph.Master("/replay_test").getSystemState()
             names = {name for kind in nodes for _, users in kind for name in users}
             self.assertLessEqual({"/aquafarm/viz", "/aquafarm/replay"}, names)
@@ -111,9 +111,9 @@ class RecordReplayTest(unittest.TestCase):
                     return dict(master.getSystemState()[0]).get("/aquafarm/markers")
                 except OSError:
                     return None
-            ranch.wait_for(drawers, 20)
+            ranch.wait_for(drawers, 60)
             ranch.wait_for(lambda: "/aquafarm/replay" in {
-                name for _, users in master.getSystemState()[0] for name in users}, 20)
+                name for _, users in master.getSystemState()[0] for name in users}, 60)
             self.assertEqual(["/aquafarm/viz"], drawers())
 
     def test_a_bag_that_cannot_be_written_or_read_leaves_a_code(self):

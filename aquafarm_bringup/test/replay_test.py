@@ -26,7 +26,7 @@ from ranch import Ranch, free_port  # noqa: E402
 
 SCRIPTS = pathlib.Path(__file__).resolve().parent.parent / "scripts"
 SCRIPT = SCRIPTS.parent.parent / "aquafarm"
-LIMIT_S = 20
+LIMIT_S = 60
 DEAD_DISPLAY = ":65432"
 DEAD = f"cannot connect to display {DEAD_DISPLAY}, or not to us"
 WAY_OUT = (": give headless:=true or rviz:=false and look at the topic image, or draw a bag with "

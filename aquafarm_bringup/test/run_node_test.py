@@ -13,7 +13,7 @@ import unittest
 import rostest
 
 RUN_NODE = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "run_node"
-LIMIT_S = 20
+LIMIT_S = 60
 
 
 class RunNodeTest(unittest.TestCase):

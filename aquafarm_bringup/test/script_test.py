@@ -21,7 +21,7 @@ from ranch import free_port  # noqa: E402
 
 PACKAGE = pathlib.Path(__file__).resolve().parent.parent
 SCRIPT = PACKAGE.parent / "aquafarm"
-LIMIT_S = 20
+LIMIT_S = 60
 INTERRUPTED = 130
 
 

@@ -19,8 +19,8 @@ from aquafarm_msgs.srv import Claim, GetState, Pause
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from ranch import Ranch, free_port  # noqa: E402
 
-START_LIMIT_S = 30
-LIMIT_S = 30
+START_LIMIT_S = 60
+LIMIT_S = 60
 HOLD = 10
 CLAIM_TIMEOUT_S = 10
 DATA = pathlib.Path(__file__).resolve().parents[2] / "aquafarm_agents" / "test" / "data"
@@ -113,13 +113,13 @@ class StartedLaunchTest(unittest.TestCase):
         after = self.wait(ranch, lambda now: now.ships[1].action != HOLD)
         self.assertNotIn(pid_of("/aquafarm/agent_1"), (0, killed))
         self.assertEqual(before.episode, after.episode)
-        ranch.wait_for(lambda: "back: ship 1" in ranch.words(), 5)
+        ranch.wait_for(lambda: "back: ship 1" in ranch.words(), LIMIT_S)
         self.assertIn("no command from ship 1 within", ranch.words())
 
     def test_ships_for_which_no_node_was_started_are_named(self):
         ranch = self.start("agents", "scenario:=four_squads", "ships:=2", "late_s:=5")
         self.wait(ranch, lambda now: now.step > 20)
-        ranch.wait_for(lambda: "no command from ship 2, 3 within" in ranch.words(), 5)
+        ranch.wait_for(lambda: "no command from ship 2, 3 within" in ranch.words(), LIMIT_S)
 
     def test_a_policy_drives_the_ranch_of_sim_launch(self):
         ranch = self.start("sim", "headless:=true", "policy:=random", "rate_hz:=20")

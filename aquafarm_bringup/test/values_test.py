@@ -151,7 +151,7 @@ class ValuesTest(unittest.TestCase):
         with subprocess.Popen(command, stdout=subprocess.DEVNULL) as playing:
             try:
                 grid = rospy.wait_for_message("/pond/values", OccupancyGrid, timeout=100)
-                cloud = rospy.wait_for_message("/pond/values/points", PointCloud2, timeout=30)
+                cloud = rospy.wait_for_message("/pond/values/points", PointCloud2, timeout=60)
             finally:
                 playing.send_signal(signal.SIGINT)
                 self.assertEqual(0, playing.wait(30))

@@ -226,7 +226,7 @@ class CoreTest(unittest.TestCase):
             thread.join()
         self.assertEqual({"FarmBatch: another thread's call is still running; use one batch per thread"}, set(words))
         batch.step(np.zeros((512, 1), np.uint8))
-        self.assertLess(time.monotonic() - before, 30)
+        self.assertLess(time.monotonic() - before, 60)
 
     def test_a_thousand_farms_make_millions_of_steps_a_second(self):
         batch = core.FarmBatch(PAPER, 1024, ["rewards", "reasons", "started", "index"])

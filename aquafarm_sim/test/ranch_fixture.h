@@ -34,7 +34,7 @@ inline std::unique_ptr<FarmServer> MakeRanch(const aquafarm::Scenario& scenario,
   options.farms = farms;
   options.seed = 5;
   options.paced = paced;
-  options.barrier_timeout_s = 0.2;
+  options.barrier_timeout_s = 1.0;
   return MakeRanchOf(scenario, options);
 }
 

@@ -6,7 +6,7 @@ import rospy
 from aquafarm_msgs import srv
 from aquafarm_msgs.msg import FarmState
 
-LIMIT_S = 20.0
+LIMIT_S = 60.0
 SERVICES = {"command": srv.Command, "step": srv.Step, "reset": srv.Reset,
             "get_state": srv.GetState, "save_state": srv.SaveState, "load_state": srv.LoadState,
             "pause": srv.Pause, "set_disaster": srv.SetDisaster, "set_pace": srv.SetPace}

@@ -53,7 +53,7 @@ class SimNodePairTest(unittest.TestCase):
         start = time.monotonic()
         result = call("ship_0/move", direction=0).result
         self.assertEqual(Outcome.TIMEOUT, result.code, result.message)
-        self.assertLess(time.monotonic() - start, 5.0)
+        self.assertLess(time.monotonic() - start, 30.0)
         self.assertEqual(before, state().hash)
 
     def test_a_ship_that_waited_in_vain_is_a_warning_in_the_diagnostics(self):
@@ -68,7 +68,7 @@ class SimNodePairTest(unittest.TestCase):
         while subscriber.get_num_connections() == 0:
             rospy.rostime.wallsleep(0.02)
         self.assertEqual(Outcome.TIMEOUT, call("ship_0/move", direction=0).result.code)
-        end = time.monotonic() + 10
+        end = time.monotonic() + 60
         while not warnings and time.monotonic() < end:
             rospy.rostime.wallsleep(0.05)
         self.assertEqual(["barrier timed out"], warnings[:1])
@@ -78,7 +78,7 @@ class SimNodePairTest(unittest.TestCase):
         start = time.monotonic()
         self.assertEqual(0, state().step)
         self.assertTrue(call("save_state").ok)
-        self.assertLess(time.monotonic() - start, 0.8)
+        self.assertLess(time.monotonic() - start, 3.5)
         self.assertTrue(call("command", ship=1, action=HOLD).result.ok)
         for caller in waiting:
             caller.join()
@@ -95,11 +95,11 @@ class SimNodePairTest(unittest.TestCase):
         self.assertEqual(Outcome.WRONG_PACE, call("step", actions=[0, 0]).code)
 
     def test_paced_commands_are_accepted_at_once(self):
-        self.assertTrue(call("set_pace", pace="paced", rate_hz=2.0).ok)
+        self.assertTrue(call("set_pace", pace="paced", rate_hz=0.2).ok)
         start = time.monotonic()
         result = call("ship_0/move", direction=0).result
         self.assertEqual(Outcome.ACCEPTED, result.code, result.message)
-        self.assertLess(time.monotonic() - start, 0.4)
+        self.assertLess(time.monotonic() - start, 4.0)
         got = message("state", FarmState, lambda m: m.step == result.step)
         self.assertNotEqual(Outcome.HELD, got.ships[0].outcome)
         self.assertEqual(Outcome.HELD, got.ships[1].outcome)

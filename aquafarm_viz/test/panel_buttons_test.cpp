@@ -17,7 +17,7 @@ namespace {
 using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmState;
 
-constexpr std::chrono::seconds kLimit{20};
+constexpr std::chrono::seconds kLimit{60};
 
 class PanelButtons : public testing::Test {
  protected:
@@ -117,7 +117,7 @@ TEST_F(PanelButtons, ThePaceIsThatOfTheBoxes) {
   ASSERT_TRUE(Until([this] { return state_.rate_hz == 50.0 && Says("paced, 50.0 steps/s"); }));
   const std::uint64_t step = state_.step;
   EXPECT_TRUE(
-      Until([&] { return state_.step >= step + 50; }, std::chrono::seconds(3)));  // not at 8 Hz
+      Until([&] { return state_.step >= step + 150; }, std::chrono::seconds(15)));  // not at 8 Hz
   SetPace("lockstep", 8.0);
   EXPECT_TRUE(Until(
       [this] { return state_.pace == FarmState::LOCKSTEP && Says("lockstep, 8.0 steps/s"); }));

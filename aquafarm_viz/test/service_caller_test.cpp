@@ -18,7 +18,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kLimit_s = 0.5;
 
 bool AnswerLate(Pause::Request&, Pause::Response&) {
-  ros::WallDuration(2.0).sleep();
+  ros::WallDuration(5.0).sleep();
   return true;
 }
 
@@ -28,7 +28,7 @@ bool AnswerQuickly(Pause::Request&, Pause::Response& response) {
 }
 
 bool AnswerSoon(Pause::Request&, Pause::Response& response) {
-  ros::WallDuration(0.6).sleep();
+  ros::WallDuration(2.0).sleep();
   return response.ok = true;
 }
 
@@ -52,9 +52,9 @@ class ServiceCallerTest : public testing::Test {
     });
     const auto start = Clock::now();
     caller.Call<Pause>(name, Pause(), [](const Pause&) { return std::string("done"); });
-    EXPECT_LT(SecondsSince(start), 0.1);
+    EXPECT_LT(SecondsSince(start), 0.4);
     std::unique_lock<std::mutex> lock(mutex);
-    came.wait_for(lock, std::chrono::seconds(10), [&] { return !line.empty(); });
+    came.wait_for(lock, std::chrono::seconds(60), [&] { return !line.empty(); });
     return line;
   }
 
@@ -63,7 +63,7 @@ class ServiceCallerTest : public testing::Test {
     std::mutex mutex;
     std::condition_variable came;
     std::vector<std::string> lines;
-    ServiceCaller caller(node_, 1.0, [&](const std::string& text) {
+    ServiceCaller caller(node_, 3.0, [&](const std::string& text) {
       const std::lock_guard<std::mutex> lock(mutex);
       lines.push_back(text);
       came.notify_all();
@@ -72,7 +72,7 @@ class ServiceCallerTest : public testing::Test {
       caller.Call<Pause>(name, Pause(), [](const Pause&) { return std::string("done"); });
     }
     std::unique_lock<std::mutex> lock(mutex);
-    came.wait_for(lock, std::chrono::seconds(10), [&] { return lines.size() >= clicks; });
+    came.wait_for(lock, std::chrono::seconds(60), [&] { return lines.size() >= clicks; });
     return lines;
   }
 
@@ -101,7 +101,7 @@ TEST_F(ServiceCallerTest, CutsOffACallWithoutAnAnswer) {
   const auto server = node_.advertiseService("slow", AnswerLate);
   const auto start = Clock::now();
   EXPECT_EQ(LineOf("slow"), "/slow: no answer within 0.5 s");
-  EXPECT_LT(SecondsSince(start), 1.5);
+  EXPECT_LT(SecondsSince(start), 4.0);
 }
 
 TEST_F(ServiceCallerTest, EachCallOfOneCallerHasTheWholeLimit) {
@@ -127,7 +127,7 @@ TEST_F(ServiceCallerTest, AWindowThatIsClosedDoesNotWaitForAnAnswer) {
     caller.Call<Pause>("slow", Pause(), [](const Pause&) { return std::string("done"); });
     ros::WallDuration(0.2).sleep();
   }
-  EXPECT_LT(SecondsSince(start), 1.5);
+  EXPECT_LT(SecondsSince(start), 4.0);
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ using visualization_msgs::MarkerArray;
 // Publishes messages in place of the sim node, without /clock: the node must not need it.
 class VizNodeTest : public testing::Test {
  protected:
-  static constexpr double kLimit_s = 10.0;
+  static constexpr double kLimit_s = 60.0;
 
   VizNodeTest()
       : spec_(node_.advertise<aquafarm_msgs::FarmSpec>("spec", 10, true)),

@@ -48,7 +48,7 @@ inline aquafarm::KnownDisaster FromMsg(const aquafarm_msgs::DisasterState& messa
 }
 
 /// Restores the View of a ship from its observation message, as filled by Observe. It does not
-/// restore `eyes` and the disaster fields that a view does not contain.
+/// restore `sensors` and the disaster fields that a view does not contain.
 /// @param layout layout of the observation's episode; scenario and layout must outlive the view
 /// @throws InputError if the message is not a ship's observation of a farm of `scenario`
 inline void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Scenario& scenario,

@@ -87,13 +87,17 @@ TEST(RealFiles, MakeTheShippedRanches) {
   request.storm = "DANAS";
   request.devices = 4;
   request.placement = DevicePlacement::kUniform;
-  EXPECT_EQ(BuildRanch(request).scenario.hash,
-            LoadScenario((shipped / "zhoushan_danas_2019.yaml").string()).hash);
+  // The command writes no insured values and prices, which change no episode.
+  const auto hash_of = [&shipped](const char* name) {
+    Scenario scenario = LoadScenario((shipped / name).string());
+    scenario.money.reset();
+    return HashScenario(scenario);
+  };
+  EXPECT_EQ(BuildRanch(request).scenario.hash, hash_of("zhoushan_danas_2019.yaml"));
   request.storm = "MITAG";
   request.devices = 6;
   request.placement = DevicePlacement::kLinear;
-  EXPECT_EQ(BuildRanch(request).scenario.hash,
-            LoadScenario((shipped / "zhoushan_mitag_2019.yaml").string()).hash);
+  EXPECT_EQ(BuildRanch(request).scenario.hash, hash_of("zhoushan_mitag_2019.yaml"));
 }
 
 // The file was written by hand, with islands as blocks of cells; its storm equals the command's.

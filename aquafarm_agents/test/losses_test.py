@@ -97,6 +97,7 @@ class LossesTest(unittest.TestCase):
         heights = [bar.get_height() for bar in self.axes.patches]
         expected = [value for sample in samples for value in (0.0, sample.mean())]
         np.testing.assert_allclose(expected, heights)
+        self.assertGreater(self.axes.get_ylim()[1], max(heights))
         self.assertEqual(["monitoring"],
                          [label.get_text() for label in self.axes.get_xticklabels()])
 

@@ -235,6 +235,8 @@ def plot_loss_by_kind(axes, contestants, rows):
         axes.bar(x, parts["damaged"], width, color=one.colour, label=one.label)
         axes.bar(x, parts["lost"], width, bottom=parts["damaged"], color=one.colour, alpha=0.5)
     axes.set_xticks(range(len(kinds)), [kind.replace("_", " ") for kind in kinds], rotation=15)
+    tallest = max((bar.get_y() + bar.get_height() for bar in axes.patches), default=0.0)
+    axes.set_ylim(0.0, 1.08 * tallest or 1.0)
     axes.legend(loc="best", title="dark: damaged, light: lost")
 
 

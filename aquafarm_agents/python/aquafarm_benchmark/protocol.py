@@ -109,7 +109,7 @@ CONTESTANTS = (
 )
 # The references of losses, which take part if the scenario has money.
 REFERENCES = (
-    Contestant("do_nothing", "do nothing", "#7f7f7f", learns=False, cost=0.05, repeats=False,
+    Contestant("do_nothing", "do nothing", "#aa3377", learns=False, cost=0.05, repeats=False,
                named_only=True),
     Contestant("fetch_by_value", "fetch by value", "#8c564b", learns=False, cost=0.1,
                repeats=False, named_only=True),

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Statistics of the losses of evaluated episodes (loss = insured - saved, farm/accounts.h), with
-/// intervals.
+/// Statistics of the losses of evaluated episodes, with intervals. The loss of an episode is
+/// insured
+/// - saved (farm/accounts.h).
 ///
-///   VaR   value at risk: the smallest x with P(loss > x) <= 5 %
-///   CVaR  conditional value at risk: the mean loss of the worst 5 % of the episodes
-///
-/// VaR and CVaR are those of Rockafellar and Uryasev, "Conditional value-at-risk for general loss
-/// distributions", Journal of Banking & Finance 26 (2002): CVaR = VaR + E[max(0, loss - VaR)] / 5
-/// %.
+/// - VaR, value at risk: the smallest x with P(loss > x) <= 5 %.
+/// - CVaR, conditional value at risk: the mean loss of the worst 5 % of the episodes, VaR +
+/// E[max(0,
+///   loss - VaR)] / 5 % (Rockafellar and Uryasev, "Conditional value-at-risk for general loss
+///   distributions", Journal of Banking & Finance 26, 2002).
 ///
 /// Episodes with equal starts are not independent, so the standard error is the cluster-robust one
 /// and the intervals are those of a cluster bootstrap: distinct starts are drawn with replacement,
 /// each with all its episodes, and the interval is from the 2.5 % to the 97.5 % percentile (Davison
 /// and Hinkley, "Bootstrap Methods and their Application", 1997, sections 3.8 and 5.3). If all
-/// starts are distinct, these are the ordinary ones. The random numbers are fixed, so that equal
-/// episodes give equal intervals.
+/// starts are distinct, these are the ordinary ones. The intervals of CVaR are somewhat short if
+/// few episodes are in the tail. The random numbers are fixed: equal episodes give equal intervals.
 
 #include <array>
 #include <cstddef>

@@ -29,6 +29,7 @@ struct Arguments {
   std::string command;
   std::string scenarios{ScenarioFolder()};
   RescueRequest request;
+  std::vector<RescueWarning> warnings;  // about the ranch, such as a port that is moved
 };
 
 GeoPoint Place(const std::string& option, const std::string& text) {
@@ -54,7 +55,7 @@ double Seconds(const std::string& option, const std::string& text) {
   return ParseNumber(text.substr(from, unit - from), option) * (word == "h" ? 3600.0 : 60.0);
 }
 
-std::shared_ptr<const Scenario> LoadRanch(const Arguments& arguments) {
+std::shared_ptr<const Scenario> LoadRanch(Arguments& arguments) {
   if (!arguments.ranch.empty()) {
     return std::make_shared<const Scenario>(FindScenario(arguments.ranch, arguments.scenarios));
   }
@@ -71,7 +72,8 @@ std::shared_ptr<const Scenario> LoadRanch(const Arguments& arguments) {
   for (const std::string& port : arguments.ports) ranch.port_places.push_back(Place("port", port));
   const BuiltRanch built = BuildRanch(ranch);
   for (const std::string& warning : built.warnings) {
-    std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    arguments.warnings.push_back(
+        {"ranch_changed", "warning", warning, "Check the places of the ranch."});
   }
   return std::make_shared<const Scenario>(built.scenario);
 }
@@ -99,6 +101,8 @@ int Run(Arguments& arguments) {
   if (!arguments.at.empty()) request.at = ParseUtc("at", arguments.at);
   request.now = std::time(nullptr);
   RescueCase rescue = MakeRescueCase(LoadRanch(arguments), request);
+  rescue.warnings.insert(rescue.warnings.end(), arguments.warnings.begin(),
+                         arguments.warnings.end());
   const Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
   const PlanReport report = MakeReport(rescue, ensemble);
   std::fputs(ToText(rescue, report).c_str(), stdout);

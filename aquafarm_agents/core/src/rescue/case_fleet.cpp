@@ -104,7 +104,7 @@ void ReadDevices(const RescueRequest& request, RescueCase& rescue) {
   }
 }
 
-// Returns when a ship is ready [s after the start]: the UTC time of its row, else the fallback.
+// Returns when a ship is ready [s after the start]: the time of its row, else the fallback.
 double ReadyOf(const CsvRow& row, std::int64_t start, double fallback_s) {
   const std::string text = row.Text("ready");
   if (text.empty()) return fallback_s;
@@ -154,6 +154,12 @@ void ReadShips(const RescueRequest& request, RescueCase& rescue) {
 
 }  // namespace
 
+double ExposureDamage(const RescueCase& rescue) {
+  const Scenario& scenario = *rescue.scenario;
+  return static_cast<double>(scenario.damage.exposure_damage) * rescue.ensemble.step_s /
+         scenario.step_duration_s;
+}
+
 void ReadFleet(const RescueRequest& request, RescueCase& rescue) {
   const Scenario& scenario = *rescue.scenario;
   RescueProblem& problem = rescue.problem;
@@ -177,8 +183,7 @@ void ReadFleet(const RescueRequest& request, RescueCase& rescue) {
   }
   ReadShips(request, rescue);
   problem.handling_s = scenario.step_duration_s;
-  problem.exposure_damage = static_cast<double>(scenario.damage.exposure_damage) *
-                            rescue.ensemble.step_s / scenario.step_duration_s;
+  problem.exposure_damage = ExposureDamage(rescue);
   problem.risk_averse = request.risk_averse;
 }
 

@@ -9,6 +9,11 @@ namespace aquafarm::agents {
 
 /// Reads the storm: sets storm, start, the time that is known, and the central forecast.
 void ReadStorm(const RescueRequest& request, RescueCase& rescue);
+/// Sets name, rings, passage and central forecast from the whole track, and the steps of the
+/// ensemble. Needs storm.file, start, and storm.issued and known_until.
+void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase& rescue);
+/// Damage per step of the ensemble, from that per step of the ranch.
+double ExposureDamage(const RescueCase& rescue);
 /// Reads ports, devices and ships.
 void ReadFleet(const RescueRequest& request, RescueCase& rescue);
 /// Formats a number with few digits.

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
+#include "aquafarm/agents/base/text.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/storms/to_disaster.h"
 #include "aquafarm/tracks/reader.h"
+#include "aquafarm/tracks/wind_radii.h"
 #include "rescue/case_parts.h"
 
 namespace aquafarm::agents {
@@ -19,8 +23,34 @@ StormTrack TrackOf(const RescueRequest& request, const std::string& path, Rescue
   for (const std::string& warning : file.warnings) {
     rescue.warnings.push_back({"file_repaired", "note", warning, ""});
   }
-  if (request.storm_name.empty() && file.tracks.size() == 1) return file.tracks[0];
-  return FindTrack(file, request.storm_name);
+  if (request.storm_name.empty()) {
+    if (file.tracks.size() == 1) return file.tracks[0];
+    std::vector<std::string> names;
+    constexpr std::size_t kMostNamed = 60;
+    for (const StormTrack& track : file.tracks) {
+      if (names.size() < kMostNamed) {
+        names.push_back(track.id + (track.name.empty() ? "" : " " + track.name));
+      }
+    }
+    const std::size_t more = file.tracks.size() - names.size();
+    if (more > 0) names.push_back(std::to_string(more) + " more");
+    throw InputError(path + ": got " + std::to_string(file.tracks.size()) +
+                     " storms, expected --storm-name with one of: " + Join(names));
+  }
+  try {
+    return FindTrack(file, request.storm_name);
+  } catch (const InputError& error) {
+    throw InputError("--storm-name: " + path + ": " + error.what());
+  }
+}
+
+// Returns the agency of the forecasts if the file does not state one for the positions.
+std::string AgencyOf(const StormTrack& track) {
+  if (track.agency != "bulletin" && track.agency != "weather service") return track.agency;
+  for (const StormForecast& forecast : track.forecasts) {
+    if (!forecast.agency.empty()) return forecast.agency;
+  }
+  return track.agency;
 }
 
 // Removes what is reported after the start of the plan.
@@ -48,12 +78,13 @@ StormTrack FromBulletin(const RescueRequest& request, RescueCase& rescue) {
   const std::int64_t last = track.fixes.back().time;
   const bool is_current = request.now && *request.now >= last && *request.now - last < 12 * kHour_s;
   rescue.start = request.at.value_or(is_current ? *request.now : last);
+  const std::string agency = AgencyOf(track);
   track = KnownAt(std::move(track), rescue.start, request.bulletin);
   const StormTrack whole = WithForecast(track, NoForecast::kPersist);
   const StormKnowledge knowledge = KnowledgeOf(track, whole);
   StormRecord& storm = rescue.storm;
   storm.recorded_until = knowledge.recorded_until;
-  storm.agency = knowledge.agency.empty() ? track.agency : knowledge.agency;
+  storm.agency = knowledge.agency.empty() ? agency : knowledge.agency;
   storm.is_persistence = knowledge.issued == 0;
   storm.issued = storm.is_persistence ? knowledge.recorded_until : knowledge.issued;
   storm.known_until = knowledge.known_until;
@@ -76,7 +107,7 @@ StormTrack FromRecord(const RescueRequest& request, RescueCase& rescue) {
   }
   StormRecord& storm = rescue.storm;
   storm.is_hindcast = true;
-  storm.agency = track.agency;
+  storm.agency = AgencyOf(track);
   for (StormFix& fix : track.fixes) {
     if (fix.time <= rescue.start) storm.recorded_until = fix.time;
     fix.forecast = fix.time > rescue.start;
@@ -84,6 +115,48 @@ StormTrack FromRecord(const RescueRequest& request, RescueCase& rescue) {
   storm.issued = rescue.start;
   storm.known_until = track.fixes.back().time;
   return track;
+}
+
+// Returns the ratio of a ring to its estimate from the wind; 0 if one of them is unknown.
+double SizeOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
+  if (!at.wind_mps || at.radii_km[ring] <= 0.0) return 0.0;
+  double squares = 0.0;
+  for (const double radius_km : at.quadrants_km[ring]) squares += radius_km * radius_km;
+  const double median_km =
+      EstimateRadius(storm.wind_kt[ring], *at.wind_mps, at.position.latitude, at.averaging_min)
+          .median_km;
+  return median_km > 0.0 ? std::sqrt(squares / kQuadrantCount) / median_km : 0.0;
+}
+
+// Keeps the size of the last report with radii in the forecast: estimated radii become the
+// estimate times a factor that returns to 1 with the memory of a storm's size.
+// @returns the lead time of that report; minus infinity if there is none
+double CarrySize(const ForecastErrors& errors, std::int64_t issued, StormRings& storm) {
+  const StormWaypoint* report = nullptr;
+  for (const StormWaypoint& at : storm.waypoints) {
+    if (!at.forecast && !at.estimated && !at.silent && at.radii_km.back() > 0.0) report = &at;
+  }
+  if (report == nullptr) return -std::numeric_limits<double>::infinity();
+  const StormWaypoint last = *report;
+  for (StormWaypoint& at : storm.waypoints) {
+    if (!at.forecast || !at.estimated || !at.wind_mps || at.time <= last.time) continue;
+    const double since_h = static_cast<double>(at.time - last.time) / kHour_s;
+    const double kept = std::exp(-since_h / errors.size_memory_h);
+    std::array<double, kQuadrantCount> outer{};
+    outer.fill(std::numeric_limits<double>::infinity());
+    for (std::size_t ring = storm.wind_kt.size(); ring-- > 0;) {
+      const double own = SizeOf(storm, last, ring);
+      const double size = own > 0.0 ? own : SizeOf(storm, last, storm.wind_kt.size() - 1);
+      const double radius_km =
+          EstimateRadius(storm.wind_kt[ring], *at.wind_mps, at.position.latitude, at.averaging_min)
+              .median_km *
+          (size > 0.0 ? std::pow(size, kept) : 1.0);
+      for (std::size_t q = 0; q < outer.size(); ++q) outer[q] = std::min(outer[q], radius_km);
+      at.quadrants_km[ring] = outer;
+      at.radii_km[ring] = outer[0];
+    }
+  }
+  return static_cast<double>(last.time - issued) / kHour_s;
 }
 
 void WarnOfStorm(RescueCase& rescue) {
@@ -141,12 +214,18 @@ void ReadStorm(const RescueRequest& request, RescueCase& rescue) {
   }
   const StormTrack track =
       request.bulletin.empty() ? FromRecord(request, rescue) : FromBulletin(request, rescue);
+  rescue.storm.file = path;
+  UseStorm(track, request, rescue);
+  WarnOfStorm(rescue);
+}
+
+void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase& rescue) {
   StormRecord& storm = rescue.storm;
   storm.name = NameOf(track);
-  storm.file = path;
   storm.rings = ToRings(track, RingReduction::kQuadrants);
+  rescue.forecast.size_report_h = CarrySize(request.errors, *storm.issued, storm.rings);
   if (*storm.known_until <= rescue.start) {
-    throw InputError(path + ": got a storm known until " + FormatUtc(*storm.known_until) +
+    throw InputError(storm.file + ": got a storm known until " + FormatUtc(*storm.known_until) +
                      ", expected one that is known after " + FormatUtc(rescue.start) +
                      ", the start of the plan; get a newer bulletin");
   }
@@ -168,6 +247,7 @@ void ReadStorm(const RescueRequest& request, RescueCase& rescue) {
   CentralForecast& forecast = rescue.forecast;
   forecast.path =
       ToPath(storm.rings, rescue.frame, scenario.cell_size_m, options.step_s, rescue.start);
+  forecast.lead_h.clear();
   for (const StormPoint& point : forecast.path.points) {
     const double time_s = point.step * options.step_s + static_cast<double>(rescue.start);
     forecast.lead_h.push_back((time_s - static_cast<double>(*storm.issued)) / kHour_s);
@@ -188,7 +268,6 @@ void ReadStorm(const RescueRequest& request, RescueCase& rescue) {
   const GeoPoint middle =
       rescue.frame.ToGeo((scenario.width - 1) / 2.0, (scenario.height - 1) / 2.0);
   storm.passage = ClosestApproach(ahead, middle, half_km);
-  WarnOfStorm(rescue);
 }
 
 }  // namespace aquafarm::agents

@@ -30,4 +30,10 @@ ForecastSpread SpreadAt(const ForecastErrors& errors, double lead_h) {
           errors.scale * wind * std::sqrt(kPi / 2.0)};
 }
 
+double SizeSpreadAt(const ForecastErrors& errors, double log_sigma, double since_report_h) {
+  const double kept = std::exp(-std::max(0.0, since_report_h) / errors.size_memory_h);
+  const double spread = errors.size_factor * log_sigma;
+  return std::hypot(errors.size_report_error * kept, spread * std::sqrt(1.0 - kept * kept));
+}
+
 }  // namespace aquafarm::agents

@@ -35,8 +35,16 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
       "China Meteorological Administration in 2015: Meteorological Monthly 43(4), 2017");
   add("Mean wind error of the forecast after 24, 48 and 72 h", "4.4, 6.5, 7.8 m/s", "published",
       "Middle of four centres in 2012: Chen, Yu and Cao, Meteorological Monthly 39(10), 2013");
-  add("Spread of the radii of a storm's winds", "log-normal, one factor per storm", "estimated",
-      "Spread of recorded radii about the estimate by wind and latitude (docs/data.md)");
+  const bool is_reported = std::isfinite(rescue.forecast.size_report_h);
+  add("Spread of the radii of a storm's winds",
+      is_reported ? "log-normal, one factor per storm, 10 % at the last report with radii, growing"
+                  : "log-normal, one factor per storm, the same at all lead times",
+      "estimated",
+      is_reported
+          ? "Size returns to the estimate by wind and latitude within 165 h: JMA best tracks of "
+            "2015 "
+            "to 2021 (docs/plan.md); 10 % is assumed"
+          : "Spread of recorded radii about the estimate by wind and latitude (docs/data.md)");
   add("Position errors along and across the track", "normal, equal, correlated by exp(-dt / 48 h)",
       "assumed", "The published statistics give mean distances alone");
   add("Damage of a device at its site",
@@ -66,7 +74,10 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
 std::string Short(double value, int digits) {
   char text[64];
   const int count = std::snprintf(text, sizeof(text), "%.*f", digits, value);
-  return {text, static_cast<std::size_t>(std::max(0, count))};
+  std::string result(text, static_cast<std::size_t>(std::max(0, count)));
+  const bool is_zero = result.find_first_of("123456789") == std::string::npos;
+  if (is_zero && !result.empty() && result[0] == '-') result.erase(0, 1);  // no -0.0
+  return result;
 }
 
 RescueCase MakeRescueCase(std::shared_ptr<const Scenario> scenario, const RescueRequest& request) {

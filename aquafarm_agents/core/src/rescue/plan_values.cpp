@@ -9,7 +9,9 @@
 
 namespace aquafarm::agents {
 
-double Rounded(double value, double unit) { return std::round(value / unit) * unit; }
+double Rounded(double value, double unit) {
+  return std::round(value / unit) * unit + 0.0;  // -0.0 becomes 0.0
+}
 double Share(double value) { return std::clamp(Rounded(value, 1e-4), 0.0, 1.0); }
 double Money(double value) { return Rounded(value, 0.01); }
 double Km(double value) { return Rounded(value, 0.001); }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "aquafarm/base/check.h"
+#include "rescue/follow_trips.h"
 #include "rescue/trip_search.h"
 
 namespace aquafarm::agents {
@@ -51,148 +52,12 @@ void RequireValid(const RescueProblem& problem) {
   }
 }
 
-// Follows the trips of a plan and computes what they mean for ships and devices.
-class Follower {
- public:
-  Follower(const TripModel& model, RescuePlan& plan) : model_(model), plan_(plan) {
-    const auto members = static_cast<std::size_t>(model.ensemble().members());
-    const auto& devices = model.problem().devices;
-    plan_.loss_idle.assign(members, 0.0F);
-    plan_.home_count.assign(members, 0);
-    plan_.devices.resize(devices.size());
-    for (std::size_t d = 0; d < devices.size(); ++d) {
-      const float* idle = model.LossIdle(d);
-      double sum = 0.0;
-      for (std::size_t member = 0; member < members; ++member) {
-        plan_.loss_idle[member] += idle[member];
-        sum += static_cast<double>(idle[member]);
-      }
-      DeviceOutcome& outcome = plan_.devices[d];
-      outcome.mean_loss_idle = outcome.mean_loss = sum / static_cast<double>(members);
-      outcome.home_before.assign(static_cast<std::size_t>(model.ensemble().rings()), 0.0);
-    }
-    plan_.loss = plan_.loss_idle;
-  }
-
-  void Follow(std::size_t ship, const TripPlan& trips) {
-    ship_ = ship;
-    const RescueShip& own = model_.problem().ships[ship];
-    time_s_ = own.ready_s;
-    place_ = model_.PlaceOfShip(ship);
-    alive_.assign(plan_.loss.size(), 1);
-    model_.Stay(own.cell, time_s_, alive_);
-    ShipRoute route;
-    route.ship = static_cast<std::int32_t>(ship);
-    aboard_.clear();
-    bool in_port = true;
-    for (const TripStop& stop : trips.stops) {
-      if (in_port) Leave(route);
-      stop.kind == OrderKind::kFetch ? Fetch(stop.target, route) : Deliver(stop.target, route);
-      in_port = stop.kind == OrderKind::kDeliver;
-    }
-    plan_.routes.push_back(std::move(route));
-  }
-
- private:
-  double Share(std::int32_t count) const {
-    return static_cast<double>(count) / static_cast<double>(alive_.size());
-  }
-  void Add(RescueOrder order, ShipRoute& route) const {
-    order.time_s = time_s_;
-    order.probability = Share(CountAlive(alive_));
-    route.km += order.km;
-    route.orders.push_back(std::move(order));
-  }
-
-  void Leave(ShipRoute& route) const {
-    RescueOrder order;
-    order.kind = OrderKind::kLeave;
-    const RescueProblem& problem = model_.problem();
-    order.cell = route.path.empty() ? problem.ships[ship_].cell : route.path.back().cell;
-    for (std::size_t port = 0; port < problem.ports.size(); ++port) {
-      if (problem.ports[port].cell == order.cell) order.port = static_cast<std::int32_t>(port);
-    }
-    Add(std::move(order), route);
-  }
-
-  // Returns the distance [km].
-  double Sail(std::size_t to, ShipRoute& route) {
-    const SeaRoute& way = model_.routes().Between(place_, to);
-    for (std::size_t i = 0; i < way.cells.size(); ++i) {
-      route.path.push_back({way.cells[i], time_s_ + way.length[i] * model_.Pace(ship_)});
-    }
-    model_.Move(ship_, place_, to, time_s_, alive_);
-    place_ = to;
-    return way.length.back() * model_.problem().cell_size_km;
-  }
-
-  void Fetch(std::size_t device, ShipRoute& route) {
-    RescueOrder order;
-    order.kind = OrderKind::kFetch;
-    order.device = static_cast<std::int32_t>(device);
-    order.km = Sail(model_.PlaceOfDevice(device), route);
-    order.cell = model_.problem().devices[device].cell;
-    plan_.devices[device].fetch_s = time_s_;
-    aboard_.push_back(order.device);
-    Add(std::move(order), route);
-  }
-
-  void Deliver(std::size_t port, ShipRoute& route) {
-    RescueOrder order;
-    order.kind = OrderKind::kDeliver;
-    order.port = static_cast<std::int32_t>(port);
-    order.km = Sail(model_.PlaceOfPort(port), route);
-    order.cell = model_.problem().ports[port].cell;
-    order.devices = aboard_;
-    for (const std::int32_t device : aboard_) Save(static_cast<std::size_t>(device), order.port);
-    aboard_.clear();
-    Add(std::move(order), route);
-  }
-
-  void Save(std::size_t device, std::int32_t port) {
-    DeviceOutcome& outcome = plan_.devices[device];
-    outcome.ship = static_cast<std::int32_t>(ship_);
-    outcome.port = port;
-    outcome.deliver_s = time_s_;
-    outcome.home = Share(CountAlive(alive_));
-    const double saved = model_.Saved(device, time_s_, alive_);
-    outcome.mean_loss = outcome.mean_loss_idle - saved;
-    const float* idle = model_.LossIdle(device);
-    const float* until = model_.LossUntil(device, time_s_);
-    for (std::size_t member = 0; member < alive_.size(); ++member) {
-      if (alive_[member] == 0) continue;
-      plan_.loss[member] -= idle[member] - until[member];
-      ++plan_.home_count[member];
-    }
-    const Ensemble& ensemble = model_.ensemble();
-    const Cell site = model_.problem().devices[device].cell;
-    for (std::int32_t ring = 0; ring < ensemble.rings(); ++ring) {
-      const std::int16_t* arrival = ensemble.Arrival(ring, site);
-      std::int32_t before = 0;
-      for (std::size_t member = 0; member < alive_.size(); ++member) {
-        const bool is_first = arrival[member] == Ensemble::kNoArrival ||
-                              arrival[member] * ensemble.options().step_s > time_s_;
-        before += alive_[member] != 0 && is_first ? 1 : 0;
-      }
-      outcome.home_before[static_cast<std::size_t>(ring)] = Share(before);
-    }
-  }
-
-  const TripModel& model_;
-  RescuePlan& plan_;
-  std::size_t ship_{};
-  std::size_t place_{};
-  double time_s_{};
-  Alive alive_;
-  std::vector<std::int32_t> aboard_;
-};
-
 RescuePlan PlanOf(const TripModel& model, const Team& team) {
-  RescuePlan plan;
-  Follower follower(model, plan);
+  std::vector<ShipTrips> trips;
   for (std::size_t ship = 0; ship < team.trips.size(); ++ship) {
-    if (team.trips[ship] != nullptr) follower.Follow(ship, *team.trips[ship]);
+    if (team.trips[ship] != nullptr) trips.push_back({ship, team.trips[ship]->stops});
   }
+  RescuePlan plan = FollowTrips(model, trips);
   plan.saved = team.saved;
   return plan;
 }
@@ -286,6 +151,30 @@ RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble) {
   for (std::size_t d = 0; d < problem.devices.size(); ++d) best.bound += model.BoundOf(d);
   best.is_exhaustive = is_exhaustive;
   return best;
+}
+
+RescuePlan PlayRescue(const RescueProblem& problem, const Ensemble& ensemble,
+                      const RescuePlan& plan) {
+  RequireValid(problem);
+  const TripModel model(problem, ensemble);
+  std::vector<ShipTrips> trips;
+  for (const ShipRoute& route : plan.routes) {
+    ShipTrips one{static_cast<std::size_t>(route.ship), {}};
+    for (const RescueOrder& order : route.orders) {
+      if (order.kind == OrderKind::kLeave) continue;
+      const bool is_fetch = order.kind == OrderKind::kFetch;
+      one.stops.push_back(
+          {order.kind, static_cast<std::size_t>(is_fetch ? order.device : order.port)});
+    }
+    trips.push_back(std::move(one));
+  }
+  return FollowTrips(model, trips);
+}
+
+RescuePlan FetchInOrder(const RescueProblem& problem, const Ensemble& ensemble, FetchRule rule) {
+  RequireValid(problem);
+  const TripModel model(problem, ensemble);
+  return FollowTrips(model, SimpleTrips(model, rule));
 }
 
 }  // namespace aquafarm::agents

@@ -43,16 +43,21 @@ MemberSampler::MemberSampler(const CentralForecast& forecast, const EnsembleOpti
     : forecast_(forecast), options_(options), errors_(forecast.path.points.size()) {
   AQUAFARM_CHECK_EQ(forecast.lead_h.size(), errors_.size());
   for (const double lead : forecast.lead_h) spread_.push_back(SpreadAt(options.errors, lead));
-  size_log_ = options.errors.scale * options.errors.size_factor * SizeSpread(forecast.path);
+  const double log_sigma = SizeSpread(forecast.path);
+  for (const double lead : forecast.lead_h) {
+    size_spread_.push_back(options.errors.scale *
+                           SizeSpreadAt(options.errors, log_sigma, lead - forecast.size_report_h));
+  }
 }
 
 // Errors of one member are correlated along its track: each is part of the previous one, in units
 // of the standard deviation, and part new.
 void MemberSampler::DrawErrors(std::int32_t member) {
   Normals normals(options_.seed, member);
-  const double size = std::exp(size_log_ * normals.Next());
+  double size_log = size_spread_[0] * normals.Next();
   std::array<double, 3> unit{normals.Next(), normals.Next(), normals.Next()};
   const std::vector<double>& leads = forecast_.lead_h;
+  const auto square = [](double value) { return value * value; };
   for (std::size_t i = 0; i < errors_.size(); ++i) {
     const double lead = std::max(0.0, leads[i]);
     const double before = i > 0 ? std::max(0.0, leads[i - 1]) : lead;
@@ -64,7 +69,13 @@ void MemberSampler::DrawErrors(std::int32_t member) {
     errors_[i].along_km = unit[0] * spread_[i].position_km;
     errors_[i].across_km = unit[1] * spread_[i].position_km;
     errors_[i].wind_add_mps = unit[2] * spread_[i].wind_mps;
-    errors_[i].size_factor = size;
+    if (i > 0) {
+      const double remains = std::exp(-(lead - before) / options_.errors.size_memory_h);
+      const double kept_spread = remains * size_spread_[i - 1];
+      const double fresh = square(size_spread_[i]) - square(kept_spread);
+      size_log = remains * size_log + std::sqrt(std::max(0.0, fresh)) * normals.Next();
+    }
+    errors_[i].size_factor = std::exp(size_log);
   }
 }
 

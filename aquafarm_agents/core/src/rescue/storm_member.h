@@ -37,7 +37,7 @@ class MemberSampler {
   const CentralForecast& forecast_;
   const EnsembleOptions& options_;
   std::vector<ForecastSpread> spread_;  // by point
-  double size_log_{};
+  std::vector<double> size_spread_;     // by point: of the logarithm
   std::vector<StormErrors> errors_;
   std::vector<Waypoint> waypoints_;
   StormPlacer placer_;

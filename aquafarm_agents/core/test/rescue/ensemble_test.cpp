@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "rescue/rescue_samples.h"
 
@@ -19,6 +20,30 @@ TEST(ForecastErrors, GrowAsPublished) {
   ForecastErrors none;
   none.scale = 0.0;
   EXPECT_EQ(SpreadAt(none, 72.0).position_km, 0.0);
+}
+
+TEST(ForecastErrors, TheSizeForgetsItsReport) {
+  const ForecastErrors errors;
+  EXPECT_NEAR(SizeSpreadAt(errors, 0.4, 0.0), 0.1, 1e-12);
+  // Of two values with correlation r, one that is known leaves the spread sqrt(1 - r²).
+  const double after_a_day = std::sqrt(0.16 * (1.0 - 0.865 * 0.865) + 0.01 * 0.865 * 0.865);
+  EXPECT_NEAR(SizeSpreadAt(errors, 0.4, 24.0), after_a_day, 2e-3);
+  EXPECT_NEAR(SizeSpreadAt(errors, 0.4, 2000.0), 0.4, 1e-6);
+  EXPECT_EQ(SizeSpreadAt(errors, 0.4, std::numeric_limits<double>::infinity()), 0.4);
+}
+
+TEST(Ensemble, RadiiSpreadFromTheirLastReport) {
+  CentralForecast forecast = test::PassingStorm();
+  const Ensemble unknown(forecast, test::SmallEnsemble(4000), {});
+  forecast.size_report_h = 0.0;
+  for (double& lead : forecast.lead_h) lead *= 10.0;  // 0, 50, 100 h
+  const Ensemble reported(forecast, test::SmallEnsemble(4000), {});
+  const double full = unknown.spread().front().size_log;
+  EXPECT_NEAR(unknown.spread().back().size_log, full, 0.05 * full);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double expected = SizeSpreadAt(ForecastErrors{}, 0.35, 50.0 * static_cast<double>(i));
+    EXPECT_NEAR(reported.spread()[i].size_log, expected, 0.05 * expected) << i;
+  }
 }
 
 // Without errors all members are the central forecast; a slow test of every cell and step.

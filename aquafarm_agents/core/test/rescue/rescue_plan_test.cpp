@@ -169,6 +169,37 @@ TEST_F(Rescue, ChangesBeginWithThePlanAndAreSortedByLoss) {
   }
 }
 
+TEST_F(Rescue, APlanPlayedInItsOwnMembersLosesTheSame) {
+  const RescuePlan plan = PlanRescue(problem_, ensemble_);
+  const RescuePlan played = PlayRescue(problem_, ensemble_, plan);
+  EXPECT_EQ(played.loss, plan.loss);
+  EXPECT_EQ(played.home_count, plan.home_count);
+  EXPECT_NEAR(played.saved, plan.saved, 1e-9);
+}
+
+TEST_F(Rescue, SimpleRulesFetchByValueOrDistance) {
+  problem_.ships.pop_back();  // one ship in port A at (11, 0)
+  const auto order = [&](FetchRule rule) {
+    std::string names;
+    const RescuePlan plan = FetchInOrder(problem_, ensemble_, rule);
+    for (const RescueOrder& one : plan.routes.at(0).orders) {
+      if (one.kind != OrderKind::kFetch) continue;
+      names += problem_.devices[static_cast<std::size_t>(one.device)].name + " ";
+    }
+    EXPECT_LE(plan.saved, PlanRescue(problem_, ensemble_).saved + 1e-6);
+    return names;
+  };
+  EXPECT_EQ(order(FetchRule::kValue), "F1 F2 F3 ");
+  // F3 at (9, 4) is nearest; port B at (11, 9) is then the nearest port, and F2 at (6, 8) is near.
+  EXPECT_EQ(order(FetchRule::kNearest), "F3 F2 F1 ");
+}
+
+TEST_F(Rescue, NoLossIsBelowZero) {
+  const RescuePlan plan = PlanRescue(problem_, ensemble_);
+  for (const float loss : plan.loss) EXPECT_GE(loss, 0.0F);
+  for (const DeviceOutcome& device : plan.devices) EXPECT_GE(device.mean_loss, 0.0);
+}
+
 TEST_F(Rescue, APlaceOnLandIsRefusedByName) {
   problem_.water(2, 3) = 0;
   try {

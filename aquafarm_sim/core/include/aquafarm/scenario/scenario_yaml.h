@@ -24,7 +24,7 @@ std::string ToYaml(const Scenario& scenario);
 /// description. ParseScenario stores it in Scenario::hash.
 std::uint64_t HashScenario(const Scenario& scenario);
 
-/// Converts YYYY-MM-DDTHH:MM:SSZ to UTC seconds since 1970. @throws InputError "name: got …"
+/// Converts a time with its zone, Z or ±HH:MM, to UTC seconds since 1970. @throws InputError
 std::int64_t ParseUtc(const std::string& name, const std::string& text);
 
 }  // namespace aquafarm

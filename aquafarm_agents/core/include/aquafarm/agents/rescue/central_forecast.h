@@ -4,6 +4,7 @@
 /// The storm that an ensemble varies, and the size of the ensemble.
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "aquafarm/agents/rescue/forecast_errors.h"
@@ -16,7 +17,9 @@ namespace aquafarm::agents {
 struct CentralForecast {
   StormPath path;              ///< step 0 is the start of the plan, steps are those of the ensemble
   std::vector<double> lead_h;  ///< by point: hours after the issue; 0 or negative if recorded
-  GradeRisks risks;            ///< of grades 1 to 4
+  /// Lead time of the last report with radii; minus infinity if all radii are estimated.
+  double size_report_h{-std::numeric_limits<double>::infinity()};
+  GradeRisks risks;  ///< of grades 1 to 4
 };
 
 /// Size and resolution of an ensemble.

@@ -17,8 +17,14 @@
 ///
 /// Assumed, because the sources give mean errors alone: errors are normal, of the same size along
 /// and across the track, and correlated along the track by exp(-difference of lead times / 48 h).
-/// An error along the track is the error of the time of arrival. All radii of a storm have one
-/// log-normal factor with the spread of recorded radii about EstimateRadius (tracks/wind_radii.h).
+/// An error along the track is the error of the time of arrival.
+///
+/// **Radii.** All radii of a storm have one log-normal factor. Without reported radii it has the
+/// spread of recorded radii about EstimateRadius (tracks/wind_radii.h). After a report with radii
+/// the spread grows from the error of the report to that value: the logarithm of a storm's size,
+/// relative to EstimateRadius, returns to 0 with exp(-time / 165 h). This is fitted to the JMA's
+/// best tracks of 2015 to 2021: the correlation of the 30 kt radii of one storm is 0.87 after 24 h
+/// (2,864 pairs), 0.76 after 48 h, 0.64 after 72 h, 0.55 after 96 h, 0.48 after 120 h (798 pairs).
 
 #include <vector>
 
@@ -30,9 +36,11 @@ struct ForecastErrors {
   std::vector<double> position_km{14.1, 66.2, 119.5, 176.3, 244.3, 328.5};  ///< mean distance
   std::vector<double> wind_lead_h{0.0, 24.0, 48.0, 72.0};
   std::vector<double> wind_mps{1.4, 4.37, 6.5, 7.78};  ///< mean absolute error
-  double correlation_h{48.0};  ///< e-folding difference of lead times [assumed]
-  double size_factor{1.0};     ///< factor of the spread of radii [assumed]
-  double scale{1.0};           ///< factor of all errors: 0.5 halves them, 0 removes them
+  double correlation_h{48.0};     ///< e-folding difference of lead times [assumed]
+  double size_factor{1.0};        ///< factor of the spread of radii [assumed]
+  double size_memory_h{165.0};    ///< e-folding time of a storm's size, see above
+  double size_report_error{0.1};  ///< log-standard deviation of a reported radius [assumed]
+  double scale{1.0};              ///< factor of all errors: 0.5 halves them, 0 removes them
 };
 
 /// Standard deviations at one lead time.
@@ -46,5 +54,10 @@ struct ForecastSpread {
 /// absolute value s · sqrt(2 / pi).
 /// @param lead_h hours after the forecast was issued; negative: as at 0
 ForecastSpread SpreadAt(const ForecastErrors& errors, double lead_h);
+
+/// Returns the log-standard deviation of a storm's radii, without errors.scale.
+/// @param log_sigma of recorded radii about EstimateRadius
+/// @param since_report_h hours after the last report with radii; infinity: there is none
+double SizeSpreadAt(const ForecastErrors& errors, double log_sigma, double since_report_h);
 
 }  // namespace aquafarm::agents

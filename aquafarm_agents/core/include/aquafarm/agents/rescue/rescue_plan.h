@@ -20,17 +20,10 @@
 #include <optional>
 #include <vector>
 
-#include "aquafarm/agents/rescue/rescue_order.h"
+#include "aquafarm/agents/rescue/rescue_outcome.h"
 #include "aquafarm/agents/rescue/rescue_problem.h"
 
 namespace aquafarm::agents {
-
-struct ShipRoute {
-  std::int32_t ship{};
-  double km{};
-  std::vector<RescueOrder> orders;
-  std::vector<TimedCell> path;
-};
 
 /// Distribution over the members.
 struct LossSummary {
@@ -46,32 +39,19 @@ LossSummary Summarize(std::vector<float> losses);
 /// Returns the mean of the worst share of the values, the last one in part. @param share in (0, 1]
 double MeanOfWorst(std::vector<float> losses, double share);
 
-/// What a plan means for one device.
-struct DeviceOutcome {
-  std::int32_t ship{kNone};  ///< kNone: it is left behind
-  std::int32_t port{kNone};
-  double fetch_s{};
-  double deliver_s{};
-  double home{};                    ///< probability that it reaches a port
-  std::vector<double> home_before;  ///< by ring: that it is in port before the ring is at its site
-  double mean_loss{};
-  double mean_loss_idle{};  ///< if no ship leaves
-};
-
-struct RescuePlan {
-  std::vector<ShipRoute> routes;         ///< of the ships that leave
-  std::vector<DeviceOutcome> devices;    ///< by device
-  std::vector<float> loss;               ///< by member
-  std::vector<float> loss_idle;          ///< by member, if no ship leaves
-  std::vector<std::uint8_t> home_count;  ///< by member: devices in port at the end
-  double saved{};                        ///< mean value saved, compared with no departure
-  double bound{};                        ///< no plan saves more
-  bool is_exhaustive{};
-};
-
 /// Makes the best plan.
 /// @throws InputError if the numbers of the problem do not fit together
 RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble);
+
+/// Plays the orders of a plan in the members of another ensemble with the same ranch and steps.
+/// `bound` and `is_exhaustive` of the result are not set.
+RescuePlan PlayRescue(const RescueProblem& problem, const Ensemble& ensemble,
+                      const RescuePlan& plan);
+
+/// Returns the plan that follows a rule and looks at no storm: the ship that is free first takes
+/// the next device, and delivers at the nearest open port when it is full. It serves for
+/// comparison.
+RescuePlan FetchInOrder(const RescueProblem& problem, const Ensemble& ensemble, FetchRule rule);
 
 /// Latest departure to a device.
 struct Deadline {

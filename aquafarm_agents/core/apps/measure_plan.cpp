@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compares rescue plans with simulated and recorded storms: are the promised chances kept, what do
+// the plans save? docs/plan.md states the results. No ROS.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "app.h"
+#include "aquafarm/agents/base/exit_code.h"
+#include "aquafarm/agents/base/storage.h"
+#include "aquafarm/tracks/reader.h"
+#include "rescue/plan_trials.h"
+
+namespace aquafarm::agents {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+  std::string ranch{"zhoushan_storms"};
+  std::string archive;
+  std::string scenarios{ScenarioFolder()};
+  std::string output;
+  std::int32_t storms{2000};
+  std::int32_t bulletins{20};
+  std::int32_t judges{2000};
+  std::int32_t first_year{2010};
+  double within_km{300.0};
+  double lead_h{24.0};
+  double error_scale{1.0};
+  TrialOptions trial;
+  RescueRequest request;
+};
+
+Json Of(const Estimate& estimate) {
+  return {{"mean", estimate.mean},
+          {"low", estimate.mean - estimate.half},
+          {"high", estimate.mean + estimate.half}};
+}
+
+Json Of(const PromiseBin& bin) {
+  return {{"low", bin.low},
+          {"high", bin.high},
+          {"count", bin.count},
+          {"promised", bin.promised},
+          {"kept", Of(bin.kept)}};
+}
+
+void Print(const char* name, const PromiseBin& bin) {
+  std::printf("  %-6s promised %5.1f %%  kept %5.1f %% +- %4.1f  (%lld devices)\n", name,
+              100.0 * bin.promised, 100.0 * bin.kept.mean, 100.0 * bin.kept.half,
+              static_cast<long long>(bin.count));
+}
+
+// Prints the bars of issue 22 and returns them with the diagram.
+Json Calibration(const char* title, const std::vector<std::vector<Promise>>& promises) {
+  std::printf("%s\n", title);
+  constexpr std::array<std::array<double, 3>, 4> kBars{
+      {{0.2, 0.15, 0.25}, {0.5, 0.45, 0.55}, {0.8, 0.75, 0.85}, {0.95, 0.925, 0.975}}};
+  Json bars = Json::array();
+  for (const auto& [wanted, low, high] : kBars) {
+    const PromiseBin bin = BinOf(promises, low, high);
+    Print((std::to_string(static_cast<int>(100.0 * wanted + 0.5)) + " %").c_str(), bin);
+    bars.push_back(Of(bin));
+  }
+  Json diagram = Json::array();
+  for (int i = 0; i < 20; ++i) {
+    diagram.push_back(Of(BinOf(promises, i / 20.0, i == 19 ? 1.01 : (i + 1) / 20.0)));
+  }
+  return {{"bars", bars}, {"diagram", diagram}};
+}
+
+Json Value(const std::vector<TrialResult>& trials) {
+  const auto of = [&](std::size_t policy) {
+    std::vector<double> saved;
+    for (const TrialResult& trial : trials) saved.push_back(trial.saved[policy]);
+    return saved;
+  };
+  const std::vector<double> plan = of(0);
+  const std::vector<double> best = of(static_cast<std::size_t>(TrialPolicy::kClairvoyant));
+  std::vector<double> promised;
+  for (const TrialResult& trial : trials) promised.push_back(trial.promised);
+  Json rows = Json::array();
+  std::printf("value saved; share of the clairvoyant; plan minus this one (95 %% intervals)\n");
+  for (std::size_t policy = 0; policy < kTrialPolicyCount; ++policy) {
+    const std::vector<double> saved = of(policy);
+    std::vector<double> ahead;
+    for (std::size_t i = 0; i < plan.size(); ++i) ahead.push_back(plan[i] - saved[i]);
+    const Estimate mean = MeanOf(saved);
+    const Estimate share = RatioOf(saved, best);
+    const Estimate by = MeanOf(ahead);
+    const std::string name(ToString(static_cast<TrialPolicy>(policy)));
+    std::printf("  %-15s %8.3f +- %.3f   %.4f +- %.4f   %+8.4f +- %.4f\n", name.c_str(), mean.mean,
+                mean.half, share.mean, share.half, by.mean, by.half);
+    rows.push_back(
+        {{"policy", name}, {"saved", Of(mean)}, {"share", Of(share)}, {"plan_ahead", Of(by)}});
+  }
+  const Estimate claim = MeanOf(promised);
+  std::printf("  %-15s %8.3f +- %.3f\n", "plan promised", claim.mean, claim.half);
+  return {{"policies", rows}, {"promised", Of(claim)}};
+}
+
+std::shared_ptr<const Scenario> Load(const Arguments& arguments) {
+  return std::make_shared<const Scenario>(FindScenario(arguments.ranch, arguments.scenarios));
+}
+
+std::vector<StormTrack> Tracks(const Arguments& arguments) {
+  std::vector<StormTrack> tracks;
+  for (const StormTrack& track : LoadStormFile(arguments.archive).tracks) {
+    if (track.fixes.size() >= 4) tracks.push_back(track);
+  }
+  return tracks;
+}
+
+PlanTrials MakeTrials(Arguments& arguments, const std::vector<StormTrack>& tracks) {
+  RescueRequest& request = arguments.request;
+  request.storm = arguments.archive;
+  request.storm_name = tracks.front().id;
+  request.at = tracks.front().fixes.front().time;
+  request.errors.scale = arguments.error_scale;
+  arguments.trial.errors.scale = arguments.error_scale;
+  return {Load(arguments), request};
+}
+
+Json RunStorms(Arguments& arguments) {
+  const std::vector<StormTrack> tracks = Tracks(arguments);
+  const PlanTrials trials = MakeTrials(arguments, tracks);
+  std::vector<TrialResult> results;
+  std::vector<std::vector<Promise>> home;
+  std::vector<std::vector<Promise>> gales;
+  for (std::int32_t i = 0; i < arguments.storms; ++i) {
+    const TrialStorm storm =
+        DrawTrial(tracks, trials.place(), arguments.trial, static_cast<std::uint64_t>(i));
+    results.push_back(trials.Run(storm));
+    home.push_back(results.back().home);
+    gales.push_back(results.back().gales);
+  }
+  std::printf("%d storms, errors x %g, %d members\n", arguments.storms, arguments.error_scale,
+              arguments.request.members);
+  Json data{{"storms", arguments.storms},
+            {"error_scale", arguments.error_scale},
+            {"members", arguments.request.members},
+            {"seed", arguments.trial.seed}};
+  data["home"] = Calibration("the device comes home", home);
+  data["gales"] = Calibration("gales reach the device", gales);
+  data["value"] = Value(results);
+  return data;
+}
+
+Json RunAverse(Arguments& arguments) {
+  const std::vector<StormTrack> tracks = Tracks(arguments);
+  const PlanTrials trials = MakeTrials(arguments, tracks);
+  std::vector<double> gain;
+  std::vector<double> mean;
+  std::int32_t changed = 0;
+  for (std::int32_t i = 0; i < arguments.storms; ++i) {
+    const TrialStorm storm =
+        DrawTrial(tracks, trials.place(), arguments.trial, static_cast<std::uint64_t>(i));
+    const AverseResult result = trials.CompareAverse(storm, arguments.judges);
+    mean.push_back(result.mean);
+    gain.push_back(result.mean - result.averse);
+    changed += result.mean != result.averse ? 1 : 0;
+  }
+  const Estimate by = MeanOf(gain);
+  std::printf(
+      "mean of the worst 5 %% of the losses, %d storms, %d judging members\n"
+      "  without --risk-averse %.3f; with it less by %.4f +- %.4f; other plan in %d storms\n",
+      arguments.storms, arguments.judges, MeanOf(mean).mean, by.mean, by.half, changed);
+  return {{"storms", arguments.storms},
+          {"judges", arguments.judges},
+          {"changed", changed},
+          {"without", Of(MeanOf(mean))},
+          {"gain", Of(by)}};
+}
+
+Json BackTest(const Arguments& arguments, const PlanTrials& trials, const StormTrack& track) {
+  std::vector<double> promised;
+  std::vector<double> saved;
+  TrialResult last;
+  for (std::int32_t i = 0; i < arguments.bulletins; ++i) {
+    last = trials.Run(RecordedTrial(track, trials.place(), arguments.trial, arguments.lead_h,
+                                    static_cast<std::uint64_t>(i)));
+    promised.push_back(last.promised);
+    saved.push_back(last.saved[0]);
+  }
+  const double best = last.saved[static_cast<std::size_t>(TrialPolicy::kClairvoyant)];
+  std::sort(saved.begin(), saved.end());
+  const std::string date = FormatUtc(NearestTime(track, trials.place()).first).substr(0, 10);
+  std::printf("| %s | %s | %s | %.0f | %.1f | %.2f | %.2f | %.2f (%.2f to %.2f) | %.2f |\n",
+              track.id.c_str(), track.name.c_str(), date.c_str(), last.nearest_km, last.lead_h,
+              last.at_risk, MeanOf(promised).mean, MeanOf(saved).mean, saved.front(), saved.back(),
+              best);
+  return {{"id", track.id},
+          {"name", track.name},
+          {"nearest", date},
+          {"nearest_km", last.nearest_km},
+          {"lead_h", last.lead_h},
+          {"at_risk", last.at_risk},
+          {"promised", MeanOf(promised).mean},
+          {"saved", MeanOf(saved).mean},
+          {"saved_low", saved.front()},
+          {"saved_high", saved.back()},
+          {"clairvoyant", best}};
+}
+
+Json RunBackTest(Arguments& arguments) {
+  arguments.trial.report_share = 0.0;  // CMA best tracks have no radii
+  arguments.trial.draws_size = false;
+  const std::vector<StormTrack> tracks = LoadStormFile(arguments.archive).tracks;
+  const PlanTrials trials = MakeTrials(arguments, tracks);
+  std::printf(
+      "| storm | name | nearest | km | lead [h] | at risk | promised | saved | "
+      "clairvoyant |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  Json rows = Json::array();
+  for (const StormTrack& track : tracks) {
+    const auto [time, km] = NearestTime(track, trials.place());
+    const bool is_late = std::stoi(FormatUtc(time).substr(0, 4)) >= arguments.first_year;
+    if (is_late && km <= arguments.within_km) rows.push_back(BackTest(arguments, trials, track));
+  }
+  return {{"bulletins", arguments.bulletins}, {"lead_h", arguments.lead_h}, {"storms", rows}};
+}
+
+void AddOptions(CLI::App& app, Arguments& arguments) {
+  app.option_defaults()->always_capture_default();
+  app.add_option("--ranch", arguments.ranch, "scenario file or name of a shipped scenario");
+  app.add_option("--archive", arguments.archive, "tracks; default: that of the Zhoushan scenarios");
+  app.add_option("--scenarios", arguments.scenarios, "folder of the shipped scenarios");
+  app.add_option("--devices", arguments.request.devices, "CSV, as for aquafarm_plan");
+  app.add_option("--ships", arguments.request.ships, "number of ships")->check(CLI::Range(1, 16));
+  app.add_option("--speed", arguments.request.speed_kn, "knots")->check(CLI::Range(0.1, 60.0));
+  app.add_option("--members", arguments.request.members, "of the plan's ensemble")
+      ->check(CLI::Range(10, 20000));
+  app.add_option("--storms", arguments.storms, "simulated storms")->check(CLI::Range(2, 1000000));
+  app.add_option("--errors", arguments.error_scale, "factor of all errors of the forecast")
+      ->check(CLI::Range(0.0, 5.0));
+  app.add_option("--seed", arguments.trial.seed, "of the simulated storms");
+  app.add_option("--min-lead", arguments.trial.min_lead_h, "hours before the closest approach");
+  app.add_option("--max-lead", arguments.trial.max_lead_h, "hours before the closest approach");
+  app.add_option("--lead", arguments.lead_h, "back_test: hours before the closest approach");
+  app.add_option("--bulletins", arguments.bulletins, "back_test: drawn for each storm")
+      ->check(CLI::Range(1, 10000));
+  app.add_option("--since", arguments.first_year, "back_test: first year");
+  app.add_option("--within", arguments.within_km, "back_test: distance [km]");
+  app.add_option("--judges", arguments.judges, "averse: members that compare the plans")
+      ->check(CLI::Range(100, 20000));
+  app.add_option("-o,--output", arguments.output, "write the results as JSON");
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  CLI::App app("Compares rescue plans with what storms do.", "aquafarm_measure_plan");
+  AddOptions(app, arguments);
+  app.require_subcommand(1);
+  app.fallthrough();
+  CLI::App* storms = app.add_subcommand("storms", "chances and value over simulated storms");
+  CLI::App* averse = app.add_subcommand("averse", "the worst 5 % with and without --risk-averse");
+  app.add_subcommand("back_test", "every recorded storm near the ranch");
+  try {
+    app.parse(argc, argv);
+    if (arguments.archive.empty()) {
+      arguments.archive = arguments.scenarios + "/archives/zhoushan_cma.txt";
+    }
+    const Json data = storms->parsed()   ? RunStorms(arguments)
+                      : averse->parsed() ? RunAverse(arguments)
+                                         : RunBackTest(arguments);
+    if (!arguments.output.empty()) WriteFileAtomically(arguments.output, data.dump(1) + "\n");
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kBadInput);
+  } catch (const StorageError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kStorage);
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents
+
+int main(int argc, char** argv) { return aquafarm::agents::Main(argc, argv); }

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rescue/plan_trials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "aquafarm/base/check.h"
+#include "rescue/case_parts.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr double kNormal95 = 1.96;
+
+// The storm without errors, as an ensemble of one member.
+Ensemble Certain(const RescueCase& rescue, const CentralForecast& forecast) {
+  EnsembleOptions options = rescue.ensemble;
+  options.members = 1;
+  options.errors.scale = 0.0;
+  return {forecast, options, rescue.Sites()};
+}
+
+Ensemble TruthOf(const RescueCase& rescue, const StormTrack& truth) {
+  CentralForecast forecast;
+  forecast.path = ToPath(ToRings(truth, RingReduction::kQuadrants), rescue.frame,
+                         rescue.scenario->cell_size_m, rescue.ensemble.step_s, rescue.start);
+  forecast.lead_h.assign(forecast.path.points.size(), 0.0);
+  forecast.risks = rescue.forecast.risks;
+  return Certain(rescue, forecast);
+}
+
+double SavedOf(const RescuePlan& plan) {
+  return static_cast<double>(plan.loss_idle[0]) - static_cast<double>(plan.loss[0]);
+}
+
+}  // namespace
+
+std::string_view ToString(TrialPolicy value) {
+  constexpr std::array<std::string_view, kTrialPolicyCount> kNames{
+      "plan", "central", "fetch_by_value", "fetch_nearest", "clairvoyant"};
+  return kNames[static_cast<std::size_t>(value)];
+}
+
+PlanTrials::PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request)
+    : request_(std::move(request)), base_(MakeRescueCase(std::move(scenario), request_)) {
+  place_ = base_.frame.ToGeo((base_.scenario->width - 1) / 2.0, (base_.scenario->height - 1) / 2.0);
+}
+
+RescueCase PlanTrials::CaseOf(const TrialStorm& storm) const {
+  RescueCase rescue = base_;
+  rescue.start = storm.start;
+  const StormTrack whole = WithForecast(storm.known, NoForecast::kPersist);
+  rescue.storm.recorded_until = storm.start;
+  rescue.storm.issued = storm.start;
+  rescue.storm.known_until = whole.fixes.back().time;
+  UseStorm(whole, request_, rescue);
+  rescue.problem.exposure_damage = ExposureDamage(rescue);
+  return rescue;
+}
+
+TrialResult PlanTrials::Run(const TrialStorm& storm) const {
+  const RescueCase rescue = CaseOf(storm);
+  const RescueProblem& problem = rescue.problem;
+  const Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
+  const Ensemble truth = TruthOf(rescue, storm.truth);
+  const RescuePlan plan = PlanRescue(problem, ensemble);
+  const RescuePlan real = PlayRescue(problem, truth, plan);
+  TrialResult result;
+  result.lead_h = storm.lead_h;
+  result.nearest_km = storm.nearest_km;
+  result.promised = plan.saved;
+  result.at_risk = static_cast<double>(real.loss_idle[0]);
+  const std::int32_t gale = ensemble.rings() - 1;
+  for (std::size_t d = 0; d < problem.devices.size(); ++d) {
+    const Cell site = problem.devices[d].cell;
+    const std::int16_t* arrival = ensemble.Arrival(gale, site);
+    const auto reached = std::count_if(arrival, arrival + ensemble.members(),
+                                       [](std::int16_t at) { return at != Ensemble::kNoArrival; });
+    result.gales.push_back({static_cast<double>(reached) / ensemble.members(),
+                            truth.Arrival(gale, site)[0] != Ensemble::kNoArrival});
+    if (plan.devices[d].ship == kNone) continue;
+    result.home.push_back({plan.devices[d].home, real.devices[d].home > 0.5});
+  }
+  const RescuePlan central = PlanRescue(problem, Certain(rescue, rescue.forecast));
+  result.saved = {SavedOf(real), SavedOf(PlayRescue(problem, truth, central)),
+                  SavedOf(FetchInOrder(problem, truth, FetchRule::kValue)),
+                  SavedOf(FetchInOrder(problem, truth, FetchRule::kNearest)),
+                  SavedOf(PlanRescue(problem, truth))};
+  return result;
+}
+
+AverseResult PlanTrials::CompareAverse(const TrialStorm& storm, std::int32_t members) const {
+  RescueCase rescue = CaseOf(storm);
+  const Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
+  EnsembleOptions others = rescue.ensemble;
+  others.members = members;
+  others.seed ^= 0x5eed5eedULL;
+  const Ensemble judge(rescue.forecast, others, rescue.Sites());
+  constexpr double kShare = 0.05;
+  const auto worst = [&](double risk_averse) {
+    rescue.problem.risk_averse = risk_averse;
+    const RescuePlan plan = PlanRescue(rescue.problem, ensemble);
+    return MeanOfWorst(PlayRescue(rescue.problem, judge, plan).loss, kShare);
+  };
+  return {worst(0.0), worst(kShare)};
+}
+
+Estimate MeanOf(const std::vector<double>& values) {
+  const auto count = static_cast<double>(values.size());
+  Estimate estimate;
+  if (values.empty()) return estimate;
+  for (const double value : values) estimate.mean += value / count;
+  double squares = 0.0;
+  for (const double value : values) {
+    squares += (value - estimate.mean) * (value - estimate.mean);
+  }
+  if (values.size() > 1) estimate.half = kNormal95 * std::sqrt(squares / (count - 1.0) / count);
+  return estimate;
+}
+
+Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& below) {
+  AQUAFARM_CHECK_EQ(above.size(), below.size());
+  const double base = MeanOf(below).mean;
+  if (base == 0.0) return {};
+  const double ratio = MeanOf(above).mean / base;
+  std::vector<double> rest;
+  for (std::size_t i = 0; i < above.size(); ++i) rest.push_back(above[i] - ratio * below[i]);
+  return {ratio, MeanOf(rest).half / base};
+}
+
+PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, double high) {
+  PromiseBin bin;
+  bin.low = low;
+  bin.high = high;
+  std::vector<double> kept;
+  std::vector<double> number;
+  for (const std::vector<Promise>& trial : by_trial) {
+    double kept_here = 0.0;
+    double number_here = 0.0;
+    for (const Promise& one : trial) {
+      if (one.promised < low || one.promised >= high) continue;
+      bin.promised += one.promised;
+      number_here += 1.0;
+      kept_here += one.kept ? 1.0 : 0.0;
+    }
+    bin.count += static_cast<std::int64_t>(number_here);
+    kept.push_back(kept_here);
+    number.push_back(number_here);
+  }
+  if (bin.count == 0) return bin;
+  bin.promised /= static_cast<double>(bin.count);
+  bin.kept = RatioOf(kept, number);
+  return bin;
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Plays plans against simulated storms: were the promised chances kept, and what did the plan
+/// save?
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/rescue/rescue_case.h"
+#include "rescue/trial_storm.h"
+
+namespace aquafarm::agents {
+
+/// Who gives the orders.
+enum class TrialPolicy : std::uint8_t {
+  kPlan,
+  kCentral,      ///< the same search for the forecast alone, without its errors
+  kValue,        ///< FetchRule::kValue
+  kNearest,      ///< FetchRule::kNearest
+  kClairvoyant,  ///< the same search for the true storm
+};
+inline constexpr std::size_t kTrialPolicyCount = 5;
+/// "plan", "central", "fetch_by_value", "fetch_nearest", "clairvoyant".
+std::string_view ToString(TrialPolicy value);
+
+/// A promised probability and what happened.
+struct Promise {
+  double promised{};
+  bool kept{};
+};
+
+/// One trial.
+struct TrialResult {
+  double lead_h{};
+  double nearest_km{};
+  std::vector<Promise> home;   ///< of each device that the plan fetches: it came home
+  std::vector<Promise> gales;  ///< of each device: the weakest ring reached its site
+  double promised{};           ///< value that the plan saves on average over its members
+  double at_risk{};            ///< value that is lost if no ship leaves
+  std::array<double, kTrialPolicyCount> saved{};  ///< by TrialPolicy, in the true storm
+};
+
+/// Mean of the worst 5 % of the losses of two plans, over other members than those of the plans.
+struct AverseResult {
+  double mean{};    ///< of the plan with the least mean loss
+  double averse{};  ///< of the plan with the least mean of the worst 5 %
+};
+
+/// Plans a ranch for many storms.
+class PlanTrials {
+ public:
+  /// @param request with its storm: any one of the archive
+  PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request);
+
+  GeoPoint place() const { return place_; }
+  TrialResult Run(const TrialStorm& storm) const;
+  /// @param members of the ensemble that compares the plans
+  AverseResult CompareAverse(const TrialStorm& storm, std::int32_t members) const;
+
+ private:
+  RescueCase CaseOf(const TrialStorm& storm) const;
+
+  RescueRequest request_;
+  RescueCase base_;
+  GeoPoint place_;
+};
+
+/// Mean with the half width of its 95 % interval, from independent values.
+struct Estimate {
+  double mean{};
+  double half{};
+};
+Estimate MeanOf(const std::vector<double>& values);
+/// Ratio of the means of paired values, with the interval of the delta method.
+Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& below);
+
+/// Promises of about one probability. Trials are independent, the devices of one trial are not.
+struct PromiseBin {
+  double low{};
+  double high{};
+  std::int64_t count{};
+  double promised{};  ///< mean
+  Estimate kept;      ///< share
+};
+/// @param by_trial promises of each trial
+PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, double high);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rescue/plan_trials.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/tracks/reader.h"
+
+namespace aquafarm::agents {
+namespace {
+
+const char* const kArchive = AQUAFARM_SCENARIO_DIR "/archives/zhoushan_cma.txt";
+
+// The ranch off the Dongji islands with two ships, and its archive.
+class Trials : public ::testing::Test {
+ protected:
+  static RescueRequest Request(double scale) {
+    RescueRequest request;
+    request.storm = kArchive;
+    request.storm_name = "7909";
+    request.at = ParseUtc("at", "1979-08-14T00:00:00Z");
+    request.ships = 2;
+    request.members = 200;
+    request.errors.scale = scale;
+    return request;
+  }
+  static PlanTrials Make(double scale = 1.0) {
+    return {std::make_shared<const Scenario>(
+                LoadScenario(AQUAFARM_SCENARIO_DIR "/zhoushan_storms.yaml")),
+            Request(scale)};
+  }
+  std::vector<StormTrack> tracks_{LoadStormFile(kArchive).tracks};
+};
+
+TEST_F(Trials, TheSameSeedGivesTheSameTrial) {
+  const PlanTrials trials = Make();
+  TrialOptions options;
+  const TrialResult once = trials.Run(DrawTrial(tracks_, trials.place(), options, 5));
+  const TrialResult again = trials.Run(DrawTrial(tracks_, trials.place(), options, 5));
+  EXPECT_EQ(once.saved, again.saved);
+  EXPECT_EQ(once.promised, again.promised);
+  options.seed = 2;
+  EXPECT_NE(DrawTrial(tracks_, trials.place(), options, 5).nearest_km, once.nearest_km);
+}
+
+TEST_F(Trials, BulletinsHaveThePublishedErrors) {
+  const PlanTrials trials = Make();
+  TrialOptions options;
+  double position_km = 0.0;
+  double wind_mps = 0.0;
+  int count = 0;
+  for (std::uint64_t i = 0; i < 600; ++i) {
+    const TrialStorm storm = DrawTrial(tracks_, trials.place(), options, i);
+    for (const StormFix& fix :
+         storm.known.forecasts.empty() ? std::vector<StormFix>{} : storm.known.forecasts[0].fixes) {
+      if (fix.time != storm.start + 24 * 3600) continue;
+      for (const StormFix& real : storm.truth.fixes) {
+        if (real.time != fix.time || *real.wind_mps < 25.0) continue;
+        const double north = (fix.position.latitude - real.position.latitude) * 111.2;
+        const double east = (fix.position.longitude - real.position.longitude) * 111.2 *
+                            std::cos(real.position.latitude * 0.0174533);
+        position_km += std::hypot(north, east);
+        wind_mps += std::abs(*fix.wind_mps - *real.wind_mps);
+        ++count;
+      }
+    }
+  }
+  ASSERT_GT(count, 150);
+  EXPECT_NEAR(position_km / count, 66.2, 8.0);
+  EXPECT_NEAR(wind_mps / count, 4.37, 0.7);
+}
+
+// The short form of the experiments in docs/plan.md.
+TEST_F(Trials, ChancesAreKeptAndThePlanIsWorthItsName) {
+  const PlanTrials trials = Make();
+  std::vector<std::vector<Promise>> home;
+  std::vector<std::vector<Promise>> gales;
+  std::array<double, kTrialPolicyCount> saved{};
+  for (std::uint64_t i = 0; i < 150; ++i) {
+    const TrialStorm storm = DrawTrial(tracks_, trials.place(), TrialOptions{}, i);
+    const TrialResult result = trials.Run(storm);
+    const auto best = static_cast<std::size_t>(TrialPolicy::kClairvoyant);
+    for (std::size_t policy = 0; policy < kTrialPolicyCount; ++policy) {
+      saved[policy] += result.saved[policy];
+      EXPECT_LE(result.saved[policy], result.saved[best] + 1e-3) << i;
+    }
+    home.push_back(result.home);
+    gales.push_back(result.gales);
+  }
+  const PromiseBin all_home = BinOf(home, 0.0, 1.01);
+  EXPECT_NEAR(all_home.promised, all_home.kept.mean, 0.05 + all_home.kept.half);
+  const PromiseBin all_gales = BinOf(gales, 0.0, 1.01);
+  EXPECT_NEAR(all_gales.promised, all_gales.kept.mean, 0.05 + all_gales.kept.half);
+  EXPECT_GT(saved[0], 0.8 * saved[static_cast<std::size_t>(TrialPolicy::kClairvoyant)]);
+  EXPECT_GT(saved[0], saved[static_cast<std::size_t>(TrialPolicy::kValue)]);
+}
+
+TEST_F(Trials, ARecordedStormIsNotMoved) {
+  const PlanTrials trials = Make();
+  const StormTrack& track = FindTrack(LoadStormFile(kArchive), "2106");
+  TrialOptions options;
+  options.draws_size = false;
+  const TrialStorm storm = RecordedTrial(track, trials.place(), options, 24.0, 3);
+  EXPECT_EQ(storm.truth.fixes.front().position.latitude, track.fixes.front().position.latitude);
+  EXPECT_NEAR(storm.lead_h, 24.0, 6.0);
+  EXPECT_LT(storm.nearest_km, 60.0);
+}
+
+TEST(Statistics, OfAFewNumbers) {
+  const Estimate mean = MeanOf({1.0, 3.0});
+  EXPECT_EQ(mean.mean, 2.0);
+  EXPECT_NEAR(mean.half, 1.96, 1e-12);  // standard deviation sqrt(2), of two values
+  EXPECT_NEAR(RatioOf({1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}).mean, 0.5, 1e-12);
+  EXPECT_NEAR(RatioOf({1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}).half, 0.0, 1e-12);
+  const PromiseBin bin = BinOf({{{0.8, true}, {0.1, true}}, {{0.82, false}}, {}}, 0.75, 0.85);
+  EXPECT_EQ(bin.count, 2);
+  EXPECT_NEAR(bin.promised, 0.81, 1e-12);
+  EXPECT_NEAR(bin.kept.mean, 0.5, 1e-12);
+}
+
+}  // namespace
+}  // namespace aquafarm::agents

@@ -14,6 +14,7 @@ import tempfile
 import time
 import unittest
 
+import rosbag
 import rostest
 
 from aquafarm_benchmark import figures, protocol, runs
@@ -142,6 +143,90 @@ class BenchmarkTest(unittest.TestCase):
         played = [run["return_per_episode"] for run in everything["runs"]["q_learning"]]
         bar = axes.patches[[one.name for one in shown].index("q_learning")]
         self.assertAlmostEqual(sum(played) / 2.0, bar.get_height(), places=9)
+
+    def played(self, name, *episodes, policy="clairvoyant", scenario=DATA / "tiny.yaml"):
+        """Makes bags of evaluation episodes of seed 1000 in a folder, as if a person had played
+        them."""
+        folder = self.folder / name
+        folder.mkdir(parents=True, exist_ok=True)
+        for episode in episodes:
+            route = self.folder / "route.json"
+            for command in (
+                    (program("aquafarm_agents", "aquafarm_evaluate"), policy, scenario, "--seed",
+                     "1000", "--episodes", "1", "--route", route, "--route-episode", episode),
+                    (program("aquafarm_sim", "episode_bag"), scenario, route, "-o",
+                     folder / f"{policy}_{episode}.bag")):
+                one = Program(self, *command)
+                self.assertEqual(0, one.code(), one.words())
+        return folder
+
+    def test_bags_of_a_person_are_a_row(self):
+        folder = self.played("play", 0, 3, 4)
+        self.played("play", 7, policy="random")
+        one = self.start("out", "--algorithms", "random", "--human", folder, episodes=20)
+        self.assertEqual(0, one.code(), one.words())
+        everything = json.loads((self.folder / "out/results.json").read_text())
+        rows = {row["name"]: row for row in everything["table"]}
+        self.assertEqual(["random", "human", "clairvoyant"], list(rows))
+        row = rows["human"]
+        self.assertEqual("human, 4 episodes", row["label"])
+        self.assertEqual((4, 1), (row["evaluation_episodes"], row["runs"]))
+        with open(self.folder / "out/runs/human/seed_1/evaluation.csv", newline="") as file:
+            played = {int(line["episode"]): line for line in csv.DictReader(file)}
+        self.assertEqual({0, 3, 4, 7}, set(played))
+        with open(self.folder / "out/runs/clairvoyant/seed_1/evaluation.csv", newline="") as file:
+            best = {int(line["episode"]): line for line in csv.DictReader(file)}
+        for episode in (0, 3, 4):
+            self.assertEqual(best[episode], played[episode])
+        returns = [float(line["return"]) for line in played.values()]
+        optimum = sum(float(best[episode]["return"]) for episode in played)
+        self.assertAlmostEqual(sum(returns) / 4.0, row["return_per_episode"], places=4)
+        self.assertAlmostEqual(sum(returns) / optimum, row["share_of_optimum"], places=4)
+        low, high = row["return_interval"]
+        self.assertTrue(min(returns) <= low < row["return_per_episode"] < high <= max(returns))
+        successes = sum(int(line["success"]) for line in played.values())
+        self.assertEqual(successes / 4.0, row["success_rate"])
+        self.assertLess(row["success_interval"][0], row["success_rate"])
+        self.assertIsNone(row["ea_paper"])
+        table = (self.folder / "out/table.md").read_text()
+        self.assertRegex(table, r"\| human, 4 episodes \|.*\| 1 of 4 \|")
+        self.assertIn("The row of human play", table)
+
+    def test_each_folder_of_bags_is_one_person(self):
+        self.played("play/ann", 0, 1)
+        folder = self.played("play/bob", 2, policy="random").parent
+        one = self.start("out", "--algorithms", "random", "--human", folder, episodes=20)
+        self.assertEqual(0, one.code(), one.words())
+        everything = json.loads((self.folder / "out/results.json").read_text())
+        row = next(row for row in everything["table"] if row["name"] == "human")
+        self.assertEqual(("human, 2 people, 3 episodes", 2), (row["label"], row["runs"]))
+        means = [run["return_per_episode"] for run in everything["runs"]["human"]]
+        self.assertAlmostEqual(sum(means) / 2.0, row["return_per_episode"], places=6)
+        for mean, bound in zip(sorted(means), row["return_interval"]):
+            self.assertAlmostEqual(mean, bound, places=6)
+
+    def test_bags_that_do_not_fit_are_refused(self):
+        other = self.played("other", 0, policy="random", scenario=DATA / "pair.yaml")
+        changed = self.played("changed", 0)
+        bag, = changed.glob("*.bag")
+        copy = changed / "copy.bag"
+        with rosbag.Bag(str(bag)) as source, rosbag.Bag(str(copy), "w") as target:
+            for topic, message, stamp in source.read_messages():
+                if topic.endswith("episode"):
+                    message.episode_return += 100.0
+                target.write(topic, message, stamp)
+        bag.unlink()
+        (self.folder / "empty").mkdir()
+        for folder, words in (
+                (other, "expected the benchmark's"),
+                (changed, "copy.bag: differs: "),
+                (self.folder / "empty", "contain no *.bag"),
+                (self.folder / "none", "expected a folder with bags")):
+            with self.subTest(folder=folder):
+                one = self.start("out", "--algorithms", "random", "--human", folder, episodes=20)
+                self.assertEqual(2, one.code(), one.words())
+                self.assertIn(words, one.words())
+        self.assertFalse((self.folder / "out").exists())
 
     def test_killed_it_goes_on_and_ends_in_the_same_numbers(self):
         arguments = ("--algorithms", "q_learning", "--jobs", "2")

@@ -363,7 +363,8 @@ int Changed(const char* layers, const char* others) {
 }
 
 TEST(Image, EachLayerShowsSomethingAndCanBeLeftOut) {
-  for (const char* layer : {"wake", "risk", "route", "sight", "values", "moves"}) {
+  for (const char* layer :
+       {"wake", "risk", "route", "sight", "values", "moves", "directions", "labels"}) {
     EXPECT_GT(Changed(layer, "none"), 300) << layer;
   }
   EXPECT_GT(Changed("wake", "route"), 300);
@@ -409,7 +410,7 @@ TEST(Image, LayersThatThereAreNotHaveTheirLine) {
       const std::string name = std::string(wrong).find("rain") == std::string::npos ? "" : "rain";
       EXPECT_EQ("layers: got '" + name +
                     "', expected some of: wake, risk, route, sight, "
-                    "values, moves, sea:NAME; or none",
+                    "values, moves, directions, labels, sea:NAME; or none",
                 fault.what());
     }
   }

@@ -50,9 +50,9 @@ launch_argument() {
   local file=$1 argument=$2 name=${2%%:=*} value=${2#*:=}
   [[ $argument == *:=* ]] || code=2 die "got '$argument', expected name:=value"
   case $name in
-    run_dir | record_dir | report | bag | policy | scenario | output)
+    run_dir | record_dir | report | bag | policy | scenario | output | human)
       if [[ $value == */* || $value == *.yaml ||
-        $name =~ ^(run_dir|record_dir|report|bag|output)$ ]] &&
+        $name =~ ^(run_dir|record_dir|report|bag|output|human)$ ]] &&
         [[ -n $value && $value != auto && $value != none ]]; then
         value=$(realpath -m "$value")
       fi ;;
@@ -128,6 +128,7 @@ default_arguments() {
   if [[ $launch == evaluate && -n ${given[record]:-} && -z ${given[record_dir]:-} ]]; then
     echo "record_dir:=$PWD/episodes"
   fi
+  if [[ $launch == play && -z ${given[record_dir]:-} ]]; then echo "record_dir:=$PWD/played"; fi
   if [[ $launch == benchmark ]]; then
     [[ -n ${given[output]:-} ]] || echo "output:=$PWD/benchmark"
     [[ -n ${given[report]:-} ]] || echo "report:=$(realpath -m "${given[output]:-benchmark}")"

@@ -13,7 +13,7 @@ import sys
 import tempfile
 import time
 
-from aquafarm_benchmark import results, runs
+from aquafarm_benchmark import human, results, runs
 from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES, REFERENCES
 
 _OK, _FAILED, _BAD_INPUT, _STORAGE, _INTERRUPTED = 0, 1, 2, 3, 130
@@ -64,6 +64,9 @@ def parse(arguments):
                         help="seed of those episodes, the same for all (default: 1000)")
     parser.add_argument("--jobs", type=int, default=0,
                         help="runs side by side (default: one a core)")
+    parser.add_argument("--human", default="none",
+                        help="folder with bags of ./aquafarm play, which become a row; a folder "
+                        "in it is one person (default: none)")
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of aquafarm_train and aquafarm_evaluate (default: the "
                         "workspace's, or those on PATH)")
@@ -104,10 +107,10 @@ def _require_paper(options):
                        "scenario")
 
 
-def find_program(name, folder):
+def find_program(name, folder, package="aquafarm_agents"):
     """Returns the path of a program of the core."""
     places = [folder] if folder else [
-        pathlib.Path(prefix) / "lib/aquafarm_agents"
+        pathlib.Path(prefix) / "lib" / package
         for prefix in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if prefix]
     for place in places:
         if os.access(place / name, os.X_OK):
@@ -222,6 +225,16 @@ def _lock(folder):
             time.sleep(0.1)
 
 
+def read_people(folder, farm):
+    """Returns the people whose bags are in a folder, with their episodes."""
+    try:
+        people = human.find(pathlib.Path(folder))
+        human.verify(people, find_program("verify_bag", None, "aquafarm_sim"))
+        return human.read(people, farm["scenario_hash"])
+    except human.BadBag as error:
+        raise BadInput(str(error)) from None
+
+
 _FARM_KEYS = ("scenario", "scenario_hash", "version")
 
 
@@ -257,6 +270,7 @@ def run(options):
     contestants = [one.for_episodes(options.episodes)
                    for one in PROFILES[options.profile].contestants if one.name in names]
     folder = options.output.resolve()
+    people = read_people(options.human, farm) if options.human != "none" else []
     settings = settings_of(options, contestants, farm)
     lock = claim(folder, settings)
     jobs = make_jobs(options, [*contestants, OPTIMUM], folder)
@@ -274,25 +288,41 @@ def run(options):
             found.setdefault(job.contestant, []).append(results.read_run(job.folder))
     for name, of_one in found.items():
         _require_alike(name, of_one)
+    if people:
+        human.write_runs(people, farm, folder / "runs" / human.HUMAN.name)
+        found[human.HUMAN.name] = [
+            results.read_run(folder / "runs" / human.HUMAN.name / f"seed_{number}")
+            for number in range(1, len(people) + 1)]
     seconds = time.monotonic() - start
     settings.update(jobs=options.jobs, wall_s=round(seconds, 1) if is_whole else None)
-    _conclude(folder, [one for one in contestants if one.name in found], found, settings,
-              options.episodes)
+    _conclude(folder, [one for one in contestants if one.name in found], found, settings, people)
     print(f"took {runs.describe_seconds(seconds)}; tables and figures are in {folder}")
 
 
-def _conclude(folder, contestants, found, settings, episodes):
+def _summarise(one, of_one, best, settings, people):
+    """Returns the row of a contestant; best is the run of the optimum, None without one."""
+    is_human = one.name == human.HUMAN.name
+    yardstick = None
+    if best is not None:
+        # Some contestants play other episodes: compare them with the optimum of the same ones.
+        table = best["folder"] / "evaluation.csv"
+        yardstick = (
+            human.optimum_of_the_same(people, settings["evaluation_seed"], table) if is_human
+            else results.mean_return(table, of_one[0]["evaluation"]["episodes"]))
+    row = results.summarise(one, of_one, yardstick, settings["episodes"])
+    if is_human:
+        human.add_intervals(row, people)
+    return row
+
+
+def _conclude(folder, contestants, found, settings, people):
     from aquafarm_benchmark import figures  # matplotlib takes a second that --help need not wait
 
-    everyone = [*contestants, *([OPTIMUM] if OPTIMUM.name in found else [])]
+    everyone = [*contestants, *([human.contestant(people)] if people else []),
+                *([OPTIMUM] if OPTIMUM.name in found else [])]
     best = found[OPTIMUM.name][0] if OPTIMUM.name in found else None
     optimum = best["return_per_episode"] if best else None
-    rows = []
-    for one in everyone:
-        # Some contestants play fewer episodes: compare them with the optimum of the same ones.
-        count = found[one.name][0]["evaluation"]["episodes"]
-        yardstick = results.mean_return(best["folder"] / "evaluation.csv", count) if best else None
-        rows.append(results.summarise(one, found[one.name], yardstick, episodes))
+    rows = [_summarise(one, found[one.name], best, settings, people) for one in everyone]
     results.add_ea(rows)
     settings = dict(settings, machine={
         "processor": _processor(), "cores": os.cpu_count(), "load": os.getloadavg(),
@@ -311,7 +341,7 @@ def _conclude(folder, contestants, found, settings, episodes):
     figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
     if any(row["money"] for row in rows):
         figures.draw_losses(pictures / "losses.png", everyone, rows)
-    for one in everyone:
+    for one in (one for one in everyone if one.name != human.HUMAN.name):
         figures.draw_route(pictures / f"route_{one.name}.png", one.label,
                            folder / "runs" / one.name / "seed_1" / "route.json")
     print(results.table(rows) + results.money_table(rows))

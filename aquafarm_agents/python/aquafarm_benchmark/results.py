@@ -239,6 +239,13 @@ Eq. 16 gives the printed EA of three rows, and −0.80 for RANDOM, where the pap
 """
 
 
+_HUMAN_NOTES = """
+The row of human play contains the finished episodes of its bags; episodes that were abandoned are
+not recorded. With one person the interval is over episodes, with several over people, as it is over
+the runs of a learner. The share of the optimum is given if all episodes are evaluation episodes.
+"""
+
+
 def write(folder, settings, rows, runs):
     """Writes results.json (everything), table.csv (a line per row), runs.csv (a line per run) and
     table.md."""
@@ -272,6 +279,8 @@ def write(folder, settings, rows, runs):
     text = json.dumps(_without_nan(everything), indent=2, allow_nan=False)
     write_atomically(folder / "results.json", text + "\n")
     notes = _TABLE_NOTES if any(row["paper_row"] for row in rows) else ""
+    if any(row["name"] == "human" for row in rows):
+        notes += _HUMAN_NOTES
     write_atomically(folder / "table.md", table(rows) + notes)
     write_losses(folder, rows)
     if any(row["money"] for row in rows):

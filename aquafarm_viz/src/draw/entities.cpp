@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/scene/labels.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -41,8 +42,7 @@ const DeviceState* FindDevice(const FarmState& state, std::int32_t id) {
 
 void DrawPort(cv::Mat& image, cv::Point2d at, std::int32_t id, const Layout& layout,
               const Fonts& fonts) {
-  const double radius =
-      std::clamp(0.46 * layout.view.cell_px(), 7.5 * layout.unit, 14.0 * layout.unit);
+  const double radius = layout.port_radius_px();
   FillCircle(image, at, radius, Bgr(kPort));
   StrokeCircle(image, at, radius, Bgr(kInk), layout.Px(1.5));
   const std::string letter = PortLetter(id);
@@ -179,6 +179,34 @@ void DrawPorts(cv::Mat& map, const FarmSpec& spec, const Layout& layout, const F
   for (const auto& port : spec.ports) {
     if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
     DrawPort(map, layout.view.ToPixel(port.cell.x, port.cell.y), port.id, layout, fonts);
+  }
+}
+
+void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout) {
+  const double size = std::max(0.9 * layout.view.cell_px(), 12.0 * layout.unit);
+  for (const auto& port : ports) {
+    const cv::Point2d middle = layout.view.ToPixel(port.cell.x, port.cell.y);
+    for (const std::uint8_t action : port.actions) {
+      const int bearing = MoveBearingDeg(action);
+      const Pose2 placing{middle, layout.port_radius_px() + 0.5 * size, double(bearing)};
+      const cv::Point2d at = Place({0.0, 1.0}, placing);
+      DrawArrow(map, at, bearing, size, Bgr(kInk), layout.Px(4));
+      DrawArrow(map, at, bearing, size, Bgr(kDirectionColor), layout.Px(2));
+    }
+  }
+}
+
+void DrawLabels(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout,
+                const Fonts& fonts) {
+  const double radius = layout.device_radius_px();
+  for (const auto& device : state.devices) {
+    if (!IsLabelled(spec, device)) continue;
+    const cv::Point2d middle = layout.view.ToPixel(device.x, device.y);
+    const std::string text = DeviceLabel(device.id);
+    const cv::Point at(cvRound(middle.x + radius + layout.Px(2)),
+                       cvRound(middle.y + radius + fonts.bold.cap_height() / 2.0));
+    fonts.bold.Draw(map, text, at + cv::Point(1, 1), Bgr(kInk));
+    fonts.bold.Draw(map, text, at, Bgr(kDirectionColor));
   }
 }
 

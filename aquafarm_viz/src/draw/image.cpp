@@ -52,11 +52,12 @@ struct FarmPainter::Parts {
   FarmSpec drawn;   // spec of the background
   std::string sea;  // sea layer of the background
   cv::Mat background;
-  std::vector<std::vector<TrackPoint>> tracks;  // of the background's scenario
-  cv::Mat1b land;                               // IslandCoverage of the background
-  std::optional<MoveSigns> moves;               // for the layout; nullopt before the first use
-  Values values;                                // values drawn in `valued`
-  cv::Mat valued;  // map of the background with V_π; empty if not drawn yet
+  std::optional<std::vector<PortDirections>> directions;  // of the spec; nullopt before use
+  std::vector<std::vector<TrackPoint>> tracks;            // of the background's scenario
+  cv::Mat1b land;                                         // IslandCoverage of the background
+  std::optional<MoveSigns> moves;  // for the layout; nullopt before the first use
+  Values values;                   // values drawn in `valued`
+  cv::Mat valued;                  // map of the background with V_π; empty if not drawn yet
   cv::Mat image;
 
   /// Clears the cache if the values or the background have changed.
@@ -83,6 +84,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
     p.background.release();  // stays empty if DrawSea throws
     p.layout = MakeLayout(spec.width, spec.height, p.size);
     p.moves.reset();
+    p.directions.reset();
     cv::Mat background = DrawBackground(spec, p.layout, p.fonts, p.size);
     cv::Mat below = background(p.layout.map);
     if (!sea.empty()) DrawSea(below, spec, sea, p.layout, p.fonts);
@@ -116,8 +118,13 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
     if (!p.moves) p.moves.emplace(p.layout);
     p.moves->Draw(map, *values);
   }
+  if (layers.directions) {
+    if (!p.directions) p.directions = LegalDirections(spec);
+    DrawDirections(map, *p.directions, p.layout);
+  }
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
+  if (layers.labels) DrawLabels(map, spec, state, p.layout, p.fonts);
   DrawDisasterSigns(map, spec, state, p.layout, p.fonts);
   DrawShips(map, spec, state, overlays.trail, p.layout, p.fonts);
   if (overlays.choice != nullptr) DrawChoice(map, state, *overlays.choice, p.layout, p.fonts);

@@ -27,6 +27,10 @@ double Layout::device_radius_px() const {
   return std::clamp(0.40 * view.cell_px(), 6.0 * unit, 22.0 * unit);
 }
 
+double Layout::port_radius_px() const {
+  return std::clamp(0.46 * view.cell_px(), 7.5 * unit, 14.0 * unit);
+}
+
 double Layout::ship_radius_px() const {
   return std::clamp(0.60 * view.cell_px(), 9.0 * unit, 30.0 * unit);
 }

@@ -19,6 +19,8 @@ cv::Mat Colors(const cv::Mat& shares) {
   return colors;
 }
 
+}  // namespace
+
 void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px,
                const cv::Scalar& color, int thickness) {
   const Pose2 placing{middle, size_px, double(bearing_deg)};
@@ -27,8 +29,6 @@ void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px
   DrawLine(map, Place({-0.20, 0.12}, placing), tip, color, thickness);
   DrawLine(map, Place({0.20, 0.12}, placing), tip, color, thickness);
 }
-
-}  // namespace
 
 void DrawValues(cv::Mat& map, const Values& values) {
   // A header for the values without a copy; they are only read. Row 0 is the south here.

@@ -14,6 +14,7 @@
 #include "aquafarm_viz/draw/canvas.h"
 #include "aquafarm_viz/draw/image_options.h"
 #include "aquafarm_viz/draw/map_view.h"
+#include "aquafarm_viz/scene/directions.h"
 
 namespace aquafarm_viz {
 
@@ -32,6 +33,8 @@ struct Layout {
   int Px(double units) const;
   /// Distance from the centre of a device to its corners [pixels].
   double device_radius_px() const;
+  /// Radius of the disc of a port [pixels].
+  double port_radius_px() const;
   /// Distance from the centre of a ship to its bow [pixels].
   double ship_radius_px() const;
 };
@@ -112,6 +115,13 @@ class Overlay {
   std::vector<Pixel> pixels_;
 };
 
+/// Draws an arrow 0.76 * size_px long around `middle`.
+void DrawArrow(cv::Mat& map, cv::Point2d middle, int bearing_deg, double size_px,
+               const cv::Scalar& color, int thickness);
+
+/// Draws the arrows of the legal moves around each port.
+void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, const Layout& layout);
+
 /// Draws one greedy action: an arrow for a move, a disc for a pickup, a ring for a drop-off.
 void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
               const Layout& layout);
@@ -148,6 +158,10 @@ void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 /// Draws ports with their letters.
 void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                const Fonts& fonts);
+
+/// Draws F and the id next to each device that is neither aboard nor delivered.
+void DrawLabels(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
 
 /// Draws devices that are deployed or delivered.
 void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,

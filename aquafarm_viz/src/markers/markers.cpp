@@ -11,7 +11,10 @@
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/names.h"
+#include "aquafarm_viz/scene/directions.h"
+#include "aquafarm_viz/scene/labels.h"
 #include "aquafarm_viz/scene/rings.h"
+#include "scene/arrow.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -202,6 +205,36 @@ void AddPorts(MarkerArray& array, const Maker& maker, const FarmSpec& spec) {
                                PortLetter(port.id), 0.8 * maker.thing_m(), kInk);
     letter.pose.position.z = kDeviceLayer * maker.layer_m();  // below ships in the port
     array.markers.push_back(letter);
+  }
+}
+
+// Adds the arrows of the legal moves around each port.
+void AddDirections(MarkerArray& array, const Maker& maker, const FarmSpec& spec) {
+  const double thing = maker.thing_m() / maker.cell_m();
+  for (const auto& port : LegalDirections(spec)) {
+    if (port.actions.empty()) continue;  // rviz warns about lists without points
+    Marker arrows = maker.Make("port_direction", port.port, Marker::TRIANGLE_LIST, kPortLayer,
+                               port.cell.x, port.cell.y);
+    arrows.color = Color(kDirectionColor);
+    for (const std::uint8_t action : port.actions) {
+      const int bearing = MoveBearingDeg(action);
+      const double turn = bearing * CV_PI / 180.0;
+      AddArrow(arrows, thing * std::sin(turn), thing * std::cos(turn), bearing, maker.cell_m(),
+               1.2 * thing);
+    }
+    array.markers.push_back(arrows);
+  }
+}
+
+void AddLabels(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+               const FarmState& state) {
+  const double aside = 0.75 * maker.thing_m() / maker.cell_m();
+  for (const auto& device : state.devices) {
+    array.markers.push_back(IsLabelled(spec, device)
+                                ? maker.Text("device_label", device.id, device.x + aside,
+                                             device.y - aside, DeviceLabel(device.id),
+                                             0.6 * maker.thing_m(), kDirectionColor)
+                                : maker.Delete("device_label", device.id));
   }
 }
 
@@ -414,7 +447,7 @@ Marker Status(const Maker& maker, const FarmSpec& spec, const FarmState& state) 
 
 }  // namespace
 
-MarkerArray SpecMarkers(const FarmSpec& spec, bool clear) {
+MarkerArray SpecMarkers(const FarmSpec& spec, bool clear, const Layers& layers) {
   const Maker maker(spec, spec.header);
   MarkerArray array;
   if (clear) {
@@ -428,15 +461,18 @@ MarkerArray SpecMarkers(const FarmSpec& spec, bool clear) {
     if (!list.points.empty()) array.markers.push_back(list);
   }
   AddPorts(array, maker, spec);
+  if (layers.directions) AddDirections(array, maker, spec);
   return array;
 }
 
-MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Trail* trail) {
+MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Trail* trail,
+                         const Layers& layers) {
   const Maker maker(spec, state.header);
   MarkerArray array;
   AddDisasters(array, maker, state);
   AddDevices(array, maker, spec, state);
   AddShips(array, maker, spec, state, trail);
+  if (layers.labels) AddLabels(array, maker, spec, state);
   array.markers.push_back(Status(maker, spec, state));
   return array;
 }

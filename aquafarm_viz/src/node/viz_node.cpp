@@ -104,8 +104,8 @@ void VizNode::OnTraining(const aquafarm_msgs::TrainingStatusConstPtr& training) 
 void VizNode::OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscriber) {
   const Shown& shown = pairing_.shown();
   if (shown.spec == nullptr) return;
-  subscriber.publish(
-      Joined(SpecMarkers(*shown.spec, false), StateMarkers(*shown.spec, *shown.state, &trail_)));
+  subscriber.publish(Joined(SpecMarkers(*shown.spec, false, layers_),
+                            StateMarkers(*shown.spec, *shown.state, &trail_, layers_)));
 }
 
 void VizNode::FollowValues() {
@@ -156,8 +156,9 @@ void VizNode::Draw() {
 
 void VizNode::PublishMarkers(const Shown& shown) {
   if (markers_.getNumSubscribers() == 0) return;
-  auto array = StateMarkers(*shown.spec, *shown.state, &trail_);
-  if (marked_episode_.spec != shown.spec) array = Joined(SpecMarkers(*shown.spec, true), array);
+  auto array = StateMarkers(*shown.spec, *shown.state, &trail_, layers_);
+  if (marked_episode_.spec != shown.spec)
+    array = Joined(SpecMarkers(*shown.spec, true, layers_), array);
   if (choice_ != nullptr) {
     array = Joined(array, ChoiceMarkers(*choice_, *shown.spec, *shown.state));
   }

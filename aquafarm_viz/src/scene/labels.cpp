@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 
@@ -69,6 +70,12 @@ std::string Rate(double value) {
 std::string StatusName(std::uint8_t status) {
   static constexpr std::array<const char*, 3> kNames{"deployed", "aboard", "delivered"};
   return status < kNames.size() ? kNames[status] : "";
+}
+
+std::string DeviceLabel(std::int32_t id) { return "F" + std::to_string(id); }
+
+bool IsLabelled(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DeviceState& device) {
+  return device.status == aquafarm_msgs::DeviceState::DEPLOYED && InGrid(spec, device.x, device.y);
 }
 
 std::string PhaseName(std::uint8_t phase) {

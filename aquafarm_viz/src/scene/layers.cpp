@@ -11,9 +11,14 @@ namespace aquafarm_viz {
 
 namespace {
 
-constexpr std::pair<const char*, bool Layers::*> kNames[]{
-    {"wake", &Layers::trail},  {"risk", &Layers::risk},     {"route", &Layers::route},
-    {"sight", &Layers::sight}, {"values", &Layers::values}, {"moves", &Layers::moves}};
+constexpr std::pair<const char*, bool Layers::*> kNames[]{{"wake", &Layers::trail},
+                                                          {"risk", &Layers::risk},
+                                                          {"route", &Layers::route},
+                                                          {"sight", &Layers::sight},
+                                                          {"values", &Layers::values},
+                                                          {"moves", &Layers::moves},
+                                                          {"directions", &Layers::directions},
+                                                          {"labels", &Layers::labels}};
 
 }  // namespace
 
@@ -24,7 +29,8 @@ std::string LayerNames() {
 }
 
 Layers ParseLayers(const std::string& names) {
-  Layers layers{false, false, false, false, false, false, {}};
+  Layers layers;
+  for (const auto& [name, member] : kNames) layers.*member = false;
   if (names == "none") return layers;
   std::istringstream text(names);
   std::string name;

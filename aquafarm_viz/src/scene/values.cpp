@@ -11,6 +11,7 @@
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/names.h"
+#include "scene/arrow.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -73,9 +74,9 @@ geometry_msgs::Point At(double x, double y) {
   return point;
 }
 
-// Adds a flat arrow of a head and a shaft that points along a bearing.
-void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m,
-              double size = 1.0) {
+}  // namespace
+
+void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m, double size) {
   static constexpr double kOutline[9][2]{{-0.04, -0.34}, {0.04, -0.34}, {0.04, 0.05},
                                          {-0.04, -0.34}, {0.04, 0.05},  {-0.04, 0.05},
                                          {-0.17, 0.05},  {0.17, 0.05},  {0.0, 0.36}};
@@ -86,8 +87,6 @@ void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m
     marker.points.push_back(At((x + size * east) * cell_m, (y + size * north) * cell_m));
   }
 }
-
-}  // namespace
 
 Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec) {
   Check(cloud);

@@ -36,6 +36,8 @@ inline constexpr Rgb kPaper{0xf4, 0xf7, 0xf9};
 inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
 inline constexpr Rgb kChoiceColor{0xff, 0x4f, 0xd8};  ///< choice of a compared policy
 
+inline constexpr Rgb kDirectionColor{0xff, 0xd1, 0x66};  ///< legal moves at ports, device labels
+
 /// The colour of a device kind (DeviceState.kind); grey for an unknown kind.
 Rgb DeviceColor(std::uint8_t kind);
 

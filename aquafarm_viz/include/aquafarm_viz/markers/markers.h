@@ -15,24 +15,32 @@
 ///     | ring, ring_edge                 | disaster * kMaxRings + ring |
 ///     | heading, disaster, disaster_name | disaster                  |
 ///     | status                          | 0                          |
+///     | port_direction (1)              | port                       |
+///     | device_label (2)                | device                     |
+///
+/// (1) only with the layer `directions`, (2) only with the layer `labels`; other layers are
+/// ignored.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include "aquafarm_viz/scene/layers.h"
 #include "aquafarm_viz/scene/trail.h"
 
 namespace aquafarm_viz {
 
 /// Returns the markers that are constant during an episode. If `clear`, the first one deletes all
 /// markers; use it at the start of an episode.
-visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec, bool clear);
+visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec, bool clear,
+                                            const Layers& layers = {});
 
 /// Returns the markers of ships, devices and disasters, and of the line with episode, step and
 /// return.
 /// The spec must pass CheckSpec and the state CheckState.
 visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec,
                                              const aquafarm_msgs::FarmState& state,
-                                             const Trail* trail = nullptr);
+                                             const Trail* trail = nullptr,
+                                             const Layers& layers = {});
 
 }  // namespace aquafarm_viz

@@ -22,7 +22,7 @@ namespace aquafarm_viz {
 struct VizParams {
   double rate_hz{20.0};  ///< max drawings per second of wall time, (0, 1000]
   ImageSize image;       ///< [pixels], each side in [kMinImageSide, kMaxImageSide]
-  Layers layers;         ///< layers of the pictures
+  Layers layers;         ///< layers of the pictures and markers
 };
 
 /// Reads the parameters.

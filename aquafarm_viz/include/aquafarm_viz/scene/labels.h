@@ -4,6 +4,7 @@
 /// Formats parts of a state as short texts for pictures and the panel.
 
 #include <aquafarm_msgs/CommandResult.h>
+#include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
 
 #include <array>
@@ -25,6 +26,12 @@ std::string DescribeResult(const aquafarm_msgs::CommandResult& result);
 
 /// Name of a device status: "deployed", "aboard" or "delivered".
 std::string StatusName(std::uint8_t status);
+
+/// Label of a device in a drawing: F_j of Fig. 5 of the paper, where j is the id, such as "F2".
+std::string DeviceLabel(std::int32_t id);
+
+/// Returns true if a drawing labels the device: inside the grid, neither aboard nor delivered.
+bool IsLabelled(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::DeviceState& device);
 
 /// Name of a training phase, such as "evaluating"; empty for an unknown phase.
 std::string PhaseName(std::uint8_t phase);

@@ -5,7 +5,8 @@
 
 namespace aquafarm_viz {
 
-/// Optional layers of a picture, in addition to the chart, ships and devices.
+/// Optional layers of a picture, in addition to the chart, ships and devices. `directions` and
+/// `labels` are also layers of the markers.
 struct Layers {
   bool trail{true};   ///< recent trail of each ship
   bool risk{true};    ///< rings of disasters, shaded by severity
@@ -13,6 +14,8 @@ struct Layers {
   bool sight{};       ///< sensor range of each ship in partial view
   bool values{};      ///< V_π of each cell, if a policy publishes it
   bool moves{};       ///< greedy action of the policy in each cell
+  bool directions{};  ///< arrows of the legal moves at each port (Fig. 5)
+  bool labels{};      ///< F and the id of each device that is not delivered (Fig. 5)
   std::string sea{};  ///< sea layer of the scenario that is the background; empty: no sea layer
 };
 

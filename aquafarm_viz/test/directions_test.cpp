@@ -161,7 +161,7 @@ TEST(Image, ShowsAnArrowForEachLegalMoveAtAPort) {
 
 TEST(Image, LabelsDeployedDevicesToTheirSouthEast) {
   const auto spec = test::MakeSpec();
-  const auto& deployed = test::MakeState().devices[0];
+  const auto deployed = test::MakeState().devices[0];
   const auto changed = ChangedAround(spec, "labels", deployed.x, deployed.y);
   int pixels = 0;
   for (const auto& [bearing, count] : changed) {
@@ -169,7 +169,7 @@ TEST(Image, LabelsDeployedDevicesToTheirSouthEast) {
     pixels += count;
   }
   EXPECT_GT(pixels, 20);
-  const auto& delivered = test::MakeState().devices[1];
+  const auto delivered = test::MakeState().devices[1];
   EXPECT_TRUE(ChangedAround(spec, "labels", delivered.x, delivered.y).empty());
 }
 

@@ -17,7 +17,7 @@ import unittest
 import rosbag
 import rostest
 
-from aquafarm_benchmark import figures, protocol, runs
+from aquafarm_benchmark import figures, human, protocol, runs
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, program  # noqa: E402
@@ -177,7 +177,12 @@ class BenchmarkTest(unittest.TestCase):
         with open(self.folder / "out/runs/clairvoyant/seed_1/evaluation.csv", newline="") as file:
             best = {int(line["episode"]): line for line in csv.DictReader(file)}
         for episode in (0, 3, 4):
-            self.assertEqual(best[episode], played[episode])
+            for name in human.COLUMNS:
+                if name in ("reason", "success"):
+                    self.assertEqual(best[episode][name], played[episode][name])
+                elif name != "farm":
+                    self.assertAlmostEqual(float(best[episode][name]),
+                                           float(played[episode][name]), places=4, msg=name)
         returns = [float(line["return"]) for line in played.values()]
         optimum = sum(float(best[episode]["return"]) for episode in played)
         self.assertAlmostEqual(sum(returns) / 4.0, row["return_per_episode"], places=4)

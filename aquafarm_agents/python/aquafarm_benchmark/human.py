@@ -19,8 +19,9 @@ from aquafarm_benchmark.protocol import Contestant
 HUMAN = Contestant("human", "human", "#e7ba52", learns=False)
 _EVALUATION_SEED_BIT = 1 << 63  # base/rng.h
 _REASONS = {1: "all_retrieved", 2: "disaster_ended", 3: "step_limit"}
-_COLUMNS = ("farm", "seed", "episode", "steps", "return", "delivered", "devices",
-            "delivered_health", "crashes", "collisions", "steps_in_disaster", "reason", "success")
+COLUMNS = ("farm", "seed", "episode", "steps", "return", "delivered", "devices",
+           "delivered_health", "crashes", "collisions", "steps_in_disaster", "reason", "success")
+ADDED = ("energy_kwh", "distance_km")
 
 
 class BadBag(ValueError):
@@ -29,7 +30,7 @@ class BadBag(ValueError):
 
 @dataclasses.dataclass
 class Person:
-    """The finished episodes of one person: rows with _COLUMNS and a key of the start."""
+    """The finished episodes of one person: rows with COLUMNS and a key of the start."""
     folder: pathlib.Path
     bags: list
     rows: list
@@ -100,11 +101,14 @@ def read(people, scenario_hash):
 
 
 def _row(summary):
-    return dict(zip(_COLUMNS, (
+    row = dict(zip(COLUMNS, (
         summary.farm, summary.seed, summary.episode, summary.steps, summary.episode_return,
         summary.delivered, summary.devices, summary.delivered_health, summary.crashes,
         summary.collisions, summary.steps_in_disaster, _REASONS.get(summary.reason, "none"),
         int(summary.success))))
+    # Bags of version 0.1.0 contain neither.
+    return dict(row, energy_kwh=getattr(summary, "energy", None),
+                distance_km=getattr(summary, "distance", None))
 
 
 def _column(rows, name):
@@ -128,7 +132,9 @@ def summary_of(person, farm):
         "steps_per_episode": float(_column(rows, "steps").mean()),
         "delivered_health": float(health / delivering) if delivering else 0.0,
         "crashes_per_episode": float(_column(rows, "crashes").mean()),
-        "steps_in_disaster_per_episode": float(_column(rows, "steps_in_disaster").mean())}
+        "steps_in_disaster_per_episode": float(_column(rows, "steps_in_disaster").mean()),
+        **{f"{name}_per_episode": float(_column(rows, name).mean()) for name in ADDED
+           if all(row[name] is not None for row in rows)}}
 
 
 def write_runs(people, farm, folder):
@@ -137,7 +143,7 @@ def write_runs(people, farm, folder):
         place = folder / f"seed_{number}"
         place.mkdir(parents=True, exist_ok=True)
         text = io.StringIO()
-        table = csv.DictWriter(text, _COLUMNS, lineterminator="\n")
+        table = csv.DictWriter(text, (*COLUMNS, *ADDED), lineterminator="\n")
         table.writeheader()
         table.writerows(person.rows)
         results.write_atomically(place / "evaluation.csv", text.getvalue())

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Statistics of the losses of evaluated episodes, with intervals. The loss of an episode is
-/// insured
-/// - saved (farm/accounts.h).
+/// Statistics of the losses of evaluated episodes, with intervals. loss = insured - saved, as in
+/// farm/accounts.h.
 ///
 /// - VaR, value at risk: the smallest x with P(loss > x) <= 5 %.
-/// - CVaR, conditional value at risk: the mean loss of the worst 5 % of the episodes, VaR +
-/// E[max(0,
-///   loss - VaR)] / 5 % (Rockafellar and Uryasev, "Conditional value-at-risk for general loss
-///   distributions", Journal of Banking & Finance 26, 2002).
+/// - CVaR, conditional value at risk: the mean loss of the worst 5 % of the episodes. It is
+///   VaR + E[max(0, loss - VaR)] / 5 % (Rockafellar and Uryasev, "Conditional value-at-risk for
+///   general loss distributions", Journal of Banking & Finance 26, 2002).
 ///
 /// Episodes with equal starts are not independent, so the standard error is the cluster-robust one
 /// and the intervals are those of a cluster bootstrap: distinct starts are drawn with replacement,

@@ -3,7 +3,9 @@
 """Key handling and output of the keyboard node."""
 import importlib.machinery
 import importlib.util
+import os
 import pathlib
+import pty
 import subprocess
 import sys
 import unittest
@@ -47,6 +49,22 @@ class KeyboardTest(unittest.TestCase):
         state = FarmState(ships=[ShipState(id=0, x=1, y=1, active=True)],
                           devices=[DeviceState(x=2, y=0)])
         self.assertEqual(".0^\n#HD", keyboard.draw_map(spec, state))
+
+    def test_an_unknown_parameter_of_the_node_is_refused_with_those_it_has(self):
+        self.assertEqual("~shpi: unknown parameter (did you mean 'ship'?), expected one of: ship",
+                         keyboard.unknown_parameter("/a/keyboard", ["/a/keyboard/ship", "/run_id",
+                                                                    "/a/keyboard/shpi"]))
+        self.assertEqual("", keyboard.unknown_parameter("/a/keyboard", [
+            "/a/keyboard/ship", "/a/keyboard_2/speed", "/b/a/keyboard/speed", "/a/keyboard"]))
+
+    def test_a_started_node_refuses_an_unknown_parameter(self):
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        self.addCleanup(os.close, theirs)
+        done = subprocess.run([str(PATH), "__name:=keys", "_shpi:=1"], stdin=theirs, text=True,
+                              stderr=subprocess.PIPE, timeout=60, check=False)
+        self.assertEqual(2, done.returncode, done.stderr)
+        self.assertIn("keyboard: ~shpi: unknown parameter (did you mean 'ship'?)", done.stderr)
 
     def test_without_a_terminal_it_says_what_it_needs(self):
         done = subprocess.run([str(PATH)], stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,

@@ -2,12 +2,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every launch file parses, documents its arguments and stays on the loopback address. Every field
 of a message has a comment."""
+<<<<<<< HEAD
+=======
+import http.server
+>>>>>>> e326180 (Campaigns kill the sim node, the recorder and the benchmark, stop processes, restart the master)
 import os
 import pathlib
 import re
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 import xml.etree.ElementTree as ElementTree
 
@@ -76,6 +81,20 @@ class LaunchFilesTest(unittest.TestCase):
             self.assertIn(f"{name}.launch has no argument '{argument.split(':=')[0]}' "
                           f"(did you mean '{hint}'?); it has: ", done.stderr)
             self.assertNotIn("process[", done.stdout, "a node was started")
+
+    def test_roslaunch_refuses_the_port_of_a_program_that_is_no_master(self):
+        with http.server.HTTPServer(("127.0.0.1", 0), http.server.BaseHTTPRequestHandler) as server:
+            threading.Thread(target=server.serve_forever, daemon=True).start()
+            self.addCleanup(server.shutdown)
+            uri = f"http://127.0.0.1:{server.server_address[1]}"
+            for before, by_environment in ((["-p", str(server.server_address[1])], False), ([], True)):
+                done = subprocess.run(
+                    ["roslaunch", *before, PACKAGE, "sim.launch", "headless:=true"],
+                    capture_output=True, text=True, timeout=LIMIT_S, check=False,
+                    env=dict(os.environ, ROS_MASTER_URI=uri) if by_environment else None)
+                self.assertNotEqual(0, done.returncode, done.stdout)
+                self.assertIn(f"aquafarm: ROS_MASTER_URI: got {uri}, where a program that is not a ROS "
+                              "master listens; ", done.stderr)
 
     def test_no_service_takes_the_name_of_a_file(self):
         services = list((pathlib.Path(rospkg.RosPack().get_path("aquafarm_msgs")) / "srv").iterdir())

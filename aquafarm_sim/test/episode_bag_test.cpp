@@ -4,9 +4,11 @@
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/SavedState.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -185,6 +187,25 @@ TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
     EXPECT_EXIT(write_within(limit), testing::ExitedWithCode(0), "")
         << limit << " bytes of " << size;
   }
+}
+
+TEST_F(EpisodeBag, PartialBagsOfKilledProcessesAreRemovedAndThoseBeingWrittenStay) {
+  const auto touch = [this](const std::string& name) {
+    std::ofstream(folder_ + "/" + name) << "#ROSBAG V2.0";
+    return folder_ + "/" + name;
+  };
+  const std::string abandoned = touch("episode_00000001_seed_1_return_+1.0.bag.active");
+  const std::string written = touch("episode_00000002_seed_1_return_+1.0.bag.active");
+  const std::string of_others = touch("day.bag.active");
+  const std::string whole = touch("episode_00000003_seed_1_return_+1.0.bag");
+  const int file = open(written.c_str(), O_RDONLY);
+  ASSERT_EQ(flock(file, LOCK_EX | LOCK_NB), 0);
+  EXPECT_EQ(RemoveAbandonedBags(folder_), 1);
+  EXPECT_FALSE(fs::exists(abandoned));
+  EXPECT_TRUE(fs::exists(written) && fs::exists(of_others) && fs::exists(whole));
+  close(file);
+  EXPECT_EQ(RemoveAbandonedBags(folder_), 1);
+  EXPECT_EQ(RemoveAbandonedBags("/nowhere"), 0);
 }
 
 TEST_F(EpisodeBag, ATapeThatDoesNotGiveItsResultLeavesNothing) {

@@ -18,14 +18,20 @@ class NotBuilt(Exception):
     """A program that the campaign needs is missing."""
 
 
+class WrongKind(Exception):
+    """--only names a kind that the campaign does not have."""
+
+
 class Campaign:
     """One run of a campaign: its limits, its random numbers and its counts."""
 
-    def __init__(self, name, seconds, count, seed, workspace):
+    def __init__(self, name, seconds, count, seed, workspace, only=(), stop_s=5.0):
         self.name = name
         self.seconds = seconds
         self.count = count
         self.workspace = workspace
+        self.only = list(only)
+        self.stop_s = stop_s
         self.rng = random.Random(seed)
         self.seed = seed
         self.tried = collections.Counter()
@@ -38,6 +44,13 @@ class Campaign:
     def more(self, done):
         """Whether to begin try number `done`."""
         return done < self.count if self.count else self.elapsed() < self.seconds
+
+    def kinds(self, all_kinds):
+        """The kinds of tries to make: those of --only, or all. @raises WrongKind"""
+        for kind in self.only:
+            if kind not in all_kinds:
+                raise WrongKind(f"--only: got '{kind}', expected one of: {', '.join(all_kinds)}")
+        return self.only or list(all_kinds)
 
     def attempt(self, what, number=1):
         """Counts tries of a kind."""

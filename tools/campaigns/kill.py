@@ -1,6 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Kills trainers (SIGKILL) at random moments and resumes them until they end by themselves. The
-result must equal that of an uninterrupted run bit for bit, and no temporary file may be left."""
+"""Kills programs (SIGKILL) at random moments and starts them again until they end by themselves. The
+result must equal that of an uninterrupted run bit for bit, everything must stay readable, and no
+temporary file may be left.
+
+tables, networks   a trainer in one process
+sim_node           the sim node of a training, with its trainer; or alone: the trainer then saves,
+                   and is resumed with new episodes, so that its result may differ
+recorder           a sim node that keeps every episode as a bag
+benchmark          a benchmark, alone or with its trainings
+"""
 import os
 import pathlib
 import signal
@@ -8,17 +16,21 @@ import subprocess
 import tempfile
 import time
 
-from campaigns import common
+from campaigns import common, ros
 
-# Arguments of each learner: tables often, networks now and then. Each takes about a second.
+# Arguments of each learner. Each takes about a second.
 TABLES = {"q_learning": ["-n", "400000"], "sarsa": ["-n", "400000"],
           "random": ["-n", "400000"]}
 NETWORKS = {"dqn": ["-n", "3000", "-o", "hidden=16", "-o", "start=200", "-o", "replay=2000"],
             "ppo": ["-n", "8000", "-f", "16", "-o", "hidden_size=16", "-o", "rollout_size=512",
                     "-o", "batch_size=128"]}
-NETWORK_EVERY = 20   # one try in so many trains a network
 MOST_KILLS = 30      # in one run; the last attempt is left to end
 LIMIT_S = 300
+SIM_STEPS = 64_000   # of a training through a sim node; each call steps 16 farms
+SIM_LOST = 4         # exit code of a trainer whose sim node is gone
+SIM_KILLS = 5
+RECORDER_KILLS = 4
+TINY = common.ROOT / "aquafarm_agents" / "test" / "data" / "tiny.yaml"
 
 
 def command(trainer, name, arguments, folder, resume):
@@ -36,64 +48,237 @@ def results(folder):
     return {name: (folder / name).read_bytes() for name in ("policy.ckpt", "metrics.csv")}
 
 
-class Reference:
-    """An uninterrupted run, and how long it took."""
-
-    def __init__(self, campaign, trainer, name, arguments, folder):
-        begin = time.monotonic()
-        code, words = common.execute(*command(trainer, name, arguments, folder, False),
-                                     seconds=LIMIT_S)
-        self.seconds = time.monotonic() - begin
-        self.good = campaign.check(code == 0, f"{name}: uninterrupted: exit code {code}: {words}")
-        self.results = results(folder) if self.good else {}
+def compare(campaign, what, folder, expected, got):
+    """The files must be equal, and no temporary file may be left."""
+    campaign.attempt(f"runs of {what} compared")
+    for file, content in expected.items():
+        campaign.check(got[file] == content,
+                       f"{what}: {file} differs from the uninterrupted run in {folder}")
+    campaign.check(not common.left_over(folder), f"{what}: left {common.left_over(folder)}")
 
 
-def interrupted_run(campaign, arguments_of, folder, longest_s):
-    """Runs until the end with a kill at random moments. Returns the last output, or None."""
+def interrupted_run(campaign, what, arguments_of, longest_s, whole_group=False):
+    """Runs until the end with a kill at random moments. Returns whether it ended well.
+    @param arguments_of function that returns the command of the next start"""
     for kills in range(MOST_KILLS + 1):
-        process = subprocess.Popen(arguments_of(holds_run(folder)), stdin=subprocess.DEVNULL,
-                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        process = subprocess.Popen(arguments_of(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
         wait_s = campaign.rng.uniform(0.0, longest_s) if kills < MOST_KILLS else LIMIT_S
         try:
             words = process.communicate(timeout=wait_s)[0].decode(errors="replace")
-            campaign.check(process.returncode == 0,
-                           f"{folder.name}: exit code {process.returncode} after {kills} kills: {words}")
-            return words if process.returncode == 0 else None
+            return campaign.check(process.returncode == 0, f"{what}: exit code {process.returncode} "
+                                  f"after {kills} kills: {words[-600:]}")
         except subprocess.TimeoutExpired:
-            os.kill(process.pid, signal.SIGKILL)
+            if whole_group and campaign.rng.random() < 0.5:
+                os.killpg(process.pid, signal.SIGKILL)
+            else:
+                process.kill()
             process.communicate()
-            campaign.attempt("kills")
-    return None
+            campaign.attempt(f"kills of {what}")
+    return False
 
 
-def try_once(campaign, trainer, reference, name, arguments, folder):
-    """One run with kills; its results must equal the reference."""
-    words = interrupted_run(
-        campaign, lambda resume: command(trainer, name, arguments, folder, resume), folder,
-        0.7 * reference.seconds)
-    if words is None:
-        return
-    campaign.attempt(f"runs of {name} compared")
-    for file, expected in reference.results.items():
-        campaign.check((folder / file).read_bytes() == expected,
-                       f"{name}: {file} differs from the uninterrupted run in {folder}")
-    campaign.check(not common.left_over(folder), f"{name}: left {common.left_over(folder)}")
+class Trainers:
+    """Trainers of some learners in one process."""
+
+    def __init__(self, campaign, place, what, learners):
+        self.campaign = campaign
+        self.place = place
+        self.what = what
+        self.learners = learners
+        self.trainer = campaign.program("aquafarm_train")
+        self.expected = {}  # by learner: results of an uninterrupted run, and its duration
+
+    def reference(self, name):
+        if name not in self.expected:
+            folder = self.place / f"{name}_whole"
+            begin = time.monotonic()
+            code, words = common.execute(
+                *command(self.trainer, name, self.learners[name], folder, False), seconds=LIMIT_S)
+            good = self.campaign.check(code == 0, f"{name}: uninterrupted: exit code {code}: {words}")
+            self.expected[name] = (results(folder) if good else None, time.monotonic() - begin)
+        return self.expected[name]
+
+    def try_once(self, number):
+        names = sorted(self.learners)
+        name = names[number % len(names)]
+        expected, seconds = self.reference(name)
+        folder = self.place / f"{name}_{number}"
+        if expected and interrupted_run(
+                self.campaign, self.what,
+                lambda: command(self.trainer, name, self.learners[name], folder, holds_run(folder)),
+                0.7 * seconds):
+            compare(self.campaign, f"{self.what}: {name}", folder, expected, results(folder))
+        common.remove(folder)
+
+
+class SimNode:
+    """A training whose sim node is killed, with the trainer or alone; both are started again."""
+
+    def __init__(self, campaign, place):
+        self.campaign = campaign
+        self.place = place
+        self.expected = None
+        self.seconds = 0.0
+
+    def reference(self):
+        folder = self.place / "sim_whole"
+        folder.mkdir()
+        with ros.Ros(self.campaign, folder) as ranch:
+            ranch.sim("aquafarm")
+            begin = time.monotonic()
+            code = ranch.train("aquafarm", "run", SIM_STEPS).wait(timeout=LIMIT_S)
+            self.seconds = time.monotonic() - begin
+            if self.campaign.check(code == 0, f"sim_node: uninterrupted: {ranch.log('run')[-600:]}"):
+                self.expected = ranch.results("run")
+
+    def attempt(self, ranch, alone, last):
+        """One start of both. Returns whether the training is complete, or None after a failure."""
+        sim = ranch.sim("aquafarm")
+        train = ranch.train("aquafarm", "run", SIM_STEPS, "_checkpoint_period_s:=0.05",
+                            "_sim_timeout_s:=1",
+                            f"_resume:={str(holds_run(ranch.folder / 'run')).lower()}")
+        try:
+            train.wait(timeout=LIMIT_S if last else self.campaign.rng.uniform(0.2, self.seconds))
+        except subprocess.TimeoutExpired:
+            self.campaign.attempt("kills of a sim node" if alone
+                                  else "kills of a sim node with its trainer")
+            if not alone:
+                train.kill()
+        sim.kill()
+        sim.wait()
+        code = train.wait(timeout=LIMIT_S)
+        expected = (0,) if last else (0, SIM_LOST) if alone else (0, -signal.SIGKILL)
+        if not self.campaign.check(code in expected, f"sim_node: trainer: exit code {code}: "
+                                   f"{ranch.log('run')[-600:]}"):
+            return None
+        return code == 0
+
+    def judge(self, ranch, alone):
+        run = ranch.folder / "run"
+        if not alone:
+            compare(self.campaign, "sim_node", run, self.expected, ranch.results("run"))
+            return
+        code, words = common.execute(self.campaign.program("aquafarm_evaluate"), run, "-e", "2",
+                                     seconds=LIMIT_S)
+        self.campaign.attempt("policies played after kills of a sim node")
+        self.campaign.check(code == 0, f"sim_node: evaluate: exit code {code}: {words[-300:]}")
+        self.campaign.check(not common.left_over(run), f"sim_node: left {common.left_over(run)}")
+
+    def try_once(self, number):
+        if self.expected is None:
+            self.reference()
+        alone = number % 2 == 1
+        folder = self.place / f"sim_{number}"
+        folder.mkdir()
+        with ros.Ros(self.campaign, folder) as ranch:
+            done = False
+            for kills in range(SIM_KILLS + 1):
+                done = self.attempt(ranch, alone, kills == SIM_KILLS)
+                if done is not False:
+                    break
+            if done:
+                self.judge(ranch, alone)
+        common.remove(folder)
+
+
+class Recorder:
+    """A sim node that keeps each episode as a bag. All bags must be readable and identical."""
+
+    def __init__(self, campaign, place):
+        self.campaign = campaign
+        self.place = place
+        self.verify = campaign.program("verify_bag")
+
+    def session(self, ranch, kill):
+        """Records some of a training; kills the sim node, or ends it."""
+        sim = ranch.sim("aquafarm", "_keep:=all", "_keep_dir:=episodes")
+        train = ranch.train("aquafarm", f"run_{len(ranch.processes)}", 10**9, "_sim_timeout_s:=1")
+        bags = ranch.folder / "episodes"
+        before = len(list(bags.glob("*.bag")))
+        ranch.wait_for(lambda: len(list(bags.glob("*.bag"))) > before, "a bag")
+        time.sleep(self.campaign.rng.uniform(0.0, 1.0))
+        if kill:
+            sim.kill()
+            self.campaign.attempt("kills of recorder")
+        else:
+            train.terminate()
+            train.wait(timeout=LIMIT_S)
+            sim.terminate()
+        sim.wait(timeout=LIMIT_S)
+        train.wait(timeout=LIMIT_S)
+
+    def try_once(self, number):
+        folder = self.place / f"recorder_{number}"
+        folder.mkdir()
+        with ros.Ros(self.campaign, folder) as ranch:
+            for kill in [True] * RECORDER_KILLS + [False]:
+                self.session(ranch, kill)
+        bags = sorted((folder / "episodes").glob("*.bag"))
+        self.campaign.check(bags, "recorder: no bag was kept")
+        chosen = self.campaign.rng.sample(bags, min(len(bags), 60))  # there may be thousands
+        code, words = common.execute(self.verify, *chosen, seconds=LIMIT_S)
+        self.campaign.attempt("bags of a killed recorder verified", len(chosen))
+        self.campaign.check(code == 0, f"recorder: verify_bag: exit code {code}: {words[-600:]}")
+        left = common.left_over(folder / "episodes")
+        self.campaign.check(not left, f"recorder: left {left}")
+        common.remove(folder)
+
+
+class Benchmark:
+    """A benchmark of two trainings. Killed, it is run again with the same command."""
+
+    TABLES = ("runs.csv", "table.csv", "table.md")
+
+    def __init__(self, campaign, place):
+        self.campaign = campaign
+        self.place = place
+        self.words = [campaign.program("aquafarm_benchmark"), TINY, "--algorithms", "q_learning",
+                      "--runs", "2", "--episodes", "20000", "--evaluation-episodes", "30",
+                      "--programs", campaign.program("aquafarm_train").parent]
+        self.expected = None
+        self.seconds = 0.0
+
+    def command(self, folder):
+        return [str(word) for word in [*self.words, "--output", folder]]
+
+    def results(self, folder):
+        return {name: (folder / name).read_bytes() for name in self.TABLES}
+
+    def try_once(self, number):
+        if self.expected is None:
+            folder = self.place / "benchmark_whole"
+            begin = time.monotonic()
+            code, words = common.execute(*self.command(folder), seconds=LIMIT_S)
+            self.seconds = time.monotonic() - begin
+            if not self.campaign.check(code == 0, f"benchmark: exit code {code}: {words[-600:]}"):
+                return
+            self.expected = self.results(folder)
+        folder = self.place / f"benchmark_{number}"
+        if interrupted_run(self.campaign, "benchmark", lambda: self.command(folder), self.seconds,
+                           whole_group=True):
+            compare(self.campaign, "benchmark", folder, self.expected, self.results(folder))
+        common.remove(folder)
+
+
+KINDS = {
+    "tables": lambda campaign, place: Trainers(campaign, place, "tables", TABLES),
+    "networks": lambda campaign, place: Trainers(campaign, place, "networks", NETWORKS),
+    "sim_node": SimNode,
+    "recorder": Recorder,
+    "benchmark": Benchmark,
+}
 
 
 def run(campaign):
-    """Count is the number of runs."""
-    trainer = campaign.program("aquafarm_train")
-    references = {}
-    number = 0
+    """Count is the number of runs; the kinds take turns."""
+    made = {}
     with tempfile.TemporaryDirectory(prefix="aquafarm_kill_") as place:
-        place = pathlib.Path(place)
+        kinds = campaign.kinds(KINDS)
+        number = 0
         while campaign.more(number) and not campaign.failures:
-            kinds = NETWORKS if number % NETWORK_EVERY == NETWORK_EVERY - 1 else TABLES
-            name = campaign.rng.choice(sorted(kinds))
-            if name not in references:
-                references[name] = Reference(campaign, trainer, name, kinds[name], place / name)
-            if references[name].good:
-                folder = place / f"{name}_{number}"
-                try_once(campaign, trainer, references[name], name, kinds[name], folder)
-                common.remove(folder)
+            kind = kinds[number % len(kinds)]
+            if kind not in made:
+                made[kind] = KINDS[kind](campaign, pathlib.Path(place))
+            made[kind].try_once(number // len(kinds))
             number += 1

@@ -1,9 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trains through a proxy that delays, cuts and repeats service calls. A master in front of the real
-one hands out the proxy's address. Each command must be applied exactly once: the trained policy and
-the episodes must equal those of a training without the proxy, bit for bit."""
+"""Trains while the network misbehaves. Each command must be applied exactly once: the trained policy
+and the episodes must equal those of an undisturbed training, bit for bit.
+
+proxy         a proxy delays, cuts and repeats service calls, at once or after later ones; a master in
+              front of the real one hands out its address
+stop_sim      the sim node is stopped (SIGSTOP) for --stop-seconds, longer than a call may take
+stop_trainer  the trainer is stopped for as long
+master        the master is killed and started again at its port
+"""
 import contextlib
 import pathlib
+import signal
 import socket
 import socketserver
 import tempfile
@@ -15,7 +22,7 @@ import xmlrpc.server
 
 from campaigns import ros
 
-STEPS = 16_000       # of a training; each call steps 16 farms
+STEPS = 32_000       # of a training; each call steps 16 farms
 LIMIT_S = 1200
 DELAY_S = 0.2
 # How often a call is treated so, one in:
@@ -110,30 +117,75 @@ class Master(xmlrpc.server.SimpleXMLRPCServer):
         return [*answer[:2], f"rosrpc://127.0.0.1:{self.proxies[target].server_address[1]}"]
 
 
-def train(campaign, folder, run, through_proxy):
+def undisturbed(ranch):
+    """Disturbs nothing."""
+
+
+def wait_until_training(ranch):
+    """Waits for the first episodes."""
+    metrics = ranch.folder / "run" / "metrics.csv"
+    ranch.wait_for(lambda: metrics.exists() and metrics.read_bytes().count(b"\n") > 1, "an episode")
+
+
+def stop_a_process(name):
+    """Returns a disturbance that stops a process of a ranch for a while."""
+    def disturb(ranch):
+        wait_until_training(ranch)
+        time.sleep(ranch.campaign.rng.uniform(0.0, 1.0))
+        process = {"stop_sim": ranch.processes[1], "stop_trainer": ranch.processes[-1]}[name]
+        if process.poll() is not None:
+            return
+        process.send_signal(signal.SIGSTOP)
+        try:
+            time.sleep(ranch.campaign.stop_s)
+        finally:
+            process.send_signal(signal.SIGCONT)
+        ranch.campaign.attempt(f"stops of {ranch.campaign.stop_s:g} s: {name}")
+    return disturb
+
+
+def restart_master(ranch):
+    wait_until_training(ranch)
+    ranch.processes[0].kill()
+    ranch.processes[0].wait()
+    time.sleep(ranch.campaign.rng.uniform(0.0, 1.0))
+    ranch.processes[0] = ranch.start_master()
+    ranch.campaign.attempt("restarts of the master")
+
+
+DISTURBANCES = {"proxy": undisturbed, "stop_sim": stop_a_process("stop_sim"),
+                "stop_trainer": stop_a_process("stop_trainer"), "master": restart_master}
+
+
+def train(campaign, folder, kind):
     """One training with a new sim node; returns its results, or None after a failure."""
     folder.mkdir()
+    stop_s = campaign.stop_s if kind in ("stop_sim", "stop_trainer") else 0
     with ros.Ros(campaign, folder) as ranch:
         ranch.sim("aquafarm")
-        master = Master(campaign, ranch.uri) if through_proxy else None
-        process = ranch.train("aquafarm", run, STEPS, uri=master.uri if master else None)
+        master = Master(campaign, ranch.uri) if kind == "proxy" else None
+        process = ranch.train("aquafarm", "run", STEPS, f"_sim_timeout_s:={60 + 2 * stop_s:g}",
+                              f"_call_limit_s:={max(2, stop_s / 4):g}",
+                              uri=master.uri if master else None)
+        DISTURBANCES.get(kind, undisturbed)(ranch)
         code = process.wait(timeout=LIMIT_S)
-        campaign.check(code == 0, f"{run}: exit code {code}: {ranch.log(run)[-1500:]}")
-        return ranch.results(run) if code == 0 else None
+        campaign.check(code == 0, f"{kind}: exit code {code}: {ranch.log('run')[-1500:]}")
+        return ranch.results("run") if code == 0 else None
 
 
 def run(campaign):
-    """Count is the number of trainings through the proxy."""
+    """Count is the number of disturbed trainings; the kinds take turns."""
+    kinds = campaign.kinds(DISTURBANCES)
     with tempfile.TemporaryDirectory(prefix="aquafarm_network_") as place:
         place = pathlib.Path(place)
-        expected = train(campaign, place / "plain", "plain", False)
+        expected = train(campaign, place / "plain", "plain")
         number = 0
         while expected and campaign.more(number):
-            name = f"proxy_{number}"
-            got = train(campaign, place / name, name, True)
+            kind = kinds[number % len(kinds)]
+            got = train(campaign, place / f"{kind}_{number}", kind)
             if got is None:
                 return
-            campaign.attempt("trainings compared")
+            campaign.attempt(f"trainings compared: {kind}")
             for file, content in expected.items():
-                campaign.check(got[file] == content, f"{name}: {file} differs, seed {campaign.seed}")
+                campaign.check(got[file] == content, f"{kind}: {file} differs, seed {campaign.seed}")
             number += 1

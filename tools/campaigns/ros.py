@@ -6,6 +6,7 @@ import socket
 import struct
 import subprocess
 import time
+import urllib.parse
 import xmlrpc.client
 
 from campaigns import common
@@ -32,9 +33,13 @@ class Ros:
                                 ROS_LOG_DIR=str(self.folder / "log"))
 
     def __enter__(self):
-        self.start("rosmaster", "rosmaster", "--core", "-p", self.uri.rsplit(":", 1)[1])
-        self.wait_for(lambda: self.master().getPid("/campaign"), "the master")
+        self.start_master()
         return self
+
+    def start_master(self):
+        process = self.start("rosmaster", "rosmaster", "--core", "-p", self.uri.rsplit(":", 1)[1])
+        self.wait_for(lambda: self.master().getPid("/campaign"), "the master")
+        return process
 
     def __exit__(self, *_):
         for process in reversed(self.processes):
@@ -89,16 +94,25 @@ class Ros:
                              f"__ns:=/{namespace}", "__name:=sim",
                              f"_scenario:={common.SCENARIOS / 'paper.yaml'}", "_farms:=16",
                              *arguments)
-        self.wait_for(lambda: self.service(f"/{namespace}/step"), "the sim node")
+        self.wait_for(lambda: self.answers(f"/{namespace}/step"), "the sim node")
         return process
 
-    def train(self, namespace, run, steps, uri=None):
+    def answers(self, name):
+        """Whether a process listens at the address of a service; that of a killed one stays known."""
+        place = urllib.parse.urlparse(self.service(name))
+        if not place.port:
+            return False
+        socket.create_connection((place.hostname, place.port), timeout=5).close()
+        return True
+
+    def train(self, namespace, run, steps, *arguments, uri=None):
         """Starts a training of a table with the farms of a namespace."""
         return self.start(run, self.campaign.program("train_node"), f"__ns:=/{namespace}",
                           "__name:=train", "_algorithm:=q_learning", f"_steps:={steps}",
                           f"_run_dir:={self.folder / run}", "_evaluation_episodes:=0",
-                          "_random_episodes:=0", "_values_period_s:=0", "_sim_timeout_s:=60",
-                          uri=uri)
+                          "_random_episodes:=0", "_values_period_s:=0",
+                          *(arguments if any("_sim_timeout_s" in word for word in arguments)
+                            else (*arguments, "_sim_timeout_s:=60")), uri=uri)
 
     def results(self, run):
         """The files that must not depend on what happened to the connections."""

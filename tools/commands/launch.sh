@@ -24,25 +24,8 @@ ros_environment() {
       say "port 11311 is taken, using $port; set ROS_MASTER_URI to share a running master"
     export ROS_MASTER_URI=http://127.0.0.1:$port
   else
-    refuse_another_master
+    "$root/aquafarm_bringup/scripts/check_arguments" --master "$ROS_MASTER_URI" || exit 2
   fi
-}
-
-# A program that is not a ROS master would keep roslaunch waiting without a word.
-refuse_another_master() {
-  local place=${ROS_MASTER_URI#http://}
-  place=${place%%/*}
-  (exec 3<>"/dev/tcp/${place%:*}/${place##*:}") 2>/dev/null || return 0  # roslaunch starts one
-  /usr/bin/python3 - "$ROS_MASTER_URI" 2>/dev/null <<'PYTHON' ||
-import socket
-import sys
-import xmlrpc.client
-
-socket.setdefaulttimeout(5)
-xmlrpc.client.ServerProxy(sys.argv[1]).getPid("/aquafarm")
-PYTHON
-    code=2 die "ROS_MASTER_URI: got $ROS_MASTER_URI, where a program that is not a ROS master listens; \
-end it ('ss -ltnp' names it), set another port, or unset ROS_MASTER_URI"
 }
 
 # Turns 'run_dir:=here' into an absolute path (nodes run in ROS_HOME).

@@ -9,8 +9,10 @@ import pytest
 CAMPAIGN = pathlib.Path(__file__).resolve().parents[1] / "campaign"
 WORKSPACE = os.environ.get("AQUAFARM_CAMPAIGNS", "")
 LIMIT_S = 900
-# Each takes seconds on an idle machine; fuzzing and soaking have ctest targets of their own.
-SHORT = {"soak": 1, "kill": 2, "resources": 5, "network": 1, "concurrency": 1}
+# Each takes seconds on an idle machine, together less than two minutes. Fuzz targets and the soak of
+# the planners are tests of the cores.
+SHORT = {"soak": (1, "random"), "kill": (5, ""), "resources": (5, ""), "network": (4, ""),
+         "concurrency": (1, "")}
 
 
 def campaign(*words):
@@ -21,7 +23,8 @@ def campaign(*words):
 @pytest.mark.skipif(not WORKSPACE, reason="AQUAFARM_CAMPAIGNS names no workspace")
 @pytest.mark.parametrize("name", SHORT)
 def test_campaign_finds_no_failure(name):
-    done = campaign(name, "--count", SHORT[name], "--workspace", WORKSPACE)
+    count, only = SHORT[name]
+    done = campaign(name, "--count", count, "--only", only, "--workspace", WORKSPACE)
     assert done.returncode == 0, done.stdout + done.stderr
     assert f"{name}: 0 failures in " in done.stdout
 
@@ -31,10 +34,17 @@ def test_a_failure_is_reported_with_exit_code_1(tmp_path):
     programs.mkdir(parents=True)
     (programs / "farm_soak").write_text("#!/bin/sh\necho 'x.yaml: 5 steps, 1 episodes'; exit 1\n")
     (programs / "farm_soak").chmod(0o755)
-    done = campaign("soak", "--count", 1, "--workspace", tmp_path)
+    done = campaign("soak", "--count", 1, "--only", "random", "--workspace", tmp_path)
     assert done.returncode == 1, done.stdout + done.stderr
     assert "FAILED farm_soak 200000 1: exit code 1: ['x.yaml: 5 steps, 1 episodes']" in done.stderr
     assert "soak: 1 failures in " in done.stdout
+
+
+def test_an_unknown_kind_is_refused_with_those_there_are():
+    done = campaign("kill", "--only", "tables,dog")
+    assert done.returncode == 2
+    assert ("--only: got 'dog', expected one of: tables, networks, sim_node, recorder, benchmark"
+            in done.stderr)
 
 
 def test_a_program_that_is_not_built_is_named(tmp_path):

@@ -2,12 +2,16 @@
 #include "aquafarm_sim/bags/episode_log.h"
 
 #include <aquafarm_msgs/SavedState.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm_sim/bags/chunked_bag.h"
@@ -21,6 +25,35 @@ using aquafarm::Farm;
 
 constexpr std::int32_t kRiskPeriod = 10;  // steps
 constexpr std::int32_t kMoment_ns = 1000;
+
+constexpr const char* kPrefix = "episode_";
+constexpr const char* kPartial = ".bag.active";
+
+/// Holds a lock on a file; the kernel releases it if the process is killed.
+class FileLock {
+ public:
+  FileLock(const std::string& path, int open_flags)
+      : file_(open(path.c_str(), open_flags | O_CLOEXEC, 0666)),
+        is_held_(file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0) {}
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+  ~FileLock() {
+    if (file_ >= 0) close(file_);
+  }
+  bool is_held() const { return is_held_; }
+
+ private:
+  const int file_;
+  const bool is_held_;
+};
+
+bool IsPartialBag(const std::filesystem::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  const std::string end = kPartial;
+  std::error_code error;
+  return entry.is_regular_file(error) && !entry.is_symlink(error) && name.rfind(kPrefix, 0) == 0 &&
+         name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
 
 /// Creates and writes the messages of one episode during its simulation.
 class Messages {
@@ -121,11 +154,26 @@ void Play(Farm& farm, const EpisodeLog& tape, Messages& messages) {
 
 std::string BagName(const EpisodeLog& tape) {
   char name[120];
-  std::snprintf(name, sizeof(name), "episode_%08llu_seed_%llu_return_%+.1f.bag",
+  std::snprintf(name, sizeof(name), "%s%08llu_seed_%llu_return_%+.1f.bag", kPrefix,
                 static_cast<unsigned long long>(tape.episode),
                 static_cast<unsigned long long>(tape.seed),
                 static_cast<double>(tape.record.episode_return));
   return name;
+}
+
+int RemoveAbandonedBags(const std::string& folder) {
+  int removed = 0;
+  std::error_code error;
+  std::vector<std::filesystem::path> found;
+  std::filesystem::directory_iterator entry(folder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    if (IsPartialBag(*entry)) found.push_back(entry->path());
+  }
+  for (const auto& path : found) {
+    if (!FileLock(path.string(), O_RDONLY).is_held()) continue;
+    removed += std::filesystem::remove(path, error) ? 1 : 0;
+  }
+  return removed;
 }
 
 EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario,
@@ -138,6 +186,7 @@ EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> sce
 void EpisodeBagWriter::Write(const EpisodeLog& tape, const std::string& path) {
   const std::string active = path + ".active";
   std::error_code error;
+  const FileLock lock(active, O_RDWR | O_CREAT);  // if it fails, ChunkedBag reports why
   try {
     ChunkedBag bag(active);
     Messages messages(bag, tape, format_);

@@ -74,6 +74,9 @@ EpisodeRecorder::EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scena
       folder_(MakeFolder(std::move(folder))),
       writer_(std::move(scenario), std::move(format)),
       limits_(limits) {
+  const int removed = RemoveAbandonedBags(folder_);
+  ROS_INFO_COND(removed > 0, "%d partial bag(s) that a killed process left in %s are removed",
+                removed, folder_.c_str());
   thread_ = std::thread([this] { Run(); });
 }
 

@@ -10,6 +10,7 @@
 #include "rescue/case_parts.h"
 #include "rescue/csv.h"
 #include "rescue/sea_routes.h"
+#include "rescue/trip_search.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -84,7 +85,7 @@ void ReadDevices(const RescueRequest& request, RescueCase& rescue) {
     return;
   }
   const CsvTable table(request.devices, {"name", "latitude", "longitude", "kind", "value"},
-                       {"damaged"});
+                       {"damaged"}, kMaxRescueDevices);
   std::vector<std::string> names;
   for (const CsvRow& row : table.rows()) {
     RescueDevice device;
@@ -130,7 +131,7 @@ void ReadShips(const RescueRequest& request, RescueCase& rescue) {
     return;
   }
   const CsvTable table(request.ships_file, {"name", "latitude", "longitude"},
-                       {"speed_kn", "capacity", "ready"});
+                       {"speed_kn", "capacity", "ready"}, kMaxRescueDevices);
   std::vector<std::string> names;
   for (const CsvRow& row : table.rows()) {
     RescueShip ship;

@@ -2,7 +2,10 @@
 #include "rescue/csv.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include "aquafarm/agents/base/storage.h"
 #include "aquafarm/agents/base/text.h"
@@ -10,6 +13,8 @@
 
 namespace aquafarm::agents {
 namespace {
+
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 20U;
 
 std::string Trimmed(const std::string& text) {
   constexpr const char* kSpace = " \t\r";
@@ -57,7 +62,13 @@ double CsvRow::Number(const std::string& column, double low, double high) const 
 }
 
 CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& needed,
-                   const std::vector<std::string>& known) {
+                   const std::vector<std::string>& known, std::size_t max_rows) {
+  std::error_code unknown;  // ReadFile names a file that cannot be read
+  const auto bytes = std::filesystem::file_size(path, unknown);
+  if (!unknown && bytes > kMaxBytes) {
+    throw InputError(path + ": got " + std::to_string(bytes) + " bytes, expected at most " +
+                     std::to_string(kMaxBytes));
+  }
   std::string text = ReadFile(path);
   if (text.compare(0, 3, "\xEF\xBB\xBF") == 0) text.erase(0, 3);  // byte order mark
   std::istringstream lines(text);
@@ -82,6 +93,9 @@ CsvTable::CsvTable(const std::string& path, const std::vector<std::string>& need
     if (fields.size() > header_.size()) {
       throw InputError(where + ": got " + std::to_string(fields.size()) +
                        " fields, expected at most " + std::to_string(header_.size()));
+    }
+    if (rows_.size() == max_rows) {
+      throw InputError(where + ": got more rows, expected at most " + std::to_string(max_rows));
     }
     rows_.emplace_back(header_, std::move(fields), where);
   }

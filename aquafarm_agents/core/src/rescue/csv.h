@@ -4,6 +4,7 @@
 /// Small tables as text: a header, then one line per row, fields separated by commas. A field may
 /// be quoted; empty lines and lines that begin with # are skipped.
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -30,9 +31,9 @@ class CsvRow {
 class CsvTable {
  public:
   /// @param needed columns that must be there @param known further columns that may be there
-  /// @throws InputError with file, line, and the valid columns
+  /// @throws InputError with file, line, and the valid columns or the max number of rows
   CsvTable(const std::string& path, const std::vector<std::string>& needed,
-           const std::vector<std::string>& known);
+           const std::vector<std::string>& known, std::size_t max_rows);
   const std::vector<CsvRow>& rows() const { return rows_; }
 
  private:

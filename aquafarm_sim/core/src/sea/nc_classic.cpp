@@ -13,6 +13,13 @@ namespace {
 // Size of a value by type, from NC_BYTE = 1 to NC_UINT64 = 11 [bytes].
 constexpr std::array<std::uint64_t, 12> kBytesOfType{0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
+constexpr std::uint64_t kLastOldType = 6;  // NC_DOUBLE, of the versions 1 and 2
+
+// Tags of lists.
+constexpr std::uint64_t kDimensions = 10;
+constexpr std::uint64_t kVariables = 11;
+constexpr std::uint64_t kAttributes = 12;
+
 // Reads the big-endian words of a header. After the end of the file or an invalid word, all words
 // are 0.
 class HeaderReader {
@@ -23,20 +30,35 @@ class HeaderReader {
   }
   bool good() const { return file_.good(); }
   bool ended() const { return ended_; }
+  /// Marks the header as damaged unless `valid`.
+  void Need(bool valid) {
+    if (!valid) file_.setstate(std::ios::failbit);
+  }
   std::uint64_t Tag() { return Word(4); }
   std::uint64_t Count() { return Word(version_ == 5 ? 8 : 4); }
   std::uint64_t Offset() { return Word(version_ == 1 ? 4 : 8); }
   /// Reads a count with a limit that no real file exceeds.
   std::uint64_t FewCount() { return AtMost(Count(), std::uint64_t{1} << 16U); }
-  /// Reads the tag of a list and returns its length.
-  std::uint64_t ListCount() {
-    Tag();
-    return FewCount();
+  /// Reads the tag of a list, or 0 for an absent list, and returns the length of the list.
+  std::uint64_t ListCount(std::uint64_t tag) {
+    const std::uint64_t got = Tag();
+    const std::uint64_t count = FewCount();
+    Need(got == tag || (got == 0 && count == 0));
+    return good() ? count : 0;
   }
-  std::uint64_t BytesOfType() { return kBytesOfType[AtMost(Tag(), kBytesOfType.size() - 1)]; }
-  void SkipName() { Skip(Count()); }
+  std::uint64_t BytesOfType() {
+    const std::uint64_t type =
+        AtMost(Tag(), version_ == 5 ? kBytesOfType.size() - 1 : kLastOldType);
+    Need(type > 0);
+    return kBytesOfType[type];
+  }
+  void SkipName() {
+    const std::uint64_t bytes = AtMost(Count(), kMostNameBytes);
+    Need(bytes > 0);
+    Skip(bytes);
+  }
   void SkipAttributes() {
-    for (std::uint64_t left = ListCount(); left > 0 && good(); --left) {
+    for (std::uint64_t left = ListCount(kAttributes); left > 0 && good(); --left) {
       SkipName();
       const std::uint64_t bytes = BytesOfType();
       Skip(AtMost(Count(), kMostBytes) * bytes);
@@ -44,6 +66,7 @@ class HeaderReader {
   }
 
  private:
+  static constexpr std::uint64_t kMostNameBytes = 1024;  // four times libnetcdf's limit
   static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 40U;
 
   std::uint64_t AtMost(std::uint64_t value, std::uint64_t most) {
@@ -81,6 +104,7 @@ Variable ReadVariable(HeaderReader& header, const std::vector<double>& dimension
   const std::uint64_t rank = header.FewCount();
   for (std::uint64_t i = 0; i < rank && header.good(); ++i) {
     const std::uint64_t dimension = header.Count();
+    header.Need(dimension < dimensions.size());
     const double length = dimension < dimensions.size() ? dimensions[dimension] : 0.0;
     if (i == 0 && length == 0.0) {
       variable.has_records = true;
@@ -101,13 +125,13 @@ std::optional<double> EndOfClassicValues(std::istream& file) {
   HeaderReader header(file);
   const std::uint64_t records = header.Count();
   std::vector<double> dimensions;
-  for (std::uint64_t left = header.ListCount(); left > 0 && header.good(); --left) {
+  for (std::uint64_t left = header.ListCount(kDimensions); left > 0 && header.good(); --left) {
     header.SkipName();
     dimensions.push_back(static_cast<double>(header.Count()));
   }
   header.SkipAttributes();
   std::vector<Variable> variables;
-  for (std::uint64_t left = header.ListCount(); left > 0 && header.good(); --left) {
+  for (std::uint64_t left = header.ListCount(kVariables); left > 0 && header.good(); --left) {
     variables.push_back(ReadVariable(header, dimensions));
   }
   if (header.ended()) return std::numeric_limits<double>::infinity();

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fuzz target for the lists of a rescue: the first byte, d or s, selects devices or ships. The
+// ranch and its storm are those of Typhoon In-Fa.
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "aquafarm/agents/rescue/rescue_case.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace aquafarm;
+  static const auto scenario = std::make_shared<const Scenario>(
+      LoadScenario(AQUAFARM_SCENARIO_DIR "/zhoushan_infa_2021.yaml"));
+  static const std::string path = "/dev/shm/fuzz_fleet." + std::to_string(getpid());
+  if (size == 0) return 0;
+  std::ofstream(path, std::ios::binary)
+      << std::string(reinterpret_cast<const char*>(data) + 1, size - 1);
+  agents::RescueRequest request;
+  (data[0] == 's' ? request.ships_file : request.devices) = path;
+  request.storm = AQUAFARM_STORM_FILE;
+  request.storm_name = "In-fa";
+  request.at = 1627174800;  // 2021-07-25T01:00:00Z
+  try {
+    agents::MakeRescueCase(scenario, request);
+  } catch (const InputError&) {  // expected for invalid input; any other failure is a bug
+  }
+  unlink(path.c_str());
+  return 0;
+}

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fuzz target for bags: reads an input as verify_bag does.
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <string>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm_sim/bags/bag_check.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::string path = "/dev/shm/fuzz_bag." + std::to_string(getpid());
+  std::ofstream(path, std::ios::binary) << std::string(reinterpret_cast<const char*>(data), size);
+  try {
+    aquafarm_sim::CheckBag(path, "");
+  } catch (const aquafarm::InputError&) {  // expected for invalid input; any other is a bug
+  }
+  unlink(path.c_str());
+  return 0;
+}

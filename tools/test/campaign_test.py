@@ -9,9 +9,8 @@ import pytest
 CAMPAIGN = pathlib.Path(__file__).resolve().parents[1] / "campaign"
 WORKSPACE = os.environ.get("AQUAFARM_CAMPAIGNS", "")
 LIMIT_S = 900
-# Each takes seconds on an idle machine, together less than two minutes. Fuzz targets and the soak of
-# the planners are tests of the cores.
-SHORT = {"soak": (1, "random"), "kill": (5, ""), "resources": (5, ""), "network": (4, ""),
+# Count and kinds. Each takes seconds on an idle machine. Fuzz targets are tests of the cores.
+SHORT = {"soak": (1, "random"), "kill": (2, "tables,sim_node"), "resources": (5, ""), "network": (4, ""),
          "concurrency": (1, "")}
 
 

@@ -49,8 +49,8 @@ struct BagFormat {
 /// File name of the bag: "episode_00000012_seed_1_return_+102.4.bag".
 std::string BagName(const EpisodeLog& tape);
 
-/// Removes the partial bags (episode_….bag.active) that killed processes left in a folder. A bag that
-/// a process is still writing stays. @returns the number of removed bags
+/// Removes the partial bags (episode_….bag.active) that killed processes left in a folder. A bag
+/// that a process is still writing stays. @returns the number of removed bags
 int RemoveAbandonedBags(const std::string& folder);
 
 /// Simulates tapes again and writes them as bags. Reuse one writer for many tapes: it creates its

@@ -84,7 +84,8 @@ void AddRadii(const TrialOptions& options, RandomStream& rng, StormTrack& track)
     fix.wind_below_mps.reset();
     fix.grade = GradeOfWind(*fix.wind_mps);
     fix.rings.clear();
-    const double spread = options.draws_size ? options.errors.size_factor : 0.0;
+    const double spread =
+        options.draws_size ? options.errors.scale * options.errors.size_factor : 0.0;
     for (const std::int32_t wind_kt : kWinds_kt) {
       const RadiusEstimate estimate =
           EstimateRadius(wind_kt, *fix.wind_mps, fix.position.latitude, fix.averaging_min);

@@ -25,7 +25,8 @@ struct TrialOptions {
   double min_lead_h{4.0};  ///< of the closest approach of the track before it is moved
   double max_lead_h{24.0};
   double report_share{0.5};  ///< share of the bulletins that report radii
-  bool draws_size{true};     ///< else the radii are those of EstimateRadius
+  /// Radii are drawn about EstimateRadius with its spread times errors.scale; else they are exact.
+  bool draws_size{true};
 };
 
 /// A true storm, and what is known of it at a time.

@@ -161,6 +161,14 @@ std::string Learner(const Scenario& made) {
   return "";
 }
 
+// Suggests a rescue plan, which takes seconds, for a ranch with a position, and a training.
+std::string NextSteps(const std::string& path, const Scenario& made) {
+  const std::string train = "./aquafarm train scenario:=" + path + Learner(made) + "\n";
+  if (!made.origin) return "now: " + train;
+  return "now: ./aquafarm plan " + path + " --bulletin FILE   (who fetches what before a storm)\n" +
+         "or:  " + train;
+}
+
 void Run(const Arguments& arguments) {
   const BuiltRanch ranch = BuildRanch(Finished(arguments));
   for (const std::string& warning : ranch.warnings) {
@@ -172,8 +180,8 @@ void Run(const Arguments& arguments) {
   if (!arguments.map.empty()) SaveMap(ToMap(ranch.scenario), arguments.map);
   if (arguments.output.empty()) return;
   WriteFile(arguments.output, ranch.yaml);
-  std::printf("written: %s\nnow: ./aquafarm train scenario:=%s%s\n", arguments.output.c_str(),
-              arguments.output.c_str(), Learner(ranch.scenario).c_str());
+  std::printf("written: %s\n%s", arguments.output.c_str(),
+              NextSteps(arguments.output, ranch.scenario).c_str());
 }
 
 void AddPlaceOptions(CLI::App& app, Arguments& arguments) {

@@ -50,7 +50,11 @@ TEST(Program, MakesAFileAndSaysWhatItDecided) {
       data + "/cma.txt --storm in-fa --devices 6 --layout linear -o " + path.string());
   EXPECT_EQ(code, 0) << text;
   EXPECT_NE(text.find("nearest: "), std::string::npos);
-  EXPECT_NE(text.find("now: ./aquafarm train scenario:=" + path.string()), std::string::npos);
+  EXPECT_NE(text.find("\nnow: ./aquafarm plan " + path.string() +
+                      " --bulletin FILE   (who fetches what before a storm)\n" +
+                      "or:  ./aquafarm train scenario:=" + path.string()),
+            std::string::npos)
+      << text;
   const Scenario scenario = LoadScenario(path.string());
   EXPECT_EQ(scenario.name, path.stem().string());
   EXPECT_EQ(scenario.devices.count, 6);

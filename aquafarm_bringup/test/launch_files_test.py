@@ -2,10 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Every launch file parses, documents its arguments and stays on the loopback address. Every field
 of a message has a comment."""
-<<<<<<< HEAD
-=======
 import http.server
->>>>>>> e326180 (Campaigns kill the sim node, the recorder and the benchmark, stop processes, restart the master)
 import os
 import pathlib
 import re

@@ -17,7 +17,7 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "risk_here": (-1, 0), "deployed": (0, 1), "aboard": (0, 1), "worth": (0, 100),
     "known": (0, 1), "motion_east": (-FAR, FAR), "motion_north": (-FAR, FAR), "reach": (0, FAR),
     "age": (0, FAR), "visible": (0, 1), "self": (0, 1), "way_east": (-1, 1), "way_north": (-1, 1),
-    "way_steps": (0, 4), "energy_used": (0, FAR), "grade": (0, 1)}
+    "way_steps": (0, 4), "energy_used": (0, FAR), "grade": (0, 1), "risk": (0, 1)}
 # Features that are 1 for the kind of a device or a disaster (view.kinds).
 KINDS: tuple[str, ...] = (
     "temporary_breeding", "monitoring", "breeding_release", "deep_water_breeding", "typhoon",
@@ -32,7 +32,9 @@ def feature_bounds(name: str) -> tuple[float, float]:
     if group in GROUP_BOUNDS:
         return GROUP_BOUNDS[group]
     if part in ("east", "north"):
-        return (-FAR, FAR) if group.startswith("disaster") else (-1, 1)
+        return (-FAR, FAR) if group.startswith(("disaster", "slot")) else (-1, 1)
+    if part.startswith(("east_", "north_")):  # a forecast position of a slot
+        return (-FAR, FAR)
     return (0, 1) if part in KINDS else BOUNDS[part]
 
 

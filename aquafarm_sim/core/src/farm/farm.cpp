@@ -101,6 +101,7 @@ void Farm::Reset(std::uint64_t seed, std::uint64_t episode) {
   record_.episode = episode;
   if (tracks_changed_) ResetTracks();
   if (draws_storms_) DrawStorms();
+  forecasts_.assign(scenario_->disasters.size(), nullptr);
 
   devices_.clear();
   for (const PlacedDevice& placed : layout_->devices) {
@@ -177,19 +178,21 @@ void Farm::IssueBulletins() {
   const ViewSpec& view = scenario_->view;
   if (view.mode == ViewMode::kFull || view.bulletin_period == 0) return;
   if (record_.steps % view.bulletin_period != 0) return;
-  for (std::size_t id = 0; id < disasters_.size(); ++id) {
-    Disaster& disaster = disasters_[id];
-    const auto draws =
-        Draw({record_.seed, record_.episode, RngStream::kSensors, static_cast<std::uint32_t>(id)},
-             static_cast<std::uint32_t>(record_.steps));
-    const float noise = view.bulletin_noise;
-    disaster.bulletin.x = disaster.x + noise * (2.0F * ToUnit(draws[0]) - 1.0F);
-    disaster.bulletin.y = disaster.y + noise * (2.0F * ToUnit(draws[1]) - 1.0F);
-    disaster.bulletin.speed = disaster.speed;
-    disaster.bulletin.heading_deg = disaster.heading_deg;
-    disaster.bulletin.step = record_.steps;
-    disaster.SnapshotRings();
-  }
+  for (std::size_t id = 0; id < disasters_.size(); ++id) IssueBulletin(id);
+}
+
+void Farm::IssueBulletin(std::size_t id) {
+  Disaster& disaster = disasters_[id];
+  const auto draws =
+      Draw({record_.seed, record_.episode, RngStream::kSensors, static_cast<std::uint32_t>(id)},
+           static_cast<std::uint32_t>(record_.steps));
+  const float noise = scenario_->view.bulletin_noise;
+  disaster.bulletin.x = disaster.x + noise * (2.0F * ToUnit(draws[0]) - 1.0F);
+  disaster.bulletin.y = disaster.y + noise * (2.0F * ToUnit(draws[1]) - 1.0F);
+  disaster.bulletin.speed = disaster.speed;
+  disaster.bulletin.heading_deg = disaster.heading_deg;
+  disaster.bulletin.step = record_.steps;
+  disaster.SnapshotRings();
 }
 
 void Farm::Act(std::int32_t id, Action action) {

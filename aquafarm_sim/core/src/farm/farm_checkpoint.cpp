@@ -19,6 +19,8 @@ namespace aquafarm {
 namespace {
 
 using internal::DisasterFrom;
+using internal::ForecastsFromJson;
+using internal::ForecastsToJson;
 using internal::Int;
 using internal::Read;
 using internal::TellsRings;
@@ -55,19 +57,28 @@ void HashDisaster(const Disaster& disaster, Hasher& hasher) {
   }
 }
 
-void HashTracks(const std::vector<Track>& tracks, Hasher& hasher) {
-  for (const Track& track : tracks) {
-    hasher.Add(static_cast<std::uint64_t>(track->size()));
-    for (const Waypoint& point : *track) {
-      hasher.Add(point.step, point.x);
-      hasher.Add(point.y, static_cast<float>(point.grade));
-      for (std::size_t k = 0; k < point.radii.size(); ++k) {
-        hasher.Add(point.radii[k], point.risks[k]);
-      }
-      for (const QuadrantRadii& ring : point.quadrants) {
-        hasher.Add(ring[0], ring[1]);
-        hasher.Add(ring[2], ring[3]);
-      }
+void HashTrack(const std::vector<Waypoint>& track, Hasher& hasher) {
+  hasher.Add(static_cast<std::uint64_t>(track.size()));
+  for (const Waypoint& point : track) {
+    hasher.Add(point.step, point.x);
+    hasher.Add(point.y, static_cast<float>(point.grade));
+    for (std::size_t k = 0; k < point.radii.size(); ++k) {
+      hasher.Add(point.radii[k], point.risks[k]);
+    }
+    for (const QuadrantRadii& ring : point.quadrants) {
+      hasher.Add(ring[0], ring[1]);
+      hasher.Add(ring[2], ring[3]);
+    }
+  }
+}
+
+// A disaster without forecasts adds nothing, so that hashes of older versions stay valid.
+void HashForecasts(const std::vector<Forecasts>& forecasts, Hasher& hasher) {
+  for (std::size_t id = 0; id < forecasts.size(); ++id) {
+    if (forecasts[id] == nullptr) continue;
+    for (const IssuedForecast& forecast : *forecasts[id]) {
+      hasher.Add(static_cast<float>(id), forecast.step);
+      HashTrack(forecast.points, hasher);
     }
   }
 }
@@ -130,7 +141,10 @@ void Farm::HashState(Hasher& hasher) const {
   }
   for (const Disaster& disaster : disasters_) HashDisaster(disaster, hasher);
   // Else the tracks are those of the scenario.
-  if (tracks_changed_ || draws_storms_) HashTracks(tracks_, hasher);
+  if (tracks_changed_ || draws_storms_) {
+    for (const Track& track : tracks_) HashTrack(*track, hasher);
+  }
+  HashForecasts(forecasts_, hasher);
 }
 
 std::string Farm::Save() const {
@@ -145,6 +159,12 @@ std::string Farm::Save() const {
              {"hash", Hash()}};
   if (tracks_changed_ || draws_storms_) {
     for (const Track& track : tracks_) state["tracks"].push_back(TrackToJson(*track));
+  }
+  const auto issued = [](const Forecasts& forecasts) { return forecasts != nullptr; };
+  if (std::any_of(forecasts_.begin(), forecasts_.end(), issued)) {
+    for (const Forecasts& forecasts : forecasts_) {
+      state["forecasts"].push_back(ForecastsToJson(forecasts));
+    }
   }
   std::string payload;
   json::to_cbor(state, payload);
@@ -207,6 +227,13 @@ void Farm::Load(const std::string& bytes) {
       }
     }
     RequireSame("tracks", loaded.tracks_.size(), disasters);
+    loaded.forecasts_.resize(disasters);
+    if (state.contains("forecasts")) {
+      RequireSame("forecasts", state["forecasts"].size(), disasters);
+      for (std::size_t id = 0; id < disasters; ++id) {
+        loaded.forecasts_[id] = ForecastsFromJson(state["forecasts"][id]);
+      }
+    }
     loaded.CheckConsistent();
     loaded.IndexShips();
     RequireSame("hash", loaded.Hash(), state.at("hash").get<std::uint64_t>());
@@ -246,11 +273,19 @@ void Farm::CheckConsistent() const {
   for (std::size_t i = 0; i < disasters_.size(); ++i) {
     const std::vector<Waypoint>& track = *tracks_[i];
     fits = fits && in_list(disasters_[i].waypoint, track.size());
-    for (const Waypoint& point : track) {
-      fits = fits && point.radii.size() == static_cast<std::size_t>(disasters_[i].rings) &&
+    const auto has_rings = [&disaster = disasters_[i]](const Waypoint& point) {
+      return point.radii.size() == static_cast<std::size_t>(disaster.rings) &&
              point.risks.size() == point.radii.size() &&
-             (disasters_[i].by_quadrant ? point.quadrants.size() == point.radii.size()
-                                        : point.quadrants.empty());
+             point.quadrants.size() == (disaster.by_quadrant ? point.radii.size() : 0);
+    };
+    for (const Waypoint& point : track) fits = fits && has_rings(point);
+    if (forecasts_[i] == nullptr) continue;
+    for (const IssuedForecast& forecast : *forecasts_[i]) {
+      fits = fits && !forecast.points.empty() && std::isfinite(forecast.step);
+      for (const Waypoint& point : forecast.points) {
+        const bool ringed = !forecast.points[0].radii.empty();
+        fits = fits && (ringed ? has_rings(point) : point.radii.empty());
+      }
     }
   }
   if (!fits) throw InputError("state: inconsistent; use another saved state");
@@ -274,10 +309,6 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
                      std::to_string(std::min(count, kMaxDisasters - 1)) + "]");
   }
   ValidateDisaster(spec);
-  if (!spec.forecasts.empty()) {
-    throw InputError("forecasts: got " + std::to_string(spec.forecasts.size()) +
-                     ", expected none: agents are told those of the scenario alone");
-  }
   const bool added = id == count;
   if (added && !spec.start && spec.track.empty()) {
     throw InputError("start: a new disaster needs a start or a track");
@@ -294,6 +325,7 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
   if (added) {
     disasters_.push_back(disaster);
     tracks_.push_back(std::move(track));
+    forecasts_.emplace_back();
   } else {
     const Disaster& present = disasters_[k];
     if (!spec.start && spec.track.empty()) {
@@ -312,6 +344,10 @@ void Farm::SetDisaster(std::int32_t id, const DisasterSpec& spec) {
       static_cast<std::uint32_t>(record_.steps) / 4);
   if (placed.waypoint != kNone) FollowTrack(placed, *tracks_[k], record_.steps);
   tracks_changed_ = true;
+  forecasts_[k].reset();
+  if (spec.forecasts.empty()) return;
+  forecasts_[k] = std::make_shared<const std::vector<IssuedForecast>>(spec.forecasts);
+  if (scenario_->view.mode == ViewMode::kPartial) IssueBulletin(k);
 }
 
 }  // namespace aquafarm

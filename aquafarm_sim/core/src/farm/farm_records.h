@@ -269,6 +269,24 @@ inline std::vector<Waypoint> TrackFromJson(const json& points) {
   return track;
 }
 
+inline json ForecastsToJson(const Forecasts& forecasts) {
+  json list = json::array();
+  if (forecasts == nullptr) return list;
+  for (const IssuedForecast& forecast : *forecasts) {
+    list.push_back({forecast.step, TrackToJson(forecast.points)});
+  }
+  return list;
+}
+
+inline Forecasts ForecastsFromJson(const json& list) {
+  if (list.empty()) return nullptr;
+  std::vector<IssuedForecast> forecasts;
+  for (const json& forecast : list) {
+    forecasts.push_back({forecast.at(0).get<float>(), TrackFromJson(forecast.at(1))});
+  }
+  return std::make_shared<const std::vector<IssuedForecast>>(std::move(forecasts));
+}
+
 template <typename Record>
 json Written(const Record& record) {
   Writer writer;

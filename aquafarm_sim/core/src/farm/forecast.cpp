@@ -12,19 +12,12 @@ const std::vector<Waypoint>& TrackOf(const Farm& farm, std::int32_t disaster) {
   return *farm.tracks()[static_cast<std::size_t>(disaster)];
 }
 
-// Returns the newest issued forecast of a disaster that still follows the scenario's track; nullptr
-// if there is none or if it has expired.
-const IssuedForecast* NewestSaid(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
-  const std::vector<DisasterSpec>& specs = farm.scenario().disasters;
-  const auto id = static_cast<std::size_t>(disaster);
-  if (id >= specs.size() || farm.tracks()[id].get() != &specs[id].track) return nullptr;
-  const auto step = static_cast<float>(issued);
-  const std::vector<IssuedForecast>& said = specs[id].forecasts;
+// Returns the last forecast of a list that was issued by a step; nullptr if there is none.
+const IssuedForecast* LastIssued(const std::vector<IssuedForecast>& list, float step) {
   const auto next =
-      std::upper_bound(said.begin(), said.end(), step,
+      std::upper_bound(list.begin(), list.end(), step,
                        [](float at, const IssuedForecast& forecast) { return at < forecast.step; });
-  if (next == said.begin() || (next - 1)->points.back().step <= step) return nullptr;
-  return &*(next - 1);
+  return next == list.begin() ? nullptr : &*(next - 1);
 }
 
 // Returns the index of the first point after a step, or the number of points.
@@ -58,70 +51,121 @@ Waypoint TruthAt(const std::vector<Waypoint>& track, float step) {
   return now;
 }
 
-// One forecast. Until the step of issue it equals the true track. After it, it is the issued
-// forecast or, without one, the displaced true track.
+// Returns the position that a forecast of step `issued` starts from. A disaster without a track has
+// only its present state and its last bulletin.
+std::array<float, 2> PositionAt(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
+  const std::vector<Waypoint>& track = TrackOf(farm, disaster);
+  if (track.empty()) {
+    const Disaster& present = farm.disasters()[static_cast<std::size_t>(disaster)];
+    if (issued == farm.step()) return {present.x, present.y};
+    return {present.bulletin.x, present.bulletin.y};
+  }
+  const auto step = static_cast<float>(issued);
+  const std::size_t next = After(step, track);
+  const Waypoint& from = track[next == 0 ? 0 : next - 1];
+  if (next == 0 || next == track.size()) return {from.x, from.y};
+  const Waypoint& to = track[next];
+  const float part = (step - from.step) / (to.step - from.step);
+  return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
+}
+
+// One forecast. At the step of issue it equals the truth. After it, it is the issued forecast or,
+// without one, the displaced true track.
 class Forecast {
  public:
   Forecast(const Farm& farm, std::int32_t disaster, std::int32_t issued)
-      : scenario_(farm.scenario()),
+      : farm_(farm),
+        disaster_(disaster),
         track_(TrackOf(farm, disaster)),
-        said_(NewestSaid(farm, disaster, issued)),
+        said_(NewestForecast(farm, disaster, issued)),
         issued_(static_cast<float>(issued)),
         first_(IndexAfter(issued_)) {
+    const std::array<float, 2> now = PositionAt(farm, disaster, issued);
+    now_ = {issued_, now[0], now[1]};
     if (said_ == nullptr) error_ = ForecastErrorVector(farm.seed(), farm.episode(), disaster);
   }
 
-  /// Returns the steps from its issue on at which the forecast or the true track changes direction.
+  std::array<float, 2> At(float step) const {
+    const std::size_t next = std::max(IndexAfter(step), first_);
+    const Place from = next == first_ ? now_ : Point(next - 1);
+    if (next < (said_ != nullptr ? said_->points.size() : track_.size())) {
+      return On(from, Point(next), step);
+    }
+    if (said_ == nullptr || next < 2) return {from.x, from.y};
+    return On(Point(next - 2), from, std::min(step, EndAfter(from.step)));
+  }
+
+  // Returns the forecast as a track: with its own rings if it has some, else with the true ones.
+  std::vector<Waypoint> AsTrack() const {
+    std::vector<Waypoint> track;
+    for (const float step : Steps()) {
+      track.push_back(StateAt(step));
+      const std::array<float, 2> place = At(step);
+      track.back().step = step;
+      track.back().x = place[0];
+      track.back().y = place[1];
+    }
+    return track;
+  }
+
+ private:
+  struct Place {
+    float step{};
+    float x{};
+    float y{};
+  };
+
+  bool HasOwnRings() const { return said_ != nullptr && !said_->points[0].radii.empty(); }
+  bool FollowsTrueRings() const { return !HasOwnRings() && !track_.empty(); }
+  // Returns the step until which a forecast is extrapolated beyond its last point.
+  float EndAfter(float last) const {
+    return track_.empty() ? last : std::max(track_.back().step, last);
+  }
+
+  // Returns the steps from its issue on at which the track changes.
   std::vector<float> Steps() const {
     std::vector<float> steps{issued_};
-    for (std::size_t i = After(issued_, track_); i < track_.size(); ++i) {
+    for (std::size_t i = After(issued_, track_); FollowsTrueRings() && i < track_.size(); ++i) {
       steps.push_back(track_[i].step);
     }
     for (std::size_t i = first_; said_ != nullptr && i < said_->points.size(); ++i) {
       steps.push_back(said_->points[i].step);
     }
+    if (said_ != nullptr) steps.push_back(EndAfter(said_->points.back().step));
     std::sort(steps.begin(), steps.end());
     steps.erase(std::unique(steps.begin(), steps.end()), steps.end());
     return steps;
   }
-  std::array<float, 2> At(float step) const {
-    const std::size_t next = std::max(IndexAfter(step), first_);
-    const ForecastPoint from = next == first_ ? Now() : Point(next - 1);
-    if (next < (said_ != nullptr ? said_->points.size() : track_.size())) {
-      return On(from, Point(next), step);
-    }
-    if (said_ == nullptr || next < 2) return {from.x, from.y};
-    return On(Point(next - 2), from, std::min(step, std::max(track_.back().step, from.step)));
+
+  // Returns grade and rings at one of Steps().
+  Waypoint StateAt(float step) const {
+    if (FollowsTrueRings()) return TruthAt(track_, step);
+    if (step > issued_ && HasOwnRings()) return said_->points[IndexAfter(step) - 1];
+    if (!track_.empty()) return TruthAt(track_, issued_);
+    return RingsOf(farm_.disasters()[static_cast<std::size_t>(disaster_)]);
   }
 
- private:
-  static std::array<float, 2> On(ForecastPoint from, ForecastPoint to, float step) {
+  static std::array<float, 2> On(Place from, Place to, float step) {
     const float part = (step - from.step) / (to.step - from.step);
     return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
   }
   std::size_t IndexAfter(float step) const {
     return said_ != nullptr ? After(step, said_->points) : After(step, track_);
   }
-  ForecastPoint Now() const {
-    const std::size_t next = After(issued_, track_);
-    const Waypoint& from = track_[next == 0 ? 0 : next - 1];
-    if (next == 0 || next == track_.size()) return {issued_, from.x, from.y};
-    const Waypoint& to = track_[next];
-    const float part = (issued_ - from.step) / (to.step - from.step);
-    return {issued_, from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
-  }
-  ForecastPoint Point(std::size_t i) const {
-    if (said_ != nullptr) return said_->points[i];
+  Place Point(std::size_t i) const {
+    if (said_ != nullptr) return {said_->points[i].step, said_->points[i].x, said_->points[i].y};
     const Waypoint& point = track_[i];
-    const float error = MeanForecastError(scenario_, point.step - issued_);
+    const float error = MeanForecastError(farm_.scenario(), point.step - issued_);
     return {point.step, point.x + error * error_[0], point.y + error * error_[1]};
   }
 
-  const Scenario& scenario_;
+  const Farm& farm_;
+  std::int32_t disaster_;
   const std::vector<Waypoint>& track_;
   const IssuedForecast* said_;  // null: uses the displaced true track
   float issued_;
   std::size_t first_;  // index of the first future point
+  Place now_;
   std::array<float, 2> error_{};
 };
 
@@ -152,10 +196,36 @@ std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episo
   return {kScale * NearlyNormal(Draw(key, 0)), kScale * NearlyNormal(Draw(key, 1))};
 }
 
+const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
+  const std::vector<DisasterSpec>& specs = farm.scenario().disasters;
+  const auto id = static_cast<std::size_t>(disaster);
+  const auto step = static_cast<float>(issued);
+  const IssuedForecast* newest = nullptr;
+  if (id < specs.size() && farm.tracks()[id].get() == &specs[id].track) {
+    newest = LastIssued(specs[id].forecasts, step);
+  }
+  if (const Forecasts& in_play = farm.forecasts()[id]; in_play != nullptr) {
+    const IssuedForecast* last = LastIssued(*in_play, step);
+    if (newest == nullptr || (last != nullptr && last->step >= newest->step)) newest = last;
+  }
+  return newest != nullptr && newest->points.back().step > step ? newest : nullptr;
+}
+
+Waypoint RingsOf(const ObservableDisaster& disaster) {
+  Waypoint now{0.0F, disaster.x, disaster.y, disaster.grade};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
+    now.radii.push_back(disaster.radius[k]);
+    now.risks.push_back(disaster.risk[k]);
+    if (!disaster.by_quadrant) continue;
+    now.quadrants.push_back({disaster.quadrant[0][k], disaster.quadrant[1][k],
+                             disaster.quadrant[2][k], disaster.quadrant[3][k]});
+  }
+  return now;
+}
+
 bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
-  if (TrackOf(farm, disaster).empty()) return false;
-  return !farm.scenario().view.forecast_error_km.empty() ||
-         NewestSaid(farm, disaster, issued) != nullptr;
+  if (NewestForecast(farm, disaster, issued) != nullptr) return true;
+  return !TrackOf(farm, disaster).empty() && !farm.scenario().view.forecast_error_km.empty();
 }
 
 std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::int32_t issued,
@@ -164,15 +234,7 @@ std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::in
 }
 
 std::vector<Waypoint> ForecastTrack(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
-  const Forecast forecast(farm, disaster, issued);
-  std::vector<Waypoint> track;
-  for (const float step : forecast.Steps()) {
-    track.push_back(TruthAt(TrackOf(farm, disaster), step));
-    const std::array<float, 2> place = forecast.At(step);
-    track.back().x = place[0];
-    track.back().y = place[1];
-  }
-  return track;
+  return Forecast(farm, disaster, issued).AsTrack();
 }
 
 }  // namespace aquafarm

@@ -6,6 +6,7 @@
 
 #include "aquafarm/farm/energy.h"
 #include "aquafarm/grid/action.h"
+#include "aquafarm/observation/disaster_slots.h"
 #include "observation/risk_raster.h"
 
 namespace aquafarm {
@@ -112,10 +113,20 @@ void WriteDisasters(const FeatureScales& scales, const View& view, float* out) {
     out[3] = disaster.dx;
     out[4] = disaster.dy;
     out[5] = disaster.reach() * scale;
-    out[6] = known.age == 0 ? 0.0F
-                            : static_cast<float>(known.age) /
-                                  static_cast<float>(view.scenario->view.bulletin_period);
+    out[6] = known.age == 0
+                 ? 0.0F
+                 : static_cast<float>(known.age) /
+                       static_cast<float>(std::max(1, view.scenario->view.bulletin_period));
   }
+}
+
+// Returns the features of disasters: by id, or by slot if the scenario has slots.
+FeatureGroup DisasterGroup(const Scenario& scenario) {
+  if (SlotCount(scenario) > 0) return {"disasters", SlotNames(scenario), WriteSlots};
+  return {"disasters",
+          Numbered("disaster", static_cast<std::int32_t>(scenario.disasters.size()),
+                   {"known", "east", "north", "motion_east", "motion_north", "reach", "age"}),
+          WriteDisasters};
 }
 
 void WriteOthers(const FeatureScales& scales, const View& view, float* out) {
@@ -252,7 +263,6 @@ FeatureScales ScalesOf(const Scenario& scenario) {
 }
 
 std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
-  const auto disasters = static_cast<std::int32_t>(scenario.disasters.size());
   const std::int32_t agents = scenario.AgentCount();
   std::vector<FeatureGroup> groups{
       {"self", {"self.x", "self.y", "time_left", "free_capacity", "risk_here"}, WriteSelf},
@@ -262,10 +272,7 @@ std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
                 {"east", "north", "deployed", "aboard", "worth"}),
        WriteDevices},
       {"ports", Numbered("port", scenario.PortCount(), {"east", "north"}), WritePorts},
-      {"disasters",
-       Numbered("disaster", disasters,
-                {"known", "east", "north", "motion_east", "motion_north", "reach", "age"}),
-       WriteDisasters},
+      DisasterGroup(scenario),
       {"others", Numbered("other", agents - 1, {"visible", "east", "north", "aboard"}),
        WriteOthers},
       // With these one network can control all agents. A single agent needs none.

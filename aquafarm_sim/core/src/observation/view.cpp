@@ -6,6 +6,7 @@
 
 #include "aquafarm/farm/forecast.h"
 #include "aquafarm/grid/action.h"
+#include "aquafarm/observation/disaster_slots.h"
 
 namespace aquafarm {
 namespace {
@@ -77,6 +78,20 @@ void ApplyForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
   known.belief.dy = (there[1] - known.belief.y) / lead;
 }
 
+// Sets the forecast positions at the lead times of the scenario, from the motion of the last
+// information if there is no forecast.
+void ApplyLeads(const Farm& farm, std::size_t id, KnownDisaster& known) {
+  const Scenario& scenario = farm.scenario();
+  const auto disaster = static_cast<std::int32_t>(id);
+  const std::int32_t issued = farm.step() - known.age;
+  ExtrapolateMotion(scenario, known);
+  if (!HasForecast(farm, disaster, issued)) return;
+  for (std::size_t lead = 0; lead < known.forecast.size(); ++lead) {
+    known.forecast[lead] =
+        ForecastAt(farm, disaster, issued, farm.step() + LeadSteps(scenario, lead));
+  }
+}
+
 void ObserveDisaster(const Farm& farm, std::size_t id, bool full,
                      const std::vector<Sensor>& sensors, KnownDisaster& known) {
   const Disaster& disaster = farm.disasters()[id];
@@ -146,8 +161,12 @@ void Observe(const Farm& farm, std::int32_t ship, View& view) {
   view.disasters.resize(farm.disasters().size());
   for (std::size_t id = 0; id < view.disasters.size(); ++id) {
     ObserveDisaster(farm, id, full, view.sensors, view.disasters[id]);
-    if (view.disasters[id].known) ApplyForecast(farm, id, view.disasters[id]);
+    KnownDisaster& known = view.disasters[id];
+    if (!known.known) continue;
+    if (scenario.view.disaster_slots > 0) ApplyLeads(farm, id, known);
+    ApplyForecast(farm, id, known);
   }
+  if (scenario.view.disaster_slots > 0) RankByDanger(view);
 }
 
 }  // namespace aquafarm

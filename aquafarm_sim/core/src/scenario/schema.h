@@ -12,6 +12,7 @@
 /// to Always are used, and the condition).
 
 #include <algorithm>
+#include <tuple>
 
 #include "aquafarm/grid/geo_frame.h"
 #include "aquafarm/scenario/limits.h"
@@ -26,6 +27,7 @@ inline constexpr std::size_t kMaxListed = 100000;     ///< islands or rocks; no 
 inline constexpr std::size_t kMaxSeaValues = 200000;  ///< limits a file to a few MB
 inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::size_t kMaxWaypoints = 10000;
+inline constexpr std::size_t kMaxLeads = 8;
 inline constexpr std::size_t kMaxArchiveBytes = 2U << 20U;
 inline constexpr std::int32_t kMaxDevices = 1000;
 inline constexpr std::int32_t kMaxPorts = 256;
@@ -152,8 +154,15 @@ void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const Grade
   a.Field("risks", waypoint.risks, ListOf<Interval<float>>{kRisk, 1, kMaxRings});
 }
 
+/// Visits a point with rings as a waypoint, and a point without rings as a place and a time.
 template <typename Archive, typename P>
-void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame) {
+void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame, const GradeRisks& by_grade) {
+  bool ringed = a.Has("radii", !point.radii.empty());
+  for (const char* key : {"quadrants", "radii_km", "quadrants_km"}) {
+    ringed = ringed || a.Has(key, false);
+  }
+  if (ringed) return VisitWaypoint(a, point, frame, by_grade);
+  if constexpr (Archive::kReads) point.risks.clear();
   const bool real = a.Has("time", false);
   a.When(!real, "there is no time");
   a.Field("step", point.step, kStep, Need::kRequired);
@@ -166,13 +175,13 @@ void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame) {
     VisitGeoPoint(a, fix.point);
     Waypoint there;
     if (real) Resolve(fix, frame, a.path(), there);
-    if (real) point = {there.step, there.x, there.y};
+    if (real) std::tie(point.step, point.x, point.y) = std::tie(there.step, there.x, there.y);
   }
   a.Always();
 }
 
 template <typename Archive, typename F>
-void VisitForecast(Archive& a, F& forecast, const WorldFrame* frame) {
+void VisitForecast(Archive& a, F& forecast, const WorldFrame* frame, const DisasterSpec& of) {
   const bool real = a.Has("time", false);
   a.When(!real, "there is no time");
   a.Field("step", forecast.step, kStep, Need::kRequired);
@@ -183,8 +192,10 @@ void VisitForecast(Archive& a, F& forecast, const WorldFrame* frame) {
     if (real) forecast.step = ToStep(time, frame, a.path());
   }
   a.Always();
-  a.Structs("points", forecast.points, {1, kMaxWaypoints},
-            [&](auto& b, auto& point) { VisitForecastPoint(b, point, frame); });
+  a.Structs("points", forecast.points, {1, kMaxWaypoints}, [&](auto& b, auto& point) {
+    if constexpr (Archive::kReads) point.risks = of.risks;
+    VisitForecastPoint(b, point, frame, of.grade_risks);
+  });
 }
 
 /// Sets the state of a tracked disaster to that of its first waypoint.
@@ -256,7 +267,7 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   a.Field("start", disaster.start, kPlace);
   a.When(Archive::kReads ? tracked && !drawn : !disaster.forecasts.empty(), "there is a track");
   a.Structs("forecasts", disaster.forecasts, {0, kMaxWaypoints},
-            [&](auto& b, auto& forecast) { VisitForecast(b, forecast, frame); });
+            [&](auto& b, auto& forecast) { VisitForecast(b, forecast, frame, disaster); });
   a.Always();
   if (!tracked) return;
   if (drawn) {
@@ -395,6 +406,12 @@ void VisitView(Archive& a, S& s) {
     b.Field("waterways", s.view.waterways, AnyFlag{});
     b.Field("courses", s.view.courses, AnyFlag{});
     VisitViewKinds(b, s.view);
+    b.When(Archive::kReads || s.view.disaster_slots > 0, "");
+    b.Field("disaster_slots", s.view.disaster_slots, Interval<std::int32_t>{0, kMaxDisasters});
+    b.When(s.view.disaster_slots > 0, "disaster_slots is above 0");
+    b.Field("forecast_leads_h", s.view.forecast_leads_h,
+            ListOf<Interval<float>>{{0.0F, 240.0F, true}, 0, kMaxLeads});
+    b.Always();
   });
 }
 

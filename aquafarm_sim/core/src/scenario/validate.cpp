@@ -71,9 +71,10 @@ void CheckQuadrants(const std::string& path, const std::vector<QuadrantRadii>& q
   }
 }
 
-// Checks that forecasts are in order of issue, and that the points of each are in order of time and
-// after its issue.
-void CheckForecasts(const std::string& path, const std::vector<IssuedForecast>& forecasts) {
+// Checks that forecasts are in order of issue, that the points of each are in order of time and
+// after its issue, and that all points have rings or none.
+void CheckForecasts(const std::string& path, const DisasterSpec& disaster) {
+  const std::vector<IssuedForecast>& forecasts = disaster.forecasts;
   const auto check = [](const std::string& here, float step, float last, const std::string& what) {
     if (step > last) return;
     throw FieldError(internal::Join(here, "step"),
@@ -82,8 +83,18 @@ void CheckForecasts(const std::string& path, const std::vector<IssuedForecast>& 
   for (std::size_t i = 0; i < forecasts.size(); ++i) {
     const std::string here = At(path, i);
     if (i > 0) check(here, forecasts[i].step, forecasts[i - 1].step, At("forecasts", i - 1) + ", ");
-    const std::vector<ForecastPoint>& points = forecasts[i].points;
+    const std::vector<Waypoint>& points = forecasts[i].points;
     for (std::size_t k = 0; k < points.size(); ++k) {
+      const std::string point = At(internal::Join(here, "points"), k);
+      if (points[k].radii.empty() != points[0].radii.empty()) {
+        throw FieldError(point + ".radii", points[k].radii.empty()
+                                               ? "missing, expected radii as at points[0]"
+                                               : "got radii, expected none as at points[0]");
+      }
+      if (!points[k].radii.empty()) {
+        CheckRings(point, points[k].radii, points[k].risks, disaster.risks.size(), true);
+        CheckQuadrants(point, points[k].quadrants, points[k].radii, !disaster.quadrants.empty());
+      }
       check(At(internal::Join(here, "points"), k), points[k].step,
             k == 0 ? forecasts[i].step : points[k - 1].step,
             k == 0 ? "its issue, " : At("points", k - 1) + ", ");
@@ -108,7 +119,7 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
   if (disaster.track.empty() && !disaster.forecasts.empty()) {
     throw FieldError(forecasts, "is used only where there is a track");
   }
-  CheckForecasts(forecasts, disaster.forecasts);
+  CheckForecasts(forecasts, disaster);
   CheckRings(path, disaster.radii, disaster.risks, rings, !disaster.track.empty());
   CheckQuadrants(path, disaster.quadrants, disaster.radii, !disaster.quadrants.empty());
 }
@@ -303,6 +314,24 @@ void CheckMoney(const Scenario& scenario) {
   }
 }
 
+void CheckSlots(const Scenario& scenario) {
+  const ViewSpec& view = scenario.view;
+  const auto own = static_cast<std::int32_t>(scenario.disasters.size());
+  if (own + view.disaster_slots > kMaxDisasters) {
+    throw FieldError("view.disaster_slots", "got " + Format(view.disaster_slots) +
+                                                ", expected at most " +
+                                                Format(kMaxDisasters - own) + " next to the " +
+                                                Format(own) + " disasters of the scenario");
+  }
+  const std::vector<float>& leads = view.forecast_leads_h;
+  for (std::size_t i = 1; i < leads.size(); ++i) {
+    if (leads[i] > leads[i - 1]) continue;
+    throw FieldError(At("view.forecast_leads_h", i), "got " + Format(leads[i]) +
+                                                         ", expected more than the lead before, " +
+                                                         Format(leads[i - 1]));
+  }
+}
+
 void CheckAgents(const Scenario& scenario) {
   const DeviceSpec& devices = scenario.devices;
   if (devices.Total() == 0) {
@@ -340,6 +369,7 @@ void ValidateScenario(const Scenario& scenario) {
   CheckSeas(scenario);
   CheckForecast(scenario);
   CheckMoney(scenario);
+  CheckSlots(scenario);
 }
 
 }  // namespace aquafarm

@@ -311,12 +311,6 @@ TEST(IssuedForecasts, AreOnlyOfATrackOfTheScenario) {
     return "was taken";
   };
   Scenario scenario = Said();
-  Farm farm = MakeFarm(scenario);
-  farm.Reset(3, 6);
-  const std::uint64_t hash = farm.Hash();
-  EXPECT_EQ(refused([&] { farm.SetDisaster(0, scenario.disasters[0]); }),
-            "forecasts: got 2, expected none: agents are told those of the scenario alone");
-  EXPECT_EQ(farm.Hash(), hash);
   scenario.disasters[0].track.clear();
   EXPECT_EQ(refused([&] { ValidateScenario(scenario); }),
             "disasters[0].forecasts: is used only where there is a track");

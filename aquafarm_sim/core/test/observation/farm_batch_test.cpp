@@ -163,6 +163,9 @@ TEST(FarmBatch, NeitherStepsNorEpisodesAllocate) {
   ExpectNoAllocation(charted);
   charted.view.mode = ViewMode::kPartial;
   ExpectNoAllocation(charted);
+  charted.view.disaster_slots = 2;
+  charted.view.forecast_leads_h = {6.0F, 24.0F};
+  ExpectNoAllocation(charted);
   Scenario fixed = CrowdedScenario(1, 0);
   fixed.layout = LayoutMode::kFixed;
   ExpectNoAllocation(fixed);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/observation/disaster_slots.h"
 #include "aquafarm/observation/view.h"
 
 namespace aquafarm_sim {
@@ -119,7 +120,9 @@ inline void FromMsg(const aquafarm_msgs::FarmState& message, const aquafarm::Sce
   view.disasters.resize(message.disasters.size());
   for (std::size_t id = 0; id < message.disasters.size(); ++id) {
     view.disasters[id] = FromMsg(message.disasters[id]);
+    if (scenario.view.disaster_slots > 0) ExtrapolateMotion(scenario, view.disasters[id]);
   }
+  if (scenario.view.disaster_slots > 0) RankByDanger(view);
 }
 
 }  // namespace aquafarm_sim

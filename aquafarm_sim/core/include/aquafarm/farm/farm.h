@@ -24,6 +24,9 @@ namespace aquafarm {
 
 class Hasher;
 
+/// Forecasts of one disaster that were issued during an episode, in order of issue; null: none.
+using Forecasts = std::shared_ptr<const std::vector<IssuedForecast>>;
+
 /// A rescue ship, or a self-propelled device that acts as a ship.
 struct Ship {
   Cell cell{};
@@ -103,6 +106,9 @@ class Farm {
   const std::vector<Disaster>& disasters() const { return disasters_; }
   /// Waypoints of each disaster; empty for a disaster without a track.
   const std::vector<Track>& tracks() const { return tracks_; }
+  /// Forecasts of each disaster that were issued during this episode. They are what agents are
+  /// told and have no effect on the disasters; forecast.h merges them with the scenario's.
+  const std::vector<Forecasts>& forecasts() const { return forecasts_; }
   /// Statistics of this episode so far.
   const EpisodeRecord& record() const { return record_; }
   /// Random seed of the sequence of episodes.
@@ -153,9 +159,17 @@ class Farm {
 
   /// Applies a bulletin: replaces disaster `id`, or adds a disaster when `id` equals their number.
   /// A spec without start keeps the current centre; a new disaster needs a start or a track. The
-  /// spec must not contain forecasts, which are available only for tracks of the scenario.
-  /// @throws InputError on an id or spec out of range, or on forecasts; the farm is then unchanged
+  /// track is the truth, and the spec's forecasts are what agents are told. They replace those
+  /// issued before; with forecasts, the bulletin is issued at once.
+  /// @throws InputError on an id or spec out of range; the farm is then unchanged
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
+
+  /// Applies a forecast of disaster `id`: from now on agents are told it, with a bulletin that is
+  /// issued at once. The disaster itself does not change.
+  /// @param forecast issued at the present step or earlier, not before the newest one in force,
+  ///   with a point after the present step; its rings are as many as those of the disaster
+  /// @throws InputError on an id or forecast out of range; the farm is then unchanged
+  void IssueForecast(std::int32_t id, const IssuedForecast& forecast);
 
   /// Moves a ship to another cell, to query an agent's behaviour there.
   /// @throws InputError when the cell is off the map, blocked or occupied; the farm is then
@@ -165,6 +179,7 @@ class Farm {
  private:
   void MoveDisasters();
   void IssueBulletins();
+  void IssueBulletin(std::size_t id);
   void Act(std::int32_t id, Action action);
   void Move(Ship& ship, std::int32_t id, Action action);
   void PickUp(Ship& ship, std::int32_t id);
@@ -194,6 +209,7 @@ class Farm {
   std::vector<Device> devices_;
   std::vector<Disaster> disasters_;
   std::vector<Track> tracks_;
+  std::vector<Forecasts> forecasts_;
   bool tracks_changed_{};  // by SetDisaster or Load during this episode
   std::vector<std::shared_ptr<std::vector<Waypoint>>> drawn_;  // by disaster; null: no storms
   std::vector<const ArchivedStorm*> storms_;                   // by disaster

@@ -2,8 +2,9 @@
 #pragma once
 
 /// Forecasts of a disaster's track that agents observe. The disaster itself follows its true track.
-/// A forecast is either one issued by an authority (a disaster's `forecasts`) or the true track
-/// with a position error that grows with lead time (view.forecast_error_km).
+/// A forecast is either one issued by an authority (a disaster's `forecasts` and
+/// Farm::IssueForecast) or the true track with a position error that grows with lead time
+/// (view.forecast_error_km).
 ///
 ///      truth     o----o----o----o      forecast(t) = truth(t) + mean error(t - issued) · u
 ///      forecast  o-----o-----o-----o   linear between waypoints, exact at lead time 0
@@ -11,8 +12,9 @@
 ///
 /// The newest forecast of an authority applies. It leads from the current position to the points
 /// that lie in the future, and is extrapolated from the last two points while the true track lasts.
-/// Before the first forecast is issued and after the newest one expires, agents observe the current
-/// motion of the storm. This also applies to a storm that a bulletin replaced during the episode.
+/// Its rings are those of its points, or the true ones if its points have none. Before the first
+/// forecast is issued and after the newest one expires, agents observe the current motion of the
+/// storm. The scenario's forecasts end when another track replaces the scenario's.
 ///
 /// u is drawn once per episode and disaster, with a mean length of 1 and a random direction.
 /// Successive forecasts of one storm therefore err to the same side, and each is more accurate than
@@ -38,11 +40,17 @@ float MeanForecastError(const Scenario& scenario, float lead);
 std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episode,
                                          std::int32_t disaster);
 
+/// Returns the forecast of an authority that applies at step `issued`; nullptr if there is none or
+/// the newest one has expired. The pointer is valid until the farm changes.
+const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued);
+
+/// Returns the present position and rings of a disaster as a waypoint of step 0.
+Waypoint RingsOf(const ObservableDisaster& disaster);
+
 /// Returns whether the agents of a farm observe a forecast of a disaster at step `issued`.
 bool HasForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
-/// Returns the position of a disaster at `step` in the forecast of step `issued` [cells]. Only
-/// positions have errors; radii and risks are the true ones.
+/// Returns the position of a disaster at `step` in the forecast of step `issued` [cells].
 std::array<float, 2> ForecastAt(const Farm& farm, std::int32_t disaster, std::int32_t issued,
                                 std::int32_t step);
 

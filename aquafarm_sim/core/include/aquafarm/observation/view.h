@@ -8,6 +8,7 @@
 /// agents in play and know their cells. A monitoring device in place (deployed, not self-propelled,
 /// health above 0) sees for all ships within monitoring_radius.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -44,6 +45,8 @@ struct KnownDisaster {
   bool visible{};             ///< seen now; if false, from the last bulletin
   std::int32_t age{};         ///< age of the information [steps]; 0 when visible
   ObservableDisaster belief;  ///< last known state; its centre is not dead-reckoned
+  /// Forecast positions at view.forecast_leads_h from now; empty without view.disaster_slots.
+  std::vector<std::array<float, 2>> forecast;
 };
 
 /// View of one ship. Its memory is reused from step to step.
@@ -58,6 +61,9 @@ struct View {
   std::vector<KnownShip> others;  ///< in id order, without the observing ship
   std::vector<KnownDevice> devices;
   std::vector<KnownDisaster> disasters;
+  /// Ids of the known disasters that have not ended, the most dangerous first (disaster_slots.h);
+  /// empty without view.disaster_slots.
+  std::vector<std::int32_t> by_danger;
   const Scenario* scenario{};
   const Layout* layout{};
   std::vector<Sensor> sensors;  ///< its own, those of networked agents and of monitoring devices

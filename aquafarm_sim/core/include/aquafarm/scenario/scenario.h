@@ -79,17 +79,12 @@ struct DeviceSpec {
   }
 };
 
-/// Forecast position of a disaster at a step.
-struct ForecastPoint {
-  float step{};  ///< steps since the episode's start
-  float x{};     ///< [cells]
-  float y{};
-};
-
 /// A forecast issued by an authority.
 struct IssuedForecast {
-  float step{};                       ///< step of issue; may be negative
-  std::vector<ForecastPoint> points;  ///< in order of time, all after the step of issue
+  float step{};  ///< step of issue; may be negative
+  /// In order of time, all after the step of issue. Either all points have rings, or none has and
+  /// agents are told the true rings.
+  std::vector<Waypoint> points{};
 };
 
 /// Standard deviations by which a drawn storm differs from the recorded one.
@@ -226,6 +221,11 @@ struct ViewSpec {
   /// forecast track with this mean error; the disaster itself follows the track. If empty, agents
   /// observe the current motion instead. See forecast.h.
   std::vector<float> forecast_error_km{};
+  /// Slots of the features for disasters that arrive during play; see observation/disaster_slots.h.
+  /// 0: the features contain the scenario's own disasters by id.
+  std::int32_t disaster_slots{};
+  /// Lead times of the forecast positions in a slot [hours], ascending.
+  std::vector<float> forecast_leads_h{};
 };
 
 /// A field of the sea on the cells of a farm, read from netCDF or given in the scenario.

@@ -19,8 +19,8 @@ struct Waypoint {
   float x{};     ///< [cells]
   float y{};
   std::int32_t grade{1};
-  std::vector<float> radii;  ///< [cells], ascending; one per risk of the disaster
-  std::vector<float> risks;  ///< one per radius
+  std::vector<float> radii{};  ///< [cells], ascending; one per risk of the disaster
+  std::vector<float> risks{};  ///< one per radius
   /// Radii by quadrant, one entry per ring; `radii` then holds the largest radius of each ring.
   /// Empty if all rings are circles.
   std::vector<QuadrantRadii> quadrants{};

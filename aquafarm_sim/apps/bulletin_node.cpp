@@ -44,6 +44,7 @@ struct BulletinParams {
   double period_s{1.0};       // between checks of the folder
   double call_limit_s{10.0};  // until an unresponsive ranch counts as away
   int id{0};                  // of the disaster that the bulletins replace
+  bool forecast_only{false};  // ships receive the forecasts; the disaster keeps its track
 };
 
 BulletinParams ReadParams() {
@@ -54,6 +55,7 @@ BulletinParams ReadParams() {
   reader.Number("period_s", 0.05, 3600.0, params.period_s);
   reader.Number("call_limit_s", 0.1, 600.0, params.call_limit_s);
   reader.Int("id", 0, 63, params.id);
+  reader.Flag("forecast_only", params.forecast_only);
   reader.RefuseOthers();
   if (params.folder.empty()) {
     throw aquafarm::InputError("~folder: missing, expected the folder of the bulletins");
@@ -107,6 +109,7 @@ class BulletinNode {
     call->message.request.farm = -1;
     call->message.request.id = params_.id;
     call->message.request.storm = ToMsg(storm);
+    call->message.request.forecast_only = params_.forecast_only;
     // Only a persistent client has a connection that shutdown() can drop.
     call->client = node_.serviceClient<aquafarm_msgs::SetDisaster>(names::kSetDisaster, true);
     std::future<bool> answer = call->answered.get_future();
@@ -129,8 +132,11 @@ class BulletinNode {
               const aquafarm::StormTrack& storm) const {
     const aquafarm::StormKnowledge known =
         aquafarm::KnowledgeOf(storm, aquafarm::WithForecast(storm, aquafarm::NoForecast::kPersist));
-    const std::string text = path + ": " + name + " is now disaster " + std::to_string(params_.id) +
-                             "; " + aquafarm::Describe(known);
+    const std::string id = std::to_string(params_.id);
+    const std::string text =
+        path + ": " + name +
+        (params_.forecast_only ? " is the forecast of disaster " + id : " is now disaster " + id) +
+        "; " + aquafarm::Describe(known);
     if (known.issued == 0) {
       ROS_WARN("%s", text.c_str());
     } else {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "aquafarm/base/rng.h"
+#include "aquafarm/observation/view.h"
 #include "ranch_fixture.h"
 
 namespace aquafarm_sim {
@@ -420,6 +421,58 @@ TEST(RanchServices, ABulletinAddsAndCorrectsADisaster) {
   EXPECT_TRUE(call.response.ok) << call.response.message;
   EXPECT_FLOAT_EQ(4.0F, StateOf(*ranch, 0).disasters[0].x);
   EXPECT_FLOAT_EQ(1.0F, StateOf(*ranch, 1).disasters[0].x);
+}
+
+aquafarm_msgs::SetDisaster::Request Forecast() {
+  aquafarm_msgs::SetDisaster::Request request;
+  request.farm = -1;
+  request.forecast_only = true;
+  request.forecasts.resize(1);
+  request.forecasts[0].points.resize(1);
+  request.forecasts[0].points[0].step = 20.0F;
+  request.forecasts[0].points[0].x = 9.0F;
+  return request;
+}
+
+TEST(RanchServices, AForecastChangesWhatShipsAreToldAndNotTheDisaster) {
+  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
+  aquafarm_msgs::SetDisaster call;
+  call.request = Bulletin();
+  call.request.farm = -1;
+  ranch->SetDisaster(call.request, call.response);
+  const auto before = StateOf(*ranch).disasters[0];
+  call.request = Forecast();
+  ranch->SetDisaster(call.request, call.response);
+  ASSERT_TRUE(call.response.ok) << call.response.message;
+  EXPECT_EQ(before.x, StateOf(*ranch).disasters[0].x);
+  EXPECT_EQ(before.motion_x, StateOf(*ranch).disasters[0].motion_x);
+  ranch->Inspect([](const RanchView& view) {
+    for (std::int32_t i = 0; i < 2; ++i) {
+      aquafarm::View seen;
+      aquafarm::Observe(view.batch.farm(i), 0, seen);
+      EXPECT_FLOAT_EQ(seen.disasters[0].belief.dx, 8.0F / 20.0F) << "from 1 to 9 in 20 steps";
+    }
+  });
+  const std::uint64_t hash = StateOf(*ranch).hash;
+  const auto refused = [&](const aquafarm_msgs::SetDisaster::Request& request) {
+    ranch->SetDisaster(request, call.response);
+    EXPECT_FALSE(call.response.ok);
+    EXPECT_EQ(hash, StateOf(*ranch).hash);
+    return call.response.message;
+  };
+  call.request = Forecast();
+  call.request.forecasts.clear();
+  EXPECT_EQ("forecasts: got 0, expected exactly one: forecast_only is set", refused(call.request));
+  call.request = Forecast();
+  call.request.id = 1;
+  EXPECT_EQ(
+      "disaster: got 1, expected one of the 1 disasters of this episode; add it without "
+      "forecast_only",
+      refused(call.request));
+  call.request = Forecast();
+  call.request.forecasts[0].points.resize(1000000);
+  EXPECT_EQ("forecasts[0].points: got 1000000 entries, expected at most 10000",
+            refused(call.request));
 }
 
 TEST(RanchServices, HostileBulletinsChangeNothing) {

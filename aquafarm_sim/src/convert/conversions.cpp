@@ -189,6 +189,28 @@ std::vector<aquafarm::QuadrantRadii> QuadrantsOf(const std::string& name,
   return rings;
 }
 
+std::vector<aquafarm::Waypoint> WaypointsFrom(
+    const std::string& name, const std::vector<aquafarm_msgs::DisasterWaypoint>& messages) {
+  CheckSize(name, messages.size(), kMaxWaypoints);
+  std::vector<aquafarm::Waypoint> track;
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    const aquafarm_msgs::DisasterWaypoint& from = messages[i];
+    const std::string here = name + "[" + std::to_string(i) + "]";
+    CheckSize(here + ".radii", from.radii.size(), aquafarm::kMaxRings);
+    CheckSize(here + ".risks", from.risks.size(), aquafarm::kMaxRings);
+    aquafarm::Waypoint waypoint;
+    waypoint.step = from.step;
+    waypoint.x = from.x;
+    waypoint.y = from.y;
+    waypoint.grade = from.grade;
+    waypoint.radii = from.radii;
+    waypoint.risks = from.risks;
+    waypoint.quadrants = QuadrantsOf(here + ".quadrants", from.quadrants);
+    track.push_back(std::move(waypoint));
+  }
+  return track;
+}
+
 }  // namespace
 
 aquafarm_msgs::Cell ToMsg(aquafarm::Cell cell) {
@@ -380,10 +402,20 @@ aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record, std::
   return message;
 }
 
+std::vector<aquafarm::IssuedForecast> FromMsg(
+    const std::vector<aquafarm_msgs::DisasterForecast>& messages) {
+  CheckSize("forecasts", messages.size(), kMaxForecasts);
+  std::vector<aquafarm::IssuedForecast> forecasts;
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    const std::string name = "forecasts[" + std::to_string(i) + "].points";
+    forecasts.push_back({messages[i].step, WaypointsFrom(name, messages[i].points)});
+  }
+  return forecasts;
+}
+
 aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message) {
   CheckSize("info.radii", message.radii.size(), aquafarm::kMaxRings);
   CheckSize("info.risks", message.risks.size(), aquafarm::kMaxRings);
-  CheckSize("info.track", message.track.size(), kMaxWaypoints);
   aquafarm::DisasterSpec spec;
   spec.kind =
       ClosedSet<aquafarm::DisasterKind>("info.kind", message.kind, aquafarm::kDisasterKindCount);
@@ -398,21 +430,7 @@ aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message) {
   spec.border = ClosedSet<aquafarm::Border>("info.border", message.border, 3);
   spec.duration = message.duration;
   if (message.has_start) spec.start = {message.x, message.y};
-  for (std::size_t i = 0; i < message.track.size(); ++i) {
-    const aquafarm_msgs::DisasterWaypoint& from = message.track[i];
-    const std::string name = "info.track[" + std::to_string(i) + "]";
-    CheckSize(name + ".radii", from.radii.size(), aquafarm::kMaxRings);
-    CheckSize(name + ".risks", from.risks.size(), aquafarm::kMaxRings);
-    aquafarm::Waypoint waypoint;
-    waypoint.step = from.step;
-    waypoint.x = from.x;
-    waypoint.y = from.y;
-    waypoint.grade = from.grade;
-    waypoint.radii = from.radii;
-    waypoint.risks = from.risks;
-    waypoint.quadrants = QuadrantsOf(name + ".quadrants", from.quadrants);
-    spec.track.push_back(std::move(waypoint));
-  }
+  spec.track = WaypointsFrom("info.track", message.track);
   if (!spec.track.empty()) spec.quadrants = spec.track.front().quadrants;
   return spec;
 }

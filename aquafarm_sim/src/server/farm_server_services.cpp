@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/farm/forecast.h"
 #include "aquafarm/scenario/validate.h"
 #include "aquafarm/storms/to_disaster.h"
 #include "aquafarm_sim/server/farm_server.h"
@@ -358,6 +360,38 @@ void FarmServer::SetPace(const aquafarm_msgs::SetPace::Request& request,
   response.rate_hz = context_.rate_hz;
 }
 
+// Issues a forecast to all addressed farms, or to none.
+void FarmServer::IssueForecast(const aquafarm_msgs::SetDisaster::Request& request,
+                               std::int32_t first, std::int32_t end,
+                               aquafarm_msgs::SetDisaster::Response& response) {
+  std::vector<aquafarm::IssuedForecast> issued;
+  for (std::int32_t i = first; i < end; ++i) {
+    const aquafarm::Farm& farm = batch_->farm(i);
+    if (IsSaid(request.storm)) {
+      aquafarm::DisasterSpec storm =
+          aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id, farm.step());
+      if (storm.forecasts.empty()) {
+        throw aquafarm::InputError(
+            "storm.forecast: got none after the last position, expected "
+            "positions: forecast_only is set");
+      }
+      issued.push_back(aquafarm::FitForecast(farm, request.id, storm));
+    } else if (request.forecasts.size() == 1) {
+      issued.push_back(FromMsg(request.forecasts)[0]);
+    } else {
+      throw aquafarm::InputError("forecasts: got " + std::to_string(request.forecasts.size()) +
+                                 ", expected exactly one: forecast_only is set");
+    }
+    aquafarm::CheckForecast(farm, request.id, issued.back());
+  }
+  for (std::int32_t i = first; i < end; ++i) {
+    batch_->farm(i).IssueForecast(request.id, issued[static_cast<std::size_t>(i - first)]);
+    if (recorder_ != nullptr) recorder_->OnIntervention(batch_->farm(i), i);
+  }
+  if (first == 0) Changed();
+  Answer(Outcome::OK, "", response);
+}
+
 void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                              aquafarm_msgs::SetDisaster::Response& response) {
   const Lock lock(mutex_);
@@ -375,6 +409,7 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
         return Answer(Outcome::BAD_VALUE, OutOfRange("id", request.id, 0, most), response);
       }
     }
+    if (request.forecast_only != 0) return IssueForecast(request, first, end, response);
     const bool on_globe = IsSaid(request.storm);
     const auto step_of = [&](std::int32_t i) { return batch_->farm(i).step(); };
     std::int32_t earliest = step_of(first);
@@ -383,6 +418,7 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     aquafarm::DisasterSpec spec =
         on_globe ? aquafarm::ToDisaster(FromMsg(request.storm), *scenario_, request.id, earliest)
                  : FromMsg(request.info);
+    if (!on_globe) spec.forecasts = FromMsg(request.forecasts);
     aquafarm::ValidateDisaster(spec);
     const std::int32_t longest = spec.duration;
     const auto left = [&](std::int32_t i) {
@@ -400,8 +436,10 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     // All differences between farms are checked, so a disaster that the first accepts, all accept.
     for (std::int32_t i = first; i < end; ++i) {
       if (left(i) <= 0) continue;  // the storm has ended for this farm
-      spec.duration = left(i);
-      batch_->farm(i).SetDisaster(request.id, spec);
+      aquafarm::DisasterSpec fitted = spec;
+      fitted.duration = left(i);
+      if (on_globe) aquafarm::FitArrival(batch_->farm(i), request.id, fitted);
+      batch_->farm(i).SetDisaster(request.id, fitted);
       if (recorder_ != nullptr) recorder_->OnIntervention(batch_->farm(i), i);
     }
     if (first == 0) Changed();

@@ -191,6 +191,49 @@ TEST(Foresight, IsTheTrackOrTheForecastOrTheHeading) {
   EXPECT_EQ(place(tracked, Foresight::kOracle), (std::array<float, 2>{2.0F, 5.0F}));
 }
 
+// A storm that stays away, and a forecast that puts it on the ship's way to the only device.
+TEST(Foresight, MovingOneForecastPointChangesThePlanAndNotTheTruth) {
+  Scenario open;
+  open.name = "open";
+  open.width = 7;
+  open.height = 7;
+  open.rocks.count = {0, 0};
+  open.ports.cells = {{0, 3}};
+  open.devices.placement = DevicePlacement::kExplicit;
+  open.devices.sites = {{{6, 3}, DeviceKind::kMonitoring, 60.0F, false}};
+  open.step_limit = 40;
+  DisasterSpec storm;
+  storm.radii = {2.5F};
+  storm.risks = {-20.0F};
+  storm.duration = 40;
+  storm.track = {{0.0F, 3.0F, 30.0F, 3, storm.radii, storm.risks},
+                 {40.0F, 3.0F, 31.0F, 3, storm.radii, storm.risks}};
+  open.disasters = {storm};
+  ValidateScenario(open);
+  const auto scenario = std::make_shared<const Scenario>(open);
+  Farm away(scenario);
+  Farm near(scenario);
+  away.IssueForecast(0, {0.0F, {{2.0F, 3.0F, 20.0F}, {40.0F, 3.0F, 20.0F}}});
+  near.IssueForecast(0, {0.0F, {{2.0F, 3.0F, 3.0F}, {40.0F, 3.0F, 3.0F}}});
+  Planner planner(*scenario);
+  const Plan calm = planner.Solve(away, Foresight::kPersistence);
+  const Plan wary = planner.Solve(near, Foresight::kPersistence);
+  EXPECT_NE(calm.actions, wary.actions);
+  EXPECT_LT(wary.expected_return, calm.expected_return);
+  EXPECT_EQ(planner.Solve(away, Foresight::kOracle).actions,
+            planner.Solve(near, Foresight::kOracle).actions);
+  // The plan goes round the forecast rings: at no step is it in them.
+  std::vector<Disaster> told = near.disasters();
+  const std::vector<Track> tracks = Foresee(near, Foresight::kPersistence, told);
+  for (const std::uint8_t action : wary.actions) {
+    near.Step(&action);
+    MoveDisaster(told[0], tracks[0], {}, near.step(), 7, 7);
+    EXPECT_EQ(RiskAt(told, near.ships()[0].cell), 0.0F) << "step " << near.step();
+    EXPECT_NEAR(near.disasters()[0].y, 30.0F + static_cast<float>(near.step()) / 40.0F, 1e-4);
+  }
+  EXPECT_TRUE(near.record().Success());
+}
+
 TEST(Clairvoyant, GoesOnFromTheMiddleOfAnEpisode) {
   const auto scenario = std::make_shared<const Scenario>(TinyScenario(9, 0.02F, 1));
   Planner planner(*scenario);

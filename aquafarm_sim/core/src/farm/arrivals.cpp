@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Forecasts that are issued during an episode.
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,8 +14,18 @@
 namespace aquafarm {
 namespace {
 
+const Disaster& Present(const Farm& farm, std::int32_t disaster) {
+  const auto count = static_cast<std::int32_t>(farm.disasters().size());
+  if (disaster >= 0 && disaster < count) {
+    return farm.disasters()[static_cast<std::size_t>(disaster)];
+  }
+  throw InputError("disaster: got " + std::to_string(disaster) + ", expected one of the " +
+                   std::to_string(count) + " disasters of this episode; add it without " +
+                   "forecast_only");
+}
+
 // Checks the numbers of a forecast by the rules for a disaster with the rings of the present one.
-void CheckForecast(const Disaster& disaster, const IssuedForecast& forecast) {
+void CheckNumbers(const Disaster& disaster, const IssuedForecast& forecast) {
   DisasterSpec spec;
   spec.track = {RingsOf(disaster)};
   Waypoint& first = spec.track[0];
@@ -30,6 +42,18 @@ void CheckForecast(const Disaster& disaster, const IssuedForecast& forecast) {
   ValidateDisaster(spec);
 }
 
+// Returns the newest forecast of a storm, issued at a step at the latest.
+IssuedForecast IssuedBy(float step, const DisasterSpec& storm) {
+  IssuedForecast forecast = storm.forecasts.back();
+  if (forecast.step <= step) return forecast;
+  forecast.step = step;
+  forecast.points.clear();
+  for (const Waypoint& point : storm.track) {
+    if (point.step > step) forecast.points.push_back(point);
+  }
+  return forecast;
+}
+
 void RequireStep(const char* what, float got, const std::string& expected, bool fits) {
   if (fits) return;
   throw InputError(std::string("forecast.") + what + ": got " + internal::Format(got) +
@@ -38,25 +62,55 @@ void RequireStep(const char* what, float got, const std::string& expected, bool 
 
 }  // namespace
 
-void Farm::IssueForecast(std::int32_t id, const IssuedForecast& forecast) {
-  const auto count = static_cast<std::int32_t>(disasters_.size());
-  if (id < 0 || id >= count) {
-    throw InputError("disaster: got " + std::to_string(id) + ", expected [0, " +
-                     std::to_string(count - 1) + "], a disaster of this episode");
-  }
-  const auto k = static_cast<std::size_t>(id);
-  CheckForecast(disasters_[k], forecast);
-  const auto now = static_cast<float>(record_.steps);
+void CheckForecast(const Farm& farm, std::int32_t disaster, const IssuedForecast& forecast) {
+  CheckNumbers(Present(farm, disaster), forecast);
+  const auto now = static_cast<float>(farm.step());
   const std::string present = "the present step, " + internal::Format(now);
   RequireStep("step", forecast.step, "at most " + present, forecast.step <= now);
   const float last = forecast.points.back().step;
   RequireStep("points", last, "a last point after " + present, last > now);
-  if (const IssuedForecast* newest = NewestForecast(*this, id, record_.steps)) {
+  if (const IssuedForecast* newest = NewestForecast(farm, disaster, farm.step())) {
     RequireStep("step", forecast.step,
                 "at least that of the newest forecast, " + internal::Format(newest->step),
                 forecast.step >= newest->step);
   }
-  // Earlier forecasts are not kept: the bulletin tells all ships the new one.
+}
+
+IssuedForecast FitForecast(const Farm& farm, std::int32_t disaster, const DisasterSpec& storm) {
+  const auto now = static_cast<float>(farm.step());
+  IssuedForecast forecast = IssuedBy(now, storm);
+  const Disaster& present = Present(farm, disaster);
+  const bool same = storm.track[0].radii.size() == static_cast<std::size_t>(present.rings) &&
+                    storm.track[0].quadrants.empty() != present.by_quadrant;
+  for (Waypoint& point : forecast.points) {
+    if (same) continue;
+    point.radii.clear();
+    point.risks.clear();
+    point.quadrants.clear();
+  }
+  return forecast;
+}
+
+void FitArrival(const Farm& farm, std::int32_t disaster, DisasterSpec& spec) {
+  if (spec.forecasts.empty()) return;
+  const auto now = static_cast<float>(farm.step());
+  IssuedForecast& newest = spec.forecasts.back();
+  newest = IssuedBy(now, spec);
+  const ViewSpec& view = farm.scenario().view;
+  if (view.forecast_error_km.empty()) return;
+  const std::array<float, 2> unit = ForecastErrorVector(farm.seed(), farm.episode(), disaster);
+  for (Waypoint& point : spec.track) {
+    if (point.step <= newest.step) continue;
+    const float error = MeanForecastError(farm.scenario(), point.step - newest.step);
+    point.x -= error * unit[0];
+    point.y -= error * unit[1];
+  }
+}
+
+void Farm::IssueForecast(std::int32_t id, const IssuedForecast& forecast) {
+  CheckForecast(*this, id, forecast);
+  const auto k = static_cast<std::size_t>(id);
+  // Earlier forecasts are not kept: all ships receive the new one with the bulletin.
   forecasts_[k] = std::make_shared<const std::vector<IssuedForecast>>(1, forecast);
   if (scenario_->view.mode == ViewMode::kPartial) IssueBulletin(k);
 }

@@ -122,7 +122,12 @@ void WriteDisasters(const FeatureScales& scales, const View& view, float* out) {
 
 // Returns the features of disasters: by id, or by slot if the scenario has slots.
 FeatureGroup DisasterGroup(const Scenario& scenario) {
-  if (SlotCount(scenario) > 0) return {"disasters", SlotNames(scenario), WriteSlots};
+  if (SlotCount(scenario) > 0) {
+    return {"disasters", SlotNames(scenario),
+            [](const FeatureScales& scales, const View& view, float* out) {
+              WriteSlots(scales.length, view, out);
+            }};
+  }
   return {"disasters",
           Numbered("disaster", static_cast<std::int32_t>(scenario.disasters.size()),
                    {"known", "east", "north", "motion_east", "motion_north", "reach", "age"}),

@@ -2,11 +2,11 @@
 #include "aquafarm/observation/view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "aquafarm/farm/forecast.h"
 #include "aquafarm/grid/action.h"
-#include "aquafarm/observation/disaster_slots.h"
 
 namespace aquafarm {
 namespace {
@@ -78,6 +78,23 @@ void ApplyForecast(const Farm& farm, std::size_t id, KnownDisaster& known) {
   known.belief.dy = (there[1] - known.belief.y) / lead;
 }
 
+// Returns the distance from a ship to the edge of a disaster with its centre at (x, y), at least 0.
+float Gap(Cell ship, float x, float y, float reach) {
+  const float east = x - static_cast<float>(ship.x);
+  const float north = y - static_cast<float>(ship.y);
+  return std::max(0.0F, std::sqrt(east * east + north * north) - reach);
+}
+
+float DangerOf(const View& view, const KnownDisaster& known) {
+  const float reach = known.belief.reach();
+  float gap = Gap(view.self, known.belief.x, known.belief.y, reach);
+  for (const std::array<float, 2>& position : known.forecast) {
+    gap = std::min(gap, Gap(view.self, position[0], position[1], reach));
+  }
+  const auto side = static_cast<float>(std::max(view.scenario->width, view.scenario->height));
+  return -WorstRisk(known.belief) / (1.0F + gap / side);
+}
+
 // Sets the forecast positions at the lead times of the scenario, from the motion of the last
 // information if there is no forecast.
 void ApplyLeads(const Farm& farm, std::size_t id, KnownDisaster& known) {
@@ -114,6 +131,49 @@ void ObserveDisaster(const Farm& farm, std::size_t id, bool full,
 }
 
 }  // namespace
+
+float WorstRisk(const ObservableDisaster& disaster) {
+  float worst = 0.0F;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(disaster.rings); ++k) {
+    if (disaster.radius[k] > 0.0F) worst = std::min(worst, disaster.risk[k]);
+  }
+  return worst;
+}
+
+std::int32_t LeadSteps(const Scenario& scenario, std::size_t lead) {
+  const double lead_s = static_cast<double>(scenario.view.forecast_leads_h[lead]) * 3600.0;
+  const double steps = std::min(lead_s / scenario.step_duration_s, 1.0e7);
+  return std::max(1, static_cast<std::int32_t>(steps + 0.5));
+}
+
+void ExtrapolateMotion(const Scenario& scenario, KnownDisaster& known) {
+  known.forecast.resize(scenario.view.forecast_leads_h.size());
+  for (std::size_t lead = 0; lead < known.forecast.size(); ++lead) {
+    const auto steps = static_cast<float>(known.age + LeadSteps(scenario, lead));
+    known.forecast[lead] = {known.belief.x + steps * known.belief.dx,
+                            known.belief.y + steps * known.belief.dy};
+  }
+}
+
+void RankByDanger(View& view) {
+  view.by_danger.clear();
+  for (std::size_t id = 0; id < view.disasters.size(); ++id) {
+    const KnownDisaster& known = view.disasters[id];
+    if (known.known && known.belief.active()) {
+      view.by_danger.push_back(static_cast<std::int32_t>(id));
+    }
+  }
+  if (view.by_danger.size() < 2) return;
+  const auto danger = [&view](std::int32_t id) {
+    return DangerOf(view, view.disasters[static_cast<std::size_t>(id)]);
+  };
+  std::sort(view.by_danger.begin(), view.by_danger.end(),
+            [&danger](std::int32_t a, std::int32_t b) {
+              const float of_a = danger(a);
+              const float of_b = danger(b);
+              return of_a != of_b ? of_a > of_b : a < b;
+            });
+}
 
 void Observe(const Farm& farm, std::int32_t ship, View& view) {
   const Scenario& scenario = farm.scenario();

@@ -281,7 +281,8 @@ void CheckForecast(const Scenario& scenario) {
   if (!std::is_sorted(error_km.begin(), error_km.end())) {
     throw FieldError(path, "got an error that shrinks with time, expected ascending numbers");
   }
-  if (std::none_of(scenario.disasters.begin(), scenario.disasters.end(),
+  if (scenario.view.disaster_slots == 0 &&
+      std::none_of(scenario.disasters.begin(), scenario.disasters.end(),
                    [](const DisasterSpec& one) { return !one.track.empty(); })) {
     throw FieldError(path, "is used only where a disaster has a track");
   }

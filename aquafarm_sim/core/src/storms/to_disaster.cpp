@@ -71,6 +71,15 @@ DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, st
                      "); send a newer bulletin");
   }
   disaster.duration = StepsToCover(left, 1.0);
+  const StormKnowledge known = KnowledgeOf(bulletin, whole);
+  if (known.issued == 0) return disaster;
+  IssuedForecast forecast;
+  forecast.step = static_cast<float>(
+      static_cast<double>(known.recorded_until - *scenario.start_time) / scenario.step_duration_s);
+  for (const Waypoint& point : disaster.track) {
+    if (point.step > forecast.step) forecast.points.push_back(point);
+  }
+  if (!forecast.points.empty()) disaster.forecasts = {forecast};
   return disaster;
 }
 

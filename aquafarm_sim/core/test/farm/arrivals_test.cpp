@@ -167,6 +167,60 @@ TEST(SetDisaster, TakesTheTruthAndTheForecastApart) {
   EXPECT_FALSE(HasForecast(farm, 1, farm.step())) << "another disaster, another forecast";
 }
 
+/// A storm as a bulletin of step 4 announces it: recorded until then, forecast after it.
+DisasterSpec Announced() {
+  DisasterSpec storm = NorthernStorm().disasters[0];
+  storm.track = {{0.0F, 5.0F, -60.0F, 3, storm.radii, storm.risks},
+                 {4.0F, 5.0F, -56.0F, 3, storm.radii, storm.risks},
+                 {148.0F, 50.0F, 40.0F, 4, {2.0F, 4.0F}, storm.risks}};
+  storm.forecasts = {{4.0F, {storm.track[2]}}};
+  return storm;
+}
+
+TEST(FitArrival, KeepsTheTruthAsFarFromTheForecastAsPublishedErrorsAre) {
+  Scenario scenario = NorthernStorm();
+  scenario.cell_size_m = 1000.0;
+  scenario.step_duration_s = 600.0;
+  scenario.view.disaster_slots = 1;
+  scenario.view.forecast_error_km = {69.0F, 121.0F, 175.0F};
+  Farm farm = At10(scenario);
+  DisasterSpec storm = Announced();
+  FitArrival(farm, 1, storm);
+  EXPECT_EQ(storm.forecasts[0].points[0].x, 50.0F) << "agents receive the bulletin";
+  EXPECT_EQ(storm.track[1].x, 5.0F) << "what is recorded is true";
+  const auto unit = ForecastErrorVector(4, 2, 1);
+  EXPECT_NEAR(storm.track[2].x, 50.0F - 69.0F * unit[0], 1e-3) << "24 hours after the issue";
+  EXPECT_NEAR(storm.track[2].y, 40.0F - 69.0F * unit[1], 1e-3);
+  farm.SetDisaster(1, storm);
+  EXPECT_EQ(ForecastAt(farm, 1, 10, 148), (std::array<float, 2>{50.0F, 40.0F}));
+  scenario.view.forecast_error_km.clear();
+  const Farm exact = At10(scenario);
+  storm = Announced();
+  FitArrival(exact, 1, storm);
+  EXPECT_EQ(storm.track[2].x, 50.0F) << "without errors the storm follows the forecast";
+}
+
+TEST(FitArrival, IssuesAForecastOfTheFutureNow) {
+  const Farm farm = At10();
+  DisasterSpec storm = Announced();
+  storm.forecasts[0].step = 90.0F;
+  storm.track.insert(storm.track.begin() + 2, {90.0F, 9.0F, 9.0F, 3, storm.radii, storm.risks});
+  FitArrival(farm, 1, storm);
+  EXPECT_EQ(storm.forecasts[0].step, 10.0F);
+  ASSERT_EQ(storm.forecasts[0].points.size(), 2U);
+  EXPECT_EQ(storm.forecasts[0].points[0].step, 90.0F) << "recorded, and yet to come here";
+}
+
+TEST(FitForecast, KeepsRingsThatFitTheDisaster) {
+  Farm farm = At10();
+  EXPECT_EQ(FitForecast(farm, 0, Announced()).points[0].radii, (std::vector<float>{2.0F, 4.0F}));
+  farm.SetDisaster(1, StillDisaster(1, 1, {1}, {-5}));
+  const IssuedForecast bare = FitForecast(farm, 1, Announced());
+  EXPECT_TRUE(bare.points[0].radii.empty());
+  EXPECT_EQ(bare.points[0].x, 50.0F);
+  EXPECT_NO_THROW(farm.IssueForecast(1, bare));
+}
+
 std::string Refused(const std::function<void()>& act) {
   try {
     act();
@@ -187,7 +241,8 @@ TEST(IssueForecast, IsRefusedInWords) {
     return Refused([&] { farm.IssueForecast(id, forecast); });
   };
   EXPECT_EQ(refused([](IssuedForecast&) {}, 1),
-            "disaster: got 1, expected [0, 0], a disaster of this episode");
+            "disaster: got 1, expected one of the 1 disasters of this episode; add it without "
+            "forecast_only");
   EXPECT_EQ(refused([](IssuedForecast& f) { f.step = 11.0F; }),
             "forecast.step: got 11, expected at most the present step, 10");
   EXPECT_EQ(refused([](IssuedForecast& f) { f.step = 9.0F; }),

@@ -169,6 +169,28 @@ TEST(Bulletins, LastFromNowToTheirEnd) {
   }
 }
 
+TEST(Bulletins, AreToldWithTheirForecast) {
+  StormTrack track = WestGoing();
+  StormForecast fresh;
+  fresh.issued = kStart + 20 * kHour_s;
+  fresh.fixes = {Fix(26, 119.5, 25.0), Fix(44, 118.0, 18.0)};
+  track.forecasts = {fresh};
+  Scenario scenario;
+  scenario.origin = kRanch;
+  scenario.start_time = kStart;
+  scenario.step_duration_s = 3600.0;
+  const DisasterSpec disaster = ToDisaster(track, scenario, 0, 5);
+  EXPECT_NO_THROW(ValidateDisaster(disaster));
+  ASSERT_EQ(disaster.forecasts.size(), 1U);
+  EXPECT_EQ(disaster.forecasts[0].step, 20.0F) << "the last recorded position";
+  ASSERT_EQ(disaster.forecasts[0].points.size(), 2U);
+  EXPECT_EQ(disaster.forecasts[0].points[1].step, 44.0F);
+  EXPECT_EQ(disaster.forecasts[0].points[1].x, disaster.track.back().x);
+  EXPECT_EQ(disaster.forecasts[0].points[1].radii, disaster.track.back().radii);
+  track.forecasts.clear();
+  EXPECT_TRUE(ToDisaster(track, scenario, 0, 5).forecasts.empty()) << "an assumed motion";
+}
+
 TEST(Tracks, BeginOnTheRanchsSideOfTheGlobe) {
   StormTrack track = WestGoing();
   StormFix antipode = track.fixes.front();

@@ -6,6 +6,7 @@
 
 #include <aquafarm_msgs/Cell.h>
 #include <aquafarm_msgs/DeviceState.h>
+#include <aquafarm_msgs/DisasterForecast.h>
 #include <aquafarm_msgs/DisasterInfo.h>
 #include <aquafarm_msgs/DisasterState.h>
 #include <aquafarm_msgs/EpisodeSummary.h>
@@ -85,6 +86,13 @@ inline constexpr std::size_t kMaxWaypoints = 10000;
 /// Converts a disaster. Checks array lengths and enumerations; SetDisaster checks the numbers.
 /// @throws InputError "info.radii: got 1000000 entries, expected at most 4"
 aquafarm::DisasterSpec FromMsg(const aquafarm_msgs::DisasterInfo& message);
+
+/// Max number of forecasts in a message.
+inline constexpr std::size_t kMaxForecasts = 1000;
+/// Converts forecasts. Checks array lengths; SetDisaster and IssueForecast check the numbers.
+/// @throws InputError "forecasts[0].points[3].radii: got 9 entries, expected at most 4"
+std::vector<aquafarm::IssuedForecast> FromMsg(
+    const std::vector<aquafarm_msgs::DisasterForecast>& messages);
 
 /// Converts a storm bulletin, for use with ToDisaster (storms/to_disaster.h).
 /// @throws InputError "storm.fixes[0].latitude_deg: got 95, expected a number in [-90, 90]"

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "aquafarm/base/check.h"
-#include "aquafarm/observation/disaster_slots.h"
 #include "aquafarm/observation/view.h"
 
 namespace aquafarm_sim {

@@ -235,6 +235,8 @@ class FarmServer {
   void RecordStarts();
   std::uint64_t NextEpisode() const;
   void StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first);
+  void IssueForecast(const aquafarm_msgs::SetDisaster::Request& request, std::int32_t first,
+                     std::int32_t end, aquafarm_msgs::SetDisaster::Response& response);
   void FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const;
   void ForgetAnswers();
 

@@ -106,8 +106,8 @@ class Farm {
   const std::vector<Disaster>& disasters() const { return disasters_; }
   /// Waypoints of each disaster; empty for a disaster without a track.
   const std::vector<Track>& tracks() const { return tracks_; }
-  /// Forecasts of each disaster that were issued during this episode. They are what agents are
-  /// told and have no effect on the disasters; forecast.h merges them with the scenario's.
+  /// Forecasts of each disaster that were issued during this episode. Agents receive them. They
+  /// have no effect on the disasters; forecast.h merges them with the scenario's.
   const std::vector<Forecasts>& forecasts() const { return forecasts_; }
   /// Statistics of this episode so far.
   const EpisodeRecord& record() const { return record_; }
@@ -159,12 +159,12 @@ class Farm {
 
   /// Applies a bulletin: replaces disaster `id`, or adds a disaster when `id` equals their number.
   /// A spec without start keeps the current centre; a new disaster needs a start or a track. The
-  /// track is the truth, and the spec's forecasts are what agents are told. They replace those
+  /// track is the truth, and the spec's forecasts are what agents receive. They replace those
   /// issued before; with forecasts, the bulletin is issued at once.
   /// @throws InputError on an id or spec out of range; the farm is then unchanged
   void SetDisaster(std::int32_t id, const DisasterSpec& spec);
 
-  /// Applies a forecast of disaster `id`: from now on agents are told it, with a bulletin that is
+  /// Applies a forecast of disaster `id`: from now on agents receive it, with a bulletin that is
   /// issued at once. The disaster itself does not change.
   /// @param forecast issued at the present step or earlier, not before the newest one in force,
   ///   with a point after the present step; its rings are as many as those of the disaster

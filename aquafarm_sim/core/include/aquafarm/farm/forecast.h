@@ -44,6 +44,21 @@ std::array<float, 2> ForecastErrorVector(std::uint64_t seed, std::uint64_t episo
 /// the newest one has expired. The pointer is valid until the farm changes.
 const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, std::int32_t issued);
 
+/// Checks whether Farm::IssueForecast accepts a forecast. @throws InputError if it does not
+void CheckForecast(const Farm& farm, std::int32_t disaster, const IssuedForecast& forecast);
+
+/// Fits a storm to a farm before Farm::SetDisaster. A forecast that is issued in the farm's future
+/// is issued now. With view.forecast_error_km the waypoints after the issue of the newest forecast
+/// are moved by minus the error of the farm's episode, so that the truth is as far from the
+/// forecast as published forecasts are from their storms; otherwise it follows the forecast.
+void FitArrival(const Farm& farm, std::int32_t disaster, DisasterSpec& spec);
+
+/// Returns the newest forecast of a storm, fitted to a farm for Farm::IssueForecast: a forecast
+/// that is issued in the farm's future is issued now and begins with the storm's next waypoint. Its
+/// rings are left out if the disaster has another number of rings.
+/// @param storm with a forecast
+IssuedForecast FitForecast(const Farm& farm, std::int32_t disaster, const DisasterSpec& storm);
+
 /// Returns the present position and rings of a disaster as a waypoint of step 0.
 Waypoint RingsOf(const ObservableDisaster& disaster);
 

@@ -61,7 +61,7 @@ struct View {
   std::vector<KnownShip> others;  ///< in id order, without the observing ship
   std::vector<KnownDevice> devices;
   std::vector<KnownDisaster> disasters;
-  /// Ids of the known disasters that have not ended, the most dangerous first (disaster_slots.h);
+  /// Ids of the known disasters that have not ended, the most dangerous first (RankByDanger);
   /// empty without view.disaster_slots.
   std::vector<std::int32_t> by_danger;
   const Scenario* scenario{};
@@ -71,6 +71,21 @@ struct View {
 
 /// Fills `view` with the current observation of `ship`.
 void Observe(const Farm& farm, std::int32_t ship, View& view);
+
+/// Returns lead time `lead` of view.forecast_leads_h in steps, at least 1.
+std::int32_t LeadSteps(const Scenario& scenario, std::size_t lead);
+
+/// Sets the forecast positions of a disaster to those of its present motion.
+void ExtrapolateMotion(const Scenario& scenario, KnownDisaster& known);
+
+/// Returns the worst risk of a disaster's rings at any place; 0 if it has no ring.
+float WorstRisk(const ObservableDisaster& disaster);
+
+/// Fills View::by_danger from the disasters and their forecast positions. The danger of a disaster
+/// for a ship is |worst risk| / (1 + gap / longer side of the map). The gap is the smallest
+/// distance from the ship to the edge of the disaster, now or at one of the lead times; 0 inside.
+/// At equal danger the lower id comes first. [decided], see docs/scenario.md
+void RankByDanger(View& view);
 
 /// Returns the worst risk at a cell according to the view.
 inline float KnownRiskAt(const View& view, Cell cell) {

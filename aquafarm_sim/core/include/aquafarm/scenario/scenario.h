@@ -83,7 +83,7 @@ struct DeviceSpec {
 struct IssuedForecast {
   float step{};  ///< step of issue; may be negative
   /// In order of time, all after the step of issue. Either all points have rings, or none has and
-  /// agents are told the true rings.
+  /// agents receive the true rings.
   std::vector<Waypoint> points{};
 };
 

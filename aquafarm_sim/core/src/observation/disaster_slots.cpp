@@ -52,7 +52,7 @@ std::vector<std::string> SlotNames(const Scenario& scenario) {
       names.push_back(here + part);
     }
     for (int kind = 0; kind < kDisasterKindCount; ++kind) {
-      names.push_back(here + "is_" + std::string(ToString(static_cast<DisasterKind>(kind))));
+      names.push_back(here + std::string(ToString(static_cast<DisasterKind>(kind))));
     }
     for (const float lead_h : scenario.view.forecast_leads_h) {
       for (const char* part : {"east_", "north_"}) {

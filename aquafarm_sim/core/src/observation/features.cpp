@@ -224,6 +224,7 @@ void WriteKinds(const FeatureScales&, const View& view, float* out) {
     out[static_cast<std::size_t>(device.kind)] = 1.0F;
     out += kDeviceKindCount;
   }
+  if (SlotCount(*view.scenario) > 0) return;  // the slots contain kinds and grades
   for (std::size_t id = 0; id < view.scenario->disasters.size(); ++id) {
     const KnownDisaster& known = view.disasters[id];
     std::fill_n(out, kDisasterKindCount + 1, 0.0F);
@@ -243,6 +244,7 @@ std::vector<std::string> KindNames(const Scenario& scenario) {
                       std::string(ToString(static_cast<DeviceKind>(kind))));
     }
   }
+  if (SlotCount(scenario) > 0) return names;
   for (std::size_t id = 0; id < scenario.disasters.size(); ++id) {
     const std::string disaster = "disaster" + std::to_string(id) + '.';
     for (int kind = 0; kind < kDisasterKindCount; ++kind) {

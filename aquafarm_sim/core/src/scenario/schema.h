@@ -192,9 +192,10 @@ void VisitForecast(Archive& a, F& forecast, const WorldFrame* frame, const Disas
     if (real) forecast.step = ToStep(time, frame, a.path());
   }
   a.Always();
+  const GradeRisks by_grade = Archive::kReads ? RisksByGrade(of) : GradeRisks{};
   a.Structs("points", forecast.points, {1, kMaxWaypoints}, [&](auto& b, auto& point) {
     if constexpr (Archive::kReads) point.risks = of.risks;
-    VisitForecastPoint(b, point, frame, of.grade_risks);
+    VisitForecastPoint(b, point, frame, by_grade);
   });
 }
 

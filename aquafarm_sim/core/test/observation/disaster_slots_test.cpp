@@ -55,7 +55,7 @@ TEST(DisasterSlots, ShowADisasterThatArrivesInPlayMostDangerousFirst) {
   test::RandomSteps(farm, 3, 1);
   Named seen = FeaturesOf(farm);
   EXPECT_EQ(seen.at("slot0.known"), 1.0F);
-  EXPECT_EQ(seen.at("slot0.is_red_tide"), 1.0F);
+  EXPECT_EQ(seen.at("slot0.red_tide"), 1.0F);
   EXPECT_EQ(seen.at("slot1.known"), 0.0F);
   EXPECT_EQ(seen.count("slot3.known"), 0U) << "one of the scenario and two slots";
   EXPECT_EQ(seen.count("disaster0.known"), 0U);
@@ -65,14 +65,14 @@ TEST(DisasterSlots, ShowADisasterThatArrivesInPlayMostDangerousFirst) {
   farm.SetDisaster(1, spill);
   seen = FeaturesOf(farm);
   const Cell ship = farm.ships()[0].cell;
-  EXPECT_EQ(seen.at("slot0.is_oil_spill"), 1.0F);
-  EXPECT_EQ(seen.at("slot0.is_red_tide"), 0.0F);
+  EXPECT_EQ(seen.at("slot0.oil_spill"), 1.0F);
+  EXPECT_EQ(seen.at("slot0.red_tide"), 0.0F);
   EXPECT_EQ(seen.at("slot0.grade"), 0.5F);
   EXPECT_EQ(seen.at("slot0.risk"), 1.0F);
   EXPECT_FLOAT_EQ(seen.at("slot0.east"), (4.0F - static_cast<float>(ship.x)) / 5.0F);
   EXPECT_FLOAT_EQ(seen.at("slot0.north"), (4.0F - static_cast<float>(ship.y)) / 5.0F);
   EXPECT_FLOAT_EQ(seen.at("slot0.reach"), 3.0F / 5.0F);
-  EXPECT_EQ(seen.at("slot1.is_red_tide"), 1.0F);
+  EXPECT_EQ(seen.at("slot1.red_tide"), 1.0F);
   EXPECT_EQ(seen.at("slot2.known"), 0.0F);
 }
 

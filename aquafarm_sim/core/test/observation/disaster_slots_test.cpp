@@ -211,7 +211,7 @@ TEST(DisasterSlots, AreRefusedInWords) {
   EXPECT_EQ(Refused("disaster_slots: 1, forecast_leads_h: [6, 6]"),
             "x.yaml:4: view.forecast_leads_h[1]: got 6, expected more than the lead before, 6");
   EXPECT_EQ(Refused("disaster_slots: -1"),
-            "x.yaml:4: view.disaster_slots: got -1, expected a whole number in [0, 64]");
+            "x.yaml:4: view.disaster_slots: got -1, expected [0, 64]");
 }
 
 }  // namespace

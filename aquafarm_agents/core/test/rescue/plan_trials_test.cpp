@@ -99,7 +99,8 @@ TEST_F(Trials, ChancesAreKeptAndThePlanIsWorthItsName) {
 
 TEST_F(Trials, ARecordedStormIsNotMoved) {
   const PlanTrials trials = Make();
-  const StormTrack& track = FindTrack(LoadStormFile(kArchive), "2106");
+  const StormFile archive = LoadStormFile(kArchive);
+  const StormTrack& track = FindTrack(archive, "2106");
   TrialOptions options;
   options.draws_size = false;
   const TrialStorm storm = RecordedTrial(track, trials.place(), options, 24.0, 3);

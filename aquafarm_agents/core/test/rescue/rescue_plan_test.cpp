@@ -190,8 +190,9 @@ TEST_F(Rescue, SimpleRulesFetchByValueOrDistance) {
     return names;
   };
   EXPECT_EQ(order(FetchRule::kValue), "F1 F2 F3 ");
-  // F3 at (9, 4) is nearest; port B at (11, 9) is then the nearest port, and F2 at (6, 8) is near.
-  EXPECT_EQ(order(FetchRule::kNearest), "F3 F2 F1 ");
+  // F3 at (9, 4) is nearest and goes to port A, four steps away; port B is five. From port A both
+  // are eight steps away, but F1 at (3, 2) needs fewer diagonals than F2 at (6, 8).
+  EXPECT_EQ(order(FetchRule::kNearest), "F3 F1 F2 ");
 }
 
 TEST_F(Rescue, NoLossIsBelowZero) {

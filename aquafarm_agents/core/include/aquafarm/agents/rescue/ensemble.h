@@ -7,7 +7,7 @@
 ///   member ──> rings of wind over the cells in each step ──> arrival of each ring at each cell,
 ///              probability of each ring by step and cell, exposure of the devices
 ///
-/// Members do not depend on their number: member i of a seed is the same in every ensemble.
+/// Member i of a seed is the same in every ensemble, however many members the ensemble has.
 
 #include <array>
 #include <cstdint>
@@ -27,7 +27,7 @@ struct EnsembleSpread {
   std::array<double, 2> center{};  ///< of the central forecast [cells]
   double along_km{};               ///< standard deviation
   double across_km{};
-  double radius70_km{};  ///< distance from the central forecast of 70 % of the members
+  double radius70_km{};  ///< 70 % of the members are at most this far from the central forecast
   double wind_mps{};
   double size_log{};
 };
@@ -48,7 +48,7 @@ class Ensemble {
   std::int32_t steps() const { return options_.steps; }
   std::int32_t rings() const { return rings_; }
 
-  /// First step at which a ring covers a cell, [members]; kNoArrival if it does not.
+  /// First step at which a ring covers a cell, [members]; kNoArrival if it never does.
   const std::int16_t* Arrival(std::int32_t ring, Cell cell) const {
     const auto cells = static_cast<std::size_t>(options_.width * options_.height);
     const auto index = static_cast<std::size_t>(cell.y * options_.width + cell.x);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Plans again while a ranch runs: replaces ships and devices of a case by their present state.
+/// Replaces the ships and devices of a case by those of a running ranch, to plan again.
 
 #include <cstdint>
 #include <vector>
@@ -29,16 +29,15 @@ struct DeviceNow {
 struct FleetState {
   std::uint64_t seed{};  ///< of the episode, whose layout is drawn again
   std::uint64_t episode{};
-  std::vector<ShipNow> ships;      ///< by id, rescue ships alone
-  std::vector<DeviceNow> devices;  ///< by id, all of them
+  std::vector<ShipNow> ships;      ///< by id, rescue ships only
+  std::vector<DeviceNow> devices;  ///< by id, all devices
 };
 
 /// Replaces the layout, the ships and the devices of a case by those of a running ranch.
 ///
-/// Devices keep their names D1, D2, … by id; the plan leaves out those that are aboard, in port or
-/// self-propelled, and says so in notes. A ship with devices aboard first delivers them at the
-/// nearest open port: the plan begins there, once it is done. `damage_before` is what the device's
-/// health lacks.
+/// Devices keep their names D1, D2, … by id. The plan leaves out devices that are aboard, in port
+/// or self-propelled; notes name them. A ship with devices aboard first delivers them at the
+/// nearest open port, where its plan begins. `damage_before` is 1 minus the device's health.
 ///
 /// @param request of the case; without files of devices and ships
 /// @throws InputError if the state does not fit the scenario, or the request names such files

@@ -17,7 +17,7 @@
 ///
 /// Assumed, because the sources give mean errors alone: errors are normal, of the same size along
 /// and across the track, and correlated along the track by exp(-difference of lead times / 48 h).
-/// An error along the track is the error of the time of arrival.
+/// An error along the track is an error of the time of arrival.
 ///
 /// **Radii.** All radii of a storm have one log-normal factor. Without reported radii it has the
 /// spread of recorded radii about EstimateRadius (tracks/wind_radii.h). After a report with radii
@@ -52,12 +52,12 @@ struct ForecastSpread {
 /// Returns the spread at a lead time. A normal error in two directions with standard deviation s
 /// has the mean distance s · sqrt(pi / 2), and a normal error in one direction has the mean
 /// absolute value s · sqrt(2 / pi).
-/// @param lead_h hours after the forecast was issued; negative: as at 0
+/// @param lead_h hours after the forecast was issued; a negative one counts as 0
 ForecastSpread SpreadAt(const ForecastErrors& errors, double lead_h);
 
 /// Returns the log-standard deviation of a storm's radii, without errors.scale.
 /// @param log_sigma of recorded radii about EstimateRadius
-/// @param since_report_h hours after the last report with radii; infinity: there is none
+/// @param since_report_h hours after the last report with radii; infinity without such a report
 double SizeSpreadAt(const ForecastErrors& errors, double log_sigma, double since_report_h);
 
 }  // namespace aquafarm::agents

@@ -12,7 +12,7 @@
 
 namespace aquafarm::agents {
 
-/// What a plan comes to; the exit code of aquafarm_plan.
+/// Outcome of a plan, and the exit code of aquafarm_plan.
 enum class PlanResult : std::uint8_t {
   kPlan = 0,             ///< ships leave
   kNothingSaved = 10,    ///< winds come, and no ship can save anything
@@ -21,7 +21,7 @@ enum class PlanResult : std::uint8_t {
   kBulletinOld = 13,     ///< ships leave by the plan, but the bulletin is older than 12 hours
 };
 
-/// Where a plan comes from.
+/// How and from which files a plan was made.
 struct PlanProvenance {
   std::string command;
   std::int64_t computed_at{};  ///< UTC [s since 1970]
@@ -44,7 +44,7 @@ inline constexpr std::array<double, 3> kDeadlineShares{0.95, 0.8, 0.5};
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble);
 
 /// Returns the time after which no ship should leave: the latest deadline of all devices with a
-/// chance of at least 50 %; nullopt if none.
+/// chance of at least 50 %; nullopt if there is no such deadline.
 std::optional<double> NoDepartureAfter(const PlanReport& report);
 
 /// Returns the plan as text of about a page, in local time and UTC.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Reads what an operator has (a ranch, a bulletin, lists of devices and ships) and makes the
-/// inputs of a rescue plan. Works without ROS; reads no clock.
+/// Makes the inputs of a rescue plan from a ranch, a bulletin, and lists of devices and ships.
+/// Works without ROS; reads no clock.
 
 #include <cstdint>
 #include <memory>
@@ -47,7 +47,7 @@ struct RescueWarning {
   std::string advice;
 };
 
-/// What a number of the plan rests on.
+/// Basis of a number of the plan.
 struct RescueAssumption {
   std::string what;
   std::string value;
@@ -65,9 +65,9 @@ struct StormRecord {
   std::optional<std::int64_t> issued;       ///< of the forecast
   std::optional<std::int64_t> known_until;  ///< end of the forecast
   bool is_hindcast{};
-  bool is_persistence{};  ///< no forecast: the storm is assumed to keep its motion for 24 hours
+  bool is_persistence{};  ///< without a forecast: the storm is assumed to keep its motion for 24 h
   double age_h{};         ///< of the last report when the plan begins
-  Passage passage;        ///< of the central forecast over the ranch, from the start of the plan on
+  Passage passage;        ///< of the central forecast over the ranch, after the start of the plan
 };
 
 /// A complete case.

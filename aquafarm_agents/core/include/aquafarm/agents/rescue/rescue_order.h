@@ -20,12 +20,12 @@ std::string_view ToString(OrderKind value);
 /// An order to a ship.
 struct RescueOrder {
   OrderKind kind{};
-  double time_s{};  ///< leave: when it begins; else when it is done; after the start of the plan
+  double time_s{};  ///< after the start of the plan; of leaving, or of completing the order
   Cell cell{};
   std::int32_t device{kNone};         ///< fetch
   std::int32_t port{kNone};           ///< leave, if in a port; deliver
-  std::vector<std::int32_t> devices;  ///< deliver: all that are unloaded
-  double km{};                        ///< since the order before
+  std::vector<std::int32_t> devices;  ///< deliver: all devices that are unloaded
+  double km{};                        ///< since the previous order
   double probability{};               ///< that the order is carried out
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What a plan orders, and what it means for each device and each member.
+/// The orders of a plan, and its outcome for each device and each member.
 
 #include <cstdint>
 #include <vector>
@@ -17,7 +17,7 @@ struct ShipRoute {
   std::vector<TimedCell> path;
 };
 
-/// What a plan means for one device.
+/// Outcome of a plan for one device.
 struct DeviceOutcome {
   std::int32_t ship{kNone};  ///< kNone: it is left behind
   std::int32_t port{kNone};
@@ -36,7 +36,7 @@ struct RescuePlan {
   std::vector<float> loss_idle;          ///< by member, if no ship leaves
   std::vector<std::uint8_t> home_count;  ///< by member: devices in port at the end
   double saved{};                        ///< mean value saved, compared with no departure
-  double bound{};                        ///< no plan saves more
+  double bound{};                        ///< upper bound of `saved` over all plans
   bool is_exhaustive{};
 };
 

@@ -1,21 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// What a rescue plan is made for: a ranch, its devices, ships and ports, and an ensemble of
-/// storms.
+/// Inputs of a rescue plan: a ranch with its devices, ships and ports, and an ensemble of storms.
 ///
 /// A ship moves at its own speed from cell to cell; a diagonal is √2 cells long, unlike in the
 /// farm, where it takes one step. A pickup and a drop-off take `handling_s` each.
 ///
-/// **When a ship fails.** A ship stops all work of its plan as soon as winds of `abort_ring` have
-/// reached the cell that it is in, at sea or in port, at any time since the start of the plan. It
-/// then fetches and delivers nothing more. What it has delivered is safe. A device that it has not
-/// delivered, also one aboard, takes the damage of the whole storm at its own site. A plan does not
-/// continue after the storm, nor beyond the time until which the storm is known.
+/// **When a ship fails.** A ship stops all work of its plan as soon as it is in a cell, at sea or
+/// in port, that winds of `abort_ring` have reached at any time since the start of the plan. It
+/// then fetches and delivers nothing more. Delivered devices are safe. A device that the ship has
+/// not delivered, including one aboard, takes the damage of the whole storm at its own site. A plan
+/// continues neither after the storm nor beyond the time until which the storm is known.
 ///
-/// **Damage.** Each step, a device in a risk r loses the share `exposure_damage` · |r| of its
-/// value, times the factor of its kind in a typhoon, at its site until it is delivered, at most
-/// what is left of its value.
+/// **Damage.** Until it is delivered, a device loses in each step the share
+/// `exposure_damage` · |r| · `damage_factor` of its value, where r is the risk at its site. It
+/// never loses more than the value that it still has.
 
 #include <cstdint>
 #include <string>

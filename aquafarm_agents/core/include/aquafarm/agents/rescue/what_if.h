@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The plan again with one thing changed: ships, departure, ports, capacity.
+/// Makes the plan again with one input changed: ships, departure, ports or capacity.
 
 #include <string>
 #include <vector>

@@ -72,7 +72,7 @@ TEST_F(Trials, BulletinsHaveThePublishedErrors) {
   EXPECT_NEAR(wind_mps / count, 4.37, 0.7);
 }
 
-// The short form of the experiments in docs/plan.md.
+// The short form of the experiments in docs/results/rescue_plans.md.
 TEST_F(Trials, ChancesAreKeptAndThePlanIsWorthItsName) {
   const PlanTrials trials = Make();
   std::vector<std::vector<Promise>> home;

@@ -3,8 +3,8 @@
 
 /// Plans for one ship by dynamic programming over (time, cell, devices aboard and delivered). With
 /// the true future of the disasters the plan has the exact max return of a seeded episode: the
-/// clairvoyant optimum, the reference of §4.2. With the forecast that every disaster keeps its
-/// present heading, and a new plan at each step, it acts like a good operator.
+/// clairvoyant optimum, the reference of §4.2. With the issued forecast, or the present heading of
+/// a disaster without one, and a new plan at each step, it acts like a good operator.
 ///
 /// Health is computed exactly. The health of a deployed device depends only on time; aboard, its
 /// loss accumulates along the route. Each pickup is therefore planned as paid or unpaid. Paid: the

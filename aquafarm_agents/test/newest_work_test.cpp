@@ -56,13 +56,15 @@ TEST(NewestWork, StartsAreAtLeastThePeriodApart) {
   Record record;
   record.go = true;
   NewestWork<int> work(record.Work(), milliseconds(80));
+  const Clock::time_point first = Clock::now();
   for (int request = 0; request < 3; ++request) {
     work.Ask(request);
     WaitFor([&] { return record.begun == request + 1; });
   }
   WaitFor([&] { return !work.busy(); });
-  for (std::size_t i = 1; i < record.starts.size(); ++i) {
-    EXPECT_GE(record.starts[i] - record.starts[i - 1], milliseconds(79));
+  // A start is recorded late on a busy machine, and never early.
+  for (std::size_t i = 0; i < record.starts.size(); ++i) {
+    EXPECT_GE(record.starts[i] - first, milliseconds(80) * static_cast<int>(i));
   }
 }
 

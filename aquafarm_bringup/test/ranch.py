@@ -26,12 +26,10 @@ def verify(*bags):
 class Ranch:
     """A launch in its own process group; leaving the context ends all its processes.
 
-    Trainings write their report, which takes seconds, only if reports is true. The options are
-    those of roslaunch itself.
+    Trainings write their report, which takes seconds, only if reports is true.
     """
 
-    def __init__(self, launch, *arguments, port=None, stdin=subprocess.DEVNULL, reports=False,
-                 options=()):
+    def __init__(self, launch, *arguments, port=None, stdin=subprocess.DEVNULL, reports=False):
         self._folder = tempfile.TemporaryDirectory(prefix="aquafarm_test_")
         self.folder = pathlib.Path(self._folder.name)
         self.log = self.folder / "launch.log"
@@ -40,7 +38,7 @@ class Ranch:
         self.environment = dict(
             os.environ, ROS_HOME=str(self.folder), ROS_LOG_DIR=str(self.folder / "log"),
             ROS_IP="127.0.0.1", ROS_MASTER_URI=f"http://127.0.0.1:{self.port}")
-        self._command = ["roslaunch", *options, "aquafarm_bringup", f"{launch}.launch", *arguments]
+        self._command = ["roslaunch", "aquafarm_bringup", f"{launch}.launch", *arguments]
         self._command.append(f"exit_file:={self._exit_file}")
         if launch in ("train", "record") and not reports:
             self._command.append("report:=none")

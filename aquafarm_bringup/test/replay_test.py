@@ -296,8 +296,7 @@ class ReplayTest(unittest.TestCase):
                              "that was trained on a farm like the bag's, or none\n")
 
     def test_a_planner_in_the_midst_of_its_plan_ends_with_the_launch(self):
-        with Ranch("replay", f"bag:={self.bag}", "headless:=true", "policy:=clairvoyant",
-                   options=["--sigint-timeout=120"]) as ranch:  # the launch itself kills nothing
+        with Ranch("replay", f"bag:={self.bag}", "headless:=true", "policy:=clairvoyant") as ranch:
             pid = ranch.wait_for(lambda: ranch.node_pid("bag_policy"), 60)
             os.kill(pid, signal.SIGSTOP)  # cannot handle signals
             ranch.interrupt()

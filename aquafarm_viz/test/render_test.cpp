@@ -279,7 +279,7 @@ TEST_F(RenderTest, WithoutACodecItSaysWhatElseThereIs) {
   const Result layers = Render(bag + " --layers rain -o " + Path("y.png"));
   EXPECT_NE(layers.code, 0);
   EXPECT_NE(layers.output.find("render: layers: got 'rain', expected some of: wake, risk, route, "
-                               "sight, values, moves, sea:NAME; or none"),
+                               "sight, values, moves, directions, labels, sea:NAME; or none"),
             std::string::npos);
   const Result gif = Render(bag + " -o " + Path("no/such/folder/x.gif"));
   EXPECT_NE(gif.code, 0);

@@ -79,7 +79,7 @@ TEST(SeaLayer, ThatIsNotThereIsRefused) {
             "layers: got 'sea:salt', expected one of the scenario's: it has none");
   EXPECT_EQ(Refused(Warm(), "sea:"),
             "layers: got 'sea:', expected some of: wake, risk, route, sight, values, moves, "
-            "sea:NAME; or none");
+            "directions, labels, sea:NAME; or none");
   aquafarm_msgs::FarmSpec small = Warm();
   small.width = 7;
   EXPECT_EQ(Refused(small, "sea:warmth"), "layers: sea:warmth has another size than the farm");

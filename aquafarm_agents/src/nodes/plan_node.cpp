@@ -231,10 +231,13 @@ class PlanNode {
       inputs.request.at = static_cast<std::int64_t>(last_state_->world_time.sec);
     }
     const double silent_s = (ros::WallTime::now() - heard_).toSec();
-    // A ranch in lockstep sends nothing while it waits for its ships, but its services exist.
-    if (silent_s < params_.state_timeout_s || ros::service::exists("get_state", false)) return "";
-    return name + ": the ranch is gone; the last state is of step " + std::to_string(inputs.step) +
-           ": start it again";
+    if (silent_s < params_.state_timeout_s) return "";
+    // A ranch that waits for its ships or is paused sends nothing, but its services exist.
+    const bool may_be_silent =
+        last_state_->pace == aquafarm_msgs::FarmState::LOCKSTEP || last_state_->paused;
+    if (may_be_silent && ros::service::exists("get_state", false)) return "";
+    return name + ": the ranch is gone or hangs; the last state is of step " +
+           std::to_string(inputs.step) + ": start it again";
   }
 
   void Work(const PlanInputs& inputs) {

@@ -39,6 +39,19 @@ std::vector<std::pair<std::string, std::string>> InputFiles(const agents::Rescue
   return files;
 }
 
+// Returns why a plan of a newer file must not replace the present one; empty if it may. A bulletin
+// of another storm, or an older one that was copied in later, would hide the storm that comes.
+std::string WhyNotInstead(const RescuePlan& made, const RescuePlan& present) {
+  if (made.storm_name != present.storm_name && made.start < present.end) {
+    return "got a bulletin of '" + made.storm_name + "', expected '" + present.storm_name +
+           "'; remove the other storm's file, or start the node with storm_name";
+  }
+  if (!made.issued.isZero() && made.issued < present.issued) {
+    return "got a bulletin that was issued before the one in use";
+  }
+  return "";
+}
+
 }  // namespace
 
 bool SamePlan(const PlanInputs& a, const PlanInputs& b) {
@@ -58,6 +71,9 @@ PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin) {
   agents::RescueCase rescue = agents::MakeRescueCase(inputs.scenario, request);
   if (inputs.fleet) agents::UseFleet(request, *inputs.fleet, rescue);
   const bool is_done = rescue.problem.devices.empty();
+  const bool has_others =
+      inputs.fleet && std::any_of(inputs.fleet->devices.begin(), inputs.fleet->devices.end(),
+                                  [](const auto& one) { return one.self_propelled; });
   const agents::Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
   const agents::PlanReport report = agents::MakeReport(rescue, ensemble);
   agents::PlanProvenance provenance;
@@ -67,9 +83,14 @@ PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin) {
   PlanMessages messages =
       ReadPlan(agents::ToJson(rescue, ensemble, report, provenance), "the plan");
   messages.plan.compute_s = seconds();
-  if (is_done) {  // the core takes this for a storm that reaches no device
-    messages.plan.result = RescuePlan::PLAN;
-    messages.plan.text = "Every device is in port or aboard: there is nothing left to fetch.";
+  if (is_done && messages.plan.result != RescuePlan::STORM_UNKNOWN) {
+    // The core takes this for a storm that reaches no device.
+    messages.plan.result = has_others ? RescuePlan::NOTHING_SAVED : RescuePlan::PLAN;
+    messages.plan.text =
+        has_others
+            ? "Ships have nothing left to fetch. Self-propelled devices are not planned: bring "
+              "those that are at sea to a port."
+            : "Every device is in port or aboard: there is nothing left to fetch.";
     auto& warnings = messages.plan.warnings;
     warnings.erase(std::remove_if(warnings.begin(), warnings.end(),
                                   [](const auto& one) { return one.code == "storm_stays_away"; }),
@@ -103,11 +124,25 @@ std::string PlanKeeper::TryAll(const PlanInputs& inputs) {
   const std::string newest = inputs.bulletins.empty() ? "" : inputs.bulletins[0].path;
   std::string why;
   try {
-    Use(MakePlan(inputs, newest), inputs);
-    good_ = newest;
-    return "";
+    PlanMessages made = MakePlan(inputs, newest);
+    why = good_.empty() || good_ == newest ? "" : WhyNotInstead(made.plan, plan_.plan);
+    if (why.empty()) {
+      Use(std::move(made), inputs);
+      good_ = newest;
+      return "";
+    }
+    why = newest + ": " + why;
   } catch (const std::exception& error) {
     why = error.what();
+  }
+  // At the start there is no good one: the newest of the others that can be planned with.
+  for (std::size_t i = 1; good_.empty() && i < inputs.bulletins.size(); ++i) {
+    try {
+      Use(MakePlan(inputs, inputs.bulletins[i].path), inputs);
+      good_ = inputs.bulletins[i].path;
+      return why + "; this plan is of " + good_;
+    } catch (const std::exception&) {  // then the next
+    }
   }
   const bool has_other = !good_.empty() && good_ != newest && !StampOf(good_).stamp.empty();
   if (has_other) {

@@ -91,6 +91,18 @@ Color ColorOf(std::int32_t ship) {
   return kShipColors[static_cast<std::size_t>(ship) % kShipColors.size()];
 }
 
+// What a ship without a route does. A ship at sea is never told to stay.
+std::string WithoutRoute(const RescuePlan& plan, const aquafarm_msgs::RescueShip& ship) {
+  for (const auto& warning : plan.warnings) {
+    const bool is_of_ship = warning.text.rfind(ship.name + " has ", 0) == 0;
+    if (warning.code == "devices_aboard" && is_of_ship) return "delivers first";
+  }
+  const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {
+    return port.cell.x == ship.cell.x && port.cell.y == ship.cell.y;
+  });
+  return in_port ? "stays" : "returns to port";
+}
+
 void AddRoutes(const RescuePlan& plan, const Maker& maker, MarkerArray& array) {
   for (const auto& route : plan.routes) {
     if (route.path.size() < 2) continue;
@@ -107,7 +119,7 @@ void AddRoutes(const RescuePlan& plan, const Maker& maker, MarkerArray& array) {
                                     [&](const auto& one) { return one.ship == ship.id; });
     const std::string text =
         ship.name + (route == plan.routes.end() || route->orders.empty()
-                         ? std::string("\nstays")
+                         ? "\n" + WithoutRoute(plan, ship)
                          : "\nleaves " + LocalText(plan, route->orders.front().stamp));
     array.markers.push_back(maker.Text("plan_ship", ship.id, ship.cell.x,
                                        ship.cell.y + 0.9 * maker.unit_cells(), text, 0.6,

@@ -53,6 +53,18 @@ std::string DeadlineText(const RescuePlan& plan, const RescueDeadline& deadline)
   return deadline.open ? "no limit" : PlanTime(plan, deadline.leave);
 }
 
+// What a ship without a route does. A ship at sea is never told to stay.
+std::string WithoutRoute(const RescuePlan& plan, const aquafarm_msgs::RescueShip& ship) {
+  for (const auto& warning : plan.warnings) {
+    const bool is_of_ship = warning.text.rfind(ship.name + " has ", 0) == 0;
+    if (warning.code == "devices_aboard" && is_of_ship) return "deliver first";
+  }
+  const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {
+    return port.cell.x == ship.cell.x && port.cell.y == ship.cell.y;
+  });
+  return in_port ? "stay" : "return to port";
+}
+
 }  // namespace
 
 std::string PlanHeadline(const RescuePlan& plan) {
@@ -80,7 +92,7 @@ const PlanRow& PlanDeviceColumns() {
 std::vector<PlanRow> PlanShips(const RescuePlan& plan, ros::Time now) {
   std::vector<PlanRow> rows;
   for (const auto& ship : plan.ships) {
-    PlanRow row{ship.name, "stay", "", ""};
+    PlanRow row{ship.name, WithoutRoute(plan, ship), "", ""};
     for (const auto& route : plan.routes) {
       if (route.ship != ship.id) continue;
       const auto next = std::find_if(route.orders.begin(), route.orders.end(),

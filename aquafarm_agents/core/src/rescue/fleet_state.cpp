@@ -46,7 +46,7 @@ void DeliverFirst(const ShipNow& now, RescueShip& ship, RescueCase& rescue) {
     Append(names, NameOfDevice(static_cast<std::size_t>(device)));
   }
   if (nearest == 0 || !std::isfinite(routes.Length(0, nearest))) {
-    rescue.warnings.push_back({"devices_aboard", "warning",
+    rescue.warnings.push_back({"devices_aboard", "stop",
                                ship.name + " has " + names + " aboard and reaches no open port.",
                                "Open a port that it can reach."});
     return;
@@ -55,7 +55,7 @@ void DeliverFirst(const ShipNow& now, RescueShip& ship, RescueCase& rescue) {
   const double in_port_s = routes.Length(0, nearest) * pace + problem.handling_s;
   ship.cell = places[nearest];
   ship.ready_s = std::max(ship.ready_s, in_port_s);
-  rescue.warnings.push_back({"devices_aboard", "note",
+  rescue.warnings.push_back({"devices_aboard", "stop",
                              ship.name + " has " + names + " aboard and first delivers at " +
                                  problem.ports[nearest - 1].name + ", by " +
                                  FormatUtc(rescue.start + std::llround(in_port_s)) +

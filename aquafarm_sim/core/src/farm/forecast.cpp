@@ -200,15 +200,18 @@ const IssuedForecast* NewestForecast(const Farm& farm, std::int32_t disaster, st
   const std::vector<DisasterSpec>& specs = farm.scenario().disasters;
   const auto id = static_cast<std::size_t>(disaster);
   const auto step = static_cast<float>(issued);
+  const auto in_force = [step](const IssuedForecast* one) {
+    return one != nullptr && one->points.back().step > step ? one : nullptr;
+  };
   const IssuedForecast* newest = nullptr;
   if (id < specs.size() && farm.tracks()[id].get() == &specs[id].track) {
-    newest = LastIssued(specs[id].forecasts, step);
+    newest = in_force(LastIssued(specs[id].forecasts, step));
   }
   if (const Forecasts& in_play = farm.forecasts()[id]; in_play != nullptr) {
-    const IssuedForecast* last = LastIssued(*in_play, step);
-    if (newest == nullptr || (last != nullptr && last->step >= newest->step)) newest = last;
+    const IssuedForecast* last = in_force(LastIssued(*in_play, step));
+    if (last != nullptr && (newest == nullptr || last->step >= newest->step)) newest = last;
   }
-  return newest != nullptr && newest->points.back().step > step ? newest : nullptr;
+  return newest;
 }
 
 Waypoint RingsOf(const ObservableDisaster& disaster) {

@@ -126,7 +126,8 @@ class AgentNodesTest(unittest.TestCase):
                             self.agent(1, policy, "_episodes:=3",
                                        before=host.environment(port, inside=True))], 3)
 
-    def die_and_join_again(self, *parameters):
+    def die_and_join_again(self, *parameters, warning=""):
+        """Kills one of two ships, waits for the warning, if any, and lets the ship join again."""
         self.sim(WIDE, *parameters)
         self.agent(0, "random")
         victim = self.agent(1, "random")
@@ -142,6 +143,7 @@ class AgentNodesTest(unittest.TestCase):
         self.assertEqual(HOLD, on.ships[1].action)
         self.assertEqual(died.ships[1].x, on.ships[1].x)
         self.assertEqual(died.ships[1].y, on.ships[1].y)
+        self.ranch.wait_for(lambda: warning in self.ranch.words()[before:], "the warning")
         self.agent(1, "random")
         self.wait_until(lambda state: state.ships[1].action != HOLD, "the ship to move again")
         self.assertEqual(on.episode, self.state().episode)
@@ -151,7 +153,8 @@ class AgentNodesTest(unittest.TestCase):
         told = []
         rospy.Subscriber("/diagnostics", DiagnosticArray,
                          lambda array: told.append(array.status[0].message))
-        words = self.die_and_join_again("_late_ships_hold:=true", "_barrier_timeout_s:=0.5")
+        words = self.die_and_join_again("_late_ships_hold:=true", "_barrier_timeout_s:=0.5",
+                                        warning="no command from ship 1")
         self.ranch.wait_for(lambda: "back: ship 1" in words(), "a word of its return")
         self.assertEqual(1, words().count(
             "no command from ship 1 within ~barrier_timeout_s, 0.5 s; it holds until it returns"))

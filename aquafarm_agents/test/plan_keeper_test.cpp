@@ -103,8 +103,10 @@ TEST_F(Keeper, ANewBulletinMakesANewPlan) {
   EXPECT_EQ(Update().storm_name, "First");
   EXPECT_EQ(keeper_.plan().plan.fault, "");
   EXPECT_EQ(keeper_.plan().plan.result, RescuePlan::PLAN) << keeper_.plan().plan.text;
-  Put("2.json", Bulletin("Second", 28.2), 0);
-  EXPECT_EQ(Update().storm_name, "Second");
+  const std::string newer = Put("2.json", Bulletin("First", 28.2), 0);
+  EXPECT_NE(newer.find(Update().storm_file), std::string::npos);
+  EXPECT_NE(keeper_.plan().plan.storm_file.find("2.json"), std::string::npos);
+  EXPECT_EQ(keeper_.plan().plan.fault, "");
   EXPECT_FALSE(keeper_.Update(inputs_)) << "nothing new";
   inputs_.refresh = 1;
   EXPECT_TRUE(keeper_.Update(inputs_)) << "time has passed";
@@ -121,9 +123,28 @@ TEST_F(Keeper, ABadBulletinLeavesTheOneBeforeInUseAndIsNamed) {
   EXPECT_NE(plan.fault.find("this plan is of " + (folder_ / "1.json").string()), std::string::npos)
       << plan.fault;
   EXPECT_EQ(plan.fault.find('\n'), std::string::npos);
-  Put("3.json", Bulletin("Third", 28.0), 0);
+  Put("3.json", Bulletin("First", 28.0), 0);
   EXPECT_EQ(Update().fault, "");
-  EXPECT_EQ(keeper_.plan().plan.storm_name, "Third");
+  EXPECT_NE(keeper_.plan().plan.storm_file.find("3.json"), std::string::npos);
+}
+
+TEST_F(Keeper, ABulletinOfAnotherStormDoesNotHideTheOneThatComes) {
+  Put("1.json", Bulletin("First", 28.0), 60);
+  Update();
+  const std::string other = Put("2.json", Bulletin("Far", 5.0), 0);
+  const RescuePlan& plan = Update();
+  EXPECT_EQ(plan.storm_name, "First");
+  EXPECT_EQ(plan.result, RescuePlan::PLAN);
+  EXPECT_EQ(plan.fault.find(other + ": got a bulletin of 'Far', expected 'First'"), 0U)
+      << plan.fault;
+}
+
+TEST_F(Keeper, AtTheStartTheNewestFileThatCanBeReadIsUsed) {
+  Put("1.json", Bulletin("First", 28.0), 60);
+  const std::string bad = Put("2.json", "no bulletin", 0);
+  const RescuePlan& plan = Update();
+  EXPECT_EQ(plan.result, RescuePlan::PLAN);
+  EXPECT_EQ(plan.fault.find(bad), 0U) << plan.fault;
 }
 
 TEST_F(Keeper, ABadFirstBulletinGivesNoPlanAndAReason) {

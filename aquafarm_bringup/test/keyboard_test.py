@@ -51,7 +51,7 @@ class KeyboardTest(unittest.TestCase):
         self.assertEqual(".0^\n#HD", keyboard.draw_map(spec, state))
 
     def test_an_unknown_parameter_of_the_node_is_refused_with_those_it_has(self):
-        self.assertEqual("~shpi: unknown parameter (did you mean 'ship'?), expected one of: ship",
+        self.assertEqual("~shpi: unknown parameter (did you mean 'ship'?), expected one of: ship, evaluation_seed",
                          keyboard.unknown_parameter("/a/keyboard", ["/a/keyboard/ship", "/run_id",
                                                                     "/a/keyboard/shpi"]))
         self.assertEqual("", keyboard.unknown_parameter("/a/keyboard", [

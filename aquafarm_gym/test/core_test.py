@@ -128,7 +128,7 @@ class CoreTest(unittest.TestCase):
 
     def test_an_array_in_use_cannot_be_resized(self):
         batch = core.FarmBatch(PAPER, 4)
-        own, replay = np.zeros((4, 1), np.float32), np.zeros((2, 4, 1, 7), np.float32)
+        own, replay = np.zeros((4, 1), np.float32), np.zeros((2, 4, 1, 8), np.float32)
         batch.bind("rewards", own)
         batch.bind("terms", replay[1])
         for array in (own, replay, batch.buffers["reasons"]):

@@ -49,7 +49,10 @@ class Ranch:
         with open(self.log, "wb") as log:
             self._process = subprocess.Popen(
                 self._command, env=self.environment, stdin=self._stdin, stdout=log,
-                stderr=subprocess.STDOUT, start_new_session=True)
+                stderr=subprocess.STDOUT, start_new_session=True,
+                # A test that runs in the background inherits an ignored Ctrl-C; nodes that are still
+                # starting would then miss it.
+                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         return self
 
     def __exit__(self, *_):

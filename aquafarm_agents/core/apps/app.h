@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "aquafarm/agents/base/exit_code.h"
 #include "aquafarm/agents/base/options.h"
+#include "aquafarm/agents/base/storage.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 
@@ -79,6 +82,23 @@ inline void AddScenarioOptions(CLI::App& app, ScenarioChoice& choice) {
   app.add_option("--max-steps", choice.max_steps, "step limit of an episode; 0: the scenario's own")
       ->check(CLI::Range(0, 1000000000));
   app.add_option("--scenarios", choice.folder, "folder of the shipped scenarios");
+}
+
+/// Runs the body of a program, which parses the arguments and returns the exit code. An error is
+/// printed as one line and becomes the exit code of bad input or of storage.
+template <typename Body>
+int RunWithExitCodes(const CLI::App& app, Body body) {
+  try {
+    return body();
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
+  } catch (const InputError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kBadInput);
+  } catch (const StorageError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kStorage);
+  }
 }
 
 }  // namespace aquafarm::agents

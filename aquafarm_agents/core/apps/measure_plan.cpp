@@ -254,7 +254,7 @@ int Main(int argc, char** argv) {
   CLI::App* storms = app.add_subcommand("storms", "chances and value over simulated storms");
   CLI::App* averse = app.add_subcommand("averse", "the worst 5 % with and without --risk-averse");
   app.add_subcommand("back_test", "every recorded storm near the ranch");
-  try {
+  return RunWithExitCodes(app, [&] {
     app.parse(argc, argv);
     if (arguments.archive.empty()) {
       arguments.archive = arguments.scenarios + "/archives/zhoushan_cma.txt";
@@ -264,15 +264,7 @@ int Main(int argc, char** argv) {
                                          : RunBackTest(arguments);
     if (!arguments.output.empty()) WriteFileAtomically(arguments.output, data.dump(1) + "\n");
     return 0;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return static_cast<int>(ExitCode::kBadInput);
-  } catch (const StorageError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return static_cast<int>(ExitCode::kStorage);
-  }
+  });
 }
 
 }  // namespace

@@ -170,21 +170,13 @@ int Main(int argc, char** argv) {
       "11 the storm reaches no device in the known time, 12 unknown whether it does,\n"
       "13 ships leave but the bulletin is older than 12 hours");
   AddOptions(app, arguments);
-  try {
+  return RunWithExitCodes(app, [&] {
     app.parse(argc, argv);
     if (app.get_option("--utc-offset")->count() > 0) {
       arguments.request.utc_offset_h = arguments.utc_offset_h;
     }
     return Run(arguments);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return static_cast<int>(ExitCode::kBadInput);
-  } catch (const StorageError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return static_cast<int>(ExitCode::kStorage);
-  }
+  });
 }
 
 }  // namespace

@@ -211,7 +211,7 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
                     const Layout& layout) {
   std::vector<Rings> all;
   for (const auto& disaster : state.disasters) {
-    if (disaster.known && disaster.steps_left > 0) all.push_back(InPixels(disaster, layout));
+    if (IsDrawn(disaster)) all.push_back(InPixels(disaster, layout));
   }
   if (all.empty()) return;
   Patterns patterns;

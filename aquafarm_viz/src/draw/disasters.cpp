@@ -12,8 +12,6 @@ namespace {
 using aquafarm_msgs::DisasterState;
 using aquafarm_msgs::FarmState;
 
-bool IsDrawn(const DisasterState& disaster) { return disaster.known && disaster.steps_left > 0; }
-
 void DrawArrow(cv::Mat& map, cv::Point2d from, double bearing_deg, double length_px,
                const Layout& layout) {
   const float length = static_cast<float>(length_px / layout.unit);

@@ -23,7 +23,7 @@ constexpr double kSmallestSide = 84.0;  // [design units]
 constexpr double kTick_h = 6.0;         // between two marks on a track
 
 bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
-  return disaster.known && disaster.steps_left > 0 &&
+  return IsDrawn(disaster) &&
          (disaster.x < -0.5F || disaster.y < -0.5F || disaster.x > float(spec.width) - 0.5F ||
           disaster.y > float(spec.height) - 0.5F);
 }
@@ -191,7 +191,7 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
   Words words;
   for (std::size_t i = 0; i < state.disasters.size(); ++i) {
     const DisasterState& disaster = state.disasters[i];
-    if (!disaster.known || disaster.steps_left <= 0) continue;
+    if (!IsDrawn(disaster)) continue;
     DrawRings(inset, disaster);
     const bool is_recorded = state.observer < 0 && i < tracks.size() &&
                              Follows(tracks[i], disaster, static_cast<double>(state.step));

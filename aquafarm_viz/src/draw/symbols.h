@@ -66,6 +66,11 @@ void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layou
 void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::string& name,
              const Layout& layout, const Fonts& fonts);
 
+/// Whether a disaster is drawn: it is known and has not ended.
+inline bool IsDrawn(const aquafarm_msgs::DisasterState& disaster) {
+  return disaster.known && disaster.steps_left > 0;
+}
+
 /// Returns the coverage of the map's pixels by islands: 0 water, 255 land. Coasts are rounded
 /// within their cells.
 cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layout);

@@ -22,7 +22,7 @@ using aquafarm_sim::FarmServer;
 constexpr std::int32_t kMostFarms = 64;  // more take long
 
 std::unique_ptr<FarmServer> MakeServer() {
-  aquafarm_sim::RanchOptions options;
+  aquafarm_sim::ServerOptions options;
   options.farms = 2;
   options.barrier_timeout_s = 0.01;
   return std::make_unique<FarmServer>(

@@ -12,7 +12,7 @@
 #include "aquafarm/tracks/reader.h"
 #include "aquafarm_sim/convert/conversions.h"
 #include "aquafarm_sim/convert/observation.h"
-#include "ranch_fixture.h"
+#include "farm_server_fixture.h"
 
 namespace aquafarm_sim {
 namespace {

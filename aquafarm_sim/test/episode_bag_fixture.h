@@ -22,7 +22,7 @@
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm_sim/bags/bag_check.h"
 #include "aquafarm_sim/bags/episode_recorder.h"
-#include "ranch_fixture.h"
+#include "farm_server_fixture.h"
 
 namespace aquafarm_sim::test {
 

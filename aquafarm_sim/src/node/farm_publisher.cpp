@@ -75,7 +75,7 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
     // A ship's driver that subscribes late receives the current observation immediately.
     const ros::SubscriberStatusCallback greet =
         [this, ship](const ros::SingleSubscriberPublisher& subscriber) {
-          ranch_.Inspect([&](const RanchView& view) {
+          ranch_.Inspect([&](const ServerView& view) {
             const std::lock_guard<std::mutex> lock(observation_mutex_);
             subscriber.publish(ObservationOf(view, ship));
           });
@@ -124,7 +124,7 @@ std::uint32_t FarmPublisher::CountSubscribers() const {
   return count;
 }
 
-void FarmPublisher::OnChange(const RanchView& view) {
+void FarmPublisher::OnChange(const ServerView& view) {
   if (!view.joint) PublishObservations(view);
   if (params_.record) {
     const std::lock_guard<std::mutex> lock(message_mutex_);
@@ -168,7 +168,7 @@ void FarmPublisher::Run() {
     lock.unlock();
     if (dirty_.exchange(false) && (params_.publish_hz > 0.0 || params_.record)) {
       try {
-        ranch_.Inspect([this](const RanchView& view) {
+        ranch_.Inspect([this](const ServerView& view) {
           const std::lock_guard<std::mutex> message_lock(message_mutex_);
           Fill(view);
         });
@@ -184,7 +184,7 @@ void FarmPublisher::Run() {
   }
 }
 
-void FarmPublisher::Fill(const RanchView& view) {
+void FarmPublisher::Fill(const ServerView& view) {
   const aquafarm::Farm& farm = view.batch.farm(0);
   context_ = view.context;
   episode_is_new_ = view.episode_count != published_episode_;
@@ -196,7 +196,7 @@ void FarmPublisher::Fill(const RanchView& view) {
 }
 
 // A node that drives a ship by its observations must receive every step; other nodes need not.
-void FarmPublisher::PublishObservations(const RanchView& view) {
+void FarmPublisher::PublishObservations(const ServerView& view) {
   const std::lock_guard<std::mutex> lock(observation_mutex_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
     const ros::Publisher& publisher = observations_[static_cast<std::size_t>(ship)].publisher;
@@ -204,7 +204,7 @@ void FarmPublisher::PublishObservations(const RanchView& view) {
   }
 }
 
-const aquafarm_msgs::FarmState& FarmPublisher::ObservationOf(const RanchView& view,
+const aquafarm_msgs::FarmState& FarmPublisher::ObservationOf(const ServerView& view,
                                                              std::int32_t ship) {
   const aquafarm::Farm& farm = view.batch.farm(0);
   aquafarm_msgs::FarmState& message = observations_[static_cast<std::size_t>(ship)].message;
@@ -213,7 +213,7 @@ const aquafarm_msgs::FarmState& FarmPublisher::ObservationOf(const RanchView& vi
   return message;
 }
 
-void FarmPublisher::FillEpisode(const RanchView& view) {
+void FarmPublisher::FillEpisode(const ServerView& view) {
   const aquafarm::Farm& farm = view.batch.farm(0);
   published_episode_ = view.episode_count;
   ToMsg(farm, view.batch.encoder(), view.batch.farms(), view.yaml, context_, spec_message_);
@@ -221,7 +221,7 @@ void FarmPublisher::FillEpisode(const RanchView& view) {
   bearings_.assign(bearings_.size(), 0);
 }
 
-void FarmPublisher::FillFrames(const RanchView& view) {
+void FarmPublisher::FillFrames(const ServerView& view) {
   const aquafarm::Farm& farm = view.batch.farm(0);
   const aquafarm::Scenario& scenario = farm.scenario();
   frame_messages_.clear();

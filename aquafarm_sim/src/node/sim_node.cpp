@@ -216,7 +216,7 @@ void SimNode::AdvertiseFarm() {
 }
 
 void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const RanchCounters now = ranch_.counters();
+  const ServerCounters now = ranch_.counters();
   const ros::WallTime time = ros::WallTime::now();
   const double elapsed_s = std::max((time - diagnosed_at_).toSec(), 1e-3);
   const double steps_per_s =

@@ -12,6 +12,7 @@
 namespace aquafarm_sim {
 namespace {
 
+using aquafarm::MutexLock;
 using aquafarm_msgs::CommandResult;
 using aquafarm_msgs::Outcome;
 
@@ -19,34 +20,49 @@ std::string Numbers(std::uint64_t episode, std::uint64_t step) {
   return "episode " + std::to_string(episode) + " step " + std::to_string(step);
 }
 
+// The result of a command that has not stepped the farm.
+void ClearReward(CommandResult& result) {
+  result.reward = 0.0F;
+  result.terms = aquafarm_msgs::RewardTerms();
+  result.energy = result.distance = 0.0;
+}
+
+MessageContext StartOf(const ServerOptions& options) {
+  MessageContext context;
+  context.map_frame = options.map_frame;
+  context.paced = options.paced;
+  context.rate_hz = options.rate_hz;
+  return context;
+}
+
 }  // namespace
 
 FarmServer::FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario,
-                       const RanchOptions& options)
+                       const ServerOptions& options)
     : scenario_(std::move(scenario)),
       yaml_(aquafarm::ToYaml(*scenario_)),
       options_(options),
       agents_(scenario_->AgentCount()),
       batch_(std::make_unique<aquafarm::FarmBatch>(scenario_, options.farms, options.threads)),
+      barrier_(agents_),
+      claims_(agents_, options.claim_timeout_s),
+      clock_(StartOf(options)),
       turn_(static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch() /
                                        std::chrono::nanoseconds(1))),
       actions_(static_cast<std::size_t>(agents_)) {
-  context_.map_frame = options.map_frame;
-  context_.paced = options.paced;
-  context_.rate_hz = options.rate_hz;
-  for (std::int32_t ship = 0; ship < agents_; ++ship) slots_.push_back(std::make_unique<Slot>());
+  const MutexLock lock(mutex_);
   batch_->Reset(options.seed, 0, {});
   EpisodeBegan();
 }
 
-void FarmServer::SetListener(RanchListener* listener) {
-  const Lock lock(mutex_);
+void FarmServer::SetListener(FarmListener* listener) {
+  const MutexLock lock(mutex_);
   listener_ = listener;
   if (listener_ != nullptr) listener_->OnChange(View());
 }
 
-void FarmServer::SetRecorder(RanchRecorder* recorder) {
-  const Lock lock(mutex_);
+void FarmServer::SetRecorder(FarmRecorder* recorder) {
+  const MutexLock lock(mutex_);
   recorder_ = recorder;
   RecordStarts();
 }
@@ -54,27 +70,22 @@ void FarmServer::SetRecorder(RanchRecorder* recorder) {
 void FarmServer::RecordStarts() {
   if (recorder_ == nullptr) return;
   for (std::int32_t i = 0; i < batch_->farms(); ++i)
-    recorder_->OnStart(batch_->farm(i), i, context_);
+    recorder_->OnStart(batch_->farm(i), i, clock_.context());
 }
 
 // --- commands of single ships -------------------------------------------------------------------
 
 aquafarm_msgs::CommandResult FarmServer::Command(const ShipCommand& command) {
-  Lock lock(mutex_);
+  MutexLock lock(mutex_);
   try {
-    if (command.ship >= 0 && command.ship < agents_ && !command.anonymous()) {
-      const Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
-      if (slot.last && *slot.last == command) return slot.answer;
-    }
+    const bool is_known = command.ship >= 0 && command.ship < agents_;
+    if (const CommandResult* answer = is_known ? barrier_.FindAnswer(command) : nullptr)
+      return *answer;
     if (const auto refusal = MarkPresent(command))
       return Refuse(command.ship, refusal->code, refusal->message);
     if (const auto refusal = Check(command))
       return Refuse(command.ship, refusal->code, refusal->message);
-    if (context_.paced) return AcceptPaced(command);
-    if (agents_ > 1) return WaitForOthers(command, lock);
-    slots_[0]->pending = command;
-    StepPublishedFarm();
-    return AnswerOf(0);
+    return clock_.context().paced ? AcceptPaced(command) : StepTogether(command, lock);
   } catch (const std::exception& error) {
     ++turn_;  // the farm may have stepped
     DropCommands();
@@ -84,7 +95,7 @@ aquafarm_msgs::CommandResult FarmServer::Command(const ShipCommand& command) {
 
 aquafarm_msgs::CommandResult FarmServer::MoveShip(const ShipCommand& command) {
   if (command.action < aquafarm::kMoveCount) return Command(command);
-  const Lock lock(mutex_);
+  const MutexLock lock(mutex_);
   return Refuse(command.ship, Outcome::BAD_DIRECTION,
                 "direction: got " + std::to_string(command.action) + ", expected [0, 7]");
 }
@@ -107,11 +118,11 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const ShipCommand& command)
     return Refusal{Outcome::STALE, "meant for " + Numbers(command.episode, command.step) +
                                        ", the farm is at " + Numbers(farm.episode(), step)};
   }
-  if (farm.over() && !context_.paced) {
+  if (farm.over() && !clock_.context().paced) {
     return Refusal{Outcome::EPISODE_OVER, "episode " + std::to_string(farm.episode()) +
                                               " has ended; call reset to start the next one"};
   }
-  if (context_.paused) return Refusal{Outcome::PAUSED, "the farm is paused"};
+  if (clock_.context().paused) return Refusal{Outcome::PAUSED, "the farm is paused"};
   return std::nullopt;
 }
 
@@ -120,9 +131,7 @@ aquafarm_msgs::CommandResult FarmServer::Refuse(std::int32_t ship, std::uint8_t 
   ++counters_.refused;
   CommandResult result;
   Describe(ship >= 0 && ship < agents_ ? ship : aquafarm::kNone, result);
-  result.reward = 0.0F;
-  result.terms = aquafarm_msgs::RewardTerms();
-  result.energy = result.distance = 0.0;
+  ClearReward(result);
   result.code = code;
   result.message = message;
   return result;
@@ -135,129 +144,94 @@ aquafarm_msgs::CommandResult FarmServer::AcceptPaced(const ShipCommand& command)
     return Refuse(command.ship, Outcome::EPISODE_OVER,
                   "the episode has ended; the next one starts automatically");
   }
-  Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
-  slot.pending = command;
-  slot.reply = nullptr;  // supersedes a command that waited when the pace changed
-  ++slot.ticket;
-  slot.changed.notify_all();
-  slot.last = command;
-  slot.answer = CommandResult();
-  Describe(command.ship, slot.answer);
-  slot.answer.ok = true;
-  slot.answer.code = Outcome::ACCEPTED;
-  slot.answer.reward = 0.0F;
-  slot.answer.terms = aquafarm_msgs::RewardTerms();
-  slot.answer.energy = slot.answer.distance = 0.0;
-  ++slot.answer.step;
-  return slot.answer;
+  barrier_.Add(command, nullptr);
+  CommandResult result;
+  Describe(command.ship, result);
+  ClearReward(result);
+  result.ok = true;
+  result.code = Outcome::ACCEPTED;
+  ++result.step;
+  barrier_.Accept(command, result);
+  return result;
 }
 
-aquafarm_msgs::CommandResult FarmServer::WaitForOthers(const ShipCommand& command, Lock& lock) {
-  Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
-  std::optional<CommandResult> reply;
-  slot.pending = command;
-  slot.reply = &reply;
-  const std::uint64_t ticket = ++slot.ticket;
-  slot.changed.notify_all();  // supersedes an earlier command of this ship that still waits
-  if (EveryShipHasACommand()) {
+aquafarm_msgs::CommandResult FarmServer::StepTogether(const ShipCommand& command, MutexLock& lock) {
+  CommandBarrier::Call call;
+  barrier_.Add(command, &call);
+  if (barrier_.IsComplete(batch_->farm(0))) {
     StepPublishedFarm();
-    return *reply;
+    return *call.answer;
   }
   const auto deadline =
       Clock::now() + std::chrono::duration_cast<Clock::duration>(
                          std::chrono::duration<double>(options_.barrier_timeout_s));
   const std::uint64_t episodes = episode_count_;
-  const bool woken = slot.changed.wait_until(
-      lock, deadline, [&] { return reply || slot.ticket != ticket || !slot.pending || ending_; });
-  if (reply) return *reply;  // even if the ship has newer commands
-  if (slot.ticket != ticket) {
+  const CommandBarrier::WaitEnd end = barrier_.Wait(lock, call, deadline, ending_);
+  if (end == CommandBarrier::WaitEnd::kAnswered) return *call.answer;
+  const MessageContext& context = clock_.context();
+  if (end == CommandBarrier::WaitEnd::kTimedOut && !ending_ && options_.late_ships_hold &&
+      !context.paused && !context.paced) {
+    claims_.MarkPresent(command.ship);  // the client was connected while it waited
+    MarkMissingAbsent();
+    StepPublishedFarm();
+    return *call.answer;
+  }
+  return RefuseAfter(end, call, episodes);
+}
+
+// @param episodes value of episode_count_ when the call began
+aquafarm_msgs::CommandResult FarmServer::RefuseAfter(CommandBarrier::WaitEnd end,
+                                                     const CommandBarrier::Call& call,
+                                                     std::uint64_t episodes) {
+  if (end == CommandBarrier::WaitEnd::kSuperseded) {
     ++counters_.superseded;
-    return Refuse(
-        command.ship, Outcome::SUPERSEDED,
-        "ship " + std::to_string(command.ship) + " sent a newer command for the same step");
+    return Refuse(call.ship, Outcome::SUPERSEDED,
+                  "ship " + std::to_string(call.ship) + " sent a newer command for the same step");
   }
-  slot.heard_at = Clock::now();  // the client was connected while it waited
-  if (!woken && !ending_ && options_.late_ships_hold && !context_.paused && !context_.paced) {
-    StepWithoutAbsent();
-    return *reply;
-  }
-  const std::string missing = MissingShips();
-  slot.pending.reset();
-  slot.reply = nullptr;
-  if (ending_) return Refuse(command.ship, Outcome::SHUTTING_DOWN, "the sim node is shutting down");
-  if (woken) {
-    return Refuse(command.ship, Outcome::STALE,
+  claims_.MarkPresent(call.ship);  // the client was connected while it waited
+  std::string missing;
+  for (const std::int32_t ship : barrier_.MissingShips(batch_->farm(0)))
+    missing += (missing.empty() ? "" : ", ") + std::to_string(ship);
+  barrier_.Withdraw(call);
+  if (ending_) return Refuse(call.ship, Outcome::SHUTTING_DOWN, "the sim node is shutting down");
+  if (end == CommandBarrier::WaitEnd::kDropped) {
+    return Refuse(call.ship, Outcome::STALE,
                   episodes == episode_count_ ? "another client has stepped the farm"
                                              : "a new episode has started");
   }
   ++counters_.barrier_timeouts;
-  return Refuse(command.ship, Outcome::TIMEOUT,
+  return Refuse(call.ship, Outcome::TIMEOUT,
                 "barrier timed out: no command from other ships within " +
                     std::to_string(options_.barrier_timeout_s) + " s: " + missing);
 }
 
-// Returns true if the farm waits for a command of the ship.
-bool FarmServer::IsMissing(std::int32_t ship) const {
-  const auto i = static_cast<std::size_t>(ship);
-  return batch_->farm(0).ships()[i].in_play && !slots_[i]->is_absent && !slots_[i]->pending;
-}
-
-bool FarmServer::EveryShipHasACommand() const {
-  for (std::int32_t ship = 0; ship < agents_; ++ship) {
-    if (IsMissing(ship)) return false;
-  }
-  return true;
-}
-
-std::string FarmServer::MissingShips() const {
-  std::string names;
-  for (std::int32_t ship = 0; ship < agents_; ++ship) {
-    if (IsMissing(ship)) names += (names.empty() ? "" : ", ") + std::to_string(ship);
-  }
-  return names;
-}
-
 // A ship whose node has died or is late holds. The farm ignores it until its next command.
-void FarmServer::StepWithoutAbsent() {
-  for (std::int32_t ship = 0; ship < agents_; ++ship) {
-    if (!IsMissing(ship)) continue;
-    slots_[static_cast<std::size_t>(ship)]->is_absent = true;
+void FarmServer::MarkMissingAbsent() {
+  for (const std::int32_t ship : barrier_.MissingShips(batch_->farm(0))) {
+    barrier_.SetAbsent(ship, true);
     ++counters_.late_ships;
   }
-  StepPublishedFarm();
-}
-
-bool FarmServer::IsHeldByAnother(Slot& slot, const std::string& caller) {
-  if (slot.holder.empty() || slot.holder == caller) return false;
-  const std::chrono::duration<double> silence = Clock::now() - slot.heard_at;
-  // A holder whose command waits for the other ships is present.
-  if (slot.pending || silence.count() < options_.claim_timeout_s) return true;
-  slot.holder.clear();
-  ++counters_.dropped_clients;
-  return false;
 }
 
 std::optional<FarmServer::Refusal> FarmServer::CheckHolder(std::int32_t ship,
                                                            const std::string& caller) {
-  Slot& slot = *slots_[static_cast<std::size_t>(ship)];
-  if (!IsHeldByAnother(slot, caller)) return std::nullopt;
-  return Refusal{Outcome::CLAIMED, "ship " + std::to_string(ship) + " is held by " + slot.holder};
+  if (!claims_.IsHeldByAnother(ship, caller, barrier_.HasCommand(ship))) return std::nullopt;
+  return Refusal{Outcome::CLAIMED,
+                 "ship " + std::to_string(ship) + " is held by " + claims_.holder(ship)};
 }
 
 // A client that may command a ship is present if it sends a command, even a late one.
 std::optional<FarmServer::Refusal> FarmServer::MarkPresent(const ShipCommand& command) {
   if (command.ship < 0 || command.ship >= agents_) return std::nullopt;
   if (auto refusal = CheckHolder(command.ship, command.caller)) return refusal;
-  Slot& slot = *slots_[static_cast<std::size_t>(command.ship)];
-  slot.heard_at = Clock::now();
-  slot.is_absent = false;
+  claims_.MarkPresent(command.ship);
+  barrier_.SetAbsent(command.ship, false);
   return std::nullopt;
 }
 
 void FarmServer::Claim(std::int32_t ship, const std::string& caller, bool release,
                        aquafarm_msgs::Claim::Response& response) {
-  const Lock lock(mutex_);
-  Slot& slot = *slots_[static_cast<std::size_t>(ship)];
+  const MutexLock lock(mutex_);
   const auto refusal = CheckHolder(ship, caller);
   response.ok = !refusal;
   response.code = refusal ? refusal->code : std::uint8_t{Outcome::OK};
@@ -265,54 +239,33 @@ void FarmServer::Claim(std::int32_t ship, const std::string& caller, bool releas
     ++counters_.refused;
     response.message = refusal->message;
   } else {
-    slot.holder = release ? std::string() : caller;
-    slot.heard_at = Clock::now();
+    claims_.SetHolder(ship, release ? std::string() : caller);
   }
-  response.holder = slot.holder;
+  response.holder = claims_.holder(ship);
 }
 
 void FarmServer::StepPublishedFarm() {
   aquafarm::Farm& farm = batch_->farm(0);
-  for (std::size_t ship = 0; ship < slots_.size(); ++ship) {
-    const auto& pending = slots_[ship]->pending;
-    actions_[ship] = pending ? pending->action : static_cast<std::uint8_t>(aquafarm::Action::kHold);
-  }
+  barrier_.WriteActions(actions_.data());
   farm.Step(actions_.data());
   if (recorder_ != nullptr) recorder_->OnStep(farm, 0, actions_.data());
   ++counters_.farm_steps;
   Advance();
-  for (std::size_t ship = 0; ship < slots_.size(); ++ship) {
-    Slot& slot = *slots_[ship];
-    if (!slot.pending) continue;
-    slot.answer = AnswerOf(static_cast<std::int32_t>(ship));
-    slot.last = slot.pending;
-    slot.pending.reset();
-    if (slot.reply != nullptr) *slot.reply = slot.answer;
-    slot.reply = nullptr;
+  for (std::int32_t ship = 0; ship < agents_; ++ship) {
+    if (barrier_.HasCommand(ship)) barrier_.Answer(ship, ResultOf(ship));
   }
   Changed();
   if (farm.over()) {
-    Notify(
-        [&](RanchListener& listener) { listener.OnEpisodeEnd(ToMsg(farm.record(), 0, context_)); });
+    const aquafarm_msgs::EpisodeSummary summary = ToMsg(farm.record(), 0, clock_.context());
+    Notify([&](FarmListener& listener) { listener.OnEpisodeEnd(summary); });
   }
-  for (const auto& slot : slots_)
-    slot->changed.notify_all();  // last: a woken thread needs the lock
+  barrier_.Wake();  // last: a woken thread needs the lock
 }
 
-// Waiting commands return STALE.
-void FarmServer::DropPending() {
-  for (const auto& slot : slots_) {
-    if (!slot->pending) continue;
-    slot->pending.reset();
-    slot->reply = nullptr;
-    slot->changed.notify_all();
-  }
-}
-
-// Also drops the last responses, because step numbers may repeat.
+// Waiting calls return STALE. The last answers go as well, because step numbers may repeat.
 void FarmServer::DropCommands() {
-  DropPending();
-  for (const auto& slot : slots_) slot->last.reset();
+  barrier_.Drop();
+  barrier_.ForgetAnswers();
 }
 
 void FarmServer::Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) const {
@@ -332,7 +285,7 @@ void FarmServer::Describe(std::int32_t ship, aquafarm_msgs::CommandResult& resul
   result.legal_actions = farm.LegalActions(ship);
 }
 
-aquafarm_msgs::CommandResult FarmServer::AnswerOf(std::int32_t ship) const {
+aquafarm_msgs::CommandResult FarmServer::ResultOf(std::int32_t ship) const {
   CommandResult result;
   Describe(ship, result);
   result.ok = true;
@@ -344,66 +297,48 @@ aquafarm_msgs::CommandResult FarmServer::AnswerOf(std::int32_t ship) const {
 // --- time ---------------------------------------------------------------------------------------
 
 void FarmServer::Tick() {
-  const Lock lock(mutex_);
+  const MutexLock lock(mutex_);
   try {
-    if (ending_ || context_.paused) return;
+    if (ending_ || clock_.context().paused) return;
     if (batch_->farm(0).over()) {
       batch_->StartNext(0);
-      if (recorder_ != nullptr) recorder_->OnStart(batch_->farm(0), 0, context_);
+      if (recorder_ != nullptr) recorder_->OnStart(batch_->farm(0), 0, clock_.context());
       DropCommands();
       EpisodeBegan();
       return;
     }
     for (std::int32_t ship = 0; ship < agents_; ++ship) {
-      const auto i = static_cast<std::size_t>(ship);
-      if (!slots_[i]->pending && batch_->farm(0).ships()[i].in_play) ++counters_.late_ships;
+      const bool is_in_play = batch_->farm(0).ships()[static_cast<std::size_t>(ship)].in_play;
+      if (is_in_play && !barrier_.HasCommand(ship)) ++counters_.late_ships;
     }
     StepPublishedFarm();
   } catch (const std::exception& error) {
     ++turn_;  // the farm may have stepped
     DropCommands();
-    context_.paused = true;  // a farm that cannot continue must not fail at every tick
+    clock_.SetPaused(true);  // a farm that cannot continue must not fail at every tick
     counters_.fault = error.what();
   }
 }
 
 void FarmServer::RunPaced() {
-  Lock lock(mutex_);
-  Clock::time_point due = Clock::now();
-  while (!ending_) {
-    if (!context_.paced || context_.paused) {
-      pace_changed_.wait(lock, [this] { return ending_ || (context_.paced && !context_.paused); });
-      due = Clock::now();
-      continue;
-    }
-    const std::chrono::duration<double> period(1.0 / context_.rate_hz);
-    due = std::max(due + std::chrono::duration_cast<Clock::duration>(period), Clock::now());
-    const double rate_hz = context_.rate_hz;
-    const bool changed = pace_changed_.wait_until(lock, due, [this, rate_hz] {
-      return ending_ || !context_.paced || context_.paused || context_.rate_hz != rate_hz;
-    });
-    if (changed) {
-      due = Clock::now();
-      continue;
-    }
-    lock.unlock();
+  MutexLock lock(mutex_);
+  while (clock_.WaitForTick(lock, ending_)) {
+    lock.Unlock();
     Tick();
-    lock.lock();
+    lock.Lock();
   }
 }
 
 void FarmServer::Shutdown() {
-  const Lock lock(mutex_);
+  const MutexLock lock(mutex_);
   ending_ = true;
-  pace_changed_.notify_all();
-  for (const auto& slot : slots_) slot->changed.notify_all();
+  clock_.Wake();
+  barrier_.Wake();
 }
 
 void FarmServer::Advance() {
   ++turn_;
-  clock_ns_ += static_cast<std::uint64_t>(1e9 / context_.rate_hz);
-  context_.stamp.fromNSec(clock_ns_);
-  if (steps_to_pause_ > 0 && --steps_to_pause_ == 0) context_.paused = true;
+  clock_.Advance();
 }
 
 // The start of an episode has a separate tick, so that its stamp differs from that of the last end.
@@ -416,39 +351,39 @@ void FarmServer::EpisodeBegan(bool by_joint_step) {
 void FarmServer::Changed(bool by_joint_step) {
   changed_jointly_ = by_joint_step;
   ++version_;
-  Notify([this](RanchListener& listener) { listener.OnChange(View()); });
+  const ServerView view = View();
+  Notify([&](FarmListener& listener) { listener.OnChange(view); });
 }
 
 // The step is kept even if notifying the listener fails.
-void FarmServer::Notify(const std::function<void(RanchListener&)>& telling) {
+void FarmServer::Notify(const std::function<void(FarmListener&)>& notify) {
   if (listener_ == nullptr) return;
   try {
-    telling(*listener_);
+    notify(*listener_);
   } catch (const std::exception& error) {
     ++counters_.untold;
     counters_.untold_why = error.what();
   }
 }
 
-RanchView FarmServer::View() const {
-  return {*batch_, yaml_, context_, episode_count_, version_, changed_jointly_};
+ServerView FarmServer::View() const {
+  return {*batch_, yaml_, clock_.context(), episode_count_, version_, changed_jointly_};
 }
 
-void FarmServer::Inspect(const std::function<void(const RanchView&)>& look) {
-  const Lock lock(mutex_);
+void FarmServer::Inspect(const std::function<void(const ServerView&)>& look) {
+  const MutexLock lock(mutex_);
   look(View());
 }
 
-RanchCounters FarmServer::counters() {
-  const Lock lock(mutex_);
-  RanchCounters counters = counters_;
+ServerCounters FarmServer::counters() {
+  const MutexLock lock(mutex_);
+  ServerCounters counters = counters_;
   if (joint_step_at_ != Clock::time_point{}) {
     counters.joint_step_age_s =
         std::chrono::duration<double>(Clock::now() - joint_step_at_).count();
   }
-  for (std::int32_t ship = 0; ship < agents_; ++ship) {
-    if (slots_[static_cast<std::size_t>(ship)]->is_absent) counters.absent.push_back(ship);
-  }
+  counters.dropped_clients = claims_.expired();
+  counters.absent = barrier_.AbsentShips();
   return counters;
 }
 

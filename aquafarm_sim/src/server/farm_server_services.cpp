@@ -59,21 +59,22 @@ void FarmServer::Guarded(std::uint8_t bad_input, Response& response, Request&& r
 
 const aquafarm_msgs::Step::Response& FarmServer::Step(const aquafarm_msgs::Step::Request& request,
                                                       const std::string& caller) {
-  const Lock lock(mutex_);
-  if (last_step_.IsRepeated(request.sequence, caller)) return step_answer_;
+  const aquafarm::MutexLock lock(mutex_);
+  const RequestKey key{request.sequence, caller};
+  if (const auto* answer = steps_.Find(key)) return *answer;
   try {
     if (const auto refusal = Check(request, caller)) {
       Answer(refusal->code, refusal->message, step_refusal_);
       return step_refusal_;
     }
-    last_step_.sequence = 0;  // until the response is complete
     joint_step_at_ = Clock::now();
-    Answer(Outcome::OK, "", step_answer_);
-    batch_->Step(request.actions.data(), Prepare(request.encodings, step_answer_.result));
-    DropPending();
-    Complete(request.actions.data(), step_answer_.result);
-    last_step_ = {request.sequence, caller};
-    return step_answer_;
+    aquafarm_msgs::Step::Response& answer = steps_.Begin();
+    Answer(Outcome::OK, "", answer);
+    batch_->Step(request.actions.data(), Prepare(request.encodings, answer.result));
+    barrier_.Drop();
+    Complete(request.actions.data(), answer.result);
+    steps_.Complete(key);
+    return answer;
   } catch (const std::exception& error) {
     ++turn_;  // some farms may have stepped
     DropCommands();
@@ -85,10 +86,10 @@ const aquafarm_msgs::Step::Response& FarmServer::Step(const aquafarm_msgs::Step:
 std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::Request& request,
                                                      const std::string& caller) {
   if (ending_) return Refusal{Outcome::SHUTTING_DOWN, "the sim node is shutting down"};
-  if (context_.paced) {
+  if (clock_.context().paced) {
     return Refusal{Outcome::WRONG_PACE, "joint steps need pace lockstep; call set_pace"};
   }
-  if (context_.paused) return Refusal{Outcome::PAUSED, "the farm is paused"};
+  if (clock_.context().paused) return Refusal{Outcome::PAUSED, "the farm is paused"};
   for (std::int32_t ship = 0; ship < agents_; ++ship) {
     if (auto refusal = CheckHolder(ship, caller)) return refusal;
   }
@@ -99,7 +100,8 @@ std::optional<FarmServer::Refusal> FarmServer::Check(const aquafarm_msgs::Step::
                        std::to_string(turn_) +
                        ": another client has stepped or reset them, or the node has restarted"};
   }
-  const auto expected = static_cast<std::size_t>(batch_->farms()) * slots_.size();
+  const auto expected =
+      static_cast<std::size_t>(batch_->farms()) * static_cast<std::size_t>(agents_);
   if (request.actions.size() != expected) {
     return Refusal{Outcome::BAD_LENGTH, "actions: got " + std::to_string(request.actions.size()) +
                                             " entries, expected " + std::to_string(expected) +
@@ -123,7 +125,7 @@ std::optional<FarmServer::Refusal> FarmServer::CheckAnswerSize(std::int32_t farm
   if ((encodings & StepResult::INDEX) != 0 && encoder.state_count() == 0) {
     return Refusal{Outcome::BAD_VALUE, "encodings: this farm has too many states for INDEX"};
   }
-  const std::size_t entries = static_cast<std::size_t>(farms) * slots_.size();
+  const std::size_t entries = static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_);
   std::size_t bytes = 0;
   if ((encodings & StepResult::FEATURES) != 0) {
     bytes += entries * sizeof(float) * static_cast<std::size_t>(encoder.feature_count());
@@ -165,7 +167,7 @@ void FarmServer::Complete(const std::uint8_t* actions, StepResult& result) {
   constexpr bool kByJointStep = true;
   for (std::int32_t i = 0; recorder_ != nullptr && i < batch_->farms(); ++i) {
     if (result.started[static_cast<std::size_t>(i)] != 0) {
-      recorder_->OnStart(batch_->farm(i), i, context_);
+      recorder_->OnStart(batch_->farm(i), i, clock_.context());
     } else {
       recorder_->OnStep(batch_->farm(i), i, actions + std::ptrdiff_t{i} * agents_);
     }
@@ -181,8 +183,8 @@ void FarmServer::Complete(const std::uint8_t* actions, StepResult& result) {
     counters_.farm_steps += result.started[i] == 0 ? 1 : 0;
     if (result.reasons[i] == 0) continue;
     const auto farm = static_cast<std::int32_t>(i);
-    result.finished.push_back(ToMsg(batch_->farm(farm).record(), farm, context_));
-    Notify([&](RanchListener& listener) { listener.OnEpisodeEnd(result.finished.back()); });
+    result.finished.push_back(ToMsg(batch_->farm(farm).record(), farm, clock_.context()));
+    Notify([&](FarmListener& listener) { listener.OnEpisodeEnd(result.finished.back()); });
   }
 }
 
@@ -198,9 +200,10 @@ std::uint64_t FarmServer::NextEpisode() const {
 
 void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
                        aquafarm_msgs::Reset::Response& response, const std::string& caller) {
-  const Lock lock(mutex_);
-  if (last_reset_.IsRepeated(request.sequence, caller)) {
-    response = reset_answer_;
+  const aquafarm::MutexLock lock(mutex_);
+  const RequestKey key{request.sequence, caller};
+  if (const auto* answer = resets_.Find(key)) {
+    response = *answer;
     return;
   }
   Guarded(Outcome::BAD_VALUE, response, [&] {
@@ -235,8 +238,9 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
     Answer(Outcome::OK, "", response);
   });
   if (!response.ok) return;
-  last_reset_ = {request.sequence, caller};
-  if (request.sequence != 0) reset_answer_ = response;
+  if (!key.IsIdentified()) return resets_.Forget();
+  resets_.Begin() = response;
+  resets_.Complete(key);
 }
 
 // If a layout cannot be generated, the current episodes must stay unchanged.
@@ -254,18 +258,18 @@ void FarmServer::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint
 }
 
 void FarmServer::ForgetAnswers() {
-  last_step_.sequence = 0;
-  last_reset_.sequence = 0;
+  steps_.Forget();
+  resets_.Forget();
   DropCommands();
 }
 
 void FarmServer::FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const {
-  ToMsg(batch_->farm(farm), batch_->encoder(), batch_->farms(), yaml_, context_, spec);
+  ToMsg(batch_->farm(farm), batch_->encoder(), batch_->farms(), yaml_, clock_.context(), spec);
 }
 
 void FarmServer::GetState(const aquafarm_msgs::GetState::Request& request,
                           aquafarm_msgs::GetState::Response& response) {
-  const Lock lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   Guarded(Outcome::BAD_VALUE, response, [&] {
     if (request.farm < 0 || request.farm >= batch_->farms()) {
       return Answer(Outcome::UNKNOWN_FARM, OutOfRange("farm", request.farm, 0, batch_->farms() - 1),
@@ -278,9 +282,9 @@ void FarmServer::GetState(const aquafarm_msgs::GetState::Request& request,
                       response);
       }
       aquafarm::Observe(farm, request.ship, view_);
-      ToMsg(farm, view_, context_, response.state);
+      ToMsg(farm, view_, clock_.context(), response.state);
     } else {
-      ToMsg(farm, context_, response.state);
+      ToMsg(farm, clock_.context(), response.state);
     }
     response.barrier_timeout_s = options_.barrier_timeout_s;
     if (request.with_spec) FillSpec(request.farm, response.spec);
@@ -289,7 +293,7 @@ void FarmServer::GetState(const aquafarm_msgs::GetState::Request& request,
 }
 
 void FarmServer::SaveState(aquafarm_msgs::SaveState::Response& response) {
-  const Lock lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   Guarded(Outcome::BAD_VALUE, response, [&] {
     const std::string bytes = batch_->Save();
     response.data.assign(bytes.begin(), bytes.end());
@@ -301,7 +305,7 @@ void FarmServer::SaveState(aquafarm_msgs::SaveState::Response& response) {
 
 void FarmServer::LoadState(const aquafarm_msgs::LoadState::Request& request,
                            aquafarm_msgs::LoadState::Response& response) {
-  const Lock lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   Guarded(Outcome::BAD_DATA, response, [&] {
     if (const auto refusal = CheckAnswerSize(batch_->farms(), request.encodings)) {
       return Answer(refusal->code, refusal->message, response);
@@ -325,18 +329,16 @@ void FarmServer::LoadState(const aquafarm_msgs::LoadState::Request& request,
 
 void FarmServer::Pause(const aquafarm_msgs::Pause::Request& request,
                        aquafarm_msgs::Pause::Response& response) {
-  const Lock lock(mutex_);
-  steps_to_pause_ = request.paused != 0 ? request.steps : 0;
-  context_.paused = request.paused != 0 && request.steps == 0;
-  response.paused = context_.paused;
-  pace_changed_.notify_all();
+  const aquafarm::MutexLock lock(mutex_);
+  clock_.SetPaused(request.paused != 0, request.steps);
+  response.paused = clock_.context().paused;
   Changed();
   Answer(Outcome::OK, "", response);
 }
 
 void FarmServer::SetPace(const aquafarm_msgs::SetPace::Request& request,
                          aquafarm_msgs::SetPace::Response& response) {
-  const Lock lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   const bool known = request.pace.empty() || request.pace == "lockstep" || request.pace == "paced";
   const bool rate_fits = std::isfinite(request.rate_hz) && request.rate_hz >= 0.0 &&
                          request.rate_hz <= kMaxRate_hz &&
@@ -350,14 +352,14 @@ void FarmServer::SetPace(const aquafarm_msgs::SetPace::Request& request,
                std::to_string(kMinRate_hz) + ", " + std::to_string(kMaxRate_hz) + "]",
            response);
   } else {
-    if (!request.pace.empty()) context_.paced = request.pace == "paced";
-    if (request.rate_hz > 0.0) context_.rate_hz = request.rate_hz;
-    pace_changed_.notify_all();
+    const MessageContext& now = clock_.context();
+    clock_.SetPace(request.pace.empty() ? now.paced : request.pace == "paced",
+                   request.rate_hz > 0.0 ? request.rate_hz : now.rate_hz);
     Changed();
     Answer(Outcome::OK, "", response);
   }
-  response.pace = context_.paced ? "paced" : "lockstep";
-  response.rate_hz = context_.rate_hz;
+  response.pace = clock_.context().paced ? "paced" : "lockstep";
+  response.rate_hz = clock_.context().rate_hz;
 }
 
 // Issues a forecast to all addressed farms, or to none.
@@ -394,7 +396,7 @@ void FarmServer::IssueForecast(const aquafarm_msgs::SetDisaster::Request& reques
 
 void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                              aquafarm_msgs::SetDisaster::Response& response) {
-  const Lock lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   Guarded(Outcome::BAD_VALUE, response, [&] {
     if (request.farm < -1 || request.farm >= batch_->farms()) {
       return Answer(Outcome::UNKNOWN_FARM,

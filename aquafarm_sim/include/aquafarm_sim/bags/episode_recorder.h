@@ -38,7 +38,7 @@ struct RecorderLimits {
   std::chrono::milliseconds wait{10'000};  ///< max wait of the farms; after it recording stops
 };
 
-class EpisodeRecorder final : public RanchRecorder {
+class EpisodeRecorder final : public FarmRecorder {
  public:
   /// @throws InputError if the folder cannot be created
   EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scenario, Keep keep, std::string folder,

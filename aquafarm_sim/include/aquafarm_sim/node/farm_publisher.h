@@ -31,7 +31,7 @@
 
 namespace aquafarm_sim {
 
-class FarmPublisher : public RanchListener {
+class FarmPublisher : public FarmListener {
  public:
   /// @param ranch must outlive the publisher, which is its listener until it is destroyed
   FarmPublisher(const ros::NodeHandle& node, const SimParams& params, FarmServer& ranch);
@@ -43,7 +43,7 @@ class FarmPublisher : public RanchListener {
   /// @returns false if there is no subscriber within the limit
   bool WaitForRecorder(double limit_s);
 
-  void OnChange(const RanchView& view) override;
+  void OnChange(const ServerView& view) override;
   void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) override;
 
   /// Number of episode summaries that were dropped because the queue was full.
@@ -61,11 +61,11 @@ class FarmPublisher : public RanchListener {
   template <typename Message>
   void Advertise(ros::NodeHandle& node, const std::string& name, Topic<Message>& topic);
   std::uint32_t CountSubscribers() const;
-  void Fill(const RanchView& view);
-  void PublishObservations(const RanchView& view);
-  const aquafarm_msgs::FarmState& ObservationOf(const RanchView& view, std::int32_t ship);
-  void FillEpisode(const RanchView& view);
-  void FillFrames(const RanchView& view);
+  void Fill(const ServerView& view);
+  void PublishObservations(const ServerView& view);
+  const aquafarm_msgs::FarmState& ObservationOf(const ServerView& view, std::int32_t ship);
+  void FillEpisode(const ServerView& view);
+  void FillFrames(const ServerView& view);
   void Send();
   void SendSeas();
   void Wake();

@@ -53,7 +53,7 @@ class SimNode {
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer diagnostics_timer_;
   ros::WallTime diagnosed_at_;
-  RanchCounters diagnosed_;
+  ServerCounters diagnosed_;
   std::unique_ptr<ros::AsyncSpinner> ship_spinner_;
   std::thread pacer_;
 };

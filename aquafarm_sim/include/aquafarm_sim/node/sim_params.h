@@ -18,7 +18,7 @@ struct SimParams {
   std::string scenario{"paper"};  ///< name of a shipped scenario, or a path
   /// ~farms, ~threads, ~seed (-1: from the wall clock), ~pace, ~rate_hz, ~barrier_timeout_s,
   /// ~late_ships_hold, ~claim_timeout_s
-  RanchOptions ranch;
+  ServerOptions ranch;
   double publish_hz{10.0};           ///< max states published per second; 0: no states
   bool record{};                     ///< publish every step of farm 0
   std::string keep{"none"};          ///< episodes to write as bags, in the syntax of ParseKeep

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The protocol of docs/ros_api.md for a FarmBatch, independent of the transport: pace, commands
-/// that are executed exactly once, the lockstep barrier, joint steps, save and load. Every public
-/// function may be called from any thread. No function throws after construction: invalid requests
-/// return a code and change nothing.
+/// The protocol of docs/ros_api.md for a FarmBatch, independent of the transport: commands that are
+/// executed exactly once (RequestLog), the lockstep barrier (CommandBarrier), claims of ships
+/// (ClaimTable), pace (PaceClock), joint steps, save and load. Every public function may be called
+/// from any thread. No function throws after construction: invalid requests return a code and
+/// change nothing.
 ///
 ///   lockstep:  ship 0 --Command--> waits ----------+--> result of step k+1
 ///              ship 1 -----------------Command-----+--> result of step k+1   (or TIMEOUT)
@@ -21,20 +22,23 @@
 #include <aquafarm_msgs/SetPace.h>
 #include <aquafarm_msgs/Step.h>
 
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "aquafarm/base/mutex.h"
 #include "aquafarm/observation/farm_batch.h"
 #include "aquafarm/scenario/limits.h"
 #include "aquafarm_sim/convert/conversions.h"
+#include "aquafarm_sim/server/claim_table.h"
+#include "aquafarm_sim/server/command.h"
+#include "aquafarm_sim/server/command_barrier.h"
+#include "aquafarm_sim/server/pace_clock.h"
+#include "aquafarm_sim/server/request_log.h"
 
 namespace aquafarm_sim {
 
@@ -46,7 +50,7 @@ inline constexpr double kMaxRate_hz = 1000.0;
 inline constexpr std::int64_t kMaxDrawnCells = 64'000'000;
 inline constexpr std::size_t kMaxAnswerBytes = std::size_t{256} << 20U;
 
-struct RanchOptions {
+struct ServerOptions {
   std::int32_t farms{1};
   std::int32_t threads{1};  ///< number of threads that step the farms
   std::uint64_t seed{};
@@ -58,24 +62,8 @@ struct RanchOptions {
   std::string map_frame{"map"};
 };
 
-/// The command of one ship: an action and its target step.
-struct ShipCommand {
-  std::int32_t ship{};
-  std::uint8_t action{};
-  std::uint64_t episode{};
-  std::uint64_t step{};
-  std::uint64_t token{};
-  std::string caller{};  ///< name of the calling node; empty if unknown
-  friend bool operator==(const ShipCommand& a, const ShipCommand& b) {
-    return a.ship == b.ship && a.action == b.action && a.episode == b.episode && a.step == b.step &&
-           a.token == b.token;
-  }
-  /// True if the command names neither a step nor a token: a retry looks like a new command.
-  bool anonymous() const { return episode == 0 && step == 0 && token == 0; }
-};
-
 /// Counters for diagnostics.
-struct RanchCounters {
+struct ServerCounters {
   std::uint64_t farm_steps{};  ///< steps, summed over all farms
   std::uint64_t late_ships{};  ///< paced: holds without a command; lockstep: ships gone absent
   std::uint64_t barrier_timeouts{};  ///< lockstep: commands that returned TIMEOUT
@@ -91,7 +79,7 @@ struct RanchCounters {
 };
 
 /// The current state of the farms. It is valid during the callback, while no farm steps.
-struct RanchView {
+struct ServerView {
   const aquafarm::FarmBatch& batch;
   const std::string& yaml;  ///< canonical YAML of the scenario
   MessageContext context;
@@ -101,19 +89,19 @@ struct RanchView {
 };
 
 /// Receives changes while no farm steps. Callbacks must be quick and must not call the ranch.
-class RanchListener {
+class FarmListener {
  public:
-  virtual ~RanchListener() = default;
+  virtual ~FarmListener() = default;
   /// Called after farm 0 has stepped or started an episode.
-  virtual void OnChange(const RanchView& view) = 0;
+  virtual void OnChange(const ServerView& view) = 0;
   virtual void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) = 0;
 };
 
 /// Receives everything that determines the farms' episodes, in order, while no farm steps.
 /// Callbacks must not call the ranch.
-class RanchRecorder {
+class FarmRecorder {
  public:
-  virtual ~RanchRecorder() = default;
+  virtual ~FarmRecorder() = default;
   /// Called after farm `number` has started an episode or loaded one.
   /// @param context pace and rate of the ranch at this time
   virtual void OnStart(const aquafarm::Farm& farm, std::int32_t number,
@@ -128,12 +116,12 @@ class RanchRecorder {
 class FarmServer {
  public:
   /// @throws InputError if no layout of the scenario can be generated
-  FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario, const RanchOptions& options);
+  FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario, const ServerOptions& options);
 
   /// @param listener must stay valid until it is replaced or the ranch ends; null: no listener
-  void SetListener(RanchListener* listener);
+  void SetListener(FarmListener* listener);
   /// As SetListener. OnStart is called immediately for the current episode of each farm.
-  void SetRecorder(RanchRecorder* recorder);
+  void SetRecorder(FarmRecorder* recorder);
 
   /// Executes a command. Lockstep: returns when the step was taken, refused or timed out. Paced:
   /// returns immediately.
@@ -169,112 +157,100 @@ class FarmServer {
   void Shutdown();
 
   /// Calls `look` while no farm steps.
-  void Inspect(const std::function<void(const RanchView&)>& look);
-  RanchCounters counters();
+  void Inspect(const std::function<void(const ServerView&)>& look);
+  ServerCounters counters();
   std::int32_t agents() const { return agents_; }
   const aquafarm::Scenario& scenario() const { return *scenario_; }
   const std::shared_ptr<const aquafarm::Scenario>& shared_scenario() const { return scenario_; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  using Lock = std::unique_lock<std::mutex>;
-
-  /// The commands of one ship.
-  struct Slot {
-    std::optional<ShipCommand> pending;                    // command for the next step
-    std::uint64_t ticket{};                                // number of the newest command
-    std::optional<aquafarm_msgs::CommandResult>* reply{};  // of the waiting call; null if none
-    std::optional<ShipCommand> last;  // last accepted command; `answer` is its result
-    aquafarm_msgs::CommandResult answer;
-    std::condition_variable changed;
-    bool is_absent{};            // it was late; the farm does not wait for it
-    std::string holder;          // node that has claimed it; empty if unclaimed
-    Clock::time_point heard_at;  // time of the holder's last command or claim
-  };
   struct Refusal {
     std::uint8_t code{};
     std::string message;
   };
-  /// Identifies the last accepted request of a kind. Sequence numbers are per client.
-  struct IdempotencyKey {
-    std::uint64_t sequence{};  // 0: no request
-    std::string caller;
-    bool IsRepeated(std::uint64_t by_sequence, const std::string& by_caller) const {
-      return sequence != 0 && sequence == by_sequence && caller == by_caller;
-    }
-  };
+  using StepLog = RequestLog<RequestKey, aquafarm_msgs::Step::Response>;
+  using ResetLog = RequestLog<RequestKey, aquafarm_msgs::Reset::Response>;
 
-  std::optional<Refusal> Check(const ShipCommand& command) const;
+  // Commands of single ships.
+  std::optional<Refusal> Check(const ShipCommand& command) const AQUAFARM_REQUIRES(mutex_);
   aquafarm_msgs::CommandResult Refuse(std::int32_t ship, std::uint8_t code,
-                                      const std::string& message);
-  aquafarm_msgs::CommandResult AcceptPaced(const ShipCommand& command);
-  aquafarm_msgs::CommandResult WaitForOthers(const ShipCommand& command, Lock& lock);
-  bool IsMissing(std::int32_t ship) const;
-  bool EveryShipHasACommand() const;
-  std::string MissingShips() const;
-  std::optional<Refusal> MarkPresent(const ShipCommand& command);
-  std::optional<Refusal> CheckHolder(std::int32_t ship, const std::string& caller);
-  bool IsHeldByAnother(Slot& slot, const std::string& caller);
-  void StepWithoutAbsent();
-  void StepPublishedFarm();
-  void DropPending();
-  void DropCommands();
-  void Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) const;
-  aquafarm_msgs::CommandResult AnswerOf(std::int32_t ship) const;
+                                      const std::string& message) AQUAFARM_REQUIRES(mutex_);
+  aquafarm_msgs::CommandResult AcceptPaced(const ShipCommand& command) AQUAFARM_REQUIRES(mutex_);
+  aquafarm_msgs::CommandResult StepTogether(const ShipCommand& command, aquafarm::MutexLock& lock)
+      AQUAFARM_REQUIRES(mutex_);
+  aquafarm_msgs::CommandResult RefuseAfter(CommandBarrier::WaitEnd end,
+                                           const CommandBarrier::Call& call, std::uint64_t episodes)
+      AQUAFARM_REQUIRES(mutex_);
+  std::optional<Refusal> MarkPresent(const ShipCommand& command) AQUAFARM_REQUIRES(mutex_);
+  std::optional<Refusal> CheckHolder(std::int32_t ship, const std::string& caller)
+      AQUAFARM_REQUIRES(mutex_);
+  void MarkMissingAbsent() AQUAFARM_REQUIRES(mutex_);
+  void StepPublishedFarm() AQUAFARM_REQUIRES(mutex_);
+  void DropCommands() AQUAFARM_REQUIRES(mutex_);
+  void Describe(std::int32_t ship, aquafarm_msgs::CommandResult& result) const
+      AQUAFARM_REQUIRES(mutex_);
+  aquafarm_msgs::CommandResult ResultOf(std::int32_t ship) const AQUAFARM_REQUIRES(mutex_);
 
+  // Requests that affect all ships or all farms.
   template <typename Response>
-  void Answer(std::uint8_t code, const std::string& message, Response& response);
+  void Answer(std::uint8_t code, const std::string& message, Response& response)
+      AQUAFARM_REQUIRES(mutex_);
   template <typename Response, typename Request>
-  void Guarded(std::uint8_t bad_input, Response& response, Request&& request);
+  void Guarded(std::uint8_t bad_input, Response& response, Request&& request)
+      AQUAFARM_REQUIRES(mutex_);
   std::optional<Refusal> Check(const aquafarm_msgs::Step::Request& request,
-                               const std::string& caller);
-  std::optional<Refusal> CheckAnswerSize(std::int32_t farms, std::uint8_t encodings) const;
-  aquafarm::BatchOutput Prepare(std::uint8_t encodings, aquafarm_msgs::StepResult& result) const;
-  void Describe(aquafarm_msgs::StepResult& result) const;
-  void Complete(const std::uint8_t* actions, aquafarm_msgs::StepResult& result);
-  void RecordStarts();
-  std::uint64_t NextEpisode() const;
-  void StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first);
+                               const std::string& caller) AQUAFARM_REQUIRES(mutex_);
+  std::optional<Refusal> CheckAnswerSize(std::int32_t farms, std::uint8_t encodings) const
+      AQUAFARM_REQUIRES(mutex_);
+  aquafarm::BatchOutput Prepare(std::uint8_t encodings, aquafarm_msgs::StepResult& result) const
+      AQUAFARM_REQUIRES(mutex_);
+  void Describe(aquafarm_msgs::StepResult& result) const AQUAFARM_REQUIRES(mutex_);
+  void Complete(const std::uint8_t* actions, aquafarm_msgs::StepResult& result)
+      AQUAFARM_REQUIRES(mutex_);
+  void RecordStarts() AQUAFARM_REQUIRES(mutex_);
+  std::uint64_t NextEpisode() const AQUAFARM_REQUIRES(mutex_);
+  void StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first)
+      AQUAFARM_REQUIRES(mutex_);
   void IssueForecast(const aquafarm_msgs::SetDisaster::Request& request, std::int32_t first,
-                     std::int32_t end, aquafarm_msgs::SetDisaster::Response& response);
-  void FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const;
-  void ForgetAnswers();
+                     std::int32_t end, aquafarm_msgs::SetDisaster::Response& response)
+      AQUAFARM_REQUIRES(mutex_);
+  void FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) const AQUAFARM_REQUIRES(mutex_);
+  void ForgetAnswers() AQUAFARM_REQUIRES(mutex_);
 
-  void Advance();
-  void Changed(bool by_joint_step = false);
-  void Notify(const std::function<void(RanchListener&)>& telling);
-  void EpisodeBegan(bool by_joint_step = false);
-  RanchView View() const;
+  void Advance() AQUAFARM_REQUIRES(mutex_);
+  void Changed(bool by_joint_step = false) AQUAFARM_REQUIRES(mutex_);
+  void Notify(const std::function<void(FarmListener&)>& notify) AQUAFARM_REQUIRES(mutex_);
+  void EpisodeBegan(bool by_joint_step = false) AQUAFARM_REQUIRES(mutex_);
+  ServerView View() const AQUAFARM_REQUIRES(mutex_);
 
   const std::shared_ptr<const aquafarm::Scenario> scenario_;
   const std::string yaml_;
-  const RanchOptions options_;
+  const ServerOptions options_;
   const std::int32_t agents_;
 
-  std::mutex mutex_;  // guards all below
-  std::unique_ptr<aquafarm::FarmBatch> batch_;
-  MessageContext context_;
-  std::uint64_t clock_ns_{};
-  std::uint32_t steps_to_pause_{};  // 0: no scheduled pause
-  std::uint64_t episode_count_{};
-  std::uint64_t version_{};
-  std::uint64_t turn_;  // StepResult.turn; the start value differs after a restart of the node
-  bool ending_{};
-  bool changed_jointly_{};  // a joint step made the last change
-  std::condition_variable pace_changed_;
-  std::vector<std::unique_ptr<Slot>> slots_;
-  std::vector<std::uint8_t> actions_;  // scratch, one per ship
-  aquafarm::View view_;                // scratch
-  RanchListener* listener_{};
-  RanchRecorder* recorder_{};
-  RanchCounters counters_;
-  Clock::time_point joint_step_at_{};  // time of the last joint step; the clock's zero if none
-
-  IdempotencyKey last_step_;
-  aquafarm_msgs::Step::Response step_answer_;
-  aquafarm_msgs::Step::Response step_refusal_;
-  IdempotencyKey last_reset_;
-  aquafarm_msgs::Reset::Response reset_answer_;
+  mutable aquafarm::Mutex mutex_;
+  std::unique_ptr<aquafarm::FarmBatch> batch_ AQUAFARM_GUARDED_BY(mutex_);
+  CommandBarrier barrier_ AQUAFARM_GUARDED_BY(mutex_);
+  ClaimTable claims_ AQUAFARM_GUARDED_BY(mutex_);
+  PaceClock clock_ AQUAFARM_GUARDED_BY(mutex_);
+  StepLog steps_ AQUAFARM_GUARDED_BY(mutex_);
+  aquafarm_msgs::Step::Response step_refusal_ AQUAFARM_GUARDED_BY(mutex_);
+  ResetLog resets_ AQUAFARM_GUARDED_BY(mutex_);
+  std::uint64_t episode_count_ AQUAFARM_GUARDED_BY(mutex_){};
+  std::uint64_t version_ AQUAFARM_GUARDED_BY(mutex_){};
+  // StepResult.turn. The start value differs after a restart of the node.
+  std::uint64_t turn_ AQUAFARM_GUARDED_BY(mutex_);
+  bool ending_ AQUAFARM_GUARDED_BY(mutex_){};
+  // True if a joint step made the last change.
+  bool changed_jointly_ AQUAFARM_GUARDED_BY(mutex_){};
+  std::vector<std::uint8_t> actions_ AQUAFARM_GUARDED_BY(mutex_);  // scratch, one per ship
+  aquafarm::View view_ AQUAFARM_GUARDED_BY(mutex_);                // scratch
+  FarmListener* listener_ AQUAFARM_GUARDED_BY(mutex_){};
+  FarmRecorder* recorder_ AQUAFARM_GUARDED_BY(mutex_){};
+  ServerCounters counters_ AQUAFARM_GUARDED_BY(mutex_);
+  // Time of the last joint step; the clock's zero if none.
+  Clock::time_point joint_step_at_ AQUAFARM_GUARDED_BY(mutex_){};
 };
 
 }  // namespace aquafarm_sim

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Commands of single ships: exactly-once execution, pace, lockstep barrier and claims.
+#include "aquafarm_sim/server/farm_server.h"
+
 #include <gtest/gtest.h>
 
 #include <future>
 #include <thread>
 
-#include "aquafarm_sim/server/farm_server.h"
-#include "ranch_fixture.h"
+#include "farm_server_fixture.h"
 
 namespace aquafarm_sim {
 namespace {
@@ -113,7 +114,7 @@ TEST(FarmServer, ALoneCommandTimesOutAndIsTakenBack) {
 }
 
 TEST(FarmServer, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
-  RanchOptions options;
+  ServerOptions options;
   options.barrier_timeout_s = 1.0;
   options.late_ships_hold = true;
   const auto ranch = MakeRanchOf(TwoShips(), options);
@@ -138,7 +139,7 @@ TEST(FarmServer, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
 }
 
 TEST(FarmServer, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
-  RanchOptions options;
+  ServerOptions options;
   options.barrier_timeout_s = 1.0;
   options.late_ships_hold = true;
   const auto ranch = MakeRanchOf(TwoShips(), options);
@@ -153,7 +154,7 @@ TEST(FarmServer, AShipThatIsAlwaysTooLateIsWaitedForAgain) {
 }
 
 TEST(FarmServer, APausedFarmDoesNotGoOnWithoutTheLate) {
-  RanchOptions options;
+  ServerOptions options;
   options.barrier_timeout_s = 1.0;
   options.late_ships_hold = true;
   const auto ranch = MakeRanchOf(TwoShips(), options);
@@ -170,7 +171,7 @@ TEST(FarmServer, APausedFarmDoesNotGoOnWithoutTheLate) {
 }
 
 TEST(FarmServer, AClaimedShipObeysItsHolderAlone) {
-  RanchOptions options;
+  ServerOptions options;
   options.claim_timeout_s = 1.0;
   const auto ranch = MakeRanchOf(aquafarm::test::TinyScenario(), options);
   const auto claim = [&](const std::string& caller, bool release) {
@@ -207,7 +208,7 @@ TEST(FarmServer, ANewerCommandOfTheSameShipSupersedesTheWaitingOne) {
 }
 
 /// Delays each step, so that other calls queue for the ranch before waiting calls get the result.
-class SlowRecorder : public RanchRecorder {
+class SlowRecorder : public FarmRecorder {
  public:
   void OnStart(const aquafarm::Farm&, std::int32_t, const MessageContext&) override {}
   void OnStep(const aquafarm::Farm&, std::int32_t, const std::uint8_t*) override {
@@ -243,8 +244,8 @@ TEST(FarmServer, ACommandThatWasCarriedOutIsAnsweredSoWhateverCameAfterIt) {
 }
 
 TEST(FarmServer, AStepThatCannotBeToldStandsForAllShips) {
-  struct Deaf final : RanchListener {
-    void OnChange(const RanchView& view) override {
+  struct Deaf final : FarmListener {
+    void OnChange(const ServerView& view) override {
       if (view.batch.farm(0).step() > 0) throw std::runtime_error("no memory");
     }
     void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary&) override {}
@@ -338,7 +339,7 @@ TEST(FarmServer, APacedFarmBeginsTheNextEpisodeByItself) {
 }
 
 TEST(FarmServer, PacedRunningTakesStepsOnTime) {
-  RanchOptions options;
+  ServerOptions options;
   options.paced = true;
   options.rate_hz = 100.0;
   FarmServer ranch(std::make_shared<const aquafarm::Scenario>(aquafarm::test::TinyScenario()),

@@ -22,7 +22,7 @@ inline constexpr std::uint8_t kHold = 10;
 
 /// Creates a ranch of the tiny farm of core/test, in lockstep with a short barrier timeout.
 inline std::unique_ptr<FarmServer> MakeRanchOf(const aquafarm::Scenario& scenario,
-                                               const RanchOptions& options) {
+                                               const ServerOptions& options) {
   aquafarm::ValidateScenario(scenario);
   return std::make_unique<FarmServer>(std::make_shared<const aquafarm::Scenario>(scenario),
                                       options);
@@ -30,7 +30,7 @@ inline std::unique_ptr<FarmServer> MakeRanchOf(const aquafarm::Scenario& scenari
 
 inline std::unique_ptr<FarmServer> MakeRanch(const aquafarm::Scenario& scenario,
                                              std::int32_t farms = 1, bool paced = false) {
-  RanchOptions options;
+  ServerOptions options;
   options.farms = farms;
   options.seed = 5;
   options.paced = paced;

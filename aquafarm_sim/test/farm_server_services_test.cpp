@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Joint steps, episodes, saved states, bulletins and pace.
+// Joint steps, episodes, saved states and pace.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "aquafarm/base/rng.h"
 #include "aquafarm/observation/view.h"
-#include "ranch_fixture.h"
+#include "farm_server_fixture.h"
 
 namespace aquafarm_sim {
 namespace {
@@ -40,7 +40,7 @@ std::vector<std::uint64_t> Play(FarmServer& ranch, std::size_t actions, int step
   return hashes;
 }
 
-TEST(RanchServices, AJointStepEqualsTheBatchInProcess) {
+TEST(FarmServerServices, AJointStepEqualsTheBatchInProcess) {
   const aquafarm::Scenario scenario = aquafarm::test::CrowdedScenario(2);
   const auto ranch = MakeRanch(scenario, 5);
   aquafarm::FarmBatch batch(std::make_shared<const aquafarm::Scenario>(scenario), 5);
@@ -70,7 +70,7 @@ TEST(RanchServices, AJointStepEqualsTheBatchInProcess) {
   }
 }
 
-TEST(RanchServices, ArraysHaveTheStatedLengths) {
+TEST(FarmServerServices, ArraysHaveTheStatedLengths) {
   const auto ranch = MakeRanch(TwoShips(), 3);
   const auto bare = StepAll(*ranch, std::vector<std::uint8_t>(6, kHold)).result;
   EXPECT_EQ(3, bare.farms);
@@ -87,7 +87,7 @@ TEST(RanchServices, ArraysHaveTheStatedLengths) {
   EXPECT_EQ(3U, full.hashes.size());
 }
 
-TEST(RanchServices, RepeatingTheLastSequenceStepsNothing) {
+TEST(FarmServerServices, RepeatingTheLastSequenceStepsNothing) {
   const auto ranch = MakeRanch(TwoShips(), 2);
   const auto first = StepAll(*ranch, {0, 1, 2, 3}, StepResult::HASHES, 41);
   const auto refused = StepAll(*ranch, {0}, StepResult::HASHES, 42);
@@ -96,7 +96,7 @@ TEST(RanchServices, RepeatingTheLastSequenceStepsNothing) {
   EXPECT_EQ(1U, StateOf(*ranch).step);
 }
 
-TEST(RanchServices, TheNumbersOfAnotherClientAreNoRepeats) {
+TEST(FarmServerServices, TheNumbersOfAnotherClientAreNoRepeats) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request step;
   step.actions = {kNorth};
@@ -113,7 +113,7 @@ TEST(RanchServices, TheNumbersOfAnotherClientAreNoRepeats) {
   EXPECT_EQ(2U, StateOf(*ranch).episode);
 }
 
-TEST(RanchServices, AStepForFarmsThatAnotherHasMovedIsStale) {
+TEST(FarmServerServices, AStepForFarmsThatAnotherHasMovedIsStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request mine;
   mine.actions = {kNorth};
@@ -148,7 +148,7 @@ TEST(RanchServices, AStepForFarmsThatAnotherHasMovedIsStale) {
   }
 }
 
-TEST(RanchServices, PausesAndBulletinsMakeNoStepStale) {
+TEST(FarmServerServices, PausesAndBulletinsMakeNoStepStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request mine;
   mine.actions = {kNorth};
@@ -169,7 +169,7 @@ TEST(RanchServices, PausesAndBulletinsMakeNoStepStale) {
   EXPECT_TRUE(ranch->Step(mine).ok);
 }
 
-TEST(RanchServices, AJointStepIsRefusedWhileAnotherHoldsAShip) {
+TEST(FarmServerServices, AJointStepIsRefusedWhileAnotherHoldsAShip) {
   const auto ranch = MakeRanch(TwoShips(), 2);
   aquafarm_msgs::Claim::Response claim;
   ranch->Claim(1, "/agent", false, claim);
@@ -185,7 +185,8 @@ TEST(RanchServices, AJointStepIsRefusedWhileAnotherHoldsAShip) {
 }
 
 // A waiting learner gets STALE only once, when it may continue.
-TEST(RanchServices, AJointStepHearsWhoIsInTheWayBeforeItIsStale) {
+
+TEST(FarmServerServices, AJointStepHearsWhoIsInTheWayBeforeItIsStale) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Step::Request mine;
   mine.actions = {kNorth};
@@ -211,7 +212,7 @@ TEST(RanchServices, AJointStepHearsWhoIsInTheWayBeforeItIsStale) {
   EXPECT_EQ(Outcome::STALE, ranch->Step(mine, "/trainer").code);
 }
 
-TEST(RanchServices, EveryRefusalIsCounted) {
+TEST(FarmServerServices, EveryRefusalIsCounted) {
   const auto ranch = MakeRanch(TwoShips());
   const auto refuse = [&](auto service, auto handler) {
     const std::uint64_t before = ranch->counters().refused;
@@ -227,7 +228,7 @@ TEST(RanchServices, EveryRefusalIsCounted) {
   refuse(aquafarm_msgs::SetDisaster(), [&](auto& q, auto& a) { ranch->SetDisaster(q, a); });
 }
 
-TEST(RanchServices, JointStepsOutOfRangeAreRefused) {
+TEST(FarmServerServices, JointStepsOutOfRangeAreRefused) {
   const auto ranch = MakeRanch(TwoShips(), 2);
   const std::uint64_t hash = StateOf(*ranch).hash;
   const auto shorter = StepAll(*ranch, {0, 1, 2});
@@ -240,12 +241,12 @@ TEST(RanchServices, JointStepsOutOfRangeAreRefused) {
   EXPECT_EQ(hash, StateOf(*ranch).hash);
 }
 
-TEST(RanchServices, JointStepsNeedLockstep) {
+TEST(FarmServerServices, JointStepsNeedLockstep) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 1, true);
   EXPECT_EQ(Outcome::WRONG_PACE, StepAll(*ranch, {0}).code);
 }
 
-TEST(RanchServices, FinishedEpisodesComeWithTheStepThatEndsThem) {
+TEST(FarmServerServices, FinishedEpisodesComeWithTheStepThatEndsThem) {
   aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 2;
   const auto ranch = MakeRanch(scenario, 2);
@@ -263,7 +264,7 @@ TEST(RanchServices, FinishedEpisodesComeWithTheStepThatEndsThem) {
   EXPECT_EQ(3U, StateOf(*ranch, 1).episode);
 }
 
-TEST(RanchServices, ASeedReproducesAndWithoutOneTheSequenceGoesOn) {
+TEST(FarmServerServices, ASeedReproducesAndWithoutOneTheSequenceGoesOn) {
   const auto ranch = MakeRanch(aquafarm::test::CrowdedScenario(2), 2);
   const std::size_t actions = 2 * static_cast<std::size_t>(ranch->agents());
   const auto first = ResetTo(*ranch, 11);
@@ -280,7 +281,7 @@ TEST(RanchServices, ASeedReproducesAndWithoutOneTheSequenceGoesOn) {
   EXPECT_EQ(second, Play(*ranch, actions, 100, 1));
 }
 
-TEST(RanchServices, ResetChangesTheNumberOfFarmsAndStartsWhereAsked) {
+TEST(FarmServerServices, ResetChangesTheNumberOfFarmsAndStartsWhereAsked) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Reset call;
   call.request.farms = 3;
@@ -296,7 +297,7 @@ TEST(RanchServices, ResetChangesTheNumberOfFarmsAndStartsWhereAsked) {
   EXPECT_EQ(102U, StateOf(*ranch, 2).episode);
 }
 
-TEST(RanchServices, ResetOutOfRangeChangesNothing) {
+TEST(FarmServerServices, ResetOutOfRangeChangesNothing) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   const std::uint64_t hash = StateOf(*ranch).hash;
   for (const std::int32_t farms : {-1, kMaxFarms + 1, std::numeric_limits<std::int32_t>::max()}) {
@@ -308,7 +309,7 @@ TEST(RanchServices, ResetOutOfRangeChangesNothing) {
   EXPECT_EQ(hash, StateOf(*ranch).hash);
 }
 
-TEST(RanchServices, RepeatingAResetBeginsNoFurtherEpisode) {
+TEST(FarmServerServices, RepeatingAResetBeginsNoFurtherEpisode) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Reset call;
   call.request.sequence = 9;
@@ -320,7 +321,7 @@ TEST(RanchServices, RepeatingAResetBeginsNoFurtherEpisode) {
   EXPECT_EQ(1U, StateOf(*ranch).episode);
 }
 
-TEST(RanchServices, AResetOnlyIfOverLeavesAnEpisodeInProgressAlone) {
+TEST(FarmServerServices, AResetOnlyIfOverLeavesAnEpisodeInProgressAlone) {
   aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
   scenario.step_limit = 2;
   const auto ranch = MakeRanch(scenario);
@@ -341,7 +342,7 @@ TEST(RanchServices, AResetOnlyIfOverLeavesAnEpisodeInProgressAlone) {
   EXPECT_EQ(0U, StateOf(*ranch).step);
 }
 
-TEST(RanchServices, AfterALoadANumberedResetIsDoneAgain) {
+TEST(FarmServerServices, AfterALoadANumberedResetIsDoneAgain) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::SaveState save;
   ranch->SaveState(save.response);
@@ -356,7 +357,7 @@ TEST(RanchServices, AfterALoadANumberedResetIsDoneAgain) {
   EXPECT_EQ(1U, StateOf(*ranch).episode);
 }
 
-TEST(RanchServices, LoadResumesBitForBit) {
+TEST(FarmServerServices, LoadResumesBitForBit) {
   const auto ranch = MakeRanch(aquafarm::test::CrowdedScenario(2), 3);
   const std::size_t actions = 3 * static_cast<std::size_t>(ranch->agents());
   Play(*ranch, actions, 40, 1);
@@ -372,7 +373,7 @@ TEST(RanchServices, LoadResumesBitForBit) {
   EXPECT_EQ(expected, Play(*ranch, actions, 150, 2));
 }
 
-TEST(RanchServices, DamagedBytesChangeNothing) {
+TEST(FarmServerServices, DamagedBytesChangeNothing) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
   aquafarm_msgs::SaveState save;
   ranch->SaveState(save.response);
@@ -393,121 +394,7 @@ TEST(RanchServices, DamagedBytesChangeNothing) {
   EXPECT_EQ(hash, StateOf(*ranch).hash);
 }
 
-aquafarm_msgs::SetDisaster::Request Bulletin() {
-  aquafarm_msgs::SetDisaster::Request request;
-  request.info.grade = 3;
-  request.info.radii = {1.0F, 2.0F};
-  request.info.risks = {-20.0F, -5.0F};
-  request.info.speed = 0.5F;
-  request.info.duration = 50;
-  request.info.has_start = true;
-  request.info.x = 1.0F;
-  request.info.y = 3.0F;
-  return request;
-}
-
-TEST(RanchServices, ABulletinAddsAndCorrectsADisaster) {
-  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
-  aquafarm_msgs::SetDisaster call;
-  call.request = Bulletin();
-  call.request.farm = -1;
-  ranch->SetDisaster(call.request, call.response);
-  ASSERT_TRUE(call.response.ok) << call.response.message;
-  ASSERT_EQ(1U, StateOf(*ranch, 1).disasters.size());
-  EXPECT_EQ(call.response.hash, StateOf(*ranch).hash);
-  call.request.farm = 0;
-  call.request.info.x = 4.0F;
-  ranch->SetDisaster(call.request, call.response);
-  EXPECT_TRUE(call.response.ok) << call.response.message;
-  EXPECT_FLOAT_EQ(4.0F, StateOf(*ranch, 0).disasters[0].x);
-  EXPECT_FLOAT_EQ(1.0F, StateOf(*ranch, 1).disasters[0].x);
-}
-
-aquafarm_msgs::SetDisaster::Request Forecast() {
-  aquafarm_msgs::SetDisaster::Request request;
-  request.farm = -1;
-  request.forecast_only = true;
-  request.forecasts.resize(1);
-  request.forecasts[0].points.resize(1);
-  request.forecasts[0].points[0].step = 20.0F;
-  request.forecasts[0].points[0].x = 9.0F;
-  return request;
-}
-
-TEST(RanchServices, AForecastChangesWhatShipsAreToldAndNotTheDisaster) {
-  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
-  aquafarm_msgs::SetDisaster call;
-  call.request = Bulletin();
-  call.request.farm = -1;
-  ranch->SetDisaster(call.request, call.response);
-  const auto before = StateOf(*ranch).disasters[0];
-  call.request = Forecast();
-  ranch->SetDisaster(call.request, call.response);
-  ASSERT_TRUE(call.response.ok) << call.response.message;
-  EXPECT_EQ(before.x, StateOf(*ranch).disasters[0].x);
-  EXPECT_EQ(before.motion_x, StateOf(*ranch).disasters[0].motion_x);
-  ranch->Inspect([](const RanchView& view) {
-    for (std::int32_t i = 0; i < 2; ++i) {
-      aquafarm::View seen;
-      aquafarm::Observe(view.batch.farm(i), 0, seen);
-      EXPECT_FLOAT_EQ(seen.disasters[0].belief.dx, 8.0F / 20.0F) << "from 1 to 9 in 20 steps";
-    }
-  });
-  const std::uint64_t hash = StateOf(*ranch).hash;
-  const auto refused = [&](const aquafarm_msgs::SetDisaster::Request& request) {
-    ranch->SetDisaster(request, call.response);
-    EXPECT_FALSE(call.response.ok);
-    EXPECT_EQ(hash, StateOf(*ranch).hash);
-    return call.response.message;
-  };
-  call.request = Forecast();
-  call.request.forecasts.clear();
-  EXPECT_EQ("forecasts: got 0, expected exactly one: forecast_only is set", refused(call.request));
-  call.request = Forecast();
-  call.request.id = 1;
-  EXPECT_EQ(
-      "disaster: got 1, expected one of the 1 disasters of this episode; add it without "
-      "forecast_only",
-      refused(call.request));
-  call.request = Forecast();
-  call.request.forecasts[0].points.resize(1000000);
-  EXPECT_EQ("forecasts[0].points: got 1000000 entries, expected at most 10000",
-            refused(call.request));
-}
-
-TEST(RanchServices, HostileBulletinsChangeNothing) {
-  const auto ranch = MakeRanch(aquafarm::test::TinyScenario(), 2);
-  const std::uint64_t hash = StateOf(*ranch).hash;
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const float infinity = std::numeric_limits<float>::infinity();
-  std::vector<aquafarm_msgs::SetDisaster::Request> hostile(15, Bulletin());
-  hostile[0].info.x = nan;
-  hostile[1].info.radii = {1.0F, nan};
-  hostile[2].info.risks = {-20.0F, infinity};
-  hostile[3].info.speed = nan;
-  hostile[4].info.radii.assign(1000000, 1.0F);
-  hostile[5].info.track.resize(1000000);
-  hostile[6].info.radii = {2.0F, 1.0F};
-  hostile[7].info.risks = {-20.0F};
-  hostile[8].info.turn_probability = 1.5F;
-  hostile[9].id = 7;
-  hostile[10].id = -1;
-  hostile[11].farm = 2;
-  hostile[12].info.grade = 9;
-  hostile[13].info.has_heading = true;
-  hostile[13].info.heading_deg = 360;
-  hostile[14].info.duration = 0;
-  for (std::size_t i = 0; i < hostile.size(); ++i) {
-    aquafarm_msgs::SetDisaster::Response response;
-    ranch->SetDisaster(hostile[i], response);
-    EXPECT_FALSE(response.ok) << i;
-    EXPECT_EQ(i == 11 ? Outcome::UNKNOWN_FARM : Outcome::BAD_VALUE, response.code)
-        << i << ' ' << response.message;
-    EXPECT_EQ(hash, StateOf(*ranch).hash) << i;
-  }
-}
-
-TEST(RanchServices, PaceAndRateOutOfRangeAreRefused) {
+TEST(FarmServerServices, PaceAndRateOutOfRangeAreRefused) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   for (const double rate_hz : {-1.0, 1e9, std::nan("")}) {
     aquafarm_msgs::SetPace call;
@@ -527,7 +414,7 @@ TEST(RanchServices, PaceAndRateOutOfRangeAreRefused) {
   EXPECT_EQ(aquafarm_msgs::FarmState::PACED, StateOf(*ranch).pace);
 }
 
-TEST(RanchServices, UnknownFarmsAndShipsAreNotRead) {
+TEST(FarmServerServices, UnknownFarmsAndShipsAreNotRead) {
   const auto ranch = MakeRanch(TwoShips(), 2);
   aquafarm_msgs::GetState call;
   call.request.farm = 2;
@@ -544,7 +431,7 @@ TEST(RanchServices, UnknownFarmsAndShipsAreNotRead) {
   EXPECT_EQ(1, call.response.state.observer);
 }
 
-TEST(RanchServices, AnIndexThatTheFarmHasNotIsRefused) {
+TEST(FarmServerServices, AnIndexThatTheFarmHasNotIsRefused) {
   aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
   scenario.width = scenario.height = 12;
   scenario.devices = {};
@@ -558,27 +445,6 @@ TEST(RanchServices, AnIndexThatTheFarmHasNotIsRefused) {
   call.request.encodings = StepResult::FEATURES;
   ranch->Reset(call.request, call.response);
   EXPECT_TRUE(call.response.ok) << call.response.message;
-}
-
-TEST(RanchServices, ABulletinForAllFarmsIsTakenByAllOrNone) {
-  const auto ranch = MakeRanch(aquafarm::test::CrowdedScenario(1, 0), 2);
-  aquafarm_msgs::SetDisaster call;
-  call.request.farm = 0;
-  call.request.id = 2;
-  call.request.info.grade = 3;
-  call.request.info.radii = {2.0F};
-  call.request.info.risks = {-10.0F};
-  call.request.info.has_start = true;
-  call.request.info.duration = 100;
-  ranch->SetDisaster(call.request, call.response);
-  ASSERT_TRUE(call.response.ok) << call.response.message;
-  const std::uint64_t before = StateOf(*ranch).hash;
-  call.request.farm = -1;
-  call.request.info.has_start = false;
-  call.request.info.speed = 1.0F;
-  ranch->SetDisaster(call.request, call.response);
-  EXPECT_FALSE(call.response.ok);
-  EXPECT_EQ(StateOf(*ranch).hash, before) << "farm 0 has one to replace, farm 1 has not";
 }
 
 }  // namespace

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// A mutex whose use clang checks at compile time (-Wthread-safety; tools/check_locks): a member
+/// declared AQUAFARM_GUARDED_BY(mutex_) is only used, and a function declared
+/// AQUAFARM_REQUIRES(mutex_) only called, while the mutex is held. Other compilers ignore the
+/// attributes. Source: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+
+#if defined(__clang__)
+#define AQUAFARM_THREAD_ATTRIBUTE(x) __attribute__((x))
+#else
+#define AQUAFARM_THREAD_ATTRIBUTE(x)
+#endif
+#define AQUAFARM_CAPABILITY(name) AQUAFARM_THREAD_ATTRIBUTE(capability(name))
+#define AQUAFARM_SCOPED_CAPABILITY AQUAFARM_THREAD_ATTRIBUTE(scoped_lockable)
+#define AQUAFARM_GUARDED_BY(mutex) AQUAFARM_THREAD_ATTRIBUTE(guarded_by(mutex))
+#define AQUAFARM_REQUIRES(mutex) AQUAFARM_THREAD_ATTRIBUTE(requires_capability(mutex))
+#define AQUAFARM_EXCLUDES(mutex) AQUAFARM_THREAD_ATTRIBUTE(locks_excluded(mutex))
+#define AQUAFARM_ACQUIRE(...) AQUAFARM_THREAD_ATTRIBUTE(acquire_capability(__VA_ARGS__))
+#define AQUAFARM_RELEASE(...) AQUAFARM_THREAD_ATTRIBUTE(release_capability(__VA_ARGS__))
+
+namespace aquafarm {
+
+class AQUAFARM_CAPABILITY("mutex") Mutex {
+ private:
+  friend class MutexLock;
+  std::mutex mutex_;
+};
+
+/// Holds a mutex until the end of its scope.
+class AQUAFARM_SCOPED_CAPABILITY MutexLock {
+ public:
+  explicit MutexLock(Mutex& mutex) AQUAFARM_ACQUIRE(mutex) : lock_(mutex.mutex_) {}
+  ~MutexLock() AQUAFARM_RELEASE() {}
+  MutexLock(const MutexLock&) = delete;
+  MutexLock& operator=(const MutexLock&) = delete;
+
+  void Unlock() AQUAFARM_RELEASE() { lock_.unlock(); }
+  void Lock() AQUAFARM_ACQUIRE() { lock_.lock(); }
+
+  /// Releases the mutex until `changed` is notified, possibly without a cause. Call it in a loop
+  /// that checks the condition.
+  void Wait(std::condition_variable& changed) { changed.wait(lock_); }
+  /// As Wait, until `time` at the latest. @return false if `time` has come
+  template <typename Clock, typename Duration>
+  bool WaitUntil(std::condition_variable& changed,
+                 const std::chrono::time_point<Clock, Duration>& time) {
+    return changed.wait_until(lock_, time) == std::cv_status::no_timeout;
+  }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+};
+
+}  // namespace aquafarm

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace aquafarm_sim {
+
+/// The last completed request of a kind and its answer. A client that lost the answer repeats the
+/// request and receives the same answer, so that each request is executed once.
+/// @tparam Key has operator== and IsIdentified(): false if a repetition cannot be recognised
+template <typename Key, typename Answer>
+class RequestLog {
+ public:
+  /// Returns the answer if `key` repeats the last completed request; null otherwise.
+  const Answer* Find(const Key& key) const {
+    return is_complete_ && key.IsIdentified() && key_ == key ? &answer_ : nullptr;
+  }
+  /// Forgets the last request. The caller then fills the answer in place.
+  Answer& Begin() {
+    is_complete_ = false;
+    return answer_;
+  }
+  /// Stores that the answer is that of `key`.
+  void Complete(const Key& key) {
+    key_ = key;
+    is_complete_ = true;
+  }
+  void Forget() { is_complete_ = false; }
+
+ private:
+  bool is_complete_{};  // `key_` and `answer_` belong to a completed request
+  Key key_{};
+  Answer answer_{};
+};
+
+}  // namespace aquafarm_sim

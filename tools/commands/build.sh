@@ -87,6 +87,7 @@ set AQUAFARM_WS to another folder, or build with catkin_make there"
   env -u ROS_PACKAGE_PATH -u CMAKE_PREFIX_PATH catkin_make -C "$ws" --no-color -j"$jobs" \
     -DCMAKE_BUILD_TYPE="$build_type" -DPYTHON_EXECUTABLE=/usr/bin/python3 \
     -DCATKIN_ENABLE_TESTING=ON -DBUILD_TESTING=OFF -DAQUAFARM_BUILD_BENCH=OFF \
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
     "${warnings[@]}" "$@" 2>&1 |
     tee "$log" | { grep -E --line-buffered "$build_lines" || true; } || {
     { grep -A 8 -E '[Ee]rror' "$log" || tail -n 20 "$log"; } | head -n 60 >&2 || true

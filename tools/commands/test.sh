@@ -20,6 +20,8 @@ run_tests() {
   local began=$SECONDS
   (packages=("${browser_packages[@]}"); setup) ||
     say "no browser could be installed: the tests of HTML pages are skipped"
+  (packages=(clang-14); setup) ||
+    say "no clang could be installed: the check of locks is skipped"
   stage "building the workspace"
   build
   stage "building the cores with plain cmake"

@@ -4,6 +4,8 @@
 namespace aquafarm_agents {
 namespace {
 
+using aquafarm::MutexLock;
+
 // Coarse, so that the overhead of a fast call is negligible.
 constexpr std::chrono::milliseconds kLook{200};
 
@@ -13,7 +15,7 @@ CallLimit::CallLimit(double limit_s) : limit_(limit_s), watcher_([this] { Watch(
 
 CallLimit::~CallLimit() {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const MutexLock lock(mutex_);
     ends_ = true;
   }
   ended_.notify_all();
@@ -22,19 +24,20 @@ CallLimit::~CallLimit() {
 
 void CallLimit::Arm(ros::ServiceClient& client) {
   const auto now = Clock::now();
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const MutexLock lock(mutex_);
   armed_ = &client;
   since_ = now;
 }
 
 void CallLimit::Disarm() {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const MutexLock lock(mutex_);
   armed_ = nullptr;
 }
 
 void CallLimit::Watch() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  while (!ended_.wait_for(lock, kLook, [this] { return ends_; })) {
+  MutexLock lock(mutex_);
+  while (!ends_) {
+    if (lock.WaitUntil(ended_, Clock::now() + kLook)) continue;  // woken before the time
     if (armed_ == nullptr || Clock::now() - since_ < limit_) continue;
     armed_->shutdown();  // drops the connection, which aborts the call
     armed_ = nullptr;

@@ -39,7 +39,7 @@ ValuesPublisher::ValuesPublisher(const ros::NodeHandle& node, double period_s)
 
 ValuesPublisher::~ValuesPublisher() {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     ending_ = true;
   }
   changed_.notify_all();
@@ -54,7 +54,7 @@ void ValuesPublisher::Refresh(const std::function<std::unique_ptr<Policy>()>& ma
   const auto start = Clock::now();
   if (!thread_.joinable() || !IsWatched() || start < copy_due_) return;
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     if (start < due_) return;
   }
   Offer(make());
@@ -65,21 +65,22 @@ void ValuesPublisher::Refresh(const std::function<std::unique_ptr<Policy>()>& ma
 void ValuesPublisher::Offer(std::unique_ptr<Policy> policy) {
   const std::uint8_t encodings = policy->encodings();
   if (encodings == 0 || (encodings & aquafarm::agents::kStatesBit) != 0) return;
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   policy_ = std::move(policy);
 }
 
 void ValuesPublisher::Run() {
   // On Linux this affects only this thread.
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
-  std::unique_lock<std::mutex> lock(mutex_);
+  aquafarm::MutexLock lock(mutex_);
   while (!ending_) {
     if (policy_ == nullptr || !IsWatched() || Clock::now() < due_) {
-      changed_.wait_for(lock, kPollPeriod);  // polls: new subscribers raise no event here
+      lock.WaitUntil(changed_,
+                     Clock::now() + kPollPeriod);  // polls: new subscribers raise no event here
       continue;
     }
     const std::shared_ptr<Policy> policy = policy_;
-    lock.unlock();
+    lock.Unlock();
     const auto start = Clock::now();
     try {
       Look(*policy);
@@ -88,7 +89,7 @@ void ValuesPublisher::Run() {
       ROS_DEBUG("no values: %s", error.what());
     }
     const auto now = Clock::now();
-    lock.lock();
+    lock.Lock();
     due_ = std::max(start + std::chrono::duration_cast<Clock::duration>(period_),
                     now + kRest * (now - start));
   }

@@ -82,7 +82,7 @@ EpisodeRecorder::EpisodeRecorder(std::shared_ptr<const aquafarm::Scenario> scena
 
 EpisodeRecorder::~EpisodeRecorder() {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     ending_ = true;
   }
   changed_.notify_all();
@@ -141,16 +141,19 @@ bool EpisodeRecorder::Wants(const EpisodeLog& tape) {
 }
 
 void EpisodeRecorder::Enqueue(EpisodeLog tape) {
-  std::unique_lock<std::mutex> lock(mutex_);
+  aquafarm::MutexLock lock(mutex_);
   if (!fault_.empty()) return;
   if (keep_.which == Keep::Which::kBest || keep_.which == Keep::Which::kWorst) {
     for (const EpisodeLog& overtaken : queue_) waiting_bytes_ -= overtaken.actions.size();
     queue_.clear();
   }
-  const bool follows = changed_.wait_for(lock, limits_.wait, [this] {
-    return waiting_bytes_ < limits_.waiting_bytes || !fault_.empty();
-  });
-  if (!follows) {
+  const auto end = std::chrono::steady_clock::now() + limits_.wait;
+  const auto is_full = [this]() AQUAFARM_REQUIRES(mutex_) {
+    return waiting_bytes_ >= limits_.waiting_bytes && fault_.empty();
+  };
+  while (is_full() && lock.WaitUntil(changed_, end)) {
+  }
+  if (is_full()) {
     fault_ = "the disk is too slow";
     ROS_ERROR("episode recording stopped: %s", fault_.c_str());
   }
@@ -162,13 +165,13 @@ void EpisodeRecorder::Enqueue(EpisodeLog tape) {
 
 void EpisodeRecorder::Run() {
   StepBack();
-  std::unique_lock<std::mutex> lock(mutex_);
+  aquafarm::MutexLock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return ending_ || !queue_.empty(); });
+    while (!ending_ && queue_.empty()) lock.Wait(changed_);
     if (queue_.empty()) return;
     const EpisodeLog tape = std::move(queue_.front());
     queue_.pop_front();
-    lock.unlock();
+    lock.Unlock();
     std::string fault;
     bool written = false;
     try {
@@ -180,7 +183,7 @@ void EpisodeRecorder::Run() {
       fault = error.what();
       ROS_ERROR("episode recording stopped: %s", error.what());
     }
-    lock.lock();
+    lock.Lock();
     waiting_bytes_ -= tape.actions.size();
     kept_ += written ? 1 : 0;
     if (!fault.empty()) {
@@ -207,12 +210,12 @@ void EpisodeRecorder::Write(const EpisodeLog& tape) {
 }
 
 std::uint64_t EpisodeRecorder::kept() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   return kept_;
 }
 
 std::string EpisodeRecorder::fault() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   return fault_;
 }
 

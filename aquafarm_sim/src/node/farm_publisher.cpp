@@ -12,6 +12,8 @@
 namespace aquafarm_sim {
 namespace {
 
+using aquafarm::MutexLock;
+
 constexpr std::uint32_t kQueue = 10;
 constexpr std::uint32_t kRecordQueue = 10000;
 // rosbag record queues 100 messages per topic while it writes a chunk and drops further ones.
@@ -30,7 +32,7 @@ void FarmPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
                               Topic<Message>& topic) {
   const ros::SubscriberStatusCallback greet =
       [this, &topic](const ros::SingleSubscriberPublisher& subscriber) {
-        const std::lock_guard<std::mutex> lock(message_mutex_);
+        const MutexLock lock(message_mutex_);
         if (topic.valid) {
           subscriber.publish(topic.message);
         } else {
@@ -50,7 +52,7 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
     // after newer ones, so the clock of a recording would go back.
     const ros::SubscriberStatusCallback greet =
         [this](const ros::SingleSubscriberPublisher& subscriber) {
-          const std::lock_guard<std::mutex> lock(message_mutex_);
+          const MutexLock lock(message_mutex_);
           if (clock_message_.clock.isZero()) {
             Wake();
           } else {
@@ -76,7 +78,7 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
     const ros::SubscriberStatusCallback greet =
         [this, ship](const ros::SingleSubscriberPublisher& subscriber) {
           ranch_.Inspect([&](const ServerView& view) {
-            const std::lock_guard<std::mutex> lock(observation_mutex_);
+            const MutexLock lock(observation_mutex_);
             subscriber.publish(ObservationOf(view, ship));
           });
         };
@@ -84,7 +86,10 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
     observations_.back().publisher =
         node.advertise<aquafarm_msgs::FarmState>(names::Observation(ship), queue, greet);
   }
-  bearings_.assign(static_cast<std::size_t>(ranch_.agents()), 0);
+  {
+    const MutexLock lock(message_mutex_);
+    bearings_.assign(static_cast<std::size_t>(ranch_.agents()), 0);
+  }
   ranch_.SetListener(this);
   thread_ = std::thread([this] { Run(); });
 }
@@ -92,7 +97,7 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
 FarmPublisher::~FarmPublisher() {
   ranch_.SetListener(nullptr);
   {
-    const std::lock_guard<std::mutex> lock(queue_mutex_);
+    const MutexLock lock(queue_mutex_);
     ending_ = true;
     wake_.notify_all();
   }
@@ -127,7 +132,7 @@ std::uint32_t FarmPublisher::CountSubscribers() const {
 void FarmPublisher::OnChange(const ServerView& view) {
   if (!view.joint) PublishObservations(view);
   if (params_.record) {
-    const std::lock_guard<std::mutex> lock(message_mutex_);
+    const MutexLock lock(message_mutex_);
     std::this_thread::sleep_until(next_record_);
     next_record_ = std::chrono::steady_clock::now() + kRecordPeriod;
     Fill(view);
@@ -139,12 +144,12 @@ void FarmPublisher::OnChange(const ServerView& view) {
 
 void FarmPublisher::Wake() {
   if (dirty_.exchange(true) || !idle_) return;
-  const std::lock_guard<std::mutex> lock(queue_mutex_);
+  const MutexLock lock(queue_mutex_);
   wake_.notify_all();
 }
 
 void FarmPublisher::OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) {
-  const std::lock_guard<std::mutex> lock(queue_mutex_);
+  const MutexLock lock(queue_mutex_);
   if (summaries_.size() >= kMaxSummaries) {
     ++dropped_summaries_;
     return;
@@ -157,30 +162,31 @@ void FarmPublisher::Run() {
   using Clock = std::chrono::steady_clock;
   const auto period = std::chrono::duration_cast<Clock::duration>(
       std::chrono::duration<double>(1.0 / (params_.publish_hz > 0.0 ? params_.publish_hz : 10.0)));
-  std::unique_lock<std::mutex> lock(queue_mutex_);
+  MutexLock lock(queue_mutex_);
   while (!ending_) {
     idle_ = true;
-    wake_.wait(lock, [this] { return ending_ || dirty_ || !summaries_.empty(); });
+    while (!ending_ && !dirty_ && summaries_.empty()) lock.Wait(wake_);
     idle_ = false;
     std::deque<aquafarm_msgs::EpisodeSummary> summaries;
     summaries.swap(summaries_);
     const Clock::time_point next = Clock::now() + period;
-    lock.unlock();
+    lock.Unlock();
     if (dirty_.exchange(false) && (params_.publish_hz > 0.0 || params_.record)) {
       try {
         ranch_.Inspect([this](const ServerView& view) {
-          const std::lock_guard<std::mutex> message_lock(message_mutex_);
+          const MutexLock message_lock(message_mutex_);
           Fill(view);
         });
-        const std::lock_guard<std::mutex> message_lock(message_mutex_);
+        const MutexLock message_lock(message_mutex_);
         Send();
       } catch (const std::exception& error) {
         ROS_ERROR("a state could not be published: %s", error.what());
       }
     }
     for (const aquafarm_msgs::EpisodeSummary& summary : summaries) episode_.publish(summary);
-    lock.lock();
-    wake_.wait_until(lock, next, [this] { return ending_; });
+    lock.Lock();
+    while (!ending_ && lock.WaitUntil(wake_, next)) {
+    }
   }
 }
 
@@ -197,7 +203,7 @@ void FarmPublisher::Fill(const ServerView& view) {
 
 // A node that drives a ship by its observations must receive every step; other nodes need not.
 void FarmPublisher::PublishObservations(const ServerView& view) {
-  const std::lock_guard<std::mutex> lock(observation_mutex_);
+  const MutexLock lock(observation_mutex_);
   for (std::int32_t ship = 0; ship < ranch_.agents(); ++ship) {
     const ros::Publisher& publisher = observations_[static_cast<std::size_t>(ship)].publisher;
     if (publisher.getNumSubscribers() > 0) publisher.publish(ObservationOf(view, ship));

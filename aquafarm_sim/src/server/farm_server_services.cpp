@@ -206,7 +206,7 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
     response = *answer;
     return;
   }
-  Guarded(Outcome::BAD_VALUE, response, [&] {
+  Guarded(Outcome::BAD_VALUE, response, [&]() AQUAFARM_REQUIRES(mutex_) {
     const bool goes_on = request.only_if_over && !batch_->farm(0).over();
     const std::int32_t farms = request.farms == 0 || goes_on ? batch_->farms() : request.farms;
     if (farms < 1 || farms > kMaxFarms) {
@@ -270,7 +270,7 @@ void FarmServer::FillSpec(std::int32_t farm, aquafarm_msgs::FarmSpec& spec) cons
 void FarmServer::GetState(const aquafarm_msgs::GetState::Request& request,
                           aquafarm_msgs::GetState::Response& response) {
   const aquafarm::MutexLock lock(mutex_);
-  Guarded(Outcome::BAD_VALUE, response, [&] {
+  Guarded(Outcome::BAD_VALUE, response, [&]() AQUAFARM_REQUIRES(mutex_) {
     if (request.farm < 0 || request.farm >= batch_->farms()) {
       return Answer(Outcome::UNKNOWN_FARM, OutOfRange("farm", request.farm, 0, batch_->farms() - 1),
                     response);
@@ -294,7 +294,7 @@ void FarmServer::GetState(const aquafarm_msgs::GetState::Request& request,
 
 void FarmServer::SaveState(aquafarm_msgs::SaveState::Response& response) {
   const aquafarm::MutexLock lock(mutex_);
-  Guarded(Outcome::BAD_VALUE, response, [&] {
+  Guarded(Outcome::BAD_VALUE, response, [&]() AQUAFARM_REQUIRES(mutex_) {
     const std::string bytes = batch_->Save();
     response.data.assign(bytes.begin(), bytes.end());
     ++counters_.saves;
@@ -306,7 +306,7 @@ void FarmServer::SaveState(aquafarm_msgs::SaveState::Response& response) {
 void FarmServer::LoadState(const aquafarm_msgs::LoadState::Request& request,
                            aquafarm_msgs::LoadState::Response& response) {
   const aquafarm::MutexLock lock(mutex_);
-  Guarded(Outcome::BAD_DATA, response, [&] {
+  Guarded(Outcome::BAD_DATA, response, [&]() AQUAFARM_REQUIRES(mutex_) {
     if (const auto refusal = CheckAnswerSize(batch_->farms(), request.encodings)) {
       return Answer(refusal->code, refusal->message, response);
     }
@@ -397,7 +397,7 @@ void FarmServer::IssueForecast(const aquafarm_msgs::SetDisaster::Request& reques
 void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
                              aquafarm_msgs::SetDisaster::Response& response) {
   const aquafarm::MutexLock lock(mutex_);
-  Guarded(Outcome::BAD_VALUE, response, [&] {
+  Guarded(Outcome::BAD_VALUE, response, [&]() AQUAFARM_REQUIRES(mutex_) {
     if (request.farm < -1 || request.farm >= batch_->farms()) {
       return Answer(Outcome::UNKNOWN_FARM,
                     OutOfRange("farm", request.farm, -1, batch_->farms() - 1), response);
@@ -413,7 +413,8 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     }
     if (request.forecast_only != 0) return IssueForecast(request, first, end, response);
     const bool on_globe = IsSaid(request.storm);
-    const auto step_of = [&](std::int32_t i) { return batch_->farm(i).step(); };
+    const auto step_of = [&](std::int32_t i)
+                             AQUAFARM_REQUIRES(mutex_) { return batch_->farm(i).step(); };
     std::int32_t earliest = step_of(first);
     for (std::int32_t i = first; i < end; ++i) earliest = std::min(earliest, step_of(i));
     // Refused if the storm has ended at the earliest step, and thus for all farms.
@@ -423,7 +424,7 @@ void FarmServer::SetDisaster(const aquafarm_msgs::SetDisaster::Request& request,
     if (!on_globe) spec.forecasts = FromMsg(request.forecasts);
     aquafarm::ValidateDisaster(spec);
     const std::int32_t longest = spec.duration;
-    const auto left = [&](std::int32_t i) {
+    const auto left = [&](std::int32_t i) AQUAFARM_REQUIRES(mutex_) {
       return on_globe ? longest - (step_of(i) - earliest) : longest;
     };
     for (std::int32_t i = first; i < end; ++i) {

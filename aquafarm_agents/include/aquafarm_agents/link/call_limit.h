@@ -5,8 +5,9 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <mutex>
 #include <thread>
+
+#include "aquafarm/base/mutex.h"
 
 namespace aquafarm_agents {
 
@@ -38,11 +39,11 @@ class CallLimit {
   void Watch();
 
   const std::chrono::duration<double> limit_;
-  std::mutex mutex_;
+  aquafarm::Mutex mutex_;
   std::condition_variable ended_;
-  bool ends_{};
-  ros::ServiceClient* armed_{};
-  Clock::time_point since_;
+  bool ends_ AQUAFARM_GUARDED_BY(mutex_){};
+  ros::ServiceClient* armed_ AQUAFARM_GUARDED_BY(mutex_){};
+  Clock::time_point since_ AQUAFARM_GUARDED_BY(mutex_);
   std::thread watcher_;
 };
 

@@ -3,8 +3,9 @@
 
 #include <ros/console.h>
 
-#include <mutex>
 #include <string>
+
+#include "aquafarm/base/mutex.h"
 
 namespace aquafarm_agents {
 
@@ -12,7 +13,7 @@ namespace aquafarm_agents {
 class SlowWarning {
  public:
   void Say(const std::string& text) {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     const ros::WallTime now = ros::WallTime::now();
     if ((now - said_at_).toSec() < kPeriod_s) return;
     said_at_ = now;
@@ -22,8 +23,8 @@ class SlowWarning {
  private:
   inline static constexpr double kPeriod_s = 5.0;
 
-  std::mutex mutex_;
-  ros::WallTime said_at_;
+  aquafarm::Mutex mutex_;
+  ros::WallTime said_at_ AQUAFARM_GUARDED_BY(mutex_);
 };
 
 }  // namespace aquafarm_agents

@@ -8,11 +8,11 @@
 #include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 
 #include "aquafarm/agents/environment/policy.h"
+#include "aquafarm/base/mutex.h"
 #include "aquafarm/observation/farm_batch.h"
 
 namespace aquafarm_agents {
@@ -50,10 +50,10 @@ class ValuesPublisher {
   std::string frame_;
   Clock::time_point copy_due_;  // used only by the caller of Refresh
 
-  std::mutex mutex_;  // guards the members below
+  aquafarm::Mutex mutex_;
   std::condition_variable changed_;
-  std::shared_ptr<aquafarm::agents::Policy> policy_;
-  Clock::time_point due_;
+  std::shared_ptr<aquafarm::agents::Policy> policy_ AQUAFARM_GUARDED_BY(mutex_);
+  Clock::time_point due_ AQUAFARM_GUARDED_BY(mutex_);
   std::atomic<bool> ending_{};
   std::thread thread_;
 };

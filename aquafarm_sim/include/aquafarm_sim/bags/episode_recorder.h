@@ -9,12 +9,12 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "aquafarm/base/mutex.h"
 #include "aquafarm_sim/bags/episode_log.h"
 #include "aquafarm_sim/server/farm_server.h"
 
@@ -70,13 +70,14 @@ class EpisodeRecorder final : public FarmRecorder {
   std::optional<float> extreme_;   // best or worst return so far
   std::string extreme_path_;       // bag of that episode; used only by the writing thread
 
-  mutable std::mutex mutex_;  // guards the rest
+  mutable aquafarm::Mutex mutex_;
   std::condition_variable changed_;
-  std::deque<EpisodeLog> queue_;
-  std::size_t waiting_bytes_{};  // size of the actions that are queued or being written
-  std::uint64_t kept_{};
-  std::string fault_;
-  bool ending_{};
+  std::deque<EpisodeLog> queue_ AQUAFARM_GUARDED_BY(mutex_);
+  // Size of the actions that are queued or being written.
+  std::size_t waiting_bytes_ AQUAFARM_GUARDED_BY(mutex_){};
+  std::uint64_t kept_ AQUAFARM_GUARDED_BY(mutex_){};
+  std::string fault_ AQUAFARM_GUARDED_BY(mutex_);
+  bool ending_ AQUAFARM_GUARDED_BY(mutex_){};
   std::thread thread_;
 };
 

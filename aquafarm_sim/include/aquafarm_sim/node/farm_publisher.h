@@ -21,11 +21,11 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "aquafarm/base/mutex.h"
 #include "aquafarm_sim/node/sim_params.h"
 #include "aquafarm_sim/server/farm_server.h"
 
@@ -61,13 +61,14 @@ class FarmPublisher : public FarmListener {
   template <typename Message>
   void Advertise(ros::NodeHandle& node, const std::string& name, Topic<Message>& topic);
   std::uint32_t CountSubscribers() const;
-  void Fill(const ServerView& view);
+  void Fill(const ServerView& view) AQUAFARM_REQUIRES(message_mutex_);
   void PublishObservations(const ServerView& view);
-  const aquafarm_msgs::FarmState& ObservationOf(const ServerView& view, std::int32_t ship);
-  void FillEpisode(const ServerView& view);
-  void FillFrames(const ServerView& view);
-  void Send();
-  void SendSeas();
+  const aquafarm_msgs::FarmState& ObservationOf(const ServerView& view, std::int32_t ship)
+      AQUAFARM_REQUIRES(observation_mutex_);
+  void FillEpisode(const ServerView& view) AQUAFARM_REQUIRES(message_mutex_);
+  void FillFrames(const ServerView& view) AQUAFARM_REQUIRES(message_mutex_);
+  void Send() AQUAFARM_REQUIRES(message_mutex_);
+  void SendSeas() AQUAFARM_REQUIRES(message_mutex_);
   void Wake();
   void Run();
 
@@ -87,33 +88,35 @@ class FarmPublisher : public FarmListener {
   Topic<aquafarm_msgs::FarmState> state_;
   Topic<nav_msgs::OccupancyGrid> risk_;
 
-  std::mutex message_mutex_;  // guards the messages below and those of the topics
-  std::uint64_t published_episode_{};
-  bool episode_is_new_{};
-  std::chrono::steady_clock::time_point next_record_;  // limits recording to the rate of rosbag
-  MessageContext context_;
-  rosgraph_msgs::Clock clock_message_;  // the last one sent
-  aquafarm_msgs::FarmSpec spec_message_;
-  nav_msgs::OccupancyGrid chart_message_;
-  std::vector<aquafarm::Disaster> disasters_;  // copy for the risk grid, used without a lock
-  std::vector<geometry_msgs::TransformStamped> frame_messages_;
-  std::vector<std::int32_t> bearings_;  // bearing of each ship's last move [degrees]
+  aquafarm::Mutex message_mutex_;  // also guards the messages of the topics above
+  std::uint64_t published_episode_ AQUAFARM_GUARDED_BY(message_mutex_){};
+  bool episode_is_new_ AQUAFARM_GUARDED_BY(message_mutex_){};
+  // Limits recording to the rate of rosbag.
+  std::chrono::steady_clock::time_point next_record_ AQUAFARM_GUARDED_BY(message_mutex_);
+  MessageContext context_ AQUAFARM_GUARDED_BY(message_mutex_);
+  rosgraph_msgs::Clock clock_message_ AQUAFARM_GUARDED_BY(message_mutex_);  // the last one sent
+  aquafarm_msgs::FarmSpec spec_message_ AQUAFARM_GUARDED_BY(message_mutex_);
+  nav_msgs::OccupancyGrid chart_message_ AQUAFARM_GUARDED_BY(message_mutex_);
+  std::vector<aquafarm::Disaster> disasters_ AQUAFARM_GUARDED_BY(message_mutex_);
+  std::vector<geometry_msgs::TransformStamped> frame_messages_ AQUAFARM_GUARDED_BY(message_mutex_);
+  // Bearing of each ship's last move [degrees].
+  std::vector<std::int32_t> bearings_ AQUAFARM_GUARDED_BY(message_mutex_);
 
-  std::mutex observation_mutex_;  // guards the observations
+  aquafarm::Mutex observation_mutex_;  // also guards the messages of the observations
   struct Observation {
     ros::Publisher publisher;
     aquafarm_msgs::FarmState message;  // its memory is reused
   };
   std::vector<Observation> observations_;
-  aquafarm::View view_;  // scratch
+  aquafarm::View view_ AQUAFARM_GUARDED_BY(observation_mutex_);  // scratch
 
-  std::mutex queue_mutex_;  // guards the rest; locked last
+  aquafarm::Mutex queue_mutex_;  // locked last
   std::condition_variable wake_;
-  std::deque<aquafarm_msgs::EpisodeSummary> summaries_;
+  std::deque<aquafarm_msgs::EpisodeSummary> summaries_ AQUAFARM_GUARDED_BY(queue_mutex_);
   std::atomic<bool> dirty_{};
   std::atomic<bool> idle_{};
   std::atomic<std::uint64_t> dropped_summaries_{};
-  bool ending_{};
+  bool ending_ AQUAFARM_GUARDED_BY(queue_mutex_){};
   std::thread thread_;
 };
 

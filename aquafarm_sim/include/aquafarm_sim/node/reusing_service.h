@@ -5,9 +5,10 @@
 #include <ros/service_callback_helper.h>
 
 #include <functional>
-#include <mutex>
 #include <string>
 #include <utility>
+
+#include "aquafarm/base/mutex.h"
 
 namespace aquafarm_sim {
 
@@ -25,7 +26,7 @@ class ReusingService : public ros::ServiceCallbackHelper {
   explicit ReusingService(Handler handler) : handler_(std::move(handler)) {}
 
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
     ros::serialization::deserializeMessage(params.request, request_);
     params.response = ros::serialization::serializeServiceResponse(
@@ -50,9 +51,9 @@ class ReusingService : public ros::ServiceCallbackHelper {
   // The memory of larger requests is freed after the call.
   static constexpr std::size_t kMostKeptBytes = std::size_t{1} << 16U;
 
-  std::mutex mutex_;
-  Handler handler_;
-  Request request_;
+  aquafarm::Mutex mutex_;
+  const Handler handler_;
+  Request request_ AQUAFARM_GUARDED_BY(mutex_);
 };
 
 }  // namespace aquafarm_sim

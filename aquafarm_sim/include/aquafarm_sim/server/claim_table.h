@@ -21,7 +21,7 @@ class ClaimTable {
   void SetHolder(std::int32_t ship, const std::string& holder);
   /// Restarts the ship's time without a command.
   void MarkPresent(std::int32_t ship);
-  /// @return name of the node that holds the ship; empty if nobody does
+  /// @return name of the node that holds the ship; empty if no node does
   const std::string& holder(std::int32_t ship) const;
   /// @return number of claims that have expired
   std::uint64_t expired() const { return expired_; }

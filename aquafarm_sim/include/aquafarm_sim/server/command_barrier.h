@@ -39,7 +39,7 @@ class CommandBarrier {
   const aquafarm_msgs::CommandResult* FindAnswer(const ShipCommand& command) const;
   /// Stores a command for the next step. It supersedes an earlier command of the ship.
   /// @param call receives the answer and must stay valid until it is answered, superseded or
-  /// withdrawn; null: nobody waits
+  /// withdrawn; null: no call waits
   void Add(const ShipCommand& command, Call* call);
   /// Waits until the call is answered, superseded or dropped, until `deadline`, or until `ending`
   /// is true (kTimedOut).

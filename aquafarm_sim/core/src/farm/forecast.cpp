@@ -69,6 +69,32 @@ std::array<float, 2> PositionAt(const Farm& farm, std::int32_t disaster, std::in
   return {from.x + (to.x - from.x) * part, from.y + (to.y - from.y) * part};
 }
 
+// Returns the displacement per step that is known at a step: that of the true track then, else that
+// of the present or of the last bulletin.
+std::array<float, 2> MotionAt(const Farm& farm, std::int32_t disaster, std::int32_t issued) {
+  const std::vector<Waypoint>& track = TrackOf(farm, disaster);
+  if (track.empty()) {
+    const Disaster& present = farm.disasters()[static_cast<std::size_t>(disaster)];
+    if (issued == farm.step()) return {present.dx, present.dy};
+    const std::array<float, 2> heading = HeadingVector(present.bulletin.heading_deg);
+    return {present.speed * heading[0], present.speed * heading[1]};
+  }
+  const std::size_t next = After(static_cast<float>(issued), track);
+  if (next == 0 || next == track.size()) return {0.0F, 0.0F};
+  const Waypoint& from = track[next - 1];
+  const Waypoint& to = track[next];
+  return {(to.x - from.x) / (to.step - from.step), (to.y - from.y) / (to.step - from.step)};
+}
+
+// Adds to every radius, as GrowRings does.
+Waypoint Grown(Waypoint point, float by) {
+  for (float& radius : point.radii) radius = std::max(0.0F, radius + by);
+  for (QuadrantRadii& radii : point.quadrants) {
+    for (float& radius : radii) radius = radius > 0.0F ? std::max(0.0F, radius + by) : 0.0F;
+  }
+  return point;
+}
+
 // One forecast. At the step of issue it equals the truth. After it, it is the issued forecast or,
 // without one, the displaced true track.
 class Forecast {
@@ -82,6 +108,7 @@ class Forecast {
         first_(IndexAfter(issued_)) {
     const std::array<float, 2> now = PositionAt(farm, disaster, issued);
     now_ = {issued_, now[0], now[1]};
+    motion_ = MotionAt(farm, disaster, issued);
     if (said_ == nullptr) error_ = ForecastErrorVector(farm.seed(), farm.episode(), disaster);
   }
 
@@ -91,8 +118,11 @@ class Forecast {
     if (next < (said_ != nullptr ? said_->points.size() : track_.size())) {
       return On(from, Point(next), step);
     }
-    if (said_ == nullptr || next < 2) return {from.x, from.y};
-    return On(Point(next - 2), from, std::min(step, EndAfter(from.step)));
+    if (said_ == nullptr) return {from.x, from.y};
+    const float until = std::min(step, EndAfter(from.step));
+    if (next >= 2) return On(Point(next - 2), from, until);
+    const float beyond = until - from.step;  // a single point has no last leg
+    return {from.x + beyond * motion_[0], from.y + beyond * motion_[1]};
   }
 
   // Returns the forecast as a track: with its own rings if it has some, else with the true ones.
@@ -117,9 +147,14 @@ class Forecast {
 
   bool HasOwnRings() const { return said_ != nullptr && !said_->points[0].radii.empty(); }
   bool FollowsTrueRings() const { return !HasOwnRings() && !track_.empty(); }
-  // Returns the step until which a forecast is extrapolated beyond its last point.
+  const Disaster& Present() const { return farm_.disasters()[static_cast<std::size_t>(disaster_)]; }
+  // Returns the step until which a forecast is extrapolated beyond its last point: the end of the
+  // true track or of the disaster.
   float EndAfter(float last) const {
-    return track_.empty() ? last : std::max(track_.back().step, last);
+    const float end =
+        track_.empty() ? static_cast<float>(farm_.step()) + static_cast<float>(Present().steps_left)
+                       : track_.back().step;
+    return std::max(end, last);
   }
 
   // Returns the steps from its issue on at which the track changes.
@@ -140,9 +175,14 @@ class Forecast {
   // Returns grade and rings at one of Steps().
   Waypoint StateAt(float step) const {
     if (FollowsTrueRings()) return TruthAt(track_, step);
-    if (step > issued_ && HasOwnRings()) return said_->points[IndexAfter(step) - 1];
+    const float growth = track_.empty() ? Present().radius_growth : 0.0F;
+    if (step > issued_ && HasOwnRings()) {
+      const Waypoint& last = said_->points[IndexAfter(step) - 1];
+      // It is not known that a disaster shrinks after its forecast.
+      return Grown(last, std::max(0.0F, growth) * (step - last.step));
+    }
     if (!track_.empty()) return TruthAt(track_, issued_);
-    return RingsOf(farm_.disasters()[static_cast<std::size_t>(disaster_)]);
+    return Grown(RingsOf(Present()), growth * (step - static_cast<float>(farm_.step())));
   }
 
   static std::array<float, 2> On(Place from, Place to, float step) {
@@ -166,6 +206,7 @@ class Forecast {
   float issued_;
   std::size_t first_;  // index of the first future point
   Place now_;
+  std::array<float, 2> motion_{};  // known at the step of issue [cells/step]
   std::array<float, 2> error_{};
 };
 

@@ -116,6 +116,41 @@ TEST(IssueForecast, MayBeOfADisasterWithoutATrack) {
   EXPECT_FALSE(HasForecast(farm, 0, 30)) << "it has expired";
 }
 
+TEST(IssueForecast, KeepsTheLastKnownMotionAndGrowthAfterItsLastPoint) {
+  Scenario scenario = NorthernStorm(ViewMode::kFull);
+  scenario.disasters = {StillDisaster(4, 4, {2}, {-10})};
+  DisasterSpec& spec = scenario.disasters[0];
+  spec.speed = 0.25F;
+  spec.heading_deg = 90;
+  spec.radius_growth = 0.125F;
+  spec.border = Border::kLeave;
+  spec.duration = 90;
+  Farm farm = At10(scenario);
+  const Disaster now = farm.disasters()[0];
+  ASSERT_FLOAT_EQ(now.radius[0], 3.25F);
+  // One point: its present motion continues from there.
+  farm.IssueForecast(0, {5.0F, {{30.0F, 14.0F, 4.0F}}});
+  EXPECT_FLOAT_EQ(ForecastAt(farm, 0, 10, 50)[0], 14.0F + 20.0F * now.dx);
+  EXPECT_FLOAT_EQ(ForecastAt(farm, 0, 10, 50)[1], 4.0F + 20.0F * now.dy);
+  EXPECT_NE(ForecastAt(farm, 0, 10, 50), ForecastAt(farm, 0, 10, 30));
+  // Its rings grow by the disaster's growth until the disaster ends at step 90.
+  const std::vector<Waypoint> track = ForecastTrack(farm, 0, 10);
+  EXPECT_FLOAT_EQ(track[1].radii[0], 3.25F + 20.0F * 0.125F);
+  EXPECT_EQ(track.back().step, 90.0F);
+  EXPECT_FLOAT_EQ(track.back().radii[0], 3.25F + 80.0F * 0.125F);
+  Disaster ghost = now;
+  ghost.waypoint = 0;
+  FollowTrack(ghost, track, 70);
+  EXPECT_NEAR(ghost.radius[0], 3.25F + 60.0F * 0.125F, 1e-4F);
+  EXPECT_NEAR(ghost.x, 14.0F + 40.0F * now.dx, 1e-4F);
+  // Two points: their motion continues, and rings of its own grow after the last point.
+  farm.IssueForecast(0, {6.0F,
+                         {{30.0F, 14.0F, 4.0F, 3, {4.0F}, {-10.0F}, {}},
+                          {40.0F, 24.0F, 9.0F, 3, {5.0F}, {-10.0F}, {}}}});
+  EXPECT_EQ(ForecastAt(farm, 0, 10, 60), (std::array<float, 2>{44.0F, 19.0F}));
+  EXPECT_FLOAT_EQ(ForecastTrack(farm, 0, 10).back().radii[0], 5.0F + 50.0F * 0.125F);
+}
+
 TEST(IssueForecast, IsReplacedByTheNewest) {
   Scenario scenario = NorthernStorm();
   scenario.disasters[0].forecasts = {{0.0F, {{100.0F, 0.0F, 0.0F}}},

@@ -11,8 +11,11 @@
 ///               issued +24 h +48 h
 ///
 /// The newest forecast of an authority applies. It leads from the current position to the points
-/// that lie in the future, and is extrapolated from the last two points while the true track lasts.
-/// Its rings are those of its points, or the true ones if its points have none. Before the first
+/// that lie in the future. After its last point the disaster keeps the motion between the last two
+/// points, or its present motion if there is one point, until the true track or the disaster ends.
+/// Its rings are those of its points, or the true ones if its points have none. Those of a disaster
+/// without a track grow by radius_growth: from the present step on, or after the last point that
+/// has rings (they never shrink there). Before the first
 /// forecast is issued and after the newest one expires, agents observe the current motion of the
 /// storm. The scenario's forecasts end when another track replaces the scenario's.
 ///

@@ -212,7 +212,7 @@ class Builder {
     } else {
       const GeoFrame frame = Frame();
       for (const GeoPoint& place : request_.port_places) {
-        KeepOne(internal::CheckPort(place, Area()));
+        KeepOne(internal::CheckPort(place, Area(), plan_.terrain));
         const std::array<double, 2> wanted = frame.ToGrid(place);
         const Cell cell{static_cast<std::int32_t>(std::lround(wanted[0])),
                         static_cast<std::int32_t>(std::lround(wanted[1]))};

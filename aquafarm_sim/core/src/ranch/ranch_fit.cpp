@@ -123,14 +123,21 @@ std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
          " days of " + FormatTime(*start) + Text("; it is %.0f days off: check --start", days);
 }
 
-std::string CheckPort(GeoPoint wanted, const RanchArea& ranch) {
+std::string CheckPort(GeoPoint wanted, const RanchArea& ranch, const Terrain& terrain) {
   const std::array<double, 2> at = ranch.frame.ToGrid(wanted);
   const bool inside =
       at[0] >= -0.5 && at[1] >= -0.5 && at[0] <= ranch.width - 0.5 && at[1] <= ranch.height - 0.5;
-  if (inside) return "";
-  return Text("port: got %.4f,%.4f, expected a place in the ranch at ", wanted.latitude,
-              wanted.longitude) +
-         Degrees(ExtentOf(ranch), MiddleOf(ranch).longitude) +
+  const auto nearest = [](double position, std::int32_t size) {
+    return std::min(static_cast<std::int32_t>(std::lround(position)), size - 1);
+  };
+  const bool is_land =
+      inside && terrain.land(nearest(at[1], ranch.height), nearest(at[0], ranch.width)) != 0;
+  if (inside && !is_land) return "";
+  const std::string got = Text("port: got %.4f,%.4f, ", wanted.latitude, wanted.longitude);
+  return got +
+         (is_land ? std::string("which is land, expected water")
+                  : "expected a place in the ranch at " +
+                        Degrees(ExtentOf(ranch), MiddleOf(ranch).longitude)) +
          "; it is put on the nearest shore of the ranch";
 }
 

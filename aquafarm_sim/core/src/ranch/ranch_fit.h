@@ -7,6 +7,7 @@
 #include <string>
 
 #include "aquafarm/charts/ascii_grid.h"
+#include "aquafarm/charts/chart.h"
 #include "aquafarm/charts/coast.h"
 #include "aquafarm/grid/geo_frame.h"
 #include "aquafarm/sea/sea_field.h"
@@ -31,7 +32,7 @@ void NeedValues(const SeaField& field, const Layer& layer, const RanchArea& ranc
 /// Returns a warning if the time of a field differs from the start of the ranch, else "".
 std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
                       const std::string& path);
-/// Returns a warning if a requested port is outside the ranch, else "".
-std::string CheckPort(GeoPoint wanted, const RanchArea& ranch);
+/// Returns a warning if a requested port is outside the ranch or on land, else "".
+std::string CheckPort(GeoPoint wanted, const RanchArea& ranch, const Terrain& terrain);
 
 }  // namespace aquafarm::internal

@@ -65,6 +65,21 @@ TEST(Ranch, PutsAPortAskedForAtTheNearestShore) {
   EXPECT_TRUE(Says(ranch.decided, "port: asked for at (7, 8), put at the shore at ("));
 }
 
+TEST(Ranch, WarnsOfAPortOnLand) {
+  RanchRequest request = Request();
+  const BuiltRanch any = BuildRanch(request);
+  const GeoFrame frame(*any.scenario.origin, any.scenario.cell_size_m);
+  const std::string sketch = RenderAscii(any.scenario);  // north up
+  const auto warnings = [&](char symbol) {
+    const auto at = static_cast<std::int32_t>(sketch.find(symbol));
+    const std::int32_t line = any.scenario.width + 1;
+    request.port_places = {frame.ToGeo(at % line, any.scenario.height - 1 - at / line)};
+    return BuildRanch(request).warnings;
+  };
+  EXPECT_TRUE(Says(warnings('#'), "which is land, expected water; it is put on the nearest shore"));
+  EXPECT_FALSE(Says(warnings('.'), "port"));
+}
+
 TEST(Ranch, MayBeCalmAndOnOpenSea) {
   RanchRequest request;
   request.devices = 12;

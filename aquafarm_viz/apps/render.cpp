@@ -52,6 +52,7 @@ struct Request {
   aquafarm_viz::Layers layers;
   std::optional<std::uint64_t> episode;
   aquafarm_viz::ImageSize size;
+  std::string style{"dark"};
 };
 
 // The recorded steps before and after a requested one, in the first episode that has a later step.
@@ -238,7 +239,7 @@ void RenderPicture(const Request& request) {
                              ": got an unknown extension, "
                              "expected .png, .jpg, .mp4, .webm or .gif");
   }
-  aquafarm_viz::FarmPainter painter(request.size);
+  aquafarm_viz::FarmPainter painter(request.size, aquafarm_viz::StyleByName(request.style));
   const std::vector<std::uint64_t> steps =
       request.steps.empty() ? std::vector<std::uint64_t>{0} : request.steps;
   std::vector<cv::Mat> pictures(request.at_end ? 1 : steps.size());
@@ -288,7 +289,7 @@ void RenderPicture(const Request& request) {
 void RenderFilm(Request request) {
   request.size.width -= request.size.width % 2;  // codecs require even sizes
   request.size.height -= request.size.height % 2;
-  aquafarm_viz::FarmPainter painter(request.size);
+  aquafarm_viz::FarmPainter painter(request.size, aquafarm_viz::StyleByName(request.style));
   std::unique_ptr<aquafarm_viz::Film> film;
   std::optional<std::uint64_t> episode;
   cv::Mat last;
@@ -327,6 +328,9 @@ int main(int argc, char** argv) {
   app.add_flag("--end", request.at_end, "the episode's last step")->excludes(step);
   app.add_option("--layers", layers,
                  "some of " + aquafarm_viz::LayerNames() + ", with commas; or none")
+      ->capture_default_str();
+  app.add_option("--style", request.style, "dark for screens, light for print")
+      ->check(CLI::IsMember({"dark", "light"}))
       ->capture_default_str();
   app.add_option("--fps", request.rate_hz, "film: pictures a second")
       ->check(CLI::Range(0.5, 60.0))

@@ -117,7 +117,9 @@ TEST(Image, MovesTheDisaster) {
     auto state = Empty();
     state.disasters.push_back(test::MakeDisaster(0, x, y));
     state.disasters.front().speed = 0.0F;  // no arrow, so the difference is symmetric
-    return MiddleOfDifference(empty, MapOf(DrawFarm(spec, state, kSize)));
+    Overlays overlays;
+    overlays.layers = ParseLayers("none");  // rings have labels, which are not symmetric
+    return MiddleOfDifference(empty, MapOf(DrawFarm(spec, state, kSize, overlays)));
   };
   const MapView view = PlaceMap(25, 25, kSize).view;
   for (const auto& [x, y] : {std::pair{10.0F, 15.0F}, {10.5F, 15.0F}, {15.0F, 17.25F}}) {
@@ -414,6 +416,13 @@ TEST(Image, LayersThatThereAreNotHaveTheirLine) {
                 fault.what());
     }
   }
+}
+
+TEST(Image, HasALightStyleOnWhite) {
+  const cv::Mat dark = DrawFarm(test::MakeSpec(), test::MakeState(), kSize);
+  const cv::Mat light = DrawFarm(test::MakeSpec(), test::MakeState(), kSize, {}, LightStyle());
+  EXPECT_LT(cv::mean(dark)[1], 120.0);
+  EXPECT_GT(cv::mean(light)[1], 190.0);
 }
 
 TEST(Image, RefusesWhatCannotBeDrawn) {

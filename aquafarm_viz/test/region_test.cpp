@@ -27,20 +27,20 @@ disasters:
       - {step: 30, x: -160, y: 12, radii: [10], grade: 3}
 )";
 
-cv::Mat Panel(const cv::Mat& image) { return image(cv::Rect(490, 250, 150, 200)).clone(); }
+cv::Mat Panel(const cv::Mat& image) { return image(cv::Rect(460, 250, 180, 200)).clone(); }
 
 TEST(Region, ReadsTheTracksOfAScenario) {
-  const auto tracks = ReadTracks(kTrack);
+  const auto tracks = ReadStormTracks(kTrack, 1000.0).tracks;
   ASSERT_EQ(tracks.size(), 2U);
   EXPECT_TRUE(tracks[0].empty());
   ASSERT_EQ(tracks[1].size(), 3U);
   EXPECT_EQ(tracks[1][1].x, 40.0);
-  EXPECT_TRUE(ReadTracks("").empty());
-  EXPECT_TRUE(ReadTracks("disasters: [{track: [{step: first}]}]").empty());
+  EXPECT_TRUE(ReadStormTracks("", 1000.0).tracks.empty());
+  EXPECT_TRUE(ReadStormTracks("disasters: [{track: [{step: first}]}]", 1000.0).tracks.empty());
 }
 
 TEST(Region, InterpolatesATrack) {
-  const auto track = ReadTracks(kTrack)[1];
+  const auto track = ReadStormTracks(kTrack, 1000.0).tracks[1];
   EXPECT_DOUBLE_EQ(TrackAt(track, 5.0).x, 70.0);
   EXPECT_DOUBLE_EQ(TrackAt(track, 5.0).y, -94.0);
   EXPECT_DOUBLE_EQ(TrackAt(track, -9.0).y, -200.0) << "before the track";
@@ -49,10 +49,10 @@ TEST(Region, InterpolatesATrack) {
 
 TEST(Region, FindsWhereAStormIsNearest) {
   const auto spec = test::MakeSpec();  // 25 x 25 cells: the middle is (12, 12)
-  const auto track = ReadTracks(kTrack)[1];
+  const auto track = ReadStormTracks(kTrack, 1000.0).tracks[1];
   const TrackPoint nearest = ClosestApproach(spec, track, 0.0);
-  EXPECT_EQ(nearest.step, 13.0);  // x falls by 10 a step from 40 at step 10
-  EXPECT_DOUBLE_EQ(MetresFromFarm(spec, nearest.x, nearest.y), 2.0 * spec.cell_size_m);
+  EXPECT_NEAR(nearest.step, 12.8, 1e-9);  // x falls by 10 a step from 40 at step 10
+  EXPECT_NEAR(MetresFromFarm(spec, nearest.x, nearest.y), 0.0, 1e-6);
   EXPECT_EQ(ClosestApproach(spec, track, 20.0).step, 20.0) << "it moves away";
 }
 
@@ -148,7 +148,7 @@ TEST(Nautical, WritesDistancesBearingsAndTimes) {
   EXPECT_EQ(HoursText(136800.0), "38 h");
   EXPECT_EQ(TimeText(1627095600, "%d %b %H:%M UTC"), "24 Jul 03:00 UTC");
   spec.has_origin = false;
-  EXPECT_EQ(MotionText(spec, 315, 0.5), "NW, 0.50 a step");
+  EXPECT_EQ(MotionText(spec, 315, 0.5), "NW, 0.50 cells a step");
   EXPECT_EQ(MotionText(spec, 315, 0.0), "stands still");
   spec.has_origin = true;
   spec.cell_size_m = 1000.0;

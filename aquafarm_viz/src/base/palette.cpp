@@ -80,12 +80,13 @@ Rgb HealthColor(double health) {
 }
 
 Rgb ShipColor(std::int32_t id) {
-  static constexpr std::array<Rgb, 6> kDecks{{{0xe0, 0x31, 0x31},
-                                              {0x0c, 0x85, 0x99},
-                                              {0x70, 0x48, 0xe8},
-                                              {0x2f, 0x9e, 0x44},
-                                              {0xe8, 0x59, 0x0c},
-                                              {0x49, 0x50, 0x57}}};
+  // Okabe and Ito (2008), jfly.uni-koeln.de/color: distinct for colour-blind people.
+  static constexpr std::array<Rgb, 6> kDecks{{{0xd5, 0x5e, 0x00},
+                                              {0x00, 0x72, 0xb2},
+                                              {0x00, 0x9e, 0x73},
+                                              {0xcc, 0x79, 0xa7},
+                                              {0xe6, 0x9f, 0x00},
+                                              {0x30, 0x30, 0x30}}};
   return kDecks[static_cast<std::uint32_t>(id) % kDecks.size()];
 }
 
@@ -100,7 +101,7 @@ double Severity(double risk) { return std::clamp((-risk - 5.0) / 15.0, 0.0, 1.0)
 
 Rgb SeverityColor(double severity) {
   static constexpr std::array<Rgb, 4> kScale{
-      {{0xff, 0xd4, 0x3b}, {0xff, 0x92, 0x2b}, {0xe0, 0x31, 0x31}, {0x86, 0x19, 0x5f}}};
+      {{0xff, 0xd4, 0x3b}, {0xff, 0x92, 0x2b}, {0xe0, 0x31, 0x31}, {0xe6, 0x4f, 0xe0}}};
   const double at = std::clamp(severity, 0.0, 1.0) * (kScale.size() - 1);
   const auto i = std::min<std::size_t>(static_cast<std::size_t>(at), kScale.size() - 2);
   return Mix(kScale[i], kScale[i + 1], at - static_cast<double>(i));

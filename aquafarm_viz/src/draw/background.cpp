@@ -27,6 +27,7 @@ cv::Mat1f DistanceCells(const cv::Mat1b& away_from, double cell_px) {
 cv::Vec3b Pixel(Rgb color) { return {color.b, color.g, color.r}; }
 
 void PaintSeaAndLand(cv::Mat& map, const FarmSpec& spec, const Layout& layout) {
+  const Style& style = *layout.style;
   const cv::Mat1b land = IslandCoverage(spec, layout);
   cv::Mat1b reefs(map.size(), std::uint8_t{255});
   for (const auto& rock : spec.rocks) {
@@ -40,15 +41,15 @@ void PaintSeaAndLand(cv::Mat& map, const FarmSpec& spec, const Layout& layout) {
   const cv::Mat1f off_reef = DistanceCells(reefs, cell_px);
   const cv::Mat1f inland = DistanceCells(land, cell_px);
   for (int row = 0; row < map.rows; ++row) {
-    const Rgb deep = Mix(Rgb{0x24, 0x60, 0x8c}, kSeaDeep, double(row) / std::max(1, map.rows - 1));
+    const Rgb deep = Mix(style.sea_north, style.sea_south, double(row) / std::max(1, map.rows - 1));
     for (int column = 0; column < map.cols; ++column) {
       const double shore = std::max(0.75 * std::exp(-0.9 * offshore(row, column)),
                                     0.40 * std::exp(-1.8 * off_reef(row, column)));
-      Rgb color = Mix(deep, kSeaShallow, shore);
+      Rgb color = Mix(deep, style.sea_shallow, shore);
       if (const double cover = land(row, column) / 255.0; cover > 0.0) {
         const double depth = inland(row, column);
-        const Rgb ground = depth < 0.45 ? Mix(kSand, kLand, (depth - 0.12) / 0.33)
-                                        : Mix(kLand, kLandHigh, (depth - 0.45) / 2.0);
+        const Rgb ground = depth < 0.45 ? Mix(style.sand, style.land, (depth - 0.12) / 0.33)
+                                        : Mix(style.land, style.land_high, (depth - 0.45) / 2.0);
         color = Mix(color, ground, cover);
       }
       map.at<cv::Vec3b>(row, column) = Pixel(color);
@@ -61,11 +62,11 @@ void DrawGrid(cv::Mat& map, const Layout& layout) {
   const int step = view.cell_px() >= 8.0 ? 1 : TickStep(view.cell_px(), 24.0);
   for (int x = step; x < view.width(); x += step) {
     const int column = cvRound(view.ToPixel(x - 0.5, 0).x);
-    Tint(map, {column, 0, 1, map.rows}, Bgr(kPaper), 0.08);
+    Tint(map, {column, 0, 1, map.rows}, Bgr(layout.style->grid), 0.08);
   }
   for (int y = step; y < view.height(); y += step) {
     const int row = cvRound(view.ToPixel(0, y - 0.5).y);
-    Tint(map, {0, row, map.cols, 1}, Bgr(kPaper), 0.08);
+    Tint(map, {0, row, map.cols, 1}, Bgr(layout.style->grid), 0.08);
   }
 }
 
@@ -86,7 +87,7 @@ void LabelColumn(cv::Mat& image, const std::string& text, double column, const L
   fonts.small.Draw(image, text,
                    {layout.map.x + cvRound(column) - fonts.small.Width(text) / 2,
                     layout.map.y + layout.map.height + layout.Px(4) + fonts.small.cap_height()},
-                   Bgr(kFaint));
+                   Bgr(layout.style->faint));
 }
 
 // Writes a label to the left of the map, centred on a row of it.
@@ -95,7 +96,7 @@ void LabelRow(cv::Mat& image, const std::string& text, double row, const Layout&
   fonts.small.Draw(image, text,
                    {layout.map.x - layout.Px(5) - fonts.small.Width(text),
                     layout.map.y + cvRound(row) + fonts.small.cap_height() / 2},
-                   Bgr(kFaint));
+                   Bgr(layout.style->faint));
 }
 
 // Returns minutes of arc as 30°06'N.
@@ -139,7 +140,7 @@ void DrawGeographicAxes(cv::Mat& image, const FarmSpec& spec, const Layout& layo
              LabelColumn(image, DegreesText(minutes, 'E', 'W'), at, layout, fonts);
              Tint(image,
                   {layout.map.x + cvRound(at), layout.map.y + layout.map.height, 1, layout.Px(3)},
-                  Bgr(kFaint), 1.0);
+                  Bgr(layout.style->faint), 1.0);
            });
   ForTicks(south, m_per_lat * px_per_m, layout.map.height, 34.0 * layout.unit,
            [&](int minutes, double at) {
@@ -147,7 +148,7 @@ void DrawGeographicAxes(cv::Mat& image, const FarmSpec& spec, const Layout& layo
              Tint(image,
                   {layout.map.x - layout.Px(3), layout.map.y + layout.map.height - cvRound(at),
                    layout.Px(3), 1},
-                  Bgr(kFaint), 1.0);
+                  Bgr(layout.style->faint), 1.0);
            });
 }
 
@@ -180,26 +181,26 @@ void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_
   const int half = length / 2;
   const int tall = layout.Px(4);
   const cv::Rect bar(left.x, left.y, length, tall);
-  cv::rectangle(image, bar, Bgr(kWords), cv::FILLED);
+  cv::rectangle(image, bar, Bgr(layout.style->words), cv::FILLED);
   cv::rectangle(
       image,
       cv::Rect(left.x + half, left.y + 1, std::max(1, length - half - 1), std::max(1, tall - 2)),
-      Bgr(kPanel), cv::FILLED);
+      Bgr(layout.style->panel), cv::FILLED);
   constexpr double kNauticalMile_m = 1852.0;
   std::string text = length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
                                         : Number(length_m, length_m < 1.0 ? 3 : 0) + " m";
   if (length_m >= 100.0) text += " = " + Number(length_m / kNauticalMile_m, 2) + " nmi";
-  fonts.small.Draw(image, text, {left.x, left.y - layout.Px(4)}, Bgr(kWords));
+  fonts.small.Draw(image, text, {left.x, left.y - layout.Px(4)}, Bgr(layout.style->words));
 }
 
 void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fonts& fonts) {
   static const std::vector<cv::Point2f> kWest{{0.0F, 1.0F}, {0.0F, -0.45F}, {-0.55F, -0.85F}};
   static const std::vector<cv::Point2f> kEast{{0.0F, 1.0F}, {0.55F, -0.85F}, {0.0F, -0.45F}};
   const Pose2 placing{at, 11.0 * layout.unit, 0.0};
-  FillShape(image, kWest, placing, Bgr(kWords));
-  FillShape(image, kEast, placing, Bgr(kFaint));
+  FillShape(image, kWest, placing, Bgr(layout.style->words));
+  FillShape(image, kEast, placing, Bgr(layout.style->faint));
   fonts.bold.Draw(image, "N", {at.x - fonts.bold.Width("N") / 2, at.y - layout.Px(14)},
-                  Bgr(kWords));
+                  Bgr(layout.style->words));
 }
 
 }  // namespace
@@ -234,11 +235,13 @@ void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, cons
   int y = bottom - layout.Px(42) - 5 * row_px;
 
   DrawRock(image, cv::Point2d(middle, y), 5.5 * layout.unit);
-  fonts.small.Draw(image, "rock", {words, y + fonts.small.cap_height() / 2}, Bgr(kWords));
+  fonts.small.Draw(image, "rock", {words, y + fonts.small.cap_height() / 2},
+                   Bgr(layout.style->words));
   const int second = left + layout.panel.width / 2 - layout.Px(8);
   FillCircle(image, cv::Point2d(second, y), 5.5 * layout.unit, Bgr(kPort));
+  StrokeCircle(image, cv::Point2d(second, y), 5.5 * layout.unit, Bgr(kInk), layout.Px(1.2));
   fonts.small.Draw(image, "port", {second + layout.Px(11), y + fonts.small.cap_height() / 2},
-                   Bgr(kWords));
+                   Bgr(layout.style->words));
   y += row_px;
 
   const int bar_left = left + layout.panel.width / 2 - layout.Px(15);
@@ -249,18 +252,19 @@ void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, cons
     cv::rectangle(image, cv::Rect(health.x + i, health.y, 1, health.height),
                   Bgr(HealthColor(double(i) / health.width)), cv::FILLED);
   }
-  fonts.small.Draw(image, "health", {left, y + fonts.small.cap_height() / 2}, Bgr(kWords));
+  fonts.small.Draw(image, "health", {left, y + fonts.small.cap_height() / 2},
+                   Bgr(layout.style->words));
   y += row_px;
 
   const cv::Rect scale(left, y - layout.Px(1), layout.panel.width - layout.Px(20), layout.Px(7));
   for (int i = 0; i < scale.width; ++i) {
     cv::rectangle(image, cv::Rect(scale.x + i, scale.y, 1, scale.height),
-                  Bgr(SeverityColor(double(i) / scale.width)), cv::FILLED);
+                  Bgr(layout.style->Risk(double(i) / scale.width)), cv::FILLED);
   }
   y += layout.Px(9) + fonts.small.cap_height();
-  fonts.small.Draw(image, "risk -5", {left, y}, Bgr(kFaint));
+  fonts.small.Draw(image, "risk -5", {left, y}, Bgr(layout.style->faint));
   fonts.small.Draw(image, "-20", {scale.x + scale.width - fonts.small.Width("-20"), y},
-                   Bgr(kFaint));
+                   Bgr(layout.style->faint));
 
   const int foot = bottom - layout.Px(18);
   DrawNorthArrow(image, {left + layout.Px(8), foot - layout.Px(6)}, layout, fonts);
@@ -270,7 +274,7 @@ void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, cons
 
 cv::Mat DrawBackground(const FarmSpec& spec, const Layout& layout, const Fonts& fonts,
                        ImageSize size) {
-  cv::Mat image(size.height, size.width, CV_8UC3, Bgr(kPanel));
+  cv::Mat image(size.height, size.width, CV_8UC3, Bgr(layout.style->panel));
   cv::Mat map = image(layout.map);
   PaintSeaAndLand(map, spec, layout);
   DrawGrid(map, layout);
@@ -283,13 +287,13 @@ cv::Mat DrawBackground(const FarmSpec& spec, const Layout& layout, const Fonts& 
   cv::rectangle(
       image,
       cv::Rect(layout.map.x - 1, layout.map.y - 1, layout.map.width + 2, layout.map.height + 2),
-      Bgr(kRule), 1);
+      Bgr(layout.style->rule), 1);
   DrawAxes(image, spec, layout, fonts);
   for (const int y : {layout.top.height - 1, layout.bottom.y}) {
-    cv::rectangle(image, cv::Rect(0, y, size.width, 1), Bgr(kRule), cv::FILLED);
+    cv::rectangle(image, cv::Rect(0, y, size.width, 1), Bgr(layout.style->rule), cv::FILLED);
   }
-  cv::rectangle(image, cv::Rect(layout.panel.x, layout.panel.y, 1, layout.panel.height), Bgr(kRule),
-                cv::FILLED);
+  cv::rectangle(image, cv::Rect(layout.panel.x, layout.panel.y, 1, layout.panel.height),
+                Bgr(layout.style->rule), cv::FILLED);
   DrawLegend(image, spec, layout, fonts);
   return image;
 }

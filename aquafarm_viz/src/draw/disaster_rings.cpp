@@ -38,20 +38,19 @@ struct ShadeEntry {
   float half_width{};
 };
 
-const std::array<ShadeEntry, 256>& ShadeTable() {
-  static const std::array<ShadeEntry, 256> kTable = [] {
-    std::array<ShadeEntry, 256> table{};
-    for (std::size_t i = 0; i < table.size(); ++i) {
-      const double severity = SeverityOf(i);
-      const double cover = std::min(1.0, double(i) / kFaintest);
-      table[i].color = Bgr(SeverityColor(severity));
-      table[i].tint =
-          static_cast<float>(cover * (kTintFaintest + (kTintWorst - kTintFaintest) * severity));
-      table[i].half_width = static_cast<float>(cover * (0.35 + 1.15 * severity));
-    }
-    return table;
-  }();
-  return kTable;
+using ShadeTable = std::array<ShadeEntry, 256>;
+
+ShadeTable MakeShadeTable(const Style& style) {
+  ShadeTable table{};
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const double severity = SeverityOf(i);
+    const double cover = std::min(1.0, double(i) / kFaintest);
+    table[i].color = Bgr(style.Risk(severity));
+    table[i].tint =
+        static_cast<float>(cover * (kTintFaintest + (kTintWorst - kTintFaintest) * severity));
+    table[i].half_width = static_cast<float>(cover * (0.35 + 1.15 * severity));
+  }
+  return table;
 }
 
 // Distance of each pixel of a tile to the nearest line of a kind's pattern [pixels].
@@ -184,8 +183,7 @@ void ShadeRow(const Rings& rings, int row, RingRow& out) {
 }
 
 void PaintRow(std::uint8_t* pixel, const std::uint8_t* land, int row, const RingRow& from,
-              const Patterns& patterns) {
-  const auto& table = ShadeTable();
+              const Patterns& patterns, const ShadeTable& table) {
   for (std::size_t column = 0; column < from.shades.size(); ++column, pixel += 3) {
     const float edge = from.edges[column];
     const auto shade =
@@ -219,11 +217,12 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
     auto& pattern = patterns[KindIndex(rings.kind)];
     if (!pattern) pattern.emplace(rings.kind, layout.Px(13));
   }
+  const ShadeTable table = MakeShadeTable(*layout.style);
   RingRow line(static_cast<std::size_t>(map.cols), all.front().kind);
   for (int row = 0; row < map.rows; ++row) {
     line.Clear();
     for (const auto& rings : all) ShadeRow(rings, row, line);
-    PaintRow(map.ptr(row), land.ptr(row), row, line, patterns);
+    PaintRow(map.ptr(row), land.ptr(row), row, line, patterns, table);
   }
 }
 

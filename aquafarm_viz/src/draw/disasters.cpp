@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "draw/nautical.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -48,14 +47,12 @@ void DrawTyphoonEye(cv::Mat& map, cv::Point2d at, double radius_px, const cv::Sc
   for (const double bearing : {45.0, 225.0}) FillShape(map, kArm, {at, radius_px, bearing}, color);
 }
 
-void DrawCentre(cv::Mat& map, const DisasterState& disaster, const Layout& layout,
-                const Fonts& fonts) {
-  const cv::Point2d at = layout.view.ToPixel(disaster.x, disaster.y);
+void DrawCentre(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
+                const Layout& layout, const Fonts& fonts) {
+  const cv::Point2d at = sign.at;
   const double radius = 8.0 * layout.unit;
   if (disaster.speed > 0.0F) {
-    const double length =
-        std::clamp(2.2 * layout.view.cell_px(), 40.0 * layout.unit, 60.0 * layout.unit);
-    DrawArrow(map, at, disaster.heading_deg, length, layout);
+    DrawArrow(map, at, disaster.heading_deg, cv::norm(sign.arrow_to - at), layout);
   }
   const cv::Scalar color = Bgr(GradeColor(disaster.grade));
   const bool typhoon = disaster.kind == DisasterState::TYPHOON;
@@ -71,61 +68,65 @@ void DrawCentre(cv::Mat& map, const DisasterState& disaster, const Layout& layou
   fonts.bold.Draw(map, letter,
                   {cvRound(at.x + 0.5 - fonts.bold.Width(letter) / 2.0),
                    cvRound(at.y + 0.5 + fonts.bold.cap_height() / 2.0)},
-                  Bgr(kPaper));
+                  Bgr(disaster.grade == 2 ? kInk : kPaper));
 }
 
-// Draws a pointer at the border towards a centre outside the map, with its heading and where it is
-// from the middle of the farm: "typhoon, centre 89 km SE".
-void DrawBorderPointer(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                       const DisasterState& disaster, cv::Point2d centre, const Layout& layout,
-                       const Fonts& fonts) {
+// Draws a pointer at the border towards a centre outside the map, and its heading.
+void DrawBorderPointer(cv::Mat& map, const DisasterState& disaster, const SignPlace& sign,
+                       const Layout& layout) {
   static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
-  const double margin = std::min(13.0 * layout.unit, std::min(map.cols, map.rows) / 2.0);
-  const cv::Point2d at(std::clamp(centre.x, margin, map.cols - margin),
-                       std::clamp(centre.y, margin, map.rows - margin));
-  const double bearing = std::atan2(centre.x - at.x, at.y - centre.y) * 180.0 / CV_PI;
-  double top = at.y;
-  double foot = at.y;
-  if (disaster.speed > 0.0F) {  // next to the pointer, so that the whole arrow is on the map
-    const double length = 40.0 * layout.unit;
-    const double turn = disaster.heading_deg * CV_PI / 180.0;
-    const cv::Point2d way(length * std::sin(turn), -length * std::cos(turn));
-    const double room = std::min(2.0 * margin, std::min(map.cols, map.rows) / 2.0);
-    const cv::Point2d head(std::clamp(at.x + way.x, room, map.cols - room),
-                           std::clamp(at.y + way.y, room, map.rows - room));
-    DrawArrow(map, head - way, disaster.heading_deg, length, layout);
-    top = std::min({top, head.y, head.y - way.y});
-    foot = std::max({foot, head.y, head.y - way.y});
+  const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
+  const double bearing = std::atan2(centre.x - sign.at.x, sign.at.y - centre.y) * 180.0 / CV_PI;
+  if (disaster.speed > 0.0F) {
+    DrawArrow(map, sign.arrow_from, disaster.heading_deg, cv::norm(sign.arrow_to - sign.arrow_from),
+              layout);
   }
-  const Pose2 placing{at, 9.0 * layout.unit, bearing};
-  StrokeShape(map, kPointer, placing, Bgr(kPaper), layout.Px(3));
+  const Pose2 placing{sign.at, 9.0 * layout.unit, bearing};
+  StrokeShape(map, kPointer, placing, Bgr(layout.style->halo), layout.Px(5));
+  StrokeShape(map, kPointer, placing, Bgr(layout.style->label), layout.Px(3));
   FillShape(map, kPointer, placing, Bgr(GradeColor(disaster.grade)));
-  const std::string text = DisasterName(disaster.kind) + ", centre " +
-                           DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
-                           PointFromFarm(spec, disaster.x, disaster.y);
-  const int width = fonts.bold.Width(text);
-  const cv::Point words(std::clamp(cvRound(at.x) - width / 2, layout.Px(4),
-                                   std::max(layout.Px(4), map.cols - width - layout.Px(4))),
-                        at.y > map.rows / 2.0
-                            ? cvRound(top) - layout.Px(15)
-                            : cvRound(foot) + layout.Px(15) + fonts.bold.cap_height());
-  fonts.bold.Draw(map, text, words + cv::Point(1, 1), Bgr(kInk));
-  fonts.bold.Draw(map, text, words, Bgr(kPaper));
 }
 
 }  // namespace
 
-void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const FarmState& state,
-                       const Layout& layout, const Fonts& fonts) {
+SignPlace PlaceSign(const DisasterState& disaster, const Layout& layout) {
+  const cv::Size map = layout.map.size();
+  const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
+  SignPlace sign{centre, centre, centre, true};
+  sign.is_inside =
+      centre.x >= 0.0 && centre.y >= 0.0 && centre.x < map.width && centre.y < map.height;
+  const double turn = disaster.heading_deg % 360 * CV_PI / 180.0;
+  const cv::Point2d heading(std::sin(turn), -std::cos(turn));
+  if (sign.is_inside) {
+    const double length =
+        std::clamp(2.2 * layout.view.cell_px(), 40.0 * layout.unit, 60.0 * layout.unit);
+    if (disaster.speed > 0.0F) sign.arrow_to = centre + heading * length;
+    return sign;
+  }
+  const double shorter = std::min(map.width, map.height);
+  const double margin = std::min(13.0 * layout.unit, shorter / 2.0);
+  sign.at = {std::clamp(centre.x, margin, map.width - margin),
+             std::clamp(centre.y, margin, map.height - margin)};
+  sign.arrow_from = sign.arrow_to = sign.at;
+  if (!(disaster.speed > 0.0F)) return sign;
+  // Next to the pointer, so that the whole arrow is on the map.
+  const cv::Point2d way = heading * (40.0 * layout.unit);
+  const double room = std::min(2.0 * margin, shorter / 2.0);
+  sign.arrow_to = {std::clamp(sign.at.x + way.x, room, map.width - room),
+                   std::clamp(sign.at.y + way.y, room, map.height - room)};
+  sign.arrow_from = sign.arrow_to - way;
+  return sign;
+}
+
+void DrawDisasterSigns(cv::Mat& map, const FarmState& state, const Layout& layout,
+                       const Fonts& fonts) {
   for (const auto& disaster : state.disasters) {
     if (!IsDrawn(disaster)) continue;
-    const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
-    const bool inside =
-        centre.x >= 0.0 && centre.y >= 0.0 && centre.x < map.cols && centre.y < map.rows;
-    if (inside) {
-      DrawCentre(map, disaster, layout, fonts);
+    const SignPlace sign = PlaceSign(disaster, layout);
+    if (sign.is_inside) {
+      DrawCentre(map, disaster, sign, layout, fonts);
     } else {
-      DrawBorderPointer(map, spec, disaster, centre, layout, fonts);
+      DrawBorderPointer(map, disaster, sign, layout);
     }
   }
 }

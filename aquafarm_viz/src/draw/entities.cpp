@@ -75,7 +75,7 @@ std::map<std::pair<int, int>, int> ShipsPerCell(const FarmState& state) {
 }
 
 void DrawRescueShip(cv::Mat& map, const FarmState& state, const ShipState& ship,
-                    const Pose2& placing, const Layout& layout, const Fonts& fonts) {
+                    const Pose2& placing, const Layout& layout) {
   static const std::vector<cv::Point2f> kDeck{{-0.22F, 0.42F}, {-0.26F, -0.1F}, {-0.22F, -0.68F},
                                               {0.22F, -0.68F}, {0.26F, -0.1F},  {0.22F, 0.42F}};
   StrokeShape(map, HullOutline(), placing, Bgr(kInk), layout.Px(2.4));
@@ -93,12 +93,6 @@ void DrawRescueShip(cv::Mat& map, const FarmState& state, const ShipState& ship,
     }
     above += layout.Px(5);
   }
-  if (state.ships.size() < 2) return;
-  const std::string text = std::to_string(ship.id);
-  const cv::Point at(cvRound(placing.at.x + 0.55 * placing.size_px),
-                     cvRound(placing.at.y + placing.size_px));
-  fonts.bold.Draw(map, text, at + cv::Point(1, 1), Bgr(kInk));
-  fonts.bold.Draw(map, text, at, Bgr(kPaper));
 }
 
 void DrawSelfPropelled(cv::Mat& map, const FarmState& state, const ShipState& ship,
@@ -135,9 +129,10 @@ void DrawTrails(cv::Mat& map, const FarmState& state, const Trail& trail, const 
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       const double age = double(way->places.size() - 1 - i) / Trail::kLength;
-      const Rgb fresh =
-          state.ships.size() > 1 ? Mix(kPaper, ShipColor(ship.id), 0.6) : Rgb{0xd8, 0xf1, 0xff};
-      const Rgb color = Mix(fresh, kSeaDeep, 0.15 + 0.75 * age);
+      const Rgb fresh = state.ships.size() > 1
+                            ? Mix(layout.style->label, ShipColor(ship.id), 0.6)
+                            : Mix(layout.style->label, layout.style->sea_north, 0.1);
+      const Rgb color = Mix(fresh, layout.style->sea_south, 0.15 + 0.75 * age);
       DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
                layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color),
                layout.Px(age < 0.35 ? 2.0 : 1.0));
@@ -196,20 +191,6 @@ void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, cons
   }
 }
 
-void DrawLabels(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout,
-                const Fonts& fonts) {
-  const double radius = layout.device_radius_px();
-  for (const auto& device : state.devices) {
-    if (!IsLabelled(spec, device)) continue;
-    const cv::Point2d middle = layout.view.ToPixel(device.x, device.y);
-    const std::string text = DeviceLabel(device.id);
-    const cv::Point at(cvRound(middle.x + radius + layout.Px(2)),
-                       cvRound(middle.y + radius + fonts.bold.cap_height() / 2.0));
-    fonts.bold.Draw(map, text, at + cv::Point(1, 1), Bgr(kInk));
-    fonts.bold.Draw(map, text, at, Bgr(kDirectionColor));
-  }
-}
-
 void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout) {
   const double radius = layout.device_radius_px();
   std::map<std::pair<int, int>, int> delivered;
@@ -233,7 +214,7 @@ void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
 }
 
 void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Trail* trail,
-               const Layout& layout, const Fonts& fonts) {
+               const Layout& layout) {
   const auto per_cell = ShipsPerCell(state);
   Crowd crowd;
   // From last to first, so that lower ids, which have right of way, are on top.
@@ -247,7 +228,7 @@ void DrawShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
     if (ship->own_device >= 0) {
       DrawSelfPropelled(map, state, *ship, placing, layout);
     } else {
-      DrawRescueShip(map, state, *ship, placing, layout, fonts);
+      DrawRescueShip(map, state, *ship, placing, layout);
     }
   }
 }

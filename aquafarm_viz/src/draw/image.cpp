@@ -7,7 +7,8 @@
 #include <stdexcept>
 
 #include "aquafarm_viz/base/checks.h"
-#include "draw/region.h"
+#include "draw/course.h"
+#include "draw/map_labels.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -41,11 +42,13 @@ bool SameMap(const Values& a, const Values& b) {
 }  // namespace
 
 struct FarmPainter::Parts {
-  explicit Parts(ImageSize wanted)
-      : size{std::clamp(wanted.width, kMinImageSide, kMaxImageSide),
+  Parts(ImageSize wanted, const Style& colours)
+      : style(&colours),
+        size{std::clamp(wanted.width, kMinImageSide, kMaxImageSide),
              std::clamp(wanted.height, kMinImageSide, kMaxImageSide)},
         fonts(MakeLayout(1, 1, size).unit) {}
 
+  const Style* style;
   ImageSize size;
   Fonts fonts;
   Layout layout;
@@ -53,7 +56,7 @@ struct FarmPainter::Parts {
   std::string sea;  // sea layer of the background
   cv::Mat background;
   std::optional<std::vector<PortDirections>> directions;  // of the spec; nullopt before use
-  std::vector<std::vector<TrackPoint>> tracks;            // of the background's scenario
+  StormTracks storms;                                     // of the background's scenario
   cv::Mat1b land;                                         // IslandCoverage of the background
   std::optional<MoveSigns> moves;  // for the layout; nullopt before the first use
   Values values;                   // values drawn in `valued`
@@ -66,9 +69,58 @@ struct FarmPainter::Parts {
     if (is_new) values = *now;
     if (is_new || is_new_background) valued.release();
   }
+
+  /// Draws the background if it has changed; returns true if it has.
+  bool PrepareBackground(const FarmSpec& spec, const std::string& wanted_sea) {
+    const bool same_sea =
+        wanted_sea == sea && (wanted_sea.empty() || spec.scenario_yaml == drawn.scenario_yaml);
+    if (!background.empty() && SameBackground(spec, drawn) && same_sea) return false;
+    background.release();  // stays empty if DrawSea throws
+    layout = MakeLayout(spec.width, spec.height, size, *style);
+    moves.reset();
+    directions.reset();
+    cv::Mat fresh = DrawBackground(spec, layout, fonts, size);
+    cv::Mat below = fresh(layout.map);
+    if (!wanted_sea.empty()) DrawSea(below, spec, wanted_sea, layout, fonts);
+    background = fresh;
+    storms = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m);
+    land = IslandCoverage(spec, layout);
+    drawn = spec;
+    sea = wanted_sea;
+    return true;
+  }
+
+  /// Draws rings, courses, signs and the devices in danger. Returns the marks of the courses.
+  std::vector<CourseMark> DrawDisasters(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
+                                        const Forecasts& forecasts, bool has_risk) {
+    if (has_risk) ShadeDisasters(map, state, land, layout);
+    std::vector<CourseMark> marks;
+    for (std::size_t i = 0; has_risk && i < state.disasters.size(); ++i) {
+      if (!IsDrawn(state.disasters[i])) continue;
+      const auto here = DrawCourse(
+          map, spec, forecasts.courses[i],
+          [this](double x, double y) { return layout.view.ToPixel(x, y); }, layout);
+      marks.insert(marks.end(), here.begin(), here.end());
+    }
+    DrawDisasterSigns(map, state, layout, fonts);
+    if (has_risk) DrawDangerMarks(map, state, forecasts.outlook, layout);
+    return marks;
+  }
+
+  /// Writes the labels of the map, the most important first.
+  void Label(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layers& layers,
+             const Outlook& outlook, const std::vector<CourseMark>& marks, FreeSpace& space) {
+    LabelShips(map, spec, state, space, layout, fonts);
+    if (layers.risk) LabelDanger(map, spec, state, outlook, space, layout, fonts);
+    LabelPointers(map, spec, state, space, layout, fonts);
+    if (layers.labels) LabelDevices(map, spec, state, space, layout, fonts);
+    if (layers.risk) LabelRings(map, state, space, layout, fonts);
+    LabelMarks(map, marks, space, layout, fonts);
+  }
 };
 
-FarmPainter::FarmPainter(ImageSize size) : parts_(std::make_unique<Parts>(size)) {}
+FarmPainter::FarmPainter(ImageSize size, const Style& style)
+    : parts_(std::make_unique<Parts>(size, style)) {}
 FarmPainter::~FarmPainter() = default;
 FarmPainter::FarmPainter(FarmPainter&&) noexcept = default;
 FarmPainter& FarmPainter::operator=(FarmPainter&&) noexcept = default;
@@ -76,24 +128,7 @@ FarmPainter& FarmPainter::operator=(FarmPainter&&) noexcept = default;
 const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
                                  const Overlays& overlays) {
   Parts& p = *parts_;
-  const std::string& sea = overlays.layers.sea;
-  const bool same_sea =
-      sea == p.sea && (sea.empty() || spec.scenario_yaml == p.drawn.scenario_yaml);
-  const bool is_new = p.background.empty() || !SameBackground(spec, p.drawn) || !same_sea;
-  if (is_new) {
-    p.background.release();  // stays empty if DrawSea throws
-    p.layout = MakeLayout(spec.width, spec.height, p.size);
-    p.moves.reset();
-    p.directions.reset();
-    cv::Mat background = DrawBackground(spec, p.layout, p.fonts, p.size);
-    cv::Mat below = background(p.layout.map);
-    if (!sea.empty()) DrawSea(below, spec, sea, p.layout, p.fonts);
-    p.background = background;
-    p.tracks = ReadTracks(spec.scenario_yaml);
-    p.land = IslandCoverage(spec, p.layout);
-    p.drawn = spec;
-    p.sea = sea;
-  }
+  const bool is_new = p.PrepareBackground(spec, overlays.layers.sea);
   p.background.copyTo(p.image);
   cv::Mat map = p.image(p.layout.map);
   const Layers& layers = overlays.layers;
@@ -110,8 +145,14 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
       p.valued.copyTo(map);
     }
   }
+  Forecasts forecasts;
+  for (std::size_t i = 0; i < state.disasters.size(); ++i) {
+    forecasts.courses.push_back(CourseOf(spec, state, i, p.storms));
+  }
+  forecasts.outlook = ComputeOutlook(spec, state, forecasts.courses);
+  FreeSpace space = BlockSymbols(spec, state, p.layout);
   if (layers.trail && overlays.trail != nullptr) DrawTrails(map, state, *overlays.trail, p.layout);
-  if (layers.risk) ShadeDisasters(map, state, p.land, p.layout);
+  const auto marks = p.DrawDisasters(map, spec, state, forecasts, layers.risk);
   if (layers.route && overlays.route != nullptr) DrawRoutes(map, state, *overlays.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
   if (layers.moves && values != nullptr) {
@@ -124,20 +165,23 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   }
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
-  if (layers.labels) DrawLabels(map, spec, state, p.layout, p.fonts);
-  DrawDisasterSigns(map, spec, state, p.layout, p.fonts);
-  DrawShips(map, spec, state, overlays.trail, p.layout, p.fonts);
-  if (overlays.choice != nullptr) DrawChoice(map, state, *overlays.choice, p.layout, p.fonts);
-  if (layers.values && values != nullptr) DrawValueScale(map, *values, p.layout, p.fonts);
-  DrawWords(p.image, spec, state, overlays, p.tracks, p.layout, p.fonts);
+  DrawShips(map, spec, state, overlays.trail, p.layout);
+  if (overlays.choice != nullptr) {
+    DrawChoice(map, state, *overlays.choice, space, p.layout, p.fonts);
+  }
+  if (layers.values && values != nullptr) {
+    DrawValueScale(map, *values, space, p.layout, p.fonts);
+  }
+  p.Label(map, spec, state, layers, forecasts.outlook, marks, space);
+  DrawWords(p.image, spec, state, overlays, forecasts, p.layout, p.fonts);
   return p.image;
 }
 
 cv::Mat DrawFarm(const FarmSpec& spec, const FarmState& state, ImageSize size,
-                 const Overlays& overlays) {
+                 const Overlays& overlays, const Style& style) {
   if (const auto fault = CheckSpec(spec); !fault.empty()) throw std::invalid_argument(fault);
   if (const auto fault = CheckState(state); !fault.empty()) throw std::invalid_argument(fault);
-  return FarmPainter(size).Draw(spec, state, overlays).clone();
+  return FarmPainter(size, style).Draw(spec, state, overlays).clone();
 }
 
 }  // namespace aquafarm_viz

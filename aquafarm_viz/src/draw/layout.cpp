@@ -12,7 +12,7 @@ namespace {
 constexpr double kDesignSide = 640.0;
 constexpr double kTop = 46.0;
 constexpr double kBottom = 44.0;
-constexpr double kPanelWidth = 152.0;
+constexpr double kPanelWidth = 184.0;
 constexpr double kAxisLeft = 52.0;
 constexpr double kAxisBottom = 18.0;
 constexpr double kGap = 10.0;
@@ -35,8 +35,9 @@ double Layout::ship_radius_px() const {
   return std::clamp(0.60 * view.cell_px(), 9.0 * unit, 30.0 * unit);
 }
 
-Layout MakeLayout(int width, int height, ImageSize size) {
+Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
   Layout layout;
+  layout.style = &style;
   const int short_side = std::min(size.width, size.height);
   layout.unit = std::max(short_side / kDesignSide, 0.7);
   cv::Rect room(0, 0, size.width, size.height);
@@ -72,6 +73,19 @@ int TickStep(double cell_px, double least_px) {
       if (factor * power * cell_px >= least_px) return factor * power;
     }
   }
+}
+
+void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
+               const Layout& layout) {
+  const cv::Point base = top_left + cv::Point(0, font.cap_height());
+  const int width = layout.Px(1.2);
+  for (int dy = -width; dy <= width; ++dy) {
+    for (int dx = -width; dx <= width; ++dx) {
+      if (dx == 0 && dy == 0) continue;
+      font.Draw(image, text, base + cv::Point(dx, dy), Bgr(layout.style->halo));
+    }
+  }
+  font.Draw(image, text, base, Bgr(layout.style->label));
 }
 
 Fonts::Fonts(double unit)

@@ -44,51 +44,63 @@ class Line {
     at_.x += font.Draw(image_, font.Fit(text, right_ - at_.x), at_, Bgr(color)) + gap_px;
   }
 
+  int x() const { return at_.x; }
+
  private:
   cv::Mat& image_;
   cv::Point at_;
   int right_;
 };
 
-void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Layout& layout,
-             const Fonts& fonts) {
+// Draws the scenario, the time, the episode and, if there is space, the next danger.
+void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
+             const Layout& layout, const Fonts& fonts) {
   const int left = layout.Px(10);
   const int right = layout.top.width - layout.Px(10);
   const int first = layout.Px(18);
   const std::string time = WorldTime(spec, state);
   const int time_left = right - fonts.small.Width(time);
-  fonts.small.Draw(image, time, {time_left, first}, Bgr(kWords));
+  fonts.small.Draw(image, time, {time_left, first}, Bgr(layout.style->words));
   const std::string name = spec.scenario_name.empty() ? "aquafarm" : spec.scenario_name;
   fonts.title.Draw(image, fonts.title.Fit(name, time_left - left - layout.Px(10)), {left, first},
-                   Bgr(kWords));
+                   Bgr(layout.style->words));
 
   const int gap = layout.Px(14);
   Line line(image, {left, layout.Px(36)}, right);
   const auto pair = [&](const std::string& name_of, const std::string& value, Rgb color) {
-    line.Put(fonts.small, name_of, kFaint, layout.Px(5));
+    line.Put(fonts.small, name_of, layout.style->faint, layout.Px(5));
     line.Put(fonts.bold, value, color, gap);
   };
-  pair("episode", Count(state.episode), kWords);
+  pair("episode", Count(state.episode), layout.style->words);
   pair("step", Count(state.step) + " / " + Count(std::uint64_t(std::max(0, spec.step_limit))),
-       kWords);
-  pair("return", Number(state.joint_return, 1), state.joint_return < 0.0F ? kBad : kGood);
-  pair("seed", std::to_string(state.seed), kFaint);
-  if (state.observer >= 0) pair("as seen by ship", std::to_string(state.observer), kWords);
-  if (state.paused) line.Put(fonts.bold, "paused", GradeColor(2), gap);
+       layout.style->words);
+  pair("return", Number(state.joint_return, 1),
+       state.joint_return < 0.0F ? layout.style->bad : layout.style->good);
+  pair("seed", std::to_string(state.seed), layout.style->faint);
+  if (state.observer >= 0)
+    pair("as seen by ship", std::to_string(state.observer), layout.style->words);
+  if (state.paused) line.Put(fonts.bold, "paused", layout.style->GradeText(2), gap);
+  const std::string danger = OutlookText(spec, state, outlook);
+  const int danger_left = right - fonts.bold.Width(danger);
+  if (danger.empty() || state.terminated || state.truncated || danger_left < line.x()) return;
+  fonts.bold.Draw(image, danger, {danger_left, layout.Px(36)}, Bgr(layout.style->alarm));
 }
 
 void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout,
                     const Fonts& fonts) {
   Line line(image, {layout.Px(10), layout.bottom.y + layout.Px(17)},
             layout.bottom.width - layout.Px(10));
-  const auto color = [](float value) { return value == 0.0F ? kFaint : value < 0 ? kBad : kGood; };
-  line.Put(fonts.bold, "reward", kWords, layout.Px(5));
+  const auto color = [&layout](float value) {
+    return value == 0.0F ? layout.style->faint : value < 0 ? layout.style->bad : layout.style->good;
+  };
+  line.Put(fonts.bold, "reward", layout.style->words, layout.Px(5));
   line.Put(fonts.bold, Signed(state.joint_reward), color(state.joint_reward), layout.Px(16));
   for (const auto& [name, value] : RewardTermsOf(state)) {
     if (value == 0.0F && std::string(name) == "energy") continue;  // most scenarios have none
-    line.Put(fonts.small, name, value == 0.0F ? kFaint : kWords, layout.Px(4));
+    line.Put(fonts.small, name, value == 0.0F ? layout.style->faint : layout.style->words,
+             layout.Px(4));
     if (value == 0.0F) {
-      line.Put(fonts.small, "0", kFaint, layout.Px(11));
+      line.Put(fonts.small, "0", layout.style->faint, layout.Px(11));
     } else {
       line.Put(fonts.bold, Signed(value), color(value), layout.Px(11));
     }
@@ -101,11 +113,11 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
             layout.bottom.width - layout.Px(10));
   const int gap = layout.Px(11);
   const auto pair = [&](const std::string& name, const std::string& value) {
-    line.Put(fonts.small, name, kFaint, layout.Px(4));
-    line.Put(fonts.small, value, kWords, gap);
+    line.Put(fonts.small, name, layout.style->faint, layout.Px(4));
+    line.Put(fonts.small, value, layout.style->words, gap);
   };
-  line.Put(fonts.bold, training.algorithm, kWords, layout.Px(5));
-  line.Put(fonts.small, PhaseName(training.phase), kFaint, gap);
+  line.Put(fonts.bold, training.algorithm, layout.style->words, layout.Px(5));
+  line.Put(fonts.small, PhaseName(training.phase), layout.style->faint, gap);
   pair("episode",
        Count(training.episode) + (training.episodes > 0 ? " / " + Count(training.episodes) : ""));
   pair("mean return", Number(training.mean_return, 1));
@@ -137,15 +149,15 @@ class Panel {
 
   void Heading(const std::string& text, const std::string& right_text) {
     y_ += layout_.Px(5);
-    Row(left_, text, fonts_.bold, kFaint, right_text, kFaint);
+    Row(left_, text, fonts_.bold, layout_.style->faint, right_text, layout_.style->faint);
   }
 
   void Item(const std::string& text, const std::string& right_text, Rgb right_color) {
-    Row(left_ + layout_.Px(21), text, fonts_.small, kWords, right_text, right_color);
+    Row(left_ + layout_.Px(21), text, fonts_.small, layout_.style->words, right_text, right_color);
   }
 
   void Detail(const std::string& text, const std::string& right_text, Rgb right_color) {
-    Row(left_ + layout_.Px(21), text, fonts_.small, kFaint, right_text, right_color);
+    Row(left_ + layout_.Px(21), text, fonts_.small, layout_.style->faint, right_text, right_color);
   }
 
  private:
@@ -167,26 +179,53 @@ class Panel {
   int end_;
 };
 
-void ListDevices(Panel& panel, const FarmState& state, const Layout& layout) {
+// One row for each device: its symbol, kind, and danger or status.
+void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state,
+                    const Outlook& outlook, const Layout& layout) {
+  for (const auto& device : state.devices) {
+    const bool done = device.status == DeviceState::DELIVERED;
+    DrawDeviceSymbol(panel.image(), device.kind, {panel.SymbolAt(), 6.0 * layout.unit, 0.0},
+                     done ? 0.5 : 0.0);
+    std::string status = done ? "safe" : StatusName(device.status);
+    Rgb color = done ? layout.style->good : layout.style->faint;
+    for (const DeviceOutlook& one : outlook.devices) {
+      if (one.id != device.id) continue;
+      const std::string danger = DangerText(spec, one, ", ");
+      status = danger.empty() ? "" : danger;
+      color = layout.style->alarm;
+    }
+    panel.Item(DeviceLabel(device.id) + " " + DeviceName(device.kind), status, color);
+  }
+}
+
+void ListKinds(Panel& panel, const FarmState& state, const Layout& layout) {
   constexpr std::size_t kKinds = 4;
   std::array<int, kKinds> total{};
   std::array<int, kKinds> delivered{};
-  int all_delivered = 0;
   for (const auto& device : state.devices) {
-    const bool done = device.status == DeviceState::DELIVERED;
-    all_delivered += done ? 1 : 0;
     if (device.kind >= kKinds) continue;
     ++total[device.kind];
-    delivered[device.kind] += done ? 1 : 0;
+    delivered[device.kind] += device.status == DeviceState::DELIVERED ? 1 : 0;
   }
-  panel.Heading("DEVICES", std::to_string(all_delivered) + " / " +
-                               std::to_string(state.devices.size()) + " safe");
   for (std::uint8_t kind = 0; kind < kKinds; ++kind) {
     DrawDeviceSymbol(panel.image(), kind, {panel.SymbolAt(), 6.0 * layout.unit, 0.0},
                      total[kind] == 0 ? 0.75 : 0.0);
     panel.Item(DeviceName(kind),
-               std::to_string(delivered[kind]) + " / " + std::to_string(total[kind]), kFaint);
+               std::to_string(delivered[kind]) + " / " + std::to_string(total[kind]),
+               layout.style->faint);
   }
+}
+
+void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
+                 const Layout& layout) {
+  constexpr std::size_t kMostRows = 6;
+  const auto delivered = std::count_if(
+      state.devices.begin(), state.devices.end(),
+      [](const DeviceState& device) { return device.status == DeviceState::DELIVERED; });
+  panel.Heading("DEVICES",
+                std::to_string(delivered) + " / " + std::to_string(state.devices.size()) + " safe");
+  if (state.devices.size() > kMostRows) return ListKinds(panel, state, layout);
+  ListEachDevice(panel, spec, state, outlook, layout);
 }
 
 void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state, const Layout& layout,
@@ -199,21 +238,21 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state, c
     ++shown;
     const bool over = disaster.steps_left <= 0;
     FillCircle(panel.image(), panel.SymbolAt(), 5.5 * layout.unit,
-               Bgr(over ? kRule : GradeColor(disaster.grade)));
+               Bgr(over ? layout.style->rule : GradeColor(disaster.grade)));
     panel.Item(DisasterName(disaster.kind),
                over                              ? "over"
                : disaster.grade < kGrades.size() ? kGrades[disaster.grade]
                                                  : "",
-               over ? kFaint : GradeColor(disaster.grade));
-    panel.Detail(MotionText(spec, disaster.heading_deg, disaster.speed), "", kFaint);
+               over ? layout.style->faint : layout.style->GradeText(disaster.grade));
+    panel.Detail(MotionText(spec, disaster.heading_deg, disaster.speed), "", layout.style->faint);
     const std::string left =
         over                  ? ""
         : spec.has_start_time ? "ends in " + HoursText(disaster.steps_left * spec.step_duration_s)
                               : Count(std::uint64_t(disaster.steps_left)) + " steps left";
     panel.Detail(disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago", "",
-                 kFaint);
+                 layout.style->faint);
   }
-  if (shown == 0) panel.Detail("none known", "", kFaint);
+  if (shown == 0) panel.Detail("none known", "", layout.style->faint);
 }
 
 void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
@@ -228,24 +267,28 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
     }
     rows -= 2;
     if (ship.own_device >= 0) {
-      StrokeCircle(panel.image(), panel.SymbolAt(), 5.0 * layout.unit, Bgr(kPaper), layout.Px(2));
+      StrokeCircle(panel.image(), panel.SymbolAt(), 5.0 * layout.unit, Bgr(layout.style->words),
+                   layout.Px(2));
     } else {
       const Pose2 placing{panel.SymbolAt(), 7.5 * layout.unit, 0.0};
+      StrokeShape(panel.image(), HullOutline(), placing, Bgr(kInk), layout.Px(2));
       FillShape(panel.image(), HullOutline(), placing, Bgr(kPaper));
       FillShape(panel.image(), HullOutline(), {placing.at, 4.5 * layout.unit, 0.0},
                 Bgr(ShipColor(ship.id)));
     }
     panel.Item((ship.own_device >= 0 ? "device " + std::to_string(ship.own_device)
                                      : "ship " + std::to_string(ship.id)),
-               "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")", kFaint);
+               "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")",
+               layout.style->faint);
     const std::string fault = OutcomeName(ship.outcome);
     const std::string load = ship.own_device >= 0 ? ""
                                                   : std::to_string(ship.aboard.size()) + "/" +
                                                         std::to_string(ship.capacity);
-    panel.Detail(ActionName(ship.action) + (fault.empty() ? "" : ": " + fault), load, kFaint);
+    panel.Detail(ActionName(ship.action) + (fault.empty() ? "" : ": " + fault), load,
+                 layout.style->faint);
   }
   if (left_out > 0 && rows > 0) {
-    panel.Detail("and " + std::to_string(left_out) + " more", "", kFaint);
+    panel.Detail("and " + std::to_string(left_out) + " more", "", layout.style->faint);
   }
 }
 
@@ -261,29 +304,29 @@ void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const
                                  : cv::Rect(layout.map.x + (layout.map.width - width) / 2,
                                             layout.map.y + layout.Px(12), width, layout.Px(28));
   const bool success = state.reason == FarmState::ALL_RETRIEVED;
-  Tint(image, plate, Bgr(success ? Rgb{0x12, 0x6b, 0x3a} : kInk), 0.85);
-  cv::rectangle(image, plate, Bgr(success ? kGood : kFaint), 1);
+  Tint(image, plate, Bgr(success ? Rgb{0x12, 0x6b, 0x3a} : kInk), 0.92);
+  cv::rectangle(image, plate, Bgr(success ? layout.style->good : layout.style->faint), 1);
   fonts.title.Draw(
       image, text,
       {plate.x + layout.Px(14), plate.y + (plate.height + fonts.title.cap_height()) / 2},
-      Bgr(kWords));
+      Bgr(kPaper));
 }
 
 }  // namespace
 
 void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
-               const Overlays& overlays, const std::vector<std::vector<TrackPoint>>& tracks,
-               const Layout& layout, const Fonts& fonts) {
+               const Overlays& overlays, const Forecasts& forecasts, const Layout& layout,
+               const Fonts& fonts) {
   if (layout.panel.empty()) return DrawEnd(image, state, layout, fonts);
-  DrawTop(image, spec, state, layout, fonts);
+  DrawTop(image, spec, state, forecasts.outlook, layout, fonts);
   DrawEnd(image, state, layout, fonts);
   DrawRewardLine(image, state, layout, fonts);
   if (overlays.training != nullptr) DrawTrainingLine(image, *overlays.training, layout, fonts);
   Panel panel(image, layout, fonts);
-  ListDevices(panel, state, layout);
+  ListDevices(panel, spec, state, forecasts.outlook, layout);
   ListDisasters(panel, spec, state, layout, std::max(3, panel.RowsLeft() - 7));
   ListShips(panel, state, layout);
-  DrawRegion(image, panel.Room(), spec, state, tracks, layout, fonts);
+  DrawRegion(image, panel.Room(), spec, state, forecasts.courses, layout, fonts);
 }
 
 }  // namespace aquafarm_viz

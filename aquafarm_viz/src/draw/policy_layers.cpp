@@ -5,6 +5,7 @@
 #include <string>
 
 #include "aquafarm_viz/scene/labels.h"
+#include "draw/free_space.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -51,7 +52,8 @@ void DrawValues(cv::Mat& map, const Values& values) {
   large.copyTo(map, mask);
 }
 
-void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, const Fonts& fonts) {
+void DrawValueScale(cv::Mat& map, const Values& values, FreeSpace& space, const Layout& layout,
+                    const Fonts& fonts) {
   if (!(values.highest > values.lowest)) return;
   const std::string low = "V " + Number(values.lowest, 1);
   const std::string high =
@@ -59,18 +61,20 @@ void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, co
   const int gap = layout.Px(5);
   const int bar = layout.Px(80);
   const int width = fonts.small.Width(low) + fonts.small.Width(high) + bar + 4 * gap;
-  const cv::Rect plate(layout.Px(6), map.rows - layout.Px(26), width, layout.Px(20));
-  if ((plate & cv::Rect({0, 0}, map.size())) != plate) return;
-  Tint(map, plate, Bgr(kPanel), 0.85);
+  const auto place =
+      space.Take({width, layout.Px(20)}, cv::Point2d(0.0, map.rows), double(map.cols + map.rows));
+  if (!place) return;
+  const cv::Rect plate = *place;
+  Tint(map, plate, Bgr(layout.style->panel), 0.85);
   const int base = plate.y + (plate.height + fonts.small.cap_height()) / 2;
   int x = plate.x + gap;
-  x += fonts.small.Draw(map, low, {x, base}, Bgr(kWords)) + gap;
+  x += fonts.small.Draw(map, low, {x, base}, Bgr(layout.style->words)) + gap;
   cv::Mat1b ramp(1, bar);
   for (int i = 0; i < bar; ++i)
     ramp(0, i) = static_cast<std::uint8_t>(255 * i / std::max(1, bar - 1));
   cv::Mat part = map(cv::Rect(x, plate.y + gap, bar, plate.height - 2 * gap));
   cv::resize(Colors(ramp), part, part.size(), 0, 0, cv::INTER_NEAREST);
-  fonts.small.Draw(map, high, {x + bar + gap, base}, Bgr(kWords));
+  fonts.small.Draw(map, high, {x + bar + gap, base}, Bgr(layout.style->words));
 }
 
 void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
@@ -141,7 +145,7 @@ void Overlay::LayOver(cv::Mat& map, cv::Point middle) const {
 }
 
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
-                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout,
+                const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space, const Layout& layout,
                 const Fonts& fonts) {
   if (!IsOf(choice, state)) return;
   std::string words = choice.policy + ":";
@@ -165,9 +169,11 @@ void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
               layout.Px(2.5));
   }
   const int width = fonts.bold.Width(words) + layout.Px(12);
-  const cv::Rect plate(map.cols - width - layout.Px(6), map.rows - layout.Px(26), width,
-                       layout.Px(20));
-  Tint(map, plate, Bgr(kPanel), 0.85);
+  const auto place = space.Take({width, layout.Px(20)}, cv::Point2d(map.cols, map.rows),
+                                double(map.cols + map.rows));
+  const cv::Rect plate = place.value_or(
+      cv::Rect(map.cols - width - layout.Px(6), map.rows - layout.Px(26), width, layout.Px(20)));
+  Tint(map, plate, Bgr(layout.style->panel), 0.85);
   fonts.bold.Draw(map, words,
                   {plate.x + layout.Px(6), plate.y + (plate.height + fonts.bold.cap_height()) / 2},
                   Bgr(kChoiceColor));

@@ -99,7 +99,7 @@ void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::strin
                                       " (dark) to " + Number(double(heat.greatest), 2) + " " +
                                       layer.units;
   const int margin = layout.Px(6.0);
-  fonts.bold.Draw(map, words, {margin, map.rows - margin}, Bgr(kWords));
+  DrawLabel(map, fonts.bold, words, {margin, map.rows - margin - fonts.bold.cap_height()}, layout);
 }
 
 }  // namespace aquafarm_viz

@@ -14,11 +14,20 @@
 #include "aquafarm_viz/draw/canvas.h"
 #include "aquafarm_viz/draw/image_options.h"
 #include "aquafarm_viz/draw/map_view.h"
+#include "aquafarm_viz/draw/style.h"
 #include "aquafarm_viz/scene/directions.h"
+#include "scene/outlook.h"
+#include "scene/storm_track.h"
 
 namespace aquafarm_viz {
 
-struct TrackPoint;
+class FreeSpace;
+
+/// The future of a state's disasters.
+struct Forecasts {
+  std::vector<Course> courses;  ///< one per disaster of the state
+  Outlook outlook;              ///< danger to the devices
+};
 
 /// The layout of a picture. A part with an empty rectangle is not drawn.
 struct Layout {
@@ -28,6 +37,7 @@ struct Layout {
   cv::Rect panel;
   cv::Rect bottom;
   MapView view;
+  const Style* style{&DarkStyle()};
 
   /// Converts design units to whole pixels, at least 1.
   int Px(double units) const;
@@ -40,7 +50,7 @@ struct Layout {
 };
 
 /// Computes the layout of a picture of a width x height farm.
-Layout MakeLayout(int width, int height, ImageSize size);
+Layout MakeLayout(int width, int height, ImageSize size, const Style& style = DarkStyle());
 
 /// The fonts of a picture.
 struct Fonts {
@@ -81,10 +91,23 @@ cv::Mat1b IslandCoverage(const aquafarm_msgs::FarmSpec& spec, const Layout& layo
 void ShadeDisasters(cv::Mat& map, const aquafarm_msgs::FarmState& state, const cv::Mat1b& land,
                     const Layout& layout);
 
+/// Where the sign of a disaster is drawn [pixels of the map].
+struct SignPlace {
+  cv::Point2d at;  ///< centre, or the pointer at the border
+  cv::Point2d arrow_from;
+  cv::Point2d arrow_to;  ///< arrow_from if it stands still
+  bool is_inside{};      ///< false: the centre lies outside the map
+};
+SignPlace PlaceSign(const aquafarm_msgs::DisasterState& disaster, const Layout& layout);
+
 /// Draws each disaster's centre and heading, or a pointer at the border if it is outside the map.
-void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                       const aquafarm_msgs::FarmState& state, const Layout& layout,
+void DrawDisasterSigns(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Layout& layout,
                        const Fonts& fonts);
+
+/// Draws a text with an outline, so that it can be read on any background.
+/// @param top_left  of its capital letters
+void DrawLabel(cv::Mat& image, const Font& font, const std::string& text, cv::Point top_left,
+               const Layout& layout);
 
 /// Draws the recent trails of the ships.
 void DrawTrails(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& trail,
@@ -98,7 +121,9 @@ void DrawRoutes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail
 void DrawValues(cv::Mat& map, const Values& values);
 
 /// Draws the colour scale of V_π into a corner of the map.
-void DrawValueScale(cv::Mat& map, const Values& values, const Layout& layout, const Fonts& fonts);
+/// @param space  free part of the map; the scale takes a part of it
+void DrawValueScale(cv::Mat& map, const Values& values, FreeSpace& space, const Layout& layout,
+                    const Fonts& fonts);
 
 /// A cached drawing that can be blended over maps: premultiplied colours, and the fraction of the
 /// background that each keeps.
@@ -153,7 +178,7 @@ class MoveSigns {
 
 /// Draws the actions that a compared policy chooses for each ship.
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
-                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout,
+                const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space, const Layout& layout,
                 const Fonts& fonts);
 
 /// Draws the sensor range of each ship in partial view.
@@ -164,35 +189,21 @@ void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                const Fonts& fonts);
 
-/// Draws F and the id next to each device that is neither aboard nor delivered.
-void DrawLabels(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-                const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
-
 /// Draws devices that are deployed or delivered.
 void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Layout& layout);
 
 /// Draws ships with the devices aboard, and self-propelled devices.
 void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
-               const aquafarm_msgs::FarmState& state, const Trail* trail, const Layout& layout,
-               const Fonts& fonts);
+               const aquafarm_msgs::FarmState& state, const Trail* trail, const Layout& layout);
 
 /// Draws the symbol of a device with a dark rim.
 void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded);
 
 /// Draws the text above and below the map, the lists and the region of the panel, and the end of
 /// the episode.
-/// @param tracks  of the scenario's disasters, see ReadTracks
 void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Overlays& overlays,
-               const std::vector<std::vector<TrackPoint>>& tracks, const Layout& layout,
-               const Fonts& fonts);
-
-inline constexpr Rgb kPanel{0x10, 0x1d, 0x2a};  ///< background of text
-inline constexpr Rgb kRule{0x2b, 0x3d, 0x4f};   ///< thin lines between parts
-inline constexpr Rgb kWords{0xe6, 0xed, 0xf3};  ///< text
-inline constexpr Rgb kFaint{0x8b, 0x9b, 0xab};  ///< secondary text
-inline constexpr Rgb kGood{0x5f, 0xe0, 0x8a};   ///< a reward above 0
-inline constexpr Rgb kBad{0xff, 0x7b, 0x72};    ///< a reward below 0
+               const Forecasts& forecasts, const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

@@ -59,7 +59,7 @@ const std::vector<cv::Point2f>& HullOutline();
 /// Severity of a risk: 0 at -5 and above, 1 at -20 and below, linear in between.
 double Severity(double risk);
 
-/// The colour of a severity in [0, 1]: yellow, orange, red, purple.
+/// The colour of a severity in [0, 1] on dark water: yellow, orange, red, magenta.
 Rgb SeverityColor(double severity);
 
 /// The colour of a bulletin's grade: 1 blue, 2 yellow, 3 orange, 4 red.

@@ -24,6 +24,7 @@
 
 #include "aquafarm_viz/draw/image_options.h"
 #include "aquafarm_viz/draw/map_view.h"
+#include "aquafarm_viz/draw/style.h"
 
 namespace aquafarm_viz {
 
@@ -39,7 +40,8 @@ MapPlace PlaceMap(int width, int height, ImageSize size);
 /// Draws pictures of one size. Caches the parts that do not change between pictures.
 class FarmPainter {
  public:
-  explicit FarmPainter(ImageSize size);
+  /// @param style  must outlive the painter
+  explicit FarmPainter(ImageSize size, const Style& style = DarkStyle());
   ~FarmPainter();
   FarmPainter(FarmPainter&&) noexcept;
   FarmPainter& operator=(FarmPainter&&) noexcept;
@@ -57,6 +59,7 @@ class FarmPainter {
 /// Draws one picture.
 /// @throws std::invalid_argument with the reason if the spec or state cannot be drawn
 cv::Mat DrawFarm(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
-                 ImageSize size = {}, const Overlays& overlays = {});
+                 ImageSize size = {}, const Overlays& overlays = {},
+                 const Style& style = DarkStyle());
 
 }  // namespace aquafarm_viz

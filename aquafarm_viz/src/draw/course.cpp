@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "draw/course.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "draw/free_space.h"
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr double kFar_px = 1.0e5;    // points farther away are clipped
+constexpr double kLeastMark = 15.0;  // distance of two marks [design units]
+
+bool IsNear(cv::Point2d at) { return std::abs(at.x) < kFar_px && std::abs(at.y) < kFar_px; }
+
+// The part of a line inside a picture. Returns false if there is none.
+bool Clip(const cv::Mat& image, cv::Point2d& from, cv::Point2d& to) {
+  if (!IsNear(from) || !IsNear(to)) return false;
+  cv::Point a(from);
+  cv::Point b(to);
+  const cv::Rect frame(-1, -1, image.cols + 2, image.rows + 2);
+  if (!cv::clipLine(frame, a, b)) return false;
+  if (a != cv::Point(from)) from = a;
+  if (b != cv::Point(to)) to = b;
+  return true;
+}
+
+void DrawPast(cv::Mat& image, const Track& past, const ToPixel& to_pixel, const Layout& layout) {
+  for (std::size_t i = 1; i < past.size(); ++i) {
+    cv::Point2d from = to_pixel(past[i - 1].x, past[i - 1].y);
+    cv::Point2d to = to_pixel(past[i].x, past[i].y);
+    if (!Clip(image, from, to)) continue;
+    DrawLine(image, from, to, Bgr(layout.style->faint), layout.Px(1.6));
+  }
+}
+
+void DrawDashes(cv::Mat& image, const Track& ahead, const ToPixel& to_pixel, const Layout& layout) {
+  const double dash = 5.0 * layout.unit;
+  for (std::size_t i = 1; i < ahead.size(); ++i) {
+    cv::Point2d from = to_pixel(ahead[i - 1].x, ahead[i - 1].y);
+    cv::Point2d to = to_pixel(ahead[i].x, ahead[i].y);
+    if (!Clip(image, from, to)) continue;
+    const double length = cv::norm(to - from);
+    const auto at = [&](double px) { return from + (to - from) * (px / length); };
+    for (double px = 0.0; px < length; px += 2.0 * dash) {
+      const double end = std::min(length, px + dash);
+      DrawLine(image, at(px), at(end), Bgr(layout.style->halo), layout.Px(3));
+      DrawLine(image, at(px), at(end), Bgr(layout.style->label), layout.Px(1.6));
+    }
+  }
+}
+
+// Tints the circles of the mean error around the way ahead.
+void DrawCone(cv::Mat& image, const Course& course, const ToPixel& to_pixel, const Layout& layout) {
+  if (course.errors.empty()) return;
+  constexpr int kSamples = 12;  // circles between two points
+  const double px_per_cell = cv::norm(to_pixel(1.0, 0.0) - to_pixel(0.0, 0.0));
+  cv::Mat1b inside(image.size(), std::uint8_t{0});
+  for (std::size_t i = 1; i < course.ahead.size(); ++i) {
+    const TrackPoint& a = course.ahead[i - 1];
+    const TrackPoint& b = course.ahead[i];
+    for (int sample = 0; sample <= kSamples; ++sample) {
+      const double share = double(sample) / kSamples;
+      const cv::Point2d at = to_pixel(a.x + share * (b.x - a.x), a.y + share * (b.y - a.y));
+      const double radius =
+          px_per_cell * (course.errors[i - 1] + share * (course.errors[i] - course.errors[i - 1]));
+      if (!IsNear(at) || radius > kFar_px / 10.0) continue;
+      cv::circle(inside, cv::Point(at), cvRound(radius), 255, cv::FILLED);
+    }
+  }
+  cv::Mat tinted;
+  cv::addWeighted(image, 0.78, cv::Mat(image.size(), CV_8UC3, Bgr(layout.style->label)), 0.22, 0.0,
+                  tinted);
+  tinted.copyTo(image, inside);
+  std::vector<std::vector<cv::Point>> outlines;
+  cv::findContours(inside, outlines, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
+  cv::drawContours(image, outlines, -1, Bgr(layout.style->label), 1, cv::LINE_AA);
+}
+
+// Returns the time between two marks [h]: a round number of hours, so that marks are apart.
+double MarkHours(const aquafarm_msgs::FarmSpec& spec, const Track& ahead, const ToPixel& to_pixel,
+                 const Layout& layout) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < ahead.size(); ++i) {
+    length += cv::norm(to_pixel(ahead[i].x, ahead[i].y) - to_pixel(ahead[i - 1].x, ahead[i - 1].y));
+  }
+  const double hours =
+      (ahead.back().step - ahead.front().step) * std::max(1.0, spec.step_duration_s) / 3600.0;
+  if (!(length > 0.0) || !(hours > 0.0) || !std::isfinite(length)) return 24.0;
+  for (const double each : {0.5, 1.0, 2.0, 3.0, 6.0, 12.0}) {
+    if (length / hours * each >= kLeastMark * layout.unit) return each;
+  }
+  return 24.0;
+}
+
+}  // namespace
+
+std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
+                                   const Course& course, const ToPixel& to_pixel,
+                                   const Layout& layout) {
+  constexpr std::size_t kMostMarks = 64;
+  std::vector<CourseMark> marks;
+  if (course.kind == Course::Kind::kExtrapolated || course.ahead.size() < 2) return marks;
+  DrawCone(image, course, to_pixel, layout);
+  DrawPast(image, course.past, to_pixel, layout);
+  DrawDashes(image, course.ahead, to_pixel, layout);
+  const double hours = MarkHours(spec, course.ahead, to_pixel, layout);
+  const double steps = hours * 3600.0 / std::max(1.0, spec.step_duration_s);
+  const double now = course.ahead.front().step;
+  for (std::size_t i = 1; i <= kMostMarks && now + double(i) * steps <= course.ahead.back().step;
+       ++i) {
+    const TrackPoint point = TrackAt(course.ahead, now + double(i) * steps);
+    const cv::Point2d at = to_pixel(point.x, point.y);
+    if (!IsNear(at) || !cv::Rect({0, 0}, image.size()).contains(cv::Point(at))) continue;
+    FillCircle(image, at, 3.2 * layout.unit, Bgr(layout.style->halo));
+    FillCircle(image, at, 2.2 * layout.unit, Bgr(layout.style->label));
+    const double lead = double(i) * hours;
+    marks.push_back({at, "+" + Number(lead, lead == std::floor(lead) ? 0 : 1) + " h"});
+  }
+  return marks;
+}
+
+void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
+                const Layout& layout, const Fonts& fonts) {
+  const int half = layout.Px(4);
+  for (const CourseMark& mark : marks) {
+    space.Block({cvRound(mark.at.x) - half, cvRound(mark.at.y) - half, 2 * half, 2 * half});
+  }
+  for (const CourseMark& mark : marks) {
+    const cv::Size size(fonts.small.Width(mark.text), fonts.small.cap_height());
+    const auto place = space.Take(size, mark.at, 24.0 * layout.unit + size.width / 2.0);
+    if (place) DrawLabel(image, fonts.small, mark.text, place->tl(), layout);
+  }
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Finds places for labels that cover neither symbols nor other labels; private to this package.
+
+#include <opencv2/core.hpp>
+#include <optional>
+
+namespace aquafarm_viz {
+
+/// The part of a map that is still free of symbols and labels.
+class FreeSpace {
+ public:
+  /// @param size of the map [pixels]
+  explicit FreeSpace(cv::Size size);
+
+  /// Marks a part of the map as used. Parts outside the map are ignored.
+  void Block(cv::Rect part);
+
+  /// Finds the free rectangle of a size that is nearest to a point, and blocks it.
+  /// @param near       the middle of the result is as near as possible to it [pixels]
+  /// @param farthest   max distance of the middles [pixels]
+  /// @return nullopt if all rectangles within reach are used
+  std::optional<cv::Rect> Take(cv::Size size, cv::Point2d near, double farthest);
+
+ private:
+  static constexpr int kBlock = 3;  // pixels of a side of a cell of `used_`
+  cv::Mat1b used_;                  // 1: used, one entry per kBlock x kBlock pixels
+  cv::Size size_;
+};
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "draw/map_labels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <set>
+#include <utility>
+
+#include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/scene/labels.h"
+#include "aquafarm_viz/scene/rings.h"
+#include "draw/nautical.h"
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::DeviceState;
+using aquafarm_msgs::DisasterState;
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+
+constexpr std::size_t kMostDangerLabels = 3;
+constexpr double kDangerRing = 2.0;  // of the first device in danger [device radii]
+
+cv::Rect Around(cv::Point2d at, double radius) {
+  return {cvFloor(at.x - radius), cvFloor(at.y - radius), cvCeil(2.0 * radius),
+          cvCeil(2.0 * radius)};
+}
+
+// The part of a symbol with a health bar above it.
+cv::Rect WithBar(cv::Point2d at, double radius, const Layout& layout) {
+  const cv::Rect body = Around(at, radius);
+  const int bar = layout.Px(8);
+  return {body.x, body.y - bar, body.width, body.height + bar};
+}
+
+const DeviceState* Find(const FarmState& state, std::int32_t id) {
+  const auto found = std::find_if(state.devices.begin(), state.devices.end(),
+                                  [id](const DeviceState& device) { return device.id == id; });
+  return found == state.devices.end() ? nullptr : &*found;
+}
+
+double NextRisk(const DeviceOutlook& device) {
+  return device.arrivals.empty() ? device.risk_now : device.arrivals.front().risk;
+}
+
+// Draws a text on a plate with a bar in the colour of a risk.
+void DrawPlate(cv::Mat& map, cv::Rect plate, const std::string& text, double risk,
+               const Layout& layout, const Fonts& fonts) {
+  const Style& style = *layout.style;
+  Tint(map, plate, Bgr(style.panel), 0.88);
+  const int bar = layout.Px(4);
+  cv::rectangle(map, cv::Rect(plate.x, plate.y, bar, plate.height), Bgr(style.Risk(Severity(risk))),
+                cv::FILLED);
+  cv::rectangle(map, plate, Bgr(style.rule), 1);
+  fonts.bold.Draw(
+      map, text,
+      {plate.x + bar + layout.Px(4), plate.y + (plate.height + fonts.bold.cap_height()) / 2},
+      Bgr(style.words));
+}
+
+}  // namespace
+
+FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Layout& layout) {
+  FreeSpace space(layout.map.size());
+  const double gap = 2.0 * layout.unit;
+  for (const auto& port : spec.ports) {
+    if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
+    const cv::Point2d at = layout.view.ToPixel(port.cell.x, port.cell.y);
+    space.Block(Around(at, layout.port_radius_px() + gap));
+  }
+  std::set<std::pair<int, int>> quays;
+  for (const auto& device : state.devices) {
+    if (!InGrid(spec, device.x, device.y)) continue;
+    const cv::Point2d at = layout.view.ToPixel(device.x, device.y);
+    if (device.status == DeviceState::DEPLOYED) {
+      space.Block(Around(at, kDangerRing * layout.device_radius_px() + gap));
+    } else if (device.status == DeviceState::DELIVERED &&
+               quays.insert({device.x, device.y}).second) {
+      space.Block(Around(at, 30.0 * layout.unit));  // the delivered devices stand there in rows
+    }
+  }
+  for (const auto& ship : state.ships) {
+    if (!ship.visible || !ship.active || !InGrid(spec, ship.x, ship.y)) continue;
+    space.Block(
+        WithBar(layout.view.ToPixel(ship.x, ship.y), 1.1 * layout.ship_radius_px(), layout));
+  }
+  for (const auto& disaster : state.disasters) {
+    if (!IsDrawn(disaster)) continue;
+    const SignPlace sign = PlaceSign(disaster, layout);
+    space.Block(Around(sign.at, 12.0 * layout.unit));
+    const cv::Point2d middle = (sign.arrow_from + sign.arrow_to) * 0.5;
+    const cv::Point2d half(std::abs(sign.arrow_to.x - sign.arrow_from.x) / 2.0 + 8.0 * layout.unit,
+                           std::abs(sign.arrow_to.y - sign.arrow_from.y) / 2.0 + 8.0 * layout.unit);
+    space.Block({cvFloor(middle.x - half.x), cvFloor(middle.y - half.y), cvCeil(2.0 * half.x),
+                 cvCeil(2.0 * half.y)});
+  }
+  return space;
+}
+
+void DrawDangerMarks(cv::Mat& map, const FarmState& state, const Outlook& outlook,
+                     const Layout& layout) {
+  bool first = true;
+  for (const DeviceOutlook& one : outlook.devices) {
+    const DeviceState* device = Find(state, one.id);
+    const double risk = NextRisk(one);
+    if (device == nullptr || !(risk < 0.0)) continue;
+    const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
+    const double radius = layout.device_radius_px();
+    const cv::Scalar color = Bgr(layout.style->Risk(Severity(risk)));
+    for (const double times :
+         first ? std::vector<double>{1.5, kDangerRing} : std::vector<double>{1.5}) {
+      StrokeCircle(map, at, times * radius, Bgr(layout.style->halo), layout.Px(4));
+      StrokeCircle(map, at, times * radius, color, layout.Px(2));
+    }
+    first = false;
+  }
+}
+
+void LabelDanger(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
+                 FreeSpace& space, const Layout& layout, const Fonts& fonts) {
+  std::size_t labels = 0;
+  for (const DeviceOutlook& one : outlook.devices) {
+    const DeviceState* device = Find(state, one.id);
+    const std::string danger = DangerText(spec, one);
+    if (device == nullptr || danger.empty() || labels == kMostDangerLabels) continue;
+    ++labels;
+    const std::string text = DeviceLabel(one.id) + ": " + danger;
+    const cv::Point2d at = layout.view.ToPixel(device->x, device->y);
+    const cv::Size size(fonts.bold.Width(text) + layout.Px(13), layout.Px(18));
+    const auto plate = space.Take(size, at, 140.0 * layout.unit);
+    if (!plate) continue;
+    const cv::Point2d middle(plate->x + plate->width / 2.0, plate->y + plate->height / 2.0);
+    if (std::abs(middle.y - at.y) > 3.2 * layout.device_radius_px() + plate->height) {
+      DrawLine(map, at, middle, Bgr(layout.style->label), layout.Px(1));
+    }
+    DrawPlate(map, *plate, text, NextRisk(one), layout, fonts);
+  }
+}
+
+void LabelRings(cv::Mat& map, const FarmState& state, FreeSpace& space, const Layout& layout,
+                const Fonts& fonts) {
+  constexpr int kBearings = 144;
+  const cv::Point2d middle(map.cols / 2.0, map.rows / 2.0);
+  const double margin = 14.0 * layout.unit;
+  for (const auto& disaster : state.disasters) {
+    if (!IsDrawn(disaster)) continue;
+    for (std::size_t ring = 0; ring < std::min(disaster.radii.size(), disaster.risks.size());
+         ++ring) {
+      const auto radii = RingQuadrants(disaster, ring);
+      cv::Point2d best;
+      double least = 1.0e9;
+      for (int i = 0; i < kBearings; ++i) {
+        const double bearing = 2.0 * CV_PI * i / kBearings;
+        const double radius = radii[std::size_t(i * 4 / kBearings)];
+        if (!(radius > 0.0)) continue;
+        const cv::Point2d at = layout.view.ToPixel(double(disaster.x) + radius * std::sin(bearing),
+                                                   double(disaster.y) + radius * std::cos(bearing));
+        const bool inside =
+            at.x > margin && at.y > margin && at.x < map.cols - margin && at.y < map.rows - margin;
+        const double away = cv::norm(at - middle);
+        if (!inside || away >= least) continue;
+        least = away;
+        best = at;
+      }
+      if (least > 1.0e8) continue;
+      const std::string text = "risk " + Number(double(disaster.risks[ring]), 0);
+      const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
+      const auto place = space.Take(size, best, 40.0 * layout.unit);
+      if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
+    }
+  }
+}
+
+void LabelPointers(cv::Mat& map, const FarmSpec& spec, const FarmState& state, FreeSpace& space,
+                   const Layout& layout, const Fonts& fonts) {
+  for (const auto& disaster : state.disasters) {
+    if (!IsDrawn(disaster)) continue;
+    const SignPlace sign = PlaceSign(disaster, layout);
+    if (sign.is_inside) continue;
+    const std::string text = DisasterName(disaster.kind) + ", centre " +
+                             DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
+                             PointFromFarm(spec, disaster.x, disaster.y);
+    const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
+    const auto place = space.Take(size, sign.at, double(map.cols + map.rows));
+    if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
+  }
+}
+
+void LabelDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, FreeSpace& space,
+                  const Layout& layout, const Fonts& fonts) {
+  for (const auto& device : state.devices) {
+    if (!IsLabelled(spec, device)) continue;
+    const std::string text = DeviceLabel(device.id);
+    const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
+    const double radius = layout.device_radius_px();
+    const cv::Point2d south_east = layout.view.ToPixel(device.x, device.y) +
+                                   cv::Point2d(2.0 * radius + size.width, 1.5 * radius);
+    const auto place = space.Take(size, south_east, 3.0 * radius + 20.0 * layout.unit);
+    if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
+  }
+}
+
+void LabelShips(cv::Mat& map, const FarmSpec& spec, const FarmState& state, FreeSpace& space,
+                const Layout& layout, const Fonts& fonts) {
+  if (state.ships.size() < 2) return;
+  for (const auto& ship : state.ships) {
+    if (!ship.visible || !ship.active || ship.own_device >= 0) continue;
+    if (!InGrid(spec, ship.x, ship.y)) continue;
+    const std::string text = std::to_string(ship.id);
+    const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
+    const cv::Point2d at = layout.view.ToPixel(ship.x, ship.y);
+    const auto place = space.Take(size, at, 2.0 * layout.ship_radius_px() + 16.0 * layout.unit);
+    if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
+  }
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Labels on the map. They cover no symbol and no other label; private to this package.
+
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "draw/free_space.h"
+#include "scene/outlook.h"
+
+namespace aquafarm_viz {
+
+struct Fonts;
+struct Layout;
+
+/// Returns the space of the map that ports, devices, ships and centres of disasters leave.
+FreeSpace BlockSymbols(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
+                       const Layout& layout);
+
+/// Draws a ring around each device that a ring of a disaster covers or reaches, in the colour of
+/// the risk; the one that is reached first has two.
+void DrawDangerMarks(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Outlook& outlook,
+                     const Layout& layout);
+
+/// Labels the devices that are reached first: "F3: -10 in 6.5 h".
+void LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                 const aquafarm_msgs::FarmState& state, const Outlook& outlook, FreeSpace& space,
+                 const Layout& layout, const Fonts& fonts);
+
+/// Labels each ring of a disaster that crosses the map with its risk.
+void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmState& state, FreeSpace& space,
+                const Layout& layout, const Fonts& fonts);
+
+/// Labels the pointers to disasters outside the map: "typhoon, centre 89 km SE".
+void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                   const aquafarm_msgs::FarmState& state, FreeSpace& space, const Layout& layout,
+                   const Fonts& fonts);
+
+/// Writes F and the id next to each device that is neither aboard nor delivered.
+void LabelDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                  const aquafarm_msgs::FarmState& state, FreeSpace& space, const Layout& layout,
+                  const Fonts& fonts);
+
+/// Writes the id next to each ship if there are several.
+void LabelShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                const aquafarm_msgs::FarmState& state, FreeSpace& space, const Layout& layout,
+                const Fonts& fonts);
+
+}  // namespace aquafarm_viz

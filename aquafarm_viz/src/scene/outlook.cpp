@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/outlook.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/base/text.h"
+#include "aquafarm_viz/scene/labels.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::DeviceState;
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+
+constexpr std::size_t kMostDevices = 256;
+constexpr int kMostSteps = 1000;
+constexpr double kWorse = 0.5;  // a risk must be lower by this much to count as another ring
+
+double RiskAt(const TrackPoint& storm, double x, double y) {
+  const double east = x - storm.x;
+  const double north = y - storm.y;
+  const std::size_t quadrant = north >= 0.0 ? (east >= 0.0 ? 0U : 3U) : (east >= 0.0 ? 1U : 2U);
+  double risk = 0.0;
+  for (std::size_t ring = 0; ring < std::min(storm.radii.size(), storm.risks.size()); ++ring) {
+    const double radius = storm.radii[ring][quadrant];
+    if (radius > 0.0 && std::hypot(east, north) <= radius) risk = std::min(risk, storm.risks[ring]);
+  }
+  return risk;
+}
+
+// Adds the arrivals of one step to the outlook of each device.
+void AddStep(const FarmState& state, const std::vector<Course>& courses, int step,
+             const std::vector<const DeviceState*>& devices, Outlook& outlook) {
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    const auto& disaster = state.disasters[i];
+    if (!disaster.known || disaster.steps_left <= step) continue;
+    const TrackPoint storm = TrackAt(courses[i].ahead, double(state.step) + step);
+    for (std::size_t d = 0; d < devices.size(); ++d) {
+      DeviceOutlook& device = outlook.devices[d];
+      const double risk = RiskAt(storm, devices[d]->x, devices[d]->y);
+      if (step == 0) {
+        device.risk_now = std::min(device.risk_now, risk);
+        continue;
+      }
+      const double worst = device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
+      if (risk < worst - kWorse) device.arrivals.push_back({double(step), risk, i});
+    }
+  }
+}
+
+double FirstStep(const DeviceOutlook& device) {
+  return device.arrivals.empty() ? std::numeric_limits<double>::infinity()
+                                 : device.arrivals.front().steps;
+}
+
+}  // namespace
+
+Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
+                       const std::vector<Course>& courses) {
+  Outlook outlook;
+  std::vector<const DeviceState*> devices;
+  for (const DeviceState& device : state.devices) {
+    if (device.status == DeviceState::DEPLOYED && InGrid(spec, device.x, device.y)) {
+      devices.push_back(&device);
+      outlook.devices.push_back({device.id, 0.0, {}});
+    }
+  }
+  outlook.is_known = devices.size() <= kMostDevices;
+  if (!outlook.is_known) {
+    outlook.devices.clear();
+    return outlook;
+  }
+  int last = 0;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    const auto& disaster = state.disasters[i];
+    if (!disaster.known || disaster.steps_left <= 0) continue;
+    const bool extrapolated = courses[i].kind == Course::Kind::kExtrapolated;
+    outlook.is_extrapolated = outlook.is_extrapolated || extrapolated;
+    const double end = courses[i].ahead.back().step - double(state.step);
+    last = std::max(last, int(std::min(end, double(kMostSteps))));
+  }
+  for (int step = 0; step <= last; ++step) AddStep(state, courses, step, devices, outlook);
+  std::stable_sort(outlook.devices.begin(), outlook.devices.end(),
+                   [](const DeviceOutlook& a, const DeviceOutlook& b) {
+                     if (FirstStep(a) != FirstStep(b)) return FirstStep(a) < FirstStep(b);
+                     return a.risk_now < b.risk_now;
+                   });
+  return outlook;
+}
+
+std::string AheadText(const FarmSpec& spec, double steps) {
+  if (!spec.has_start_time) return Number(steps, 0) + (steps == 1.0 ? " step" : " steps");
+  const double hours = steps * spec.step_duration_s / 3600.0;
+  if (hours < 1.0) return Number(60.0 * hours, 0) + " min";
+  return Number(hours, hours < 10.0 ? 1 : 0) + " h";
+}
+
+std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
+  if (outlook.devices.empty()) return "";
+  const DeviceOutlook& first = outlook.devices.front();
+  if (!first.arrivals.empty()) {
+    const RingArrival& next = first.arrivals.front();
+    return DisasterName(state.disasters[next.disaster].kind) + ", risk " + Number(next.risk, 0) +
+           ", reaches " + DeviceLabel(first.id) + " in " +
+           (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
+  }
+  if (first.risk_now < 0.0) {
+    return DeviceLabel(first.id) + " at risk " + Number(first.risk_now, 0) + " now";
+  }
+  return "";
+}
+
+std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
+  if (!device.arrivals.empty()) {
+    const RingArrival& next = device.arrivals.front();
+    return Number(next.risk, 0) + between + AheadText(spec, next.steps);
+  }
+  return device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
+}
+
+}  // namespace aquafarm_viz

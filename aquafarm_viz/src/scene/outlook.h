@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Which ring of a disaster reaches which device, and when; private to this package.
+
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/storm_track.h"
+
+namespace aquafarm_viz {
+
+/// A ring that reaches a device.
+struct RingArrival {
+  double steps{};          ///< from now, above 0
+  double risk{};           ///< risk within the ring, below 0
+  std::size_t disaster{};  ///< index in FarmState.disasters
+};
+
+/// The danger to one deployed device.
+struct DeviceOutlook {
+  std::int32_t id{};
+  double risk_now{};                  ///< risk at its cell; 0 outside all rings
+  std::vector<RingArrival> arrivals;  ///< each worse than the one before and than risk_now
+};
+
+/// The danger to all deployed devices.
+struct Outlook {
+  bool is_known{};         ///< false: too many devices to compute it; nothing can be said
+  bool is_extrapolated{};  ///< true: at least one course is the present motion continued
+  std::vector<DeviceOutlook> devices;  ///< deployed devices, the soonest arrival first
+};
+
+/// Computes the outlook along the courses of the drawn disasters.
+/// @param courses  one per disaster of the state, see CourseOf
+Outlook ComputeOutlook(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
+                       const std::vector<Course>& courses);
+
+/// Returns a time ahead: "6.5 h" in a farm with a start time, else "12 steps".
+std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
+
+/// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
+/// "F2 at risk -20 now"; empty if no ring covers or reaches a device, or if it is not known.
+std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
+                        const Outlook& outlook);
+
+/// Returns the outlook of one device in a few characters: "-10 in 6.5 h" or "-5 now"; empty if no
+/// ring covers or reaches it.
+/// @param between  text between risk and time
+std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
+                       const char* between = " in ");
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene/outlook.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+
+#include "aquafarm_viz/draw/image.h"
+#include "draw/free_space.h"
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+// A ranch with one device at (10, 12) and a storm that moves west by one cell a step from (40, 12).
+struct Scene {
+  aquafarm_msgs::FarmSpec spec = test::MakeSpec();
+  aquafarm_msgs::FarmState state = test::MakeState();
+  StormTracks storms;
+
+  Scene() {
+    state.step = 0;
+    state.devices = {test::MakeDevice(3, 0, 10, 12, 1.0F)};
+    state.disasters = {test::MakeDisaster(0, 40.0F, 12.0F)};
+    state.disasters[0].heading_deg = 270;
+    state.disasters[0].speed = 1.0F;
+    state.disasters[0].radii = {5.0F, 10.0F};
+    state.disasters[0].risks = {-20.0F, -5.0F};
+  }
+  Course course() const { return CourseOf(spec, state, 0, storms); }
+  Outlook outlook() const { return ComputeOutlook(spec, state, {course()}); }
+};
+
+constexpr const char* kRecorded = R"(
+disasters:
+  - risks: [-20, -5]
+    track:
+      - {step: -10, x: 60, y: 12, radii: [5, 10], grade: 3, risks: [-20, -5]}
+      - {step: 0, x: 40, y: 12, radii: [5, 10], grade: 3, risks: [-20, -5]}
+      - {step: 10, x: 20, y: 12, radii: [5, 10], grade: 3, risks: [-20, -5]}
+      - {step: 30, x: 20, y: 40, radii: [0, 0], grade: 1, risks: [-20, -5]}
+)";
+
+TEST(Outlook, OfAPresentCourseNamesEachRingAndItsTime) {
+  const Scene scene;
+  const Outlook outlook = scene.outlook();
+  ASSERT_EQ(outlook.devices.size(), 1U);
+  EXPECT_TRUE(outlook.is_known);
+  EXPECT_TRUE(outlook.is_extrapolated);
+  ASSERT_EQ(outlook.devices[0].arrivals.size(), 2U);
+  EXPECT_EQ(outlook.devices[0].arrivals[0].steps, 20.0);  // 30 cells away, ring of 10
+  EXPECT_EQ(outlook.devices[0].arrivals[0].risk, -5.0);
+  EXPECT_EQ(outlook.devices[0].arrivals[1].steps, 25.0);
+  EXPECT_EQ(outlook.devices[0].arrivals[1].risk, -20.0);
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
+            "typhoon, risk -5, reaches F3 in about 20 steps");
+}
+
+TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
+  Scene scene;
+  scene.storms = ReadStormTracks(kRecorded, 1000.0);
+  EXPECT_EQ(scene.course().kind, Course::Kind::kRecorded);
+  EXPECT_EQ(scene.course().past.size(), 2U);
+  const Outlook outlook = scene.outlook();
+  EXPECT_FALSE(outlook.is_extrapolated);
+  ASSERT_EQ(outlook.devices[0].arrivals.size(), 1U) << "the inner ring never comes";
+  EXPECT_EQ(outlook.devices[0].arrivals[0].steps, 10.0);
+  scene.spec.has_start_time = true;
+  scene.spec.step_duration_s = 1800.0;
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon, risk -5, reaches F3 in 5.0 h");
+}
+
+TEST(Outlook, OfADeviceInARingIsNow) {
+  Scene scene;
+  scene.state.disasters[0].x = 12.0F;
+  scene.state.disasters[0].speed = 0.0F;
+  const Outlook outlook = scene.outlook();
+  EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
+  EXPECT_TRUE(outlook.devices[0].arrivals.empty());
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F3 at risk -20 now");
+  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-20 now");
+}
+
+TEST(Outlook, ListsTheDeviceThatIsReachedFirst) {
+  Scene scene;
+  scene.state.devices.push_back(test::MakeDevice(4, 1, 20, 12, 1.0F));
+  scene.state.devices.push_back(test::MakeDevice(5, 1, 24, 12, 1.0F));
+  scene.state.devices.back().status = aquafarm_msgs::DeviceState::DELIVERED;
+  const Outlook outlook = scene.outlook();
+  ASSERT_EQ(outlook.devices.size(), 2U) << "a delivered device is safe";
+  EXPECT_EQ(outlook.devices[0].id, 4);
+  EXPECT_EQ(outlook.devices[1].id, 3);
+}
+
+TEST(Outlook, UsesTheRadiusOfTheQuadrant) {
+  Scene scene;
+  scene.state.disasters[0].y = 9.0F;  // the device is to the north-west
+  scene.state.disasters[0].quadrants = {1.0F, 1.0F, 1.0F, 1.0F, 10.0F, 10.0F, 10.0F, 5.1F};
+  const Outlook outlook = scene.outlook();
+  ASSERT_FALSE(outlook.devices[0].arrivals.empty());
+  EXPECT_EQ(outlook.devices[0].arrivals[0].steps, 26.0) << "radius 5.1: 4 cells west, 3 north";
+}
+
+TEST(Outlook, SaysNothingOfTooManyDevicesAndOfDisastersThatAreOver) {
+  Scene scene;
+  scene.state.disasters[0].steps_left = 0;
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
+  Scene crowd;
+  crowd.state.devices.assign(300, crowd.state.devices[0]);
+  EXPECT_FALSE(crowd.outlook().is_known);
+  EXPECT_EQ(OutlookText(crowd.spec, crowd.state, crowd.outlook()), "");
+}
+
+TEST(Course, OfAnObservationOrAMovedStormIsExtrapolated) {
+  Scene scene;
+  scene.storms = ReadStormTracks(kRecorded, 1000.0);
+  scene.state.observer = 0;
+  EXPECT_EQ(scene.course().kind, Course::Kind::kExtrapolated);
+  scene.state.observer = -1;
+  scene.state.disasters[0].x = 43.0F;
+  EXPECT_EQ(scene.course().kind, Course::Kind::kExtrapolated);
+}
+
+TEST(Course, IsTheNewestPublishedForecastThatHasNotExpired) {
+  Scene scene;
+  scene.storms = ReadStormTracks(std::string(kRecorded) + R"(
+    forecasts:
+      - {step: -9, points: [{step: 20, x: 0, y: 12}]}
+      - {step: -1, points: [{step: 20, x: 40, y: 50}]}
+      - {step: 5, points: [{step: 20, x: -9, y: 12}]}
+)",
+                                 1000.0);
+  ASSERT_EQ(scene.storms.forecasts.size(), 1U);
+  const Course course = scene.course();
+  EXPECT_EQ(course.kind, Course::Kind::kPublished);
+  EXPECT_DOUBLE_EQ(TrackAt(course.ahead, 10.0).y, 31.0);
+  EXPECT_EQ(TrackAt(course.ahead, 10.0).radii.size(), 2U) << "rings of the true storm";
+  EXPECT_EQ(scene.outlook().devices[0].arrivals.size(), 0U);
+}
+
+TEST(Course, HasAConeWhereForecastsHaveAnError) {
+  Scene scene;
+  scene.spec.step_duration_s = 3600.0;
+  scene.storms =
+      ReadStormTracks(std::string(kRecorded) + "view: {forecast_error_km: [48, 96]}\n", 1000.0);
+  const Course course = scene.course();
+  ASSERT_EQ(course.errors.size(), course.ahead.size());
+  EXPECT_DOUBLE_EQ(course.errors.front(), 0.0);
+  EXPECT_DOUBLE_EQ(course.errors[1], 20.0);  // 10 h: 10 / 24 of 48 km
+  EXPECT_DOUBLE_EQ(MeanForecastError({48.0, 96.0}, 36.0), 72.0);
+  EXPECT_DOUBLE_EQ(MeanForecastError({48.0, 96.0}, 72.0), 144.0) << "along the last two";
+  const auto draw = [&scene](const char* more) {
+    scene.spec.scenario_yaml = std::string(kRecorded) + more;
+    return DrawFarm(scene.spec, scene.state, {640, 640});
+  };
+  EXPECT_GT(cv::norm(draw(""), draw("view: {forecast_error_km: [48, 96]}\n")), 1000.0);
+}
+
+TEST(FreeSpace, TakesTheNearestPlaceThatCoversNothing) {
+  FreeSpace space({300, 200});
+  const cv::Rect symbol(100, 80, 40, 40);
+  space.Block(symbol);
+  const auto first = space.Take({30, 12}, {120.0, 100.0}, 100.0);
+  ASSERT_TRUE(first);
+  EXPECT_EQ((*first & symbol).area(), 0);
+  const auto second = space.Take({30, 12}, {120.0, 100.0}, 100.0);
+  ASSERT_TRUE(second);
+  EXPECT_EQ((*second & symbol).area(), 0);
+  EXPECT_EQ((*second & *first).area(), 0);
+  EXPECT_FALSE(space.Take({30, 12}, {120.0, 100.0}, 5.0)) << "out of reach";
+  EXPECT_FALSE(space.Take({400, 12}, {120.0, 100.0}, 1e4)) << "wider than the map";
+  space.Block({-50, -50, 1000, 1000});
+  EXPECT_FALSE(space.Take({3, 3}, {120.0, 100.0}, 1e4));
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

@@ -96,6 +96,11 @@ _LSTM_DQN = Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=
                        options=_NETWORK + ("hidden_size=64", "batch_size=64"),
                        paper_row="lstm_dqn")
 
+# PPO learns from its newest steps only. One farm gives few of them, so each is used ten times.
+_PPO = Contestant("ppo", "PPO", "#bc5090", cost=0.15,
+                  options=("rollout_size=2048", "batch_size=256", "epochs=10",
+                           "learning_rate=linear:0.001:0:1"))
+
 CONTESTANTS = (
     _RANDOM,
     Contestant("random_all", "RANDOM (all actions)", "#bcbd22", algorithm="random", cost=0.05,
@@ -104,6 +109,7 @@ CONTESTANTS = (
     _SARSA,
     _DQN,
     _LSTM_DQN,
+    _PPO,
     Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )

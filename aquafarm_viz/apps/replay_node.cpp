@@ -9,9 +9,11 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "replay");
+  // roscpp shuts down with its last node handle, and a Ctrl-C before its next start would be lost.
+  const ros::NodeHandle handle;
   try {
     const auto params = aquafarm_viz::ReadReplayParams(ros::NodeHandle("~"));
-    const aquafarm_viz::ReplayNode node(ros::NodeHandle(), params);
+    const aquafarm_viz::ReplayNode node(handle, params);
     for (const std::string& note : node.tape().Notes(aquafarm::kVersion)) {
       std::fprintf(stderr, "replay: %s: %s\n", params.bag.c_str(), note.c_str());
     }

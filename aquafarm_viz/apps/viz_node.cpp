@@ -7,9 +7,11 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "viz");
+  // roscpp shuts down with its last node handle, and a Ctrl-C before its next start would be lost.
+  const ros::NodeHandle handle;
   try {
     const auto params = aquafarm_viz::ReadVizParams(ros::NodeHandle("~"));
-    const aquafarm_viz::VizNode node(ros::NodeHandle(), params);
+    const aquafarm_viz::VizNode node(handle, params);
     ros::spin();
   } catch (const std::exception& fault) {
     ROS_FATAL("%s", fault.what());

@@ -108,11 +108,28 @@ class ScriptTest(unittest.TestCase):
 
     def test_what_is_missing_is_asked_for_and_not_replaced(self):
         with tempfile.TemporaryDirectory() as folder:
-            for verb, words in (("replay", "replay: got no bag, expected bag:=FILE"),
-                                ("evaluate", "evaluate: got no policy, and ")):
-                done = run(SCRIPT, verb, cwd=folder)
-                self.assertEqual(2, done.returncode, done.stdout)
-                self.assertIn(words, done.stdout)
+            done = run(SCRIPT, "replay", cwd=folder)
+            self.assertEqual(2, done.returncode, done.stdout)
+            self.assertIn("replay: got no bag, expected bag:=FILE", done.stdout)
+
+    def test_without_a_policy_the_generalist_plays(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = run(SCRIPT, "evaluate", "viz:=perhaps", cwd=folder)
+            self.assertEqual(2, done.returncode, done.stdout)
+            self.assertIn("aquafarm: taking policy:=generalist\n", done.stdout)
+        launch = SCRIPT.parent / "tools" / "commands" / "launch.sh"
+
+        def named(*words):
+            done = run("bash", "-c", 'source "$0"; name_the_ranch "$@" | tr "\\0" "|"', launch, *words)
+            return done.stdout.rstrip("|").split("|")
+
+        for verb in ("evaluate", "sim"):
+            self.assertEqual([verb, "scenario:=my ranch.yaml", "seed:=3", "policy:=generalist"],
+                             named(verb, "my ranch.yaml", "seed:=3"))
+            self.assertEqual([verb, "scenario:=a.yaml", "policy:=planner"],
+                             named(verb, "a.yaml", "policy:=planner"))
+            self.assertEqual([verb, "scenario:=a.yaml"], named(verb, "scenario:=a.yaml"))
+        self.assertEqual(["train", "a.yaml"], named("train", "a.yaml"))
 
     def test_a_fraction_is_no_whole_number(self):
         with tempfile.TemporaryDirectory() as folder:

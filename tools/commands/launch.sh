@@ -33,7 +33,7 @@ launch_argument() {
   local file=$1 argument=$2 name=${2%%:=*} value=${2#*:=}
   [[ $argument == *:=* ]] || code=2 die "got '$argument', expected name:=value"
   case $name in
-    run_dir | record_dir | report | bag | policy | scenario | output | human)
+    run_dir | record_dir | report | bag | policy | init | scenario | output | human)
       if [[ $value == */* || $value == *.yaml ||
         $name =~ ^(run_dir|record_dir|report|bag|output|human)$ ]] &&
         [[ -n $value && $value != auto && $value != none ]]; then
@@ -121,8 +121,8 @@ default_arguments() {
   fi
   if [[ $launch == record && -z ${given[bag]:-} ]]; then echo "bag:=$PWD/aquafarm_$now.bag"; fi
   policy=${given[policy]:-}
-  if [[ $launch == evaluate && -z $policy && -n $newest ]]; then
-    policy=$newest
+  if [[ $launch == evaluate && -z $policy ]]; then
+    policy=${newest:-generalist}
     echo "policy:=$policy"
   fi
   # A policy plays on the ranch that it was trained on, which its run folder keeps.
@@ -140,9 +140,6 @@ check_arguments() {
   local argument value
   [[ $1 != replay || " ${*:2}" == *" bag:="* ]] ||
     code=2 die "replay: got no bag, expected bag:=FILE, such as one that ./aquafarm record wrote"
-  [[ $1 != evaluate || " ${*:2}" == *" policy:="* ]] ||
-    code=2 die "evaluate: got no policy, and $PWD/runs holds no trained run; expected \
-policy:=RUN_FOLDER, or policy:=random, planner, clairvoyant, do_nothing or fetch_by_value"
   for argument in "${@:2}"; do
     value=${argument#*:=}
     case $argument in
@@ -178,10 +175,27 @@ refuse_a_second_ranch() {
   fi
 }
 
+# name_the_ranch NAME ARGUMENT…: prints them, each with a zero byte at its end, with evaluate and sim RANCH.yaml as scenario:=RANCH.yaml
+# and, unless a policy is given, policy:=generalist, which plays any ranch with one ship.
+name_the_ranch() {
+  local word names_ranch=0
+  for word in "$@"; do
+    if [[ $1 =~ ^(evaluate|sim)$ && $word == *.yaml && $word != *:=* && $word != -* ]]; then
+      names_ranch=1
+      word=scenario:=$word
+    fi
+    printf '%s\0' "$word"
+  done
+  if [[ $names_ranch == 1 && " $*" != *" policy:="* ]]; then printf 'policy:=generalist\0'; fi
+}
+
 # launch NAME ARGUMENT…: roslaunch returns 0 even when a required node failed, so the nodes leave
 # their exit code in a file; the first to end decides.
 launch() {
   local file=$root/aquafarm_bringup/launch/$1.launch argument arguments=() options=() result=0
+  local words=()
+  mapfile -d '' words < <(name_the_ranch "$@")
+  set -- "${words[@]}"
   local program=$root/aquafarm_bringup/scripts/quiet_roslaunch format='[${severity}] ${message}'
   for argument in "${@:2}"; do
     case $argument in

@@ -54,10 +54,15 @@ inline Scenario FindScenario(const std::string& name, const std::string& folder)
   if (is_name && fs::exists(shipped, ignored)) {
     return LoadScenario(shipped);
   }
+  const std::string families = folder + "/families";
+  const std::string family = families + "/" + name + ".yaml";
+  if (is_name && fs::exists(family, ignored)) return LoadScenario(family);
   if (fs::exists(name, ignored)) return LoadScenario(name);
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  for (const std::string& place : {folder, families}) {
+    for (const auto& entry : fs::directory_iterator(place, ignored)) {
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+    }
   }
   std::sort(names.begin(), names.end());
   throw InputError("scenario: got '" + name + "', expected a file or one of: " + Join(names));
@@ -68,9 +73,11 @@ struct ScenarioChoice {
   std::string name{"paper"};
   std::string folder{ScenarioFolder()};
   std::int32_t max_steps{};  ///< step limit of an episode; 0: that of the scenario
+  bool tokens{};             ///< features are entity tokens, whatever the scenario has
 
   std::shared_ptr<const Scenario> Load() const {
     Scenario scenario = FindScenario(name, folder);
+    scenario.view.tokens = scenario.view.tokens || tokens;  // changes no farm, so keeps the hash
     if (max_steps == 0) return std::make_shared<const Scenario>(std::move(scenario));
     scenario.step_limit = max_steps;
     // Parsed from its text like a file, so that the hash is that of the text.

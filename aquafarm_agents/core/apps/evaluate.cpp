@@ -6,12 +6,14 @@
 
 #include "app.h"
 #include "aquafarm/agents/base/exit_code.h"
+#include "aquafarm/agents/environment/family_environment.h"
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
 #include "aquafarm/agents/evaluation/rollout_values.h"
 #include "aquafarm/agents/evaluation/route.h"
 #include "aquafarm/agents/evaluation/tabular_model.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
+#include "aquafarm/agents/planning/optimum.h"
 #include "aquafarm/agents/planning/team_bound.h"
 #include "aquafarm/agents/training/saved_policy.h"
 #include "aquafarm/scenario/limits.h"
@@ -31,6 +33,7 @@ struct Arguments {
   std::string matrices;
   std::string matrix_policy{"epsilon_greedy:0"};
   bool bound{};
+  std::size_t optimum{};
   std::uint64_t seed{1000};
   std::optional<std::uint64_t> policy_seed;
   std::int32_t episodes{1000};
@@ -62,26 +65,76 @@ double MeanBound(const std::shared_ptr<const Scenario>& scenario, const Evaluati
   return sum / count;
 }
 
+// These need one ranch.
+void RefuseForFamily(const Arguments& arguments, const Scenario& scenario) {
+  if (!scenario.family) return;
+  const auto refuse = [&scenario](bool is_given, const char* option) {
+    if (!is_given) return;
+    throw InputError(std::string(option) + ": scenario " + scenario.name +
+                     " is a family of ranches, expected one ranch");
+  };
+  refuse(arguments.bound, "--bound");
+  refuse(!arguments.values.empty(), "--values");
+  refuse(!arguments.matrices.empty(), "--matrices");
+  refuse(!arguments.route.empty(), "--route");
+}
+
+// Episodes like those that were evaluated.
+Farm StartOf(const std::shared_ptr<const Scenario>& scenario, std::uint64_t seed,
+             std::uint64_t episode) {
+  if (scenario->family) return MakeRanch(*scenario, seed, episode);
+  Farm farm(scenario);
+  farm.Reset(seed, episode);
+  return farm;
+}
+
+void PrintOptimum(const std::shared_ptr<const Scenario>& scenario, const Evaluation& evaluation,
+                  std::size_t max_states) {
+  const OptimumShare share = CompareWithOptimum(
+      evaluation.episodes,
+      [&scenario](std::uint64_t seed, std::uint64_t episode) {
+        return StartOf(scenario, seed, episode);
+      },
+      max_states, evaluation.seed, &stop_requested);
+  if (share.planned == 0) {
+    std::printf("optimum: every episode is too large to plan\n");
+    return;
+  }
+  std::printf(
+      "optimum %.1f, return %.1f, share %.4f [%.4f, %.4f] of %zu episodes (%zu too large); "
+      "%zu of %zu solved\n",
+      share.mean_optimum, share.mean_return, share.share, share.low, share.high, share.planned,
+      share.too_large, share.solved, share.solvable);
+}
+
 ExitCode Run(Arguments arguments) {
   const SavedPolicy saved = FindPolicy(arguments.policy);
   arguments.environment.encodings = saved.encodings;
   arguments.scenario.name = ScenarioOf(arguments, saved);
+  if (ReadsTokens(saved.checkpoint)) {  // tokens are cheaper than states
+    arguments.scenario.tokens = true;
+    arguments.environment.encodings &= static_cast<std::uint8_t>(~kStatesBit);
+  }
   const auto scenario = arguments.scenario.Load();
-  LocalEnvironment environment(scenario, arguments.environment);
+  RefuseForFamily(arguments, *scenario);
+  const std::unique_ptr<Environment> farms = MakeLocalFarms(scenario, arguments.environment);
+  Environment& environment = *farms;
+  const auto* const local = dynamic_cast<const LocalEnvironment*>(farms.get());
   const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
   if (arguments.bound) TeamBound(Farm(scenario));  // fails early if the scenario has no bound
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
+  AccountsOf accounts;
+  if (local != nullptr) {
+    accounts = [local](std::int32_t farm) { return local->batch().farm(farm).record().accounts; };
+  }
   Evaluation evaluation = Evaluate(
       environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
       [&arguments](std::size_t over) {
         std::printf("%zu of %d episodes played\n", over, arguments.episodes);
         std::fflush(stdout);
       },
-      arguments.policy_seed,
-      [&environment](std::int32_t farm) {
-        return environment.batch().farm(farm).record().accounts;
-      });
+      arguments.policy_seed, accounts);
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
   const std::string losses = DescribeLosses(evaluation);
@@ -95,6 +148,10 @@ ExitCode Run(Arguments arguments) {
       std::printf(", share of it %.3f", evaluation.mean_return / *evaluation.mean_bound);
     }
     std::printf("\n");
+  }
+  if (arguments.optimum > 0 && evaluation.complete) {
+    PrintOptimum(scenario, evaluation, arguments.optimum);
+    if (stop_requested) return ExitCode::kInterrupted;
   }
   if (!arguments.values.empty() && evaluation.complete) {
     const auto make_policy = [&saved](const EnvironmentSpec& spec) {
@@ -137,7 +194,8 @@ int Main(int argc, char** argv) {
   app.option_defaults()->always_capture_default();
   app.add_option(
          "policy", arguments.policy,
-         "run folder, checkpoint file, random, planner, clairvoyant, do_nothing or fetch_by_value")
+         "run folder, checkpoint file, generalist, random, planner, clairvoyant, do_nothing or "
+         "fetch_by_value")
       ->required();
   app.add_option("scenario", arguments.scenario.name,
                  "scenario file or name; empty: the one in the policy's run folder");
@@ -173,6 +231,9 @@ int Main(int argc, char** argv) {
   app.add_flag("--bound", arguments.bound,
                "say what share this is of an upper bound: each device by its best ship, no "
                "conflicts, the disasters known");
+  app.add_option("--optimum", arguments.optimum,
+                 "say what share this is of the clairvoyant optimum, over the episodes whose plans "
+                 "have at most so many (cell, devices) states; 0: nothing");
   AddScenarioOptions(app, arguments.scenario);
   try {
     app.parse(argc, argv);

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "app.h"
-#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/environment/family_environment.h"
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/run.h"
 #include "aquafarm/scenario/limits.h"
@@ -73,6 +73,9 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       "such as epsilon_greedy:linear:1:0.05:0.5, boltzmann:1 or icm+boltzmann:1; empty: the "
       "algorithm's");
   app.add_option("-o,--set", arguments.settings, "option of the learner, key=value");
+  app.add_option("--init", options.init,
+                 "run folder, checkpoint or generalist whose weights the learner begins with "
+                 "(ppo); empty: random weights");
   app.add_option("--credit", options.credit,
                  "where the scenario shares the reward, agents learn from their own part of it, or "
                  "from the sum: own, shared");
@@ -111,7 +114,7 @@ int Main(int argc, char** argv) {
       [&](std::uint8_t encodings) {
         environment.encodings = encodings;
         if (environment.farms == 0) environment.farms = DefaultFarms(options.algorithm);
-        return std::make_unique<LocalEnvironment>(arguments.scenario.Load(), environment);
+        return MakeLocalFarms(arguments.scenario.Load(), environment);
       },
       Print, &stop_requested);
   std::fprintf(report.code == ExitCode::kOk ? stdout : stderr, "%s", report.summary.c_str());

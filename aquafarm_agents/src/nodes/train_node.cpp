@@ -47,6 +47,7 @@ TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   reader.Text("algorithm", params.run.algorithm);
   reader.Text("exploration", params.run.exploration);
   reader.Text("options", params.run.options);
+  reader.Text("init", params.run.init);
   reader.Text("credit", params.run.credit);
   reader.Int("episodes", 0, INT_MAX, episodes);
   reader.Number("steps", 0.0, 1e15, steps);

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "aquafarm/agents/base/storage.h"
+#include "aquafarm/agents/environment/family_environment.h"
 #include "aquafarm/agents/evaluation/metrics.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/farm.h"
@@ -115,11 +116,17 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
 // @param accounts [episodes]; empty if they are unknown
 void CompareStarts(const EnvironmentSpec& spec, std::vector<Accounts> accounts,
                    Evaluation& evaluation) {
-  Farm farm(std::make_shared<const Scenario>(ParseScenario(spec.scenario_yaml, "scenario")));
+  const auto scenario =
+      std::make_shared<const Scenario>(ParseScenario(spec.scenario_yaml, "scenario"));
+  Farm farm(scenario);
   std::unordered_map<std::uint64_t, std::size_t> index;  // by the hash of a start
   std::vector<std::size_t> starts;
   for (const EpisodeResult& result : evaluation.episodes) {
-    farm.Reset(result.seed, result.episode);
+    if (scenario->family) {
+      farm = MakeRanch(*scenario, result.seed, result.episode);
+    } else {
+      farm.Reset(result.seed, result.episode);
+    }
     starts.push_back(index.emplace(farm.StartHash(), index.size()).first->second);
   }
   evaluation.distinct = index.size();

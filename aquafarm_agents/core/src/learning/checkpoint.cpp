@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/learning/checkpoint.h"
 
+#include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -59,10 +60,20 @@ nlohmann::json ToIndex(const Checkpoint& c) {
 // Returns recorded options as this version would record them: with the current names, and with the
 // value that an option had before it existed.
 std::string CompleteOptions(const std::string& algorithm, const std::string& recorded) {
-  constexpr std::string_view kAdded = "skip_connection=";
-  const bool is_lstm = algorithm.find("lstm_dqn") != std::string::npos;
-  const bool lacks = is_lstm && !recorded.empty() && recorded.find(kAdded) == std::string::npos;
-  return CanonicalOptions(lacks ? recorded + " " + std::string(kAdded) + "true" : recorded);
+  struct Added {
+    std::string_view algorithm;  // part of its name
+    std::string_view key;
+    std::string_view value;
+  };
+  constexpr std::array<Added, 2> kAdded{
+      {{"lstm_dqn", "skip_connection=", "true"}, {"ppo", "teacher=", "0"}}};
+  std::string complete = recorded;
+  for (const Added& added : kAdded) {
+    const bool lacks = algorithm.find(added.algorithm) != std::string::npos && !recorded.empty() &&
+                       recorded.find(added.key) == std::string::npos;
+    if (lacks) complete.append(" ").append(added.key).append(added.value);
+  }
+  return CanonicalOptions(complete);
 }
 
 Checkpoint FromIndex(const nlohmann::json& index) {

@@ -5,11 +5,19 @@
 #include <cstdint>
 #include <memory>
 
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/ppo/ppo_options.h"
 #include "ppo/actor_critic.h"
 
 namespace aquafarm::agents {
 
+/// Makes the network for the features of `spec`: TokenActorCritic for tokens, else LstmActorCritic
+/// or FeedForward.
 /// @param seed of the initial weights: uniform in ±1/√fan_in, and ±0.01/√fan_in for the logits
+/// @throws InputError for a recurrent network of tokens
+std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const PpoOptions& options,
+                                             std::uint64_t seed);
+/// Makes LstmActorCritic or FeedForward.
 std::unique_ptr<ActorCritic> MakeActorCritic(std::size_t features, std::size_t hidden,
                                              bool recurrent, std::uint64_t seed);
 

@@ -2,8 +2,10 @@
 #include <cmath>
 #include <utility>
 
+#include "aquafarm/agents/learning/warm_start.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/ppo/ppo.h"
+#include "aquafarm/base/check.h"
 #include "networks/farm_rows.h"
 #include "ppo/actor.h"
 #include "ppo/make_actor_critic.h"
@@ -28,21 +30,35 @@ Rollout::Shape RolloutShape(const EnvironmentSpec& spec, const PpoOptions& optio
   return shape;
 }
 
-class PpoLearner final : public Learner {
+// The weights of a policy or of a training checkpoint for a network of `size` weights.
+std::vector<float> WeightsOf(const Checkpoint& checkpoint, std::size_t size) {
+  std::vector<float> weights;
+  const std::size_t got = checkpoint.Section("weights").size() / sizeof(float);
+  if (got != size) {
+    throw InputError("network: got a policy with " + std::to_string(got) + " weights, expected " +
+                     std::to_string(size) + ": train with its options (" + checkpoint.options +
+                     ")");
+  }
+  checkpoint.GetArray("weights", size, weights);
+  return weights;
+}
+
+class PpoLearner final : public Learner, public WarmStart {
  public:
   PpoLearner(const EnvironmentSpec& spec, std::uint64_t seed, const PpoOptions& options,
              std::string resolved)
       : spec_(spec),
         options_(options),
         resolved_(std::move(resolved)),
-        network_(MakeActorCritic(static_cast<std::size_t>(spec.feature_count),
-                                 static_cast<std::size_t>(options.hidden_size), options.recurrent,
-                                 seed)),
+        network_(MakeActorCritic(spec, options, seed)),
         actor_(spec, options, network_->state_size()),
         rollout_(RolloutShape(spec, options, network_->state_size())),
         updater_(options, *network_),
         exploration_(seed, EntryCount(spec)),
-        rng_({seed, 0, RngStream::kLearner, 1}) {}
+        rng_({seed, 0, RngStream::kLearner, 1}) {
+    if (!HasTokens(spec)) return;
+    updater_.SetTeacher(std::make_unique<const Teacher>(LayoutOfTokens(spec.feature_names)));
+  }
 
   std::uint8_t encodings() const override { return kFeaturesBit; }
   std::string options() const override { return resolved_; }
@@ -59,6 +75,10 @@ class PpoLearner final : public Learner {
   }
   void Save(Checkpoint& checkpoint) const override;
   void Load(const Checkpoint& checkpoint) override;
+  void LoadWeights(const Checkpoint& checkpoint) override {
+    CheckFits(checkpoint, spec_, NetworkKind::kMlp);
+    network_->weights() = WeightsOf(checkpoint, network_->weights().size());
+  }
 
  private:
   void Update(const StepResults& results, double progress);

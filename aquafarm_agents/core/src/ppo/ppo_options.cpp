@@ -64,6 +64,7 @@ PpoOptions PpoOptions::Parse(const std::string& text, std::string& resolved) {
   options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)),
                                          ExplorationOf::kPolicies);
   reader.Resolve("exploration", ToString(options.exploration));
+  options.teacher = reader.GetSchedule("teacher", options.teacher, 0.0, 1000.0);
   options.policy = ReadWord(reader, "policy", options.policy, kPolicyModes);
   ReadWhole(reader, "threads", 1, 256, options.threads);
   reader.Finish();

@@ -9,9 +9,7 @@ namespace aquafarm::agents {
 PpoPolicy::PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
                      const std::vector<float>& weights)
     : options_(options),
-      network_(MakeActorCritic(static_cast<std::size_t>(spec.feature_count),
-                               static_cast<std::size_t>(options.hidden_size), options.recurrent,
-                               0)),
+      network_(MakeActorCritic(spec, options, 0)),
       actor_(spec, options, network_->state_size()) {
   if (weights.size() != network_->weights().size()) {
     throw InputError("weights: got " + std::to_string(weights.size()) + " numbers, expected " +

@@ -58,6 +58,7 @@ void PpoUpdater::Update(const Rollout& rollout, const Context& context, RandomSt
   coefficients_.value_clip = static_cast<float>(options_.value_clip_range);
   coefficients_.value = static_cast<float>(options_.value_coef);
   coefficients_.entropy = static_cast<float>(options_.exploration.level.At(progress));
+  teacher_coef_ = static_cast<float>(options_.teacher.At(progress));
   Collect(rollout);
   if (sequences_.empty()) return;
   const double wanted = static_cast<double>(sequences_.size() * length_) / options_.batch_size;
@@ -139,6 +140,10 @@ PpoLoss PpoUpdater::LearnChunk(const Rollout& rollout, std::size_t first, std::s
                          advantages_.data(), targets_.data(), weights_.data()};
   const PpoLoss loss =
       ComputeLoss(outputs, rows.rows(), recorded, coefficients_, distribution_, slopes_.data());
+  if (teacher_ != nullptr && teacher_coef_ > 0.0F) {
+    teacher_->AddSlopes(features_.data(), rows.rows(), masks_.data(), distribution_,
+                        weights_.data(), teacher_coef_, slopes_.data());
+  }
   network_.Backward(rows, slopes_.data());
   return loss;
 }

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "aquafarm/agents/ppo/ppo_options.h"
@@ -12,6 +14,7 @@
 #include "ppo/adam.h"
 #include "ppo/ppo_loss.h"
 #include "ppo/rollout.h"
+#include "ppo/teacher.h"
 
 namespace aquafarm::agents {
 
@@ -20,6 +23,8 @@ namespace aquafarm::agents {
 class PpoUpdater {
  public:
   PpoUpdater(const PpoOptions& options, ActorCritic& network);
+  /// Adds a teacher, which the policy imitates with the weight PpoOptions::teacher.
+  void SetTeacher(std::unique_ptr<const Teacher> teacher) { teacher_ = std::move(teacher); }
 
   /// Position of an update in the run; for schedules and messages.
   struct Context {
@@ -54,6 +59,8 @@ class PpoUpdater {
   double learning_rate_{};
   float value_error_;
   PpoCoefficients coefficients_;
+  std::unique_ptr<const Teacher> teacher_;  // null without tokens
+  float teacher_coef_{};
 
   // Scratch.
   std::vector<std::uint32_t> sequences_;  // first slots of the sequences with transitions

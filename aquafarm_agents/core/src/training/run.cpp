@@ -9,6 +9,7 @@
 
 #include "aquafarm/agents/base/options.h"
 #include "aquafarm/agents/learning/random_policy.h"
+#include "aquafarm/agents/learning/warm_start.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/saved_policy.h"
@@ -65,7 +66,8 @@ class Run {
   }
   bool Stopped() const { return stop_ != nullptr && *stop_; }
   void Choose(const MakeEnvironment& make_environment);
-  void TakeOverLimits(const RunFolder& folder);
+  void TakeOver(const RunFolder& folder);
+  void Initialize(Learner& learner);
   bool Resume(Trainer& trainer, const RunFolder& folder);
   void Describe(const EnvironmentSpec& spec, const Learner& learner, const RunFolder& folder) const;
   void Train(Environment& environment, Learner& learner, RunFolder& folder);
@@ -84,7 +86,7 @@ void Run::All(const MakeEnvironment& make_environment) {
   if (options_.algorithm == kAutoAlgorithm) Choose(make_environment);
   const Algorithm& algorithm = FindAlgorithm(options_.algorithm);
   RunFolder folder(options_.run_dir, options_.resume);
-  if (options_.resume) TakeOverLimits(folder);
+  if (options_.resume) TakeOver(folder);
   const std::unique_ptr<Environment> environment = make_environment(
       static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
                                 (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0)));
@@ -102,6 +104,7 @@ void Run::All(const MakeEnvironment& make_environment) {
   if (!note.empty()) Notify(RunPhase::kStarting, note);
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
+  if (!options_.init.empty()) Initialize(*learner);
   for (const std::string& line : RenamedOptions(options_.options)) {
     Notify(RunPhase::kStarting, line);
   }
@@ -123,19 +126,38 @@ void Run::Choose(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
 }
 
-// A resumed run keeps its old limits unless new ones are given.
-void Run::TakeOverLimits(const RunFolder& folder) {
-  if (options_.episodes != 0 || options_.steps != 0) return;
+// A resumed run keeps its initial policy, and its old limits unless new ones are given.
+void Run::TakeOver(const RunFolder& folder) {
   const std::string path = folder.path() + "/run.json";
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return;
   try {
     const auto run = nlohmann::json::parse(ReadFile(path));
+    options_.init = run.value("init", "");
+    if (options_.episodes != 0 || options_.steps != 0) return;
     run.at("episodes").get_to(options_.episodes);
     run.at("steps").get_to(options_.steps);
   } catch (const nlohmann::json::exception& error) {
     throw InputError(path + ": damaged: " + error.what());
   }
+}
+
+void Run::Initialize(Learner& learner) {
+  const SavedPolicy saved = FindPolicy(options_.init);
+  auto* const fits = dynamic_cast<WarmStart*>(&learner);
+  if (fits == nullptr || saved.checkpoint.algorithm != options_.algorithm) {
+    throw InputError("init: got " + options_.init + ", a policy of " + saved.checkpoint.algorithm +
+                     ", for algorithm " + options_.algorithm +
+                     "; expected a policy of ppo for ppo without icm; set algorithm ppo");
+  }
+  try {
+    fits->LoadWeights(saved.checkpoint);
+  } catch (const InputError& error) {
+    const bool lacks_tokens = ReadsTokens(saved.checkpoint);
+    throw InputError("init: " + options_.init + ": " + error.what() +
+                     (lacks_tokens ? "; the scenario needs view: {tokens: true}" : ""));
+  }
+  Notify(RunPhase::kStarting, "starting with the weights of " + options_.init);
 }
 
 // Resumes from the newest checkpoint, or from the one before it if the newest is damaged.
@@ -162,17 +184,12 @@ bool Run::Resume(Trainer& trainer, const RunFolder& folder) {
 void Run::Describe(const EnvironmentSpec& spec, const Learner& learner,
                    const RunFolder& folder) const {
   folder.Write("scenario.yaml", spec.scenario_yaml);
-  const nlohmann::json run{{"algorithm", options_.algorithm},
-                           {"options", learner.options()},
-                           {"credit", options_.credit},
-                           {"seed", options_.seed},
-                           {"episodes", options_.episodes},
-                           {"steps", options_.steps},
-                           {"farms", spec.farms},
-                           {"scenario", spec.scenario_name},
-                           {"scenario_hash", spec.scenario_hash},
-                           {"version", spec.version},
-                           {"libraries", NetworkLibraries()},
+  const nlohmann::json run{{"algorithm", options_.algorithm}, {"options", learner.options()},
+                           {"credit", options_.credit},       {"init", options_.init},
+                           {"seed", options_.seed},           {"episodes", options_.episodes},
+                           {"steps", options_.steps},         {"farms", spec.farms},
+                           {"scenario", spec.scenario_name},  {"scenario_hash", spec.scenario_hash},
+                           {"version", spec.version},         {"libraries", NetworkLibraries()},
                            {"arguments", options_.arguments}};
   folder.Write("run.json", run.dump(2) + "\n");
 }

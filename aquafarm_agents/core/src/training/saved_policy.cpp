@@ -6,12 +6,44 @@
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/run_folder.h"
 #include "aquafarm/base/check.h"
+#include "ppo/token_layout.h"
+#include "training/token_policy.h"
 
 namespace aquafarm::agents {
+namespace {
+
+namespace fs = std::filesystem;
+
+// In the workspace that this program is installed in, else in the sources.
+std::string GeneralistPath() {
+  std::error_code ignored;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);  // <prefix>/lib/<package>/
+  const fs::path prefix = program.parent_path().parent_path().parent_path();
+  const fs::path installed = prefix / "share/aquafarm_agents/policies/generalist.ckpt";
+  return fs::exists(installed, ignored) ? installed.string()
+                                        : AQUAFARM_POLICY_DIR "/generalist.ckpt";
+}
+
+std::uint8_t EncodingsOf(const Checkpoint& checkpoint) {
+  const std::uint8_t bits = FindAlgorithm(checkpoint.algorithm).encodings(checkpoint.options);
+  // On farms with other features a policy of tokens reads the states instead.
+  return ReadsTokens(checkpoint) ? bits | kStatesBit : bits;
+}
+
+}  // namespace
+
+bool ReadsTokens(const Checkpoint& checkpoint) { return HasTokens(checkpoint.spec); }
 
 SavedPolicy FindPolicy(const std::string& where) {
   SavedPolicy saved;
   saved.path = where;
+  if (where == kGeneralist) {
+    saved.checkpoint = ReadCheckpoint(GeneralistPath());
+    saved.encodings = EncodingsOf(saved.checkpoint);
+    // Its tokens are checked by name, so it plays in every version that has them.
+    saved.checkpoint.version.clear();
+    return saved;
+  }
   for (const Algorithm& algorithm : Algorithms()) {
     if (algorithm.learns || where != algorithm.name) continue;
     saved.checkpoint.algorithm = where;
@@ -19,21 +51,21 @@ SavedPolicy FindPolicy(const std::string& where) {
     return saved;
   }
   std::error_code ignored;
-  if (std::filesystem::is_directory(where, ignored)) {
+  if (fs::is_directory(where, ignored)) {
     saved.path = where + "/policy.ckpt";
-    if (!std::filesystem::exists(saved.path, ignored)) {
+    if (!fs::exists(saved.path, ignored)) {
       const auto newest = RunFolder::NewestCheckpoint(where);
       if (!newest) {
         throw InputError(where +
                          ": contains neither policy.ckpt nor a checkpoint; expected a run "
-                         "folder, a checkpoint file, random, planner, clairvoyant, do_nothing or "
-                         "fetch_by_value");
+                         "folder, a checkpoint file, generalist, random, planner, clairvoyant, "
+                         "do_nothing or fetch_by_value");
       }
       saved.path = *newest;
     }
   }
   saved.checkpoint = ReadCheckpoint(saved.path);
-  saved.encodings = FindAlgorithm(saved.checkpoint.algorithm).encodings(saved.checkpoint.options);
+  saved.encodings = EncodingsOf(saved.checkpoint);
   return saved;
 }
 
@@ -45,7 +77,11 @@ std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSp
                      ": train it again, or evaluate it with the version that trained it");
   }
   try {
-    return FindAlgorithm(saved.checkpoint.algorithm).make_policy(saved.checkpoint, spec);
+    const auto make = [&saved](const EnvironmentSpec& farms) {
+      return FindAlgorithm(saved.checkpoint.algorithm).make_policy(saved.checkpoint, farms);
+    };
+    if (!ReadsTokens(saved.checkpoint) || HasTokens(spec)) return make(spec);
+    return std::make_unique<TokenPolicy>(spec, make);
   } catch (const InputError& error) {
     throw InputError(saved.path + ": " + error.what());
   }

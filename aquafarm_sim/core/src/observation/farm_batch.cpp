@@ -35,6 +35,11 @@ FarmBatch::FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farm
       agents_(scenario_->AgentCount()),
       threads_(std::max(1, std::min(threads, farms))) {
   AQUAFARM_CHECK_GE(farms, 1);
+  if (scenario_->family) {
+    throw InputError("scenario " + scenario_->name +
+                     ": is a family of ranches, expected one ranch; aquafarm_train and "
+                     "aquafarm_evaluate draw ranches of a family");
+  }
   farms_.reserve(static_cast<std::size_t>(farms));
   farms_.emplace_back(scenario_);
   const bool fixed = scenario_->layout == LayoutMode::kFixed;
@@ -113,14 +118,22 @@ void FarmBatch::Write(const BatchOutput& output) {
 
 void FarmBatch::WriteOne(std::int32_t i, std::int32_t thread, bool started,
                          const BatchOutput& output) {
-  const Farm& one = farm(i);
-  const auto n = static_cast<std::size_t>(i);
-  if (output.reasons != nullptr) output.reasons[n] = static_cast<std::uint8_t>(one.record().reason);
+  WriteFarm(farm(i), encoder_, static_cast<std::size_t>(i), started,
+            views_[static_cast<std::size_t>(thread)], output);
+}
+
+void WriteFarm(const Farm& farm, const Encoder& encoder, std::size_t n, bool started, View& view,
+               const BatchOutput& output) {
+  if (output.reasons != nullptr) {
+    output.reasons[n] = static_cast<std::uint8_t>(farm.record().reason);
+  }
   if (output.started != nullptr) output.started[n] = started ? 1 : 0;
-  if (output.hashes != nullptr) output.hashes[n] = one.Hash();
-  for (std::int32_t id = 0; id < agents_; ++id) {
-    const Ship& ship = one.ships()[static_cast<std::size_t>(id)];
-    const std::size_t k = n * static_cast<std::size_t>(agents_) + static_cast<std::size_t>(id);
+  if (output.hashes != nullptr) output.hashes[n] = farm.Hash();
+  const std::vector<Ship>& ships = farm.ships();
+  for (std::size_t id = 0; id < ships.size(); ++id) {
+    const Ship& ship = ships[id];
+    const auto agent = static_cast<std::int32_t>(id);
+    const std::size_t k = n * ships.size() + id;
     if (output.rewards != nullptr) output.rewards[k] = ship.reward;
     if (output.terms != nullptr) {
       std::memcpy(output.terms + k * kRewardTermCount, &ship.terms, sizeof(ship.terms));
@@ -128,18 +141,17 @@ void FarmBatch::WriteOne(std::int32_t i, std::int32_t thread, bool started,
     if (output.energy != nullptr) output.energy[k] = static_cast<float>(ship.energy);
     if (output.distance != nullptr) output.distance[k] = static_cast<float>(ship.distance);
     if (output.outcomes != nullptr) output.outcomes[k] = static_cast<std::uint8_t>(ship.outcome);
-    if (output.legal != nullptr) output.legal[k] = one.LegalActions(id);
+    if (output.legal != nullptr) output.legal[k] = farm.LegalActions(agent);
     if (output.in_play != nullptr) output.in_play[k] = ship.in_play ? 1 : 0;
-    if (output.index != nullptr) output.index[k] = encoder_.Index(one, id);
+    if (output.index != nullptr) output.index[k] = encoder.Index(farm, agent);
     if (output.features == nullptr && output.planes == nullptr) continue;
-    View& view = views_[static_cast<std::size_t>(thread)];
-    Observe(one, id, view);
+    Observe(farm, agent, view);
     if (output.features != nullptr) {
-      encoder_.Features(view,
-                        output.features + k * static_cast<std::size_t>(encoder_.feature_count()));
+      encoder.Features(view,
+                       output.features + k * static_cast<std::size_t>(encoder.feature_count()));
     }
     if (output.planes != nullptr) {
-      encoder_.Planes(view, output.planes + k * encoder_.planes_size());
+      encoder.Planes(view, output.planes + k * encoder.planes_size());
     }
   }
 }

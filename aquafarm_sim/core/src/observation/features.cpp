@@ -7,6 +7,7 @@
 #include "aquafarm/farm/energy.h"
 #include "aquafarm/grid/action.h"
 #include "aquafarm/observation/disaster_slots.h"
+#include "aquafarm/observation/tokens.h"
 #include "observation/risk_raster.h"
 
 namespace aquafarm {
@@ -14,16 +15,6 @@ namespace {
 
 constexpr std::int32_t kWayFeatures = 3;
 constexpr float kGradeScale = 1.0F / 4.0F;  // 1 / worst grade
-
-// Returns the max length of an episode [steps].
-float Horizon(const Scenario& scenario) {
-  std::int32_t horizon = 0;
-  for (const DisasterSpec& disaster : scenario.disasters) {
-    horizon = std::max(horizon, disaster.duration);
-  }
-  if (horizon == 0) return static_cast<float>(scenario.step_limit);
-  return static_cast<float>(std::min(horizon, scenario.step_limit));
-}
 
 // Returns THING0.PART, THING0.OTHER, THING1.PART, … for `count` things.
 std::vector<std::string> Numbered(const std::string& thing, std::int32_t count,
@@ -259,7 +250,7 @@ std::vector<std::string> KindNames(const Scenario& scenario) {
 
 FeatureScales ScalesOf(const Scenario& scenario) {
   FeatureScales scales{1.0F / static_cast<float>(std::max(scenario.width, scenario.height)),
-                       Horizon(scenario)};
+                       HorizonOf(scenario)};
   if (scenario.energy) {
     const EnergyFigures& figures =
         scenario.ships.count > 0 ? scenario.energy->ships : scenario.energy->self_propelled;
@@ -270,6 +261,7 @@ FeatureScales ScalesOf(const Scenario& scenario) {
 }
 
 std::vector<FeatureGroup> FeatureGroups(const Scenario& scenario) {
+  if (scenario.view.tokens) return TokenFeatureGroups();
   const std::int32_t agents = scenario.AgentCount();
   std::vector<FeatureGroup> groups{
       {"self", {"self.x", "self.y", "time_left", "free_capacity", "risk_here"}, WriteSelf},

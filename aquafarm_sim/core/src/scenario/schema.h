@@ -7,9 +7,7 @@
 ///   YamlWriter    writes the structs and omits unused keys
 ///   FieldChecker  checks structs created in code or received in messages
 ///
-/// An archive provides Leaf (a value), Object (a block of keys), Optional (a block that may be
-/// absent), Objects (a list of blocks), Has (whether a key is given) and When (whether the keys up
-/// to Always are used, and the condition).
+/// Archives provide Field, Struct, Optional, Structs, Has (key is given), When and Always (in use).
 
 #include <algorithm>
 #include <tuple>
@@ -17,6 +15,7 @@
 #include "aquafarm/grid/geo_frame.h"
 #include "aquafarm/scenario/limits.h"
 #include "scenario/domains.h"
+#include "scenario/schema_family.h"
 #include "scenario/schema_kinds.h"
 
 namespace aquafarm::internal {
@@ -521,6 +520,7 @@ void VisitScenario(Archive& a, S& s, WorldFrame& frame) {
   VisitView(a, s);
   VisitSeas(a, s, frame);
   VisitMoney(a, s);
+  VisitFamily(a, s);
 }
 
 /// Archive that checks values in memory, including unused ones.

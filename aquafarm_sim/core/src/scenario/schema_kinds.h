@@ -52,6 +52,8 @@ void VisitViewKinds(Archive& a, V& view) {
   const bool partial = view.mode == ViewMode::kPartial;
   a.When(partial && (Archive::kReads || view.monitoring_radius != 0.0F), "mode is partial");
   a.Field("monitoring_radius", view.monitoring_radius, kReach);
+  a.When(Archive::kReads || view.tokens, "");
+  a.Field("tokens", view.tokens, AnyFlag{});
   a.When(Archive::kReads || view.kinds, "");
   a.Field("kinds", view.kinds, AnyFlag{});
   a.Always();

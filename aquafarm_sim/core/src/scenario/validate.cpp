@@ -240,8 +240,8 @@ void CheckPlaces(const Scenario& scenario) {
   const std::uint64_t ways =
       static_cast<std::uint64_t>(scenario.CellCount()) *
       static_cast<std::uint64_t>(scenario.PortCount() + scenario.FetchableCount());
-  if (scenario.view.waterways && ways > kMostWays) {
-    throw FieldError("view.waterways",
+  if ((scenario.view.waterways || scenario.view.tokens) && ways > kMostWays) {
+    throw FieldError(scenario.view.tokens ? "view.tokens" : "view.waterways",
                      "needs " + Format(ways) +
                          " ways (cells times ports and devices), expected at most " +
                          Format(kMostWays));
@@ -350,6 +350,21 @@ void CheckAgents(const Scenario& scenario) {
   }
 }
 
+void CheckFamily(const Scenario& scenario) {
+  if (!scenario.family) return;
+  const auto expect = [](bool holds, const char* key, const char* what) {
+    if (!holds) throw FieldError(key, std::string("expected ") + what + " in a family of ranches");
+  };
+  expect(scenario.view.tokens, "view.tokens", "true");
+  expect(scenario.layout == LayoutMode::kPerEpisode, "layout.mode", "per_episode");
+  expect(scenario.rocks.cells.empty(), "layout.rocks.cells", "no cells");
+  expect(scenario.ports.cells.empty(), "layout.ports.cells", "no cells");
+  expect(scenario.devices.placement != DevicePlacement::kExplicit, "layout.devices.placement",
+         "random, uniform or linear");
+  expect(scenario.SelfPropelledCount() == 0, "layout.devices.self_propelled", "0");
+  expect(!scenario.seas, "seas", "no sea");
+}
+
 }  // namespace
 
 void ValidateDisaster(const DisasterSpec& disaster) {
@@ -371,6 +386,7 @@ void ValidateScenario(const Scenario& scenario) {
   CheckForecast(scenario);
   CheckMoney(scenario);
   CheckSlots(scenario);
+  CheckFamily(scenario);
 }
 
 }  // namespace aquafarm

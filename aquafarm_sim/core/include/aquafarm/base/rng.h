@@ -22,6 +22,7 @@ enum class RngStream : std::uint8_t {
   kLearner,      ///< initial weights, replay samples
   kForecast,     ///< direction of forecast errors
   kStorm,        ///< storm of an archive, and its displacement
+  kRanch,        ///< ranch of a family
 };
 
 /// Set in every evaluation seed, clear in every training seed. Storms of an archive's evaluation

@@ -36,7 +36,7 @@ struct Layout {
   std::vector<Cell> rocks;
   std::vector<PlacedDevice> devices;
   /// [H, W, way_count()] Routes from each cell to each port and then to each fetchable device, in
-  /// id order; empty without ViewSpec::waterways.
+  /// id order; empty without ViewSpec::waterways and ViewSpec::tokens.
   std::vector<RouteEntry> ways;
 
   std::size_t way_count() const { return ways.size() / static_cast<std::size_t>(cells.size()); }

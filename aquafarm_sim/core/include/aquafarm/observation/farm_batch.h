@@ -36,6 +36,11 @@ struct BatchOutput {
   std::uint8_t* planes{};    ///< [N, S, P, H, W]
 };
 
+/// Writes the results of farm n of N to the caller's memory.
+/// @param started whether this is the first observation of an episode @param view scratch
+void WriteFarm(const Farm& farm, const Encoder& encoder, std::size_t n, bool started, View& view,
+               const BatchOutput& output);
+
 /// N farms of one scenario, each in its own episode. Not thread-safe.
 class FarmBatch {
  public:

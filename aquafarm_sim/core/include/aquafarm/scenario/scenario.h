@@ -213,6 +213,7 @@ struct ViewSpec {
   bool shared_sight{};               ///< agents are networked and share all observations
   bool waterways{};  ///< features include the shortest routes by water to ports and devices
   bool courses{};    ///< features include the forecast risk along each course
+  bool tokens{};     ///< features are entity tokens instead (observation/tokens.h)
   bool kinds{};      ///< features include the kinds of devices, and kinds and grades of disasters
   /// Radius in which a monitoring device in place sees for all ships in partial view [cells]; 0: it
   /// sees nothing
@@ -246,6 +247,21 @@ struct SeaSpec {
   std::vector<float> device_value;
 };
 
+/// Ranges of the generated ranches of a family; see family.h.
+struct FamilySpec {
+  Range<std::int32_t> width{12, 60};   ///< [cells]
+  Range<std::int32_t> height{12, 60};  ///< [cells]
+  Range<std::int32_t> islands{0, 8};   ///< blocks, each at most a fifth of a side
+  float coast_share{0.3F};             ///< share of ranches with a coast along one side
+  Range<float> rocks{0.0F, 0.06F};     ///< share of the cells
+  Range<std::int32_t> devices{1, 10};
+  Range<std::int32_t> ports{1, 6};
+  Range<std::int32_t> capacity{1, 3};
+  Range<std::int32_t> disasters{0, 4};
+  float storm_share{0.0F};  ///< share of ranches with the scenario's disasters, not generated ones
+  Range<float> exposure_damage{0.0F, 0.002F};
+};
+
 /// A complete description of a farm.
 struct Scenario {
   std::string name{"unnamed"};
@@ -271,7 +287,8 @@ struct Scenario {
   std::optional<EnergySpec> energy;  ///< if unset, energy is 0
   ViewSpec view;
   std::optional<SeaSpec> seas;
-  std::optional<MoneySpec> money;  ///< if unset, episodes have no accounts
+  std::optional<MoneySpec> money;    ///< if unset, episodes have no accounts
+  std::optional<FamilySpec> family;  ///< if set, every episode draws another ranch; see family.h
 
   /// Hash of the canonical file text, set by the reader; equal for equivalent files.
   std::uint64_t hash{};

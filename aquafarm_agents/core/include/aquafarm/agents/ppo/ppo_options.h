@@ -42,6 +42,9 @@ struct PpoOptions {
   /// The coefficient of the entropy bonus is the level; icm adds curiosity.
   ExplorationOptions exploration{
       ExplorationKind::kEntropy, {ScheduleKind::kLinear, 0.02, 0.0, 1.0}, {}};
+  /// Weight of the cross-entropy with a simple teacher, which the policy imitates at first
+  /// (kickstarting, src/ppo/teacher.h); needs entity tokens.
+  Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
   PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy acts
   std::int32_t threads{1};                 ///< of the matrix library
 

@@ -24,6 +24,7 @@ struct RunOptions {
   std::string algorithm{"q_learning"};  ///< or kAutoAlgorithm
   std::string exploration;              ///< empty: default of the algorithm
   std::string options;                  ///< key=value …; see OptionReader
+  std::string init;                     ///< policy whose weights a learner begins with, or empty
   std::string credit{"own"};            ///< own or shared; see kCredits
   std::uint64_t seed{1};
   std::uint64_t episodes{};  ///< 0 with steps 0: DefaultSteps

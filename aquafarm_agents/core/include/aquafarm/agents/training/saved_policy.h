@@ -9,6 +9,10 @@
 
 namespace aquafarm::agents {
 
+/// Name of the policy that is shipped: trained on a family of ranches, it plays any ranch with one
+/// ship. docs/generalist.md has its results.
+inline constexpr const char* kGeneralist = "generalist";
+
 /// A policy loaded from disk, or a built-in one.
 struct SavedPolicy {
   std::string path;       ///< source file, or the name of a built-in policy
@@ -17,10 +21,13 @@ struct SavedPolicy {
 };
 
 /// Finds a policy by path or name.
-/// @param where a run folder, a policy or checkpoint file, or random, planner, clairvoyant,
-/// do_nothing or fetch_by_value
+/// @param where a run folder, a policy or checkpoint file, or generalist, random, planner,
+/// clairvoyant, do_nothing or fetch_by_value
 /// @throws InputError if there is no such policy, or the file is damaged
 SavedPolicy FindPolicy(const std::string& where);
+
+/// Returns whether a policy reads entity tokens (observation/tokens.h).
+bool ReadsTokens(const Checkpoint& checkpoint);
 
 /// Makes a policy that plays on farms of `spec`. The scenario may differ from that of the training.
 /// @throws InputError with the reason if it does not fit

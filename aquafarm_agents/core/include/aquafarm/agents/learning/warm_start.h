@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "aquafarm/agents/learning/checkpoint.h"
+
+namespace aquafarm::agents {
+
+/// A learner that can begin with the weights of a saved policy (fine-tuning).
+class WarmStart {
+ public:
+  virtual ~WarmStart() = default;
+  /// Replaces the initial weights by those of a policy or checkpoint of the same algorithm.
+  /// @throws InputError if its observation or its network differs; nothing is then changed
+  virtual void LoadWeights(const Checkpoint& checkpoint) = 0;
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/environment/family_environment.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/family.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr std::uint32_t kMaxAttempts = 100;
+
+}  // namespace
+
+Farm MakeRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode) {
+  std::string last;
+  for (std::uint32_t attempt = 0; attempt < kMaxAttempts; ++attempt) {
+    try {
+      Farm farm(std::make_shared<const Scenario>(DrawRanch(family, seed, episode, attempt)));
+      farm.Reset(seed, episode);
+      return farm;
+    } catch (const InputError& error) {  // its parts do not fit its map
+      last = error.what();
+    }
+  }
+  throw InputError("family: no ranch with a valid layout in " + std::to_string(kMaxAttempts) +
+                   " attempts (seed " + std::to_string(seed) + ", episode " +
+                   std::to_string(episode) +
+                   "), expected larger maps or fewer objects; the last: " + last);
+}
+
+FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
+                                     const EnvironmentOptions& options)
+    : family_(std::move(family)),
+      encoder_(*family_),
+      spec_(MakeSpec(*family_, encoder_, options.farms)) {
+  AQUAFARM_CHECK_EQ(family_->family.has_value(), true);
+  spec_.state_count = 0;
+  spec_.plane_count = 0;
+  spec_.width = family_->family->width.max;
+  spec_.height = family_->family->height.max;
+  spec_.step_limit = std::max(spec_.step_limit, kMaxRanchSteps);
+  if ((options.encodings & (kIndexBit | kPlanesBit)) != 0) {
+    throw InputError("scenario " + spec_.scenario_name +
+                     ": is a family of ranches of different sizes, expected a learner that reads "
+                     "features: use algorithm ppo");
+  }
+  std::uint8_t bits = options.encodings & kFeaturesBit;
+  if (options.hashes) bits |= kHashesField;
+  if ((options.encodings & kOwnRewardsBit) != 0 && spec_.team_reward) {
+    own_rewards_ = true;
+    spec_.team_reward = false;
+    bits |= kTermsField;
+  }
+  const StepShape shape{static_cast<std::size_t>(spec_.farms),
+                        static_cast<std::size_t>(spec_.agents),
+                        static_cast<std::size_t>(spec_.feature_count), 0};
+  VisitStepFields(
+      [&](const StepField& field, auto& values, auto*& output) {
+        if (!field.IsIn(bits)) return;
+        values.resize(field.Size(shape));
+        output = values.data();
+      },
+      results_, output_);
+  results_.finished.reserve(shape.farms);
+  for (std::size_t i = 0; i < shape.farms; ++i) farms_.push_back(MakeRanch(*family_, 0, i));
+}
+
+const StepResults& FamilyEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
+  for (std::size_t i = 0; i < farms_.size(); ++i) {
+    farms_[i] = MakeRanch(*family_, seed, first_episode + i);
+    Write(i, true);
+  }
+  Complete();
+  return results_;
+}
+
+const StepResults& FamilyEnvironment::Step(const std::vector<std::uint8_t>& actions) {
+  AQUAFARM_CHECK_EQ(actions.size(), results_.rewards.size());
+  AQUAFARM_CHECK_LE(*std::max_element(actions.begin(), actions.end()),
+                    static_cast<int>(Action::kHold));
+  const auto agents = static_cast<std::size_t>(spec_.agents);
+  for (std::size_t i = 0; i < farms_.size(); ++i) {
+    const bool starts = farms_[i].over();
+    if (starts) {
+      farms_[i] = MakeRanch(*family_, farms_[i].seed(), farms_[i].episode() + farms_.size());
+    } else {
+      farms_[i].Step(actions.data() + i * agents);
+    }
+    Write(i, starts);
+  }
+  Complete();
+  for (std::size_t i = 0; i < farms_.size(); ++i) {
+    if (!farms_[i].over()) continue;
+    results_.finished.push_back(ToResult(farms_[i].record(), static_cast<std::int32_t>(i)));
+  }
+  return results_;
+}
+
+void FamilyEnvironment::Write(std::size_t i, bool started) {
+  WriteFarm(farms_[i], encoder_, i, started, view_, output_);
+}
+
+void FamilyEnvironment::Complete() {
+  if (own_rewards_) UseOwnRewards(results_);
+  results_.finished.clear();
+}
+
+std::string FamilyEnvironment::Save() {
+  nlohmann::json states = nlohmann::json::array();
+  for (const Farm& farm : farms_) {
+    const std::string bytes = farm.Save();
+    states.push_back(
+        {farm.seed(), farm.episode(), nlohmann::json::binary({bytes.begin(), bytes.end()})});
+  }
+  std::string bytes;
+  nlohmann::json::to_cbor(states, bytes);
+  return bytes;
+}
+
+const StepResults& FamilyEnvironment::Load(const std::string& bytes) {
+  std::vector<Farm> loaded;
+  try {
+    const nlohmann::json states = nlohmann::json::from_cbor(bytes);
+    if (!states.is_array() || states.size() != farms_.size()) {
+      throw InputError("state: got " + std::to_string(states.size()) + " farms, expected " +
+                       std::to_string(farms_.size()));
+    }
+    loaded.reserve(farms_.size());
+    for (const nlohmann::json& state : states) {
+      loaded.push_back(
+          MakeRanch(*family_, state.at(0).get<std::uint64_t>(), state.at(1).get<std::uint64_t>()));
+      const auto& farm = state.at(2).get_binary();
+      loaded.back().Load(std::string(farm.begin(), farm.end()));
+    }
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(std::string("state: damaged bytes: ") + error.what());
+  }
+  farms_ = std::move(loaded);
+  for (std::size_t i = 0; i < farms_.size(); ++i) Write(i, farms_[i].step() == 0);
+  Complete();
+  return results_;
+}
+
+std::unique_ptr<Environment> MakeLocalFarms(std::shared_ptr<const Scenario> scenario,
+                                            const EnvironmentOptions& options) {
+  if (scenario->family) {
+    return std::make_unique<FamilyEnvironment>(std::move(scenario), options);
+  }
+  return std::make_unique<LocalEnvironment>(std::move(scenario), options);
+}
+
+}  // namespace aquafarm::agents

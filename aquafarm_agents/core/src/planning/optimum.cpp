@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/planning/optimum.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "aquafarm/agents/planning/planner.h"
+#include "aquafarm/base/check.h"
+#include "aquafarm/base/rng.h"
+
+namespace aquafarm::agents {
+namespace {
+
+constexpr std::size_t kResamples = 1000;
+
+struct Pair {
+  double got{};
+  double best{};
+};
+
+// Number of (cell, devices) states of a plan, without making a planner, which allocates them: each
+// device is deployed, aboard (paid or unpaid) or gone; at most the capacity is aboard.
+double StatesOf(const Scenario& scenario) {
+  const std::int32_t devices = scenario.devices.Total();
+  double sets = 0.0;
+  double chosen = 1.0;  // ways to choose the devices aboard
+  double aboard_ways = 1.0;
+  for (std::int32_t aboard = 0; aboard <= std::min(devices, scenario.ships.capacity); ++aboard) {
+    double rest = 1.0;
+    for (std::int32_t i = aboard; i < devices; ++i) rest *= 2.0;
+    sets += chosen * aboard_ways * rest;
+    chosen *= static_cast<double>(devices - aboard) / (aboard + 1.0);
+    aboard_ways *= 2.0;
+  }
+  return sets * scenario.CellCount();
+}
+
+// Plays the best plan. Returns the farm at the end, or nothing if it is too large to plan.
+std::optional<Farm> PlayBest(Farm farm, std::size_t max_states) {
+  if (StatesOf(farm.scenario()) > static_cast<double>(max_states)) return std::nullopt;
+  try {
+    Planner planner(farm.scenario());
+    const Plan plan = planner.Solve(farm, Foresight::kOracle);
+    for (const std::uint8_t action : plan.actions) {
+      if (!farm.over()) farm.Step(&action);
+    }
+  } catch (const InputError&) {  // more devices than the planner supports
+    return std::nullopt;
+  }
+  const std::uint8_t any = 0;
+  while (!farm.over()) farm.Step(&any);  // its work is done; a plan ends with the last delivery
+  return farm;
+}
+
+void Bootstrap(const std::vector<Pair>& pairs, std::uint64_t seed, OptimumShare& share) {
+  RandomStream rng({seed, 0, RngStream::kExploration, 0});
+  std::vector<double> shares;
+  for (std::size_t i = 0; i < kResamples; ++i) {
+    Pair sum;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const Pair& pair = pairs[rng.Below(static_cast<std::uint32_t>(pairs.size()))];
+      sum.got += pair.got;
+      sum.best += pair.best;
+    }
+    shares.push_back(sum.got / sum.best);
+  }
+  std::sort(shares.begin(), shares.end());
+  share.low = shares[kResamples / 40];
+  share.high = shares[kResamples - 1 - kResamples / 40];
+}
+
+}  // namespace
+
+OptimumShare CompareWithOptimum(
+    const std::vector<EpisodeResult>& episodes,
+    const std::function<Farm(std::uint64_t seed, std::uint64_t episode)>& make_farm,
+    std::size_t max_states, std::uint64_t seed, const std::atomic<bool>* stop) {
+  OptimumShare share;
+  std::vector<Pair> pairs;
+  for (const EpisodeResult& result : episodes) {
+    if (stop != nullptr && *stop) break;
+    const std::optional<Farm> best = PlayBest(make_farm(result.seed, result.episode), max_states);
+    if (!best) {
+      ++share.too_large;
+      continue;
+    }
+    pairs.push_back({static_cast<double>(result.episode_return),
+                     static_cast<double>(best->record().episode_return)});
+    share.mean_return += pairs.back().got;
+    share.mean_optimum += pairs.back().best;
+    if (!best->record().Success()) continue;
+    ++share.solvable;
+    share.solved += result.Success() ? 1 : 0;
+  }
+  share.planned = pairs.size();
+  if (pairs.empty()) return share;
+  share.share = share.mean_return / share.mean_optimum;
+  share.mean_return /= static_cast<double>(pairs.size());
+  share.mean_optimum /= static_cast<double>(pairs.size());
+  Bootstrap(pairs, seed, share);
+  return share;
+}
+
+}  // namespace aquafarm::agents

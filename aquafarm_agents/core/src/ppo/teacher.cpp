@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ppo/teacher.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace aquafarm::agents {
+namespace {
+
+// Units of the features, docs/generalist.md.
+constexpr float kUnitLength = 16.0F;     // of distances [cells]
+constexpr float kUnitRisk = 20.0F;       // of risks [reward]
+constexpr float kUnitRouteSteps = 8.0F;  // of the summed risk of a route
+
+constexpr int kOctants = 8;
+// Place of each move on the compass, from north clockwise.
+constexpr std::array<int, kMoveCount> kOctantOf{0, 4, 6, 2, 7, 1, 5, 3};
+
+}  // namespace
+
+Teacher::Teacher(const TokenLayout& layout)
+    : layout_(layout),
+      risk_(layout.PlaceOf(TokenKind::kShip, "ship.risk.north")),
+      here_(layout.PlaceOf(TokenKind::kDevice, "device0.here")),
+      next_(layout.PlaceOf(TokenKind::kDevice, "device0.next.north")),
+      distance_(layout.PlaceOf(TokenKind::kDevice, "device0.distance")),
+      route_risk_(layout.PlaceOf(TokenKind::kDevice, "device0.route_risk")),
+      has_space_(layout.PlaceOf(TokenKind::kDevice, "device0.has_space")),
+      has_cargo_(layout.PlaceOf(TokenKind::kDevice, "device0.has_cargo")),
+      deployed_(layout.PlaceOf(TokenKind::kDevice, "device0.deployed")),
+      slack_(layout.PlaceOf(TokenKind::kDevice, "device0.slack")) {}
+
+void Teacher::Consider(const float* tokens, TokenKind kind, Target& best) const {
+  const TokenGroup& group = layout_.of(kind);
+  const bool is_port = kind == TokenKind::kPort;
+  for (std::size_t slot = 0; slot < group.slots; ++slot) {
+    const float* const token = tokens + group.begin + slot * group.size;
+    if (token[0] == 0.0F) continue;
+    const bool is_wanted =
+        is_port ? token[has_cargo_] != 0.0F
+                : token[deployed_] != 0.0F && token[has_space_] != 0.0F && token[slack_] >= 0.0F;
+    if (!is_wanted) continue;
+    const float cost =
+        token[distance_] * kUnitLength + token[route_risk_] * kUnitRouteSteps * kUnitRisk;
+    if (best.token == nullptr || cost < best.cost) best = {token, cost, is_port};
+  }
+}
+
+// Of the allowed moves the one with the least risk and deviation from the route, if there is one.
+std::uint8_t Teacher::MoveTo(const float* tokens, const Target& target, ActionMask allowed) const {
+  int wanted = kNone;
+  for (std::size_t move = 0; target.token != nullptr && move < kMoves.size(); ++move) {
+    if (target.token[next_ + move] != 0.0F) wanted = kOctantOf[move];
+  }
+  std::uint8_t best = 0;
+  float least = std::numeric_limits<float>::infinity();
+  for (std::uint8_t move = 0; move < kMoveCount; ++move) {
+    if ((allowed & MaskOf(static_cast<Action>(move))) == 0) continue;
+    const int apart = std::abs(kOctantOf[move] - wanted);
+    const int octants = wanted == kNone ? 0 : std::min(apart, kOctants - apart);
+    const float cost = static_cast<float>(octants) + tokens[risk_ + move] * kUnitRisk;
+    if (cost >= least) continue;
+    least = cost;
+    best = move;
+  }
+  return best;
+}
+
+std::uint8_t Teacher::ActionOf(const float* tokens, ActionMask allowed) const {
+  Target target;
+  Consider(tokens, TokenKind::kDevice, target);
+  Consider(tokens, TokenKind::kPort, target);
+  if (target.token != nullptr && target.token[here_] != 0.0F) {
+    const Action action = target.is_port ? Action::kDropOff : Action::kPickup;
+    if ((allowed & MaskOf(action)) != 0) return static_cast<std::uint8_t>(action);
+  }
+  return MoveTo(tokens, target, allowed);
+}
+
+void Teacher::AddSlopes(const float* tokens, std::size_t rows, const ActionMask* allowed,
+                        const ActionDistribution& policy, const float* weights, float coefficient,
+                        float* slopes) const {
+  const std::size_t size = layout_.groups.back().end();
+  for (std::size_t row = 0; row < rows; ++row, slopes += kActorCriticOutputs) {
+    const std::uint8_t action = ActionOf(tokens + row * size, allowed[row]);
+    const float scale = coefficient * weights[row];
+    for (std::uint8_t a = 0; a < kActionCount; ++a) {
+      slopes[a] += scale * policy.probs(static_cast<Eigen::Index>(row), a);
+    }
+    slopes[action] -= scale;
+  }
+}
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// A simple policy on entity tokens (token_layout.h) that PPO may imitate at the start of a
+/// training (*kickstarting*, Schmitt et al. 2018, arXiv:1803.03835). It takes the route to the
+/// target that is nearest in steps and risk, and evades risk in the next step:
+///
+///   targets   devices that can be brought home in time, while there is space; ports, with cargo
+///   cost      steps of the route + |risk| along it
+///   move      of all open moves that with the least |risk| + deviation from the route in octants
+
+#include <cstddef>
+#include <cstdint>
+
+#include "aquafarm/grid/action.h"
+#include "ppo/ppo_loss.h"
+#include "ppo/token_layout.h"
+
+namespace aquafarm::agents {
+
+class Teacher {
+ public:
+  /// @throws InputError if the features are not entity tokens
+  explicit Teacher(const TokenLayout& layout);
+
+  /// Returns the teacher's action, one of `allowed`. @param tokens one row of features
+  std::uint8_t ActionOf(const float* tokens, ActionMask allowed) const;
+
+  /// Adds the slopes of coefficient · weight · cross-entropy(teacher, policy) to those of the
+  /// logits.
+  /// @param tokens [rows, features] @param policy probabilities of the rows @param weights [rows]
+  /// @param slopes [rows, kActorCriticOutputs]
+  void AddSlopes(const float* tokens, std::size_t rows, const ActionMask* allowed,
+                 const ActionDistribution& policy, const float* weights, float coefficient,
+                 float* slopes) const;
+
+ private:
+  // The nearest target in steps and risk.
+  struct Target {
+    const float* token{};
+    float cost{};
+    bool is_port{};
+  };
+  void Consider(const float* tokens, TokenKind kind, Target& best) const;
+  std::uint8_t MoveTo(const float* tokens, const Target& target, ActionMask allowed) const;
+
+  const TokenLayout layout_;
+  // Places of features: of the ship, and of a device or port.
+  const std::size_t risk_;
+  const std::size_t here_, next_, distance_, route_risk_, has_space_, has_cargo_;
+  const std::size_t deployed_, slack_;  // of a device
+};
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/environment/policy.h"
+
+namespace aquafarm::agents {
+
+/// Plays a policy that reads entity tokens on farms whose features are not tokens: loads the saved
+/// states of the farms into farms in this process, which encode their views as tokens. The views
+/// are those of the scenario, so a ship observes as little as its scenario allows.
+class TokenPolicy final : public Policy {
+ public:
+  /// @param make makes the policy for farms with tokens; it may throw InputError
+  TokenPolicy(const EnvironmentSpec& spec,
+              const std::function<std::unique_ptr<Policy>(const EnvironmentSpec&)>& make);
+
+  std::uint8_t encodings() const override { return kStatesBit; }
+  void Begin(std::uint64_t seed, std::int32_t farms) override;
+  void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
+
+ private:
+  std::shared_ptr<const Scenario> scenario_;  // with view.tokens
+  std::unique_ptr<LocalEnvironment> farms_;
+  std::unique_ptr<Policy> policy_;
+};
+
+}  // namespace aquafarm::agents

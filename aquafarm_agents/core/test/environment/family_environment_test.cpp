@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/environment/family_environment.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "environment_contract.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+std::shared_ptr<const Scenario> Family() {
+  Scenario family = LoadScenario(AQUAFARM_SCENARIO_DIR "/families/ranch_family.yaml");
+  family.family->width = family.family->height = {8, 14};  // so that episodes are short
+  family.family->devices = {1, 3};
+  return std::make_shared<const Scenario>(std::move(family));
+}
+
+TEST(FamilyEnvironment, KeepsTheContract) {
+  FamilyEnvironment environment(Family(), {3, kFeaturesBit, true, 1});
+  RunEnvironmentContract(environment, 1500);
+}
+
+TEST(FamilyEnvironment, EachEpisodePlaysAnotherRanchOfTheSeed) {
+  FamilyEnvironment environment(Family(), {2, kFeaturesBit, true, 1});
+  environment.Reset(4, 10);
+  const Farm ranch = MakeRanch(*Family(), 4, 11);
+  EXPECT_EQ(environment.farms()[1].StartHash(), ranch.StartHash());
+  std::set<std::int32_t> widths;
+  for (std::uint64_t episode = 0; episode < 30; ++episode) {
+    widths.insert(MakeRanch(*Family(), 4, episode).scenario().width);
+  }
+  EXPECT_GE(widths.size(), 5U);
+}
+
+TEST(FamilyEnvironment, RefusesObservationsOfAFixedSize) {
+  for (const std::uint8_t bit : {kIndexBit, kPlanesBit}) {
+    try {
+      FamilyEnvironment environment(Family(), {2, bit, false, 1});
+      FAIL();
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("use algorithm ppo"), std::string::npos);
+    }
+  }
+}
+
+TEST(FamilyEnvironment, ARanchThatCannotBeDrawnIsNamed) {
+  Scenario family = *Family();
+  family.family->width = family.family->height = {8, 8};
+  family.family->ports = {100, 100};
+  try {
+    MakeRanch(family, 1, 0);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no ranch with a valid layout"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

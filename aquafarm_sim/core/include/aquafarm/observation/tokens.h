@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Features as entity tokens (view.tokens). They do not depend on the size of the map or on the
+/// number of entities, so one network can play every ranch:
+///
+///   ship       1 token    the observing ship, its near surroundings and the risk of its courses
+///   device    10 tokens   devices that are deployed or aboard the observing ship
+///   port       6 tokens
+///   disaster   4 tokens   known disasters that have not ended
+///   other      4 tokens   other visible ships
+///
+/// A slot without an entity holds zeros; feature 0 of each slot except the ship's is its validity
+/// flag. Entities fill the slots in id order. If there are more entities than slots, those nearest
+/// to the ship are kept: devices and ports by water, the others in a straight line.
+///
+/// Lengths are in units of kTokenLength cells and clamped to [-4, 4]; risks are divided by the
+/// worst risk of §2.1. Forecast risks assume that each known disaster keeps its motion and its size
+/// until it ends. docs/generalist.md lists every feature.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "aquafarm/observation/feature_group.h"
+
+namespace aquafarm {
+
+inline constexpr float kTokenLength = 16.0F;        ///< unit of lengths [cells]
+inline constexpr std::int32_t kTokenDevices = 10;   ///< slots
+inline constexpr std::int32_t kTokenPorts = 6;      ///< slots
+inline constexpr std::int32_t kTokenDisasters = 4;  ///< slots
+inline constexpr std::int32_t kTokenOthers = 4;     ///< slots
+inline constexpr std::int32_t kTokenWindow = 3;     ///< radius of the near surroundings [cells]
+inline constexpr std::int32_t kTokenRoute = 32;     ///< steps of a route whose risk is summed
+
+/// Slots of one kind of entity, consecutive in the feature vector.
+struct TokenGroup {
+  std::int32_t begin{};  ///< first feature
+  std::int32_t slots{};
+  std::int32_t size{};  ///< features of one slot
+  std::int32_t end() const { return begin + slots * size; }
+};
+inline constexpr std::size_t kTokenGroupCount = 5;
+
+/// Returns ship, devices, ports, disasters and others, in the order of the features.
+const std::array<TokenGroup, kTokenGroupCount>& TokenGroups();
+/// Returns the names of all features, in order.
+const std::vector<std::string>& TokenNames();
+/// Returns the feature groups that write the tokens, in order.
+std::vector<FeatureGroup> TokenFeatureGroups();
+
+}  // namespace aquafarm

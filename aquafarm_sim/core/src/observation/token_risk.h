@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Forecast risk for the tokens: every known disaster keeps its motion and size until it ends.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "aquafarm/observation/view.h"
+#include "aquafarm/scenario/limits.h"
+#include "observation/risk_raster.h"
+
+namespace aquafarm {
+
+/// Steps until the largest ring of a disaster reaches a cell and until it has passed.
+struct RingTimes {
+  float in{-1.0F};   ///< 0: the cell is inside now; -1: never
+  float out{-1.0F};  ///< -1: never inside, or never left
+};
+
+/// The known disasters of a view that have not ended.
+class TokenRisk {
+ public:
+  explicit TokenRisk(const View& view) : scenario_(*view.scenario) {
+    for (const KnownDisaster& known : view.disasters) {
+      if (known.known && known.belief.active()) disasters_[count_++] = &known;
+    }
+    has_sea_ = scenario_.seas && !scenario_.seas->risk.empty();
+  }
+
+  bool is_calm() const { return count_ == 0 && !has_sea_; }
+  std::size_t count() const { return count_; }
+  const KnownDisaster& disaster(std::size_t i) const { return *disasters_[i]; }
+
+  /// Returns the risk at a cell of the map after `ahead` steps, [0, 1]; 1 is the worst.
+  float At(Cell cell, float ahead) const {
+    float worst = has_sea_ ? scenario_.SeaRiskAt(cell) : 0.0F;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const ObservableDisaster& belief = disasters_[i]->belief;
+      const float moved = ahead + static_cast<float>(disasters_[i]->age);
+      if (ahead >= static_cast<float>(belief.steps_left)) continue;  // it has ended by then
+      worst = std::min(worst, RiskOf(belief, static_cast<float>(cell.x) - moved * belief.dx,
+                                     static_cast<float>(cell.y) - moved * belief.dy));
+    }
+    return -worst * kRiskScale;
+  }
+
+  /// Returns whether no disaster can meet a ship from `from` within `steps`.
+  bool IsCalmWithin(Cell from, std::int32_t steps) const {
+    constexpr float kLongestMove = 1.4142136F;
+    if (has_sea_) return false;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const ObservableDisaster& belief = disasters_[i]->belief;
+      const float speed = std::sqrt(belief.dx * belief.dx + belief.dy * belief.dy);
+      const auto taken = static_cast<float>(steps);
+      const float range = belief.reach() + taken * kLongestMove +
+                          (taken + static_cast<float>(disasters_[i]->age)) * speed;
+      const float east = belief.x - static_cast<float>(from.x);
+      const float north = belief.y - static_cast<float>(from.y);
+      if (east * east + north * north <= range * range) return false;
+    }
+    return true;
+  }
+
+  /// Returns the times of the disaster that reaches the cell first.
+  RingTimes RingsAt(Cell cell) const {
+    RingTimes first;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const RingTimes times = TimesOf(*disasters_[i], cell);
+      if (times.in >= 0.0F && (first.in < 0.0F || times.in < first.in)) first = times;
+    }
+    return first;
+  }
+
+  /// Solves |c + v t - cell| = reach for the centre c, the motion v and the largest radius.
+  static RingTimes TimesOf(const KnownDisaster& known, Cell cell) {
+    const ObservableDisaster& belief = known.belief;
+    const auto age = static_cast<float>(known.age);
+    const auto last = static_cast<float>(belief.steps_left);
+    const float px = belief.x + age * belief.dx - static_cast<float>(cell.x);
+    const float py = belief.y + age * belief.dy - static_cast<float>(cell.y);
+    const float a = belief.dx * belief.dx + belief.dy * belief.dy;
+    const float b = px * belief.dx + py * belief.dy;
+    const float c = px * px + py * py - belief.reach() * belief.reach();
+    RingTimes times;
+    if (c <= 0.0F) {
+      times.in = 0.0F;
+      times.out = a > 0.0F ? std::min(last, (-b + std::sqrt(b * b - a * c)) / a) : last;
+      return times;
+    }
+    const float root = b * b - a * c;
+    if (a <= 0.0F || b >= 0.0F || root < 0.0F) return times;
+    const float in = (-b - std::sqrt(root)) / a;
+    if (in >= last) return times;
+    times.in = in;
+    times.out = std::min(last, (-b + std::sqrt(root)) / a);
+    return times;
+  }
+
+ private:
+  const Scenario& scenario_;
+  std::array<const KnownDisaster*, static_cast<std::size_t>(kMaxDisasters)> disasters_{};
+  std::size_t count_{};
+  bool has_sea_{};
+};
+
+}  // namespace aquafarm

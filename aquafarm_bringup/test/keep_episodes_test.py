@@ -42,7 +42,7 @@ class KeepEpisodesTest(unittest.TestCase):
 
     def half_written(self):
         """Returns an unfinished bag with a chunk and its index on the disk, or None."""
-        for bag in self.folder.rglob("*.active"):
+        for bag in self.folder.rglob("*.partial"):
             try:
                 content = bag.read_bytes()
             except FileNotFoundError:  # it is complete now
@@ -106,7 +106,7 @@ class KeepEpisodesTest(unittest.TestCase):
         self.assertGreaterEqual(len(self.bags()), 5)
         code, words = verify(*self.bags()[-20:])  # there may be hundreds
         self.assertEqual(0, code, words)
-        self.assertEqual([cut], list(self.folder.rglob("*.active")))
+        self.assertEqual([cut], list(self.folder.rglob("*.partial")))
         subprocess.run(["rosbag", "reindex", str(cut)], check=True, timeout=60,
                        capture_output=True)
         code, words = verify(cut)

@@ -168,7 +168,7 @@ TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
   writer.Write(tape, path);
   const auto size = static_cast<rlim_t>(fs::file_size(path));
   fs::remove(path);
-  fs::create_symlink("/dev/full", path + ".active");
+  fs::create_symlink("/dev/full", path + ".partial");
   EXPECT_THROW(writer.Write(tape, path), std::runtime_error);
   EXPECT_TRUE(Bags().empty());
   const auto write_within = [&](rlim_t bytes) {
@@ -194,15 +194,18 @@ TEST_F(EpisodeBag, PartialBagsOfKilledProcessesAreRemovedAndThoseBeingWrittenSta
     std::ofstream(folder_ + "/" + name) << "#ROSBAG V2.0";
     return folder_ + "/" + name;
   };
-  const std::string abandoned = touch("episode_00000001_seed_1_return_+1.0.bag.active");
-  const std::string written = touch("episode_00000002_seed_1_return_+1.0.bag.active");
-  const std::string of_others = touch("day.bag.active");
+  const std::string abandoned = touch("episode_00000001_seed_1_return_+1.0.bag.partial");
+  const std::string written = touch("episode_00000002_seed_1_return_+1.0.bag.partial");
+  const std::string of_others = touch("day.bag.partial");
+  // rosbag record -O episode_00000004_seed_1_return_+1.0.bag writes this one and locks nothing.
+  const std::string recorded = touch("episode_00000004_seed_1_return_+1.0.bag.active");
   const std::string whole = touch("episode_00000003_seed_1_return_+1.0.bag");
   const int file = open(written.c_str(), O_RDONLY);
   ASSERT_EQ(flock(file, LOCK_EX | LOCK_NB), 0);
   EXPECT_EQ(RemoveAbandonedBags(folder_), 1);
   EXPECT_FALSE(fs::exists(abandoned));
   EXPECT_TRUE(fs::exists(written) && fs::exists(of_others) && fs::exists(whole));
+  EXPECT_TRUE(fs::exists(recorded));
   close(file);
   EXPECT_EQ(RemoveAbandonedBags(folder_), 1);
   EXPECT_EQ(RemoveAbandonedBags("/nowhere"), 0);

@@ -106,7 +106,7 @@ def execute(*command, seconds=60, **options):
 def left_over(folder):
     """Temporary files in a folder and below."""
     return sorted(str(path) for path in pathlib.Path(folder).rglob("*")
-                  if path.name.endswith((".tmp", ".active", ".part", ".swp")))
+                  if path.name.endswith((".tmp", ".active", ".part", ".partial", ".swp")))
 
 
 def remove(folder):

@@ -27,7 +27,8 @@ constexpr std::int32_t kRiskPeriod = 10;  // steps
 constexpr std::int32_t kMoment_ns = 1000;
 
 constexpr const char* kPrefix = "episode_";
-constexpr const char* kPartial = ".bag.active";
+// Not ".active": rosbag record gives its own bags that name and holds no lock on them.
+constexpr const char* kPartial = ".partial";
 
 /// Holds a lock on a file; the kernel releases it if the process is killed.
 class FileLock {
@@ -49,7 +50,7 @@ class FileLock {
 
 bool IsPartialBag(const std::filesystem::directory_entry& entry) {
   const std::string name = entry.path().filename().string();
-  const std::string end = kPartial;
+  const std::string end = std::string(".bag") + kPartial;
   std::error_code error;
   return entry.is_regular_file(error) && !entry.is_symlink(error) && name.rfind(kPrefix, 0) == 0 &&
          name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
@@ -184,7 +185,7 @@ EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> sce
       yaml_(aquafarm::ToYaml(farm_.scenario())) {}
 
 void EpisodeBagWriter::Write(const EpisodeLog& tape, const std::string& path) {
-  const std::string active = path + ".active";
+  const std::string active = path + kPartial;
   std::error_code error;
   const FileLock lock(active, O_RDWR | O_CREAT);  // if it fails, ChunkedBag reports why
   try {

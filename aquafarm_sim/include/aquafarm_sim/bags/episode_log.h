@@ -49,8 +49,9 @@ struct BagFormat {
 /// File name of the bag: "episode_00000012_seed_1_return_+102.4.bag".
 std::string BagName(const EpisodeLog& tape);
 
-/// Removes the partial bags (episode_….bag.active) that killed processes left in a folder. A bag
-/// that a process is still writing stays. @returns the number of removed bags
+/// Removes the partial bags (episode_….bag.partial) that killed processes left in a folder. A bag
+/// that a process is still writing stays, as do those of rosbag record (….bag.active). @returns the
+/// number of removed bags
 int RemoveAbandonedBags(const std::string& folder);
 
 /// Simulates tapes again and writes them as bags. Reuse one writer for many tapes: it creates its
@@ -60,7 +61,7 @@ class EpisodeBagWriter {
   EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> scenario, BagFormat format);
 
   /// Writes spec, chart, risk (every tenth step), every state, the external changes and the summary
-  /// into an lz4 bag. The bag is written to path.active and then renamed to `path`.
+  /// into an lz4 bag. The bag is written to path.partial and then renamed to `path`.
   /// @throws TapeError if the simulation does not reproduce the tape's record
   /// @throws std::runtime_error if the bag cannot be written; a partial file is removed
   void Write(const EpisodeLog& tape, const std::string& path);

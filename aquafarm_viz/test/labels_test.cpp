@@ -18,8 +18,8 @@ std::string Line(std::uint8_t code, float reward) {
   return DescribeResult(result);
 }
 
-TEST(DescribeResult, IsDoneOnlyIfTheCommandWasExecutedAsGiven) {
-  EXPECT_EQ(Line(Outcome::OK, -1.0F), "done, step 5");
+TEST(DescribeResult, IsExecutedOnlyIfTheCommandWasExecutedAsGiven) {
+  EXPECT_EQ(Line(Outcome::OK, 20.0F), "executed, +20.0, step 5");
   EXPECT_EQ(Line(Outcome::ILLEGAL_PICKUP, -10.0F), "illegal pickup, -10.0, step 5");
   EXPECT_EQ(Line(Outcome::ILLEGAL_DROP_OFF, -10.0F), "illegal drop-off, -10.0, step 5");
   EXPECT_EQ(Line(Outcome::CRASH, -20.0F), "crash, -20.0, step 5");

@@ -229,7 +229,7 @@ TEST(StateMarkers, StayBelowTheHeightAtWhichRvizCutsOff) {
 
 TEST(StateMarkers, SayEpisodeStepAndReturn) {
   const auto status = ByKey(StateMarkers(test::MakeSpec(), test::MakeState())).at({"status", 0});
-  EXPECT_EQ(status.text, "episode 12   step 17   return -42.5");
+  EXPECT_EQ(status.text, "0 h 51 min   episode 12   step 17   return -42.5");
 }
 
 }  // namespace

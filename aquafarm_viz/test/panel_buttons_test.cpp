@@ -28,7 +28,7 @@ class PanelButtons : public testing::Test {
     panel_.show();
     ASSERT_TRUE(ros::service::waitForService("pause", ros::Duration(-1)));
     SetPace("paced", 8.0);
-    Press("go on");
+    Press("resume");
     ASSERT_TRUE(Until([this] {
       return !state_.ships.empty() && !state_.paused && state_.pace == FarmState::PACED &&
              Says("episode ");
@@ -95,7 +95,7 @@ TEST_F(PanelButtons, PauseStopsTheFarmStepTakesOneAndItGoesOn) {
   Wait(std::chrono::milliseconds(600));
   EXPECT_EQ(state_.step, step + 1);
   EXPECT_TRUE(state_.paused);
-  Press("go on");
+  Press("resume");
   EXPECT_TRUE(Until([&] { return state_.step > step + 3 && !state_.paused && Says("goes on"); }));
 }
 

@@ -231,7 +231,7 @@ TEST(RanchWidget, EachButtonAsksForWhatItSays) {
   RanchWidget widget(model, asked.Buttons());
   widget.findChild<QSpinBox*>("seed")->setValue(31);
   widget.findChild<QSpinBox*>("step")->setValue(17);
-  for (const char* name : {"pause", "go on", "step", "pace", "reset", "jump", "N", "SE", "hold",
+  for (const char* name : {"pause", "resume", "step", "pace", "reset", "jump", "N", "SE", "hold",
                            "pickup", "drop-off", "send disaster"}) {
     auto* button = widget.findChild<QPushButton*>(name);
     ASSERT_NE(button, nullptr) << name;

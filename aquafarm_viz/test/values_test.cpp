@@ -173,7 +173,15 @@ TEST(Values, BestMovesAreOneMarkerAKindWithStableIds) {
   auto values = ReadValues(test::MakeCloud(), test::MakeSpec());
   values.actions[0] = 8;
   const auto array = MoveMarkers(values, test::MakeSpec());
-  ASSERT_EQ(array.markers.size(), 3U);
+  ASSERT_EQ(array.markers.size(), 4U);
+  const auto& cells = array.markers[3];
+  EXPECT_EQ(cells.ns, "values");
+  ASSERT_EQ(cells.points.size(), 25U * 25U * 6U);
+  ASSERT_EQ(cells.colors.size(), cells.points.size());
+  // The ends of viridis (matplotlib): dark violet at the lowest value, yellow at the highest.
+  EXPECT_LT(cells.colors.front().g, 0.1F);
+  EXPECT_GT(cells.colors.back().g, 0.85F);
+  EXPECT_EQ(cells.points.front().x, -500.0);
   EXPECT_EQ(array.markers[0].points.size(), (25U * 25U - 1U) * 9U);
   EXPECT_EQ(array.markers[1].points.size(), 1U);
   EXPECT_EQ(array.markers[2].action, Marker::DELETE);

@@ -21,12 +21,9 @@ using aquafarm_msgs::ShipState;
 using aquafarm_msgs::TrainingStatus;
 
 std::string WorldTime(const FarmSpec& spec, const FarmState& state) {
-  if (!spec.has_start_time) {
-    const std::uint32_t seconds = state.world_time.sec;
-    return Count(seconds / 3600) + " h " + std::to_string(seconds / 60 % 60) + " min";
-  }
+  std::string text = ClockText(spec, state);
+  if (!spec.has_start_time) return text;
   const std::time_t utc = state.world_time.sec;
-  std::string text = TimeText(utc, "%Y-%m-%d %H:%M UTC");
   if (!spec.has_origin) return text;
   const int zone = NauticalZone(spec.origin_longitude_deg);
   if (zone == 0) return text;

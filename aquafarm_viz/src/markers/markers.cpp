@@ -14,6 +14,7 @@
 #include "aquafarm_viz/scene/directions.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "aquafarm_viz/scene/rings.h"
+#include "markers/legend.h"
 #include "scene/arrow.h"
 
 namespace aquafarm_viz {
@@ -438,8 +439,9 @@ void AddDisasters(MarkerArray& array, const Maker& maker, const FarmState& state
 }
 
 Marker Status(const Maker& maker, const FarmSpec& spec, const FarmState& state) {
-  const std::string text = "episode " + Count(state.episode) + "   step " + Count(state.step) +
-                           "   return " + Number(state.joint_return, 1);
+  const std::string text = ClockText(spec, state) + "   episode " + Count(state.episode) +
+                           "   step " + Count(state.step) + "   return " +
+                           Number(state.joint_return, 1);
   const double size_m = 0.035 * std::max(spec.width, spec.height) * maker.cell_m();
   return maker.Text("status", 0, (spec.width - 1) / 2.0,
                     spec.height - 0.5 + 0.75 * size_m / maker.cell_m(), text, size_m, kPaper);
@@ -462,6 +464,7 @@ MarkerArray SpecMarkers(const FarmSpec& spec, bool clear, const Layers& layers) 
   }
   AddPorts(array, maker, spec);
   if (layers.directions) AddDirections(array, maker, spec);
+  AddLegend(array, spec);
   return array;
 }
 

@@ -82,7 +82,7 @@ QLabel* RanchWidget::AddLine(QBoxLayout* layout) {
 
 QPushButton* RanchWidget::AddButton(QBoxLayout* layout, const QString& text,
                                     std::function<void()> act) {
-  auto* button = new QPushButton(text);
+  auto* button = new QPushButton(text.left(1).toUpper() + text.mid(1));
   button->setObjectName(text);
   button->setFocusPolicy(Qt::TabFocus);
   connect(button, &QPushButton::clicked, this, [act = std::move(act)] { act(); });
@@ -94,7 +94,7 @@ void RanchWidget::AddTime(QBoxLayout* layout) {
   auto* row = new QHBoxLayout();
   layout->addLayout(row);
   AddButton(row, "pause", [this] { buttons_.pause(true, 0); });
-  AddButton(row, "go on", [this] { buttons_.pause(false, 0); });
+  AddButton(row, "resume", [this] { buttons_.pause(false, 0); });
   AddButton(row, "step", [this] { buttons_.pause(true, 1); });
   auto* pace = new QComboBox();
   pace->addItems({"", "paced", "lockstep"});
@@ -194,8 +194,7 @@ void RanchWidget::Refresh() {
   Fill(ships_, model_.Ships());
   Fill(devices_, model_.Devices());
   curve_->Show(model_.curve());
-  // A plan takes the room of a curve that has no points.
-  curve_->setVisible(model_.plan() == nullptr || !model_.curve().empty());
+  curve_->setVisible(!model_.curve().empty());
   RefreshPlan();
 }
 

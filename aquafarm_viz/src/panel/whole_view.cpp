@@ -10,7 +10,8 @@
 
 namespace aquafarm_viz {
 
-constexpr double kMargin = 0.05;  // fraction of the farm on each side, for the text above it
+constexpr double kMargin =
+    0.07;  // fraction of the farm on each side, for the text above and below it
 
 rviz::ViewController* WholeView::FromAbove(rviz::VisualizationManager& rviz) {
   rviz::ViewController* view = rviz.getViewManager()->getCurrent();

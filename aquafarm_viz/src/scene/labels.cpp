@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/palette.h"
@@ -36,11 +37,25 @@ std::string OutcomeName(std::uint8_t outcome) {
   }
 }
 
+std::string ClockText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state) {
+  const std::time_t seconds = state.world_time.sec;
+  if (!spec.has_start_time) {
+    return Count(std::uint64_t(seconds) / 3600) + " h " + std::to_string(seconds / 60 % 60) +
+           " min";
+  }
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M UTC", &parts);
+  return text.data();
+}
+
 std::string DescribeResult(const aquafarm_msgs::CommandResult& result) {
   using aquafarm_msgs::Outcome;
   if (result.code == Outcome::ACCEPTED) return "accepted for step " + Count(result.step);
   const std::string step = ", step " + Count(result.step);
-  if (result.code == Outcome::OK) return "done" + step;
+  if (result.code == Outcome::OK)
+    return "executed, " + Signed(static_cast<double>(result.reward)) + step;
   std::string what = OutcomeName(result.code);
   if (result.code == Outcome::ILLEGAL_PICKUP) what = "illegal pickup";
   if (result.code == Outcome::ILLEGAL_DROP_OFF) what = "illegal drop-off";

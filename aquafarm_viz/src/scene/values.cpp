@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/palette.h"
@@ -72,6 +74,41 @@ geometry_msgs::Point At(double x, double y) {
   point.x = x;
   point.y = y;
   return point;
+}
+
+// Returns the cells in the colours of the values, the same as in pictures.
+Marker ValueCells(const Values& values, double cell_m) {
+  Marker cells = MakeMarker("values", 0, Marker::TRIANGLE_LIST, kPaper);
+  cells.scale.x = cells.scale.y = cells.scale.z = 1.0;
+  cells.pose.position.z = 0.0;  // between the sea and the land
+  cv::Mat1b ramp(1, 256);
+  for (int i = 0; i < ramp.cols; ++i) ramp(0, i) = static_cast<std::uint8_t>(i);
+  cv::Mat3b colors;
+  cv::applyColorMap(ramp, colors, cv::COLORMAP_VIRIDIS);
+  const double span = double(values.highest) - double(values.lowest);
+  for (int y = 0; y < values.height; ++y) {
+    for (int x = 0; x < values.width; ++x) {
+      const auto value = double(values.values[values.Index(x, y)]);
+      if (!std::isfinite(value)) continue;
+      const double share = span > 0.0 ? (value - double(values.lowest)) / span : 0.5;
+      const cv::Vec3b bgr = colors(0, static_cast<int>(std::lround(255.0 * share)));
+      std_msgs::ColorRGBA color;
+      color.r = static_cast<float>(bgr[2]) / 255.0F;
+      color.g = static_cast<float>(bgr[1]) / 255.0F;
+      color.b = static_cast<float>(bgr[0]) / 255.0F;
+      color.a = 0.62F;
+      for (const auto& [dx, dy] : {std::pair(-0.5, -0.5),
+                                   {0.5, -0.5},
+                                   {0.5, 0.5},
+                                   {-0.5, -0.5},
+                                   {0.5, 0.5},
+                                   {-0.5, 0.5}}) {
+        cells.points.push_back(At((x + dx) * cell_m, (y + dy) * cell_m));
+        cells.colors.push_back(color);
+      }
+    }
+  }
+  return cells;
 }
 
 }  // namespace
@@ -144,7 +181,8 @@ visualization_msgs::MarkerArray MoveMarkers(const Values& values,
     }
   }
   visualization_msgs::MarkerArray array;
-  for (Marker& marker : std::vector<Marker>{arrows, pickups, drop_offs}) {
+  for (Marker& marker :
+       std::vector<Marker>{arrows, pickups, drop_offs, ValueCells(values, spec.cell_size_m)}) {
     if (marker.points.empty()) marker.action = Marker::DELETE;  // rviz warns about empty lists
     array.markers.push_back(marker);
   }

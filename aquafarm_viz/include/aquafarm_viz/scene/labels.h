@@ -20,7 +20,10 @@ std::string ActionName(std::uint8_t action);
 /// Name of an outcome: "crash", "edge", …; empty for OK.
 std::string OutcomeName(std::uint8_t outcome);
 
-/// The result of an executed command: "done, step 5", "illegal pickup, -10, step 5"; paced:
+/// The time in the scenario: "2021-07-24 16:00 UTC", or "0 h 51 min" without a start time.
+std::string ClockText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state);
+
+/// The result of a command: "executed, -1.0, step 5", "illegal pickup, -10.0, step 5"; paced:
 /// "accepted for step 6", because its result is not known yet.
 std::string DescribeResult(const aquafarm_msgs::CommandResult& result);
 

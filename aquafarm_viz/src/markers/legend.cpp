@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "markers/legend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/base/text.h"
+#include "aquafarm_viz/names.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::FarmSpec;
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+// Places the parts of the legend in a row below the map [m].
+class Row {
+ public:
+  Row(MarkerArray& array, const FarmSpec& spec)
+      : array_(array),
+        header_(spec.header),
+        size_m_(0.03 * std::max(spec.width, spec.height) * spec.cell_size_m),
+        x_m_(-0.5 * spec.cell_size_m),
+        y_m_(-0.5 * spec.cell_size_m - 0.9 * size_m_) {
+    header_.frame_id = names::kMapFrame;
+  }
+
+  double size_m() const { return size_m_; }
+  void Skip(double width_m) { x_m_ += width_m; }
+
+  void Bar(double width_m, Rgb color) {
+    Marker bar = Make("legend", Marker::CUBE, x_m_ + 0.5 * width_m);
+    bar.scale.x = width_m;
+    bar.scale.y = 0.35 * size_m_;
+    bar.scale.z = 0.01 * size_m_;
+    bar.color = Opaque(color);
+    array_.markers.push_back(bar);
+    x_m_ += width_m + 0.4 * size_m_;
+  }
+
+  void Text(const std::string& text) {
+    const double width_m = 0.55 * size_m_ * double(text.size());
+    Marker words = Make("legend_text", Marker::TEXT_VIEW_FACING, x_m_ + 0.5 * width_m);
+    words.scale.z = size_m_;
+    words.text = text;
+    words.color = Opaque(kPaper);
+    array_.markers.push_back(words);
+    x_m_ += width_m + 0.6 * size_m_;
+  }
+
+ private:
+  static std_msgs::ColorRGBA Opaque(Rgb color) {
+    std_msgs::ColorRGBA opaque;
+    opaque.r = static_cast<float>(color.r) / 255.0F;
+    opaque.g = static_cast<float>(color.g) / 255.0F;
+    opaque.b = static_cast<float>(color.b) / 255.0F;
+    opaque.a = 1.0F;
+    return opaque;
+  }
+
+  Marker Make(const char* space, int type, double x_m) {
+    Marker marker;
+    marker.header = header_;
+    marker.ns = space;
+    marker.id = next_id_++;
+    marker.type = type;
+    marker.action = Marker::ADD;
+    marker.pose.position.x = x_m;
+    marker.pose.position.y = y_m_;
+    marker.pose.orientation.w = 1.0;
+    return marker;
+  }
+
+  MarkerArray& array_;
+  std_msgs::Header header_;
+  double size_m_;
+  double x_m_;
+  double y_m_;
+  int next_id_{0};
+};
+
+// The largest of 1, 2 and 5 times a power of ten that is at most `most_m`.
+double RoundLength(double most_m) {
+  const double power = std::pow(10.0, std::floor(std::log10(most_m)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * power <= most_m) return factor * power;
+  }
+  return power;
+}
+
+}  // namespace
+
+void AddLegend(MarkerArray& array, const FarmSpec& spec) {
+  Row row(array, spec);
+  const double length_m = RoundLength(0.2 * spec.width * spec.cell_size_m);
+  row.Bar(length_m, kPaper);
+  row.Text(length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
+                              : Number(length_m, length_m < 1.0 ? 2 : 0) + " m");
+  row.Skip(row.size_m());
+  row.Text("risk");
+  for (const int risk : {-5, -10, -15, -20}) {
+    row.Bar(row.size_m(), SeverityColor(Severity(risk)));
+    row.Text(std::to_string(risk));
+  }
+  row.Text("north is up");
+}
+
+}  // namespace aquafarm_viz

@@ -4,16 +4,16 @@
 // The keys of a family of ranches; part of schema.h.
 
 #include "scenario/domains.h"
+#include "scenario/ranges.h"
 
 namespace aquafarm::internal {
 
 template <typename Archive, typename S>
 void VisitFamily(Archive& a, S& s) {
   a.Optional("family", s.family, [](auto& b, auto& family) {
-    constexpr Interval<std::int32_t> kSide{8, 256};
-    constexpr Interval<float> kShare{0.0F, 1.0F};
-    b.Field("width", family.width, kSide);
-    b.Field("height", family.height, kSide);
+    constexpr Interval<std::int32_t> kFamilySide{8, 256};
+    b.Field("width", family.width, kFamilySide);
+    b.Field("height", family.height, kFamilySide);
     b.Field("islands", family.islands, Interval<std::int32_t>{0, 100});
     b.Field("coast_share", family.coast_share, kShare);
     b.Field("rocks", family.rocks, Interval<float>{0.0F, 0.3F});

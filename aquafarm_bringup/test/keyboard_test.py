@@ -11,8 +11,8 @@ import sys
 import unittest
 
 import rostest
-from aquafarm_msgs.msg import (Cell, CommandResult, DeviceState, FarmSpec, FarmState, Outcome,
-                               PortInfo, RewardTerms, RockInfo, ShipState)
+from aquafarm_msgs.msg import (Cell, CommandResult, DeviceState, DisasterState, FarmSpec, FarmState,
+                               Outcome, PortInfo, RewardTerms, RockInfo, ShipState)
 
 PATH = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "keyboard"
 sys.dont_write_bytecode = True
@@ -48,7 +48,18 @@ class KeyboardTest(unittest.TestCase):
                         rocks=[RockInfo(Cell(2, 1), -3.0)])
         state = FarmState(ships=[ShipState(id=0, x=1, y=1, active=True)],
                           devices=[DeviceState(x=2, y=0)])
-        self.assertEqual(".0^\n#HD", keyboard.draw_map(spec, state))
+        self.assertEqual(".0o\n#Pd", keyboard.draw_map(spec, state))
+
+    def test_the_map_shows_the_area_of_a_disaster(self):
+        spec = FarmSpec(width=5, height=3)
+        storm = DisasterState(x=2, y=1, radii=[0.5, 1], risks=[-20, -5], steps_left=9, known=True)
+        drawn = keyboard.draw_map(spec, FarmState(disasters=[storm]))
+        self.assertEqual("..~..\n.~~~.\n..~..", drawn[:17])
+        storm.quadrants = [0.5, 0.5, 0.5, 0.5, 2, 0, 0, 0]  # only to the north-east
+        drawn = keyboard.draw_map(spec, FarmState(disasters=[storm]))
+        self.assertEqual("..~~.\n..~~~\n.....", drawn[:17])
+        storm.steps_left = 0
+        self.assertNotIn("~", keyboard.draw_map(spec, FarmState(disasters=[storm])))
 
     def test_an_unknown_parameter_of_the_node_is_refused_with_those_it_has(self):
         self.assertEqual("~shpi: unknown parameter (did you mean 'ship'?), expected one of: ship, evaluation_seed",

@@ -27,6 +27,9 @@ struct Arguments {
   double within_km{300.0};
   double lead_h{24.0};
   double error_scale{1.0};
+  double position_errors{1.0};
+  double wind_errors{1.0};
+  double size_errors{1.0};
   TrialOptions trial;
   RescueRequest request;
 };
@@ -116,8 +119,13 @@ PlanTrials MakeTrials(Arguments& arguments, const std::vector<StormTrack>& track
   request.storm = arguments.archive;
   request.storm_name = tracks.front().id;
   request.at = tracks.front().fixes.front().time;
-  request.errors.scale = arguments.error_scale;
-  arguments.trial.errors.scale = arguments.error_scale;
+  ForecastErrors& errors = request.errors;
+  errors.scale = arguments.error_scale;
+  for (double& one : errors.position_km) one *= arguments.position_errors;
+  for (double& one : errors.wind_mps) one *= arguments.wind_errors;
+  errors.size_factor *= arguments.size_errors;
+  errors.size_report_error *= arguments.size_errors;
+  arguments.trial.errors = errors;
   return {Load(arguments), request};
 }
 
@@ -231,6 +239,12 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(10, 20000));
   app.add_option("--storms", arguments.storms, "simulated storms")->check(CLI::Range(2, 1000000));
   app.add_option("--errors", arguments.error_scale, "factor of all errors of the forecast")
+      ->check(CLI::Range(0.0, 5.0));
+  app.add_option("--position-errors", arguments.position_errors, "factor of those of positions")
+      ->check(CLI::Range(0.0, 5.0));
+  app.add_option("--wind-errors", arguments.wind_errors, "factor of those of winds")
+      ->check(CLI::Range(0.0, 5.0));
+  app.add_option("--size-errors", arguments.size_errors, "factor of those of radii")
       ->check(CLI::Range(0.0, 5.0));
   app.add_option("--seed", arguments.trial.seed, "of the simulated storms");
   app.add_option("--min-lead", arguments.trial.min_lead_h, "hours before the closest approach");

@@ -10,6 +10,7 @@
 #include "aquafarm/tracks/reader.h"
 #include "aquafarm/tracks/wind_radii.h"
 #include "rescue/case_parts.h"
+#include "rescue/storm_member.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -129,7 +130,8 @@ double SizeOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring
 }
 
 // Keeps the size of the last report with radii in the forecast: estimated radii become the
-// estimate times a factor that returns to 1 with the memory of a storm's size.
+// estimate times a factor that returns to 1 with the memory of a storm's size. What is remembered
+// is the logarithm of the factor in units of its spread at the storm's strength (SizeSigma).
 // @returns the lead time of that report; minus infinity if there is none
 double CarrySize(const ForecastErrors& errors, std::int64_t issued, StormRings& storm) {
   const StormWaypoint* report = nullptr;
@@ -138,10 +140,14 @@ double CarrySize(const ForecastErrors& errors, std::int64_t issued, StormRings& 
   }
   if (report == nullptr) return -std::numeric_limits<double>::infinity();
   const StormWaypoint last = *report;
+  const auto sigma = [&storm](const StormWaypoint& at) {
+    return SizeSigma(storm.wind_kt.back(), at.wind_mps.value_or(0.0), at.position.latitude,
+                     at.averaging_min);
+  };
   for (StormWaypoint& at : storm.waypoints) {
     if (!at.forecast || !at.estimated || !at.wind_mps || at.time <= last.time) continue;
     const double since_h = static_cast<double>(at.time - last.time) / kHour_s;
-    const double kept = std::exp(-since_h / errors.size_memory_h);
+    const double kept = std::exp(-since_h / errors.size_memory_h) * sigma(at) / sigma(last);
     std::array<double, kQuadrantCount> outer{};
     outer.fill(std::numeric_limits<double>::infinity());
     for (std::size_t ring = storm.wind_kt.size(); ring-- > 0;) {

@@ -55,6 +55,7 @@ RescueCase PlanTrials::CaseOf(const TrialStorm& storm) const {
   rescue.storm.issued = storm.start;
   rescue.storm.known_until = whole.fixes.back().time;
   UseStorm(whole, request_, rescue);
+  rescue.ensemble.seed = storm.seed;
   rescue.problem.exposure_damage = ExposureDamage(rescue);
   return rescue;
 }

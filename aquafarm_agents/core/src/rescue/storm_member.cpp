@@ -7,6 +7,7 @@
 #include "aquafarm/base/angle.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
+#include "aquafarm/tracks/track.h"
 #include "aquafarm/tracks/wind_radii.h"
 
 namespace aquafarm::agents {
@@ -26,27 +27,29 @@ class Normals {
   RandomStream rng_;
 };
 
-// Returns the spread of the widest ring's radius about EstimateRadius, at the first point with a
-// known wind; 0 if no wind is known.
-double SizeSpread(const StormPath& path) {
-  for (const StormPoint& point : path.points) {
-    const RadiusEstimate estimate = EstimateRadius(path.wind_kt[path.rings - 1], point.wind_mps,
-                                                   point.latitude, point.averaging_min);
-    if (point.wind_mps > 0.0 && estimate.log_sigma > 0.0) return estimate.log_sigma;
-  }
-  return 0.0;
-}
-
 }  // namespace
+
+double SizeSigma(std::int32_t wind_kt, double wind_mps, double latitude,
+                 std::int32_t averaging_min) {
+  const double at_least_mps = std::max(wind_mps, wind_kt * kMpsPerKnot);
+  return EstimateRadius(wind_kt, at_least_mps, latitude, averaging_min).log_sigma;
+}
 
 MemberSampler::MemberSampler(const CentralForecast& forecast, const EnsembleOptions& options)
     : forecast_(forecast), options_(options), errors_(forecast.path.points.size()) {
   AQUAFARM_CHECK_EQ(forecast.lead_h.size(), errors_.size());
   for (const double lead : forecast.lead_h) spread_.push_back(SpreadAt(options.errors, lead));
-  const double log_sigma = SizeSpread(forecast.path);
+  const std::int32_t widest_kt = forecast.path.wind_kt[forecast.path.rings - 1];
+  double reported = 0.0;  // the spread at the last report
+  for (std::size_t i = 0; i < forecast.lead_h.size(); ++i) {
+    const StormPoint& point = forecast.path.points[i];
+    size_sigma_.push_back(
+        SizeSigma(widest_kt, point.wind_mps, point.latitude, point.averaging_min));
+    if (i == 0 || forecast.lead_h[i] <= forecast.size_report_h) reported = size_sigma_.back();
+  }
   for (const double lead : forecast.lead_h) {
-    size_spread_.push_back(options.errors.scale *
-                           SizeSpreadAt(options.errors, log_sigma, lead - forecast.size_report_h));
+    size_spread_.push_back(options.errors.scale / reported *
+                           SizeSpreadAt(options.errors, reported, lead - forecast.size_report_h));
   }
 }
 
@@ -54,7 +57,7 @@ MemberSampler::MemberSampler(const CentralForecast& forecast, const EnsembleOpti
 // of the standard deviation, and part new.
 void MemberSampler::DrawErrors(std::int32_t member) {
   Normals normals(options_.seed, member);
-  double size_log = size_spread_[0] * normals.Next();
+  double size = size_spread_[0] * normals.Next();
   std::array<double, 3> unit{normals.Next(), normals.Next(), normals.Next()};
   const std::vector<double>& leads = forecast_.lead_h;
   const auto square = [](double value) { return value * value; };
@@ -73,9 +76,9 @@ void MemberSampler::DrawErrors(std::int32_t member) {
       const double remains = std::exp(-(lead - before) / options_.errors.size_memory_h);
       const double kept_spread = remains * size_spread_[i - 1];
       const double fresh = square(size_spread_[i]) - square(kept_spread);
-      size_log = remains * size_log + std::sqrt(std::max(0.0, fresh)) * normals.Next();
+      size = remains * size + std::sqrt(std::max(0.0, fresh)) * normals.Next();
     }
-    errors_[i].size_factor = std::exp(size_log);
+    errors_[i].size_factor = std::exp(size * size_sigma_[i]);
   }
 }
 

@@ -20,6 +20,11 @@ struct StormState {
   std::array<float, kMaxStormRings> risk{};
 };
 
+/// Returns the log-standard deviation of recorded radii of a wind about EstimateRadius, by the
+/// storm's greatest wind; that of the weakest storms if it does not reach `wind_kt` or is unknown.
+double SizeSigma(std::int32_t wind_kt, double wind_mps, double latitude,
+                 std::int32_t averaging_min);
+
 /// Draws members of a central forecast.
 class MemberSampler {
  public:
@@ -37,7 +42,8 @@ class MemberSampler {
   const CentralForecast& forecast_;
   const EnsembleOptions& options_;
   std::vector<ForecastSpread> spread_;  // by point
-  std::vector<double> size_spread_;     // by point: of the logarithm
+  std::vector<double> size_sigma_;      // by point: SizeSigma
+  std::vector<double> size_spread_;     // by point: of the logarithm, in units of size_sigma_
   std::vector<StormErrors> errors_;
   std::vector<Waypoint> waypoints_;
   StormPlacer placer_;

@@ -177,6 +177,7 @@ TrialStorm MakeTrial(StormTrack truth, std::int64_t at, const TrialOptions& opti
   trial.lead_h = HoursBetween(trial.start, nearest);
   trial.nearest_km = km;
   trial.truth = std::move(truth);
+  trial.seed = std::uint64_t{rng.Below(1U << 31)} << 31 | rng.Below(1U << 31);
   return trial;
 }
 

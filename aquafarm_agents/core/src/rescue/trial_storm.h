@@ -36,6 +36,9 @@ struct TrialStorm {
   std::int64_t start{};
   double lead_h{};      ///< from start to the closest approach of `truth`
   double nearest_km{};  ///< of `truth`
+  /// Of the plan's ensemble. With one seed for all trials, all of them would share the sampling
+  /// error of the same members, which would look like a bias of the chances.
+  std::uint64_t seed{};
 };
 
 /// Draws trial `index`: a pure function of tracks, place, options and index.

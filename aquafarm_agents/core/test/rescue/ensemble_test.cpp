@@ -46,6 +46,22 @@ TEST(Ensemble, RadiiSpreadFromTheirLastReport) {
   }
 }
 
+// A typhoon that was once a weak storm: its radii spread as those of typhoons do.
+TEST(Ensemble, RadiiSpreadAsThoseOfStormsOfTheirStrength) {
+  CentralForecast forecast = test::PassingStorm();
+  forecast.path.points[0].wind_mps = 15.0;  // below a gale
+  forecast.path.points[1].wind_mps = 20.0;  // below 48 kt
+  forecast.path.points[2].wind_mps = 40.0;
+  const auto sigma = [](double wind_mps) {
+    return EstimateRadius(34, wind_mps, 30.0, 2).log_sigma;
+  };
+  ASSERT_GT(sigma(20.0), 1.2 * sigma(40.0));
+  const Ensemble unknown(forecast, test::SmallEnsemble(4000), {});
+  EXPECT_NEAR(unknown.spread()[0].size_log, sigma(20.0), 0.03 * sigma(20.0));
+  EXPECT_NEAR(unknown.spread()[1].size_log, sigma(20.0), 0.03 * sigma(20.0));
+  EXPECT_NEAR(unknown.spread()[2].size_log, sigma(40.0), 0.03 * sigma(40.0));
+}
+
 // Without errors all members are the central forecast; a slow test of every cell and step.
 TEST(Ensemble, WithoutErrorsCoversTheCellsOfTheCentralForecast) {
   const CentralForecast forecast = test::PassingStorm();

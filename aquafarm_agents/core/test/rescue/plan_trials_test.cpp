@@ -45,6 +45,16 @@ TEST_F(Trials, TheSameSeedGivesTheSameTrial) {
   EXPECT_NE(DrawTrial(tracks_, trials.place(), options, 5).nearest_km, once.nearest_km);
 }
 
+// Common members would give all trials the same sampling error.
+TEST_F(Trials, EachTrialHasMembersOfItsOwn) {
+  const PlanTrials trials = Make();
+  const TrialStorm storm = DrawTrial(tracks_, trials.place(), TrialOptions{}, 5);
+  EXPECT_NE(DrawTrial(tracks_, trials.place(), TrialOptions{}, 6).seed, storm.seed);
+  TrialStorm other = storm;
+  other.seed ^= 1U;
+  EXPECT_NE(trials.Run(other).promised, trials.Run(storm).promised);
+}
+
 TEST_F(Trials, BulletinsHaveThePublishedErrors) {
   const PlanTrials trials = Make();
   TrialOptions options;

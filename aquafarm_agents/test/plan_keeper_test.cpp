@@ -12,6 +12,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm_agents/plan/plan_markers.h"
+#include "aquafarm_sim/plan_words.h"
 
 namespace aquafarm_agents {
 namespace {
@@ -196,7 +197,7 @@ TEST_F(Keeper, AStepOfTheRanchPlansAgainFromItsShips) {
   EXPECT_EQ(Update().ships.at(0).cell.x, 11);
   for (auto& device : inputs_.fleet->devices) device.is_deployed = false;
   inputs_.step = 9;
-  EXPECT_EQ(Update().text, "Every device is in port or aboard: there is nothing left to fetch.");
+  EXPECT_EQ(Update().text, "Every device is in port: there is nothing left to fetch.");
   EXPECT_EQ(keeper_.plan().plan.result, RescuePlan::PLAN);
 }
 
@@ -217,7 +218,8 @@ TEST_F(Keeper, MarkersShowRoutesConeAndOdds) {
     if (marker.ns == "plan_device") {
       const auto& device = plan.devices.at(static_cast<std::size_t>(marker.id));
       EXPECT_EQ(marker.text.find(device.name), 0U);
-      EXPECT_EQ(marker.text.find(PercentText(device.home)) != std::string::npos, device.ship >= 0)
+      EXPECT_EQ(marker.text.find(aquafarm_sim::PercentText(device.home)) != std::string::npos,
+                device.ship >= 0)
           << marker.text;
       EXPECT_EQ(marker.pose.position.x, device.cell.x * plan.cell_size_m);
     }
@@ -239,17 +241,6 @@ TEST_F(Keeper, MarkersShowRoutesConeAndOdds) {
   EXPECT_EQ(count["plan_cone"], static_cast<int>(plan.forecast_error.size()));
   EXPECT_EQ(count["plan_outcome"], 1);
   EXPECT_EQ(PlanMarkers(RescuePlan()).markers.size(), 1U) << "without a plan";
-}
-
-TEST(PlanText, SharesAreNeverCertainAndOtherDaysAreNamed) {
-  EXPECT_EQ(PercentText(1.0), "> 99 %");
-  EXPECT_EQ(PercentText(0.87), "87 %");
-  EXPECT_EQ(PercentText(0.0), "< 1 %");
-  RescuePlan plan;
-  plan.utc_offset_min = 480;
-  plan.start = ros::Time(1627084800, 0);  // 2021-07-24 00:00 UTC, 08:00 local time
-  EXPECT_EQ(LocalText(plan, plan.start), "08:00");
-  EXPECT_EQ(LocalText(plan, plan.start + ros::Duration(18.0 * 3600.0)), "25 Jul 02:00");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "aquafarm_sim/plan_words.h"
 #include "fixture.h"
 #include "ranch_widget.h"
 
@@ -177,20 +178,44 @@ TEST(PlanText, DevicesHaveTheirOddsAndDeadlines) {
 
 TEST(PlanText, TheHeadlineNamesWhatIsOutdated) {
   const auto plan = Plan();
-  EXPECT_EQ(PlanHeadline(*plan), "plan: 1 of 2 ships leave. No ship should leave after 13:30.");
+  EXPECT_EQ(PlanHeadline(*plan, 0.0),
+            "plan: 1 of 2 ships leave. No ship should leave after 13:30.");
   plan->fault = "b.json: bad; this plan is of a.json";
   plan->warnings.resize(1);
   plan->warnings[0].severity = "stop";
   plan->warnings[0].text = "The bulletin is 14 hours old.";
-  EXPECT_EQ(PlanHeadline(*plan),
+  EXPECT_EQ(PlanHeadline(*plan, 0.0),
             "plan: 1 of 2 ships leave. No ship should leave after 13:30. The bulletin is 14 hours "
             "old. OUTDATED: b.json: bad; this plan is of a.json");
+}
+
+TEST(PlanWords, SharesAreNeverCertainAndOtherDaysAreNamed) {
+  EXPECT_EQ(aquafarm_sim::PercentText(1.0), "> 99 %");
+  EXPECT_EQ(aquafarm_sim::PercentText(0.87), "87 %");
+  EXPECT_EQ(aquafarm_sim::PercentText(0.0), "< 1 %");
+  aquafarm_msgs::RescuePlan plan;
+  plan.utc_offset_min = 480;
+  plan.start = ros::Time(1627084800, 0);  // 2021-07-24 00:00 UTC, 08:00 local time
+  EXPECT_EQ(aquafarm_sim::LocalText(plan, plan.start), "08:00");
+  EXPECT_EQ(aquafarm_sim::LocalText(plan, plan.start + ros::Duration(18.0 * 3600.0)),
+            "25 Jul 02:00");
+}
+
+TEST(PlanWords, AShipAtSeaIsNeverToldToStay) {
+  const auto plan = Plan();
+  aquafarm_msgs::RescueShip ship = plan->ships[1];
+  plan->ports[0].cell.x = 3;
+  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "return to port");
+  ship.cell.x = 3;
+  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "stay");
+  ship.aboard = {1};
+  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "no port in reach");
 }
 
 TEST(RanchModel, APlanThatFollowsTheRanchHasItsTime) {
   RanchModel model = Filled();
   auto plan = Plan();
-  model.Take(aquafarm_msgs::RescuePlanConstPtr(plan));
+  model.Take(aquafarm_msgs::RescuePlanConstPtr(plan), ros::SteadyTime(1.0));
   EXPECT_EQ(model.PlanNow(), plan->start);
   auto state = boost::make_shared<aquafarm_msgs::FarmState>(test::MakeState());
   state->world_time = plan->start + ros::Duration(600.0);
@@ -254,17 +279,35 @@ TEST(RanchWidget, ShowsDeadlinesAndTheNextOrderOnceThereIsAPlan) {
   EXPECT_TRUE(ships->isHidden() && devices->isHidden() && line->isHidden());
   const auto plan = Plan();
   plan->text = "<b>1</b> of 2 ships leave.";
-  model.Take(aquafarm_msgs::RescuePlanConstPtr(plan));
+  model.Take(aquafarm_msgs::RescuePlanConstPtr(plan), ros::SteadyTime::now());
   widget.Refresh();
   EXPECT_FALSE(ships->isHidden() || devices->isHidden() || line->isHidden());
   EXPECT_EQ(line->textFormat(), Qt::PlainText);
-  EXPECT_EQ(line->text().toStdString(), PlanHeadline(*plan));
+  EXPECT_EQ(line->text().toStdString(), PlanHeadline(*plan, 0.0));
   ASSERT_EQ(ships->rowCount(), 2);
   EXPECT_EQ(ships->item(0, 1)->text(), "leave port A");
   EXPECT_EQ(ships->item(1, 1)->text(), "stay");
   ASSERT_EQ(devices->rowCount(), 3);
   EXPECT_EQ(devices->item(1, 1)->text(), "87 %");
   EXPECT_EQ(devices->item(1, 3)->text(), "09:00");
+}
+
+TEST(RanchWidget, SaysWithinFiveSecondsThatThePlanIsNoLongerRenewed) {
+  RanchModel model = Filled();
+  Asked asked;
+  RanchWidget widget(model, asked.Buttons());
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  const auto text = [&] {
+    widget.RefreshPlanAge();
+    return widget.findChild<QLabel*>("plan")->text().toStdString();
+  };
+  EXPECT_EQ(text(), "") << "without a plan nothing is missing";
+  model.Take(aquafarm_msgs::RescuePlanConstPtr(Plan()), now - ros::WallDuration(7.5));
+  EXPECT_NE(text().find("NOT RENEWED: plan_node has sent nothing for 7 s; start it again."),
+            std::string::npos)
+      << text();
+  model.HearPlanNode(now);
+  EXPECT_EQ(text().find("NOT RENEWED"), std::string::npos);
 }
 
 int Count(const QImage& image, QRgb color) {

@@ -7,6 +7,7 @@
 #include <nav_msgs/Path.h>
 #include <ros/package.h>
 #include <ros/ros.h>
+#include <std_msgs/Time.h>
 #include <visualization_msgs/MarkerArray.h>
 
 #include <climits>
@@ -37,6 +38,9 @@ namespace {
 namespace agents = aquafarm::agents;
 using agents::ExitCode;
 using aquafarm_msgs::RescuePlan;
+
+constexpr double kHeartbeat_s = 1.0;  // the panel waits for five of them
+constexpr double kPlanLimit_s = 60.0;
 
 struct PlanParams {
   std::string scenario;  ///< file or name; empty: that of the running ranch
@@ -162,6 +166,9 @@ class PlanNode {
         std::chrono::duration<double>(params_.min_period_s));
     diagnostics_.setHardwareID("none");
     diagnostics_.add("plan", this, &PlanNode::Diagnose);
+    heartbeat_ = node_.advertise<std_msgs::Time>("plan/heartbeat", 2);
+    beat_ = node_.createWallTimer(ros::WallDuration(kHeartbeat_s),
+                                  [this](const ros::WallTimerEvent&) { Beat(); });
     look_ = node_.createWallTimer(ros::WallDuration(params_.period_s),
                                   [this](const ros::WallTimerEvent&) { Look(); });
     Look();
@@ -172,6 +179,10 @@ class PlanNode {
 
   void OnSpec(const aquafarm_msgs::FarmSpecConstPtr& spec) {
     if (scenario_ && scenario_->hash == spec->scenario_hash) return;
+    // The last state is of another ranch. A new connection gets the state of this one.
+    last_state_ = nullptr;
+    state_.shutdown();
+    state_ = node_.subscribe("state", 1, &PlanNode::OnState, this);
     try {
       scenario_ = std::make_shared<const aquafarm::Scenario>(
           aquafarm::ParseScenario(spec->scenario_yaml, spec->scenario_name));
@@ -180,6 +191,15 @@ class PlanNode {
       scenario_ = nullptr;
       spec_fault_ = error.what();
     }
+  }
+
+  // Stops if planning hangs, so that a subscriber notices both a dead and a stuck node.
+  void Beat() {
+    if (work_->busy_s() > kPlanLimit_s) return;
+    std_msgs::Time now;
+    const ros::WallTime wall = ros::WallTime::now();
+    now.data = ros::Time(wall.sec, wall.nsec);
+    heartbeat_.publish(now);
   }
 
   void OnState(const aquafarm_msgs::FarmStateConstPtr& state) {
@@ -309,7 +329,9 @@ class PlanNode {
   ros::Publisher chart_;
   ros::Subscriber spec_;
   ros::Subscriber state_;
+  ros::Publisher heartbeat_;
   ros::WallTimer look_;
+  ros::WallTimer beat_;
 
   // Of the worker.
   PlanKeeper keeper_;

@@ -90,7 +90,7 @@ PlanMessages MakePlan(const PlanInputs& inputs, const std::string& bulletin) {
         has_others
             ? "Ships have nothing left to fetch. Self-propelled devices are not planned: bring "
               "those that are at sea to a port."
-            : "Every device is in port or aboard: there is nothing left to fetch.";
+            : "Every device is in port: there is nothing left to fetch.";
     auto& warnings = messages.plan.warnings;
     warnings.erase(std::remove_if(warnings.begin(), warnings.end(),
                                   [](const auto& one) { return one.code == "storm_stays_away"; }),

@@ -5,13 +5,17 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
+
+#include "aquafarm_sim/plan_words.h"
 
 namespace aquafarm_agents {
 namespace {
 
 using aquafarm_msgs::RescuePlan;
 using aquafarm_msgs::RescueStormPoint;
+using aquafarm_sim::LocalText;
+using aquafarm_sim::PercentText;
+using aquafarm_sim::WithoutRouteText;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
@@ -91,18 +95,6 @@ Color ColorOf(std::int32_t ship) {
   return kShipColors[static_cast<std::size_t>(ship) % kShipColors.size()];
 }
 
-// What a ship without a route does. A ship at sea is never told to stay.
-std::string WithoutRoute(const RescuePlan& plan, const aquafarm_msgs::RescueShip& ship) {
-  for (const auto& warning : plan.warnings) {
-    const bool is_of_ship = warning.text.rfind(ship.name + " has ", 0) == 0;
-    if (warning.code == "devices_aboard" && is_of_ship) return "delivers first";
-  }
-  const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {
-    return port.cell.x == ship.cell.x && port.cell.y == ship.cell.y;
-  });
-  return in_port ? "stays" : "returns to port";
-}
-
 void AddRoutes(const RescuePlan& plan, const Maker& maker, MarkerArray& array) {
   for (const auto& route : plan.routes) {
     if (route.path.size() < 2) continue;
@@ -119,7 +111,7 @@ void AddRoutes(const RescuePlan& plan, const Maker& maker, MarkerArray& array) {
                                     [&](const auto& one) { return one.ship == ship.id; });
     const std::string text =
         ship.name + (route == plan.routes.end() || route->orders.empty()
-                         ? "\n" + WithoutRoute(plan, ship)
+                         ? "\n" + WithoutRouteText(plan, ship)
                          : "\nleaves " + LocalText(plan, route->orders.front().stamp));
     array.markers.push_back(maker.Text("plan_ship", ship.id, ship.cell.x,
                                        ship.cell.y + 0.9 * maker.unit_cells(), text, 0.6,
@@ -185,26 +177,6 @@ void AddStorm(const RescuePlan& plan, const Maker& maker, MarkerArray& array) {
 }
 
 }  // namespace
-
-std::string PercentText(double probability) {
-  if (probability >= 0.995) return "> 99 %";
-  if (probability < 0.005) return "< 1 %";
-  return std::to_string(std::lround(100.0 * probability)) + " %";
-}
-
-std::string LocalText(const RescuePlan& plan, ros::Time time) {
-  const auto parts = [&](ros::Time utc) {
-    const std::time_t local = static_cast<std::time_t>(utc.sec) + 60 * plan.utc_offset_min;
-    std::tm of{};
-    gmtime_r(&local, &of);
-    return of;
-  };
-  const std::tm start = parts(plan.start);
-  const std::tm at = parts(time);
-  const bool same_day = start.tm_yday == at.tm_yday && start.tm_year == at.tm_year;
-  char text[32];
-  return {text, std::strftime(text, sizeof(text), same_day ? "%H:%M" : "%d %b %H:%M", &at)};
-}
 
 MarkerArray PlanMarkers(const RescuePlan& plan) {
   MarkerArray array;

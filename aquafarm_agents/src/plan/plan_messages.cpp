@@ -173,6 +173,7 @@ void SetFleet(const Json& document, RescuePlan& plan) {
     ship.speed_kn = Single(one.at("speed_kn"));
     ship.capacity = one.at("capacity").get<std::int32_t>();
     ship.ready = Time(one.at("ready"));
+    ship.aboard = one.value("aboard", std::vector<std::int32_t>{});
   });
 }
 
@@ -303,6 +304,7 @@ void SetWords(const Json& document, RescuePlan& plan) {
     warning.severity = one.at("severity").get<std::string>();
     warning.text = one.at("text").get<std::string>();
     warning.advice = one.at("advice").get<std::string>();
+    warning.ship = Id(one.value("ship", Json()));
   });
   Convert(document.at("assumptions"), plan.assumptions, [](const Json& one, auto& assumption) {
     assumption.what = one.at("what").get<std::string>();

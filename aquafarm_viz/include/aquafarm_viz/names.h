@@ -9,6 +9,7 @@ inline constexpr char kSpec[] = "spec";
 inline constexpr char kState[] = "state";
 inline constexpr char kTraining[] = "training";
 inline constexpr char kPlan[] = "plan";
+inline constexpr char kPlanHeartbeat[] = "plan/heartbeat";
 inline constexpr char kValuePoints[] = "values/points";
 inline constexpr char kChoice[] = "choice";
 inline constexpr char kMarkers[] = "markers";

@@ -7,6 +7,7 @@
 #include <aquafarm_msgs/Reset.h>
 #include <aquafarm_msgs/SetDisaster.h>
 #include <aquafarm_msgs/SetPace.h>
+#include <std_msgs/Time.h>
 
 #include <QVBoxLayout>
 #include <pluginlib/class_list_macros.hpp>
@@ -59,14 +60,18 @@ RanchPanel::RanchPanel(QWidget* parent)
       });
   plan_ = node_.subscribe<aquafarm_msgs::RescuePlan>(
       names::kPlan, 2, [this](const aquafarm_msgs::RescuePlanConstPtr& plan) {
-        model_.Take(plan);
+        model_.Take(plan, ros::SteadyTime::now());
         changed_ = true;
       });
+  plan_heartbeat_ = node_.subscribe<std_msgs::Time>(
+      names::kPlanHeartbeat, 2,
+      [this](const std_msgs::TimeConstPtr&) { model_.HearPlanNode(ros::SteadyTime::now()); });
   connect(&timer_, &QTimer::timeout, this, [this] {
     // Also without new messages, because the window size may have changed.
     if (rviz_ != nullptr && model_.shown().spec) {
       whole_view_.Follow(*rviz_, *model_.shown().spec);
     }
+    widget_->RefreshPlanAge();
     if (!changed_) return;
     changed_ = false;
     widget_->Refresh();

@@ -36,6 +36,7 @@ class RanchPanel : public rviz::Panel {
   ros::Subscriber state_;
   ros::Subscriber training_;
   ros::Subscriber plan_;
+  ros::Subscriber plan_heartbeat_;
   rviz::VisualizationManager* rviz_{};  // null outside rviz, where vis_manager_ is not set
   WholeView whole_view_;
   QTimer timer_;

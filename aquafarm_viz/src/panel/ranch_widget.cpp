@@ -198,6 +198,13 @@ void RanchWidget::Refresh() {
   RefreshPlan();
 }
 
+void RanchWidget::RefreshPlanAge() {
+  if (model_.plan() == nullptr) return;
+  const double silent_s = model_.PlanSilence(ros::SteadyTime::now());
+  const QString text = Text(PlanHeadline(*model_.plan(), silent_s));
+  if (plan_->text() != text) plan_->setText(text);
+}
+
 void RanchWidget::RefreshPlan() {
   const auto& plan = model_.plan();
   for (QWidget* part : {static_cast<QWidget*>(plan_), static_cast<QWidget*>(plan_ships_),
@@ -205,7 +212,7 @@ void RanchWidget::RefreshPlan() {
     part->setVisible(plan != nullptr);
   }
   if (plan == nullptr) return;
-  plan_->setText(Text(PlanHeadline(*plan)));
+  RefreshPlanAge();
   Fill(plan_ships_, PlanShips(*plan, model_.PlanNow()));
   Fill(plan_devices_, PlanDevices(*plan));
 }

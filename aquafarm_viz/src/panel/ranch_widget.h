@@ -37,6 +37,8 @@ class RanchWidget : public QWidget {
 
   /// Shows the current content of the model.
   void Refresh();
+  /// Updates the line of the plan, which states for how long plan_node has been silent.
+  void RefreshPlanAge();
   /// Sets the line at the bottom: the result of the last button.
   void Tell(const std::string& line);
 

@@ -2,8 +2,8 @@
 #include "aquafarm_viz/scene/plan_text.h"
 
 #include <algorithm>
-#include <cmath>
-#include <ctime>
+
+#include "aquafarm_sim/plan_words.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -11,13 +11,9 @@ namespace {
 using aquafarm_msgs::RescueDeadline;
 using aquafarm_msgs::RescueOrder;
 using aquafarm_msgs::RescuePlan;
-
-// A share of a sample is never certain.
-std::string Percent(double share) {
-  if (share >= 0.995) return "> 99 %";
-  if (share < 0.005) return "< 1 %";
-  return std::to_string(std::lround(100.0 * share)) + " %";
-}
+using aquafarm_sim::LocalText;
+using aquafarm_sim::PercentText;
+using aquafarm_sim::WithoutRouteText;
 
 template <typename Message>
 std::string NameOf(const std::vector<Message>& list, std::int32_t id) {
@@ -50,32 +46,24 @@ std::string OrderText(const RescuePlan& plan, const RescueOrder& order) {
 std::string DeadlineText(const RescuePlan& plan, const RescueDeadline& deadline) {
   if (plan.result == RescuePlan::STORM_UNKNOWN) return "unknown";
   if (!deadline.possible) return "none";
-  return deadline.open ? "no limit" : PlanTime(plan, deadline.leave);
-}
-
-// What a ship without a route does. A ship at sea is never told to stay.
-std::string WithoutRoute(const RescuePlan& plan, const aquafarm_msgs::RescueShip& ship) {
-  for (const auto& warning : plan.warnings) {
-    const bool is_of_ship = warning.text.rfind(ship.name + " has ", 0) == 0;
-    if (warning.code == "devices_aboard" && is_of_ship) return "deliver first";
-  }
-  const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {
-    return port.cell.x == ship.cell.x && port.cell.y == ship.cell.y;
-  });
-  return in_port ? "stay" : "return to port";
+  return deadline.open ? "no limit" : LocalText(plan, deadline.leave);
 }
 
 }  // namespace
 
-std::string PlanHeadline(const RescuePlan& plan) {
+std::string PlanHeadline(const RescuePlan& plan, double silent_s) {
   std::string text = "plan: " + plan.text;
   if (!plan.no_departure_after.isZero()) {
-    text += " No ship should leave after " + PlanTime(plan, plan.no_departure_after) + ".";
+    text += " No ship should leave after " + LocalText(plan, plan.no_departure_after) + ".";
   }
   for (const auto& warning : plan.warnings) {
     if (warning.severity == "stop" && warning.text != plan.text) text += " " + warning.text;
   }
   if (!plan.fault.empty()) text += " OUTDATED: " + plan.fault;
+  if (silent_s >= kPlanSilence_s) {
+    text += " NOT RENEWED: plan_node has sent nothing for " +
+            std::to_string(static_cast<std::int64_t>(silent_s)) + " s; start it again.";
+  }
   return text;
 }
 
@@ -92,15 +80,15 @@ const PlanRow& PlanDeviceColumns() {
 std::vector<PlanRow> PlanShips(const RescuePlan& plan, ros::Time now) {
   std::vector<PlanRow> rows;
   for (const auto& ship : plan.ships) {
-    PlanRow row{ship.name, WithoutRoute(plan, ship), "", ""};
+    PlanRow row{ship.name, WithoutRouteText(plan, ship), "", ""};
     for (const auto& route : plan.routes) {
       if (route.ship != ship.id) continue;
       const auto next = std::find_if(route.orders.begin(), route.orders.end(),
                                      [now](const auto& order) { return order.stamp >= now; });
       row[1] = next == route.orders.end() ? "all done" : OrderText(plan, *next);
       if (next == route.orders.end()) continue;
-      row[2] = PlanTime(plan, next->stamp);
-      row[3] = Percent(static_cast<double>(next->probability));
+      row[2] = LocalText(plan, next->stamp);
+      row[3] = PercentText(static_cast<double>(next->probability));
     }
     rows.push_back(row);
   }
@@ -112,7 +100,7 @@ std::vector<PlanRow> PlanDevices(const RescuePlan& plan) {
   const bool is_unknown = plan.result == RescuePlan::STORM_UNKNOWN;
   for (const auto& device : plan.devices) {
     const std::string home = is_unknown         ? "unknown"
-                             : device.ship >= 0 ? Percent(static_cast<double>(device.home))
+                             : device.ship >= 0 ? PercentText(static_cast<double>(device.home))
                              : device.left_reason == "safe_in_place" ? "stays"
                                                                      : "left behind";
     PlanRow row{device.name, home, "", "", ""};
@@ -124,20 +112,6 @@ std::vector<PlanRow> PlanDevices(const RescuePlan& plan) {
     rows.push_back(row);
   }
   return rows;
-}
-
-std::string PlanTime(const RescuePlan& plan, ros::Time time) {
-  const auto local = [&plan](ros::Time utc) {
-    const std::time_t seconds = static_cast<std::time_t>(utc.sec) + 60 * plan.utc_offset_min;
-    std::tm parts{};
-    gmtime_r(&seconds, &parts);
-    return parts;
-  };
-  const std::tm start = local(plan.start);
-  const std::tm at = local(time);
-  const bool same_day = start.tm_yday == at.tm_yday && start.tm_year == at.tm_year;
-  char text[32];
-  return {text, std::strftime(text, sizeof(text), same_day ? "%H:%M" : "%d %b %H:%M", &at)};
 }
 
 }  // namespace aquafarm_viz

@@ -67,10 +67,16 @@ double FactorOf(const Scenario& scenario, const std::string& kind) {
   return 1.0;
 }
 
-void RequireNewName(const std::string& name, const CsvRow& row,
-                    const std::vector<std::string>& names) {
-  if (!name.empty() && std::find(names.begin(), names.end(), name) == names.end()) return;
-  throw InputError(row.where() + ": name: got '" + name + "', expected a name of its own");
+// Reads name and cell of a device or ship from its row, and notes the name.
+template <typename Item>
+void ReadPlace(const CsvRow& row, const RescueCase& rescue, std::vector<std::string>& names,
+               Item& item) {
+  item.name = row.Text("name");
+  if (item.name.empty() || std::find(names.begin(), names.end(), item.name) != names.end()) {
+    throw InputError(row.where() + ": name: got '" + item.name + "', expected a name of its own");
+  }
+  names.push_back(item.name);
+  item.cell = WaterCell(row, item.name, rescue);
 }
 
 void ReadDevices(const RescueRequest& request, RescueCase& rescue) {
@@ -89,11 +95,8 @@ void ReadDevices(const RescueRequest& request, RescueCase& rescue) {
   std::vector<std::string> names;
   for (const CsvRow& row : table.rows()) {
     RescueDevice device;
-    device.name = row.Text("name");
-    RequireNewName(device.name, row, names);
-    names.push_back(device.name);
+    ReadPlace(row, rescue, names, device);
     device.kind = KindOf(row);
-    device.cell = WaterCell(row, device.name, rescue);
     device.value = row.Number("value", 0.0, 1.0e12);
     if (!row.Text("damaged").empty()) device.damage_before = row.Number("damaged", 0.0, 1.0);
     const SeaRoutes routes(rescue.problem.water, {device.cell, rescue.problem.ports[0].cell});
@@ -135,10 +138,7 @@ void ReadShips(const RescueRequest& request, RescueCase& rescue) {
   std::vector<std::string> names;
   for (const CsvRow& row : table.rows()) {
     RescueShip ship;
-    ship.name = row.Text("name");
-    RequireNewName(ship.name, row, names);
-    names.push_back(ship.name);
-    ship.cell = WaterCell(row, ship.name, rescue);
+    ReadPlace(row, rescue, names, ship);
     ship.speed_kn = row.Text("speed_kn").empty() ? speed_kn : row.Number("speed_kn", 0.1, 60.0);
     ship.capacity = capacity;
     if (!row.Text("capacity").empty()) {

@@ -7,14 +7,11 @@
 #include <utility>
 
 #include "aquafarm/base/check.h"
-#include "aquafarm/tracks/track.h"
 #include "rescue/case_parts.h"
 #include "rescue/sea_routes.h"
 
 namespace aquafarm::agents {
 namespace {
-
-std::string NameOfDevice(std::size_t id) { return "D" + std::to_string(id + 1); }
 
 void Append(std::string& list, const std::string& one) { list += (list.empty() ? "" : ", ") + one; }
 
@@ -30,37 +27,28 @@ void RequireFits(const RescueRequest& request, const FleetState& fleet, const Re
                    std::to_string(expected) + ", as in " + rescue.scenario->name);
 }
 
-// Sends a ship with devices aboard to the nearest open port first.
-void DeliverFirst(const ShipNow& now, RescueShip& ship, RescueCase& rescue) {
+// Warns if a ship with devices aboard cannot deliver them.
+void RequireWayHome(std::size_t index, const std::string& names, RescueCase& rescue) {
   const RescueProblem& problem = rescue.problem;
-  std::vector<Cell> places{now.cell};
+  const RescueShip& ship = problem.ships[index];
+  std::vector<Cell> places{ship.cell};
   for (const RescuePort& port : problem.ports) places.push_back(port.cell);
   const SeaRoutes routes(problem.water, places);
-  std::size_t nearest = 0;
-  for (std::size_t port = 1; port < places.size(); ++port) {
-    const bool is_nearer = nearest == 0 || routes.Length(0, port) < routes.Length(0, nearest);
-    if (problem.ports[port - 1].is_open && is_nearer) nearest = port;
+  bool has_port = false;
+  for (std::size_t port = 0; port < problem.ports.size(); ++port) {
+    has_port =
+        has_port || (problem.ports[port].is_open && std::isfinite(routes.Length(0, port + 1)));
   }
-  std::string names;
-  for (const std::int32_t device : now.aboard) {
-    Append(names, NameOfDevice(static_cast<std::size_t>(device)));
-  }
-  if (nearest == 0 || !std::isfinite(routes.Length(0, nearest))) {
-    rescue.warnings.push_back({"devices_aboard", "stop",
+  const auto id = static_cast<std::int32_t>(index);
+  if (has_port) {
+    rescue.warnings.push_back({"devices_aboard", "note",
+                               ship.name + " has " + names + " aboard: its orders deliver them.",
+                               "", id});
+  } else {
+    rescue.warnings.push_back({"no_way_home", "stop",
                                ship.name + " has " + names + " aboard and reaches no open port.",
-                               "Open a port that it can reach."});
-    return;
+                               "Open a port that it can reach.", id});
   }
-  const double pace = 1000.0 * problem.cell_size_km / (ship.speed_kn * kMpsPerKnot);
-  const double in_port_s = routes.Length(0, nearest) * pace + problem.handling_s;
-  ship.cell = places[nearest];
-  ship.ready_s = std::max(ship.ready_s, in_port_s);
-  rescue.warnings.push_back({"devices_aboard", "stop",
-                             ship.name + " has " + names + " aboard and first delivers at " +
-                                 problem.ports[nearest - 1].name + ", by " +
-                                 FormatUtc(rescue.start + std::llround(in_port_s)) +
-                                 ". The plan begins after that and does not contain these devices.",
-                             ""});
 }
 
 void PlaceShips(const FleetState& fleet, RescueCase& rescue) {
@@ -76,30 +64,58 @@ void PlaceShips(const FleetState& fleet, RescueCase& rescue) {
                        rescue.scenario->name);
     }
     ship.cell = now.cell;
-    if (!now.aboard.empty()) DeliverFirst(now, ship, rescue);
   }
 }
 
-void KeepDeployed(const FleetState& fleet, RescueCase& rescue) {
-  std::vector<RescueDevice> devices = std::exchange(rescue.problem.devices, {});
+// Returns by device the ship that has it aboard; kNone if no ship has it.
+std::vector<std::int32_t> CarriersOf(const FleetState& fleet) {
+  std::vector<std::int32_t> carriers(fleet.devices.size(), kNone);
+  for (std::size_t ship = 0; ship < fleet.ships.size(); ++ship) {
+    for (const std::int32_t id : fleet.ships[ship].aboard) {
+      const auto device = static_cast<std::size_t>(id);
+      if (id < 0 || device >= carriers.size() || carriers[device] != kNone) {
+        throw InputError("state: ship " + std::to_string(ship + 1) + ": got device " +
+                         std::to_string(id) + " aboard, expected ids of devices in [0, " +
+                         std::to_string(carriers.size()) + "), each aboard one ship");
+      }
+      carriers[device] = static_cast<std::int32_t>(ship);
+    }
+  }
+  return carriers;
+}
+
+// Keeps the devices that lie at their places or are aboard ships.
+void KeepDevices(const FleetState& fleet, RescueCase& rescue) {
+  RescueProblem& problem = rescue.problem;
+  const std::vector<std::int32_t> carriers = CarriersOf(fleet);
+  std::vector<RescueDevice> devices = std::exchange(problem.devices, {});
+  std::vector<std::string> aboard(fleet.ships.size());
   std::string in_port;
   std::string self_propelled;
-  std::vector<std::int32_t> aboard;
-  for (const ShipNow& ship : fleet.ships) {
-    aboard.insert(aboard.end(), ship.aboard.begin(), ship.aboard.end());
-  }
   for (std::size_t id = 0; id < devices.size(); ++id) {
     const DeviceNow& now = fleet.devices[id];
-    const bool is_aboard =
-        std::find(aboard.begin(), aboard.end(), static_cast<std::int32_t>(id)) != aboard.end();
-    if (now.self_propelled) {
+    const bool is_aboard = carriers[id] != kNone;
+    if (!is_aboard && now.self_propelled) {
       Append(self_propelled, devices[id].name);
-    } else if (now.is_deployed) {
-      devices[id].damage_before = std::clamp(1.0 - now.health, 0.0, 1.0);
-      rescue.problem.devices.push_back(std::move(devices[id]));
-    } else if (!is_aboard) {
-      Append(in_port, devices[id].name);
+      continue;
     }
+    if (!is_aboard && !now.is_deployed) {
+      Append(in_port, devices[id].name);
+      continue;
+    }
+    devices[id].damage_before = std::clamp(1.0 - now.health, 0.0, 1.0);
+    if (is_aboard) {
+      const auto carrier = static_cast<std::size_t>(carriers[id]);
+      RescueShip& ship = problem.ships[carrier];
+      devices[id].cell = ship.cell;
+      ship.ready_s = 0.0;
+      ship.aboard.push_back(static_cast<std::int32_t>(problem.devices.size()));
+      Append(aboard[carrier], devices[id].name);
+    }
+    problem.devices.push_back(std::move(devices[id]));
+  }
+  for (std::size_t ship = 0; ship < aboard.size(); ++ship) {
+    if (!aboard[ship].empty()) RequireWayHome(ship, aboard[ship], rescue);
   }
   const auto note = [&](const char* code, const std::string& names, const char* text) {
     if (!names.empty()) rescue.warnings.push_back({code, "note", names + text, ""});
@@ -120,7 +136,7 @@ void UseFleet(const RescueRequest& request, const FleetState& fleet, RescueCase&
   counted.ships = static_cast<std::int32_t>(fleet.ships.size());
   ReadFleet(counted, rescue);
   PlaceShips(fleet, rescue);
-  KeepDeployed(fleet, rescue);
+  KeepDevices(fleet, rescue);
 }
 
 }  // namespace aquafarm::agents

@@ -40,7 +40,10 @@ class Follower {
     model_.Stay(own.cell, time_s_, alive_);
     ShipRoute route;
     route.ship = static_cast<std::int32_t>(ship_);
-    aboard_.clear();
+    aboard_ = own.aboard;
+    for (const std::int32_t device : aboard_) {
+      plan_.devices[static_cast<std::size_t>(device)].fetch_s = time_s_;
+    }
     bool in_port = true;
     for (const TripStop& stop : trips.stops) {
       if (in_port) Leave(route);
@@ -151,9 +154,15 @@ class SimpleRule {
   SimpleRule(const TripModel& model, FetchRule rule) : model_(model), rule_(rule) {
     const RescueProblem& problem = model.problem();
     for (std::size_t ship = 0; ship < problem.ships.size(); ++ship) {
-      ships_.push_back({{ship, {}}, model.PlaceOfShip(ship), problem.ships[ship].ready_s, 0});
+      const RescueShip& own = problem.ships[ship];
+      ships_.push_back({{ship, {}},
+                        model.PlaceOfShip(ship),
+                        own.ready_s,
+                        static_cast<std::int32_t>(own.aboard.size())});
     }
-    for (std::size_t d = 0; d < problem.devices.size(); ++d) waiting_.push_back(d);
+    for (std::size_t d = 0; d < problem.devices.size(); ++d) {
+      if (problem.CarrierOf(d) == kNone) waiting_.push_back(d);
+    }
   }
 
   std::vector<ShipTrips> Take() {

@@ -292,7 +292,8 @@ class JsonReport {
                       {"port", OfId(PortAt(ship.cell))},
                       {"speed_kn", Rounded(ship.speed_kn, 0.01)},
                       {"capacity", ship.capacity},
-                      {"ready", Time(ship.ready_s)}});
+                      {"ready", Time(ship.ready_s)},
+                      {"aboard", ship.aboard}});
     }
     return list;
   }
@@ -381,34 +382,6 @@ class JsonReport {
     return list;
   }
 
-  Json LeftBehind() const {
-    Json list = Json::array();
-    for (std::size_t d = 0; d < case_.problem.devices.size(); ++d) {
-      const DeviceOutcome& outcome = report_.plan.devices[d];
-      if (outcome.ship != kNone) continue;
-      const std::string& name = case_.problem.devices[d].name;
-      const bool has_time = report_.deadlines[d].back().leave_s.has_value();
-      if (outcome.mean_loss_idle <= 0.0) {
-        list.push_back({{"device", d},
-                        {"reason", "safe_in_place"},
-                        {"text", name + ": no winds reach it in any of the futures."}});
-      } else if (case_.problem.ships.empty()) {
-        list.push_back(
-            {{"device", d}, {"reason", "no_ship"}, {"text", name + ": there is no ship."}});
-      } else if (has_time) {
-        list.push_back({{"device", d},
-                        {"reason", "no_ship"},
-                        {"text", name + ": the ships save more with other devices first."}});
-      } else {
-        list.push_back({{"device", d},
-                        {"reason", "too_late"},
-                        {"text", name + ": no ship can have it in port before the winds with a "
-                                        "chance of 50 %."}});
-      }
-    }
-    return list;
-  }
-
   Json Plan() const {
     Json routes = Json::array();
     for (const ShipRoute& route : report_.plan.routes) {
@@ -432,7 +405,7 @@ class JsonReport {
         {"expected_value", Money(report_.plan.saved)},
         {"bound", Money(std::max(report_.plan.bound, report_.plan.saved))},
         {"routes", routes},
-        {"left_behind", LeftBehind()}};
+        {"left_behind", LeftBehindOf(case_, report_)}};
   }
 
   Json Loss() const {

@@ -24,22 +24,24 @@ std::string Clock(const RescueCase& rescue, double time_s) {
          "Z)";
 }
 
-bool IsReached(const RescueCase& rescue, const Ensemble& ensemble) {
-  for (const RescueDevice& device : rescue.problem.devices) {
-    const std::int16_t* arrival = ensemble.Arrival(ensemble.rings() - 1, device.cell);
-    const auto end = arrival + ensemble.members();
-    if (std::any_of(arrival, end, [](std::int16_t a) { return a != Ensemble::kNoArrival; })) {
-      return true;
-    }
+// Returns whether winds reach a device, or the way of a ship, in any member.
+bool IsReached(const RescueCase& rescue, const Ensemble& ensemble, const RescuePlan& plan) {
+  std::vector<Cell> cells = rescue.Sites();
+  for (const ShipRoute& route : plan.routes) {
+    for (const TimedCell& at : route.path) cells.push_back(at.cell);
   }
-  return false;
+  return std::any_of(cells.begin(), cells.end(), [&](Cell cell) {
+    const std::int16_t* arrival = ensemble.Arrival(ensemble.rings() - 1, cell);
+    return std::any_of(arrival, arrival + ensemble.members(),
+                       [](std::int16_t at) { return at != Ensemble::kNoArrival; });
+  });
 }
 
 void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
   const StormRecord& storm = rescue.storm;
   const std::string until = FormatUtc(
       rescue.start + static_cast<std::int64_t>((ensemble.steps() - 1) * ensemble.options().step_s));
-  if (!IsReached(rescue, ensemble)) {
+  if (!IsReached(rescue, ensemble, report.plan)) {
     const bool is_unknown = storm.passage.unknown[0] != 0;
     report.result = is_unknown ? PlanResult::kStormUnknown : PlanResult::kStormStaysAway;
     report.text = is_unknown
@@ -52,14 +54,17 @@ void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
     rescue.warnings.push_back({is_unknown ? "storm_unknown" : "storm_stays_away",
                                is_unknown ? "stop" : "warning", report.text,
                                "Get the next bulletin."});
-  } else if (report.plan.routes.empty()) {
+  } else if (report.plan.saved <= 0.0) {
     report.result = PlanResult::kNothingSaved;
     report.text = rescue.problem.ships.empty()
                       ? "There is no ship, so nothing can be saved."
                       : "No ship can bring a device to a port before the winds that stop ships: "
                         "nothing can be saved.";
-    rescue.warnings.push_back(
-        {"nothing_can_be_saved", "stop", report.text, "Keep the ships in port."});
+    rescue.warnings.push_back({"nothing_can_be_saved", "stop", report.text,
+                               report.plan.routes.empty()
+                                   ? "Keep the ships in port."
+                                   : "Bring the ships with devices aboard to the ports of their "
+                                     "orders; keep the others in port."});
   } else {
     report.result = storm.age_h >= 12.0 ? PlanResult::kBulletinOld : PlanResult::kPlan;
     report.text = std::to_string(report.plan.routes.size()) + " of " +

@@ -53,7 +53,35 @@ Json WarningsOf(const RescueCase& rescue) {
     list.push_back({{"code", one.code},
                     {"severity", one.severity},
                     {"text", one.text},
-                    {"advice", one.advice}});
+                    {"advice", one.advice},
+                    {"ship", OfId(one.ship)}});
+  }
+  return list;
+}
+
+Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report) {
+  const RescueProblem& problem = rescue.problem;
+  Json list = Json::array();
+  for (std::size_t d = 0; d < problem.devices.size(); ++d) {
+    const DeviceOutcome& outcome = report.plan.devices[d];
+    if (outcome.ship != kNone) continue;
+    const char* reason = "too_late";
+    std::string text = "no ship can have it in port before the winds with a chance of 50 %.";
+    if (problem.CarrierOf(d) != kNone) {
+      reason = "unreachable";
+      text = "it is aboard a ship that reaches no open port.";
+    } else if (outcome.mean_loss_idle <= 0.0) {
+      reason = "safe_in_place";
+      text = "no winds reach it in any of the futures.";
+    } else if (problem.ships.empty()) {
+      reason = "no_ship";
+      text = "there is no ship.";
+    } else if (report.deadlines[d].back().leave_s) {
+      reason = "no_ship";
+      text = "the ships save more with other devices first.";
+    }
+    list.push_back(
+        {{"device", d}, {"reason", reason}, {"text", problem.devices[d].name + ": " + text}});
   }
   return list;
 }

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/agents/rescue/rescue_case.h"
+#include "aquafarm/agents/rescue/plan_report.h"
 #include "aquafarm/grid/cell.h"
 #include "aquafarm/grid/geo_frame.h"
 
@@ -27,6 +27,8 @@ Json OfPlace(GeoPoint place);
 std::string Hex(std::uint64_t value);
 /// Summary and exceedance curve. @param losses one per member, at least one
 Json LossOf(std::vector<float> losses);
+/// Devices without an order, each with the reason.
+Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report);
 Json WarningsOf(const RescueCase& rescue);
 Json AssumptionsOf(const RescueCase& rescue);
 

@@ -44,7 +44,13 @@ void RequireValid(const RescueProblem& problem) {
     require(device.damage_before >= 0.0 && device.damage_before <= 1.0, device.name,
             "damaged: expected a share in [0, 1]");
   }
+  std::vector<std::int32_t> carriers(problem.devices.size(), 0);
   for (const RescueShip& ship : problem.ships) {
+    for (const std::int32_t device : ship.aboard) {
+      const bool exists = device >= 0 && static_cast<std::size_t>(device) < carriers.size();
+      require(exists && ++carriers[static_cast<std::size_t>(device)] == 1, ship.name,
+              "aboard: expected devices of the problem, each aboard one ship");
+    }
     require(ship.speed_kn > 0.0 && std::isfinite(ship.speed_kn), ship.name,
             "speed: expected more than 0 knots");
     require(ship.capacity >= 1, ship.name, "capacity: expected at least 1");
@@ -114,21 +120,23 @@ RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble) {
   const TripModel model(problem, ensemble);
   const std::size_t alternatives = problem.risk_averse > 0.0 ? kAlternatives : 1;
   // Ships of one kind in one place have the same trips.
-  using Kind = std::tuple<std::size_t, double, double, std::int32_t>;
+  using Kind = std::tuple<std::size_t, double, double, std::int32_t, std::vector<std::int32_t>>;
   std::map<Kind, TripTable> tables;
   std::vector<Team> teams(1);
   bool is_exhaustive = true;
   for (std::size_t ship = 0; ship < problem.ships.size(); ++ship) {
     const RescueShip& one = problem.ships[ship];
     const auto cell = static_cast<std::size_t>(one.cell.y * problem.water.cols() + one.cell.x);
-    const Kind kind{cell, one.speed_kn, one.ready_s, one.capacity};
+    const Kind kind{cell, one.speed_kn, one.ready_s, one.capacity, one.aboard};
     if (tables.count(kind) == 0) tables[kind] = SearchTrips(model, ship, alternatives);
     const TripTable& table = tables[kind];
     is_exhaustive = is_exhaustive && table.is_exhaustive;
     std::vector<Team> next;
     for (const Team& team : teams) {
-      next.push_back(team);
-      next.back().trips.push_back(nullptr);
+      if (one.aboard.empty() || table.plans.empty()) {  // it stays
+        next.push_back(team);
+        next.back().trips.push_back(nullptr);
+      }
       for (const auto& [devices, plans] : table.plans) {
         if ((team.devices & devices) != 0) continue;
         for (const TripPlan& trips : plans) {

@@ -129,13 +129,16 @@ std::int32_t TripModel::NearestPort(std::size_t place) const {
 double TripModel::BoundOf(std::size_t device) const {
   const std::int32_t port = NearestPort(PlaceOfDevice(device));
   if (port == kNone) return 0.0;
+  const std::int32_t carrier = problem_.CarrierOf(device);
   double fetch_s = std::numeric_limits<double>::infinity();
   double deliver_s = fetch_s;
   const double back =
       routes_.Length(PlaceOfDevice(device), PlaceOfPort(static_cast<std::size_t>(port)));
   for (std::size_t ship = 0; ship < problem_.ships.size(); ++ship) {
+    if (carrier != kNone && static_cast<std::size_t>(carrier) != ship) continue;
     const double out = routes_.Length(PlaceOfShip(ship), PlaceOfDevice(device));
-    const double fetched = problem_.ships[ship].ready_s + out * Pace(ship) + problem_.handling_s;
+    const double fetched = problem_.ships[ship].ready_s + out * Pace(ship) +
+                           (carrier == kNone ? problem_.handling_s : 0.0);
     fetch_s = std::min(fetch_s, fetched);
     deliver_s = std::min(deliver_s, fetched + back * Pace(ship) + problem_.handling_s);
   }
@@ -146,20 +149,30 @@ double TripModel::BoundOf(std::size_t device) const {
 }
 
 std::vector<TimedCell> TripModel::FirstTrip(std::size_t ship, std::size_t device) const {
-  const std::int32_t port = NearestPort(PlaceOfDevice(device));
-  const SeaRoute& out = routes_.Between(PlaceOfShip(ship), PlaceOfDevice(device));
-  if (port == kNone || out.cells.empty()) return {};
-  const SeaRoute& back =
-      routes_.Between(PlaceOfDevice(device), PlaceOfPort(static_cast<std::size_t>(port)));
+  const std::int32_t carrier = problem_.CarrierOf(device);
+  if (carrier != kNone && static_cast<std::size_t>(carrier) != ship) return {};
+  std::vector<std::size_t> places{PlaceOfShip(ship)};
+  const auto add_port = [&] {
+    const std::int32_t port = NearestPort(places.back());
+    if (port != kNone) places.push_back(PlaceOfPort(static_cast<std::size_t>(port)));
+    return port != kNone;
+  };
+  if (!problem_.ships[ship].aboard.empty() && !add_port()) return {};
+  if (carrier == kNone) {
+    places.push_back(PlaceOfDevice(device));
+    if (!add_port()) return {};
+  }
   const double pace = Pace(ship);
   std::vector<TimedCell> left;
   double time_s = 0.0;
-  for (const SeaRoute* route : {&out, &back}) {
-    for (std::size_t i = 0; i + 1 < route->cells.size(); ++i) {
-      left.push_back({route->cells[i], time_s + route->length[i + 1] * pace});
+  for (std::size_t leg = 1; leg < places.size(); ++leg) {
+    const SeaRoute& route = routes_.Between(places[leg - 1], places[leg]);
+    if (route.cells.empty()) return {};
+    for (std::size_t i = 0; i + 1 < route.cells.size(); ++i) {
+      left.push_back({route.cells[i], time_s + route.length[i + 1] * pace});
     }
-    time_s += route->length.back() * pace + problem_.handling_s;
-    left.push_back({route->cells.back(), time_s});
+    time_s += route.length.back() * pace + problem_.handling_s;
+    left.push_back({route.cells.back(), time_s});
   }
   return left;
 }

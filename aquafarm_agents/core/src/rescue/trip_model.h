@@ -55,7 +55,8 @@ class TripModel {
   /// Upper bound of the value that any ship can save of a device.
   double BoundOf(std::size_t device) const;
   /// Returns the times of a ship's first trip to a device, relative to its departure: for each cell
-  /// the time when it leaves it, and the time of delivery at the end. Empty if there is no way.
+  /// the time when it leaves it, and the time of delivery at the end. A ship with devices aboard
+  /// delivers them first. Empty if there is no way, or another ship has the device aboard.
   std::vector<TimedCell> FirstTrip(std::size_t ship, std::size_t device) const;
 
  private:

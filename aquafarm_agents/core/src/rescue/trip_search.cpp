@@ -20,11 +20,19 @@ class TripSearch {
     for (std::size_t d = 0; d < Devices(); ++d) bound_.push_back(model.BoundOf(d));
     std::vector<Node> layer(1);
     Node& start = layer[0];
+    for (const std::int32_t device : Ship().aboard) {
+      start.aboard |= Bit(static_cast<std::size_t>(device));
+    }
+    start.taken = start.aboard;
+    for (std::size_t d = 0; d < Devices(); ++d) {
+      const bool is_fetchable =
+          model.problem().CarrierOf(d) == kNone || (start.taken & Bit(d)) != 0;
+      if (!is_fetchable) bound_[d] = 0.0;  // another ship has it aboard
+    }
     start.place = model.PlaceOfShip(ship);
     start.time_s = Ship().ready_s;
     start.alive.assign(static_cast<std::size_t>(model.ensemble().members()), 1);
     model.Stay(Ship().cell, start.time_s, start.alive);
-    if (CountAlive(start.alive) == 0) layer.clear();
     while (!layer.empty()) {
       std::vector<Node> next;
       for (const Node& node : layer) Expand(node, next);
@@ -60,7 +68,22 @@ class TripSearch {
       }
     }
     if (node.aboard == 0) return;
-    for (const std::size_t port : PortsAfter(node)) Deliver(node, port, next);
+    const std::vector<std::size_t> ports = node.stops.empty() ? OpenPorts(node) : PortsAfter(node);
+    for (const std::size_t port : ports) Deliver(node, port, next);
+  }
+
+  // Returns all open ports, the nearest one first.
+  std::vector<std::size_t> OpenPorts(const Node& node) const {
+    std::vector<std::size_t> ports;
+    for (std::size_t port = 0; port < model_.problem().ports.size(); ++port) {
+      if (model_.problem().ports[port].is_open) ports.push_back(port);
+    }
+    const auto length = [&](std::size_t port) {
+      return model_.routes().Length(node.place, model_.PlaceOfPort(port));
+    };
+    std::stable_sort(ports.begin(), ports.end(),
+                     [&](std::size_t a, std::size_t b) { return length(a) < length(b); });
+    return ports;
   }
 
   // Returns the nearest open port, and those on the way to the devices that still wait.
@@ -90,12 +113,13 @@ class TripSearch {
     child.place = place;
     child.stops.push_back(stop);
     model_.Move(ship_, node.place, place, child.time_s, child.alive);
-    return CountAlive(child.alive) > 0;
+    return true;
   }
 
   void Fetch(const Node& node, std::size_t device, std::vector<Node>& next) const {
     Node child;
     if (!Go(node, model_.PlaceOfDevice(device), {OrderKind::kFetch, device}, child)) return;
+    if (CountAlive(child.alive) == 0) return;
     child.taken |= Bit(device);
     child.aboard |= Bit(device);
     next.push_back(std::move(child));
@@ -107,10 +131,11 @@ class TripSearch {
     for (std::size_t d = 0; d < Devices(); ++d) {
       if ((child.aboard & Bit(d)) != 0) child.saved += model_.Saved(d, child.time_s, child.alive);
     }
-    if (child.saved <= node.saved) return;  // it saves nothing more
+    // A ship that starts with devices aboard must bring them to a port, whatever that saves.
+    if (child.saved <= node.saved && !node.stops.empty()) return;
     child.aboard = 0;
     Record(child);
-    next.push_back(std::move(child));
+    if (CountAlive(child.alive) > 0) next.push_back(std::move(child));
   }
 
   void Record(const Node& node) {

@@ -71,6 +71,7 @@ class Changes {
       RescueProblem changed = problem_;
       changed.ships.push_back(problem_.ships[0]);
       changed.ships.back().cell = port.cell;
+      changed.ships.back().aboard.clear();
       WhatIf row = Compare("ships+1", "one ship more, at " + port.name, plan_,
                            PlanRescue(changed, ensemble_));
       if (!best || row.loss.mean < best->loss.mean) best = std::move(row);
@@ -85,20 +86,28 @@ class Changes {
     }
     std::optional<WhatIf> best;
     for (std::size_t ship = 0; ship < problem_.ships.size(); ++ship) {
+      if (!problem_.ships[ship].aboard.empty()) continue;  // its devices need it
       RescueProblem changed = problem_;
       changed.ships.erase(changed.ships.begin() + static_cast<std::ptrdiff_t>(ship));
       WhatIf row = Compare("ships-1", "one ship fewer, without " + problem_.ships[ship].name, plan_,
                            PlanRescue(changed, ensemble_));
       if (!best || row.loss.mean < best->loss.mean) best = std::move(row);
     }
-    rows_.push_back(std::move(*best));
+    if (best) return rows_.push_back(std::move(*best));
+    AddImpossible("ships-1", "one ship fewer: every ship has devices aboard");
   }
 
   void Depart(int hours) {
     RescueProblem changed = problem_;
-    for (RescueShip& ship : changed.ships) ship.ready_s += 3600.0 * hours;
+    bool all_wait = true;
+    for (RescueShip& ship : changed.ships) {
+      if (ship.aboard.empty()) ship.ready_s += 3600.0 * hours;
+      all_wait = all_wait && ship.aboard.empty();
+    }
     Add("depart+" + std::to_string(hours) + "h",
-        "all ships leave " + std::to_string(hours) + " hours later", changed);
+        (all_wait ? "all ships leave " : "all ships without devices aboard leave ") +
+            std::to_string(hours) + " hours later",
+        changed);
   }
 
   void ClosePort(std::size_t port) {

@@ -76,18 +76,41 @@ TEST_F(Fleet, DevicesInPortAreLeftOutAndTheOthersKeepTheirNames) {
 }
 
 // Open water from (14, 4) to port C at (16, 4): two cells of 1 km at 12 knots, then a drop-off.
-TEST_F(Fleet, AShipWithADeviceAboardDeliversItFirst) {
+TEST_F(Fleet, AShipWithADeviceAboardIsOrderedToDeliverIt) {
+  request_.depart_s = 7200.0;  // does not hold for a ship at sea with a device aboard
   fleet_.ships = {{{14, 4}, {2}}};
   fleet_.devices[2].is_deployed = false;
+  fleet_.devices[2].health = 0.5;
   UseFleet(request_, fleet_, case_);
-  ASSERT_EQ(case_.problem.devices.size(), 3U);
-  const RescueShip& ship = case_.problem.ships[0];
-  EXPECT_EQ(ship.cell, (Cell{16, 4}));
-  EXPECT_NEAR(ship.ready_s, 2000.0 / (12.0 * 0.514444) + case_.problem.handling_s, 1.0);
+  ASSERT_EQ(case_.problem.devices.size(), 4U);
+  EXPECT_EQ(case_.problem.devices[2].name, "D3");
+  EXPECT_EQ(case_.problem.devices[2].cell, (Cell{14, 4}));
+  EXPECT_EQ(case_.problem.devices[2].damage_before, 0.5);
   EXPECT_EQ(case_.warnings.back().code, "devices_aboard");
-  EXPECT_NE(case_.warnings.back().text.find("ship 1 has D3 aboard and first delivers at port C"),
-            std::string::npos)
-      << case_.warnings.back().text;
+  EXPECT_EQ(case_.warnings.back().ship, 0);
+  const Ensemble ensemble(case_.forecast, case_.ensemble, case_.Sites());
+  const PlanReport report = MakeReport(case_, ensemble);
+  ASSERT_EQ(report.plan.routes.size(), 1U);
+  const std::vector<RescueOrder>& orders = report.plan.routes[0].orders;
+  ASSERT_GE(orders.size(), 2U);
+  EXPECT_EQ(orders[0].kind, OrderKind::kLeave);
+  EXPECT_EQ(orders[0].cell, (Cell{14, 4}));
+  EXPECT_EQ(orders[0].time_s, 0.0);
+  EXPECT_EQ(orders[1].kind, OrderKind::kDeliver);
+  EXPECT_EQ(orders[1].port, 2);
+  EXPECT_EQ(orders[1].devices, std::vector<std::int32_t>{2});
+  EXPECT_NEAR(orders[1].time_s, 2000.0 / (12.0 * 0.514444) + case_.problem.handling_s, 1.0);
+  EXPECT_EQ(report.plan.devices[2].home, orders[1].probability);
+  EXPECT_GT(report.plan.devices[2].mean_loss_idle, 0.0);
+  EXPECT_LT(report.plan.devices[2].mean_loss, report.plan.devices[2].mean_loss_idle);
+}
+
+TEST_F(Fleet, UnknownDevicesAboardAreRefused) {
+  fleet_.ships = {{{14, 4}, {7}}};
+  EXPECT_EQ(
+      Refusal(),
+      "state: ship 1: got device 7 aboard, expected ids of devices in [0, 4), each aboard one "
+      "ship");
 }
 
 TEST_F(Fleet, WithoutADeviceLeftNothingIsPlanned) {

@@ -136,6 +136,51 @@ TEST_F(Rescue, ADeadlineIsTheLastDepartureWithItsChance) {
   EXPECT_GT(found, 3);
 }
 
+// A ship at sea with a device aboard: its way home is judged like every other way.
+TEST_F(Rescue, ADeviceAboardIsDeliveredWithTheOddsOfItsWayHome) {
+  problem_.ships[0].cell = problem_.devices[0].cell;
+  problem_.ships[0].speed_kn = 7.0;  // too slow to be home before the winds in all members
+  problem_.ships[0].aboard = {0};
+  const RescuePlan plan = PlanRescue(problem_, ensemble_);
+  const DeviceOutcome& outcome = plan.devices[0];
+  ASSERT_EQ(outcome.ship, 0);
+  EXPECT_EQ(outcome.fetch_s, 0.0);
+  const ShipRoute& route = plan.routes.front();
+  ASSERT_EQ(route.ship, 0);
+  int home = 0;
+  for (std::size_t member = 0; member < 400; ++member) {
+    home += Works(problem_, ensemble_, route, outcome.deliver_s, member) ? 1 : 0;
+  }
+  EXPECT_NEAR(outcome.home, home / 400.0, 1e-9);
+  EXPECT_GT(home, 20);
+  EXPECT_LT(home, 380);
+  for (const ShipRoute& other : plan.routes) {
+    for (const RescueOrder& order : other.orders) EXPECT_NE(order.device, 0);
+  }
+  const auto deadlines = Deadlines(problem_, ensemble_, {0.01});
+  EXPECT_EQ(deadlines[0][0].ship, 0) << "no other ship can bring it home";
+}
+
+TEST_F(Rescue, AShipWithADeviceAboardIsNeverWithoutAnOrder) {
+  problem_.ships[0].aboard = {0};
+  problem_.devices[0].cell = problem_.ships[0].cell = {0, 5};
+  problem_.ships[0].speed_kn = 1.0;  // the winds overtake it in every member
+  const RescuePlan late = PlanRescue(problem_, ensemble_);
+  ASSERT_EQ(late.devices[0].ship, 0);
+  EXPECT_EQ(late.devices[0].home, 0.0);
+  EXPECT_EQ(late.routes[0].orders.back().kind, OrderKind::kDeliver);
+  CentralForecast calm = test::PassingStorm();
+  for (StormPoint& point : calm.path.points) point.y = 900.0;
+  EnsembleOptions options = test::SmallEnsemble(50);
+  const RescuePlan sure = PlanRescue(problem_, Ensemble(calm, options, test::SitesOf(problem_)));
+  ASSERT_EQ(sure.routes.size(), 1U);
+  EXPECT_EQ(sure.routes[0].orders.back().devices, std::vector<std::int32_t>{0});
+  for (const WhatIf& row : CompareChanges(problem_, ensemble_, late)) {
+    EXPECT_TRUE(row.change != "ships-1" || row.text.find("ship 2") != std::string::npos)
+        << row.text;
+  }
+}
+
 TEST_F(Rescue, ShipsStayInPortWhenTheWindsAreThere) {
   for (RescueShip& ship : problem_.ships) ship.ready_s = 59 * 600.0;
   const RescuePlan plan = PlanRescue(problem_, ensemble_);

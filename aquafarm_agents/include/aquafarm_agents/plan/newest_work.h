@@ -52,6 +52,12 @@ class NewestWork {
     return waiting_.has_value() || working_;
   }
 
+  /// Returns for how long the present call has run [s]; 0 if there is none.
+  double busy_s() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return working_ ? std::chrono::duration<double>(Clock::now() - began_).count() : 0.0;
+  }
+
  private:
   void Run() {
     std::unique_lock<std::mutex> lock(mutex_);
@@ -65,7 +71,8 @@ class NewestWork {
       const Request request = std::move(*waiting_);
       waiting_.reset();
       working_ = true;
-      next = Clock::now() + std::chrono::duration_cast<Clock::duration>(min_period_);
+      began_ = Clock::now();
+      next = began_ + std::chrono::duration_cast<Clock::duration>(min_period_);
       lock.unlock();
       work_(request);
       lock.lock();
@@ -79,6 +86,7 @@ class NewestWork {
   std::condition_variable changed_;
   std::optional<Request> waiting_;
   bool working_{};
+  Clock::time_point began_;  // of the present call
   bool ending_{};
   std::thread thread_;  // last: it uses all others
 };

@@ -16,17 +16,9 @@
 #include <aquafarm_msgs/RescuePlan.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <string>
-
 namespace aquafarm_agents {
 
 /// Returns the markers of a plan; the first one deletes those of the plan before.
 visualization_msgs::MarkerArray PlanMarkers(const aquafarm_msgs::RescuePlan& plan);
-
-/// Returns a probability for people: "> 99 %", "87 %", "< 1 %".
-std::string PercentText(double probability);
-
-/// Returns a local time, with day if it is not that of the plan's start: "14:05", "25 Jul 02:10".
-std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time time);
 
 }  // namespace aquafarm_agents

@@ -12,8 +12,13 @@ namespace aquafarm_viz {
 
 using PlanRow = std::vector<std::string>;
 
+/// Silence of plan_node after which its plan counts as no longer renewed [s]. Its heartbeat has a
+/// period of 1 s.
+inline constexpr double kPlanSilence_s = 5.0;
+
 /// Returns the outcome, the time from which no ship should leave, and what is outdated.
-std::string PlanHeadline(const aquafarm_msgs::RescuePlan& plan);
+/// @param silent_s time since the last plan or heartbeat of plan_node [s]
+std::string PlanHeadline(const aquafarm_msgs::RescuePlan& plan, double silent_s);
 
 /// Column titles of the tables. Each row has the same number of entries.
 const PlanRow& PlanShipColumns();
@@ -26,8 +31,5 @@ std::vector<PlanRow> PlanShips(const aquafarm_msgs::RescuePlan& plan, ros::Time 
 /// Returns the probability of each device to come home, and its deadlines: the latest departures
 /// for 95, 80 and 50 %.
 std::vector<PlanRow> PlanDevices(const aquafarm_msgs::RescuePlan& plan);
-
-/// Returns a local time, with day if it is not that of the plan's start: "14:05", "25 Jul 02:10".
-std::string PlanTime(const aquafarm_msgs::RescuePlan& plan, ros::Time time);
 
 }  // namespace aquafarm_viz

@@ -8,6 +8,7 @@
 #include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/RescuePlan.h>
 #include <aquafarm_msgs/TrainingStatus.h>
+#include <ros/steady_timer.h>
 
 #include <cstdint>
 #include <string>
@@ -36,7 +37,13 @@ class RanchModel {
   std::string Take(const aquafarm_msgs::FarmSpecConstPtr& spec) { return pairing_.AddSpec(spec); }
   std::string Take(const aquafarm_msgs::FarmStateConstPtr& state);
   void Take(const aquafarm_msgs::TrainingStatusConstPtr& training);
-  void Take(const aquafarm_msgs::RescuePlanConstPtr& plan) { plan_ = plan; }
+  /// @param now steady time at which the plan was received
+  void Take(const aquafarm_msgs::RescuePlanConstPtr& plan, ros::SteadyTime now) {
+    plan_ = plan;
+    plan_heard_ = now;
+  }
+  /// Notes a heartbeat of plan_node.
+  void HearPlanNode(ros::SteadyTime now) { plan_heard_ = now; }
 
   /// Returns "paper   episode 12   step 17 / 5,000   return −42.5", or "no ranch yet" before the
   /// first state.
@@ -55,6 +62,8 @@ class RanchModel {
 
   /// Returns the last rescue plan; null before the first one.
   const aquafarm_msgs::RescuePlanConstPtr& plan() const { return plan_; }
+  /// Returns the time since the last plan or heartbeat of plan_node [s].
+  double PlanSilence(ros::SteadyTime now) const { return (now - plan_heard_).toSec(); }
   /// Returns the time of the plan's next orders: that of the ranch if the plan follows it, else the
   /// plan's start.
   ros::Time PlanNow() const;
@@ -77,6 +86,7 @@ class RanchModel {
   Pairing pairing_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
   aquafarm_msgs::RescuePlanConstPtr plan_;
+  ros::SteadyTime plan_heard_;
   std::vector<CurvePoint> curve_;
   std::uint64_t every_{1};  // keeps one of this many received points
   std::uint64_t came_{};

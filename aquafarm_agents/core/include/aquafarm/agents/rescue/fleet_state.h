@@ -35,9 +35,10 @@ struct FleetState {
 
 /// Replaces the layout, the ships and the devices of a case by those of a running ranch.
 ///
-/// Devices keep their names D1, D2, … by id. The plan leaves out devices that are aboard, in port
-/// or self-propelled; notes name them. A ship with devices aboard first delivers them at the
-/// nearest open port, where its plan begins. `damage_before` is 1 minus the device's health.
+/// Devices keep their names D1, D2, … by id. The plan leaves out devices that are in port or
+/// self-propelled; notes name them. A device aboard is at its ship's cell, and the ship may leave
+/// at once, whatever `request.depart_s` is (RescueShip::aboard). `damage_before` is 1 minus the
+/// device's health.
 ///
 /// @param request of the case; without files of devices and ships
 /// @throws InputError if the state does not fit the scenario, or the request names such files

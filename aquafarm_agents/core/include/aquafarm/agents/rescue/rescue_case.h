@@ -45,6 +45,7 @@ struct RescueWarning {
   std::string severity;  ///< stop, warning or note
   std::string text;
   std::string advice;
+  std::int32_t ship{kNone};  ///< index in RescueProblem::ships; kNone: it is about all of them
 };
 
 /// Basis of a number of the plan.

@@ -12,6 +12,10 @@
 /// not delivered, including one aboard, takes the damage of the whole storm at its own site. A plan
 /// continues neither after the storm nor beyond the time until which the storm is known.
 ///
+/// **Devices aboard at the start.** A ship that starts with devices aboard always gets the order to
+/// deliver them, also if no winds are expected or if winds stop it in all members. Their site is
+/// the cell where the plan finds the ship.
+///
 /// **Damage.** Until it is delivered, a device loses in each step the share
 /// `exposure_damage` · |r| · `damage_factor` of its value, where r is the risk at its site. It
 /// never loses more than the value that it still has.
@@ -21,6 +25,7 @@
 #include <vector>
 
 #include "aquafarm/agents/rescue/ensemble.h"
+#include "aquafarm/grid/action.h"
 #include "aquafarm/grid/cell.h"
 #include "aquafarm/grid/grid.h"
 
@@ -46,7 +51,8 @@ struct RescueShip {
   Cell cell{};
   double speed_kn{};  ///< with a device in tow, and without
   std::int32_t capacity{1};
-  double ready_s{};  ///< after the start of the plan
+  double ready_s{};                    ///< after the start of the plan
+  std::vector<std::int32_t> aboard{};  ///< devices that it carries at the start; may be empty
 };
 
 /// Inputs of PlanRescue.
@@ -60,6 +66,9 @@ struct RescueProblem {
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of the value per step of the ensemble and unit of |risk|
   double risk_averse{};       ///< 0: max mean; else the share of worst members whose mean counts
+
+  /// Returns the ship that starts with a device aboard; kNone if the device lies at its site.
+  std::int32_t CarrierOf(std::size_t device) const;
 };
 
 }  // namespace aquafarm::agents

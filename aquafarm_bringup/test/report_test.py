@@ -21,6 +21,7 @@ import roslib.packages
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from aquafarm_report import report  # noqa: E402
 from aquafarm_report.page import page as make_page, tiles  # noqa: E402
 from ranch import Ranch  # noqa: E402
 
@@ -187,6 +188,24 @@ class ReportTest(unittest.TestCase):
         for tile in ("<b>7</b><span>seed of the training", f"<b>{count}</b><span>episodes trained"):
             self.assertTrue(tile in self.page.text, tile)
 
+    def test_it_has_the_figure_of_aquafarm_evaluate(self):
+        prefix = self.folder / "evaluated"
+        code, words = run("aquafarm_agents", "aquafarm_evaluate", self.trained, "--write", prefix)
+        self.assertEqual(0, code, words)
+        summary = json.loads(prefix.with_suffix(".json").read_text())
+        mean, distinct = summary["return_per_episode"], summary["distinct_episodes"]
+        self.assertIn(f"<b>{mean:.1f}", self.page.text)
+        self.assertIn(f"{summary['episodes']} episodes, {distinct} distinct", self.page.words)
+
+    def test_the_interval_of_the_return_is_of_distinct_starts(self):
+        rows = [{"return": value} for value in ("90", "110", "90", "110")]
+        summary = {"return_per_episode": 100.0, "distinct_episodes": 4}
+        self.assertEqual("100.0 [88.7, 111.3]", report.interval_text(summary, rows))
+        summary["distinct_episodes"] = 2  # the other two are repetitions
+        self.assertEqual("100.0 [84.0, 116.0]", report.interval_text(summary, rows))
+        summary["distinct_episodes"] = 1
+        self.assertEqual("100.0", report.interval_text(summary, rows))
+
     def test_it_holds_curves_of_return_success_and_loss(self):
         self.assertIn("svg", self.page.names)
         curve = self.page.text[self.page.text.index("<svg"):self.page.text.index("</svg>")]
@@ -243,8 +262,17 @@ class ReportTest(unittest.TestCase):
         figures = list((output / "figures").glob("*.png"))
         self.assertEqual(len(figures) + 1, len(page.embedded("image/png")))
         for word in ("Benchmark on cove", "Q-learning, paper", "RANDOM", "The best learner",
-                     "Seeds of the trainings", "evaluation_episodes"):
+                     "Seeds of the trainings", "evaluation_episodes",
+                     "its share of the optimum", "Mean return of the last episodes"):
             self.assertIn(word, page.words)
+        rows = json.loads((output / "results.json").read_text())["table"]
+        best = next(row for row in rows if row["name"] == "q_learning")  # the only learner
+        head = page.words[:page.words.index("Table 1")]
+        self.assertIn(f"{best['return_iqm']:.1f}", head)
+        self.assertTrue("<b>Q-learning</b><span>best learner" in page.text)
+        for row in rows:
+            self.assertIn(row["label"], head)
+        self.assertNotIn("average rewards", page.words, "captions are words, not file names")
         self.assertEqual([""], self.too_wide(page.text))
 
     def test_with_money_it_shows_losses_next_to_the_references(self):

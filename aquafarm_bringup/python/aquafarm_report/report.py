@@ -13,12 +13,12 @@ matplotlib.use("svg")  # needs no display
 import numpy as np  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
 
-from aquafarm_report import films, page  # noqa: E402
+from aquafarm_report import films, intervals, page  # noqa: E402
 from aquafarm_report.films import ReportError  # noqa: E402
 
 WINDOW = 50  # episodes of the moving mean, as in the paper's measures
 POINTS = 800  # max points of a curve
-EPISODES = 100
+EPISODES = 1000  # as in aquafarm_evaluate
 
 
 def read_metrics(path):
@@ -58,8 +58,22 @@ def count_text(summary, episodes):
     return f"{episodes} episodes" + (f", {distinct} distinct" if distinct is not None else "")
 
 
+def interval_text(summary, rows):
+    """Returns "160.2 [157.0, 163.4]": the mean return and its 95 % interval, if there is one.
+
+    The interval is 1.96 standard errors; repetitions of a start do not count as evidence.
+    """
+    mean = f"{summary['return_per_episode']:.1f}"
+    distinct = summary.get("distinct_episodes") or 0
+    if distinct < 2:
+        return mean
+    returns = np.array([float(row["return"]) for row in rows])
+    margin = 1.96 * returns.std(ddof=1) / np.sqrt(distinct)
+    return f"{mean} [{returns.mean() - margin:.1f}, {returns.mean() + margin:.1f}]"
+
+
 def show_episodes(run, folder, episodes):
-    """Summary of a run's policy, and sections with the table, the map and the videos."""
+    """Summary of a run's policy, its episodes, and sections with the table, the map and the videos."""
     summary, rows = films.evaluate(run, folder, episodes)
     shown, chart = [], None
     for name, row in films.choose(rows):
@@ -69,15 +83,15 @@ def show_episodes(run, folder, episodes):
                    f"{float(row['return']):.1f} in {row['steps']} steps, {row['delivered']} of "
                    f"{row['devices']} home, {row['reason'].replace('_', ' ')}")
         shown.append(page.film(films.draw_film(bag, int(row["steps"])), caption))
-    keys = (("return_per_episode", "return per episode", "{:.1f}"),
-            ("success_rate", "success", "{:.1%}"), ("steps_per_episode", "steps", "{:.1f}"),
+    keys = (("success_rate", "success", "{:.1%}"), ("steps_per_episode", "steps", "{:.1f}"),
             ("crashes_per_episode", "crashes", "{:.2f}"),
             ("steps_in_disaster_per_episode", "steps in disaster", "{:.2f}"),
             ("energy_kwh_per_episode", "energy, kWh", "{:.2f}"),
             ("distance_km_per_episode", "distance, km", "{:.2f}"),
             ("delivered_health", "health of what came home", "{:.3f}"))
     table = page.table(["mean of an episode", ""], [
-        (name, form.format(summary[key])) for key, name, form in keys if key in summary])
+        ("return per episode, 95 % interval", interval_text(summary, rows)),
+        *((name, form.format(summary[key])) for key, name, form in keys if key in summary)])
     losses = []
     if "money" in summary:
         from aquafarm_report import money  # needs seconds to load, and few scenarios have it
@@ -85,7 +99,7 @@ def show_episodes(run, folder, episodes):
         losses = [money.show((summary["algorithm"], folder / "evaluation.csv"),
                              run / "scenario.yaml", folder, episodes,
                              summary["money"]["currency"])]
-    return summary, [
+    return summary, rows, [
         page.section(f"Greedy play, {count_text(summary, len(rows))}", table), *losses,
         page.section("The ranch", page.picture(chart, "at the start of an episode")),
         page.section("Best, median and worst episode",
@@ -96,14 +110,15 @@ def report_run(run, folder, episodes):
     """Page of a run folder."""
     settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
     columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
-    summary, sections = show_episodes(run, folder, episodes)
+    summary, rows, sections = show_episodes(run, folder, episodes)
     curves = [page.section("Training", draw_curves(columns))] if columns else []
     tiles = page.tiles([
         (settings["algorithm"], "learner"), (settings["scenario"], "scenario"),
-        (f"{summary['return_per_episode']:.1f}", "return per episode"),
+        (interval_text(summary, rows),
+         f"return per episode, 95 % interval, {count_text(summary, summary['episodes'])}"),
         (f"{summary['success_rate']:.0%}", "success"),
         (f"{len(columns.get('return', [])):,}", "episodes trained"),
-        (settings["seed"], "seed of the training"), (films.SEED, "seed of the films"),
+        (settings["seed"], "seed of the training"), (films.SEED, "seed of the episodes and films"),
         (settings["version"], "version")])
     return page.page(
         f"{settings['algorithm']} on {settings['scenario']}", tiles, *sections, *curves,
@@ -111,6 +126,24 @@ def report_run(run, folder, episodes):
                      page.details("run.json", json.dumps(settings, indent=2)),
                      page.details("scenario.yaml",
                                   (run / "scenario.yaml").read_text(encoding="utf-8"))))
+
+
+CAPTIONS = {
+    "rewards": "Return of each training episode (Fig. 6 of the paper); higher is better",
+    "average_rewards": "Mean return of the last episodes during the training; higher is better",
+    "mean_square_error": "Mean square error of the value estimates during the training",
+    "repeated_trainings": "Mean return over the repeated trainings of each learner",
+    "mean_score": "Score of each learner over the training",
+    "evaluation": "Return and success of the trained policies in the evaluation episodes",
+    "losses": "Losses of the trained policies in money",
+}
+
+
+def caption_of(stem):
+    """The caption of a figure of a benchmark, by the name of its file."""
+    if stem.startswith("route_"):
+        return f"Route and best moves of {stem[len('route_'):].replace('_', ' ')} in one episode"
+    return CAPTIONS.get(stem, stem.replace("_", " "))
 
 
 def best_run(benchmark):
@@ -127,13 +160,16 @@ def report_benchmark(benchmark, folder, episodes):
     """Page of a benchmark's folder."""
     settings = json.loads((benchmark / "benchmark.json").read_text(encoding="utf-8"))
     results = json.loads((benchmark / "results.json").read_text(encoding="utf-8"))
+    best = intervals.best_learner(results["table"])
     tiles = page.tiles([
+        (best["label"], "best learner"), (intervals.text(best), "its return, 95 % interval"),
+        (intervals.share(best), "its share of the optimum"),
         (settings.get("scenario", "–"), "scenario"), (len(results["table"]), "contestants"),
         (max(row["runs"] for row in results["table"]), "runs of each"),
         (settings.get("episodes", "–"), "episodes of a training"),
         (settings.get("evaluation_seed", "–"), "seed of the evaluation"),
         (settings.get("version", "–"), "version")])
-    figures = [page.picture(path, path.stem.replace("_", " "))
+    figures = [page.picture(path, caption_of(path.stem), path.stem.startswith("route_"))
                for path in sorted((benchmark / "figures").glob("*.png"))]
     losses = []
     if (benchmark / "losses.md").is_file():
@@ -144,10 +180,12 @@ def report_benchmark(benchmark, folder, episodes):
     if run is not None:
         name = run.parent.name
         shown = [page.section(f"The best learner: {name}, seed 1")]
-        shown += show_episodes(run, folder, episodes)[1]
+        shown += show_episodes(run, folder, episodes)[-1]
     seeds = sorted({run["seed"] for of_one in results["runs"].values() for run in of_one})
     return page.page(
         f"Benchmark on {settings.get('scenario', 'a ranch')}", tiles,
+        page.section("Return and share of the optimum", intervals.table(results["table"]),
+                     intervals.chart(results["table"])),
         page.section("Table 1, the paper's and ours", page.markdown_table(
             (benchmark / "table.md").read_text(encoding="utf-8"))),
         *losses, page.section("Figures", *figures), *shown,

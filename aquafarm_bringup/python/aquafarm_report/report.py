@@ -73,7 +73,7 @@ def interval_text(summary, rows):
 
 
 def show_episodes(run, folder, episodes):
-    """Summary of a run's policy, its episodes, and sections with the table, the map and the videos."""
+    """Summary of a run's policy, its episodes, and sections: table, map and videos."""
     summary, rows = films.evaluate(run, folder, episodes)
     shown, chart = [], None
     for name, row in films.choose(rows):

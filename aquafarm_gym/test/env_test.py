@@ -1,14 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of the Python environments without ROS: seeds, infos, autoreset, copies, rendering and
-rejected input.
+"""Tests of the Python environments without ROS: seeds, infos, autoreset, copies and rejected input.
 
 Runs in the virtual environment given by --venv (venv_tools.py), or in the Python that starts it.
 """
-import contextlib
 import copy
 import importlib.util
-import io
 import pathlib
 import pickle
 import sys
@@ -213,20 +210,6 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
         self.assertEqual(env.unwrapped.observation, "index")
         self.assertEqual(gymnasium.make("aquafarm/RedTide-v1").unwrapped.farms.name, "red_tide")
 
-    def test_render_shows_the_farm_as_text(self):
-        env = FarmEnv(render_mode="ansi")
-        env.reset(seed=1)
-        lines = env.render().splitlines()
-        self.assertRegex(lines[0], "^paper  step 0 of ")
-        self.assertEqual([len(line) for line in lines[1:]], [25] * 25)
-        self.assertEqual("".join(lines[1:]).count("0"), 1)
-        self.assertIn("<pre", env._repr_html_())
-        with contextlib.redirect_stdout(io.StringIO()) as shown:
-            FarmEnv(render_mode="human").reset(seed=1)
-        self.assertEqual(shown.getvalue(), env.render() + "\n")
-        self.assertEqual(len(FarmVectorEnv(3, render_mode="ansi").render()), 3)
-        self.assertIn("4 of 9 farms", FarmVectorEnv(9)._repr_html_())
-
     def test_masks_join_the_observation(self):
         env = ActionMaskInObservation(FarmEnv())
         seen, info = env.reset(seed=1)
@@ -293,10 +276,6 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
         mask = np.array([True, False])
         for call, words in (
                 (lambda: FarmEnv(3), "scenario: got 3, expected an aquafarm_core.Scenario, a file"),
-                (lambda: FarmEnv(render_mode="rgb_array"), "render_mode: got 'rgb_array', expected "
-                 "ansi, human or None; "),
-                (lambda: FarmVectorEnv(2, render_mode="human"), "render_mode: got 'human' for many "
-                 "farms, expected ansi or None; "),
                 (lambda: FarmEnv().reset(seed=2**63), "reset: seed: got 9223372036854775808, "
                  r"expected a whole number in \[0, 2\*\*63\); pass a smaller"),
                 (lambda: FarmParallelEnv().reset(seed=2**64), "reset: seed: got 18446744073709551"),
@@ -348,6 +327,32 @@ view: {mode: partial, monitoring_radius: 4, kinds: true}
             np.testing.assert_array_equal(envs.env_method("action_masks")[0], one.action_masks())
         self.assertGreaterEqual(ended, 2)
         self.assertEqual(VecMonitor(envs).reset().shape, (4, *envs.observation_space.shape))
+
+    @unittest.skipUnless(has("stable_baselines3"), "there is no stable_baselines3")
+    def test_ships_share_a_policy_of_stable_baselines3(self):
+        from aquafarm_gym import FarmVecEnv
+        text = aquafarm_gym.find_scenario("two_squads").yaml
+        squads = core.Scenario.parse(text.replace("step_limit: 5000", "step_limit: 20"), "squads")
+        envs, teams = FarmVecEnv(3, squads), TeamVectorEnv(3, squads, autoreset_mode="SameStep")
+        self.assertEqual((envs.num_envs, envs.action_masks().shape), (6, (6, 10)))
+        envs.seed(3)
+        np.testing.assert_array_equal(envs.reset(), np.concatenate(teams.reset(seed=3)[0]))
+        chance = np.random.default_rng(2)
+        for step in range(1, 41):
+            actions = chance.integers(0, 10, 6)
+            seen, rewards, dones, infos = envs.step(actions)
+            expected, _, terminated, truncated, more = teams.step(actions.reshape(3, 2))
+            np.testing.assert_array_equal(seen, np.concatenate(expected))
+            last = more.get("final_info", more)
+            np.testing.assert_array_equal(rewards, last["agent_rewards"].ravel())
+            np.testing.assert_array_equal(dones, np.repeat(terminated | truncated, 2))
+            self.assertEqual(dones.all(), step % 20 == 0)
+            if dones.all():
+                np.testing.assert_array_equal(infos[3]["terminal_observation"],
+                                              more["final_obs"][1][1])
+                self.assertEqual(infos[2]["episode"]["l"], 20)
+        with self.assertRaisesRegex(ValueError, "^scenario smart_devices: got self-propelled dev"):
+            FarmVecEnv(2, "smart_devices")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,8 @@ import json
 import os
 import pathlib
 import platform
+import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -14,7 +16,7 @@ import tempfile
 import time
 
 from aquafarm_benchmark import human, results, runs
-from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES, REFERENCES
+from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES, REFERENCES, Contestant
 
 _OK, _FAILED, _BAD_INPUT, _STORAGE, _INTERRUPTED = 0, 1, 2, 3, 130
 _EPILOG = """exit codes: 0 all is there, 1 some runs failed (the others are kept), 2 bad argument,
@@ -67,6 +69,9 @@ def parse(arguments):
     parser.add_argument("--human", default="none",
                         help="folder with bags of ./aquafarm play, which become a row; a folder "
                         "in it is one person (default: none)")
+    parser.add_argument("--learner", action="append", default=[], metavar="NAME=COMMAND",
+                        help="a learner of another package as a row: a program that trains and "
+                        "evaluates as aquafarm_gym.external describes; may be repeated")
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of aquafarm_train and aquafarm_evaluate (default: the "
                         "workspace's, or those on PATH)")
@@ -90,9 +95,40 @@ def parse(arguments):
     for name in options.algorithms:
         if name not in names:
             raise BadInput(f"algorithms: got '{name}', expected some of: {', '.join(names)}")
-    if not options.algorithms:
+    options.learners = [_external(text, number) for number, text in enumerate(
+        text for text in options.learner if text != "none")]
+    taken = [*names, *(one.name for one in options.learners)]
+    for one in options.learners:
+        if taken.count(one.name) > 1:
+            raise BadInput(f"learner: got '{one.name}', expected a name that no other row has")
+    if not options.algorithms and not options.learners:
         raise BadInput(f"algorithms: got none, expected some of: {', '.join(names)}")
     return options
+
+
+_EXTERNAL_COLOURS = ("#8c564b", "#e377c2", "#9467bd", "#393b79")
+
+
+def _external(text, number):
+    """Returns the row of 'NAME=COMMAND'."""
+    name, _, command = text.partition("=")
+    try:
+        words = tuple(shlex.split(command))
+    except ValueError:  # a quote that is not closed
+        words = ()
+    if not re.fullmatch("[a-z][a-z0-9_]*", name) or not words:
+        raise BadInput(f"learner: got '{text}', expected NAME=COMMAND with a name of a-z, 0-9 and _, "
+                       "as mine=python3 my_learner.py")
+    return Contestant(name, name, _EXTERNAL_COLOURS[number % len(_EXTERNAL_COLOURS)],
+                      command=words)
+
+
+def _external_command(one, options, seed, run):
+    """Returns the command that trains and evaluates a learner of another package."""
+    return [*one.command, one.scenario or options.scenario, "--name", one.name,
+            "--max-steps", str(options.max_steps), "--episodes", str(options.episodes),
+            "--seed", str(seed), "--evaluation-episodes", str(options.evaluation_episodes),
+            "--evaluation-seed", str(options.evaluation_seed), "--run-dir", str(run)]
 
 
 def _default_names(profile):
@@ -133,6 +169,10 @@ def make_jobs(options, contestants, folder):
             resumes = False
             run = folder / "runs" / one.name / f"seed_{seed}"
             commands = []
+            if one.command:
+                jobs.append(runs.Job(one.name, f"{one.name} {seed}", run, run / "evaluation.json",
+                                     [_external_command(one, options, seed, run)], one.cost))
+                continue
             if one.learns:
                 resumes = _has_begun(run)
                 commands.append([
@@ -173,6 +213,8 @@ def _settings_of_one(one):
         settings["algorithm"] = one.algorithm
     if one.scenario:
         settings["scenario"] = one.scenario
+    if one.command:
+        settings["command"] = list(one.command)
     return settings
 
 
@@ -269,6 +311,7 @@ def run(options):
         names.update(one.name for one in REFERENCES)
     contestants = [one.for_episodes(options.episodes)
                    for one in PROFILES[options.profile].contestants if one.name in names]
+    contestants += options.learners
     folder = options.output.resolve()
     people = read_people(options.human, farm) if options.human != "none" else []
     settings = settings_of(options, contestants, farm)
@@ -341,9 +384,10 @@ def _conclude(folder, contestants, found, settings, people):
     figures.draw_evaluation(pictures / "evaluation.png", everyone, rows)
     if any(row["money"] for row in rows):
         figures.draw_losses(pictures / "losses.png", everyone, rows)
-    for one in (one for one in everyone if one.name != human.HUMAN.name):
-        figures.draw_route(pictures / f"route_{one.name}.png", one.label,
-                           folder / "runs" / one.name / "seed_1" / "route.json")
+    for one in everyone:
+        route = folder / "runs" / one.name / "seed_1" / "route.json"
+        if route.is_file():  # not of people, nor of learners of another package
+            figures.draw_route(pictures / f"route_{one.name}.png", one.label, route)
     print(results.table(rows) + results.money_table(rows))
 
 

@@ -53,6 +53,7 @@ class Contestant:
     scenario: str = ""  # empty: the benchmark's
     paper_row: str = ""  # key of PAPER_TABLE; empty if Table 1 has no such row
     named_only: bool = False  # True: takes part only if --algorithms names it
+    command: typing.Tuple[str, ...] = ()  # of a learner of another package; see --learner
 
     @property
     def algorithm_name(self):

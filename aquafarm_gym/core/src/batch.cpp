@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "aquafarm/base/check.h"
@@ -59,22 +58,6 @@ py::dict DictOf(const EpisodeRecord& record, std::int32_t farm) {
 }
 
 }  // namespace
-
-class Batch::Turn {
- public:
-  explicit Turn(bool& busy) : busy_(busy) {
-    if (busy_)
-      throw std::runtime_error(
-          "FarmBatch: another thread's call is still running; use one batch per thread");
-    busy_ = true;
-  }
-  ~Turn() { busy_ = false; }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-
- private:
-  bool& busy_;
-};
 
 Batch::Batch(std::shared_ptr<const Scenario> scenario, py::handle farms,
              const std::vector<std::string>& write, py::handle threads)
@@ -213,8 +196,8 @@ std::vector<std::string> Batch::BufferNames() const {
 py::tuple Batch::State() const {
   py::list strides;
   for (std::int32_t i = 0; i < batch_.farms(); ++i) strides.append(batch_.stride(i));
-  return py::make_tuple(std::const_pointer_cast<Scenario>(scenario_), batch_.farms(), threads_,
-                        BufferNames(), is_reset_, Save(), strides);
+  return py::make_tuple(scenario(), batch_.farms(), threads_, BufferNames(), is_reset_, Save(),
+                        strides);
 }
 
 std::unique_ptr<Batch> Batch::FromState(const py::tuple& state) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,20 @@ class Batch {
   pybind11::list Finished() const;
   /// Returns the present state of one farm as text.
   std::string Text(pybind11::handle farm) const;
+  /// Calls look(farms), which do not step meanwhile.
+  /// @throws std::runtime_error while a call of another thread runs
+  template <typename Look>
+  void InspectAll(Look look) {
+    const Turn turn(busy_);
+    look(batch_);
+  }
+  /// Calls look(encoder, farm) with one farm, which does not step meanwhile.
+  /// @throws std::runtime_error while a call of another thread runs
+  template <typename Look>
+  void Inspect(std::int32_t farm, Look look) const {
+    const Turn turn(busy_);
+    look(batch_.encoder(), batch_.farm(farm));
+  }
 
   pybind11::bytes Save() const;
   void Load(const std::string& bytes);
@@ -57,12 +72,31 @@ class Batch {
   bool Equals(const Batch& other) const;
 
   const FarmBatch& batch() const { return batch_; }
+  /// The scenario; Python has no constant objects, and nothing of it can be changed there.
+  std::shared_ptr<Scenario> scenario() const {
+    return std::const_pointer_cast<Scenario>(scenario_);
+  }
   const std::map<std::string, pybind11::array>& buffers() const { return buffers_; }
 
  private:
   /// Rejects a call while a call of another thread runs. Acquired and released under the GIL, which
   /// reset and step release during their work.
-  class Turn;
+  class Turn {
+   public:
+    explicit Turn(bool& busy) : busy_(busy) {
+      if (busy_) {
+        throw std::runtime_error(
+            "FarmBatch: another thread's call is still running; use one batch per thread");
+      }
+      busy_ = true;
+    }
+    ~Turn() { busy_ = false; }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+   private:
+    bool& busy_;
+  };
 
   const BufferType& TypeOf(const std::string& name) const;
   void Keep(const BufferType& type, pybind11::array array);

@@ -14,6 +14,7 @@
 #include "aquafarm/observation/farm_batch.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "batch.h"
+#include "policies.h"
 
 namespace aquafarm::python {
 namespace py = pybind11;
@@ -56,6 +57,7 @@ void DefineConstants(py::module_& module) {
   module.attr("OPTIMISED") = false;
 #endif
   module.attr("SOURCE_SCENARIO_FOLDER") = AQUAFARM_SCENARIO_DIR;
+  module.attr("SOURCE_POLICY_FOLDER") = AQUAFARM_POLICY_DIR;
   module.attr("ACTIONS") = Names(kActionCount, NameOf<Action>);
   module.attr("HOLD") = static_cast<int>(Action::kHold);
   module.attr("OUTCOMES") = Names(kOutcomeCount, NameOf<Outcome>);
@@ -136,6 +138,7 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
       .def_property_readonly("buffers", &Batch::buffers)
       .def_property_readonly("farms", [](const Batch& b) { return b.batch().farms(); })
       .def_property_readonly("agents", [](const Batch& b) { return b.batch().agents(); })
+      .def_property_readonly("scenario", &Batch::scenario)
       .def_property_readonly("state_count",
                              [](const Batch& b) { return b.batch().encoder().state_count(); })
       .def_property_readonly("feature_names",
@@ -157,4 +160,5 @@ PYBIND11_MODULE(_native, module) {
   aquafarm::python::DefineConstants(module);
   aquafarm::python::DefineScenario(module);
   aquafarm::python::DefineBatch(module);
+  aquafarm::python::DefinePolicies(module);
 }

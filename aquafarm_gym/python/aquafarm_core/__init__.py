@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The farm's core: scenarios, and batches of farms that write into NumPy arrays.
+"""The farm's core: scenarios, batches of farms that write into NumPy arrays, planners and policies.
 
     batch = FarmBatch(Scenario.load("my.yaml"), farms=1024, write=["rewards", "planes"])
     batch.reset(seed=7)
     batch.step(numpy.zeros((1024, 1), numpy.uint8))
     batch.buffers["rewards"]
+    batch.step(Policy("planner", batch.scenario, farms=1024).act(batch))
 """
 import pathlib
 import pkgutil
@@ -28,22 +29,26 @@ if _fault:
 
 from aquafarm_core._native import (  # noqa: E402
     ACTIONS, HOLD, OPTIMISED, OUTCOMES, PLANES, REASONS, STEP_LIMIT, TERMS, VERSION, FarmBatch,
-    Scenario)
+    Planner, Policy, Scenario, team_bound)
 
 __version__ = VERSION
-FarmBatch.__module__ = Scenario.__module__ = __name__  # where pickle finds them
+for _type in (FarmBatch, Planner, Policy, Scenario):
+    _type.__module__ = __name__  # where pickle finds them
 
 
-def _scenario_folder():
-    """Returns the folder of the shipped scenarios in the wheel, the install or the sources."""
+def _shipped(name, package, source):
+    """Returns a folder of shipped files in the wheel, the install or the sources."""
     native = pathlib.Path(_native.__file__).resolve().parent
-    for folder in (native / "scenarios", native.parents[3] / "share/aquafarm_sim/scenarios"):
+    for folder in (native / name, native.parents[3] / "share" / package / name):
         if folder.is_dir():
             return str(folder)
-    return _native.SOURCE_SCENARIO_FOLDER
+    return source
 
 
-SCENARIO_FOLDER = _scenario_folder()
+SCENARIO_FOLDER = _shipped("scenarios", "aquafarm_sim", _native.SOURCE_SCENARIO_FOLDER)
+_native._set_policy_folder(
+    _shipped("policies", "aquafarm_agents", _native.SOURCE_POLICY_FOLDER))
 
 __all__ = ["ACTIONS", "HOLD", "OPTIMISED", "OUTCOMES", "PLANES", "REASONS", "SCENARIO_FOLDER",
-           "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Scenario"]
+           "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Planner", "Policy", "Scenario",
+           "team_bound"]

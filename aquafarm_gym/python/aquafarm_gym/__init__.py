@@ -7,6 +7,7 @@ ROS services. Spaces and transitions of both are bit-identical.
     envs = gymnasium.make_vec("aquafarm/Farm-v1", num_envs=1024)     # many farms of one ship
     env = aquafarm_gym.FarmParallelEnv("two_squads")                 # several ships
     envs = aquafarm_gym.TeamVectorEnv(1024, "two_squads")            # many farms of several ships
+    plan = aquafarm_gym.plan_rescue("my.yaml", bulletin="now.json")  # orders before a storm
 """
 import importlib
 import importlib.util
@@ -17,6 +18,7 @@ from aquafarm_core import __version__ as __version__
 from aquafarm_gym.env import FarmEnv as FarmEnv
 from aquafarm_gym.farms import LocalFarms as LocalFarms
 from aquafarm_gym.farms import find_scenario as find_scenario
+from aquafarm_gym.planning import plan_rescue as plan_rescue
 from aquafarm_gym.registration import register_envs as register_envs
 from aquafarm_gym.vector_env import FarmVectorEnv as FarmVectorEnv
 from aquafarm_gym.vector_env import TeamVectorEnv as TeamVectorEnv
@@ -35,7 +37,7 @@ _OPTIONAL: dict[str, tuple[str, list[str]]] = {
     "RosFarms": ("ros", ["rospy", "aquafarm_msgs"])}
 
 __all__ = ["ActionMaskInObservation", "FarmEnv", "FarmVectorEnv", "LocalFarms", "TeamVectorEnv",
-           "VectorActionMaskInObservation", "find_scenario", "register_envs"]
+           "VectorActionMaskInObservation", "find_scenario", "plan_rescue", "register_envs"]
 __all__ += [name for name, (_, needs) in _OPTIONAL.items()
             if all(map(importlib.util.find_spec, needs))]
 

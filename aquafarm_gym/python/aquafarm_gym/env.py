@@ -2,7 +2,6 @@
 """The Gymnasium environment of one farm with one ship."""
 from __future__ import annotations
 
-import html
 import pathlib
 from typing import Any
 
@@ -11,9 +10,10 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
-from aquafarm_gym import spaces
+from aquafarm_gym import rendering, spaces
 from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, check_seed, summary_of
 from aquafarm_gym.farms import ENCODINGS, LocalFarms
+from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
 
 
 def one_agent(farms: Any) -> Any:
@@ -33,22 +33,6 @@ def observation_of(farms: Any, observation: str) -> npt.NDArray[Any]:
     return array
 
 
-def check_render_mode(render_mode: str | None, farms: Any) -> str | None:
-    """Returns the mode; raises ValueError if it is unknown or the farms cannot be rendered."""
-    if render_mode not in (None, "ansi", "human"):
-        raise ValueError(f"render_mode: got '{render_mode}', expected ansi, human or None; "
-                         "pictures are drawn by './aquafarm render'")
-    if render_mode is not None and not hasattr(farms, "text"):
-        raise ValueError(f"render_mode: got '{render_mode}' for farms behind ROS, expected None; "
-                         "watch them in rviz")
-    return render_mode
-
-
-def html_of(text: str) -> str:
-    """Returns a text picture as HTML for a notebook."""
-    return f'<pre style="line-height: 1.1">{html.escape(text)}</pre>'
-
-
 class FarmEnv(gymnasium.Env[Any, Any]):
     """One farm with one ship.
 
@@ -60,20 +44,30 @@ class FarmEnv(gymnasium.Env[Any, Any]):
     Copies and pickles of farms in this process continue bit-identically.
     """
 
-    metadata: dict[str, Any] = {"render_modes": ["ansi", "human"], "render_fps": 4}
+    metadata: dict[str, Any] = {"render_modes": list(rendering.MODES),
+                                "render_fps": rendering.FPS}
     farms: Any
     observation: str
     render_mode: str | None
+    picture_size: tuple[int, int]
+    picture_layers: str
+    picture_style: str
     action_space: gymnasium.Space[Any]
     observation_space: gymnasium.Space[Any]
 
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper",
                  observation: str = "features", farms: Any = None,
-                 render_mode: str | None = None) -> None:
-        """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms()."""
+                 render_mode: str | None = None, picture_size: tuple[int, int] = rendering.SIZE,
+                 picture_layers: str = rendering.LAYERS,
+                 picture_style: str = rendering.STYLE) -> None:
+        """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms().
+        picture_size: width and height of pictures [pixels]. picture_layers: their layers
+        (aquafarm_core.pictures.LAYERS), picture_style: dark or light, as for ./aquafarm render."""
         self.farms = one_agent(farms or LocalFarms(scenario, 1, observation))
         self.render_mode = check_render_mode(render_mode, self.farms)
         self.observation = observation
+        self.picture_size, self.picture_layers = picture_size, picture_layers
+        self.picture_style = picture_style
         self.action_space = spaces.action_space()
         self.observation_space = spaces.observation_space(self.farms, observation)
         self._episodes = Episodes()
@@ -84,6 +78,9 @@ class FarmEnv(gymnasium.Env[Any, Any]):
         self._buffers = self.farms.buffers
         self._observation = observation_of(self.farms, self.observation)
         self._actions = np.zeros((1, 1), np.uint8)
+        self._pictures = Pictures(self.farms, self.picture_size, self.picture_layers,
+                                  self.picture_style)
+        self._window = Window(self._pictures, self.farms)
 
     def reset(self, *, seed: int | None = None,
               options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
@@ -108,23 +105,26 @@ class FarmEnv(gymnasium.Env[Any, Any]):
         return (self._observe(), float(self._buffers["rewards"][0, 0]),
                 reason != 0 and not truncated, truncated, self._info())
 
-    def render(self) -> str | None:
-        """Returns the farm as text in the mode `ansi` (marks: farm_text.h). The mode `human` prints
-        it at each reset and step."""
+    def render(self) -> Any:
+        """Returns the farm as a picture, uint8 [height, width, 3] (`rgb_array`), or as text (`ansi`;
+        farm_text.h explains the symbols). The mode `human` shows it at each reset and step."""
         if self.render_mode is None:
-            gymnasium.logger.warn("render: got render_mode None, expected ansi; pass "
-                                  "render_mode='ansi' to the constructor")
+            gymnasium.logger.warn("render: got render_mode None, expected rgb_array or ansi; pass "
+                                  "render_mode='rgb_array' to the constructor")
+        if self.render_mode == "rgb_array":
+            return self._pictures.draw()
         return str(self.farms.text(0)) if self.render_mode == "ansi" else None
 
     def _show(self) -> None:
         if self.render_mode == "human":
-            print(self.farms.text(0))
+            self._window.show()
 
     def action_masks(self) -> npt.NDArray[np.bool_]:
         """Returns the legal actions, bool [10], for MaskablePPO of sb3_contrib."""
         return spaces.action_mask(self._buffers["legal"][0, 0]).astype(bool)
 
     def close(self) -> None:
+        self._window.close()
         self.farms.close()
 
     def _observe(self) -> Any:
@@ -139,10 +139,10 @@ class FarmEnv(gymnasium.Env[Any, Any]):
                 "is_success": summary["success"], "summary": summary}
 
     def _repr_html_(self) -> str:
-        return html_of(self.farms.text(0) if hasattr(self.farms, "text") else repr(self))
+        return html_of(self.farms, self._pictures, [0])
 
     def __getstate__(self) -> dict[str, Any]:
-        views = ("_buffers", "_observation", "_actions")
+        views = ("_buffers", "_observation", "_actions", "_pictures", "_window")
         return {name: value for name, value in self.__dict__.items() if name not in views}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

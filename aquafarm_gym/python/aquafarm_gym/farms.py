@@ -20,7 +20,8 @@ ALWAYS: tuple[str, ...] = ("rewards", "outcomes", "legal", "in_play", "reasons",
 
 
 def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario:
-    """Returns a Scenario: the given one, a shipped one by name or the one of a file."""
+    """Returns a Scenario: the given one, a shipped one by name, the one of a file, or of YAML text
+    (which has several lines)."""
     if isinstance(scenario, core.Scenario):
         return scenario
     folder = pathlib.Path(core.SCENARIO_FOLDER)
@@ -28,6 +29,8 @@ def find_scenario(scenario: core.Scenario | str | pathlib.Path) -> core.Scenario
     expected = f"expected an aquafarm_core.Scenario, a file or one of: {names}"
     if not isinstance(scenario, (str, pathlib.Path)):
         raise ValueError(f"scenario: got {scenario!r}, {expected}")
+    if "\n" in str(scenario):
+        return core.Scenario.parse(str(scenario))
     shipped = folder / f"{scenario}.yaml"
     if shipped.is_file() and "/" not in str(scenario):
         return core.Scenario.load(str(shipped))

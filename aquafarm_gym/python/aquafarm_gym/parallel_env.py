@@ -14,10 +14,11 @@ import numpy.typing as npt
 from gymnasium.utils import seeding
 from pettingzoo import ParallelEnv
 
-from aquafarm_gym import spaces
-from aquafarm_gym.env import check_render_mode, html_of, observation_of
+from aquafarm_gym import rendering, spaces
+from aquafarm_gym.env import observation_of
 from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, summary_of
 from aquafarm_gym.farms import LocalFarms
+from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
 
 
 class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]
@@ -28,12 +29,15 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
     all agents in one array (`state_space`), for centralized critics.
     """
 
-    metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": ["ansi", "human"],
-                                "render_fps": 4,
+    metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": list(rendering.MODES),
+                                "render_fps": rendering.FPS,
                                 "is_parallelizable": True}
     farms: Any
     observation: str
     render_mode: str | None
+    picture_size: tuple[int, int]
+    picture_layers: str
+    picture_style: str
     possible_agents: list[str]
     agents: list[str]
     observation_spaces: dict[str, Any]
@@ -42,10 +46,15 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
 
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "two_squads",
                  observation: str = "features", farms: Any = None,
-                 render_mode: str | None = None) -> None:
-        """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms()."""
+                 render_mode: str | None = None, picture_size: tuple[int, int] = rendering.SIZE,
+                 picture_layers: str = rendering.LAYERS,
+                 picture_style: str = rendering.STYLE) -> None:
+        """farms: a backend that replaces the scenario's farms in this process, e.g. RosFarms().
+        picture_size, picture_layers, picture_style: as FarmEnv."""
         self.farms = farms or LocalFarms(scenario, 1, observation)
         self.observation = observation
+        self.picture_size, self.picture_layers = picture_size, picture_layers
+        self.picture_style = picture_style
         self.render_mode = check_render_mode(render_mode, self.farms)
         self.possible_agents = [f"ship_{i}" for i in range(self.farms.agents)]
         self.agents = []
@@ -61,6 +70,9 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
         """Binds the arrays that the farms write."""
         self._buffers = self.farms.buffers
         self._observation = observation_of(self.farms, self.observation)
+        self._pictures = Pictures(self.farms, self.picture_size, self.picture_layers,
+                                  self.picture_style)
+        self._window = Window(self._pictures, self.farms)
 
     def observation_space(self, agent: str) -> Any:
         return self.observation_spaces[agent]
@@ -111,13 +123,17 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
         joint = self._observation[0].astype(self.state_space.dtype)
         return np.asarray(joint.reshape(self.state_space.shape))
 
-    def render(self) -> str | None:
-        """Returns the farm as text in the mode `ansi` (marks: farm_text.h). `human` prints it."""
+    def render(self) -> Any:
+        """Returns the farm as a picture, uint8 [height, width, 3] (`rgb_array`), or as text (`ansi`).
+        `human` shows it in a window."""
         if self.render_mode == "human":
-            print(self.farms.text(0))
+            self._window.show()
+        if self.render_mode == "rgb_array":
+            return self._pictures.draw()
         return str(self.farms.text(0)) if self.render_mode == "ansi" else None
 
     def close(self) -> None:
+        self._window.close()
         self.farms.close()
 
     def _of_agents(self, value: Callable[[int], Any]) -> dict[str, Any]:
@@ -135,10 +151,10 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
                 "is_success": summary["success"], "summary": summary}
 
     def _repr_html_(self) -> str:
-        return html_of(self.farms.text(0) if hasattr(self.farms, "text") else repr(self))
+        return html_of(self.farms, self._pictures, [0])
 
     def __getstate__(self) -> dict[str, Any]:
-        views = ("_buffers", "_observation")
+        views = ("_buffers", "_observation", "_pictures", "_window")
         return {name: value for name, value in self.__dict__.items() if name not in views}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Many farms for Stable-Baselines3, stepped together in C++."""
+"""Many farms for Stable-Baselines3, stepped together in C++; ships share one policy."""
 from __future__ import annotations
 
 import pathlib
@@ -13,39 +13,49 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv
 
 from aquafarm_gym import spaces
-from aquafarm_gym.env import observation_of, one_agent
+from aquafarm_gym.env import observation_of
 from aquafarm_gym.episodes import Episodes, summary_of
 from aquafarm_gym.farms import LocalFarms
+from aquafarm_gym.rendering import Pictures, check_render_mode
 
 
 class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
-    """N farms with one ship each as a Stable-Baselines3 VecEnv.
+    """N farms as a Stable-Baselines3 VecEnv. Each of their S ships is an environment of its own, so
+    that one policy plays all ships: environment farm · S + ship, num_envs = N · S.
 
-    A farm whose episode ends starts its next one in the same step. Its info then contains
-    `terminal_observation`, `TimeLimit.truncated`, `episode` (r and l, as in Monitor) and
-    `is_success`. action_masks() is for MaskablePPO of sb3_contrib.
+    A farm whose episode ends starts its next one in the same step. The infos of its ships then
+    contain `terminal_observation`, `TimeLimit.truncated`, `episode` (r: the return of the farm, l, as
+    in Monitor) and `is_success`. action_masks() is for MaskablePPO of sb3_contrib.
     """
 
     def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
-                 observation: str = "features", threads: int = 1) -> None:
-        farms = one_agent(LocalFarms(scenario, num_envs, observation, threads=threads))
-        self.farms = farms
-        self.render_mode: str | None = None
-        self._observation = observation_of(farms, observation)[:, 0]
-        self._dtype = np.int64 if observation == "index" else self._observation.dtype
-        self._rewards = farms.buffers["rewards"][:, 0]
-        self._reasons = farms.buffers["reasons"]
-        self._legal = farms.buffers["legal"][:, 0]
-        self._actions = np.zeros((farms.farms, 1), np.uint8)
+                 observation: str = "features", threads: int = 1,
+                 render_mode: str | None = None) -> None:
+        """num_envs: number N of farms. render_mode: rgb_array for VecVideoRecorder, or None."""
+        self.farms = LocalFarms(scenario, num_envs, observation, threads=threads)
+        if self.farms.agents > self.farms.scenario.ships:
+            raise ValueError(f"scenario {self.farms.name}: got self-propelled devices, whose play "
+                             "ends before that of their farm, expected ships alone; use "
+                             "FarmParallelEnv or TeamVectorEnv")
+        self.render_mode = check_render_mode(render_mode, self.farms, ("rgb_array",))
+        self._pictures = Pictures(self.farms)
+        self._agents = self.farms.agents
+        buffers = self.farms.buffers
+        array = observation_of(self.farms, observation)
+        self._observation = array.reshape(-1, *array.shape[2:])
+        self._dtype = np.int64 if observation == "index" else array.dtype
+        self._rewards, self._legal = buffers["rewards"].reshape(-1), buffers["legal"].reshape(-1)
+        self._reasons = buffers["reasons"]
+        self._actions = np.zeros((self.farms.farms, self._agents), np.uint8)
         self._episodes = Episodes()
-        super().__init__(farms.farms, spaces.observation_space(farms, observation),
-                         spaces.action_space())
+        super().__init__(self.farms.farms * self._agents,
+                         spaces.observation_space(self.farms, observation), spaces.action_space())
 
     def reset(self) -> npt.NDArray[Any]:
         """Starts the sequence of the seed set by seed(), or continues the sequence without one."""
         seed = self._seeds[0]
         if seed is None and self._episodes.seed is not None:
-            self.farms.start_next(np.ones(self.num_envs, bool))
+            self.farms.start_next(np.ones(self.farms.farms, bool))
         else:
             drawn = np.random.SeedSequence().generate_state(1, np.uint64)[0]
             self.farms.reset(*self._episodes.next(seed, {}, lambda: int(drawn)))
@@ -60,7 +70,7 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
                 actions.max() >= spaces.N_ACTIONS):
             raise ValueError(f"actions: got {list(actions.shape)} from {actions.min()} to "
                              f"{actions.max()}, expected [{self.num_envs}] in [0, 9]")
-        self._actions[:, 0] = actions
+        self._actions.reshape(-1)[:] = actions
 
     def step_wait(self) -> Any:
         self.farms.step(self._actions)
@@ -69,20 +79,29 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
         over = self._reasons != 0
         if over.any():
             for one in self.farms.finished():
-                infos[one["farm"]] = self._last_info(one)
+                first = self._agents * one["farm"]
+                for i in range(first, first + self._agents):
+                    infos[i] = self._last_info(i, one)
             self.farms.start_next(over)
-        return self._observation.astype(self._dtype), rewards, over, infos
+        return (self._observation.astype(self._dtype), rewards, np.repeat(over, self._agents),
+                infos)
 
-    def _last_info(self, finished: dict[str, Any]) -> dict[str, Any]:
+    def _last_info(self, i: int, finished: dict[str, Any]) -> dict[str, Any]:
         summary = summary_of(finished)
-        last = self._observation[finished["farm"]].astype(self._dtype)
+        last = self._observation[i].astype(self._dtype)
         return {"terminal_observation": last, "is_success": summary["success"], "summary": summary,
                 "TimeLimit.truncated": summary["reason"] == core.STEP_LIMIT,
                 "episode": {"r": summary["episode_return"], "l": summary["steps"], "t": 0.0}}
 
     def action_masks(self) -> npt.NDArray[np.bool_]:
-        """Returns the legal actions, bool [N, 10]."""
+        """Returns the legal actions, bool [N · S, 10]."""
         return spaces.action_mask(self._legal).astype(bool)
+
+    def get_images(self) -> list[npt.NDArray[np.uint8] | None]:
+        """Returns the picture of each farm, uint8 [640, 800, 3]; nothing without a render_mode."""
+        if self.render_mode is None:
+            return []
+        return [self._pictures.draw(i) for i in range(self.farms.farms)]
 
     def close(self) -> None:
         self.farms.close()

@@ -12,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium.vector.utils import batch_space
 
-from aquafarm_gym import spaces
-from aquafarm_gym.env import check_render_mode, html_of, observation_of, one_agent
+from aquafarm_gym import rendering, spaces
+from aquafarm_gym.env import observation_of, one_agent
 from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, check_seed, summary_of
 from aquafarm_gym.farms import LocalFarms
+from aquafarm_gym.rendering import Pictures, check_render_mode, html_of
 
 NEXT_STEP: str = "NextStep"
 SAME_STEP: str = "SameStep"
@@ -39,7 +40,8 @@ def autoreset_name(mode: Any, farms: Any) -> str:
 class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
     """Base class of the vector environments: N farms that step together."""
 
-    metadata: dict[str, Any] = {"render_modes": ["ansi"], "render_fps": 4}
+    metadata: dict[str, Any] = {"render_modes": ["ansi", "rgb_array"],
+                                "render_fps": rendering.FPS}
     farms: Any
     num_envs: int
     observation: str
@@ -59,9 +61,9 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self.num_envs = self.farms.farms
         self.observation = observation
         if render_mode == "human":
-            raise ValueError("render_mode: got 'human' for many farms, expected ansi or None; show "
-                             "one farm with FarmEnv")
-        self.render_mode = check_render_mode(render_mode, farms)
+            raise ValueError("render_mode: got 'human' for many farms, expected ansi, rgb_array or "
+                             "None; show one farm with FarmEnv")
+        self.render_mode = check_render_mode(render_mode, farms, ("ansi", "rgb_array"))
         self._mode = autoreset_name(autoreset_mode, farms)
         if hasattr(gymnasium.vector, "AutoresetMode"):  # since Gymnasium 1.1
             self.metadata = {**self.metadata,
@@ -81,6 +83,7 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         self._legal = self._agents_of(buffers["legal"])
         self._outcomes = self._agents_of(buffers["outcomes"])
         self._actions = np.zeros((self.num_envs, self.farms.agents), np.uint8)
+        self._pictures = Pictures(self.farms)
         self._everywhere = np.ones(self.num_envs, bool)
         self._nowhere = np.zeros(self.num_envs, bool)
         self._no_summary = {name: np.zeros(self.num_envs, np.asarray(value).dtype)
@@ -217,11 +220,12 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         return {**self._infos(self._nowhere), "final_obs": final_obs, "_final_obs": over,
                 "final_info": final_info, "_final_info": over}
 
-    def render(self) -> tuple[str, ...] | None:
-        """Returns each farm as text in the mode `ansi`."""
-        if self.render_mode != "ansi":
+    def render(self) -> tuple[Any, ...] | None:
+        """Returns each farm as a picture, uint8 [640, 800, 3] (`rgb_array`), or as text (`ansi`)."""
+        if self.render_mode is None:
             return None
-        return tuple(self.farms.text(i) for i in range(self.num_envs))
+        draw = self._pictures.draw if self.render_mode == "rgb_array" else self.farms.text
+        return tuple(draw(i) for i in range(self.num_envs))
 
     def close_extras(self, **kwargs: Any) -> None:
         if "farms" in self.__dict__:  # False if the constructor has failed
@@ -251,10 +255,8 @@ class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
         return {}
 
     def _repr_html_(self) -> str:
-        if not hasattr(self.farms, "text"):
-            return html_of(repr(self))
         shown = min(self.num_envs, 4)
-        return "".join(html_of(self.farms.text(i)) for i in range(shown)) + (
+        return html_of(self.farms, self._pictures, range(shown)) + (
             f"<p>{shown} of {self.num_envs} farms</p>")
 
     def __getstate__(self) -> dict[str, Any]:

@@ -189,10 +189,6 @@ visualization_msgs::MarkerArray MoveMarkers(const Values& values,
   return array;
 }
 
-bool IsOf(const aquafarm_msgs::PolicyChoice& choice, const aquafarm_msgs::FarmState& state) {
-  return choice.seed == state.seed && choice.episode == state.episode && choice.step == state.step;
-}
-
 visualization_msgs::MarkerArray ChoiceMarkers(const aquafarm_msgs::PolicyChoice& choice,
                                               const aquafarm_msgs::FarmSpec& spec,
                                               const aquafarm_msgs::FarmState& state) {

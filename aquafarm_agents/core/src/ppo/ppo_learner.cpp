@@ -168,12 +168,8 @@ std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed
 
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {
   std::string resolved;
-  const PpoOptions options = PpoOptions::Parse(checkpoint.options, resolved);
-  PrepareTorch(options.threads);
-  CheckFits(checkpoint, spec, NetworkKind::kMlp);
-  std::vector<float> weights;
-  checkpoint.GetArray("weights", checkpoint.Section("weights").size() / sizeof(float), weights);
-  return std::make_unique<PpoPolicy>(spec, options, weights);
+  PrepareTorch(PpoOptions::Parse(checkpoint.options, resolved).threads);
+  return MakePpoPolicyWithoutTorch(checkpoint, spec);
 }
 
 }  // namespace aquafarm::agents

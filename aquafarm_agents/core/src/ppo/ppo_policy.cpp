@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ppo/ppo_policy.h"
 
+#include <string>
+
 #include "aquafarm/base/check.h"
+#include "networks/farm_rows.h"
 #include "ppo/make_actor_critic.h"
 
 namespace aquafarm::agents {
@@ -37,6 +40,16 @@ void PpoPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actio
     if (!is_active) actions[i] = 0;
     values_[i] = is_active ? actor_.values()[i] / static_cast<float>(options_.reward_scale) : 0.0F;
   }
+}
+
+std::unique_ptr<Policy> MakePpoPolicyWithoutTorch(const Checkpoint& checkpoint,
+                                                  const EnvironmentSpec& spec) {
+  std::string resolved;
+  const PpoOptions options = PpoOptions::Parse(checkpoint.options, resolved);
+  CheckFits(checkpoint, spec, NetworkKind::kMlp);
+  std::vector<float> weights;
+  checkpoint.GetArray("weights", checkpoint.Section("weights").size() / sizeof(float), weights);
+  return std::make_unique<PpoPolicy>(spec, options, weights);
 }
 
 }  // namespace aquafarm::agents

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "aquafarm/agents/environment/policy.h"
+#include "aquafarm/agents/learning/checkpoint.h"
 #include "aquafarm/agents/ppo/ppo_options.h"
 #include "ppo/actor.h"
 #include "ppo/actor_critic.h"
@@ -29,5 +30,10 @@ class PpoPolicy final : public Policy {
   Actor actor_;
   AgentRng rng_;
 };
+
+/// Makes the policy of a checkpoint. Does not prepare libtorch, which acting does not use.
+/// @throws InputError if the policy does not fit farms of `spec`; the message names the difference
+std::unique_ptr<Policy> MakePpoPolicyWithoutTorch(const Checkpoint& checkpoint,
+                                                  const EnvironmentSpec& spec);
 
 }  // namespace aquafarm::agents

@@ -54,6 +54,8 @@ visualization_msgs::MarkerArray ChoiceMarkers(const aquafarm_msgs::PolicyChoice&
                                               const aquafarm_msgs::FarmState& state);
 
 /// Returns true if a choice was made in this state.
-bool IsOf(const aquafarm_msgs::PolicyChoice& choice, const aquafarm_msgs::FarmState& state);
+inline bool IsOf(const aquafarm_msgs::PolicyChoice& choice, const aquafarm_msgs::FarmState& state) {
+  return choice.seed == state.seed && choice.episode == state.episode && choice.step == state.step;
+}
 
 }  // namespace aquafarm_viz

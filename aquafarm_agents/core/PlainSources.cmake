@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Sources that need no libtorch: planners, rescue plans, and policies that are already trained. The
+# Python module of aquafarm_gym contains them, too.
+set(AQUAFARM_PLAIN_SOURCES
+  src/base/options.cpp
+  src/base/schedule.cpp
+  src/base/storage.cpp
+  src/base/text.cpp
+  src/environment/local_environment.cpp
+  src/learning/agent_rng.cpp
+  src/learning/checkpoint.cpp
+  src/learning/exploration.cpp
+  src/learning/random_policy.cpp
+  src/learning/tabular.cpp
+  src/networks/deep_options.cpp
+  src/networks/farm_rows.cpp
+  src/planning/fetch_by_value.cpp
+  src/planning/optimum.cpp
+  src/planning/plan.cpp
+  src/planning/planner.cpp
+  src/planning/planner_policy.cpp
+  src/planning/planner_search.cpp
+  src/planning/planner_solver.cpp
+  src/planning/risk_source.cpp
+  src/planning/team_bound.cpp
+  src/planning/team_planner.cpp
+  src/planning/water_distance.cpp
+  src/rescue/case_fleet.cpp
+  src/rescue/case_storm.cpp
+  src/rescue/csv.cpp
+  src/rescue/deadlines.cpp
+  src/rescue/ensemble.cpp
+  src/rescue/fleet_state.cpp
+  src/rescue/follow_trips.cpp
+  src/rescue/forecast_errors.cpp
+  src/rescue/make_rescue_case.cpp
+  src/rescue/plan_json.cpp
+  src/rescue/plan_report.cpp
+  src/rescue/plan_trials.cpp
+  src/rescue/plan_values.cpp
+  src/rescue/rescue_case.cpp
+  src/rescue/rescue_order.cpp
+  src/rescue/rescue_plan.cpp
+  src/rescue/sea_routes.cpp
+  src/rescue/storm_member.cpp
+  src/rescue/trial_storm.cpp
+  src/rescue/trip_model.cpp
+  src/rescue/trip_search.cpp
+  src/rescue/what_if.cpp)
+
+# They need BLAS.
+set(AQUAFARM_PPO_POLICY_SOURCES
+  src/ppo/actor.cpp
+  src/ppo/feed_forward.cpp
+  src/ppo/lstm_actor_critic.cpp
+  src/ppo/make_actor_critic.cpp
+  src/ppo/ppo_loss.cpp
+  src/ppo/ppo_options.cpp
+  src/ppo/ppo_policy.cpp
+  src/ppo/token_actor_critic.cpp
+  src/ppo/token_layout.cpp
+  src/training/token_policy.cpp)

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trains one learner with every combination of options and seeds, and compares them in one table.
+
+    aquafarm_sweep SCENARIO ALGORITHM --set gamma=0.95,0.98 --set hidden_size=64,128 --seeds 1-5
+                   --output FOLDER [--steps N] [--jobs 2]
+
+Each combination of the values is a row of FOLDER/table.md and FOLDER/table.csv: mean return and
+success of a greedy evaluation on seeds not used for training, over the seeds of the training, best
+row first. FOLDER/runs has the run folders; the same command after Ctrl-C continues.
+"""
+import argparse
+import csv
+import io
+import itertools
+import json
+import math
+import os
+import pathlib
+import sys
+
+from aquafarm_benchmark.cli import find_program
+from aquafarm_benchmark.runs import Interrupted, Job, RunFailed, run_all
+
+# 97.5 % quantiles of Student's t with 1 to 30 degrees of freedom; 1.96 beyond.
+STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179,
+           2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064,
+           2.060, 2.056, 2.052, 2.048, 2.045, 2.042)
+
+
+def parse_option(text):
+    """Returns (key, values) of 'key=a,b'. A colon schedule such as linear:1:0 is one value."""
+    key, equals, values = text.partition("=")
+    if not equals or not key or not all(values.split(",")):
+        raise ValueError(f"--set: got '{text}', expected key=value,value,…")
+    return key, values.split(",")
+
+
+def parse_seeds(text):
+    """Returns the seeds of '1-5' or '1,3,8'."""
+    try:
+        seeds = []
+        for part in text.split(","):
+            first, dash, last = part.partition("-")
+            seeds += range(int(first), int(last if dash else first) + 1)
+    except ValueError:
+        seeds = []
+    if not seeds or len(set(seeds)) != len(seeds):
+        raise ValueError(f"--seeds: got '{text}', expected different numbers as 1-5 or 1,3,8")
+    return seeds
+
+
+def combinations(options):
+    """Returns every combination of the values as a list of 'key=value' lists, in order."""
+    keys = [key for key, _ in options]
+    if len(set(keys)) != len(keys):
+        raise ValueError(f"--set: got {', '.join(keys)}, expected each key once; write its values "
+                         "with commas")
+    return [[f"{key}={value}" for key, value in zip(keys, values)]
+            for values in itertools.product(*(values for _, values in options))]
+
+
+def jobs_of(given, settings, train):
+    """Returns one job for each combination and seed."""
+    jobs = []
+    for number, chosen in enumerate(settings):
+        for seed in given.seed_list:
+            folder = given.output / "runs" / f"{number:03d}_seed_{seed}"
+            command = [train, given.scenario, "--algorithm", given.algorithm, "--seed", str(seed),
+                       "--run-dir", str(folder), "--evaluate", str(given.episodes), "--random", "0"]
+            if given.steps:
+                command += ["--steps", str(given.steps)]
+            for word in chosen:
+                command += ["--set", word]
+            resumes = (folder / "run.json").is_file()
+            jobs.append(Job(str(number), folder.name, folder, folder / "evaluation.json",
+                            [command + (["--resume"] if resumes else [])], 1.0, resumes))
+    return jobs
+
+
+def interval(values):
+    """Returns the mean and the half-width of its 95 % interval (Student's t); nan for one value."""
+    mean = sum(values) / len(values)
+    if len(values) < 2:
+        return mean, math.nan
+    spread = math.sqrt(sum((one - mean) ** 2 for one in values) / (len(values) - 1))
+    freedom = len(values) - 1
+    quantile = STUDENT[freedom - 1] if freedom <= len(STUDENT) else 1.96
+    return mean, quantile * spread / math.sqrt(len(values))
+
+
+def table_of(settings, results):
+    """Returns rows (options, seeds, return, half-width, success), best return first.
+
+    results: {number of the combination: [content of evaluation.json]}
+    """
+    rows = []
+    for number, chosen in enumerate(settings):
+        found = results.get(number, [])
+        if found:
+            mean, half = interval([one["return_per_episode"] for one in found])
+            success = sum(one["success_rate"] for one in found) / len(found)
+            rows.append((" ".join(chosen) or "(defaults)", len(found), mean, half, success))
+    return sorted(rows, key=lambda row: -row[2])
+
+
+def markdown_of(title, rows):
+    """Returns the table for people."""
+    lines = [title, "", "| options | seeds | return | ± 95 % | success |",
+             "| --- | ---: | ---: | ---: | ---: |"]
+    for options, seeds, mean, half, success in rows:
+        shown = "" if math.isnan(half) else f"{half:.1f}"
+        lines.append(f"| {options} | {seeds} | {mean:.1f} | {shown} | {100 * success:.1f} % |")
+    return "\n".join(lines) + "\n"
+
+
+def csv_of(rows):
+    """Returns the table for programs."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["options", "seeds", "return", "return_half_width_95", "success"])
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(prog="aquafarm_sweep", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scenario", help="scenario file or name")
+    parser.add_argument("algorithm", help="name of the learner")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=A,B,…",
+                        help="option of the learner with its values; several --set are combined")
+    parser.add_argument("--seeds", default="1-3", help="as 1-5 or 1,3,8")
+    parser.add_argument("--steps", type=int, default=0, help="0: the algorithm's own number")
+    parser.add_argument("--episodes", type=int, default=200, help="of an evaluation")
+    parser.add_argument("--output", type=pathlib.Path, required=True)
+    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1,
+                        help="trainings at a time")
+    parser.add_argument("--programs", type=pathlib.Path, help="folder of aquafarm_train (default: found)")
+    given = parser.parse_args(words)
+    for name, low in (("steps", 0), ("episodes", 1), ("jobs", 1)):
+        if getattr(given, name) < low:
+            raise ValueError(f"--{name}: got {getattr(given, name)}, expected at least {low}")
+    given.seed_list = parse_seeds(given.seeds)
+    return given
+
+
+def check_plan(given, settings):
+    """Writes what the folder compares; refuses a folder of another comparison."""
+    plan = json.dumps({"scenario": given.scenario, "algorithm": given.algorithm,
+                       "steps": given.steps, "episodes": given.episodes, "options": settings},
+                      indent=1)
+    path = given.output / "sweep.json"
+    given.output.mkdir(parents=True, exist_ok=True)
+    if path.is_file() and path.read_text("utf-8") != plan:
+        raise ValueError(f"--output: got {given.output}, which compares something else (sweep.json),"
+                         " expected a new folder; other seeds may be added to an old one")
+    path.write_text(plan, "utf-8")
+
+
+def main(words=None):
+    """The command; returns its exit code: 0, 2 wrong argument, 4 failed runs, 130 interrupted."""
+    try:
+        given = arguments(words)
+        settings = combinations([parse_option(one) for one in given.set])
+        train = find_program("aquafarm_train", given.programs)
+        if given.scenario.endswith((".yaml", ".yml")):
+            given.scenario = str(pathlib.Path(given.scenario).resolve())
+        check_plan(given, settings)
+    except ValueError as error:
+        print(f"aquafarm_sweep: {error}", file=sys.stderr)
+        return 2
+    jobs, code = jobs_of(given, settings, train), 0
+    print(f"{len(settings)} combinations x {len(given.seed_list)} seeds = {len(jobs)} trainings")
+    try:
+        declined = run_all(jobs, given.jobs, lambda text: print(text, flush=True))
+        for number, reason in declined.items():
+            print(f"refused: {' '.join(settings[int(number)])}: {reason}", file=sys.stderr)
+            code = 2
+    except RunFailed as error:
+        print(f"aquafarm_sweep: {error}", file=sys.stderr)
+        code = 4
+    except Interrupted as error:
+        print(f"aquafarm_sweep: {error}", file=sys.stderr)
+        return 130
+    results = {}
+    for job in jobs:
+        if job.result.is_file():
+            results.setdefault(int(job.contestant), []).append(json.loads(job.result.read_text()))
+    rows = table_of(settings, results)
+    text = markdown_of(f"{given.algorithm} on {given.scenario}, seeds {given.seeds}", rows)
+    (given.output / "table.md").write_text(text, "utf-8")
+    (given.output / "table.csv").write_text(csv_of(rows), "utf-8")
+    print(f"\n{text}\nwritten: {given.output / 'table.md'}, table.csv")
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

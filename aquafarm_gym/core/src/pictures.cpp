@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Pictures of farms: the drawing code of aquafarm_viz, compiled with plain structs for its messages
+// (plain_messages.py), so that it needs neither ROS nor a display.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <utility>
+
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_sim/convert/conversions.h"
+#include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/draw/image.h"
+#include "arguments.h"
+#include "batch.h"
+
+namespace aquafarm::python {
+namespace py = pybind11;
+
+/// Draws one farm of a batch, with the trails of its ships since the first picture of its episode.
+class Painter {
+ public:
+  Painter(py::handle width, py::handle height, const std::string& layers, const std::string& style)
+      : size_{CheckSide(width, "width"), CheckSide(height, "height")},
+        layers_(aquafarm_viz::ParseLayers(layers)),
+        painter_(size_, aquafarm_viz::StyleByName(style)) {}
+
+  /// Returns uint8 [height, width, 3], RGB.
+  py::array_t<std::uint8_t> Draw(const Batch& batch, py::handle farm) {
+    const auto last = static_cast<std::uint64_t>(batch.batch().farms()) - 1;
+    const auto number = static_cast<std::int32_t>(
+        WholeNumber(farm, "Painter: farm", 0, last, "pass the number of one farm of this batch"));
+    batch.Inspect(number, [&](const Encoder& encoder, const Farm& shown) {
+      Read(batch.batch().farms(), encoder, shown);
+    });
+    trail_.Update(state_);
+    route_.Update(state_);
+    if (auto fault = aquafarm_viz::CheckSpec(spec_); !fault.empty()) throw py::value_error(fault);
+    if (auto fault = aquafarm_viz::CheckState(state_); !fault.empty()) throw py::value_error(fault);
+    const cv::Mat& drawn =
+        painter_.Draw(spec_, state_, {&trail_, nullptr, &route_, layers_, nullptr, nullptr});
+    py::array_t<std::uint8_t> pixels({drawn.rows, drawn.cols, 3});
+    cv::Mat out(drawn.rows, drawn.cols, CV_8UC3, pixels.mutable_data());
+    cv::cvtColor(drawn, out, cv::COLOR_BGR2RGB);
+    return pixels;
+  }
+
+ private:
+  static int CheckSide(py::handle side, const std::string& name) {
+    return static_cast<int>(WholeNumber(side, "Painter: " + name, aquafarm_viz::kMinImageSide,
+                                        aquafarm_viz::kMaxImageSide, "pass a size in pixels"));
+  }
+
+  // Converts the farm; its constants only when its episode is new.
+  void Read(std::int32_t farms, const Encoder& encoder, const Farm& farm) {
+    const aquafarm_sim::MessageContext context;
+    aquafarm_sim::ToMsg(farm, context, state_);
+    const Scenario& scenario = farm.scenario();
+    if (spec_.width == scenario.width && spec_.scenario_hash == scenario.hash &&
+        spec_.seed == farm.seed() && spec_.episode == farm.episode()) {
+      return;
+    }
+    aquafarm_sim::ToMsg(farm, encoder, farms, ToYaml(scenario), context, spec_);
+  }
+
+  aquafarm_viz::ImageSize size_;
+  aquafarm_viz::Layers layers_;
+  aquafarm_viz::FarmPainter painter_;
+  aquafarm_viz::Trail trail_;
+  aquafarm_viz::Trail route_{aquafarm_viz::Trail::kWhole};
+  aquafarm_msgs::FarmSpec spec_;
+  aquafarm_msgs::FarmState state_;
+};
+
+}  // namespace aquafarm::python
+
+PYBIND11_MODULE(_pictures, module) {
+  namespace py = pybind11;
+  using aquafarm::python::Painter;
+  module.doc() = "Pictures of farms, as aquafarm_viz draws them.";
+  py::module_::import("aquafarm_core._native");  // defines FarmBatch
+  module.attr("LAYERS") = aquafarm_viz::LayerNames();
+  py::class_<Painter>(module, "Painter", R"(Draws farms as ./aquafarm render does.
+
+width, height: pixels in [160, 4096]. layers: some of LAYERS with commas, or none. style: dark for
+screens, light for print. A Painter follows one farm: the trails of its ships begin at the first picture of an episode.)")
+      .def(py::init<py::handle, py::handle, const std::string&, const std::string&>(),
+           py::arg("width") = 800, py::arg("height") = 640, py::arg("layers") = "wake,risk",
+           py::arg("style") = "dark")
+      .def("draw", &Painter::Draw, py::arg("batch"), py::arg("farm") = 0,
+           "The present state of one farm, uint8 [height, width, 3], RGB.");
+}

@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""A learner of Stable-Baselines3 as a row of the benchmark:
+
+    ./aquafarm benchmark learner:="sb3_ppo=python3 benchmark_learner.py"
+"""
+import sys
+
+import numpy as np
+from aquafarm_gym.external import main
+from sb3_contrib import MaskablePPO
+
+
+class Learner:
+    """MaskablePPO with scaled rewards; 10^9 steps, because the environment ends the training."""
+
+    def __init__(self, env, seed):
+        self.model = MaskablePPO("MlpPolicy", env, seed=seed, n_steps=512, learning_rate=1e-3,
+                                 gamma=0.97, ent_coef=0.5)
+
+    def train(self):
+        """Plays until the benchmark's episodes are over."""
+        self.model.learn(10**9)
+
+    def act(self, observation, mask):
+        """Returns the greedy action."""
+        return int(self.model.predict(observation, deterministic=True,
+                                      action_masks=np.asarray(mask, bool))[0])
+
+
+if __name__ == "__main__":
+    sys.exit(main(Learner))

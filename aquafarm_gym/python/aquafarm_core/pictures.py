@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pictures of farms, drawn as ./aquafarm render and the image topic draw them.
+
+    painter = Painter(800, 640, "wake,risk")
+    painter.draw(batch, farm=0)                     # uint8 [640, 800, 3], RGB
+"""
+from aquafarm_core import _native  # noqa: F401  (defines FarmBatch)
+
+try:
+    from aquafarm_core._pictures import LAYERS, Painter
+except ImportError as error:
+    raise ImportError(
+        f"aquafarm_core: got no module that draws pictures ({error}), expected one; install OpenCV "
+        "and FreeType (Debian: libopencv-dev libfreetype-dev fonts-dejavu-core) and run pip "
+        "install ./aquafarm_gym again, or use render_mode='ansi'") from error
+
+Painter.__module__ = __name__
+
+__all__ = ["LAYERS", "Painter"]

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Lets a learner of any Python package take part in ./aquafarm benchmark.
+
+    class MyLearner:
+        def __init__(self, env, seed): ...            # env: FarmEnv with one ship
+        def train(self): ...                          # plays self.env until EpisodesOver is raised
+        def act(self, observation, mask): ...         # greedy; returns an action in [0, 9]
+
+    if __name__ == "__main__":
+        sys.exit(main(MyLearner))
+
+    aquafarm_benchmark --learner "mine=python3 my_learner.py" …
+
+main trains for the episodes of the benchmark, evaluates on its evaluation seeds, and writes run.json,
+metrics.csv, evaluation.csv and evaluation.json into the run folder, with the definitions of
+aquafarm_train and aquafarm_evaluate.
+"""
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import os
+import pathlib
+import sys
+import time
+from typing import Any, Protocol
+
+import aquafarm_core as core
+import numpy as np
+import numpy.typing as npt
+
+from aquafarm_gym import spaces
+from aquafarm_gym.env import FarmEnv
+from aquafarm_gym.farms import LocalFarms, find_scenario
+
+METRICS = ("number", "total_steps", "farm", "seed", "episode", "steps", "return", "delivered",
+           "devices", "delivered_health", "crashes", "collisions", "steps_in_disaster", "reason",
+           "success", "exploration", "learning_rate", "loss", "energy_kwh", "distance_km")
+EVALUATION = (*METRICS[2:15], "energy_kwh", "distance_km")
+FIRST_EVALUATION_SEED = 2**63  # that of aquafarm_evaluate --seed 0
+
+
+class EpisodesOver(Exception):
+    """Raised by reset after the last episode of the training."""
+
+
+class Learner(Protocol):
+    """What main needs of a learner."""
+
+    def train(self) -> None:
+        """Plays the environment until it raises EpisodesOver."""
+
+    def act(self, observation: Any, mask: npt.NDArray[np.int8]) -> int:
+        """Returns the greedy action; mask: legal actions, int8 [10]."""
+
+
+def cells_of(record: dict[str, Any]) -> dict[str, Any]:
+    """Returns the cells of an episode in the files of a run."""
+    return {**record, "return": record["episode_return"], "success": int(record["success"]),
+            "energy_kwh": record["energy"], "distance_km": record["distance"]}
+
+
+class TrainingEnv(FarmEnv):
+    """A FarmEnv that writes metrics.csv and ends the training after `episodes` episodes."""
+
+    def __init__(self, scenario: core.Scenario, episodes: int, path: pathlib.Path,
+                 **options: Any) -> None:
+        super().__init__(scenario, **options)
+        self._left, self._number, self._steps = episodes, 0, 0
+        self._file = open(path, "w", newline="", encoding="utf-8")
+        self._rows = csv.DictWriter(self._file, METRICS, restval="nan", extrasaction="ignore",
+                                    lineterminator="\n")
+        self._rows.writeheader()
+
+    def reset(self, **options: Any) -> Any:
+        if self._number == self._left:
+            raise EpisodesOver
+        return super().reset(**options)
+
+    def step(self, action: Any) -> Any:
+        result = super().step(action)
+        self._steps += 1
+        if result[2] or result[3]:
+            self._number += 1
+            self._rows.writerow({"number": self._number, "total_steps": self._steps,
+                                 **cells_of(self.farms.finished()[0])})
+        return result
+
+    def close(self) -> None:
+        self._file.close()
+        super().close()
+
+
+def evaluate(learner: Learner, scenario: core.Scenario, observation: str, episodes: int,
+             seed: int) -> tuple[list[dict[str, Any]], int]:
+    """Plays greedily; returns the records of the episodes and the number of distinct starts."""
+    farms = LocalFarms(scenario, 1, observation, hashes=True)
+    seen, records, starts = farms.buffers[observation], [], set()
+    for episode in range(episodes):
+        farms.reset(FIRST_EVALUATION_SEED + seed, episode)
+        starts.add(int(farms.buffers["hashes"][0]))
+        while not farms.buffers["reasons"][0]:
+            mask = spaces.action_mask(farms.buffers["legal"][0, 0])
+            now = np.int64(seen[0, 0]) if observation == "index" else seen[0, 0].copy()
+            farms.step(np.array([[learner.act(now, mask)]], np.uint8))
+        records.append(farms.finished()[0])
+    return records, len(starts)
+
+
+def summary_of(records: list[dict[str, Any]]) -> dict[str, Any]:
+    """Returns the figures of evaluation.json."""
+    count = len(records)
+    total = {name: sum(one[name] for one in records)
+             for name in ("episode_return", "steps", "success", "crashes", "steps_in_disaster",
+                          "energy", "distance", "delivered")}
+    health = sum(one["delivered_health"] * one["delivered"] for one in records)
+    return {"complete": True, "episodes": count,
+            "return_per_episode": total["episode_return"] / count,
+            "return_per_step": total["episode_return"] / total["steps"],
+            "success_rate": total["success"] / count, "steps_per_episode": total["steps"] / count,
+            "crashes_per_episode": total["crashes"] / count,
+            "steps_in_disaster_per_episode": total["steps_in_disaster"] / count,
+            "delivered_health": health / max(1, total["delivered"]),
+            "energy_kwh_per_episode": total["energy"] / count,
+            "distance_km_per_episode": total["distance"] / count}
+
+
+def with_limit(scenario: core.Scenario, max_steps: int) -> core.Scenario:
+    """Returns the scenario with another step limit; 0: its own."""
+    if max_steps in (0, scenario.step_limit):
+        return scenario
+    old, new = f"step_limit: {scenario.step_limit}", f"step_limit: {max_steps}"
+    if scenario.yaml.count(old) != 1:
+        raise ValueError(f"scenario {scenario.name}: got no single '{old}' in its text, expected one")
+    return core.Scenario.parse(scenario.yaml.replace(old, new), scenario.name)
+
+
+def write(path: pathlib.Path, text: str) -> None:
+    """Writes a file atomically."""
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, "utf-8")
+    os.replace(part, path)
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description="A learner of ./aquafarm benchmark.")
+    parser.add_argument("scenario", help="scenario file or name")
+    parser.add_argument("--run-dir", type=pathlib.Path, required=True)
+    parser.add_argument("--name", default="learner")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--episodes", type=int, default=100, help="of the training")
+    parser.add_argument("--max-steps", type=int, default=0, help="of an episode")
+    parser.add_argument("--evaluation-episodes", type=int, default=100)
+    parser.add_argument("--evaluation-seed", type=int, default=1000)
+    return parser.parse_args()
+
+
+def main(make: Any, observation: str = "features") -> int:
+    """Trains and evaluates one learner as the command line says; returns the exit code.
+
+    make(env, seed) returns the learner. Wrong arguments and scenarios with several agents give exit
+    code 2.
+    """
+    given = arguments()
+    try:
+        scenario = with_limit(find_scenario(given.scenario), given.max_steps)
+        given.run_dir.mkdir(parents=True, exist_ok=True)
+        env = TrainingEnv(scenario, given.episodes, given.run_dir / "metrics.csv",
+                          observation=observation)
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        return 2
+    env.reset(seed=given.seed)
+    write(given.run_dir / "run.json", json.dumps({
+        "algorithm": given.name, "options": "", "seed": given.seed, "episodes": given.episodes,
+        "scenario": scenario.name, "scenario_hash": scenario.hash, "version": core.VERSION,
+        "arguments": sys.argv}, indent=2))
+    learner = make(env, given.seed)
+    try:
+        learner.train()
+    except EpisodesOver:
+        pass
+    env.close()
+    began = time.monotonic()
+    records, starts = evaluate(learner, scenario, observation, given.evaluation_episodes,
+                               given.evaluation_seed)
+    with open(given.run_dir / "evaluation.csv", "w", newline="", encoding="utf-8") as file:
+        rows = csv.DictWriter(file, EVALUATION, extrasaction="ignore", lineterminator="\n")
+        rows.writeheader()
+        rows.writerows(cells_of(one) for one in records)
+    summary = {**summary_of(records), "algorithm": given.name, "distinct_episodes": starts,
+               "farm_seed": FIRST_EVALUATION_SEED + given.evaluation_seed, "farms": 1,
+               "seed": given.evaluation_seed, "scenario": scenario.name,
+               "scenario_hash": scenario.hash, "version": core.VERSION,
+               "wall_s": time.monotonic() - began}
+    write(given.run_dir / "evaluation.json", json.dumps(summary, indent=2, sort_keys=True))
+    print(f"{given.name}: return {summary['return_per_episode']:.1f}, success "
+          f"{100 * summary['success_rate']:.1f} % in {len(records)} episodes")
+    return 0

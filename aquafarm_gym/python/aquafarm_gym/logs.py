@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Shows the curves of runs in TensorBoard or Weights & Biases.
+
+    python -m aquafarm_gym.logs RUN … [--to tensorboard | wandb] [--follow] [--window 50]
+
+RUN is a run folder of ./aquafarm train or aquafarm_train; its metrics.csv has one line per episode.
+Each point is the mean of --window episodes at the farm steps of the last one. TensorBoard reads
+RUN/tensorboard (tensorboard --logdir runs); Weights & Biases gets one run per folder, offline unless
+WANDB_MODE is online. --follow continues until Ctrl-C or until all runs have ended.
+"""
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import math
+import os
+import pathlib
+import shutil
+import sys
+import time
+from collections.abc import Iterator
+from typing import Any, Protocol
+
+# Columns of metrics.csv with their names in the logs.
+COLUMNS: dict[str, str] = {
+    "return": "episode/return", "success": "episode/success_rate", "steps": "episode/steps",
+    "delivered": "episode/delivered", "delivered_health": "episode/delivered_health",
+    "crashes": "episode/crashes", "collisions": "episode/collisions",
+    "steps_in_disaster": "episode/steps_in_disaster", "energy_kwh": "episode/energy_kwh",
+    "distance_km": "episode/distance_km", "loss": "learner/loss",
+    "exploration": "learner/exploration", "learning_rate": "learner/learning_rate"}
+PERIOD_S = 2.0
+
+
+class Sink(Protocol):
+    """Where the points of a run go."""
+
+    def add(self, steps: int, values: dict[str, float]) -> None:
+        """Adds a point at a number of farm steps."""
+
+    def close(self) -> None:
+        """Writes what is left."""
+
+
+class TensorBoard:
+    """Rewrites RUN/tensorboard with the writer of the package tensorboard."""
+
+    def __init__(self, run: pathlib.Path) -> None:
+        from tensorboard.summary.writer.event_file_writer import EventFileWriter
+        folder = run / "tensorboard"
+        shutil.rmtree(folder, ignore_errors=True)
+        self._writer: Any = EventFileWriter(str(folder))
+
+    def add(self, steps: int, values: dict[str, float]) -> None:
+        """Adds a point."""
+        from tensorboard.compat.proto.event_pb2 import Event
+        from tensorboard.compat.proto.summary_pb2 import Summary
+        scalars = [Summary.Value(tag=name, simple_value=value) for name, value in values.items()]
+        self._writer.add_event(Event(wall_time=time.time(), step=steps,
+                                     summary=Summary(value=scalars)))
+
+    def close(self) -> None:
+        """Writes what is left."""
+        self._writer.close()
+
+
+class WeightsAndBiases:
+    """Makes a run of Weights & Biases with the options of run.json."""
+
+    def __init__(self, run: pathlib.Path) -> None:
+        os.environ.setdefault("WANDB_MODE", "offline")
+        import wandb
+        self._run: Any = wandb.init(project="aquafarm", name=run.name, config=settings_of(run),
+                                    dir=str(run), reinit="create_new")
+
+    def add(self, steps: int, values: dict[str, float]) -> None:
+        """Adds a point."""
+        self._run.log(values, step=steps)
+
+    def close(self) -> None:
+        """Writes what is left."""
+        self._run.finish(quiet=True)
+
+
+SINKS: dict[str, Any] = {"tensorboard": TensorBoard, "wandb": WeightsAndBiases}
+
+
+def settings_of(run: pathlib.Path) -> dict[str, Any]:
+    """Returns the settings in run.json; nothing if it is not there yet."""
+    try:
+        settings: dict[str, Any] = json.loads((run / "run.json").read_text("utf-8"))
+        return settings
+    except (OSError, ValueError):
+        return {}
+
+
+class Metrics:
+    """Reads the lines of a metrics.csv that were not read before."""
+
+    def __init__(self, path: pathlib.Path) -> None:
+        self._path = path
+        self._offset = 0
+        self._names: list[str] = []
+
+    def new_rows(self) -> Iterator[dict[str, float]]:
+        """Yields the complete new lines. Raises ValueError for a line that is not a row."""
+        try:
+            with open(self._path, "rb") as file:
+                file.seek(self._offset)
+                text = file.read()
+        except FileNotFoundError:
+            return
+        whole = text[:text.rfind(b"\n") + 1]
+        self._offset += len(whole)
+        for cells in csv.reader(whole.decode("utf-8").splitlines()):
+            if not self._names:
+                self._names = cells
+                continue
+            try:
+                row = dict(zip(self._names, cells, strict=True))
+                row.pop("reason", None)
+                yield {name: float(value) for name, value in row.items()}
+            except ValueError as error:
+                raise ValueError(f"{self._path}: got line {','.join(cells)[:60]!r}, expected "
+                                 f"{len(self._names)} numbers as in its first line") from error
+
+    def is_shorter(self) -> bool:
+        """Returns whether the file was cut, as when a run resumes from a checkpoint."""
+        return self._path.is_file() and self._path.stat().st_size < self._offset
+
+
+class Curves:
+    """Sends the means of the rows of one run to a sink."""
+
+    def __init__(self, run: pathlib.Path, kind: str, window: int) -> None:
+        self._run, self._kind, self._window = run, kind, window
+        self._begin()
+
+    def _begin(self) -> None:
+        self._sink: Sink = SINKS[self._kind](self._run)
+        self._metrics = Metrics(self._run / "metrics.csv")
+        self._rows: list[dict[str, float]] = []
+        self.points = 0
+
+    def update(self) -> None:
+        """Reads new rows and adds the points of complete windows."""
+        if self._metrics.is_shorter():
+            self._sink.close()
+            self._begin()
+        for row in self._metrics.new_rows():
+            self._rows.append(row)
+            if len(self._rows) == self._window:
+                self._add()
+
+    def _add(self) -> None:
+        means = {}
+        for column, name in COLUMNS.items():
+            values = [row[column] for row in self._rows
+                      if column in row and math.isfinite(row[column])]
+            if values:
+                means[name] = sum(values) / len(values)
+        self._sink.add(int(self._rows[-1]["total_steps"]), means)
+        self._rows.clear()
+        self.points += 1
+
+    def has_ended(self) -> bool:
+        """Returns whether the run has written its policy, after all episodes."""
+        return (self._run / "policy.ckpt").is_file()
+
+    def close(self) -> None:
+        """Adds the last rows as a shorter window."""
+        if self._rows:
+            self._add()
+        self._sink.close()
+
+
+def log_runs(runs: list[pathlib.Path], kind: str = "tensorboard", window: int = 50,
+             follow: bool = False) -> list[int]:
+    """Logs run folders; returns the number of points of each. kind: tensorboard or wandb. Raises
+    ValueError for a folder without a run, and ImportError without the package of `kind`."""
+    for run in runs:
+        if not (run / "metrics.csv").is_file() and not (run / "run.json").is_file():
+            raise ValueError(f"{run}: got no metrics.csv, expected a run folder of ./aquafarm train")
+    curves = [Curves(run, kind, window) for run in runs]
+    try:
+        while True:
+            ended = follow and all(one.has_ended() for one in curves)
+            for one in curves:
+                one.update()
+            if ended or not follow:
+                break
+            time.sleep(PERIOD_S)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        for one in curves:
+            one.close()
+    return [one.points for one in curves]
+
+
+def main() -> int:
+    """The command; returns its exit code."""
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("runs", nargs="+", type=pathlib.Path)
+    parser.add_argument("--to", choices=sorted(SINKS), default="tensorboard")
+    parser.add_argument("--window", type=int, default=50, help="episodes of a point")
+    parser.add_argument("--follow", action="store_true", help="continue while runs train")
+    given = parser.parse_args()
+    if given.window < 1:
+        parser.error(f"--window: got {given.window}, expected at least 1")
+    try:
+        points = log_runs(given.runs, given.to, given.window, given.follow)
+    except ImportError as error:
+        print(f"logs: {error}; pip install {given.to}", file=sys.stderr)
+        return 3
+    except ValueError as error:
+        print(f"logs: {error}", file=sys.stderr)
+        return 2
+    for run, count in zip(given.runs, points):
+        print(f"{run}: {count} points")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Rescue plans: which ship fetches which device before a storm, as ./aquafarm plan makes them."""
+from __future__ import annotations
+
+import datetime
+import importlib
+import json
+import pathlib
+import time
+from typing import Any
+
+import aquafarm_core as core
+
+from aquafarm_gym.farms import find_scenario
+
+Path = str | pathlib.Path
+
+
+def seconds_of(name: str, moment: str | datetime.datetime) -> int:
+    """Returns a time as seconds since 1970. Raises ValueError unless its time zone is known."""
+    try:
+        given = (datetime.datetime.fromisoformat(moment.replace("Z", "+00:00"))
+                 if isinstance(moment, str) else moment)
+    except ValueError:
+        given = None
+    if not isinstance(given, datetime.datetime) or given.tzinfo is None:
+        raise ValueError(f"{name}: got {moment!r}, expected a time with its zone, as "
+                         "'2021-07-24T12:00:00Z' or a datetime with tzinfo")
+    return int(given.timestamp())
+
+
+def number(name: str, value: Any, low: float, high: float) -> Any:
+    """Returns a number in [low, high], whole if the limits are. Raises ValueError for others."""
+    whole = isinstance(low, int)
+    fits = isinstance(value, int if whole else (int, float)) and not isinstance(value, bool)
+    if not (fits and low <= value <= high):
+        kind = "a whole number" if whole else "a number"
+        raise ValueError(f"{name}: got {value!r}, expected {kind} in [{low}, {high}]")
+    return value if whole else float(value)
+
+
+def plan_rescue(ranch: core.Scenario | Path, *, bulletin: Path | None = None,
+                storm: Path | None = None, storm_name: str = "",
+                at: str | datetime.datetime | None = None, devices: Path | None = None,
+                ships_file: Path | None = None, ships: int | None = None,
+                speed_kn: float | None = None, capacity: int | None = None,
+                depart_h: float = 0.0, abort_wind_kt: float = 34.0, risk_averse: float = 0.0,
+                currency: str = "", utc_offset_h: float | None = None, members: int = 1000,
+                seed: int = 1) -> dict[str, Any]:
+    """Plans a rescue and returns the content of plan.json (plan.schema.json) as a dict.
+
+    ranch: a scenario with a geographic origin, its file or its name. bulletin: file with the
+    storm's forecast; or storm: file of a recorded track, planned as at the time `at` (default:
+    now). devices, ships_file: CSV files (docs/plan.md). depart_h: earliest departure after the
+    start [h]. speed_kn, abort_wind_kt: knots. risk_averse: share of the worst storms whose mean loss
+    is minimised, 0 for the mean. members: number of possible storms.
+
+    Raises ValueError for a wrong option, file or place, in one line.
+    """
+    native: Any = importlib.import_module("aquafarm_core._native")
+    request = native._RescueRequest()
+    request.now = int(time.time())
+    if at is not None:
+        request.at = seconds_of("at", at)
+    for name, text in (("bulletin", bulletin), ("storm", storm), ("storm_name", storm_name),
+                       ("devices", devices), ("ships_file", ships_file), ("currency", currency)):
+        setattr(request, name, "" if text is None else str(text))
+    for name, value, low, high in (
+            ("ships", ships, 0, 64), ("speed_kn", speed_kn, 0.1, 60.0),
+            ("capacity", capacity, 1, 100), ("abort_wind_kt", abort_wind_kt, 10.0, 100.0),
+            ("risk_averse", risk_averse, 0.0, 1.0), ("utc_offset_h", utc_offset_h, -14.0, 14.0),
+            ("members", members, 10, 20000), ("seed", seed, 0, 2**63 - 1)):
+        if value is not None:
+            setattr(request, name, number(name, value, low, high))
+    request.depart_s = 3600.0 * number("depart_h", depart_h, 0.0, 1000.0)
+    scenario = find_scenario(ranch)
+    plan: dict[str, Any] = json.loads(native._plan_rescue(
+        scenario, request, f"aquafarm_gym.plan_rescue({scenario.name!r}, …)"))
+    return plan

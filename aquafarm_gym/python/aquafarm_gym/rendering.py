@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The render modes of all environments: text, pictures, and a window."""
+from __future__ import annotations
+
+import base64
+import html
+import os
+import struct
+import sys
+import zlib
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+SIZE: tuple[int, int] = (800, 640)
+LAYERS: str = "wake,risk"
+STYLE: str = "dark"
+MODES: tuple[str, ...] = ("ansi", "human", "rgb_array")
+FPS: int = 4
+Pixels = npt.NDArray[np.uint8]
+
+
+def check_render_mode(render_mode: str | None, farms: Any,
+                      modes: tuple[str, ...] = MODES) -> str | None:
+    """Returns the mode. Raises ValueError if it is unknown or the farms cannot be rendered, and
+    ImportError if this installation cannot draw pictures."""
+    if render_mode not in (None, *modes):
+        raise ValueError(f"render_mode: got {render_mode!r}, expected {', '.join(modes)} or None")
+    if render_mode is not None and not hasattr(farms, "text"):
+        raise ValueError(f"render_mode: got '{render_mode}' for farms behind ROS, expected None; "
+                         "watch them in rviz")
+    if render_mode == "rgb_array":
+        import aquafarm_core.pictures  # noqa: F401
+    return render_mode
+
+
+class Pictures:
+    """Draws the farms of a backend. Each farm has its own trails of ships."""
+
+    def __init__(self, farms: Any, size: tuple[int, int] = SIZE, layers: str = LAYERS,
+                 style: str = STYLE) -> None:
+        """size: width and height [pixels], each in [160, 4096]. layers and style: as for ./aquafarm
+        render."""
+        self._farms = farms
+        self._size = size
+        self._layers, self._style = layers, style
+        self._painters: dict[int, Any] = {}
+
+    def draw(self, farm: int = 0) -> Pixels:
+        """Returns a picture of the present state, uint8 [height, width, 3], RGB."""
+        if farm not in self._painters:
+            from aquafarm_core.pictures import Painter
+            self._painters[farm] = Painter(*self._size, self._layers, self._style)
+        pixels: Pixels = self._painters[farm].draw(self._farms.batch, farm)
+        return pixels
+
+
+class Window:
+    """Shows pictures in a window of pygame. Without pygame, a display or OpenCV it prints text."""
+
+    def __init__(self, pictures: Pictures, farms: Any) -> None:
+        self._pictures, self._farms = pictures, farms
+        self._screen: Any = None
+        self._clock: Any = None
+        self._works = has_display()
+
+    def show(self) -> None:
+        """Shows the present state for 1/FPS seconds."""
+        if self._works and self._screen is None:
+            self._works = self._open()
+        if not self._works:
+            print(self._farms.text(0))
+            return
+        import pygame
+        surface = pygame.surfarray.make_surface(self._pictures.draw().swapaxes(0, 1))
+        self._screen.blit(surface, (0, 0))
+        pygame.event.pump()
+        pygame.display.flip()
+        self._clock.tick(FPS)
+
+    def _open(self) -> bool:
+        try:
+            import aquafarm_core.pictures  # noqa: F401
+            import pygame
+        except ImportError as error:
+            print(f"render_mode human: prints text, because: {error}", file=sys.stderr)
+            return False
+        pygame.display.init()
+        picture = self._pictures.draw()
+        self._screen = pygame.display.set_mode((picture.shape[1], picture.shape[0]))
+        pygame.display.set_caption(f"aquafarm: {self._farms.name}")
+        self._clock = pygame.time.Clock()
+        return True
+
+    def close(self) -> None:
+        """Closes the window."""
+        if self._screen is not None:
+            import pygame
+            pygame.display.quit()
+            self._screen = None
+
+
+def has_display() -> bool:
+    """Returns whether a window can be opened; a driver named by SDL_VIDEODRIVER counts."""
+    if sys.platform != "linux":
+        return True
+    return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"))
+
+
+def png_of(pixels: Pixels) -> bytes:
+    """Returns an RGB picture as PNG (ISO/IEC 15948)."""
+    height, width = pixels.shape[:2]
+    rows = np.zeros((height, 1 + 3 * width), np.uint8)  # each row begins with its filter: none
+    rows[:, 1:] = pixels.reshape(height, -1)
+
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(
+            ">I", zlib.crc32(name + data))
+
+    head = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head)
+            + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6)) + chunk(b"IEND", b""))
+
+
+def html_of(farms: Any, pictures: Pictures | None, numbers: range | list[int]) -> str:
+    """Returns farms as HTML for a notebook: pictures, or text if there is nothing that draws."""
+    if not hasattr(farms, "text"):
+        return f"<pre>{html.escape(repr(farms))}</pre>"
+    parts = []
+    for farm in numbers:
+        try:
+            if pictures is None:
+                pictures = Pictures(farms)
+            data = base64.b64encode(png_of(pictures.draw(farm))).decode()
+            parts.append(f'<img alt="farm {farm} of {html.escape(farms.name)}" '
+                         f'src="data:image/png;base64,{data}">')
+        except ImportError:
+            parts.append(f'<pre style="line-height: 1.1">{html.escape(farms.text(farm))}</pre>')
+    return "".join(parts)

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tests of learners of other packages in the benchmark: the files that they write.
+
+Runs in the virtual environment given by --venv (venv_tools.py), or in the Python that starts it.
+"""
+import contextlib
+import csv
+import io
+import json
+import pathlib
+import sys
+import tempfile
+import unittest
+
+from venv_tools import enter_venv, run_tests
+
+WHY_NOT = enter_venv()
+
+if not WHY_NOT:
+    import aquafarm_core as core
+    import aquafarm_gym
+    import numpy as np
+    from aquafarm_gym import external
+
+
+class Sample:
+    """Explores with random actions, and takes the last legal action when it is evaluated."""
+
+    def __init__(self, env, seed):
+        self.env, self.random = env, np.random.default_rng(seed)
+
+    def train(self):
+        """Plays until the environment raises EpisodesOver."""
+        while True:
+            self.env.reset()
+            over = False
+            while not over:
+                _, _, terminated, truncated, _ = self.env.step(self.random.integers(0, 10))
+                over = terminated or truncated
+
+    def act(self, observation, mask):
+        """Returns the last legal action: deterministic, and never illegal."""
+        assert observation.shape == self.env.observation_space.shape
+        return int(np.flatnonzero(mask)[-1])
+
+
+@unittest.skipIf(WHY_NOT, WHY_NOT)
+class ExternalTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.run_dir = pathlib.Path(folder.name) / "run"
+
+    def learn(self, *words):
+        """Runs the program of a learner; returns (exit code, what it said)."""
+        sys.argv = ["learner", *words, "--run-dir", str(self.run_dir), "--name", "mine"]
+        with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said):
+            code = external.main(Sample)
+        return code, said.getvalue()
+
+    def test_a_run_has_the_files_of_the_benchmark(self):
+        code, said = self.learn("paper", "--episodes", "3", "--max-steps", "50", "--seed", "4",
+                                "--evaluation-episodes", "2", "--evaluation-seed", "3")
+        self.assertEqual(code, 0, said)
+        with open(self.run_dir / "metrics.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([row["number"] for row in rows], ["1", "2", "3"])
+        self.assertEqual([row["total_steps"] for row in rows], ["50", "100", "150"])
+        self.assertEqual({row["seed"] for row in rows}, {"4"})
+        summary = json.loads((self.run_dir / "evaluation.json").read_text())
+        with open(self.run_dir / "evaluation.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        returns = [float(row["return"]) for row in rows]
+        self.assertEqual([row["seed"] for row in rows], [str(2**63 + 3)] * 2)
+        self.assertAlmostEqual(summary["return_per_episode"], np.mean(returns), places=3)
+        self.assertAlmostEqual(summary["return_per_step"], sum(returns) / 100, places=4)
+        self.assertEqual((summary["complete"], summary["episodes"], summary["success_rate"],
+                          summary["steps_per_episode"], summary["distinct_episodes"]),
+                         (True, 2, 0, 50, 2))
+        self.assertEqual(summary["scenario"], "paper")
+        settings = json.loads((self.run_dir / "run.json").read_text())
+        self.assertEqual((settings["algorithm"], settings["options"]), ("mine", ""))
+
+    def test_the_evaluation_plays_the_episodes_of_aquafarm_evaluate(self):
+        scenario = external.with_limit(aquafarm_gym.find_scenario("paper"), 300)
+        learner = Sample(aquafarm_gym.FarmEnv(scenario), 1)
+        learner.act = lambda observation, mask: core.HOLD
+        records, starts = external.evaluate(learner, scenario, "features", 5, 3)
+        # aquafarm_evaluate do_nothing paper --episodes 5 --seed 3 --max-steps 300
+        self.assertEqual([one["episode_return"] for one in records],
+                         [-462, -814, -463, -651, -587])
+        self.assertEqual(starts, 5)
+
+    def test_what_does_not_fit_ends_with_code_2_and_one_line(self):
+        for scenario, words in (("two_squads", "scenario two_squads: got 2 agents, expected 1; "),
+                                ("none", "scenario: got 'none', expected ")):
+            code, said = self.learn(scenario)
+            self.assertEqual((code, said.count("\n")), (2, 1), said)
+            self.assertIn(words, said)
+
+
+if __name__ == "__main__":
+    run_tests("external", ExternalTest, WHY_NOT)

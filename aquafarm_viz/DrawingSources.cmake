@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Sources that draw pictures. They need messages, but no node and no bag: the Python module of
+# aquafarm_gym compiles them with plain structs in the place of the messages of ROS.
+set(AQUAFARM_DRAWING_SOURCES
+  src/base/checks.cpp
+  src/base/palette.cpp
+  src/base/text.cpp
+  src/draw/background.cpp
+  src/draw/canvas.cpp
+  src/draw/course.cpp
+  src/draw/disaster_rings.cpp
+  src/draw/disasters.cpp
+  src/draw/entities.cpp
+  src/draw/free_space.cpp
+  src/draw/image.cpp
+  src/draw/layout.cpp
+  src/draw/map_labels.cpp
+  src/draw/nautical.cpp
+  src/draw/panel_text.cpp
+  src/draw/policy_layers.cpp
+  src/draw/region.cpp
+  src/draw/sea_layer.cpp
+  src/draw/style.cpp
+  src/scene/directions.cpp
+  src/scene/labels.cpp
+  src/scene/layers.cpp
+  src/scene/outlook.cpp
+  src/scene/storm_track.cpp
+  src/scene/trail.cpp)

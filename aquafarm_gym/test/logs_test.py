@@ -99,4 +99,5 @@ class TensorBoardTest(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    # wandb refuses an exit code that is not an int; unittest.main gives a bool.
+    sys.exit(int(not unittest.main(exit=False).result.wasSuccessful()))

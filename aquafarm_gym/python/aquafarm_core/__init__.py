@@ -39,7 +39,8 @@ for _type in (FarmBatch, Planner, Policy, Scenario):
 def _shipped(name, package, source):
     """Returns a folder of shipped files in the wheel, the install or the sources."""
     native = pathlib.Path(_native.__file__).resolve().parent
-    for folder in (native / name, native.parents[3] / "share" / package / name):
+    prefixes = list(native.parents)[3:4]  # none in a build folder near the root
+    for folder in (native / name, *(one / "share" / package / name for one in prefixes)):
         if folder.is_dir():
             return str(folder)
     return source

@@ -162,7 +162,9 @@ def make_dataset(dataset_id: str, paths: list[str | pathlib.Path], observation: 
     """
     import minari
     from minari.data_collector import EpisodeBuffer
-    scenario, buffers, most = None, [], 0
+    scenario: core.Scenario | None = None
+    buffers: list[Any] = []
+    most = 0
     for path in paths:
         for recorded in read_episodes(path):
             scenario = scenario or recorded.scenario

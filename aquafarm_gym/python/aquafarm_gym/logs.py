@@ -80,7 +80,7 @@ class WeightsAndBiases:
 
     def close(self) -> None:
         """Writes what is left."""
-        self._run.finish(quiet=True)
+        self._run.finish()
 
 
 SINKS: dict[str, Any] = {"tensorboard": TensorBoard, "wandb": WeightsAndBiases}

@@ -78,7 +78,7 @@ class ExternalTest(unittest.TestCase):
         self.assertEqual((summary["complete"], summary["episodes"], summary["success_rate"],
                           summary["steps_per_episode"], summary["distinct_episodes"]),
                          (True, 2, 0, 50, 2))
-        self.assertEqual(summary["scenario"], "paper")
+        self.assertEqual((summary["scenario"], summary["training_steps"]), ("paper", 150))
         settings = json.loads((self.run_dir / "run.json").read_text())
         self.assertEqual((settings["algorithm"], settings["options"]), ("mine", ""))
 

@@ -67,7 +67,7 @@ class TrainingEnv(FarmEnv):
     def __init__(self, scenario: core.Scenario, episodes: int, path: pathlib.Path,
                  **options: Any) -> None:
         super().__init__(scenario, **options)
-        self._left, self._number, self._steps = episodes, 0, 0
+        self._left, self._number, self.steps_taken = episodes, 0, 0
         self._file = open(path, "w", newline="", encoding="utf-8")
         self._rows = csv.DictWriter(self._file, METRICS, restval="nan", extrasaction="ignore",
                                     lineterminator="\n")
@@ -80,10 +80,10 @@ class TrainingEnv(FarmEnv):
 
     def step(self, action: Any) -> Any:
         result = super().step(action)
-        self._steps += 1
+        self.steps_taken += 1
         if result[2] or result[3]:
             self._number += 1
-            self._rows.writerow({"number": self._number, "total_steps": self._steps,
+            self._rows.writerow({"number": self._number, "total_steps": self.steps_taken,
                                  **cells_of(self.farms.finished()[0])})
         return result
 
@@ -190,6 +190,7 @@ def main(make: Any, observation: str = "features") -> int:
         rows.writeheader()
         rows.writerows(cells_of(one) for one in records)
     summary = {**summary_of(records), "algorithm": given.name, "distinct_episodes": starts,
+               "training_steps": env.steps_taken, "policy": given.name,
                "farm_seed": FIRST_EVALUATION_SEED + given.evaluation_seed, "farms": 1,
                "seed": given.evaluation_seed, "scenario": scenario.name,
                "scenario_hash": scenario.hash, "version": core.VERSION,

@@ -118,6 +118,17 @@ TEST(FarmServer, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   options.barrier_timeout_s = 1.0;
   options.late_ships_hold = true;
   const auto ranch = MakeRanchOf(TwoShips(), options);
+  struct Ears final : FarmListener {
+    void OnChange(const ServerView&) override {}
+    void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary&) override {}
+    void OnPresence(const std::vector<std::int32_t>& ships, bool is_present) override {
+      for (const std::int32_t ship : ships) {
+        heard += (is_present ? "back " : "absent ") + std::to_string(ship) + ";";
+      }
+    }
+    std::string heard;
+  } ears;
+  ranch->SetListener(&ears);
   const auto began = std::chrono::steady_clock::now();
   EXPECT_EQ(Outcome::OK, ranch->Command({0, kNorth, 0, 0, 1}).code);
   EXPECT_GE(std::chrono::steady_clock::now() - began, milliseconds(1000));
@@ -136,6 +147,8 @@ TEST(FarmServer, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   EXPECT_EQ(Outcome::HELD, answer.code);
   EXPECT_EQ(12U, answer.step);
   EXPECT_TRUE(ranch->counters().absent.empty());
+  ranch->SetListener(nullptr);
+  EXPECT_EQ("absent 1;back 1;", ears.heard) << "each at once, however short the absence was";
 }
 
 TEST(FarmServer, AShipThatIsAlwaysTooLateIsWaitedForAgain) {

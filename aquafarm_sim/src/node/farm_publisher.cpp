@@ -158,6 +158,19 @@ void FarmPublisher::OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) {
   if (idle_) wake_.notify_all();
 }
 
+void FarmPublisher::OnPresence(const std::vector<std::int32_t>& ships, bool is_present) {
+  std::string names;
+  for (const std::int32_t ship : ships) names += (names.empty() ? "" : ", ") + std::to_string(ship);
+  if (is_present) {
+    ROS_WARN("back: ship %s", names.c_str());
+    return;
+  }
+  ROS_WARN(
+      "barrier timed out: no command from ship %s within ~barrier_timeout_s, %g s; it holds until "
+      "it returns",
+      names.c_str(), params_.ranch.barrier_timeout_s);
+}
+
 void FarmPublisher::Run() {
   using Clock = std::chrono::steady_clock;
   const auto period = std::chrono::duration_cast<Clock::duration>(

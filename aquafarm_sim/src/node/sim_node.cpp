@@ -18,7 +18,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/version.h"
@@ -229,7 +228,6 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
                    "not waiting until their next command: ship " + Joined(now.absent));
   }
-  TellAbsent(now.absent);
   const std::string lost = recorder_ == nullptr ? "" : recorder_->fault();
   if (!lost.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
@@ -255,26 +253,6 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("memory [MiB]", ResidentMebibytes());
   diagnosed_ = now;
   diagnosed_at_ = time;
-}
-
-// Logs once when a ship becomes absent and once when it is back.
-void SimNode::TellAbsent(const std::vector<std::int32_t>& absent) const {
-  const auto without = [](const std::vector<std::int32_t>& ships,
-                          const std::vector<std::int32_t>& others) {
-    std::vector<std::int32_t> left;
-    std::set_difference(ships.begin(), ships.end(), others.begin(), others.end(),
-                        std::back_inserter(left));
-    return left;
-  };
-  const auto lost = without(absent, diagnosed_.absent);
-  const auto back = without(diagnosed_.absent, absent);
-  if (!lost.empty()) {
-    ROS_WARN(
-        "barrier timed out: no command from ship %s within ~barrier_timeout_s, %g s; it holds "
-        "until it returns",
-        Joined(lost).c_str(), params_.ranch.barrier_timeout_s);
-  }
-  if (!back.empty()) ROS_WARN("back: ship %s", Joined(back).c_str());
 }
 
 // Ctrl-C in a launch reaches trainer and farm together. A running trainer gets time to save.

@@ -207,10 +207,12 @@ aquafarm_msgs::CommandResult FarmServer::RefuseAfter(CommandBarrier::WaitEnd end
 
 // A ship whose node has died or is late holds. The farm ignores it until its next command.
 void FarmServer::MarkMissingAbsent() {
-  for (const std::int32_t ship : barrier_.MissingShips(batch_->farm(0))) {
+  const std::vector<std::int32_t> missing = barrier_.MissingShips(batch_->farm(0));
+  for (const std::int32_t ship : missing) {
     barrier_.SetAbsent(ship, true);
     ++counters_.late_ships;
   }
+  Notify([&](FarmListener& listener) { listener.OnPresence(missing, false); });
 }
 
 std::optional<FarmServer::Refusal> FarmServer::CheckHolder(std::int32_t ship,
@@ -225,7 +227,9 @@ std::optional<FarmServer::Refusal> FarmServer::MarkPresent(const ShipCommand& co
   if (command.ship < 0 || command.ship >= agents_) return std::nullopt;
   if (auto refusal = CheckHolder(command.ship, command.caller)) return refusal;
   claims_.MarkPresent(command.ship);
-  barrier_.SetAbsent(command.ship, false);
+  if (barrier_.SetAbsent(command.ship, false)) {
+    Notify([&](FarmListener& listener) { listener.OnPresence({command.ship}, true); });
+  }
   return std::nullopt;
 }
 

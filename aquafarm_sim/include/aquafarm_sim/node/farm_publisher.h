@@ -45,6 +45,8 @@ class FarmPublisher : public FarmListener {
 
   void OnChange(const ServerView& view) override;
   void OnEpisodeEnd(const aquafarm_msgs::EpisodeSummary& summary) override;
+  /// Logs at once which ships are absent or back; diagnostics repeat it at their own rate.
+  void OnPresence(const std::vector<std::int32_t>& ships, bool is_present) override;
 
   /// Number of episode summaries that were dropped because the queue was full.
   std::uint64_t dropped_summaries() const { return dropped_summaries_; }

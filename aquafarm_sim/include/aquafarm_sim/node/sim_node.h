@@ -39,7 +39,6 @@ class SimNode {
   void AdvertiseFarm();
   void AdvertiseShip(std::int32_t ship);
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
-  void TellAbsent(const std::vector<std::int32_t>& absent) const;
 
   const SimParams params_;
   ros::NodeHandle node_;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "aquafarm/base/mutex.h"
@@ -66,8 +67,10 @@ class CommandBarrier {
   bool IsMissing(const aquafarm::Farm& farm, std::int32_t ship) const;
   bool IsComplete(const aquafarm::Farm& farm) const;
   std::vector<std::int32_t> MissingShips(const aquafarm::Farm& farm) const;
-  /// The farm does not wait for an absent ship.
-  void SetAbsent(std::int32_t ship, bool is_absent) { slots_[Index(ship)]->is_absent = is_absent; }
+  /// The farm does not wait for an absent ship. @returns whether this changes anything
+  bool SetAbsent(std::int32_t ship, bool is_absent) {
+    return std::exchange(slots_[Index(ship)]->is_absent, is_absent) != is_absent;
+  }
   std::vector<std::int32_t> AbsentShips() const;
 
  private:

@@ -104,7 +104,8 @@ void Run::All(const MakeEnvironment& make_environment) {
   if (!note.empty()) Notify(RunPhase::kStarting, note);
   const std::unique_ptr<Learner> learner =
       algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
-  if (!options_.init.empty()) Initialize(*learner);
+  const bool has_checkpoint = options_.resume && folder.NewestCheckpoint().has_value();
+  if (!options_.init.empty() && !has_checkpoint) Initialize(*learner);
   for (const std::string& line : RenamedOptions(options_.options)) {
     Notify(RunPhase::kStarting, line);
   }

@@ -109,6 +109,34 @@ TEST(Generalist, ATrainingBeginsWithItsWeights) {
   EXPECT_GE(report.status.evaluation.success_rate, 0.9);
 }
 
+TEST(Generalist, AResumedTrainingDoesNotNeedItsInitialPolicy) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "resumed";
+  std::filesystem::remove_all(folder);
+  const auto train = [&](const std::string& name, const std::string& init, std::uint64_t steps,
+                         bool resume) {
+    RunOptions run;
+    run.algorithm = "ppo";
+    run.init = init;
+    run.steps = steps;
+    run.resume = resume;
+    run.evaluation_episodes = run.random_episodes = 0;
+    run.run_dir = (folder / name).string();
+    return Train(
+        run,
+        [](std::uint8_t encodings) {
+          return MakeLocalFarms(Shipped("paper", true), {8, encodings, false, 1});
+        },
+        {}, nullptr);
+  };
+  ASSERT_EQ(train("first", kGeneralist, 200, false).code, ExitCode::kOk);
+  ASSERT_EQ(train("second", (folder / "first").string(), 200, false).code, ExitCode::kOk);
+  std::filesystem::remove_all(folder / "first");
+  const RunReport report = train("second", "", 400, true);
+  EXPECT_EQ(report.code, ExitCode::kOk) << report.summary;
+  EXPECT_GE(report.status.progress.steps, 400U);
+  std::filesystem::remove_all(folder);
+}
+
 TEST(Generalist, ATrainingThatDoesNotFitIsRefusedInOneLine) {
   const auto expect = [](const RunReport& report, const std::string& words) {
     EXPECT_EQ(report.code, ExitCode::kBadInput);

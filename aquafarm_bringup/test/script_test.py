@@ -140,6 +140,13 @@ class ScriptTest(unittest.TestCase):
                 self.assertIn(f"{name}: got '{value}', expected a whole number", done.stdout)
             self.assertEqual([], os.listdir(folder))
 
+    def test_ranks_refuse_what_needs_ros(self):
+        for arguments, expected in ((["viz:=true"], "viz: got 'true' with ranks, expected one of:"),
+                                    (["ranks:=1.5"], "ranks: got '1.5', expected a whole number")):
+            done = run(SCRIPT, "train", "ranks:=2", "steps:=10", *arguments, cwd="/tmp")
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(expected, done.stdout)
+
     def test_a_program_in_place_of_the_master_is_named(self):
         with tempfile.TemporaryDirectory() as folder, socket.socket() as silent:
             silent.bind(("127.0.0.1", 0))

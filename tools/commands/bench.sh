@@ -92,9 +92,15 @@ bench_ppo() {
     "$ws/bench_ppo.txt"
 }
 
+# Two ranks on two cores against one on one core, and both against a model of the cost.
+bench_ranks() {
+  core aquafarm_agents
+  /usr/bin/python3 "$root/tools/bench_ranks.py" "$(bench_executable aquafarm_train)"
+}
+
 bench_all() {
   local out=$ws/bench_all.txt
-  { bench_sim; bench_import; bench_tabular; bench_planner; bench_dqn; bench_lstm; bench_ppo; bench_ros; bench_agents; bench_recording; } |
+  { bench_sim; bench_import; bench_tabular; bench_planner; bench_dqn; bench_lstm; bench_ppo; bench_ranks; bench_ros; bench_agents; bench_recording; } |
     tee "$out"
   say "all figures, also in $out:"
   grep -E '^[a-z][a-z0-9_]* -?[0-9][0-9.e+-]* ' "$out"
@@ -102,8 +108,8 @@ bench_all() {
 
 bench() {
   case ${1:-all} in
-    sim | import | ros | agents | recording | tabular | planner | dqn | lstm | ppo | all) setup; "bench_${1:-all}" ;;
+    sim | import | ros | agents | recording | tabular | planner | dqn | lstm | ppo | ranks | all) setup; "bench_${1:-all}" ;;
     *) code=2 die "bench: got '$1', expected sim, import, ros, agents, recording, tabular, \
-planner, dqn, lstm, ppo or nothing for all" ;;
+planner, dqn, lstm, ppo, ranks or nothing for all" ;;
   esac
 }

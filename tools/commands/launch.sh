@@ -152,10 +152,10 @@ check_arguments() {
         [[ $value =~ ^([Tt]rue|[Ff]alse|0|1)$ ]] ||
           code=2 die "${argument%%:=*}: got '$value', expected true or false" ;;
       bag:=*) [[ $1 != replay || -f $value ]] || code=2 die "bag: there is no file $value" ;;
-      runs:=*.*[1-9]* | jobs:=*.*[1-9]* | *episodes:=*.*[1-9]* | farms:=*.*[1-9]* | \
+      runs:=*.*[1-9]* | jobs:=*.*[1-9]* | ranks:=*.*[1-9]* | *episodes:=*.*[1-9]* | farms:=*.*[1-9]* | \
         seed:=*.*[1-9]* | start_episode:=*.*[1-9]* | start_step:=*.*[1-9]*)
         code=2 die "${argument%%:=*}: got '$value', expected a whole number" ;;
-      runs:=* | jobs:=* | *episodes:=* | *steps:=* | farms:=* | seed:=* | *_s:=* | *_hz:=* | \
+      runs:=* | jobs:=* | ranks:=* | *episodes:=* | *steps:=* | farms:=* | seed:=* | *_s:=* | *_hz:=* | \
         speed:=* | start_episode:=* | start_step:=*)
         [[ $value =~ ^-?[0-9.]+([eE][-+]?[0-9]+)?$ ]] ||
           code=2 die "${argument%%:=*}: got '$value', expected a number" ;;

@@ -3,12 +3,18 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
 
 #include "app.h"
 #include "aquafarm/agents/environment/family_environment.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/ranks/process_group.h"
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/run.h"
 #include "aquafarm/scenario/limits.h"
+#include "local_ranks.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -46,6 +52,8 @@ struct Arguments {
   ScenarioChoice scenario;
   std::vector<std::string> settings;
   EnvironmentOptions environment;
+  int ranks{};  // to start here; 0: none
+  GroupTimes times;
 };
 
 void AddOptions(CLI::App& app, Arguments& arguments) {
@@ -84,17 +92,83 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "greedy evaluation episodes at the end; 0 disables them");
   app.add_option("--random", options.random_episodes,
                  "RANDOM episodes for comparison; 0 disables them");
+  app.add_option("--ranks", arguments.ranks,
+                 "processes of this host that train together, a power of two, which have the same "
+                 "result as "
+                 "--ranks 1; 0: one process, or those "
+                 "that mpirun, srun or torchrun started")
+      ->check(CLI::Range(0, 4096));
+  app.add_option("--rank-start", arguments.times.start_s,
+                 "max seconds that a rank waits for the others at the start")
+      ->check(CLI::Range(1.0, 86400.0));
+  app.add_option("--rank-answer", arguments.times.answer_s,
+                 "max seconds that a rank waits for an answer of another one")
+      ->check(CLI::Range(1.0, 86400.0));
   AddScenarioOptions(app, arguments.scenario);
+}
+
+// Trains with the farms in this process, or with its share of them if there are several ranks.
+RunReport TrainHere(Arguments& arguments, ProcessGroup* group) {
+  const RunOptions& options = arguments.options;
+  EnvironmentOptions& environment = arguments.environment;
+  if (environment.farms == 0) environment.farms = DefaultFarms(options.algorithm);
+  const auto make = [&](std::uint8_t encodings) {
+    environment.encodings = encodings;
+    return MakeLocalFarms(arguments.scenario.Load(), environment);
+  };
+  if (group == nullptr) return Train(options, make, Print, &stop_requested);
+  const auto make_share = [&](std::uint8_t encodings) {
+    EnvironmentOptions share = environment;
+    share.encodings = encodings;
+    share.farms /= group->size();
+    if (share.farms * group->size() != environment.farms) {
+      throw InputError("farms: got " + std::to_string(environment.farms) + " with " +
+                       std::to_string(group->size()) + " ranks, expected a multiple of the ranks");
+    }
+    return MakeLocalFarms(arguments.scenario.Load(), share,
+                          {share.farms * group->rank(), environment.farms});
+  };
+  const RankedRun ranked{*group, make_share};
+  const auto print = [&](const RunStatus& status) {
+    if (group->rank() == 0) Print(status);
+  };
+  RunReport report = Train(options, make, print, &stop_requested, &ranked);
+  if (group->rank() == 0) return report;
+  const bool is_ok = report.code == ExitCode::kOk || report.code == ExitCode::kInterrupted;
+  report.summary =
+      is_ok ? "" : "rank " + std::to_string(group->rank()) + ": " + report.status.message + "\n";
+  return report;
+}
+
+int Run(Arguments& arguments, char** argv) {
+  const RankVariables variables =
+      ReadRankVariables([](const char* name) { return std::getenv(name); });
+  const bool is_started = variables.world_size > 1;
+  const int ranks = is_started ? variables.world_size : arguments.ranks;
+  if (ranks > 1) {
+    CheckRanks(arguments.options.algorithm, ranks, is_started ? variables.launcher : "ranks");
+    if (!is_started) return RunLocalRanks(ranks, argv);
+  }
+  if (arguments.ranks == 1 && arguments.options.options.find("shards=") == std::string::npos) {
+    arguments.options.options += " shards=" + std::to_string(kDefaultShards);
+  }
+  std::unique_ptr<ProcessGroup> group;
+  if (is_started) group = JoinProcessGroup(variables, arguments.times);
+  if (arguments.options.run_dir.empty()) arguments.options.run_dir = NewRunFolder();
+  StopOnSignals();
+  const RunReport report = TrainHere(arguments, group.get());
+  std::fprintf(report.code == ExitCode::kOk ? stdout : stderr, "%s", report.summary.c_str());
+  return static_cast<int>(report.code);
 }
 
 int Main(int argc, char** argv) {
   Arguments arguments;
   RunOptions& options = arguments.options;
-  EnvironmentOptions& environment = arguments.environment;
-  environment.farms = 0;
+  arguments.environment.farms = 0;
   CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume continues.");
   app.footer(ListAlgorithms() +
-             "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 130 "
+             "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 6 another "
+             "rank ended, 130 "
              "interrupted and saved");
   app.option_defaults()->always_capture_default();
   AddOptions(app, arguments);
@@ -106,19 +180,14 @@ int Main(int argc, char** argv) {
   }
   for (const std::string& setting : arguments.settings) options.options += " " + setting;
   options.arguments.assign(argv, argv + argc);
-  if (options.run_dir.empty()) options.run_dir = NewRunFolder();
-
-  StopOnSignals();
-  const RunReport report = Train(
-      options,
-      [&](std::uint8_t encodings) {
-        environment.encodings = encodings;
-        if (environment.farms == 0) environment.farms = DefaultFarms(options.algorithm);
-        return MakeLocalFarms(arguments.scenario.Load(), environment);
-      },
-      Print, &stop_requested);
-  std::fprintf(report.code == ExitCode::kOk ? stdout : stderr, "%s", report.summary.c_str());
-  return static_cast<int>(report.code);
+  return RunWithExitCodes(app, [&] {
+    try {
+      return Run(arguments, argv);
+    } catch (const RankLost& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      return static_cast<int>(ExitCode::kRankLost);
+    }
+  });
 }
 
 }  // namespace

@@ -34,10 +34,11 @@ Farm MakeRanch(const Scenario& family, std::uint64_t seed, std::uint64_t episode
 }
 
 FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
-                                     const EnvironmentOptions& options)
+                                     const EnvironmentOptions& options, const FarmShare& share)
     : family_(std::move(family)),
       encoder_(*family_),
-      spec_(MakeSpec(*family_, encoder_, options.farms)) {
+      spec_(MakeSpec(*family_, encoder_, options.farms)),
+      share_(WholeOr(share, options.farms)) {
   AQUAFARM_CHECK_EQ(family_->family.has_value(), true);
   spec_.state_count = 0;
   spec_.plane_count = 0;
@@ -72,7 +73,8 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
 
 const StepResults& FamilyEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
   for (std::size_t i = 0; i < farms_.size(); ++i) {
-    farms_[i] = MakeRanch(*family_, seed, first_episode + i);
+    const std::uint64_t farm = static_cast<std::uint64_t>(share_.first) + i;
+    farms_[i] = MakeRanch(*family_, seed, first_episode + farm);
     Write(i, true);
   }
   Complete();
@@ -87,7 +89,8 @@ const StepResults& FamilyEnvironment::Step(const std::vector<std::uint8_t>& acti
   for (std::size_t i = 0; i < farms_.size(); ++i) {
     const bool starts = farms_[i].over();
     if (starts) {
-      farms_[i] = MakeRanch(*family_, farms_[i].seed(), farms_[i].episode() + farms_.size());
+      farms_[i] = MakeRanch(*family_, farms_[i].seed(),
+                            farms_[i].episode() + static_cast<std::uint64_t>(share_.total));
     } else {
       farms_[i].Step(actions.data() + i * agents);
     }
@@ -96,7 +99,8 @@ const StepResults& FamilyEnvironment::Step(const std::vector<std::uint8_t>& acti
   Complete();
   for (std::size_t i = 0; i < farms_.size(); ++i) {
     if (!farms_[i].over()) continue;
-    results_.finished.push_back(ToResult(farms_[i].record(), static_cast<std::int32_t>(i)));
+    results_.finished.push_back(
+        ToResult(farms_[i].record(), share_.first + static_cast<std::int32_t>(i)));
   }
   return results_;
 }
@@ -125,7 +129,8 @@ std::string FamilyEnvironment::Save() {
 const StepResults& FamilyEnvironment::Load(const std::string& bytes) {
   std::vector<Farm> loaded;
   try {
-    const nlohmann::json states = nlohmann::json::from_cbor(bytes);
+    const nlohmann::json states =
+        nlohmann::json::from_cbor(TakeSavedFarms(bytes, share_, spec_.farms));
     if (!states.is_array() || states.size() != farms_.size()) {
       throw InputError("state: got " + std::to_string(states.size()) + " farms, expected " +
                        std::to_string(farms_.size()));
@@ -147,11 +152,12 @@ const StepResults& FamilyEnvironment::Load(const std::string& bytes) {
 }
 
 std::unique_ptr<Environment> MakeLocalFarms(std::shared_ptr<const Scenario> scenario,
-                                            const EnvironmentOptions& options) {
+                                            const EnvironmentOptions& options,
+                                            const FarmShare& share) {
   if (scenario->family) {
-    return std::make_unique<FamilyEnvironment>(std::move(scenario), options);
+    return std::make_unique<FamilyEnvironment>(std::move(scenario), options, share);
   }
-  return std::make_unique<LocalEnvironment>(std::move(scenario), options);
+  return std::make_unique<LocalEnvironment>(std::move(scenario), options, share);
 }
 
 }  // namespace aquafarm::agents

@@ -2,6 +2,7 @@
 #include "aquafarm/agents/environment/local_environment.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
 
@@ -10,6 +11,41 @@
 #include "aquafarm/scenario/scenario_yaml.h"
 
 namespace aquafarm::agents {
+namespace {
+
+// Environments save a CBOR array with one item per farm.
+nlohmann::json SavedFarms(const std::string& bytes) {
+  const nlohmann::json farms = nlohmann::json::from_cbor(bytes, true, false);
+  if (!farms.is_array()) throw InputError("state: damaged bytes: expected a list of farms");
+  return farms;
+}
+
+std::string ToBytes(const nlohmann::json& farms) {
+  std::string bytes;
+  nlohmann::json::to_cbor(farms, bytes);
+  return bytes;
+}
+
+}  // namespace
+
+std::string TakeSavedFarms(const std::string& bytes, const FarmShare& share, std::int32_t count) {
+  if (share.total == count) return bytes;
+  const nlohmann::json all = SavedFarms(bytes);
+  if (all.size() < static_cast<std::size_t>(share.first + count)) {
+    throw InputError("state: got " + std::to_string(all.size()) + " farms, expected at least " +
+                     std::to_string(share.first + count));
+  }
+  const auto begin = all.begin() + share.first;
+  return ToBytes(nlohmann::json(nlohmann::json::array_t(begin, begin + count)));
+}
+
+std::string JoinSavedFarms(const std::vector<std::string>& parts) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const std::string& part : parts) {
+    for (const nlohmann::json& farm : SavedFarms(part)) all.push_back(farm);
+  }
+  return ToBytes(all);
+}
 
 EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
   EpisodeResult result;
@@ -61,9 +97,10 @@ EnvironmentSpec MakeSpec(const Scenario& scenario, const Encoder& encoder, std::
 }
 
 LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
-                                   const EnvironmentOptions& options)
+                                   const EnvironmentOptions& options, const FarmShare& share)
     : batch_(std::move(scenario), options.farms, options.threads),
-      spec_(MakeSpec(batch_.scenario(), batch_.encoder(), options.farms)) {
+      spec_(MakeSpec(batch_.scenario(), batch_.encoder(), options.farms)),
+      share_(WholeOr(share, options.farms)) {
   if ((options.encodings & kIndexBit) != 0 && spec_.state_count == 0) {
     throw InputError(
         "scenario " + spec_.scenario_name +
@@ -89,7 +126,10 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
 }
 
 const StepResults& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
-  batch_.Reset(seed, first_episode, output_);
+  for (std::int32_t i = 0; i < spec_.farms; ++i) {
+    batch_.Start(i, seed, first_episode + static_cast<std::uint64_t>(share_.first + i),
+                 static_cast<std::uint64_t>(share_.total), output_);
+  }
   Complete();
   return results_;
 }
@@ -114,14 +154,17 @@ void LocalEnvironment::Complete() {
 void LocalEnvironment::CollectFinished() {
   for (std::int32_t i = 0; i < spec_.farms; ++i) {
     if (results_.reasons[static_cast<std::size_t>(i)] == 0) continue;
-    results_.finished.push_back(ToResult(batch_.farm(i).record(), i));
+    results_.finished.push_back(ToResult(batch_.farm(i).record(), share_.first + i));
   }
 }
 
 std::string LocalEnvironment::Save() { return batch_.Save(); }
 
 const StepResults& LocalEnvironment::Load(const std::string& bytes) {
-  batch_.Load(bytes);
+  batch_.Load(TakeSavedFarms(bytes, share_, spec_.farms));
+  for (std::int32_t i = 0; i < spec_.farms; ++i) {
+    batch_.set_stride(i, static_cast<std::uint64_t>(share_.total));
+  }
   batch_.Write(output_);
   Complete();
   return results_;

@@ -5,11 +5,11 @@
 
 namespace aquafarm::agents {
 
-AgentRng::AgentRng(std::uint64_t seed, std::size_t entries) {
+AgentRng::AgentRng(std::uint64_t seed, std::size_t entries, std::size_t first) {
   streams_.reserve(entries);
   for (std::size_t i = 0; i < entries; ++i) {
     streams_.emplace_back(
-        StreamKey{seed, 0, RngStream::kExploration, static_cast<std::uint32_t>(i)});
+        StreamKey{seed, 0, RngStream::kExploration, static_cast<std::uint32_t>(first + i)});
   }
 }
 

@@ -10,6 +10,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
 #include "aquafarm/base/version.h"
+#include "learning/parse_checkpoint.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -65,8 +66,9 @@ std::string CompleteOptions(const std::string& algorithm, const std::string& rec
     std::string_view key;
     std::string_view value;
   };
-  constexpr std::array<Added, 2> kAdded{
-      {{"lstm_dqn", "skip_connection=", "true"}, {"ppo", "teacher=", "0"}}};
+  constexpr std::array<Added, 3> kAdded{{{"lstm_dqn", "skip_connection=", "true"},
+                                         {"ppo", "shards=", "1"},
+                                         {"ppo", "teacher=", "0"}}};
   std::string complete = recorded;
   for (const Added& added : kAdded) {
     const bool lacks = algorithm.find(added.algorithm) != std::string::npos && !recorded.empty() &&
@@ -175,8 +177,9 @@ void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint) {
   WriteFileAtomically(path, parts);
 }
 
-Checkpoint ReadCheckpoint(const std::string& path) {
-  const std::string bytes = ReadFile(path);
+Checkpoint ReadCheckpoint(const std::string& path) { return ParseCheckpoint(ReadFile(path), path); }
+
+Checkpoint ParseCheckpoint(const std::string& bytes, const std::string& path) {
   try {
     return Parse(bytes);
   } catch (const InputError& error) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
 #include <utility>
 
 #include "aquafarm/agents/learning/warm_start.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/agents/ppo/ppo.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/grid/step_fields.h"
 #include "networks/farm_rows.h"
 #include "ppo/actor.h"
 #include "ppo/make_actor_critic.h"
@@ -16,13 +16,41 @@
 namespace aquafarm::agents {
 namespace {
 
-Rollout::Shape RolloutShape(const EnvironmentSpec& spec, const PpoOptions& options,
-                            std::size_t state_size) {
+// Stream 0 of kLearner draws the weights, stream 1 + s the order of the samples of shard s.
+constexpr std::uint32_t kFirstOrderStream = 1;
+
+/// Shards of this process among those of the training.
+struct ShardRange {
+  std::size_t first{};
+  std::size_t count{};
+  std::int32_t farms{};  ///< of one shard
+};
+
+/// @param farms of this process
+ShardRange LocalShards(const PpoOptions& options, std::int32_t farms, const ProcessGroup* group) {
+  const int ranks = group == nullptr ? 1 : group->size();
+  const int rank = group == nullptr ? 0 : group->rank();
+  if (options.shards % ranks != 0) {
+    throw InputError("shards: got " + std::to_string(options.shards) + " with " +
+                     std::to_string(ranks) + " ranks, expected a multiple of the ranks, such as " +
+                     std::to_string(ranks));
+  }
+  const std::int32_t count = options.shards / ranks;
+  if (farms % count != 0) {
+    throw InputError("farms: got " + std::to_string(farms * ranks) + " with " +
+                     std::to_string(options.shards) + " shards, expected a multiple of the shards");
+  }
+  return {static_cast<std::size_t>(count * rank), static_cast<std::size_t>(count), farms / count};
+}
+
+/// @param total number of entries of the training
+Rollout::Shape RolloutShape(const EnvironmentSpec& shard, const PpoOptions& options,
+                            std::size_t state_size, std::size_t total) {
   Rollout::Shape shape;
-  shape.entries = EntryCount(spec);
-  shape.steps = static_cast<std::size_t>(options.Horizon(shape.entries));
-  shape.agents = static_cast<std::size_t>(spec.agents);
-  shape.features = static_cast<std::size_t>(spec.feature_count);
+  shape.entries = EntryCount(shard);
+  shape.steps = static_cast<std::size_t>(options.Horizon(total));
+  shape.agents = static_cast<std::size_t>(shard.agents);
+  shape.features = static_cast<std::size_t>(shard.feature_count);
   shape.state_size = state_size;
   if (options.recurrent) {
     shape.sequence_length = static_cast<std::size_t>(options.sequence_length);
@@ -43,25 +71,124 @@ std::vector<float> WeightsOf(const Checkpoint& checkpoint, std::size_t size) {
   return weights;
 }
 
-class PpoLearner final : public Learner, public WarmStart {
+/// Copies the results of `count` farms from `first` on.
+void CopyFarms(const StepResults& all, std::size_t first, std::size_t count, StepResults& part) {
+  const std::size_t farms = all.started.size();
+  VisitStepFields(
+      [&](const StepField&, const auto& from, auto& to) {
+        const auto each = static_cast<std::ptrdiff_t>(from.size() / farms);
+        const auto begin = from.begin() + static_cast<std::ptrdiff_t>(first) * each;
+        to.assign(begin, begin + static_cast<std::ptrdiff_t>(count) * each);
+      },
+      all, part);
+}
+
+/// A group of farms with its own rollout and its own random numbers.
+struct Shard {
+  /// @param spec of the farms of the shard @param index among the shards of the training
+  Shard(const EnvironmentSpec& spec, std::uint64_t seed, const PpoOptions& options,
+        const Rollout::Shape& shape, std::size_t index)
+      : actor(spec, options, shape.state_size),
+        rollout(shape),
+        exploration(seed, shape.entries, index * shape.entries),
+        order(
+            {seed, 0, RngStream::kLearner, kFirstOrderStream + static_cast<std::uint32_t>(index)}) {
+    if (options.shards > 1) prefix = "shard" + std::to_string(index) + ".";
+  }
+
+  /// Chooses actions and records them. @param results of the farms of this shard
+  void Act(ActorCritic& network, const StepResults& results);
+  /// Completes a full rollout with the values of the observations that follow it.
+  void Finish(ActorCritic& network, const StepResults& results, const PpoOptions& options);
+  void Save(Checkpoint& checkpoint) const;
+  void Load(const Checkpoint& checkpoint);
+
+  Actor actor;
+  Rollout rollout;
+  AgentRng exploration;
+  RandomStream order;  // of the samples
+  std::uint64_t farm_steps{};
+  StepResults results;  // a copy, if the process has several shards
+  std::vector<std::uint8_t> actions;
+  std::vector<float> log_probs;
+  std::string prefix;  // of its sections in a checkpoint; empty for the only shard
+};
+
+void Shard::Act(ActorCritic& network, const StepResults& seen) {
+  actor.Observe(network, seen);
+  actor.Sample(exploration, actions);
+  const ActionDistribution& distribution = actor.distribution();
+  log_probs.resize(actions.size());
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    log_probs[i] = distribution.log_probs(static_cast<Eigen::Index>(i), actions[i]);
+  }
+  rollout.Add(seen, actor.masks(), actions, log_probs, actor.values(), actor.state_before());
+}
+
+void Shard::Finish(ActorCritic& network, const StepResults& seen, const PpoOptions& options) {
+  // The step is taken again with the new weights, from the same recurrent states.
+  const std::vector<float> state = actor.state();
+  actor.Observe(network, seen);
+  actor.state() = state;
+  rollout.Finish(actor.values(), static_cast<float>(options.gamma),
+                 static_cast<float>(options.gae_lambda));
+}
+
+void Shard::Save(Checkpoint& checkpoint) const {
+  Checkpoint own;
+  rollout.Save(own);
+  exploration.Save(own);
+  own.SetArray("ppo.rng", std::vector<std::uint64_t>{order.position(), farm_steps});
+  own.SetArray("ppo.state", actor.state());
+  for (auto& [name, bytes] : own.sections) checkpoint.sections[prefix + name] = std::move(bytes);
+}
+
+void Shard::Load(const Checkpoint& checkpoint) {
+  Checkpoint own;
+  for (const auto& [name, bytes] : checkpoint.sections) {
+    if (name.rfind(prefix, 0) == 0) own.sections[name.substr(prefix.size())] = bytes;
+  }
+  std::vector<std::uint64_t> rng;
+  std::vector<float> state;
+  own.GetArray("ppo.rng", 2, rng);
+  own.GetArray("ppo.state", actor.state().size(), state);
+  rollout.Load(own);
+  exploration.Load(own);
+  order.Seek(rng[0]);
+  farm_steps = rng[1];
+  actor.state() = std::move(state);
+}
+
+class PpoLearner final : public ShardedLearner, public WarmStart {
  public:
+  /// @param spec of the farms of this process
   PpoLearner(const EnvironmentSpec& spec, std::uint64_t seed, const PpoOptions& options,
-             std::string resolved)
+             std::string resolved, ProcessGroup* group)
       : spec_(spec),
         options_(options),
         resolved_(std::move(resolved)),
+        local_(LocalShards(options, spec.farms, group)),
         network_(MakeActorCritic(spec, options, seed)),
-        actor_(spec, options, network_->state_size()),
-        rollout_(RolloutShape(spec, options, network_->state_size())),
-        updater_(options, *network_),
-        exploration_(seed, EntryCount(spec)),
-        rng_({seed, 0, RngStream::kLearner, 1}) {
+        updater_(options, *network_, local_.count, group),
+        entropy_(options.shards > 1 ? updater_.entropy() : 0.0F) {
+    EnvironmentSpec one = spec;
+    one.farms = local_.farms;
+    const std::size_t total = EntryCount(one) * static_cast<std::size_t>(options.shards);
+    const Rollout::Shape shape = RolloutShape(one, options, network_->state_size(), total);
+    shards_.reserve(local_.count);
+    for (std::size_t i = 0; i < local_.count; ++i) {
+      shards_.emplace_back(one, seed, options, shape, local_.first + i);
+    }
     if (!HasTokens(spec)) return;
     updater_.SetTeacher(std::make_unique<const Teacher>(LayoutOfTokens(spec.feature_names)));
   }
 
   std::uint8_t encodings() const override { return kFeaturesBit; }
   std::string options() const override { return resolved_; }
+  std::uint32_t sync_interval() const override {
+    return options_.shards == 1 ? 1
+                                : static_cast<std::uint32_t>(shards_.front().rollout.shape().steps);
+  }
   void Step(const StepResults& results, double progress,
             std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override {
@@ -81,73 +208,69 @@ class PpoLearner final : public Learner, public WarmStart {
   }
 
  private:
+  const StepResults& ResultsOf(std::size_t shard, const StepResults& results);
   void Update(const StepResults& results, double progress);
 
   const EnvironmentSpec spec_;
   const PpoOptions options_;
   const std::string resolved_;
+  const ShardRange local_;
   const std::unique_ptr<ActorCritic> network_;
-  Actor actor_;
-  Rollout rollout_;
   PpoUpdater updater_;
-  AgentRng exploration_;
-  RandomStream rng_;  // order of the samples
-  std::uint64_t farm_steps_{};
-  float entropy_{};  // mean of the policy at the last step, nats
-  std::vector<float> log_probs_;
+  std::vector<Shard> shards_;  // of this process
+  float entropy_{};  // mean of the policy at the last step, of several shards in the last update
 };
+
+// The results of one shard. The only shard sees all of them, without a copy.
+const StepResults& PpoLearner::ResultsOf(std::size_t shard, const StepResults& results) {
+  if (shards_.size() == 1) return results;
+  const auto farms = static_cast<std::size_t>(local_.farms);
+  CopyFarms(results, shard * farms, farms, shards_[shard].results);
+  return shards_[shard].results;
+}
 
 void PpoLearner::Step(const StepResults& results, double progress,
                       std::vector<std::uint8_t>& actions) {
-  farm_steps_ += FarmSteps(results);
-  rollout_.Complete(results, static_cast<float>(options_.reward_scale));
-  if (rollout_.IsFull()) Update(results, progress);
-  actor_.Observe(*network_, results);
-  actor_.Sample(exploration_, actions);
-  const ActionDistribution& distribution = actor_.distribution();
-  entropy_ = distribution.entropies.mean();
-  log_probs_.resize(actions.size());
-  for (std::size_t i = 0; i < actions.size(); ++i) {
-    log_probs_[i] = distribution.log_probs(static_cast<Eigen::Index>(i), actions[i]);
+  for (std::size_t i = 0; i < shards_.size(); ++i) {
+    const StepResults& own = ResultsOf(i, results);
+    shards_[i].farm_steps += FarmSteps(own);
+    shards_[i].rollout.Complete(own, static_cast<float>(options_.reward_scale));
   }
-  rollout_.Add(results, actor_.masks(), actions, log_probs_, actor_.values(),
-               actor_.state_before());
+  if (shards_.front().rollout.IsFull()) Update(results, progress);
+  actions.clear();
+  for (Shard& shard : shards_) {
+    shard.Act(*network_, shards_.size() == 1 ? results : shard.results);
+    actions.insert(actions.end(), shard.actions.begin(), shard.actions.end());
+  }
+  entropy_ = options_.shards == 1 ? shards_.front().actor.distribution().entropies.mean()
+                                  : updater_.entropy();
 }
 
 void PpoLearner::Update(const StepResults& results, double progress) {
-  // The step is taken again with the new weights, from the same recurrent states.
-  const std::vector<float> state = actor_.state();
-  actor_.Observe(*network_, results);
-  actor_.state() = state;
-  rollout_.Finish(actor_.values(), static_cast<float>(options_.gamma),
-                  static_cast<float>(options_.gae_lambda));
-  updater_.Update(rollout_, {progress, farm_steps_}, rng_);
-  rollout_.Clear();
+  std::vector<PpoUpdater::Input> inputs;
+  PpoUpdater::Context context{progress, 0};
+  for (Shard& shard : shards_) {
+    shard.Finish(*network_, shards_.size() == 1 ? results : shard.results, options_);
+    inputs.push_back({&shard.rollout, &shard.order});
+    context.farm_steps += shard.farm_steps;
+  }
+  updater_.Update(inputs, context);
+  for (Shard& shard : shards_) shard.rollout.Clear();
 }
 
 void PpoLearner::Save(Checkpoint& checkpoint) const {
   updater_.Save(checkpoint);
-  rollout_.Save(checkpoint);
-  exploration_.Save(checkpoint);
-  checkpoint.SetArray("ppo.rng", std::vector<std::uint64_t>{rng_.position(), farm_steps_});
   checkpoint.SetArray("ppo.entropy", std::vector<float>{entropy_});
-  checkpoint.SetArray("ppo.state", actor_.state());
+  for (const Shard& shard : shards_) shard.Save(checkpoint);
 }
 
 void PpoLearner::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> rng;
   std::vector<float> entropy;
-  std::vector<float> state;
-  checkpoint.GetArray("ppo.rng", 2, rng);
   checkpoint.GetArray("ppo.entropy", 1, entropy);
-  checkpoint.GetArray("ppo.state", actor_.state().size(), state);
   updater_.Load(checkpoint);
-  rollout_.Load(checkpoint);
-  exploration_.Load(checkpoint);
-  rng_.Seek(rng[0]);
-  farm_steps_ = rng[1];
+  for (Shard& shard : shards_) shard.Load(checkpoint);
   entropy_ = entropy[0];
-  actor_.state() = std::move(state);
+  updater_.set_entropy(entropy_);
 }
 
 }  // namespace
@@ -163,7 +286,20 @@ std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed
   std::string resolved;
   const PpoOptions options = PpoOptions::Parse(text, resolved);
   PrepareTorch(options.threads);
-  return std::make_unique<PpoLearner>(spec, seed, options, resolved);
+  return std::make_unique<PpoLearner>(spec, seed, options, resolved, nullptr);
+}
+
+std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
+                                               const std::string& text, ProcessGroup& group) {
+  std::string resolved;
+  const PpoOptions options = PpoOptions::Parse(text, resolved);
+  if (options.exploration.is_curious()) {
+    throw InputError("exploration: got " + ToString(options.exploration) + " with " +
+                     std::to_string(group.size()) +
+                     " ranks, expected one without icm: curiosity learns in one process");
+  }
+  PrepareTorch(options.threads);
+  return std::make_unique<PpoLearner>(spec, seed, options, resolved, &group);
 }
 
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
 
+#include "aquafarm/base/check.h"
 #include "base/option_words.h"
 
 namespace aquafarm::agents {
@@ -14,6 +16,7 @@ constexpr std::array<std::string_view, kPolicyModeCount> kPolicyModes{"greedy", 
 enum class Preset : std::uint8_t { kTuned, kLarge };
 constexpr std::array<std::string_view, 2> kPresets{"tuned", "large"};
 
+constexpr std::int32_t kMaxShards = 4096;
 constexpr std::int32_t kMinHorizon = 8;  // steps; advantages need some steps of each episode
 
 PpoOptions Defaults(Preset preset) {
@@ -67,6 +70,11 @@ PpoOptions PpoOptions::Parse(const std::string& text, std::string& resolved) {
   options.teacher = reader.GetSchedule("teacher", options.teacher, 0.0, 1000.0);
   options.policy = ReadWord(reader, "policy", options.policy, kPolicyModes);
   ReadWhole(reader, "threads", 1, 256, options.threads);
+  ReadWhole(reader, "shards", 1, kMaxShards, options.shards);
+  if ((options.shards & (options.shards - 1)) != 0) {
+    throw InputError("shards: got " + std::to_string(options.shards) +
+                     ", expected a power of two: 1, 2, 4, 8, …");
+  }
   reader.Finish();
   resolved = reader.Resolved();
   return options;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "aquafarm/agents/learning/learner.h"
+#include "aquafarm/base/check.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -14,6 +15,8 @@ namespace {
 constexpr float kErrorShare =
     0.05F;  // weight of an update in the moving average of the squared error
 constexpr float kMinDeviation = 1e-6F;
+constexpr std::size_t kLossTerms = 5;  // members of PpoLoss
+enum AdvantageSum : std::size_t { kSum, kSquares, kRows, kSums };
 constexpr std::size_t kPrefetched = 4;  // rows ahead; shuffled rows are not contiguous in memory
 
 void Prefetch(const float* values, std::size_t count) {
@@ -23,35 +26,60 @@ void Prefetch(const float* values, std::size_t count) {
 
 }  // namespace
 
-PpoUpdater::PpoUpdater(const PpoOptions& options, ActorCritic& network)
+PpoUpdater::PpoUpdater(const PpoOptions& options, ActorCritic& network, std::size_t shards,
+                       ProcessGroup* group)
     : options_(options),
       network_(network),
       adam_(network.weights().size()),
       learning_rate_(options.learning_rate.At(0.0)),
       value_error_(std::nanf("")),
+      entropy_(std::log(static_cast<float>(kActionCount))),  // the first policy is nearly uniform
+      group_(group),
+      sequences_(shards),
+      gradients_(shards, std::vector<float>(network.weights().size())),
+      losses_(shards, std::vector<double>(kLossTerms)),
+      advantage_sums_(shards),
       length_(options.recurrent ? static_cast<std::size_t>(options.sequence_length) : 1) {}
 
 // Returns the sequences with at least one transition.
-void PpoUpdater::Collect(const Rollout& rollout) {
+void PpoUpdater::Collect(const Rollout& rollout, std::size_t shard) {
   const std::size_t entries = rollout.shape().entries;
-  sequences_.clear();
+  std::vector<std::uint32_t>& sequences = sequences_[shard];
+  sequences.clear();
   for (std::size_t begin = 0; begin < rollout.slots(); begin += length_ * entries) {
     for (std::size_t slot = begin; slot < begin + entries; ++slot) {
       bool is_valid = false;
       for (std::size_t t = 0; t < length_; ++t) is_valid |= rollout.IsValid(slot + t * entries);
-      if (is_valid) sequences_.push_back(static_cast<std::uint32_t>(slot));
+      if (is_valid) sequences.push_back(static_cast<std::uint32_t>(slot));
     }
   }
 }
 
 // Fisher-Yates shuffle.
-void PpoUpdater::Shuffle(RandomStream& rng) {
-  for (std::size_t left = sequences_.size(); left > 1; --left) {
-    std::swap(sequences_[left - 1], sequences_[rng.Below(static_cast<std::uint32_t>(left))]);
+void PpoUpdater::Shuffle(std::size_t shard, RandomStream& rng) {
+  std::vector<std::uint32_t>& sequences = sequences_[shard];
+  for (std::size_t left = sequences.size(); left > 1; --left) {
+    std::swap(sequences[left - 1], sequences[rng.Below(static_cast<std::uint32_t>(left))]);
   }
 }
 
-void PpoUpdater::Update(const Rollout& rollout, const Context& context, RandomStream& rng) {
+// Returns the number of sequences in all shards of all ranks.
+std::size_t PpoUpdater::CountSequences() {
+  std::vector<double> count{0.0};  // exact: below 2^53
+  for (const auto& one : sequences_) count[0] += static_cast<double>(one.size());
+  if (group_ != nullptr) group_->Sum(nothing_, count);
+  return static_cast<std::size_t>(count[0]);
+}
+
+// The sequences of a shard in a minibatch.
+PpoUpdater::Range PpoUpdater::Part(std::size_t shard, std::size_t batch) const {
+  const std::size_t size = sequences_[shard].size();
+  const std::size_t first = size * batch / batches_;
+  return {first, size * (batch + 1) / batches_ - first};
+}
+
+void PpoUpdater::Update(const std::vector<Input>& inputs, const Context& context) {
+  AQUAFARM_CHECK_EQ(inputs.size(), sequences_.size());
   const double progress = context.progress;
   learning_rate_ = options_.learning_rate.At(progress);
   coefficients_.clip = static_cast<float>(options_.clip_range.At(progress));
@@ -59,29 +87,30 @@ void PpoUpdater::Update(const Rollout& rollout, const Context& context, RandomSt
   coefficients_.value = static_cast<float>(options_.value_coef);
   coefficients_.entropy = static_cast<float>(options_.exploration.level.At(progress));
   teacher_coef_ = static_cast<float>(options_.teacher.At(progress));
-  Collect(rollout);
-  if (sequences_.empty()) return;
-  const double wanted = static_cast<double>(sequences_.size() * length_) / options_.batch_size;
-  const auto batches = std::min(sequences_.size(), std::max<std::size_t>(1, std::lround(wanted)));
+  for (std::size_t i = 0; i < inputs.size(); ++i) Collect(*inputs[i].rollout, i);
+  const std::size_t sequences = CountSequences();
+  if (sequences == 0) return;
+  const double wanted = static_cast<double>(sequences * length_) / options_.batch_size;
+  batches_ = std::min(sequences, std::max<std::size_t>(1, std::lround(wanted)));
   PpoLoss sum;
   for (std::int32_t epoch = 0; epoch < options_.epochs; ++epoch) {
-    Shuffle(rng);
-    for (std::size_t batch = 0; batch < batches; ++batch) {
-      const std::size_t first = sequences_.size() * batch / batches;
-      const std::size_t end = sequences_.size() * (batch + 1) / batches;
-      const PpoLoss loss = LearnMinibatch(rollout, first, end - first);
+    for (std::size_t i = 0; i < inputs.size(); ++i) Shuffle(i, *inputs[i].rng);
+    SumAdvantages(inputs);
+    for (std::size_t batch = 0; batch < batches_; ++batch) {
+      if (advantage_sums_[0][batch * kSums + kRows] == 0.0) continue;  // shards may round alike
+      const PpoLoss loss = LearnMinibatch(inputs, batch);
       const double total = loss.Total(coefficients_);
       if (!std::isfinite(total)) Fail("loss: got " + std::to_string(total), context);
-      if (!adam_.Step(network_.gradient(), learning_rate_, options_.max_grad_norm,
-                      network_.weights())) {
+      if (!adam_.Step(gradients_[0], learning_rate_, options_.max_grad_norm, network_.weights())) {
         Fail("gradient: got a number that is not finite", context);
       }
       sum += loss;
     }
   }
+  const double learned = static_cast<double>(batches_) * options_.epochs;
   const double scale = options_.reward_scale * options_.reward_scale;
-  const auto error = static_cast<float>(sum.square_error /
-                                        (static_cast<double>(batches) * options_.epochs) / scale);
+  const auto error = static_cast<float>(sum.square_error / learned / scale);
+  entropy_ = static_cast<float>(sum.entropy / learned);
   value_error_ =
       std::isnan(value_error_) ? error : value_error_ + kErrorShare * (error - value_error_);
 }
@@ -93,42 +122,68 @@ void PpoUpdater::Fail(const std::string& what, const Context& context) const {
                       "reward_scale");
 }
 
-void PpoUpdater::NormalizeAdvantages(const Rollout& rollout, std::size_t first, std::size_t count) {
-  const std::size_t entries = rollout.shape().entries;
-  double sum = 0.0;
-  double squares = 0.0;
-  std::size_t rows = 0;
-  for (std::size_t i = first; i < first + count; ++i) {
-    for (std::size_t t = 0; t < length_; ++t) {
-      const std::size_t slot = sequences_[i] + t * entries;
-      if (!rollout.IsValid(slot)) continue;
-      const auto advantage = static_cast<double>(rollout.advantage(slot));
-      sum += advantage;
-      squares += advantage * advantage;
-      ++rows;
+// Sums the advantages of every minibatch of an epoch, in one exchange between the ranks.
+void PpoUpdater::SumAdvantages(const std::vector<Input>& inputs) {
+  for (std::size_t shard = 0; shard < inputs.size(); ++shard) {
+    const Rollout& rollout = *inputs[shard].rollout;
+    const std::size_t entries = rollout.shape().entries;
+    advantage_sums_[shard].assign(batches_ * kSums, 0.0);
+    for (std::size_t batch = 0; batch < batches_; ++batch) {
+      double* const sums = advantage_sums_[shard].data() + batch * kSums;
+      const Range part = Part(shard, batch);
+      for (std::size_t i = part.first; i < part.first + part.count; ++i) {
+        for (std::size_t t = 0; t < length_; ++t) {
+          const std::size_t slot = sequences_[shard][i] + t * entries;
+          if (!rollout.IsValid(slot)) continue;
+          const auto advantage = static_cast<double>(rollout.advantage(slot));
+          sums[kSum] += advantage;
+          sums[kSquares] += advantage * advantage;
+          sums[kRows] += 1.0;
+        }
+      }
     }
   }
-  weight_ = 1.0F / static_cast<float>(rows);
+  AddAsTree(advantage_sums_);
+  if (group_ != nullptr) group_->Sum(nothing_, advantage_sums_[0]);
+}
+
+void PpoUpdater::NormalizeAdvantages(std::size_t batch) {
+  const double* const sums = advantage_sums_[0].data() + batch * kSums;
+  weight_ = 1.0F / static_cast<float>(sums[kRows]);
   if (!options_.normalize_advantages) return;
-  const double mean = sum / static_cast<double>(rows);
-  const double variance = std::max(0.0, squares / static_cast<double>(rows) - mean * mean);
+  const double mean = sums[kSum] / sums[kRows];
+  const double variance = std::max(0.0, sums[kSquares] / sums[kRows] - mean * mean);
   mean_ = static_cast<float>(mean);
   inverse_deviation_ = 1.0F / (static_cast<float>(std::sqrt(variance)) + kMinDeviation);
 }
 
-PpoLoss PpoUpdater::LearnMinibatch(const Rollout& rollout, std::size_t first, std::size_t count) {
-  NormalizeAdvantages(rollout, first, count);
-  std::fill(network_.gradient().begin(), network_.gradient().end(), 0.0F);
+// Leaves the gradient of all shards of all ranks in gradients_[0].
+PpoLoss PpoUpdater::LearnMinibatch(const std::vector<Input>& inputs, std::size_t batch) {
+  NormalizeAdvantages(batch);
   const std::size_t chunk = std::max<std::size_t>(1, network_.chunk_rows() / length_);
-  PpoLoss loss;
-  for (std::size_t done = 0; done < count; done += chunk) {
-    loss += LearnChunk(rollout, first + done, std::min(chunk, count - done));
+  for (std::size_t shard = 0; shard < inputs.size(); ++shard) {
+    std::swap(network_.gradient(), gradients_[shard]);
+    std::fill(network_.gradient().begin(), network_.gradient().end(), 0.0F);
+    const Range part = Part(shard, batch);
+    const std::uint32_t* const sequences = sequences_[shard].data() + part.first;
+    PpoLoss loss;
+    for (std::size_t done = 0; done < part.count; done += chunk) {
+      loss +=
+          LearnChunk(*inputs[shard].rollout, sequences + done, std::min(chunk, part.count - done));
+    }
+    std::swap(network_.gradient(), gradients_[shard]);
+    losses_[shard] = {loss.policy, loss.value, loss.entropy, loss.square_error, loss.clipped};
   }
-  return loss;
+  AddAsTree(gradients_);
+  AddAsTree(losses_);
+  if (group_ != nullptr) group_->Sum(gradients_[0], losses_[0]);
+  const std::vector<double>& all = losses_[0];
+  return {all[0], all[1], all[2], all[3], all[4]};
 }
 
-PpoLoss PpoUpdater::LearnChunk(const Rollout& rollout, std::size_t first, std::size_t count) {
-  Gather(rollout, first, count);
+PpoLoss PpoUpdater::LearnChunk(const Rollout& rollout, const std::uint32_t* sequences,
+                               std::size_t count) {
+  Gather(rollout, sequences, count);
   SequenceRows rows;
   rows.steps = length_;
   rows.sequences = count;
@@ -148,7 +203,7 @@ PpoLoss PpoUpdater::LearnChunk(const Rollout& rollout, std::size_t first, std::s
   return loss;
 }
 
-void PpoUpdater::Gather(const Rollout& rollout, std::size_t first, std::size_t count) {
+void PpoUpdater::Gather(const Rollout& rollout, const std::uint32_t* sequences, std::size_t count) {
   const std::size_t rows = count * length_;
   const std::size_t width = rollout.shape().features;
   const std::size_t state_size = rollout.shape().state_size;
@@ -162,10 +217,8 @@ void PpoUpdater::Gather(const Rollout& rollout, std::size_t first, std::size_t c
     one->resize(rows);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    if (i + kPrefetched < count) {
-      Prefetch(rollout.features(sequences_[first + i + kPrefetched]), width);
-    }
-    const std::size_t begin = sequences_[first + i];
+    if (i + kPrefetched < count) Prefetch(rollout.features(sequences[i + kPrefetched]), width);
+    const std::size_t begin = sequences[i];
     if (state_size > 0) {
       std::copy_n(rollout.state(begin), state_size, state_.data() + i * state_size);
     }

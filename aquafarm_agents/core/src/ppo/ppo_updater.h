@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "aquafarm/agents/ppo/ppo_options.h"
+#include "aquafarm/agents/ranks/process_group.h"
 #include "aquafarm/base/rng.h"
 #include "ppo/actor_critic.h"
 #include "ppo/adam.h"
@@ -18,39 +19,63 @@
 
 namespace aquafarm::agents {
 
-/// Improves an ActorCritic with full rollouts in epochs of shuffled minibatches. A minibatch is
-/// processed in chunks that fit the processor's cache; their gradients are summed.
+/// Improves an ActorCritic with full rollouts in epochs of shuffled minibatches.
+///
+/// Each shard contributes an equal part of its own rollout to every minibatch. Sums over shards
+/// (gradients, losses, statistics of the advantages) are added as a binary tree over all shards of
+/// all ranks, so every number of ranks gives the same bits. Within a shard a minibatch is processed
+/// in chunks that fit the processor's cache; their gradients are summed.
 class PpoUpdater {
  public:
-  PpoUpdater(const PpoOptions& options, ActorCritic& network);
+  /// @param shards number of shards in this process, a power of two
+  /// @param group processes that hold the other shards; null if there are none
+  PpoUpdater(const PpoOptions& options, ActorCritic& network, std::size_t shards,
+             ProcessGroup* group);
+
   /// Adds a teacher, which the policy imitates with the weight PpoOptions::teacher.
   void SetTeacher(std::unique_ptr<const Teacher> teacher) { teacher_ = std::move(teacher); }
+
+  /// A shard of this process. Both pointers are set.
+  struct Input {
+    const Rollout* rollout{};  ///< complete
+    RandomStream* rng{};       ///< for the order of its samples
+  };
 
   /// Position of an update in the run; for schedules and messages.
   struct Context {
     double progress{};  ///< of the run, [0, 1]
     std::uint64_t farm_steps{};
   };
-  /// Runs all epochs on a complete rollout. @param rng for the order of the samples
+  /// Runs all epochs on complete rollouts, one of each shard of this process.
   /// @throws LearnerFailed if a loss or a gradient is not finite; the weights are then those of
-  /// the last good minibatch
-  void Update(const Rollout& rollout, const Context& context, RandomStream& rng);
+  /// the last good minibatch; RankLost
+  void Update(const std::vector<Input>& inputs, const Context& context);
 
   double learning_rate() const { return learning_rate_; }
   /// Moving average of the squared value error [reward²]; NaN before the first update.
   float value_error() const { return value_error_; }
+  /// Mean entropy of the policy in the minibatches of the last update [nats].
+  float entropy() const { return entropy_; }
+  void set_entropy(float entropy) { entropy_ = entropy; }
 
   void Save(Checkpoint& checkpoint) const;
   /// @throws InputError if sections are missing or have another size
   void Load(const Checkpoint& checkpoint);
 
  private:
-  void Collect(const Rollout& rollout);
-  void Shuffle(RandomStream& rng);
-  void NormalizeAdvantages(const Rollout& rollout, std::size_t first, std::size_t count);
-  PpoLoss LearnMinibatch(const Rollout& rollout, std::size_t first, std::size_t count);
-  PpoLoss LearnChunk(const Rollout& rollout, std::size_t first, std::size_t count);
-  void Gather(const Rollout& rollout, std::size_t first, std::size_t count);
+  struct Range {
+    std::size_t first{};
+    std::size_t count{};
+  };
+  void Collect(const Rollout& rollout, std::size_t shard);
+  void Shuffle(std::size_t shard, RandomStream& rng);
+  std::size_t CountSequences();
+  Range Part(std::size_t shard, std::size_t batch) const;
+  void SumAdvantages(const std::vector<Input>& inputs);
+  void NormalizeAdvantages(std::size_t batch);
+  PpoLoss LearnMinibatch(const std::vector<Input>& inputs, std::size_t batch);
+  PpoLoss LearnChunk(const Rollout& rollout, const std::uint32_t* sequences, std::size_t count);
+  void Gather(const Rollout& rollout, const std::uint32_t* sequences, std::size_t count);
   [[noreturn]] void Fail(const std::string& what, const Context& context) const;
 
   const PpoOptions options_;
@@ -58,14 +83,21 @@ class PpoUpdater {
   Adam adam_;
   double learning_rate_{};
   float value_error_;
+  float entropy_;
   PpoCoefficients coefficients_;
   std::unique_ptr<const Teacher> teacher_;  // null without tokens
   float teacher_coef_{};
+  ProcessGroup* const group_;
 
-  // Scratch.
-  std::vector<std::uint32_t> sequences_;  // first slots of the sequences with transitions
-  std::size_t length_;                    // steps of a sequence
-  float mean_{};                          // mean of the advantages of a minibatch
+  // Scratch. By shard of this process:
+  std::vector<std::vector<std::uint32_t>> sequences_;  // first slots of those with transitions
+  std::vector<std::vector<float>> gradients_;          // of a minibatch
+  std::vector<std::vector<double>> losses_;            // of a minibatch, as PpoLoss
+  std::vector<std::vector<double>> advantage_sums_;  // of an epoch's minibatches: Σ A, Σ A², rows
+  std::vector<float> nothing_;
+  std::size_t batches_{};
+  std::size_t length_;  // steps of a sequence
+  float mean_{};        // mean of the advantages of a minibatch
   float inverse_deviation_{1.0F};
   float weight_{};  // weight of a row in a minibatch
   std::vector<float> features_;

@@ -136,7 +136,7 @@ const std::vector<Algorithm>& Algorithms() {
        WithCuriosityToo<MaddpgEncodings>, MakeExplorer<MakeMaddpg>, MakeMaddpgPolicy},
       {"ppo", "proximal policy optimization: an actor-critic that learns from its own steps", true,
        2500000, WithCuriosityToo<PpoEncodings>, MakeExplorer<MakePpo>, MakePpoPolicy,
-       /*default_farms=*/256},
+       /*default_farms=*/256, MakePpoOfRanks},
       {"planner",
        "plans on the issued forecast, or else on the present headings; several agents cooperate",
        false, 0, WithoutOptions<kStatesBit>, nullptr, MakePlannerPolicy<Foresight::kPersistence>},

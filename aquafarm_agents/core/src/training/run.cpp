@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "aquafarm/agents/base/options.h"
 #include "aquafarm/agents/learning/random_policy.h"
@@ -14,6 +15,8 @@
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/saved_policy.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/base/hash.h"
+#include "learning/parse_checkpoint.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -46,9 +49,13 @@ std::string Duration(double seconds) {
 class Run {
  public:
   Run(RunOptions options, const std::function<void(const RunStatus&)>& on_status,
-      const std::atomic<bool>* stop)
-      : options_(std::move(options)), on_status_(on_status), stop_(stop) {
+      const std::atomic<bool>* stop, const RankedRun* ranked)
+      : options_(std::move(options)), on_status_(on_status), stop_(stop), ranked_(ranked) {
     report_.status.algorithm = options_.algorithm;
+    if (ranked_ == nullptr) return;
+    report_.ranks = ranked_->group.size();
+    const bool has_shards = options_.options.find("shards=") != std::string::npos;
+    if (!has_shards) options_.options += " shards=" + std::to_string(DefaultShards());
   }
 
   void All(const MakeEnvironment& make_environment);
@@ -65,19 +72,28 @@ class Run {
     if (on_status_) on_status_(report_.status);
   }
   bool Stopped() const { return stop_ != nullptr && *stop_; }
+  ProcessGroup* group() const { return ranked_ == nullptr ? nullptr : &ranked_->group; }
+  int DefaultShards() const { return std::max(kDefaultShards, report_.ranks); }
   void Choose(const MakeEnvironment& make_environment);
+  std::unique_ptr<Learner> MakeLearner(const Algorithm& algorithm, const EnvironmentSpec& spec);
+  void SetDefaultLimit(const Algorithm& algorithm, const EnvironmentSpec& spec);
   void TakeOver(const RunFolder& folder);
   void Initialize(Learner& learner);
-  bool Resume(Trainer& trainer, const RunFolder& folder);
+  void Agree(const EnvironmentSpec& spec, const Learner& learner, bool has_checkpoint);
+  bool Resume(Trainer& trainer, const RunFolder* folder);
+  bool ResumeFromRank0(Trainer& trainer, const RunFolder* folder);
+  std::string FindCheckpoint(const RunFolder& folder, Checkpoint& checkpoint);
   void Describe(const EnvironmentSpec& spec, const Learner& learner, const RunFolder& folder) const;
-  void Train(Environment& environment, Learner& learner, RunFolder& folder);
-  void SavePolicy(const Environment& environment, const Learner& learner, const RunFolder& folder);
+  void Train(Environment& environment, Learner& learner, RunFolder* folder);
+  void Conclude(TrainingEnd end, const std::string& message, const RunFolder* folder);
+  void SavePolicy(const EnvironmentSpec& spec, const Learner& learner, const RunFolder& folder);
   void Evaluate(Environment& environment, const Learner& learner, const RunFolder& folder);
   void Summarise();
 
   RunOptions options_;
   const std::function<void(const RunStatus&)>& on_status_;
   const std::atomic<bool>* stop_;
+  const RankedRun* const ranked_;
   RunReport report_;
 };
 
@@ -85,37 +101,86 @@ void Run::All(const MakeEnvironment& make_environment) {
   CheckRunOptions(options_);
   if (options_.algorithm == kAutoAlgorithm) Choose(make_environment);
   const Algorithm& algorithm = FindAlgorithm(options_.algorithm);
-  RunFolder folder(options_.run_dir, options_.resume);
-  if (options_.resume) TakeOver(folder);
-  const std::unique_ptr<Environment> environment = make_environment(
-      static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
-                                (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0)));
-  report_.farms = environment->spec().farms;
-  if (options_.episodes == 0 && options_.steps == 0) {
-    options_.steps = DefaultSteps(algorithm, environment->spec(), LearnerOptionsOf(options_));
-    if (options_.steps > algorithm.default_steps) {
-      Notify(RunPhase::kStarting, "a table of " + std::to_string(environment->spec().state_count) +
-                                      " states is trained for " + std::to_string(options_.steps) +
-                                      " steps; a network may need fewer: algorithm dqn");
-    }
+  std::optional<RunFolder> folder;  // of rank 0 alone
+  if (group() == nullptr || group()->rank() == 0) {
+    folder.emplace(options_.run_dir, options_.resume);
+    if (options_.resume) TakeOver(*folder);
   }
-  const std::string note =
-      LargeTableNote(algorithm, environment->spec(), LearnerOptionsOf(options_));
-  if (!note.empty()) Notify(RunPhase::kStarting, note);
-  const std::unique_ptr<Learner> learner =
-      algorithm.make(environment->spec(), options_.seed, LearnerOptionsOf(options_));
-  const bool has_checkpoint = options_.resume && folder.NewestCheckpoint().has_value();
+  const auto encodings =
+      static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
+                                (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0));
+  std::unique_ptr<Environment> environment =
+      ranked_ == nullptr ? make_environment(encodings) : ranked_->make_share(encodings);
+  const EnvironmentSpec whole = WholeSpec(environment->spec(), group());
+  report_.farms = whole.farms;
+  SetDefaultLimit(algorithm, whole);
+  const std::unique_ptr<Learner> learner = MakeLearner(algorithm, environment->spec());
+  const bool has_checkpoint = options_.resume && folder && folder->NewestCheckpoint().has_value();
   if (!options_.init.empty() && !has_checkpoint) Initialize(*learner);
   for (const std::string& line : RenamedOptions(options_.options)) {
     Notify(RunPhase::kStarting, line);
   }
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) Notify(RunPhase::kStarting, warning);
-  Train(*environment, *learner, folder);
-  if (report_.code != ExitCode::kOk) return;
-  SavePolicy(*environment, *learner, folder);
-  if (options_.evaluation_episodes > 0) Evaluate(*environment, *learner, folder);
+  if (ranked_ != nullptr) Agree(whole, *learner, has_checkpoint);
+  Train(*environment, *learner, folder ? &*folder : nullptr);
+  if (report_.code != ExitCode::kOk || !folder) return;
+  SavePolicy(whole, *learner, *folder);
+  if (options_.evaluation_episodes > 0) {
+    if (ranked_ != nullptr) environment = make_environment(encodings);
+    Evaluate(*environment, *learner, *folder);
+  }
   if (report_.code == ExitCode::kOk) report_.status.message.clear();
+}
+
+std::unique_ptr<Learner> Run::MakeLearner(const Algorithm& algorithm, const EnvironmentSpec& spec) {
+  const std::string options = LearnerOptionsOf(options_);
+  if (ranked_ == nullptr) return algorithm.make(spec, options_.seed, options);
+  return algorithm.make_rank(spec, options_.seed, options, ranked_->group);
+}
+
+// Sets the default limit and reports large tables.
+void Run::SetDefaultLimit(const Algorithm& algorithm, const EnvironmentSpec& spec) {
+  if (options_.episodes == 0 && options_.steps == 0) {
+    options_.steps = DefaultSteps(algorithm, spec, LearnerOptionsOf(options_));
+    if (options_.steps > algorithm.default_steps) {
+      Notify(RunPhase::kStarting, "a table of " + std::to_string(spec.state_count) +
+                                      " states is trained for " + std::to_string(options_.steps) +
+                                      " steps; a network may need fewer: algorithm dqn");
+    }
+  }
+  const std::string note = LargeTableNote(algorithm, spec, LearnerOptionsOf(options_));
+  if (!note.empty()) Notify(RunPhase::kStarting, note);
+}
+
+// Checks that all ranks were started alike, and takes over the limits of rank 0.
+void Run::Agree(const EnvironmentSpec& spec, const Learner& learner, bool has_checkpoint) {
+  Checkpoint policy;
+  learner.SavePolicy(policy);
+  const nlohmann::json own{{"weights", HashBytes(policy.Section("weights"))},
+                           {"algorithm", options_.algorithm},
+                           {"options", learner.options()},
+                           {"credit", options_.credit},
+                           {"seed", options_.seed},
+                           {"resume", options_.resume},
+                           {"farms", spec.farms},
+                           {"scenario_hash", spec.scenario_hash},
+                           {"version", spec.version}};
+  const nlohmann::json limits{{"episodes", options_.episodes},
+                              {"steps", options_.steps},
+                              {"has_checkpoint", has_checkpoint}};
+  const auto first = nlohmann::json::parse(
+      group()->Broadcast(nlohmann::json{{"same", own}, {"limits", limits}}.dump()));
+  for (const auto& [name, value] : own.items()) {
+    const nlohmann::json& expected = first.at("same").at(name);
+    if (value == expected) continue;
+    if (name == "weights" && first.at("limits").at("has_checkpoint")) continue;  // it replaces them
+    throw InputError(name + ": got " + value.dump() + " on rank " +
+                     std::to_string(group()->rank()) + ", expected " + expected.dump() +
+                     " as on rank 0; start all ranks with the same program and arguments");
+  }
+  first.at("limits").at("episodes").get_to(options_.episodes);
+  first.at("limits").at("steps").get_to(options_.steps);
 }
 
 // Fig. 6. A first environment provides the spec for the choice. The observation types depend on the
@@ -162,24 +227,45 @@ void Run::Initialize(Learner& learner) {
 }
 
 // Resumes from the newest checkpoint, or from the one before it if the newest is damaged.
-bool Run::Resume(Trainer& trainer, const RunFolder& folder) {
+bool Run::Resume(Trainer& trainer, const RunFolder* folder) {
+  if (ranked_ != nullptr) return ResumeFromRank0(trainer, folder);
+  Checkpoint checkpoint;
+  const std::string path = FindCheckpoint(*folder, checkpoint);
+  if (path.empty()) return false;
+  trainer.Resume(checkpoint, path);
+  Notify(RunPhase::kStarting, "resuming from " + path);
+  return true;
+}
+
+// Rank 0 sends the checkpoint to the others, whose hosts need not see the run folder.
+bool Run::ResumeFromRank0(Trainer& trainer, const RunFolder* folder) {
+  Checkpoint checkpoint;
+  std::string path = folder == nullptr ? "" : FindCheckpoint(*folder, checkpoint);
+  path = group()->Broadcast(path);
+  if (path.empty()) return false;
+  const std::string bytes = group()->Broadcast(folder == nullptr ? "" : ReadFile(path));
+  trainer.Resume(ParseCheckpoint(bytes, path), path);
+  Notify(RunPhase::kStarting, "resuming from " + path);
+  return true;
+}
+
+// Reads the newest valid checkpoint. Returns its path, empty if there is no checkpoint.
+std::string Run::FindCheckpoint(const RunFolder& folder, Checkpoint& checkpoint) {
   std::string first_damage;
   for (const std::string& path : folder.Checkpoints()) {
-    Checkpoint checkpoint;
     try {
       checkpoint = ReadCheckpoint(path);
     } catch (const InputError& error) {
       if (first_damage.empty()) first_damage = error.what();
       continue;
     }
-    if (!first_damage.empty())
+    if (!first_damage.empty()) {
       Notify(RunPhase::kStarting, first_damage + "; using the previous checkpoint");
-    trainer.Resume(checkpoint, path);
-    Notify(RunPhase::kStarting, "resuming from " + path);
-    return true;
+    }
+    return path;
   }
   if (!first_damage.empty()) throw InputError(first_damage);
-  return false;
+  return "";
 }
 
 void Run::Describe(const EnvironmentSpec& spec, const Learner& learner,
@@ -195,7 +281,7 @@ void Run::Describe(const EnvironmentSpec& spec, const Learner& learner,
   folder.Write("run.json", run.dump(2) + "\n");
 }
 
-void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
+void Run::Train(Environment& environment, Learner& learner, RunFolder* folder) {
   TrainerOptions options;
   options.algorithm = options_.algorithm;
   options.seed = options_.seed;
@@ -203,45 +289,58 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder& folder) {
   options.steps = options_.steps;
   options.checkpoint_period_s = options_.checkpoint_period_s;
   options.progress_period_s = options_.progress_period_s;
-  Trainer trainer(environment, learner, options, &folder);
+  options.group = group();
+  Trainer trainer(environment, learner, options, folder);
   if (options_.resume && !Resume(trainer, folder)) {
     Notify(RunPhase::kStarting,
-           folder.path() + ": contains no checkpoint yet; starting from the beginning");
+           options_.run_dir + ": contains no checkpoint yet; starting from the beginning");
   }
   if (trainer.Done() >= 1.0) {
     Notify(RunPhase::kStarting,
            "the run has reached its limit; set larger steps or episodes to continue it");
   }
-  Describe(environment.spec(), learner, folder);
+  if (folder != nullptr) Describe(WholeSpec(environment.spec(), group()), learner, *folder);
+  const double exchange_s = group() == nullptr ? 0.0 : group()->exchange_s();
   const TrainingEnd end = trainer.Run(stop_, [&](const TrainingProgress& progress) {
     report_.status.progress = progress;
     report_.status.learner = &learner;
     Notify(RunPhase::kTraining, trainer.TakeNotice());
     report_.status.learner = nullptr;
   });
+  const double elapsed_s = report_.status.progress.elapsed_s;
+  if (group() != nullptr && elapsed_s > 0.0) {
+    report_.exchange_fraction = (group()->exchange_s() - exchange_s) / elapsed_s;
+  }
+  Conclude(end, trainer.message(), folder);
+}
+
+void Run::Conclude(TrainingEnd end, const std::string& message, const RunFolder* folder) {
+  const auto last = [&] {
+    if (folder == nullptr) return std::string();
+    return "; the last valid checkpoint is " + folder->NewestCheckpoint().value_or("none");
+  };
   switch (end) {
     case TrainingEnd::kDone:
       return;
     case TrainingEnd::kInterrupted:
-      return Fail(ExitCode::kInterrupted, "interrupted; saved in " + folder.path());
+      return Fail(ExitCode::kInterrupted, "interrupted; saved in " + options_.run_dir);
     case TrainingEnd::kLost:
-      return Fail(ExitCode::kLost, trainer.message() + "; saved in " + folder.path());
+      return Fail(ExitCode::kLost, message + "; saved in " + options_.run_dir);
     case TrainingEnd::kDiverged:
-      return Fail(ExitCode::kDiverged, trainer.message() + "; the last valid checkpoint is " +
-                                           folder.NewestCheckpoint().value_or("none"));
+      return Fail(ExitCode::kDiverged, message + last());
     case TrainingEnd::kStorage:
-      return Fail(ExitCode::kStorage, trainer.message() + "; the last valid checkpoint is " +
-                                          folder.NewestCheckpoint().value_or("none"));
+      return Fail(ExitCode::kStorage, message + last());
+    case TrainingEnd::kRankLost:
+      return Fail(ExitCode::kRankLost, message + last());
   }
 }
 
-void Run::SavePolicy(const Environment& environment, const Learner& learner,
-                     const RunFolder& folder) {
+void Run::SavePolicy(const EnvironmentSpec& spec, const Learner& learner, const RunFolder& folder) {
   Checkpoint policy;
   policy.kind = Checkpoint::kPolicy;
   policy.algorithm = options_.algorithm;
   policy.options = learner.options();
-  policy.spec = environment.spec();
+  policy.spec = spec;
   policy.version = policy.spec.version;
   policy.seed = options_.seed;
   policy.steps = report_.status.progress.steps;
@@ -304,6 +403,12 @@ void Run::Summarise() {
   if (!report_.random.episodes.empty()) {
     text += "RANDOM     " + agents::Describe(report_.random) + "\n";
   }
+  if (report_.ranks > 1 && report_.code == ExitCode::kOk) {
+    char line[120];
+    std::snprintf(line, sizeof(line), "ranks      %d, %.1f %% of the time in exchanges\n",
+                  report_.ranks, 100.0 * report_.exchange_fraction);
+    text += line;
+  }
   if (!report_.policy_path.empty()) text += "policy     " + report_.policy_path + "\n";
   if (!report_.status.message.empty()) text += report_.status.message + "\n";
 }
@@ -347,14 +452,16 @@ void CheckRunOptions(const RunOptions& options) {
 
 RunReport Train(const RunOptions& options, const MakeEnvironment& make_environment,
                 const std::function<void(const RunStatus&)>& on_status,
-                const std::atomic<bool>* stop) {
-  Run run(options, on_status, stop);
+                const std::atomic<bool>* stop, const RankedRun* ranked) {
+  Run run(options, on_status, stop, ranked);
   try {
     run.All(make_environment);
   } catch (const InputError& error) {
     run.Fail(ExitCode::kBadInput, error.what());
   } catch (const StorageError& error) {
     run.Fail(ExitCode::kStorage, error.what());
+  } catch (const RankLost& error) {
+    run.Fail(ExitCode::kRankLost, error.what());
   } catch (const EnvironmentLost& error) {
     const bool stopped = stop != nullptr && *stop;
     run.Fail(stopped ? ExitCode::kInterrupted : ExitCode::kLost, error.what());

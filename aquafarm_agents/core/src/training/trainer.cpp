@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/learning/sharded_learner.h"
 #include "aquafarm/base/check.h"
+#include "training/pending_steps.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -17,11 +19,22 @@ double Seconds(std::chrono::steady_clock::duration duration) {
 
 constexpr std::uint32_t kStepsPerLookAtTheClock = 16;
 
+std::uint32_t SyncInterval(const Learner& learner) {
+  const auto* const sharded = dynamic_cast<const ShardedLearner*>(&learner);
+  return sharded == nullptr ? 1 : sharded->sync_interval();
+}
+
 }  // namespace
 
 Trainer::Trainer(Environment& environment, Learner& learner, const TrainerOptions& options,
                  RunFolder* folder)
-    : environment_(environment), learner_(learner), options_(options), folder_(folder) {
+    : environment_(environment),
+      learner_(learner),
+      options_(options),
+      folder_(folder),
+      sync_interval_(SyncInterval(learner)),
+      pending_(std::make_unique<PendingSteps>()) {
+  if (options_.group != nullptr) AQUAFARM_CHECK_LT(1U, sync_interval_);  // has shards
   if (options_.episodes == 0 && options_.steps == 0) {
     throw InputError("steps, episodes: got 0 for both, expected a limit");
   }
@@ -48,7 +61,7 @@ bool Trainer::IsDone() const { return Done() >= 1.0; }
 
 void Trainer::Resume(const Checkpoint& checkpoint, const std::string& path) {
   CheckContinues(checkpoint, path, options_.algorithm, learner_.options(), options_.seed,
-                 environment_.spec());
+                 WholeSpec(environment_.spec(), options_.group));
   try {
     const auto state = nlohmann::json::from_cbor(checkpoint.Section("trainer"));
     learner_.Load(checkpoint);
@@ -88,6 +101,9 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
   } catch (const StorageError& error) {
     message_ = error.what();
     end = TrainingEnd::kStorage;
+  } catch (const RankLost& error) {
+    message_ = error.what();
+    end = TrainingEnd::kRankLost;
   } catch (const LearnerFailed& error) {
     message_ = error.what();
     end = TrainingEnd::kDiverged;
@@ -112,7 +128,8 @@ void Trainer::Begin() {
   }
   if (results_ == nullptr) {
     results_ = &environment_.Reset(options_.seed, next_episode_);
-    next_episode_ += static_cast<std::uint64_t>(environment_.spec().farms);
+    next_episode_ +=
+        static_cast<std::uint64_t>(WholeSpec(environment_.spec(), options_.group).farms);
   }
   start_ = reported_ = saved_ = Clock::now();
   reported_steps_ = progress_.steps;
@@ -123,19 +140,31 @@ void Trainer::Train(const std::atomic<bool>* stop, const OnProgress& on_progress
   Begin();
   Report(on_progress);
   std::uint32_t calls = 0;
-  while (!IsDone() && (stop == nullptr || !*stop)) {
+  // With several shards the training stops only where it counts, at the same step on all ranks.
+  bool stops = sync_interval_ == 1 && stop != nullptr && *stop;
+  while (!IsDone() && !stops) {
     is_saved_ = false;
     learner_.Step(*results_, Done(), actions_);
     results_ = &environment_.Step(actions_);
-    Count(*results_);
-    if (++calls % kStepsPerLookAtTheClock != 0) continue;
-    const auto now = Clock::now();
-    if (Seconds(now - reported_) >= options_.progress_period_s) {
+    if (sync_interval_ > 1) {
+      pending_->Add(*results_);
+      if (pending_->calls() < sync_interval_) continue;
+      stops = Synchronize(stop);
+    } else {
+      Count(*results_);
+      stops = stop != nullptr && *stop;
+      if (++calls % kStepsPerLookAtTheClock != 0) continue;
+      if (IsDue(saved_, options_.checkpoint_period_s)) Save(true);
+    }
+    if (IsDue(reported_, options_.progress_period_s)) {
       if (metrics_) metrics_->Flush();
       Report(on_progress);
     }
-    if (Seconds(now - saved_) >= options_.checkpoint_period_s) Save(true);
   }
+}
+
+bool Trainer::IsDue(Clock::time_point last, double period_s) {
+  return Seconds(Clock::now() - last) >= period_s;
 }
 
 void Trainer::Count(const StepResults& results) {
@@ -155,7 +184,8 @@ void Trainer::CountEpisode(const EpisodeResult& result) {
   returns_[slot] = result.episode_return;
   successes_[slot] = result.Success() ? 1 : 0;
   ++progress_.episodes;
-  const auto farms = static_cast<std::uint64_t>(environment_.spec().farms);
+  const std::int32_t ranks = options_.group == nullptr ? 1 : options_.group->size();
+  const auto farms = static_cast<std::uint64_t>(environment_.spec().farms * ranks);
   next_episode_ = std::max(next_episode_, result.episode + farms + 1);  // next episode of this farm
   progress_.last_return = result.episode_return;
   if (progress_.episodes >= returns_.size()) {
@@ -203,18 +233,20 @@ void Trainer::Report(const OnProgress& on_progress) {
 
 void Trainer::Save(bool with_environment) {
   saved_ = Clock::now();
-  if (folder_ == nullptr) return;
+  if (folder_ == nullptr && options_.group == nullptr) return;
   Checkpoint checkpoint;
   checkpoint.kind = Checkpoint::kTraining;
   checkpoint.algorithm = options_.algorithm;
   checkpoint.options = learner_.options();
-  checkpoint.spec = environment_.spec();
+  checkpoint.spec = WholeSpec(environment_.spec(), options_.group);
   checkpoint.version = checkpoint.spec.version;
   checkpoint.seed = options_.seed;
   checkpoint.steps = progress_.steps;
   checkpoint.episodes = progress_.episodes;
   learner_.Save(checkpoint);
   if (with_environment) checkpoint.sections["environment"] = environment_.Save();
+  is_saved_ = with_environment;
+  if (!CollectSections(checkpoint) || folder_ == nullptr) return;
   metrics_->Sync();
   const nlohmann::json state{
       {"next_episode", next_episode_},
@@ -226,7 +258,6 @@ void Trainer::Save(bool with_environment) {
   checkpoint.SetArray("returns", returns_);
   checkpoint.SetArray("successes", successes_);
   folder_->SaveCheckpoint(checkpoint);
-  is_saved_ = with_environment;
 }
 
 }  // namespace aquafarm::agents

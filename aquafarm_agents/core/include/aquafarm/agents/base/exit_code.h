@@ -11,6 +11,7 @@ enum class ExitCode : int {
   kStorage = 3,       ///< run folder in use, not writable, or disk full
   kLost = 4,          ///< the farms were lost and not found again in time; the run is saved
   kDiverged = 5,      ///< learning failed; the last valid checkpoint is kept
+  kRankLost = 6,      ///< another rank of the training is missing or ended; checkpoints are kept
   kInterrupted = 130  ///< Ctrl-C; the run is saved
 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/observation/farm_batch.h"
 
@@ -21,8 +22,10 @@ class FamilyEnvironment final : public Environment {
  public:
   /// The spec has the largest width and height of the family, and no table and planes.
   /// @param family with Scenario::family
+  /// @param share as in LocalEnvironment
   /// @throws InputError if observations are requested that depend on the size of the map
-  FamilyEnvironment(std::shared_ptr<const Scenario> family, const EnvironmentOptions& options);
+  FamilyEnvironment(std::shared_ptr<const Scenario> family, const EnvironmentOptions& options,
+                    const FarmShare& share = {});
 
   const EnvironmentSpec& spec() const override { return spec_; }
   const StepResults& Reset(std::uint64_t seed, std::uint64_t first_episode = 0) override;
@@ -40,6 +43,7 @@ class FamilyEnvironment final : public Environment {
   std::shared_ptr<const Scenario> family_;
   Encoder encoder_;
   EnvironmentSpec spec_;
+  const FarmShare share_;
   bool own_rewards_{};
   std::vector<Farm> farms_;
   View view_;
@@ -49,6 +53,7 @@ class FamilyEnvironment final : public Environment {
 
 /// Makes farms in this process: a FamilyEnvironment for a family, else a LocalEnvironment.
 std::unique_ptr<Environment> MakeLocalFarms(std::shared_ptr<const Scenario> scenario,
-                                            const EnvironmentOptions& options);
+                                            const EnvironmentOptions& options,
+                                            const FarmShare& share = {});
 
 }  // namespace aquafarm::agents

@@ -2,18 +2,29 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/observation/farm_batch.h"
 
 namespace aquafarm::agents {
 
+/// Farms that an environment has of a larger number, which several processes share.
+struct FarmShare {
+  std::int32_t first{};  ///< index of its first farm among all
+  std::int32_t total{};  ///< number of all farms; 0: the environment has all of them
+};
+
 /// Environment whose farms run in this process.
 class LocalEnvironment final : public Environment {
  public:
   /// @param scenario must have passed ValidateScenario
+  /// @param share the farms play the same episodes as in an environment with all farms, and Load
+  ///        takes their part of what all farms have saved
   /// @throws InputError if no layout can be generated for the scenario
-  LocalEnvironment(std::shared_ptr<const Scenario> scenario, const EnvironmentOptions& options);
+  LocalEnvironment(std::shared_ptr<const Scenario> scenario, const EnvironmentOptions& options,
+                   const FarmShare& share = {});
 
   const EnvironmentSpec& spec() const override { return spec_; }
   const StepResults& Reset(std::uint64_t seed, std::uint64_t first_episode = 0) override;
@@ -30,11 +41,25 @@ class LocalEnvironment final : public Environment {
 
   FarmBatch batch_;
   EnvironmentSpec spec_;
+  const FarmShare share_;
   bool own_rewards_{};
   bool with_states_{};
   StepResults results_;
   BatchOutput output_;
 };
+
+/// Returns `share`, or that of all `farms` if its total is 0.
+inline FarmShare WholeOr(const FarmShare& share, std::int32_t farms) {
+  return share.total == 0 ? FarmShare{0, farms} : share;
+}
+
+/// Returns the part of `count` farms of what all farms have saved.
+/// @throws InputError if the bytes are damaged or have fewer farms
+std::string TakeSavedFarms(const std::string& bytes, const FarmShare& share, std::int32_t count);
+
+/// Joins what environments saved that share the farms, in the order of the farms.
+/// @throws InputError if the bytes are damaged
+std::string JoinSavedFarms(const std::vector<std::string>& parts);
 
 /// Result of a farm's episode from its record.
 EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm);

@@ -16,7 +16,8 @@ struct Checkpoint;
 class AgentRng {
  public:
   AgentRng() = default;
-  AgentRng(std::uint64_t seed, std::size_t entries);
+  /// @param first stream of entry 0
+  AgentRng(std::uint64_t seed, std::size_t entries, std::size_t first = 0);
 
   std::size_t size() const { return streams_.size(); }
   RandomStream& operator[](std::size_t entry) { return streams_[entry]; }

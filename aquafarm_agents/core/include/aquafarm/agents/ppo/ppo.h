@@ -15,7 +15,8 @@
 #include <memory>
 #include <string>
 
-#include "aquafarm/agents/learning/learner.h"
+#include "aquafarm/agents/learning/sharded_learner.h"
+#include "aquafarm/agents/ranks/process_group.h"
 
 namespace aquafarm::agents {
 
@@ -24,6 +25,10 @@ std::uint8_t PpoEncodings(const std::string& options);
 /// @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
+/// Makes the learner of one rank of a process group.
+/// @param spec of the farms of this rank @throws InputError if an option is wrong
+std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
+                                               const std::string& options, ProcessGroup& group);
 /// @throws InputError if the policy does not fit farms of `spec`; the message names the difference
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 

@@ -47,6 +47,9 @@ struct PpoOptions {
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
   PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy acts
   std::int32_t threads{1};                 ///< of the matrix library
+  /// Groups of farms, a power of two. Each has its own share of every minibatch; their gradients
+  /// are added in a fixed order, so results depend on the number of shards, not of processes.
+  std::int32_t shards{1};
 
   /// Returns the steps per agent in one rollout. @param entries farms × agents
   std::int32_t Horizon(std::size_t entries) const;

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "aquafarm/agents/learning/learner.h"
+#include "aquafarm/agents/learning/sharded_learner.h"
+#include "aquafarm/agents/ranks/process_group.h"
 
 namespace aquafarm::agents {
 
@@ -27,6 +28,10 @@ struct Algorithm {
   /// Creates the trained policy for farms of `spec`. @throws InputError if it does not fit
   std::unique_ptr<Policy> (*make_policy)(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
   std::int32_t default_farms{kDefaultFarms};  ///< farms that aquafarm_train steps together
+  /// Creates the learner of one rank of a process group; nullptr if it learns in one process only.
+  std::unique_ptr<ShardedLearner> (*make_rank)(const EnvironmentSpec& spec, std::uint64_t seed,
+                                               const std::string& options,
+                                               ProcessGroup& group){nullptr};
 };
 
 /// All algorithms, in the order in which they are listed to users.

@@ -11,6 +11,7 @@
 
 #include "aquafarm/agents/base/exit_code.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
+#include "aquafarm/agents/ranks/process_group.h"
 #include "aquafarm/agents/training/trainer.h"
 
 namespace aquafarm::agents {
@@ -58,6 +59,8 @@ struct RunReport {
   std::int32_t farms{};     ///< number of farms; 0 if no environment was made
   std::string summary;      ///< a few readable lines
   std::string policy_path;  ///< empty if no policy was written
+  std::int32_t ranks{1};
+  double exchange_fraction{};  ///< of the training time, in exchanges between ranks [0, 1]
 };
 
 /// Validates the options before the run starts. @throws InputError
@@ -66,11 +69,28 @@ void CheckRunOptions(const RunOptions& options);
 /// Makes the environment with the observation types that the algorithm requires.
 using MakeEnvironment = std::function<std::unique_ptr<Environment>(std::uint8_t encodings)>;
 
+/// A training whose farms are divided among the ranks of a process group.
+struct RankedRun {
+  ProcessGroup& group;
+  MakeEnvironment make_share;  ///< makes the environment with the farms of this rank
+};
+
+/// Default number of shards of a training with several ranks.
+inline constexpr int kDefaultShards = 8;
+
 /// Trains, saves the policy and evaluates it against RANDOM. Never throws; errors are returned in
 /// the report.
+/// @param make_environment with all farms
+/// @param ranked null if this process trains alone. Rank 0 alone writes the run folder, reports
+///        progress and evaluates.
 RunReport Train(const RunOptions& options, const MakeEnvironment& make_environment,
                 const std::function<void(const RunStatus&)>& on_status,
-                const std::atomic<bool>* stop);
+                const std::atomic<bool>* stop, const RankedRun* ranked = nullptr);
+
+/// Checks that the algorithm can be trained by several ranks.
+/// @param source of the number of ranks, such as WORLD_SIZE
+/// @throws InputError with the algorithms that can
+void CheckRanks(const std::string& algorithm, int ranks, const std::string& source);
 
 /// Progress line: "steps 812,000 / 3,000,000  episodes 1,240  return 81.2  …  left 1.2 s".
 std::string DescribeProgress(const TrainingProgress& progress);

@@ -13,6 +13,7 @@
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/agents/evaluation/metrics.h"
 #include "aquafarm/agents/learning/learner.h"
+#include "aquafarm/agents/ranks/process_group.h"
 #include "aquafarm/agents/training/run_folder.h"
 
 namespace aquafarm::agents {
@@ -24,7 +25,13 @@ struct TrainerOptions {
   std::uint64_t steps{};             ///< limit in farm steps; 0: no limit
   double checkpoint_period_s{30.0};  ///< does not affect results
   double progress_period_s{1.0};
+  ProcessGroup* group{};  ///< ranks that train together; null if this process trains alone
 };
+
+/// Spec of the farms of all ranks. @param spec of this rank @param group null: there is one rank
+EnvironmentSpec WholeSpec(const EnvironmentSpec& spec, const ProcessGroup* group);
+
+class PendingSteps;
 
 /// Progress of a training.
 struct TrainingProgress {
@@ -45,13 +52,20 @@ struct TrainingProgress {
 };
 
 /// Reason for the end of a training.
-enum class TrainingEnd : std::uint8_t { kDone, kInterrupted, kLost, kStorage, kDiverged };
+enum class TrainingEnd : std::uint8_t {
+  kDone,
+  kInterrupted,
+  kLost,
+  kStorage,
+  kDiverged,
+  kRankLost
+};
 
 /// Trains a learner on an environment: limits, progress, metrics, checkpoints, interruption. The
 /// same options give bit-identical results, however often the training is stopped and resumed.
 class Trainer {
  public:
-  /// @param folder for metrics and checkpoints; null to write none
+  /// @param folder for metrics and checkpoints; null to write none, as on all ranks but rank 0
   /// @throws InputError if no limit is set
   Trainer(Environment& environment, Learner& learner, const TrainerOptions& options,
           RunFolder* folder = nullptr);
@@ -85,6 +99,9 @@ class Trainer {
   void Report(const OnProgress& on_progress);
   void Summarise();
   void Save(bool with_environment);
+  bool Synchronize(const std::atomic<bool>* stop);
+  void CountPending(const std::vector<PendingSteps>& parts);
+  bool CollectSections(Checkpoint& checkpoint) const;
   bool IsDone() const;
 
   Environment& environment_;
@@ -103,7 +120,11 @@ class Trainer {
   std::string message_;
   std::string notice_;
 
+  const std::uint32_t sync_interval_;      // calls of the learner's Step
+  std::unique_ptr<PendingSteps> pending_;  // since the last synchronization
+
   using Clock = std::chrono::steady_clock;
+  static bool IsDue(Clock::time_point last, double period_s);
   Clock::time_point start_;
   Clock::time_point reported_;
   Clock::time_point saved_;

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <dlfcn.h>
+#include <netdb.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <thread>
+#include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
+#include <torch/csrc/distributed/c10d/TCPStore.hpp>
+#include <utility>
+
+#include "aquafarm/agents/ranks/process_group.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Store = c10d::TCPStore;
+using Tensors = std::vector<at::Tensor>;
+
+// Rank 0 holds the store. It keeps it open for this time after a failure, so that the other ranks
+// can read which rank was lost.
+constexpr std::chrono::seconds kStoreKept{2};
+constexpr const char* kLost = "lost";  // key of the store: the first rank that was found lost
+
+std::chrono::milliseconds Milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
+}
+
+std::string Here(int rank) { return "here/" + std::to_string(rank); }
+
+std::string RankOf(int rank, int size) {
+  return "rank " + std::to_string(rank) + " of " + std::to_string(size);
+}
+
+std::string PlaceOf(const RankVariables& variables) {
+  return variables.master_addr + " port " + std::to_string(variables.master_port);
+}
+
+// c10d logs each attempt to connect through glog. Our own messages name the address once. The
+// user's GLOG_minloglevel shows them again.
+void SilenceLog() {
+  if (std::getenv("GLOG_minloglevel") != nullptr) return;
+  constexpr int kFatal = 3;
+  auto* const level = static_cast<int*>(dlsym(RTLD_DEFAULT, "_ZN3fLI17FLAGS_minloglevelE"));
+  if (level != nullptr) *level = kFatal;
+}
+
+// First line of the message of an exception of c10d, without its stack trace.
+std::string FirstLine(const std::exception& error) {
+  const std::string text = error.what();
+  return text.substr(0, text.find('\n'));
+}
+
+// Address of the interface by which this host reaches `host`. A host's own name is often an alias
+// of the loopback interface, which other hosts cannot reach.
+std::string LocalAddress(const std::string& host) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host.c_str(), "9", &hints, &found) != 0) return host;
+  char address[NI_MAXHOST] = "";
+  for (const addrinfo* one = found; one != nullptr && address[0] == '\0'; one = one->ai_next) {
+    const int s = socket(one->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_storage self{};
+    socklen_t size = sizeof(self);
+    // Connecting a datagram socket sends nothing; it selects the route.
+    if (s >= 0 && connect(s, one->ai_addr, one->ai_addrlen) == 0 &&
+        getsockname(s, reinterpret_cast<sockaddr*>(&self), &size) == 0) {
+      getnameinfo(reinterpret_cast<sockaddr*>(&self), size, address, sizeof(address), nullptr, 0,
+                  NI_NUMERICHOST);
+    }
+    if (s >= 0) close(s);
+  }
+  freeaddrinfo(found);
+  return address[0] == '\0' ? host : address;
+}
+
+template <typename T>
+at::Tensor Bytes(T* data, std::size_t size) {
+  return at::from_blob(const_cast<char*>(reinterpret_cast<const char*>(data)),
+                       {static_cast<std::int64_t>(size)}, at::kByte);
+}
+
+class GlooGroup final : public ProcessGroup {
+ public:
+  GlooGroup(const RankVariables& variables, const GroupTimes& times);
+
+  void Sum(std::vector<float>& values, std::vector<double>& numbers) override;
+  std::vector<std::string> Gather(const std::string& bytes) override;
+  std::string Broadcast(const std::string& bytes) override;
+
+ private:
+  void OpenStore(const RankVariables& variables, const GroupTimes& times);
+  void WaitForAll(const std::string& place, std::chrono::milliseconds left);
+  void Connect(const RankVariables& variables, const GroupTimes& times);
+  void Send(int peer, const void* data, std::size_t size) {
+    Tensors tensors{Bytes(data, size)};
+    gloo_->send(tensors, peer, 0)->wait();
+  }
+  void Receive(int peer, void* data, std::size_t size) {
+    Tensors tensors{Bytes(data, size)};
+    gloo_->recv(tensors, peer, 0)->wait();
+  }
+  template <typename Exchange>
+  void WithPeer(int peer, const Exchange& exchange);
+  [[noreturn]] void Lose(int peer, const std::string& reason);
+
+  c10::intrusive_ptr<Store> store_;
+  c10::intrusive_ptr<c10d::ProcessGroupGloo> gloo_;
+  std::vector<char> own_;  // scratch of Sum
+  std::vector<char> other_;
+};
+
+GlooGroup::GlooGroup(const RankVariables& variables, const GroupTimes& times)
+    : ProcessGroup(variables.rank, variables.world_size) {
+  if ((size_ & (size_ - 1)) != 0) {
+    throw InputError(variables.launcher + ": got " + std::to_string(size_) +
+                     " ranks, expected a power of two: 1, 2, 4, 8, …");
+  }
+  SilenceLog();
+  const auto start = Clock::now();
+  OpenStore(variables, times);
+  const auto used = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
+  const auto left = Milliseconds(times.start_s) - used;
+  WaitForAll(PlaceOf(variables), std::max(left, std::chrono::milliseconds(100)));
+  Connect(variables, times);
+}
+
+void GlooGroup::OpenStore(const RankVariables& variables, const GroupTimes& times) {
+  const std::string place = PlaceOf(variables);
+  c10d::TCPStoreOptions options;
+  options.port = static_cast<std::uint16_t>(variables.master_port);
+  options.isServer = rank_ == 0;
+  options.waitWorkers = false;
+  options.timeout = Milliseconds(times.start_s);
+  try {
+    store_ = c10::make_intrusive<Store>(variables.master_addr, options);
+    store_->set(Here(rank_), std::vector<std::uint8_t>{1});
+  } catch (const std::exception& error) {
+    if (rank_ == 0) {
+      throw RankLost("ranks: rank 0 cannot open " + place +
+                     " (MASTER_ADDR, MASTER_PORT): expected an address of this host and a free "
+                     "port: " +
+                     FirstLine(error));
+    }
+    throw RankLost("ranks: " + RankOf(rank_, size_) + " cannot reach rank 0 at " + place +
+                   " (MASTER_ADDR, MASTER_PORT) within " +
+                   std::to_string(static_cast<int>(times.start_s)) +
+                   " s: check that rank 0 runs there and that no firewall closes the port");
+  }
+}
+
+void GlooGroup::WaitForAll(const std::string& place, std::chrono::milliseconds left) {
+  std::vector<std::string> keys;
+  for (int rank = 0; rank < size_; ++rank) keys.push_back(Here(rank));
+  try {
+    store_->wait(keys, left);
+    return;
+  } catch (const std::exception&) {
+  }
+  std::string missing;
+  try {
+    for (int rank = 0; rank < size_; ++rank) {
+      if (!store_->check({Here(rank)})) missing += " " + std::to_string(rank);
+    }
+  } catch (const std::exception&) {  // the store ended with rank 0
+    throw RankLost("ranks: " + RankOf(0, size_) + " at " + place +
+                   " (MASTER_ADDR, MASTER_PORT) ended at the start, or another program answers "
+                   "there; see its output");
+  }
+  if (missing.empty()) return;  // the last one came at this moment
+  if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);
+  throw RankLost("ranks: of " + std::to_string(size_) +
+                 " ranks these have not started in time:" + missing +
+                 "; check their hosts and their output, or give more time by --rank-start");
+}
+
+void GlooGroup::Connect(const RankVariables& variables, const GroupTimes& times) {
+  try {
+    store_->setTimeout(Milliseconds(times.start_s));
+    const auto options = c10d::ProcessGroupGloo::Options::create();
+    options->timeout = Milliseconds(times.answer_s);
+    const char* const interface = std::getenv("GLOO_SOCKET_IFNAME");
+    options->devices.push_back(
+        interface != nullptr
+            ? c10d::ProcessGroupGloo::createDeviceForInterface(interface)
+            : c10d::ProcessGroupGloo::createDeviceForHostname(LocalAddress(variables.master_addr)));
+    gloo_ = c10::make_intrusive<c10d::ProcessGroupGloo>(store_, rank_, size_, options);
+  } catch (const std::exception& error) {
+    if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);
+    throw RankLost("ranks: " + RankOf(rank_, size_) +
+                   " cannot connect with the other ranks; name the network interface by "
+                   "GLOO_SOCKET_IFNAME: " +
+                   FirstLine(error));
+  }
+}
+
+template <typename Exchange>
+void GlooGroup::WithPeer(int peer, const Exchange& exchange) {
+  const auto start = Clock::now();
+  std::string failure;
+  try {
+    exchange();
+  } catch (const std::exception& error) {
+    failure = FirstLine(error);
+  }
+  exchange_s_ += std::chrono::duration<double>(Clock::now() - start).count();
+  if (!failure.empty()) Lose(peer, failure);
+}
+
+// A rank that ends because of a lost one is itself lost to others. The first report counts.
+void GlooGroup::Lose(int peer, const std::string& reason) {
+  gloo_.reset();  // the peers of this rank notice it at once
+  int lost = peer;
+  try {
+    const std::string text = std::to_string(peer);
+    const std::vector<std::uint8_t> first =
+        store_->compareSet(kLost, {}, std::vector<std::uint8_t>(text.begin(), text.end()));
+    lost = std::atoi(std::string(first.begin(), first.end()).c_str());
+  } catch (const std::exception&) {
+    lost = 0;  // the store ended with rank 0
+  }
+  if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);
+  throw RankLost("ranks: " + RankOf(lost, size_) +
+                 " has ended or does not answer; see its output, then resume the run with any "
+                 "number of ranks (" +
+                 reason + ")");
+}
+
+// Recursive doubling: after round k each rank has the sum of its block of 2^k ranks. Both ranks of
+// a pair compute the same bits, since an addition of two floats does not depend on their order.
+void GlooGroup::Sum(std::vector<float>& values, std::vector<double>& numbers) {
+  const std::size_t value_bytes = values.size() * sizeof(float);
+  const std::size_t bytes = value_bytes + numbers.size() * sizeof(double);
+  if (bytes == 0) return;
+  own_.resize(bytes);
+  other_.resize(bytes);
+  for (int step = 1; step < size_; step *= 2) {
+    const int peer = rank_ ^ step;
+    std::memcpy(own_.data(), values.data(), value_bytes);
+    std::memcpy(own_.data() + value_bytes, numbers.data(), bytes - value_bytes);
+    WithPeer(peer, [&] {
+      Tensors out{Bytes(own_.data(), bytes)};
+      Tensors in{Bytes(other_.data(), bytes)};
+      const auto sent = gloo_->send(out, peer, 0);
+      gloo_->recv(in, peer, 0)->wait();
+      sent->wait();
+    });
+    const char* from = other_.data();
+    for (float& value : values) {
+      float added = 0.0F;
+      std::memcpy(&added, from, sizeof(added));
+      value += added;
+      from += sizeof(added);
+    }
+    for (double& number : numbers) {
+      double added = 0.0;
+      std::memcpy(&added, from, sizeof(added));
+      number += added;
+      from += sizeof(added);
+    }
+  }
+}
+
+std::vector<std::string> GlooGroup::Gather(const std::string& bytes) {
+  std::uint64_t size = bytes.size();
+  if (rank_ != 0) {
+    WithPeer(0, [&] {
+      Send(0, &size, sizeof(size));
+      if (size > 0) Send(0, bytes.data(), bytes.size());
+    });
+    return {};
+  }
+  std::vector<std::string> all{bytes};
+  for (int peer = 1; peer < size_; ++peer) {
+    WithPeer(peer, [&] {
+      Receive(peer, &size, sizeof(size));
+      all.emplace_back(size, '\0');
+      if (size > 0) Receive(peer, all.back().data(), all.back().size());
+    });
+  }
+  return all;
+}
+
+// Down the binary tree of ranks, from the farthest: at 8 ranks 0 → 4, then 0 → 2 and 4 → 6, ….
+std::string GlooGroup::Broadcast(const std::string& bytes) {
+  std::string all = rank_ == 0 ? bytes : std::string();
+  for (int step = size_ / 2; step > 0; step /= 2) {
+    const int place = rank_ % (2 * step);
+    std::uint64_t size = all.size();
+    if (place == 0) {
+      const int peer = rank_ + step;
+      WithPeer(peer, [&] {
+        Send(peer, &size, sizeof(size));
+        if (size > 0) Send(peer, all.data(), all.size());
+      });
+    } else if (place == step) {
+      const int peer = rank_ - step;
+      WithPeer(peer, [&] {
+        Receive(peer, &size, sizeof(size));
+        all.resize(size);
+        if (size > 0) Receive(peer, all.data(), all.size());
+      });
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::unique_ptr<ProcessGroup> JoinProcessGroup(const RankVariables& variables,
+                                               const GroupTimes& times) {
+  return std::make_unique<GlooGroup>(variables, times);
+}
+
+}  // namespace aquafarm::agents

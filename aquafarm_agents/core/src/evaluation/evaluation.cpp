@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
@@ -83,6 +84,19 @@ nlohmann::json ToJson(const Losses& losses) {
   return json;
 }
 
+// Returns half the width of the 95 % interval of the mean return: 1.96 standard errors, where
+// repetitions of a start do not count as evidence. NaN with fewer than two distinct starts.
+double ReturnMargin(const Evaluation& evaluation) {
+  const auto count = static_cast<double>(evaluation.episodes.size());
+  if (evaluation.distinct < 2) return std::numeric_limits<double>::quiet_NaN();
+  double squares = 0.0;
+  for (const EpisodeResult& episode : evaluation.episodes) {
+    const double away = double(episode.episode_return) - evaluation.mean_return;
+    squares += away * away;
+  }
+  return 1.96 * std::sqrt(squares / (count - 1.0) / static_cast<double>(evaluation.distinct));
+}
+
 nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& context) {
   nlohmann::json json = {{"policy", context.policy},
                          {"algorithm", context.algorithm},
@@ -106,6 +120,9 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
                          {"energy_kwh_per_episode", evaluation.mean_energy},
                          {"distance_km_per_episode", evaluation.mean_distance},
                          {"wall_s", evaluation.wall_s}};
+  if (const double margin = ReturnMargin(evaluation); std::isfinite(margin)) {
+    json["return_interval_95"] = {evaluation.mean_return - margin, evaluation.mean_return + margin};
+  }
   if (evaluation.losses) json["money"] = ToJson(*evaluation.losses);
   if (evaluation.mean_bound) json["upper_bound_per_episode"] = *evaluation.mean_bound;
   return json;
@@ -208,12 +225,18 @@ void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
 }
 
 std::string Describe(const Evaluation& evaluation) {
-  char text[200];
+  char interval[48] = "";
+  if (const double margin = ReturnMargin(evaluation); std::isfinite(margin)) {
+    std::snprintf(interval, sizeof(interval), " [%.1f, %.1f]", evaluation.mean_return - margin,
+                  evaluation.mean_return + margin);
+  }
+  char text[250];
   std::snprintf(text, sizeof(text),
-                "success %.1f %%, return %.1f per episode, %.2f per step, %.1f steps "
+                "success %.1f %%, return %.1f%s per episode, %.2f per step, %.1f steps "
                 "(%zu episodes, %zu distinct)",
-                100.0 * evaluation.success_rate, evaluation.mean_return, evaluation.return_per_step,
-                evaluation.mean_steps, evaluation.episodes.size(), evaluation.distinct);
+                100.0 * evaluation.success_rate, evaluation.mean_return, interval,
+                evaluation.return_per_step, evaluation.mean_steps, evaluation.episodes.size(),
+                evaluation.distinct);
   return text;
 }
 

@@ -21,6 +21,9 @@
 namespace aquafarm::agents {
 namespace {
 
+// Default seed of aquafarm_evaluate, evaluate.launch and reports, so that their figures agree.
+constexpr std::uint64_t kSummarySeed = 1000;
+
 std::string LearnerOptionsOf(const RunOptions& options) {
   if (options.exploration.empty()) return options.options;
   return options.options + " exploration=" + options.exploration;
@@ -362,7 +365,7 @@ void Run::Evaluate(Environment& environment, const Learner& learner, const RunFo
   context.farms = environment.spec().farms;
   const std::unique_ptr<Policy> greedy = learner.GreedyPolicy();
   report_.status.evaluation = agents::Evaluate(
-      environment, *greedy, options_.seed, options_.evaluation_episodes, stop_,
+      environment, *greedy, kSummarySeed, options_.evaluation_episodes, stop_,
       [&](std::size_t over) {
         Notify(RunPhase::kEvaluating, Count(over) + " of " +
                                           std::to_string(options_.evaluation_episodes) +
@@ -375,7 +378,7 @@ void Run::Evaluate(Environment& environment, const Learner& learner, const RunFo
     context.training_steps = 0;
     RandomPolicy random(environment.spec());
     report_.random =
-        agents::Evaluate(environment, random, options_.seed, options_.random_episodes, stop_);
+        agents::Evaluate(environment, random, kSummarySeed, options_.random_episodes, stop_);
     WriteEvaluation(folder.path() + "/evaluation_random", report_.random, context);
   }
   if (Stopped()) Fail(ExitCode::kInterrupted, "interrupted in the evaluation; the policy is saved");

@@ -68,6 +68,20 @@ TEST(Evaluate, CountsEpisodesThatStartDifferently) {
   EXPECT_EQ(Evaluate(environment, policy, 1, 10).distinct, 10U);
 }
 
+TEST(Evaluate, DescribesTheIntervalOfTheMeanReturnFromDistinctStarts) {
+  Evaluation evaluation;
+  for (const float value : {90.0F, 110.0F, 90.0F, 110.0F}) {
+    evaluation.episodes.emplace_back().episode_return = value;
+  }
+  evaluation.mean_return = 100.0;
+  evaluation.distinct = 4;  // deviation 11.547, standard error 5.774
+  EXPECT_CONTAINS(Describe(evaluation), "return 100.0 [88.7, 111.3] per episode");
+  evaluation.distinct = 2;  // the other two are repetitions
+  EXPECT_CONTAINS(Describe(evaluation), "return 100.0 [84.0, 116.0] per episode");
+  evaluation.distinct = 1;
+  EXPECT_CONTAINS(Describe(evaluation), "return 100.0 per episode");
+}
+
 TEST(Evaluate, DoesNotDependOnTheNumberOfFarms) {
   const auto farm = Share(aquafarm::test::CrowdedScenario(2));
   std::vector<float> returns[2];

@@ -167,7 +167,7 @@ class MeasuresTest(unittest.TestCase):
         self.assertEqual(["1", "2"], seeds)
 
     def test_all_rows_of_a_profile_but_those_by_name_alone(self):
-        self.assertEqual(["random", "q_learning", "sarsa", "dqn", "lstm_dqn", "planner"],
+        self.assertEqual(["random", "q_learning", "sarsa", "dqn", "lstm_dqn", "ppo", "planner"],
                          cli.parse([]).algorithms)
         self.assertEqual(["random_all"], cli.parse(["--algorithms", "random_all"]).algorithms)
         actions = {one.name: one.options for one in CONTESTANTS if "random" in one.name}

@@ -7,6 +7,7 @@ import signal
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 import rospy
 import rostest
@@ -178,6 +179,14 @@ class TrainNodeTest(unittest.TestCase):
                 run = self.train("run", argument)
                 self.assertEqual(2, run.code(), run.words())
                 self.assertIn(words, run.words())
+
+    def test_copies_that_a_launcher_of_ranks_starts_are_refused(self):
+        variables = {"RANK": "1", "WORLD_SIZE": "2"}
+        with unittest.mock.patch.dict(os.environ, variables):
+            run = self.train("run")
+        self.assertEqual(2, run.code(), run.words())
+        self.assertIn("WORLD_SIZE: got 2, expected 1 or none: train_node trains in one process",
+                      run.words())
 
     def test_without_a_sim_node_it_says_so_and_ends(self):
         run = self.train("run", wait_s=2)

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "aquafarm/agents/ranks/rank_variables.h"
 #include "aquafarm/agents/training/run.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/limits.h"
@@ -37,6 +38,16 @@ struct TrainParams {
   RosEnvironmentOptions environment;
   double values_period_s{2.0};
 };
+
+// Several copies of the node would each train alone, in the same run folder.
+void RefuseRanks() {
+  const auto ranks =
+      aquafarm::agents::ReadRankVariables([](const char* name) { return std::getenv(name); });
+  if (ranks.world_size < 2) return;
+  throw aquafarm::InputError(ranks.launcher + ": got " + std::to_string(ranks.world_size) +
+                             ", expected 1 or none: train_node trains in one process; use "
+                             "aquafarm_train or ./aquafarm train ranks:=N");
+}
 
 TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   TrainParams params;
@@ -263,6 +274,7 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
 int RunTrainNode() {
   try {
     ros::NodeHandle node;
+    RefuseRanks();
     const TrainParams params = ReadTrainParams(ros::NodeHandle("~"));
     const agents::RunReport report = Train(node, params);
     return End(report.code, report.summary + Next(report, params.run));

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares a PPO training of two ranks on two cores with one rank on one core.
+"""Compares PPO trainings of two and four ranks with a training of one rank.
 
 Usage: bench_ranks.py AQUAFARM_TRAIN [--steps N] [--repetitions N]
 

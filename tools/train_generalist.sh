@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Trains the generalist (docs/generalist.md) and measures it on ranches that it has never met.
+# Trains the generalist (docs/generalist.md) and evaluates it on ranches that no training draws.
 #   tools/train_generalist.sh RUN_FOLDER [STEPS]
 # Run `source .ws/devel/setup.bash` first. An interrupted training resumes with the same command.
 set -euo pipefail

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # shellcheck shell=bash disable=SC2154,SC2034
-# Measures speed beside references; sourced by ./aquafarm.
+# Measures speed relative to references; sourced by ./aquafarm.
 
 bench_executable() {
   local found
@@ -92,7 +92,7 @@ bench_ppo() {
     "$ws/bench_ppo.txt"
 }
 
-# Two ranks on two cores against one on one core, and both against a model of the cost.
+# Compares trainings of two and four ranks with one rank, and with a model of the cost.
 bench_ranks() {
   core aquafarm_agents
   /usr/bin/python3 "$root/tools/bench_ranks.py" "$(bench_executable aquafarm_train)"

@@ -175,8 +175,8 @@ refuse_a_second_ranch() {
   fi
 }
 
-# name_the_ranch NAME ARGUMENT…: prints them, each with a zero byte at its end, with evaluate and sim RANCH.yaml as scenario:=RANCH.yaml
-# and, unless a policy is given, policy:=generalist, which plays any ranch with one ship.
+# name_the_ranch NAME ARGUMENT…: prints its arguments, each followed by a zero byte. For evaluate and
+# sim it prints RANCH.yaml as scenario:=RANCH.yaml, and adds policy:=generalist unless a policy is given.
 name_the_ranch() {
   local word names_ranch=0
   for word in "$@"; do

@@ -231,9 +231,10 @@ int Main(int argc, char** argv) {
   app.add_flag("--bound", arguments.bound,
                "say what share this is of an upper bound: each device by its best ship, no "
                "conflicts, the disasters known");
-  app.add_option("--optimum", arguments.optimum,
-                 "say what share this is of the clairvoyant optimum, over the episodes whose plans "
-                 "have at most so many (cell, devices) states; 0: nothing");
+  app.add_option(
+      "--optimum", arguments.optimum,
+      "print the share of the clairvoyant optimum over the episodes whose plans have at most "
+      "this number of (cell, devices) states; 0: no share");
   AddScenarioOptions(app, arguments.scenario);
   try {
     app.parse(argc, argv);

@@ -240,11 +240,12 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--storms", arguments.storms, "simulated storms")->check(CLI::Range(2, 1000000));
   app.add_option("--errors", arguments.error_scale, "factor of all errors of the forecast")
       ->check(CLI::Range(0.0, 5.0));
-  app.add_option("--position-errors", arguments.position_errors, "factor of those of positions")
+  app.add_option("--position-errors", arguments.position_errors,
+                 "factor of the errors of positions")
       ->check(CLI::Range(0.0, 5.0));
-  app.add_option("--wind-errors", arguments.wind_errors, "factor of those of winds")
+  app.add_option("--wind-errors", arguments.wind_errors, "factor of the errors of winds")
       ->check(CLI::Range(0.0, 5.0));
-  app.add_option("--size-errors", arguments.size_errors, "factor of those of radii")
+  app.add_option("--size-errors", arguments.size_errors, "factor of the errors of radii")
       ->check(CLI::Range(0.0, 5.0));
   app.add_option("--seed", arguments.trial.seed, "of the simulated storms");
   app.add_option("--min-lead", arguments.trial.min_lead_h, "hours before the closest approach");

@@ -52,7 +52,7 @@ struct Arguments {
   ScenarioChoice scenario;
   std::vector<std::string> settings;
   EnvironmentOptions environment;
-  int ranks{};  // to start here; 0: none
+  int ranks{};  // processes to start; 0: none
   GroupTimes times;
 };
 
@@ -93,16 +93,15 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--random", options.random_episodes,
                  "RANDOM episodes for comparison; 0 disables them");
   app.add_option("--ranks", arguments.ranks,
-                 "processes of this host that train together, a power of two, which have the same "
-                 "result as "
-                 "--ranks 1; 0: one process, or those "
-                 "that mpirun, srun or torchrun started")
+                 "number of processes of this host that train together, a power of two; the result "
+                 "is that of --ranks 1. 0: one process, or the processes that mpirun, srun or "
+                 "torchrun started")
       ->check(CLI::Range(0, 4096));
   app.add_option("--rank-start", arguments.times.start_s,
                  "max seconds that a rank waits for the others at the start")
       ->check(CLI::Range(1.0, 86400.0));
   app.add_option("--rank-answer", arguments.times.answer_s,
-                 "max seconds that a rank waits for an answer of another one")
+                 "max seconds that a rank waits for an answer of another rank")
       ->check(CLI::Range(1.0, 86400.0));
   AddScenarioOptions(app, arguments.scenario);
 }

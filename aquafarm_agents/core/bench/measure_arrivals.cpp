@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Measures whether a trained network avoids a disaster that arrives in mid-episode as well as one
-// that it knows from the start (docs/results/arrivals.md).
+// that it knows from the start.
 //
 // One ship fetches three devices on 12 × 12 cells, with a new layout in each episode. A storm
 // crosses the farm from step 20 on; it is known from step 0, or arrives by SetDisaster at a step in

@@ -118,7 +118,7 @@ def _external(text, number):
         words = ()
     if not re.fullmatch("[a-z][a-z0-9_]*", name) or not words:
         raise BadInput(f"learner: got '{text}', expected NAME=COMMAND with a name of a-z, 0-9 and _, "
-                       "as mine=python3 my_learner.py")
+                       "such as mine=python3 my_learner.py")
     return Contestant(name, name, _EXTERNAL_COLOURS[number % len(_EXTERNAL_COLOURS)],
                       command=words)
 

@@ -6,7 +6,7 @@
 
 Each combination of the values is a row of FOLDER/table.md and FOLDER/table.csv: mean return and
 success of a greedy evaluation on seeds not used for training, over the seeds of the training, best
-row first. FOLDER/runs has the run folders; the same command after Ctrl-C continues.
+row first. FOLDER/runs has the run folders. After Ctrl-C the same command resumes.
 """
 import argparse
 import csv
@@ -129,13 +129,15 @@ def arguments(words):
     parser.add_argument("algorithm", help="name of the learner")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=A,B,…",
                         help="option of the learner with its values; several --set are combined")
-    parser.add_argument("--seeds", default="1-3", help="as 1-5 or 1,3,8")
-    parser.add_argument("--steps", type=int, default=0, help="0: the algorithm's own number")
-    parser.add_argument("--episodes", type=int, default=200, help="of an evaluation")
-    parser.add_argument("--output", type=pathlib.Path, required=True)
+    parser.add_argument("--seeds", default="1-3", help="seeds of the trainings, such as 1-5 or 1,3,8")
+    parser.add_argument("--steps", type=int, default=0, help="per training; 0: the algorithm's default")
+    parser.add_argument("--episodes", type=int, default=200, help="number of evaluation episodes")
+    parser.add_argument("--output", type=pathlib.Path, required=True,
+                        help="folder for runs and tables")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1,
-                        help="trainings at a time")
-    parser.add_argument("--programs", type=pathlib.Path, help="folder of aquafarm_train (default: found)")
+                        help="number of trainings at a time")
+    parser.add_argument("--programs", type=pathlib.Path,
+                        help="folder of aquafarm_train (default: the workspace's, or that on PATH)")
     given = parser.parse_args(words)
     for name, low in (("steps", 0), ("episodes", 1), ("jobs", 1)):
         if getattr(given, name) < low:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mean returns of the contestants of a benchmark with their 95 % intervals."""
+"""Returns of the contestants of a benchmark (interquartile means) with their 95 % intervals."""
 import math
 
 from aquafarm_report import page
@@ -19,7 +19,7 @@ def _interval(row):
 
 
 def text(row):
-    """Returns "160.2 [157.0, 163.4]"; without an interval the mean alone."""
+    """Returns "160.2 [157.0, 163.4]"; without an interval the interquartile mean alone."""
     found = _interval(row)
     return f"{row['return_iqm']:.1f}" + (f" [{found[0]:.1f}, {found[1]:.1f}]" if found else "")
 
@@ -49,7 +49,7 @@ def table(rows):
 
 
 def chart(rows):
-    """A dot for each mean and a line for its interval, as SVG."""
+    """A dot for each return and a line for its interval, as SVG."""
     rows = by_return(rows)
     ends = [end for row in rows for end in (_interval(row) or ()) + (row["return_iqm"],)]
     low, high = min(ends), max(ends)

@@ -342,7 +342,7 @@ clairvoyant=False plans with the issued forecast, or else the present headings.)
              "An upper bound of the return of a farm at step 0, for several ships.");
   module.def(
       "_set_policy_folder", [](const std::string& folder) { PolicyFolder() = folder; },
-      py::arg("folder"), "Says where the shipped policies are.");
+      py::arg("folder"), "Sets the folder of the shipped policies.");
   DefineRescue(module);
 }
 

@@ -211,7 +211,7 @@ def main() -> int:
     parser.add_argument("dataset_id", help="such as aquafarm/paper/ppo-v0")
     parser.add_argument("bags", nargs="+", type=pathlib.Path)
     parser.add_argument("--observation", default="features", help="features, planes or index")
-    parser.add_argument("--algorithm", default="unknown", help="who played, for the description")
+    parser.add_argument("--algorithm", default="unknown", help="policy that played, for the description")
     given = parser.parse_args()
     try:
         dataset = make_dataset(given.dataset_id, given.bags, given.observation,

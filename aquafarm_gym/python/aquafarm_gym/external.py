@@ -149,15 +149,16 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--run-dir", type=pathlib.Path, required=True)
     parser.add_argument("--name", default="learner")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--episodes", type=int, default=100, help="of the training")
-    parser.add_argument("--max-steps", type=int, default=0, help="of an episode")
+    parser.add_argument("--episodes", type=int, default=100, help="training episodes")
+    parser.add_argument("--max-steps", type=int, default=0,
+                        help="step limit of an episode; 0: the scenario's")
     parser.add_argument("--evaluation-episodes", type=int, default=100)
     parser.add_argument("--evaluation-seed", type=int, default=1000)
     return parser.parse_args()
 
 
 def main(make: Any, observation: str = "features") -> int:
-    """Trains and evaluates one learner as the command line says; returns the exit code.
+    """Trains and evaluates one learner as the command line specifies; returns the exit code.
 
     make(env, seed) returns the learner. Wrong arguments and scenarios with several agents give exit
     code 2.

@@ -205,7 +205,7 @@ def main() -> int:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", type=pathlib.Path)
     parser.add_argument("--to", choices=sorted(SINKS), default="tensorboard")
-    parser.add_argument("--window", type=int, default=50, help="episodes of a point")
+    parser.add_argument("--window", type=int, default=50, help="number of episodes per point")
     parser.add_argument("--follow", action="store_true", help="continue while runs train")
     given = parser.parse_args()
     if given.window < 1:

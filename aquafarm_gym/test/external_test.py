@@ -45,6 +45,13 @@ class Sample:
         return int(np.flatnonzero(mask)[-1])
 
 
+class Lazy(Sample):
+    """Does not train at all."""
+
+    def train(self):
+        """Returns at once."""
+
+
 @unittest.skipIf(WHY_NOT, WHY_NOT)
 class ExternalTest(unittest.TestCase):
     def setUp(self):
@@ -52,11 +59,11 @@ class ExternalTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.run_dir = pathlib.Path(folder.name) / "run"
 
-    def learn(self, *words):
+    def learn(self, *words, make=Sample):
         """Runs the program of a learner; returns (exit code, what it said)."""
         sys.argv = ["learner", *words, "--run-dir", str(self.run_dir), "--name", "mine"]
         with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said):
-            code = external.main(Sample)
+            code = external.main(make)
         return code, said.getvalue()
 
     def test_a_run_has_the_files_of_the_benchmark(self):
@@ -91,6 +98,12 @@ class ExternalTest(unittest.TestCase):
         self.assertEqual([one["episode_return"] for one in records],
                          [-462, -814, -463, -651, -587])
         self.assertEqual(starts, 5)
+
+    def test_a_learner_that_stops_early_is_no_row_of_the_benchmark(self):
+        code, said = self.learn("paper", "--episodes", "3", "--max-steps", "50", make=Lazy)
+        self.assertEqual((code, said.count("\n")), (2, 1), said)
+        self.assertIn("mine: train() ended after 0 episodes, expected 3", said)
+        self.assertFalse((self.run_dir / "evaluation.json").exists())
 
     def test_what_does_not_fit_ends_with_code_2_and_one_line(self):
         for scenario, words in (("two_squads", "scenario two_squads: got 2 agents, expected 1; "),

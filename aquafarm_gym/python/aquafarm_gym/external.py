@@ -67,14 +67,14 @@ class TrainingEnv(FarmEnv):
     def __init__(self, scenario: core.Scenario, episodes: int, path: pathlib.Path,
                  **options: Any) -> None:
         super().__init__(scenario, **options)
-        self._left, self._number, self.steps_taken = episodes, 0, 0
+        self._episodes, self.episodes_taken, self.steps_taken = episodes, 0, 0
         self._file = open(path, "w", newline="", encoding="utf-8")
         self._rows = csv.DictWriter(self._file, METRICS, restval="nan", extrasaction="ignore",
                                     lineterminator="\n")
         self._rows.writeheader()
 
     def reset(self, **options: Any) -> Any:
-        if self._number == self._left:
+        if self.episodes_taken == self._episodes:
             raise EpisodesOver
         return super().reset(**options)
 
@@ -82,8 +82,8 @@ class TrainingEnv(FarmEnv):
         result = super().step(action)
         self.steps_taken += 1
         if result[2] or result[3]:
-            self._number += 1
-            self._rows.writerow({"number": self._number, "total_steps": self.steps_taken,
+            self.episodes_taken += 1
+            self._rows.writerow({"number": self.episodes_taken, "total_steps": self.steps_taken,
                                  **cells_of(self.farms.finished()[0])})
         return result
 
@@ -160,8 +160,8 @@ def arguments() -> argparse.Namespace:
 def main(make: Any, observation: str = "features") -> int:
     """Trains and evaluates one learner as the command line specifies; returns the exit code.
 
-    make(env, seed) returns the learner. Wrong arguments and scenarios with several agents give exit
-    code 2.
+    make(env, seed) returns the learner. Wrong arguments, scenarios with several agents and a learner
+    that does not play all episodes give exit code 2.
     """
     given = arguments()
     try:
@@ -183,6 +183,11 @@ def main(make: Any, observation: str = "features") -> int:
     except EpisodesOver:
         pass
     env.close()
+    if env.episodes_taken < given.episodes:
+        print(f"{given.name}: train() ended after {env.episodes_taken} episodes, expected "
+              f"{given.episodes}: play the environment until it raises EpisodesOver",
+              file=sys.stderr)
+        return 2
     began = time.monotonic()
     records, starts = evaluate(learner, scenario, observation, given.evaluation_episodes,
                                given.evaluation_seed)

@@ -128,7 +128,7 @@ std::string CheckPort(GeoPoint wanted, const RanchArea& ranch, const Terrain& te
   const bool inside =
       at[0] >= -0.5 && at[1] >= -0.5 && at[0] <= ranch.width - 0.5 && at[1] <= ranch.height - 0.5;
   const auto nearest = [](double position, std::int32_t size) {
-    return std::min(static_cast<std::int32_t>(std::lround(position)), size - 1);
+    return std::clamp(static_cast<std::int32_t>(std::lround(position)), 0, size - 1);
   };
   const bool is_land =
       inside && terrain.land(nearest(at[1], ranch.height), nearest(at[0], ranch.width)) != 0;

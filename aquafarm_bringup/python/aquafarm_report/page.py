@@ -19,7 +19,7 @@ h2{font-size:1.15rem;margin:1.6rem 0 .5rem;color:var(--accent)}
 .films{display:grid;grid-template-columns:repeat(auto-fit,minmax(17rem,1fr));gap:.8rem}
 figure{margin:0}figcaption{font-size:.9rem;margin:.2rem 0 .6rem}
 img,video,svg{max-width:100%;height:auto;display:block;border-radius:6px}
-.full{overflow-x:auto}.full img{max-width:none}
+.full img{max-width:none}
 .wide{overflow-x:auto}table{border-collapse:collapse;font-size:.9rem}
 th,td{padding:.3rem .6rem;border-bottom:1px solid var(--rule);text-align:right;white-space:nowrap}
 th:first-child,td:first-child{text-align:left}details{background:var(--card);border:1px solid
@@ -67,7 +67,7 @@ def markdown_table(text):
 
 def picture(path, caption, full=False):
     """A picture; `full`: at the size of its pixels, scrolling horizontally if it is too wide."""
-    opening = '<figure class="full">' if full else "<figure>"
+    opening = '<figure class="wide full">' if full else "<figure>"
     return (f'{opening}<img src="{embed(path)}" alt="{escape(caption)}">'
             f"<figcaption>{escape(caption)}</figcaption></figure>")
 

@@ -43,7 +43,7 @@ std::string OrderText(const RescuePlan& plan, const RescueOrder& order) {
   }
 }
 
-// If the winds are unknown, that none stops a ship is no all-clear.
+// With unknown winds no member stops a ship, which does not mean that it is safe.
 std::string ChanceText(const RescuePlan& plan, float chance) {
   return plan.result == RescuePlan::STORM_UNKNOWN ? "unknown"
                                                   : PercentText(static_cast<double>(chance));

@@ -55,7 +55,7 @@ class JsonReport {
     return Share(static_cast<double>(count) / ensemble_.members());
   }
 
-  // A chance is null if the winds are unknown: that no member is stopped is then no all-clear.
+  // With unknown winds no member stops a ship, which does not mean that it is safe: null.
   Json Chance(double share) const { return AreWindsUnknown() ? Json(nullptr) : Json(Share(share)); }
   bool AreWindsUnknown() const { return report_.result == PlanResult::kStormUnknown; }
 

@@ -74,7 +74,7 @@ void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
   }
 }
 
-// A chance is not known if the winds are not: that no member is stopped is then no all-clear.
+// With unknown winds no member stops a ship, which does not mean that it is safe.
 std::string Chance(const PlanReport& report, double share) {
   return report.result == PlanResult::kStormUnknown ? "unknown" : Percent(share);
 }

@@ -176,7 +176,7 @@ TEST_F(Fleet, NoShipLeavesAPortIfWindsStopItInAllFutures) {
   EXPECT_EQ(Warning("devices_aboard"), nullptr) << "it has no orders";
 }
 
-// That no member of a storm without winds stops a ship is no all-clear.
+// A storm without known winds stops no ship in any member, which does not mean that it is safe.
 TEST_F(Fleet, ChancesAreUnknownIfTheWindsAre) {
   const std::string path = ::testing::TempDir() + "fleet_state_test_unknown_winds.json";
   std::ofstream(path) << R"([{"tfbh": "202106", "ename": "In-Fa", "points": [

@@ -339,7 +339,7 @@ TEST_F(PlanMessages, LossesAndChanges) {
   EXPECT_NEAR(plan().insured, insured, 0.01);
   ExpectLoss(report_->plan.loss, plan().loss);
   ExpectLoss(report_->plan.loss_idle, plan().loss_idle);
-  const std::optional<double> last = agents::NoDepartureAfter(*report_);
+  const std::optional<double> last = agents::NoDepartureAfter(case_->problem, *report_);
   EXPECT_EQ(plan().no_departure_after, last ? At(*last) : ros::Time());
   EXPECT_FALSE(plan().no_departure_rule.empty());
   ASSERT_EQ(plan().what_if.size(), report_->what_if.size());

@@ -76,7 +76,7 @@ class PlanFileTest(unittest.TestCase):
 
     def test_every_sample_fits(self):
         for plan in (self.plan, plan_sample.nothing_to_save(), plan_sample.storm_stays_away(),
-                     plan_sample.storm_unknown()):
+                     plan_sample.storm_unknown(), plan_sample.storm_unknown_aboard()):
             document.check(plan, "x.json")
 
     def test_a_missing_key_is_named(self):
@@ -265,6 +265,21 @@ class PageTest(unittest.TestCase):
             self.assertIn(part, words)
         for part in ("stays in place", "Nothing in these", "o ring reaches", "no departure has it"):
             self.assertNotIn(part, words)
+
+    def test_orders_of_a_ship_with_a_device_aboard_promise_nothing_without_known_winds(self):
+        for share in (None, 1.0):  # 1.0: files that were made before it was null
+            plan = plan_sample.storm_unknown_aboard(share)
+            words = words_of(plan)
+            self.assertRegex(words, r"deliver F1 at port A\s+0\.6\s+unknown")
+            self.assertIn("F1, deep-water cage: chance to come home: unknown", words)
+            self.assertIn("F1 unknown", words)
+            for part in ("99 %", "No gain", "No device is left behind", "Every ship"):
+                self.assertNotIn(part, words)
+            for feature in geojson.feature_collection(plan)["features"]:
+                one = feature["properties"]
+                if one["layer"] in ("order", "device"):
+                    key = "probability" if one["layer"] == "order" else "probability_home"
+                    self.assertIsNone(one[key], one)
 
     def test_a_deadline_that_the_known_time_ends_is_no_limit(self):
         plan = copy.deepcopy(self.plan)

@@ -434,6 +434,36 @@ def storm_unknown():
     return plan
 
 
+def storm_unknown_aboard(chance=None):
+    """As storm_unknown, but a ship is at sea with F1 aboard: it has orders nevertheless.
+
+    @param chance of its orders: null, or a number in files that were made before it was null
+    """
+    plan = copy.deepcopy(storm_unknown())
+    cell, port = [12, 13], PORTS[0]
+    plan["ships"][0].update(cell=cell, position=position(*cell), port=None, aboard=[0])
+
+    def order(action, hours, place):
+        return {
+            "action": action, "time": stamp(hours), "cell": list(place),
+            "position": position(*place), "device": None,
+            "port": 0 if action == "deliver" else None, "km": 0.6 * hours, "kwh": None,
+            "probability": chance
+        }
+
+    orders = [order("leave", 0, cell), {**order("deliver", 1, port), "devices": [0]}]
+    plan["plan"]["routes"] = [{
+        "ship": 0, "km": 0.6, "kwh": None, "orders": orders,
+        "path": [[*cell, 0.0], [*port, 3600.0]]
+    }]
+    plan["plan"]["left_behind"] = plan["plan"]["left_behind"][1:]
+    plan["devices"][0].update(
+        cell=cell, position=position(*cell),
+        order={"ship": 0, "fetch": stamp(0), "deliver": stamp(1), "port": 0},
+        odds={"home": chance, "home_before": [chance] * 3})
+    return plan
+
+
 if __name__ == "__main__":
     with open(sys.argv[1], "w", encoding="utf-8") as file:
         json.dump(sample(), file, indent=1)

@@ -176,6 +176,24 @@ TEST(PlanText, DevicesHaveTheirOddsAndDeadlines) {
   EXPECT_EQ(PlanDevices(*plan)[1], (PlanRow{"D2", "unknown", "unknown", "unknown", "unknown"}));
 }
 
+// A ship with a device aboard has orders although the winds are unknown; they promise nothing.
+TEST(PlanText, ChancesAreUnknownIfTheWindsAre) {
+  const auto plan = Plan();
+  plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
+  plan->ships[0].aboard = {1};
+  plan->routes[0].orders.erase(plan->routes[0].orders.begin() + 1);
+  for (const float chance : {1.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    for (auto& order : plan->routes[0].orders) order.probability = chance;
+    plan->devices[1].home = chance;
+    for (const double hours : {0.0, 9.0}) {
+      const PlanRow row = PlanShips(*plan, plan->start + ros::Duration(3600.0 * hours))[0];
+      EXPECT_EQ(row[3], "unknown") << row[1];
+    }
+    EXPECT_EQ(PlanDevices(*plan)[1][1], "unknown");
+  }
+  EXPECT_EQ(PlanHeadline(*plan, 0.0), "plan: 1 of 2 ships leave.") << "no deadline is known";
+}
+
 TEST(PlanText, TheHeadlineNamesWhatIsOutdated) {
   const auto plan = Plan();
   EXPECT_EQ(PlanHeadline(*plan, 0.0),
@@ -193,6 +211,7 @@ TEST(PlanWords, SharesAreNeverCertainAndOtherDaysAreNamed) {
   EXPECT_EQ(aquafarm_sim::PercentText(1.0), "> 99 %");
   EXPECT_EQ(aquafarm_sim::PercentText(0.87), "87 %");
   EXPECT_EQ(aquafarm_sim::PercentText(0.0), "< 1 %");
+  EXPECT_EQ(aquafarm_sim::PercentText(std::numeric_limits<double>::quiet_NaN()), "unknown");
   aquafarm_msgs::RescuePlan plan;
   plan.utc_offset_min = 480;
   plan.start = ros::Time(1627084800, 0);  // 2021-07-24 00:00 UTC, 08:00 local time
@@ -209,6 +228,8 @@ TEST(PlanWords, AShipAtSeaIsNeverToldToStay) {
   ship.cell.x = 3;
   EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "stay");
   ship.aboard = {1};
+  EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "stay, no port in reach");
+  ship.cell.x = 4;
   EXPECT_EQ(aquafarm_sim::WithoutRouteText(*plan, ship), "no port in reach");
 }
 
@@ -303,8 +324,10 @@ TEST(RanchWidget, SaysWithinFiveSecondsThatThePlanIsNoLongerRenewed) {
   };
   EXPECT_EQ(text(), "") << "without a plan nothing is missing";
   model.Take(aquafarm_msgs::RescuePlanConstPtr(Plan()), now - ros::WallDuration(7.5));
-  EXPECT_NE(text().find("NOT RENEWED: plan_node has sent nothing for 7 s; start it again."),
-            std::string::npos)
+  EXPECT_NE(
+      text().find("NOT RENEWED: plan_node has sent nothing for 7 s; start it again, unless it is "
+                  "still planning (that may take more than 60 s)."),
+      std::string::npos)
       << text();
   model.HearPlanNode(now);
   EXPECT_EQ(text().find("NOT RENEWED"), std::string::npos);

@@ -6,9 +6,9 @@ import contourpy
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from .document import Clock, percent
+from .document import Clock
 from .labels import Label, place
-from .words import kind_name, left_reason, left_word, letter
+from .words import chance, kind_name, left_reason, left_word, letter
 
 WIDTH, MAX_HEIGHT = 760.0, 860.0  # of the drawing [px]
 LEVELS = (10, 50, 90)  # isolines [%]
@@ -85,7 +85,7 @@ def _device(plan, frame, device):
     return {
         "id": device["id"], "name": device["name"], "kind": device["kind"],
         "kind_name": kind_name(device["kind"]), "xy": frame.px(*device["cell"]),
-        "home": percent(device["odds"]["home"]), "left": device["order"] is None,
+        "home": chance(plan, device["odds"]["home"]), "left": device["order"] is None,
         "fate": left_word(plan, device["id"]),
         "reason": left_reason(plan, left) if left else "",
         "ship": (device["order"] or {}).get("ship")

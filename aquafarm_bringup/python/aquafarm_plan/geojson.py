@@ -76,7 +76,7 @@ def _devices(plan):
                        name=device["name"],
                        kind=kind_name(device["kind"]),
                        value=device["value"],
-                       probability_home=device["odds"]["home"],
+                       probability_home=None if is_unknown(plan) else device["odds"]["home"],
                        ship=plan["ships"][order["ship"]]["name"] if order else None,
                        fetch=order.get("fetch"),
                        deliver=order.get("deliver"),
@@ -107,7 +107,7 @@ def _orders(plan):
                            ship=plan["ships"][route["ship"]]["name"],
                            action=order["action"],
                            time=order["time"],
-                           probability=order["probability"],
+                           probability=None if is_unknown(plan) else order["probability"],
                            text=order_text(plan, order))
 
 

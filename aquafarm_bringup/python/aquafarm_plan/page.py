@@ -51,6 +51,7 @@ def render(plan):
         basis=BASIS,
         order_text=lambda order: words.order_text(plan, order),
         ship_name=lambda i: plan["ships"][i]["name"],
+        chance=lambda share: words.chance(plan, share),
         fate=lambda i: words.left_word(plan, i),
         left_reason=lambda left: words.left_reason(plan, left),
         deadline_text=lambda one: words.deadline_text(plan, one),

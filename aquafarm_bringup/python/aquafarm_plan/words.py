@@ -27,6 +27,11 @@ def is_unknown(plan):
     return plan["outcome"]["kind"] == "storm_unknown"
 
 
+def chance(plan, share):
+    """The chance of an order or of a device. Without known winds no share is an all-clear."""
+    return "unknown" if is_unknown(plan) or share is None else percent(share)
+
+
 def left_word(plan, device):
     """Fate of a device without an order."""
     if is_unknown(plan):
@@ -106,7 +111,10 @@ def _first(plan):
                       for ids in [[one["device"] for one in left
                                    if left_word(plan, one["device"]) == word]] if ids)
     answer = some([text for _, text in sorted(firsts)], "; ") or "Nothing."
-    return "What do I fetch first?", answer, remark or "No device is left behind."
+    others = "No device is left behind."
+    if is_unknown(plan):
+        others = "Ships with devices aboard have orders. Their chances are unknown."
+    return "What do I fetch first?", answer, remark or others
 
 
 def _leave(plan):
@@ -172,7 +180,7 @@ def _lose(plan):
 def _sure(plan):
     members, devices = plan["ensemble"]["members"], plan["devices"]
     planned = [one for one in devices if one["order"]]
-    if not planned:
+    if is_unknown(plan) or not planned:
         answer = "Not at all." if is_unknown(plan) else "No device is fetched."
         return ("How sure is it?", answer,
                 f"Computed over {members:,} possible storms. The assumptions are on the last page.")
@@ -195,6 +203,8 @@ def _sure(plan):
 
 def _one_more(plan):
     question, currency = "What does one more ship bring?", plan["loss"]["currency"]
+    if is_unknown(plan):
+        return question, "Unknown.", "The storm's winds are not known."
     row = next((one for one in plan["what_if"] if one["change"] == "ships+1"), None)
     if not row or not row["possible"] or not row["difference"]:
         return question, "Not computed.", row["text"] if row else "The plan has no such comparison."

@@ -14,8 +14,9 @@
 namespace aquafarm_sim {
 
 /// Returns a probability for people: "> 99 %", "87 %", "< 1 %". A share of a sample is never
-/// certain. @param probability [0, 1]
+/// certain. @param probability [0, 1]; NaN: "unknown"
 inline std::string PercentText(double probability) {
+  if (std::isnan(probability)) return "unknown";
   if (probability >= 0.995) return "> 99 %";
   if (probability < 0.005) return "< 1 %";
   return std::to_string(std::lround(100.0 * probability)) + " %";
@@ -41,10 +42,10 @@ inline std::string LocalText(const aquafarm_msgs::RescuePlan& plan, ros::Time ti
 /// devices aboard has a route unless it reaches no port.
 inline std::string WithoutRouteText(const aquafarm_msgs::RescuePlan& plan,
                                     const aquafarm_msgs::RescueShip& ship) {
-  if (!ship.aboard.empty()) return "no port in reach";
   const bool in_port = std::any_of(plan.ports.begin(), plan.ports.end(), [&ship](const auto& port) {
     return port.cell.x == ship.cell.x && port.cell.y == ship.cell.y;
   });
+  if (!ship.aboard.empty()) return in_port ? "stay, no port in reach" : "no port in reach";
   return in_port ? "stay" : "return to port";
 }
 

@@ -43,6 +43,12 @@ std::string OrderText(const RescuePlan& plan, const RescueOrder& order) {
   }
 }
 
+// With unknown winds no member stops a ship, which does not mean that it is safe.
+std::string ChanceText(const RescuePlan& plan, float chance) {
+  return plan.result == RescuePlan::STORM_UNKNOWN ? "unknown"
+                                                  : PercentText(static_cast<double>(chance));
+}
+
 std::string DeadlineText(const RescuePlan& plan, const RescueDeadline& deadline) {
   if (plan.result == RescuePlan::STORM_UNKNOWN) return "unknown";
   if (!deadline.possible) return "none";
@@ -53,7 +59,7 @@ std::string DeadlineText(const RescuePlan& plan, const RescueDeadline& deadline)
 
 std::string PlanHeadline(const RescuePlan& plan, double silent_s) {
   std::string text = "plan: " + plan.text;
-  if (!plan.no_departure_after.isZero()) {
+  if (!plan.no_departure_after.isZero() && plan.result != RescuePlan::STORM_UNKNOWN) {
     text += " No ship should leave after " + LocalText(plan, plan.no_departure_after) + ".";
   }
   for (const auto& warning : plan.warnings) {
@@ -62,7 +68,8 @@ std::string PlanHeadline(const RescuePlan& plan, double silent_s) {
   if (!plan.fault.empty()) text += " OUTDATED: " + plan.fault;
   if (silent_s >= kPlanSilence_s) {
     text += " NOT RENEWED: plan_node has sent nothing for " +
-            std::to_string(static_cast<std::int64_t>(silent_s)) + " s; start it again.";
+            std::to_string(static_cast<std::int64_t>(silent_s)) +
+            " s; start it again, unless it is still planning (that may take more than 60 s).";
   }
   return text;
 }
@@ -88,7 +95,7 @@ std::vector<PlanRow> PlanShips(const RescuePlan& plan, ros::Time now) {
       row[1] = next == route.orders.end() ? "all done" : OrderText(plan, *next);
       if (next == route.orders.end()) continue;
       row[2] = LocalText(plan, next->stamp);
-      row[3] = PercentText(static_cast<double>(next->probability));
+      row[3] = ChanceText(plan, next->probability);
     }
     rows.push_back(row);
   }
@@ -99,8 +106,8 @@ std::vector<PlanRow> PlanDevices(const RescuePlan& plan) {
   std::vector<PlanRow> rows;
   const bool is_unknown = plan.result == RescuePlan::STORM_UNKNOWN;
   for (const auto& device : plan.devices) {
-    const std::string home = is_unknown         ? "unknown"
-                             : device.ship >= 0 ? PercentText(static_cast<double>(device.home))
+    const std::string home = is_unknown                              ? "unknown"
+                             : device.ship >= 0                      ? ChanceText(plan, device.home)
                              : device.left_reason == "safe_in_place" ? "stays"
                                                                      : "left behind";
     PlanRow row{device.name, home, "", "", ""};

@@ -162,6 +162,7 @@ double ExposureDamage(const RescueCase& rescue) {
 }
 
 void ReadFleet(const RescueRequest& request, RescueCase& rescue) {
+  rescue.problem.depart_s = request.depart_s;
   const Scenario& scenario = *rescue.scenario;
   RescueProblem& problem = rescue.problem;
   problem.water.resize(scenario.height, scenario.width);

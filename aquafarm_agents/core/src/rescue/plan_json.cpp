@@ -55,6 +55,10 @@ class JsonReport {
     return Share(static_cast<double>(count) / ensemble_.members());
   }
 
+  // With unknown winds no member stops a ship, which does not mean that it is safe: null.
+  Json Chance(double share) const { return AreWindsUnknown() ? Json(nullptr) : Json(Share(share)); }
+  bool AreWindsUnknown() const { return report_.result == PlanResult::kStormUnknown; }
+
   Json Provenance(const PlanProvenance& provenance) const {
     Json inputs = Json::array();
     for (const auto& [role, path] : provenance.inputs) {
@@ -344,7 +348,7 @@ class JsonReport {
                  {"port", outcome.port}};
       }
       Json before = Json::array();
-      for (const double share : outcome.home_before) before.push_back(Share(share));
+      for (const double share : outcome.home_before) before.push_back(Chance(share));
       const double damage = device.value > 0.0 ? outcome.mean_loss / device.value : 0.0;
       list.push_back({{"id", d},
                       {"name", device.name},
@@ -354,7 +358,7 @@ class JsonReport {
                       {"value", Money(device.value)},
                       {"damage_before", Share(device.damage_before)},
                       {"order", order},
-                      {"odds", {{"home", Share(outcome.home)}, {"home_before", before}}},
+                      {"odds", {{"home", Chance(outcome.home)}, {"home_before", before}}},
                       {"arrival", Arrivals(device.cell)},
                       {"expected_damage", Share(damage)},
                       {"expected_loss", Money(std::max(0.0, outcome.mean_loss))},
@@ -375,7 +379,7 @@ class JsonReport {
                {"port", OfId(order.port)},
                {"km", Km(order.km)},
                {"kwh", nullptr},
-               {"probability", Share(order.probability)}};
+               {"probability", Chance(order.probability)}};
       if (order.kind == OrderKind::kDeliver) one["devices"] = order.devices;
       list.push_back(std::move(one));
     }
@@ -425,8 +429,10 @@ class JsonReport {
       if (!first || leave_s < *first) first = leave_s;
     }
     return {{"first_departure", TimeOrNull(first)},
-            {"no_departure_after", TimeOrNull(NoDepartureAfter(report_))},
-            {"rule", "the latest departure with which any device has a chance of at least 50 %"}};
+            {"no_departure_after", TimeOrNull(NoDepartureAfter(case_.problem, report_))},
+            {"rule",
+             "the latest departure with which any device at its place has a chance of at least "
+             "50 %"}};
   }
 
   Json Changes() const {
@@ -438,8 +444,8 @@ class JsonReport {
       };
       one["mean_loss"] = or_null(row.loss.mean);
       one["q95"] = or_null(row.loss.q95);
-      one["devices_home"] = or_null(row.devices_home);
-      one["all_home"] = row.is_possible ? Json(Share(row.all_home)) : Json(nullptr);
+      one["devices_home"] = AreWindsUnknown() ? Json(nullptr) : or_null(row.devices_home);
+      one["all_home"] = row.is_possible ? Chance(row.all_home) : Json(nullptr);
       one["difference"] = nullptr;
       if (row.is_possible) {
         one["difference"] = {{"mean", Money(row.difference)},

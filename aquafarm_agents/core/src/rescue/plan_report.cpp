@@ -63,8 +63,8 @@ void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
     rescue.warnings.push_back({"nothing_can_be_saved", "stop", report.text,
                                report.plan.routes.empty()
                                    ? "Keep the ships in port."
-                                   : "Bring the ships with devices aboard to the ports of their "
-                                     "orders; keep the others in port."});
+                                   : "Ships with devices aboard: heed the warnings of their own; "
+                                     "keep the others in port."});
   } else {
     report.result = storm.age_h >= 12.0 ? PlanResult::kBulletinOld : PlanResult::kPlan;
     report.text = std::to_string(report.plan.routes.size()) + " of " +
@@ -72,6 +72,11 @@ void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
                   Money(rescue, report.plan.saved) + " of " +
                   Money(rescue, Summarize(report.plan.loss_idle).mean) + " on average.";
   }
+}
+
+// With unknown winds no member stops a ship, which does not mean that it is safe.
+std::string Chance(const PlanReport& report, double share) {
+  return report.result == PlanResult::kStormUnknown ? "unknown" : Percent(share);
 }
 
 void AddRoutes(const RescueCase& rescue, const PlanReport& report, std::string& text) {
@@ -90,7 +95,7 @@ void AddRoutes(const RescueCase& rescue, const PlanReport& report, std::string& 
       } else {
         text += "deliver at " + problem.ports[static_cast<std::size_t>(order.port)].name;
       }
-      text += "  [" + Percent(order.probability) + "]\n";
+      text += "  [" + Chance(report, order.probability) + "]\n";
     }
   }
 }
@@ -99,8 +104,12 @@ void AddDevices(const RescueCase& rescue, const PlanReport& report, std::string&
   text += "\ndevice: chance to be in port; latest departure with 95, 80, 50 %; mean loss\n";
   for (std::size_t d = 0; d < rescue.problem.devices.size(); ++d) {
     const DeviceOutcome& outcome = report.plan.devices[d];
-    text += "  " + rescue.problem.devices[d].name + ": " +
-            (outcome.ship == kNone ? "left behind" : Percent(outcome.home)) + ";";
+    text += "  " + rescue.problem.devices[d].name + ": ";
+    if (report.result == PlanResult::kStormUnknown) {
+      text += "unknown\n";
+      continue;
+    }
+    text += (outcome.ship == kNone ? "left behind" : Percent(outcome.home)) + ";";
     for (const Deadline& deadline : report.deadlines[d]) {
       text += " " +
               (!deadline.leave_s  ? std::string("none")
@@ -113,12 +122,57 @@ void AddDevices(const RescueCase& rescue, const PlanReport& report, std::string&
   }
 }
 
+// Warns of each ship whose devices aboard are more likely lost than brought to a port.
+void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
+  constexpr double kSafe = 0.5;
+  const RescueProblem& problem = rescue.problem;
+  for (std::size_t i = 0; i < problem.ships.size(); ++i) {
+    const RescueShip& ship = problem.ships[i];
+    const auto id = static_cast<std::int32_t>(i);
+    if (ship.aboard.empty()) continue;
+    const bool is_warned = std::any_of(
+        rescue.warnings.begin(), rescue.warnings.end(),
+        [id](const RescueWarning& one) { return one.code == "no_way_home" && one.ship == id; });
+    std::string names;
+    double home = 1.0;  // the worst of them
+    bool is_under_way = false;
+    for (const std::int32_t device : ship.aboard) {
+      const auto d = static_cast<std::size_t>(device);
+      names += (names.empty() ? "" : ", ") + problem.devices[d].name;
+      home = std::min(home, report.plan.devices[d].home);
+      is_under_way = is_under_way || report.plan.devices[d].ship != kNone;
+    }
+    if (is_warned || home >= kSafe) continue;
+    auto& warnings = rescue.warnings;
+    const auto promises = [id](const RescueWarning& one) {
+      return one.code == "devices_aboard" && one.ship == id;  // its orders deliver them
+    };
+    warnings.erase(std::remove_if(warnings.begin(), warnings.end(), promises), warnings.end());
+    rescue.warnings.push_back(
+        is_under_way
+            ? RescueWarning{"winds_on_way_home", "stop",
+                            ship.name + " has " + names +
+                                " aboard, and winds stop it on its way home: the chance to deliver "
+                                "is only " +
+                                Percent(home) + ".",
+                            "Seek shelter, unless its master judges the ordered way to be safer.",
+                            id}
+            : RescueWarning{"winds_on_way_home", "stop",
+                            ship.name + " has " + names +
+                                " aboard, and winds stop it before it can deliver: it stays in "
+                                "port.",
+                            "Keep it in port.", id});
+  }
+}
+
 }  // namespace
 
-std::optional<double> NoDepartureAfter(const PlanReport& report) {
+std::optional<double> NoDepartureAfter(const RescueProblem& problem, const PlanReport& report) {
   std::optional<double> latest;
-  for (const std::vector<Deadline>& of_device : report.deadlines) {
-    const std::optional<double>& leave_s = of_device.back().leave_s;
+  if (report.result == PlanResult::kStormUnknown) return latest;
+  for (std::size_t d = 0; d < report.deadlines.size(); ++d) {
+    if (problem.CarrierOf(d) != kNone) continue;
+    const std::optional<double>& leave_s = report.deadlines[d].back().leave_s;
     if (leave_s && (!latest || *leave_s > *latest)) latest = leave_s;
   }
   return latest;
@@ -131,6 +185,7 @@ PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble) {
       Deadlines(rescue.problem, ensemble, {kDeadlineShares.begin(), kDeadlineShares.end()});
   report.what_if = CompareChanges(rescue.problem, ensemble, report.plan);
   Judge(rescue, ensemble, report);
+  if (report.result != PlanResult::kStormUnknown) WarnOfWaysHome(rescue, report);
   const auto rank = [](const RescueWarning& one) {
     return one.severity == "stop" ? 0 : one.severity == "warning" ? 1 : 2;
   };
@@ -149,11 +204,14 @@ std::string ToText(const RescueCase& rescue, const PlanReport& report) {
   }
   AddRoutes(rescue, report, text);
   AddDevices(rescue, report, text);
+  if (report.result == PlanResult::kStormUnknown) {
+    return text + "\nDeadlines, losses and comparisons are unknown.\ntimes: local (UTC)\n";
+  }
   const LossSummary loss = Summarize(report.plan.loss);
   text += "\nloss: mean " + Money(rescue, loss.mean) + ", 5 to 95 %: " + Money(rescue, loss.q05) +
           " to " + Money(rescue, loss.q95) +
           "; mean of the worst 5 %: " + Money(rescue, loss.cvar05) + "\n";
-  if (const std::optional<double> last = NoDepartureAfter(report)) {
+  if (const std::optional<double> last = NoDepartureAfter(rescue.problem, report)) {
     text += "no ship should leave after " + Clock(rescue, *last) + "\n";
   }
   text += "\nwhat if: mean loss, change\n";

@@ -69,7 +69,7 @@ Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report) {
     std::string text = "no ship can have it in port before the winds with a chance of 50 %.";
     if (problem.CarrierOf(d) != kNone) {
       reason = "unreachable";
-      text = "it is aboard a ship that reaches no open port.";
+      text = "it is aboard a ship that can bring it to no open port.";
     } else if (outcome.mean_loss_idle <= 0.0) {
       reason = "safe_in_place";
       text = "no winds reach it in any of the futures.";

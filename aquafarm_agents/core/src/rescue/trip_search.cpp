@@ -55,6 +55,11 @@ class TripSearch {
 
   const RescueShip& Ship() const { return model_.problem().ships[ship_]; }
   std::size_t Devices() const { return model_.problem().devices.size(); }
+  bool IsInPort() const {
+    const auto& ports = model_.problem().ports;
+    return std::any_of(ports.begin(), ports.end(),
+                       [this](const RescuePort& port) { return port.cell == Ship().cell; });
+  }
   static std::int32_t Count(DeviceSet set) {
     std::int32_t count = 0;
     for (; set != 0; set &= set - 1) ++count;
@@ -131,8 +136,10 @@ class TripSearch {
     for (std::size_t d = 0; d < Devices(); ++d) {
       if ((child.aboard & Bit(d)) != 0) child.saved += model_.Saved(d, child.time_s, child.alive);
     }
-    // A ship that starts with devices aboard must bring them to a port, whatever that saves.
+    // A ship that starts with devices aboard must bring them to a port, whatever that saves. In
+    // a port it stays if winds stop it in all members.
     if (child.saved <= node.saved && !node.stops.empty()) return;
+    if (node.stops.empty() && IsInPort() && CountAlive(child.alive) == 0) return;
     child.aboard = 0;
     Record(child);
     if (CountAlive(child.alive) > 0) next.push_back(std::move(child));

@@ -63,15 +63,25 @@ class Changes {
     rows_.push_back(row);
   }
 
-  // Another ship as the first one, at the port where it helps most.
+  // A ship to add: as the first one without devices aboard, which is ready as the request says.
+  RescueShip OneMore() const {
+    const auto is_empty = [](const RescueShip& ship) { return ship.aboard.empty(); };
+    const auto& ships = problem_.ships;
+    const auto found = std::find_if(ships.begin(), ships.end(), is_empty);
+    RescueShip more = found == ships.end() ? ships.front() : *found;
+    if (found == ships.end()) more.ready_s = std::max(more.ready_s, problem_.depart_s);
+    more.aboard.clear();
+    return more;
+  }
+
+  // Another ship at the port where it helps most.
   void AddShip() {
     std::optional<WhatIf> best;
     for (const RescuePort& port : problem_.ports) {
       if (!port.is_open || problem_.ships.empty()) continue;
       RescueProblem changed = problem_;
-      changed.ships.push_back(problem_.ships[0]);
+      changed.ships.push_back(OneMore());
       changed.ships.back().cell = port.cell;
-      changed.ships.back().aboard.clear();
       WhatIf row = Compare("ships+1", "one ship more, at " + port.name, plan_,
                            PlanRescue(changed, ensemble_));
       if (!best || row.loss.mean < best->loss.mean) best = std::move(row);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -44,6 +45,20 @@ TEST(Ensemble, RadiiSpreadFromTheirLastReport) {
     const double expected = SizeSpreadAt(ForecastErrors{}, 0.35, 50.0 * static_cast<double>(i));
     EXPECT_NEAR(reported.spread()[i].size_log, expected, 0.05 * expected) << i;
   }
+}
+
+// Radii without a wind: an unknown spread would make all radii NaN, which never arrive.
+TEST(Ensemble, AStormOfUnknownWindStillArrives) {
+  CentralForecast forecast = test::PassingStorm();
+  for (StormPoint& point : forecast.path.points) {
+    point.wind_mps = std::numeric_limits<double>::quiet_NaN();
+  }
+  const Ensemble ensemble(forecast, test::SmallEnsemble(100), {{6, 5}});
+  for (const EnsembleSpread& at : ensemble.spread()) EXPECT_GT(at.size_log, 0.0);
+  const std::int16_t* arrival = ensemble.Arrival(2, {6, 5});
+  const auto reached = std::count_if(arrival, arrival + 100,
+                                     [](std::int16_t at) { return at != Ensemble::kNoArrival; });
+  EXPECT_GT(reached, 90) << "the storm passes through this cell";
 }
 
 // A typhoon that was once a weak storm: its radii spread as those of typhoons do.

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "aquafarm/agents/rescue/plan_report.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
@@ -32,6 +36,12 @@ class Fleet : public ::testing::Test {
     std::string codes;
     for (const RescueWarning& one : case_.warnings) codes += one.code + " ";
     return codes;
+  }
+  // Returns the warning with a code; nullptr if there is none.
+  const RescueWarning* Warning(const std::string& code) const {
+    const auto found = std::find_if(case_.warnings.begin(), case_.warnings.end(),
+                                    [&](const RescueWarning& one) { return one.code == code; });
+    return found == case_.warnings.end() ? nullptr : &*found;
   }
   std::string Refusal() {
     try {
@@ -103,6 +113,105 @@ TEST_F(Fleet, AShipWithADeviceAboardIsOrderedToDeliverIt) {
   EXPECT_EQ(report.plan.devices[2].home, orders[1].probability);
   EXPECT_GT(report.plan.devices[2].mean_loss_idle, 0.0);
   EXPECT_LT(report.plan.devices[2].mean_loss, report.plan.devices[2].mean_loss_idle);
+}
+
+// Ships with devices aboard come home, also after the last departure of those that fetch.
+TEST_F(Fleet, DeadlinesOfDevicesAboardDoNotLetShipsLeaveLate) {
+  RescueProblem problem;
+  problem.devices.resize(3);
+  problem.ships.resize(2);
+  problem.ships[1].aboard = {1};
+  PlanReport report;
+  for (const double hour : {9.0, 15.0, 8.0}) {
+    report.deadlines.push_back({{0.95, 3600.0}, {0.5, 3600.0 * hour}});
+  }
+  EXPECT_EQ(NoDepartureAfter(problem, report), 9.0 * 3600.0);
+  report.result = PlanResult::kStormUnknown;
+  EXPECT_EQ(NoDepartureAfter(problem, report), std::nullopt);
+}
+
+// 2 km at 0.05 knots take 22 hours, and In-Fa comes before.
+TEST_F(Fleet, WindsOnTheWayHomeAreAStopOfTheShip) {
+  request_.speed_kn = 0.05;
+  fleet_.ships = {{{14, 4}, {2}}, {{4, 5}, {}}};
+  UseFleet(request_, fleet_, case_);
+  const Ensemble ensemble(case_.forecast, case_.ensemble, case_.Sites());
+  const PlanReport report = MakeReport(case_, ensemble);
+  ASSERT_EQ(report.plan.routes.size(), 1U);
+  EXPECT_LT(report.plan.routes[0].orders.back().probability, 0.5);
+  const RescueWarning* warning = Warning("winds_on_way_home");
+  ASSERT_NE(warning, nullptr) << Codes();
+  EXPECT_EQ(warning->severity, "stop");
+  EXPECT_EQ(warning->ship, 0);
+  EXPECT_NE(warning->text.find("ship 1 has D3 aboard, and winds stop it on its way home"),
+            std::string::npos)
+      << warning->text;
+  EXPECT_EQ(Warning("devices_aboard"), nullptr) << "no note promises the delivery";
+}
+
+TEST_F(Fleet, AShipWithASafeWayHomeHasNoStop) {
+  fleet_.ships = {{{14, 4}, {2}}};
+  UseFleet(request_, fleet_, case_);
+  const Ensemble ensemble(case_.forecast, case_.ensemble, case_.Sites());
+  MakeReport(case_, ensemble);
+  EXPECT_EQ(Warning("winds_on_way_home"), nullptr);
+  EXPECT_NE(Warning("devices_aboard"), nullptr);
+}
+
+// In a port that takes no devices, with no chance to reach another one.
+TEST_F(Fleet, NoShipLeavesAPortIfWindsStopItInAllFutures) {
+  request_.speed_kn = 0.01;
+  fleet_.ships = {{{16, 4}, {2}}};
+  UseFleet(request_, fleet_, case_);
+  ASSERT_EQ(case_.problem.ports[2].cell, (Cell{16, 4}));
+  case_.problem.ports[2].is_open = false;
+  const Ensemble ensemble(case_.forecast, case_.ensemble, case_.Sites());
+  const PlanReport report = MakeReport(case_, ensemble);
+  EXPECT_TRUE(report.plan.routes.empty());
+  const RescueWarning* warning = Warning("winds_on_way_home");
+  ASSERT_NE(warning, nullptr) << Codes();
+  EXPECT_EQ(warning->severity, "stop");
+  EXPECT_EQ(warning->ship, 0);
+  EXPECT_EQ(warning->advice, "Keep it in port.");
+  EXPECT_EQ(Warning("devices_aboard"), nullptr) << "it has no orders";
+}
+
+// A storm without known winds stops no ship in any member, which does not mean that it is safe.
+TEST_F(Fleet, ChancesAreUnknownIfTheWindsAre) {
+  const std::string path = ::testing::TempDir() + "fleet_state_test_unknown_winds.json";
+  std::ofstream(path) << R"([{"tfbh": "202106", "ename": "In-Fa", "points": [
+      {"time": "2021-07-24T08:00:00", "lat": 30.0, "lng": 122.7, "strong": "",
+       "move_dir": "北", "move_speed": 10, "forecast": [{"sets": "CMA", "points": [
+         {"time": "2021-07-25T08:00:00", "lat": 30.2, "lng": 122.7, "strong": ""},
+         {"time": "2021-07-26T08:00:00", "lat": 30.4, "lng": 122.7, "strong": ""}]}]}]}])";
+  request_.storm.clear();
+  request_.storm_name.clear();
+  request_.bulletin = path;
+  request_.at = ParseUtc("at", "2021-07-24T00:00:00Z");
+  case_ = MakeRescueCase(case_.scenario, request_);
+  fleet_.ships = {{{14, 4}, {2}}};
+  UseFleet(request_, fleet_, case_);
+  const Ensemble ensemble(case_.forecast, case_.ensemble, case_.Sites());
+  const PlanReport report = MakeReport(case_, ensemble);
+  ASSERT_EQ(report.result, PlanResult::kStormUnknown) << report.text;
+  ASSERT_EQ(report.plan.routes.size(), 1U);
+  const std::string text = ToText(case_, report);
+  EXPECT_NE(text.find("deliver at " + case_.problem.ports[2].name + "  [unknown]\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("D3: unknown\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("100 %"), std::string::npos) << text;
+  EXPECT_EQ(text.find("no ship should leave after"), std::string::npos) << text;
+  const auto json = nlohmann::json::parse(ToJson(case_, ensemble, report, {}));
+  for (const auto& order : json.at("plan").at("routes").at(0).at("orders")) {
+    EXPECT_TRUE(order.at("probability").is_null()) << order;
+  }
+  for (const auto& device : json.at("devices")) {
+    EXPECT_TRUE(device.at("odds").at("home").is_null()) << device;
+    for (const auto& share : device.at("odds").at("home_before")) EXPECT_TRUE(share.is_null());
+  }
+  EXPECT_TRUE(json.at("what_if").at(0).at("all_home").is_null());
+  EXPECT_TRUE(json.at("deadlines").at("no_departure_after").is_null());
 }
 
 TEST_F(Fleet, UnknownDevicesAboardAreRefused) {

@@ -160,6 +160,12 @@ class PlanProgram(unittest.TestCase):
         self.assertEqual("storm_unknown", plan["outcome"]["kind"])
         self.check_warned(plan, words, "storm_unknown", "stop")
         self.assertIn("It is unknown whether the storm reaches the devices", words.splitlines()[0])
+        self.assertIn("Deadlines, losses and comparisons are unknown.\n", words)
+        for device in plan["devices"]:
+            self.assertIn(f"\n  {device['name']}: unknown\n", words)
+            self.assertEqual({None}, {device["odds"]["home"], *device["odds"]["home_before"]})
+        self.assertIsNone(plan["what_if"][0]["all_home"])
+        self.assertIsNone(plan["deadlines"]["no_departure_after"])
 
     def test_thirteen_if_the_bulletin_is_older_than_twelve_hours(self):
         code, words, plan = self.plan_of(bulletin(), "--ships", 2, "--speed", 12, at=None)

@@ -88,8 +88,9 @@ TEST_F(Trials, ChancesAreKeptAndThePlanIsWorthItsName) {
   std::vector<std::vector<Promise>> home;
   std::vector<std::vector<Promise>> gales;
   std::array<double, kTrialPolicyCount> saved{};
-  std::vector<double> ahead_of_value;  // of the plan; two ships need more storms to be sure of it
-  for (std::uint64_t i = 0; i < 150; ++i) {
+  std::vector<double> ahead_of_value;  // of the plan, by storm
+  std::vector<double> ahead_of_central;
+  for (std::uint64_t i = 0; i < 600; ++i) {
     const TrialStorm storm = DrawTrial(tracks_, trials.place(), TrialOptions{}, i);
     const TrialResult result = trials.Run(storm);
     const auto best = static_cast<std::size_t>(TrialPolicy::kClairvoyant);
@@ -99,6 +100,8 @@ TEST_F(Trials, ChancesAreKeptAndThePlanIsWorthItsName) {
     }
     ahead_of_value.push_back(result.saved[0] -
                              result.saved[static_cast<std::size_t>(TrialPolicy::kValue)]);
+    ahead_of_central.push_back(result.saved[0] -
+                               result.saved[static_cast<std::size_t>(TrialPolicy::kCentral)]);
     home.push_back(result.home);
     gales.push_back(result.gales);
   }
@@ -106,9 +109,14 @@ TEST_F(Trials, ChancesAreKeptAndThePlanIsWorthItsName) {
   EXPECT_NEAR(all_home.promised, all_home.kept.mean, 0.05 + all_home.kept.half);
   const PromiseBin all_gales = BinOf(gales, 0.0, 1.01);
   EXPECT_NEAR(all_gales.promised, all_gales.kept.mean, 0.05 + all_gales.kept.half);
-  EXPECT_GT(saved[0], 0.8 * saved[static_cast<std::size_t>(TrialPolicy::kClairvoyant)]);
-  EXPECT_GT(saved[0], saved[static_cast<std::size_t>(TrialPolicy::kCentral)]);
-  EXPECT_GT(MeanOf(ahead_of_value).mean + MeanOf(ahead_of_value).half, 0.0);
+  EXPECT_GT(saved[0], 0.95 * saved[static_cast<std::size_t>(TrialPolicy::kClairvoyant)]);
+  const Estimate central = MeanOf(ahead_of_central);
+  EXPECT_GT(central.mean - central.half, 0.0) << "the errors of the forecast matter";
+  // Two ships gain little over the simple rule: 10,000 storms show it, these show that the plan is
+  // at most 1 % worse, with 95 % confidence.
+  const Estimate value = MeanOf(ahead_of_value);
+  const double of_rule = saved[static_cast<std::size_t>(TrialPolicy::kValue)] / 600.0;
+  EXPECT_GT(value.mean - value.half, -0.01 * of_rule);
 }
 
 TEST_F(Trials, ARecordedStormIsNotMoved) {

@@ -181,6 +181,26 @@ TEST_F(Rescue, AShipWithADeviceAboardIsNeverWithoutAnOrder) {
   }
 }
 
+// The ships at sea are ready at once; one that is added is ready when the request says.
+TEST_F(Rescue, AnAddedShipLeavesWithTheShipsInPort) {
+  problem_.ships.resize(1);
+  problem_.ships[0].cell = problem_.devices[0].cell;
+  problem_.ships[0].aboard = {0};
+  const auto gain = [this](double depart_s) {
+    problem_.depart_s = depart_s;
+    const RescuePlan plan = PlanRescue(problem_, ensemble_);
+    for (const WhatIf& row : CompareChanges(problem_, ensemble_, plan)) {
+      if (row.change == "ships+1") return -row.difference;
+    }
+    return -1.0;
+  };
+  EXPECT_GT(gain(0.0), 0.5);
+  EXPECT_EQ(gain(59 * 600.0), 0.0) << "the winds are there before";
+  problem_.ships.push_back(test::SmallRescue().ships[1]);
+  problem_.ships[1].ready_s = 59 * 600.0;
+  EXPECT_EQ(gain(0.0), 0.0) << "as the ship in port";
+}
+
 TEST_F(Rescue, ShipsStayInPortWhenTheWindsAreThere) {
   for (RescueShip& ship : problem_.ships) ship.ready_s = 59 * 600.0;
   const RescuePlan plan = PlanRescue(problem_, ensemble_);

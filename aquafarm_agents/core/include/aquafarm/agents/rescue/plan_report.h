@@ -43,9 +43,11 @@ inline constexpr std::array<double, 3> kDeadlineShares{0.95, 0.8, 0.5};
 /// Plans a case. May add warnings to it.
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble);
 
-/// Returns the time after which no ship should leave: the latest deadline of all devices with a
-/// chance of at least 50 %; nullopt if there is no such deadline.
-std::optional<double> NoDepartureAfter(const PlanReport& report);
+/// Returns the time after which no ship should leave to fetch a device: the latest deadline of all
+/// devices at their sites with a chance of at least 50 %. Devices aboard do not count: their ships
+/// come home, they do not leave.
+/// @returns nullopt if there is no such deadline, or if the winds are unknown
+std::optional<double> NoDepartureAfter(const RescueProblem& problem, const PlanReport& report);
 
 /// Returns the plan as text of about a page, in local time and UTC.
 std::string ToText(const RescueCase& rescue, const PlanReport& report);

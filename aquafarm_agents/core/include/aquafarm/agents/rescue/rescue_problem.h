@@ -13,8 +13,9 @@
 /// continues neither after the storm nor beyond the time until which the storm is known.
 ///
 /// **Devices aboard at the start.** A ship that starts with devices aboard always gets the order to
-/// deliver them, also if no winds are expected or if winds stop it in all members. Their site is
-/// the cell where the plan finds the ship.
+/// deliver them, also if no winds are expected or if winds stop it in all members. Only a ship in a
+/// port that winds stop in all members stays there. The site of these devices is the cell where the
+/// plan finds the ship.
 ///
 /// **Damage.** Until it is delivered, a device loses in each step the share
 /// `exposure_damage` · |r| · `damage_factor` of its value, where r is the risk at its site. It
@@ -63,6 +64,7 @@ struct RescueProblem {
   std::vector<RescuePort> ports;      ///< at least one
   std::vector<RescueShip> ships;
   double handling_s{};
+  double depart_s{};          ///< earliest departure from a port of a ship that is added
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of the value per step of the ensemble and unit of |risk|
   double risk_averse{};       ///< 0: max mean; else the share of worst members whose mean counts

@@ -77,7 +77,7 @@ TEST(Outlook, OfADeviceInARingIsNow) {
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
   EXPECT_TRUE(outlook.devices[0].arrivals.empty());
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F3 at risk -20 now");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F3 in the -20 ring now");
   EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-20 now");
 }
 
@@ -90,6 +90,46 @@ TEST(Outlook, ListsTheDeviceThatIsReachedFirst) {
   ASSERT_EQ(outlook.devices.size(), 2U) << "a delivered device is safe";
   EXPECT_EQ(outlook.devices[0].id, 4);
   EXPECT_EQ(outlook.devices[1].id, 3);
+}
+
+TEST(Outlook, ListsADeviceInARingBeforeOneThatIsReachedLater) {
+  Scene scene;
+  scene.state.devices.push_back(test::MakeDevice(2, 1, 21, 12, 1.0F));
+  scene.state.devices.push_back(test::MakeDevice(6, 1, 17, 12, 1.0F));
+  scene.state.disasters[0].x = 22.0F;
+  const Outlook outlook = scene.outlook();
+  ASSERT_EQ(outlook.devices.size(), 3U);
+  EXPECT_EQ(outlook.devices[0].id, 2);
+  EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
+  EXPECT_EQ(outlook.devices[1].id, 6) << "on the edge of the inner ring";
+  EXPECT_EQ(outlook.devices[2].id, 3) << "reached in 2 steps";
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F2 in the -20 ring now");
+  EXPECT_EQ(ShortOutlookText(scene.spec, outlook), "F2: -20 now");
+}
+
+TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
+  Scene scene;
+  scene.state.disasters[0].x = 18.0F;
+  const Outlook outlook = scene.outlook();
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
+            "F3 in the -5 ring now, -20 in about 3 steps");
+  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-5 now, -20 in 3 steps");
+}
+
+TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {
+  Scene scene;
+  scene.state.disasters[0].x = 12.0F;
+  scene.state.seed = 18446744073709551615ULL;
+  scene.state.episode = 123456789;
+  scene.state.joint_return = -123456.7F;
+  scene.state.paused = true;
+  auto calm = scene.state;
+  calm.disasters[0].steps_left = 0;
+  const auto head = [&scene](const aquafarm_msgs::FarmState& state) {
+    const cv::Mat image = DrawFarm(scene.spec, state, {640, 640});
+    return image(cv::Rect(400, 24, 240, 14)).clone();
+  };
+  EXPECT_GT(cv::norm(head(scene.state), head(calm)), 300.0);
 }
 
 TEST(Outlook, UsesTheRadiusOfTheQuadrant) {

@@ -53,9 +53,26 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
   }
 }
 
+// When the first ring covers a device, and the risk there and then.
 double FirstStep(const DeviceOutlook& device) {
+  if (device.risk_now < 0.0) return 0.0;
   return device.arrivals.empty() ? std::numeric_limits<double>::infinity()
                                  : device.arrivals.front().steps;
+}
+
+double FirstRisk(const DeviceOutlook& device) {
+  if (device.risk_now < 0.0 || device.arrivals.empty()) return device.risk_now;
+  return device.arrivals.front().risk;
+}
+
+double WorstRisk(const DeviceOutlook& device) {
+  return device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
+}
+
+bool IsMoreUrgent(const DeviceOutlook& a, const DeviceOutlook& b) {
+  if (FirstStep(a) != FirstStep(b)) return FirstStep(a) < FirstStep(b);
+  if (FirstRisk(a) != FirstRisk(b)) return FirstRisk(a) < FirstRisk(b);
+  return WorstRisk(a) < WorstRisk(b);
 }
 
 }  // namespace
@@ -85,11 +102,7 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
     last = std::max(last, int(std::min(end, double(kMostSteps))));
   }
   for (int step = 0; step <= last; ++step) AddStep(state, courses, step, devices, outlook);
-  std::stable_sort(outlook.devices.begin(), outlook.devices.end(),
-                   [](const DeviceOutlook& a, const DeviceOutlook& b) {
-                     if (FirstStep(a) != FirstStep(b)) return FirstStep(a) < FirstStep(b);
-                     return a.risk_now < b.risk_now;
-                   });
+  std::stable_sort(outlook.devices.begin(), outlook.devices.end(), IsMoreUrgent);
   return outlook;
 }
 
@@ -103,24 +116,30 @@ std::string AheadText(const FarmSpec& spec, double steps) {
 std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
   if (outlook.devices.empty()) return "";
   const DeviceOutlook& first = outlook.devices.front();
-  if (!first.arrivals.empty()) {
-    const RingArrival& next = first.arrivals.front();
-    return DisasterName(state.disasters[next.disaster].kind) + ", risk " + Number(next.risk, 0) +
-           ", reaches " + DeviceLabel(first.id) + " in " +
-           (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
-  }
-  if (first.risk_now < 0.0) {
-    return DeviceLabel(first.id) + " at risk " + Number(first.risk_now, 0) + " now";
-  }
-  return "";
+  const bool is_now = first.risk_now < 0.0;
+  const std::string now =
+      is_now ? DeviceLabel(first.id) + " in the " + Number(first.risk_now, 0) + " ring now" : "";
+  if (first.arrivals.empty()) return now;
+  const RingArrival& next = first.arrivals.front();
+  const std::string when =
+      std::string(" in ") + (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
+  if (is_now) return now + ", " + Number(next.risk, 0) + when;
+  return DisasterName(state.disasters[next.disaster].kind) + ", risk " + Number(next.risk, 0) +
+         ", reaches " + DeviceLabel(first.id) + when;
+}
+
+std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
+  if (outlook.devices.empty()) return "";
+  const std::string danger = DangerText(spec, outlook.devices.front());
+  return danger.empty() ? "" : DeviceLabel(outlook.devices.front().id) + ": " + danger;
 }
 
 std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
-  if (!device.arrivals.empty()) {
-    const RingArrival& next = device.arrivals.front();
-    return Number(next.risk, 0) + between + AheadText(spec, next.steps);
-  }
-  return device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
+  const std::string now = device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
+  if (device.arrivals.empty()) return now;
+  const RingArrival& next = device.arrivals.front();
+  return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
+         AheadText(spec, next.steps);
 }
 
 }  // namespace aquafarm_viz

@@ -178,6 +178,61 @@ TEST(Course, IsTheNewestPublishedForecastThatHasNotExpired) {
   EXPECT_EQ(scene.outlook().devices[0].arrivals.size(), 0U);
 }
 
+TEST(Course, GoesOnAfterTheLastPointOfAForecast) {
+  // The true storm comes to (20, 12); the forecast stops short of it, on its way to the device.
+  Scene scene;
+  const auto forecast = [&scene](const char* points) {
+    scene.storms = ReadStormTracks(
+        std::string(kRecorded) + "    forecasts: [{step: 0, points: [" + points + "]}]\n", 1000.0);
+    return scene.course();
+  };
+  const Course two = forecast("{step: 5, x: 35, y: 12}, {step: 10, x: 30, y: 14, radii: [5, 10]}");
+  EXPECT_EQ(two.kind, Course::Kind::kPublished);
+  EXPECT_EQ(two.known_until, 10.0);
+  EXPECT_DOUBLE_EQ(TrackAt(two.ahead, 20.0).x, 20.0);
+  EXPECT_DOUBLE_EQ(TrackAt(two.ahead, 20.0).y, 18.0);
+  EXPECT_DOUBLE_EQ(TrackAt(two.ahead, 30.0).x, 10.0) << "until the true track ends";
+  EXPECT_DOUBLE_EQ(TrackAt(two.ahead, 500.0).x, 10.0) << "and it stays there";
+  EXPECT_FALSE(scene.outlook().devices[0].arrivals.empty());
+  const Course one = forecast("{step: 10, x: 30, y: 12, radii: [5, 10]}");
+  EXPECT_DOUBLE_EQ(TrackAt(one.ahead, 25.0).x, 15.0) << "with the present motion";
+  scene.state.disasters[0].steps_left = 8;
+  EXPECT_DOUBLE_EQ(scene.course().ahead.back().step, 8.0);
+  EXPECT_DOUBLE_EQ(scene.course().ahead.back().x, 32.0);
+}
+
+TEST(Course, OfAStormThatHasNoRingsYetHasTheRisksOfItsForecast) {
+  Scene scene;
+  scene.state.disasters[0].radii.clear();
+  scene.state.disasters[0].risks.clear();
+  scene.storms = ReadStormTracks(R"(
+disasters:
+  - risks: [-20, -5]
+    track: [{step: 0, x: 40, y: 12}, {step: 40, x: 0, y: 12}]
+    forecasts: [{step: 0, points: [{step: 30, x: 10, y: 12, radii: [5, 10]}]}]
+)",
+                                 1000.0);
+  const Outlook outlook = scene.outlook();
+  ASSERT_EQ(outlook.devices[0].arrivals.size(), 2U);
+  EXPECT_EQ(outlook.devices[0].arrivals[0].risk, -5.0);
+  EXPECT_EQ(outlook.devices[0].arrivals[1].risk, -20.0);
+}
+
+TEST(Course, OfADisasterWithoutATrackGrowsButNeverShrinks) {
+  Scene scene;
+  scene.state.disasters[0].speed = 0.0F;  // 30 cells east of the device
+  EXPECT_TRUE(scene.outlook().devices[0].arrivals.empty());
+  scene.storms = ReadStormTracks("disasters: [{radius_growth: 0.5}]", 1000.0);
+  ASSERT_EQ(scene.outlook().devices[0].arrivals.size(), 2U);
+  EXPECT_EQ(scene.outlook().devices[0].arrivals[0].steps, 40.0) << "from radius 10 to 30";
+  scene.storms = ReadStormTracks("disasters: [{radius_growth: -0.5}]", 1000.0);
+  EXPECT_EQ(scene.course().ahead.back().radii, scene.course().ahead.front().radii);
+  scene.storms = ReadStormTracks("disasters: [{radius_growth: 0.5}]", 1000.0);
+  scene.state.disasters[0].quadrants = {0, 5, 5, 5, 0, 10, 10, 10};
+  EXPECT_EQ(scene.course().ahead.back().radii[0][0], 0.0) << "a missing quadrant";
+  EXPECT_EQ(scene.course().ahead.back().radii[0][1], 35.0);
+}
+
 TEST(Course, HasAConeWhereForecastsHaveAnError) {
   Scene scene;
   scene.spec.step_duration_s = 3600.0;

@@ -75,7 +75,62 @@ bool IsMoreUrgent(const DeviceOutlook& a, const DeviceOutlook& b) {
   return WorstRisk(a) < WorstRisk(b);
 }
 
+// Returns whether a ring covers a part of the farm. Quadrants run NE, SE, SW, NW.
+bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
+  constexpr double kEdge = 0.5;  // of a cell around its centre
+  const double east = spec.width - kEdge;
+  const double north = spec.height - kEdge;
+  for (const auto& ring : storm.radii) {
+    for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
+      const bool to_east = quadrant < 2;
+      const bool to_north = quadrant == 0 || quadrant == 3;
+      if (!(ring[quadrant] > 0.0)) continue;
+      if (to_east ? storm.x > east : storm.x < -kEdge) continue;
+      if (to_north ? storm.y > north : storm.y < -kEdge) continue;
+      const double away = std::hypot(std::clamp(storm.x, -kEdge, east) - storm.x,
+                                     std::clamp(storm.y, -kEdge, north) - storm.y);
+      if (away <= ring[quadrant]) return true;
+    }
+  }
+  return false;
+}
+
+double LargestRadius(const TrackPoint& storm) {
+  double largest = 0.0;
+  for (const auto& ring : storm.radii) {
+    largest = std::max(largest, *std::max_element(ring.begin(), ring.end()));
+  }
+  return largest;
+}
+
+// Returns whether a leg is so far from the farm that no ring can cover a part of it.
+bool IsFar(const FarmSpec& spec, const TrackPoint& from, const TrackPoint& to) {
+  const TrackPoint nearest = ClosestApproach(spec, {from, to}, from.step);
+  const double away =
+      std::hypot(nearest.x - (spec.width - 1) / 2.0, nearest.y - (spec.height - 1) / 2.0);
+  return away > std::max(LargestRadius(from), LargestRadius(to)) +
+                    std::hypot(spec.width, spec.height) / 2.0;
+}
+
 }  // namespace
+
+double StepsToFarm(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
+                   const Course& course) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  if (!disaster.known || disaster.steps_left <= 0) return kNever;
+  const Track& ahead = course.ahead;
+  const double now = ahead.front().step;
+  if (IsOverFarm(spec, ahead.front())) return 0.0;
+  for (std::size_t i = 1; i < ahead.size(); ++i) {
+    if (IsFar(spec, ahead[i - 1], ahead[i])) continue;
+    const Track leg{ahead[i - 1], ahead[i]};
+    for (double step = std::ceil(ahead[i - 1].step); step <= ahead[i].step; step += 1.0) {
+      if (step - now >= disaster.steps_left) return kNever;
+      if (IsOverFarm(spec, TrackAt(leg, step))) return step - now;
+    }
+  }
+  return kNever;
+}
 
 Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
                        const std::vector<Course>& courses) {

@@ -42,6 +42,11 @@ struct Outlook {
 Outlook ComputeOutlook(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                        const std::vector<Course>& courses);
 
+/// Returns when the first ring of a disaster covers a part of the farm [steps from now]: 0 if one
+/// does so now; infinite if none does along the course.
+double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
+                   const aquafarm_msgs::DisasterState& disaster, const Course& course);
+
 /// Returns a time ahead: "6.5 h" in a farm with a start time, else "12 steps".
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 

@@ -132,6 +132,16 @@ TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {
   EXPECT_GT(cv::norm(head(scene.state), head(calm)), 300.0);
 }
 
+TEST(Outlook, SaysUntilWhenItIsKnown) {
+  Scene scene;
+  scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of a present course
+  EXPECT_FALSE(IsInDanger(scene.outlook()));
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
+            "disasters known until +60 steps");
+  scene.state.disasters[0].steps_left = 60;
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
+}
+
 TEST(Outlook, UsesTheRadiusOfTheQuadrant) {
   Scene scene;
   scene.state.disasters[0].y = 9.0F;  // the device is to the north-west

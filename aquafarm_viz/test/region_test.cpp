@@ -145,7 +145,13 @@ TEST(RegionWords, OfAStormOverTheFarmThatLeaves) {
   Storms storms;
   storms.Add("{step: 0, x: 30, y: 12, radii: [10]}, {step: 30, x: 212, y: 12, radii: [10]}", 30.0F,
              12.0F);
-  EXPECT_EQ(storms.words().heading, "OVER THE FARM");
+  EXPECT_EQ(storms.words().heading, "RING OVER THE FARM");
+  EXPECT_EQ(storms.words().lines[0], "centre 18 km E");
+  storms = Storms();
+  storms.Add("{step: 0, x: 30, y: 12, radii: [10]}, {step: 20, x: 12, y: 12, radii: [10]}", 30.0F,
+             12.0F);
+  EXPECT_EQ(storms.words().heading, "RING OVER THE FARM");
+  EXPECT_EQ(storms.words().lines[0].substr(0, 7), "closest");
 }
 
 TEST(RegionWords, OfAStormWithGrowingRings) {

@@ -85,7 +85,8 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   const std::string full = OutlookText(spec, state, outlook);
   const std::string& danger = right - fonts.bold.Width(full) >= line.x() ? full : brief;
   const int danger_left = std::max(left, right - fonts.bold.Width(danger));
-  fonts.bold.Draw(image, danger, {danger_left, layout.Px(36)}, Bgr(layout.style->alarm));
+  fonts.bold.Draw(image, danger, {danger_left, layout.Px(36)},
+                  Bgr(IsInDanger(outlook) ? layout.style->alarm : layout.style->words));
 }
 
 void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout,

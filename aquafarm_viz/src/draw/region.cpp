@@ -119,19 +119,23 @@ std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, cons
 RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subject& subject,
                         const Course& course) {
   constexpr double kMoved_m = 1.0;
+  constexpr const char* kOver = "RING OVER THE FARM";
   const TrackPoint& now = course.ahead.front();
   const std::string centre = "centre " + PlaceText(spec, now.x, now.y);
   const double ahead_s = (subject.nearest.step - now.step) * spec.step_duration_s;
-  if (subject.danger == 0.0) return {"OVER THE FARM", {centre, ""}};
+  const bool is_over = subject.danger == 0.0;
   if (ahead_s > 0.0) {
     const std::string nearest = PlaceText(spec, subject.nearest.x, subject.nearest.y);
-    RegionWords words{"CLOSEST " + nearest, {"in " + HoursText(ahead_s), ""}};
+    const std::string when = "in " + HoursText(ahead_s);
+    if (is_over) return {kOver, {"closest " + nearest + " " + when, ""}};
+    RegionWords words{"CLOSEST " + nearest, {when, ""}};
     if (spec.has_start_time) {
       const auto time = static_cast<std::time_t>(state.world_time.sec + ahead_s);
       words.lines[0] += ", " + TimeText(time, "%d %b %H:%M UTC");
     }
     return words;
   }
+  if (is_over) return {kOver, {centre, ""}};
   if (std::isfinite(subject.danger)) {
     return {"REACHES THE FARM", {"in " + AheadText(spec, subject.danger) + ", " + centre, ""}};
   }
@@ -157,7 +161,7 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
   }
   // The present motion continued says when a ring comes, but not that none does.
   words.lines[0] = "centre " + PlaceText(spec, disaster.x, disaster.y);
-  words.lines[1] = subject->danger == 0.0 ? "over the farm"
+  words.lines[1] = subject->danger == 0.0 ? "ring over the farm"
                    : std::isfinite(subject->danger)
                        ? "reaches it in about " + AheadText(spec, subject->danger)
                        : SourceText(spec, disaster, course);

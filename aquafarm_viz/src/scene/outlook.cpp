@@ -154,6 +154,8 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
     const bool extrapolated = courses[i].kind == Course::Kind::kExtrapolated;
     outlook.is_extrapolated = outlook.is_extrapolated || extrapolated;
     const double end = courses[i].ahead.back().step - double(state.step);
+    const double known = courses[i].known_until - double(state.step);
+    if (known < disaster.steps_left) outlook.known_until = std::min(outlook.known_until, known);
     last = std::max(last, int(std::min(end, double(kMostSteps))));
   }
   for (int step = 0; step <= last; ++step) AddStep(state, courses, step, devices, outlook);
@@ -168,13 +170,26 @@ std::string AheadText(const FarmSpec& spec, double steps) {
   return Number(hours, hours < 10.0 ? 1 : 0) + " h";
 }
 
+namespace {
+
+std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
+  if (!std::isfinite(outlook.known_until)) return "";
+  return "disasters known until +" + AheadText(spec, outlook.known_until);
+}
+
+}  // namespace
+
+bool IsInDanger(const Outlook& outlook) {
+  return !outlook.devices.empty() && std::isfinite(FirstStep(outlook.devices.front()));
+}
+
 std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
   if (outlook.devices.empty()) return "";
   const DeviceOutlook& first = outlook.devices.front();
   const bool is_now = first.risk_now < 0.0;
   const std::string now =
       is_now ? DeviceLabel(first.id) + " in the " + Number(first.risk_now, 0) + " ring now" : "";
-  if (first.arrivals.empty()) return now;
+  if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
   const RingArrival& next = first.arrivals.front();
   const std::string when =
       std::string(" in ") + (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
@@ -185,8 +200,9 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
 
 std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
   if (outlook.devices.empty()) return "";
-  const std::string danger = DangerText(spec, outlook.devices.front());
-  return danger.empty() ? "" : DeviceLabel(outlook.devices.front().id) + ": " + danger;
+  if (!IsInDanger(outlook)) return KnownText(spec, outlook);
+  const DeviceOutlook& first = outlook.devices.front();
+  return DeviceLabel(first.id) + ": " + DangerText(spec, first);
 }
 
 std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {

@@ -7,6 +7,7 @@
 #include <aquafarm_msgs/FarmState.h>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct DeviceOutlook {
 struct Outlook {
   bool is_known{};         ///< false: too many devices to compute it; nothing can be said
   bool is_extrapolated{};  ///< true: at least one course is the present motion continued
+  /// Steps from now until which all courses are known; infinite: until the disasters end.
+  double known_until{std::numeric_limits<double>::infinity()};
   std::vector<DeviceOutlook> devices;  ///< deployed devices, the soonest danger first: those in a
                                        ///< ring now, then by first arrival; at equal times the
                                        ///< worse risk first
@@ -51,10 +54,14 @@ double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
 /// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
-/// "F2 in the -5 ring now, -20 in 6.5 h"; empty if no ring covers or reaches a device, or if it is
-/// not known.
+/// "F2 in the -5 ring now, -20 in 6.5 h"; without such a danger "disasters
+/// known until +12 h" if a course ends before its disaster; else empty, also if the outlook is not
+/// known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
+
+/// Returns whether a ring covers or reaches a device.
+bool IsInDanger(const Outlook& outlook);
 
 /// Returns OutlookText in a few characters, such as "F2: -20 now".
 std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);

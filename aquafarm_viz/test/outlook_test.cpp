@@ -77,7 +77,7 @@ TEST(Outlook, OfADeviceInARingIsNow) {
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
   EXPECT_TRUE(outlook.devices[0].arrivals.empty());
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F3 at risk -20 now");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F3 in the -20 ring now");
   EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-20 now");
 }
 
@@ -90,6 +90,56 @@ TEST(Outlook, ListsTheDeviceThatIsReachedFirst) {
   ASSERT_EQ(outlook.devices.size(), 2U) << "a delivered device is safe";
   EXPECT_EQ(outlook.devices[0].id, 4);
   EXPECT_EQ(outlook.devices[1].id, 3);
+}
+
+TEST(Outlook, ListsADeviceInARingBeforeOneThatIsReachedLater) {
+  Scene scene;
+  scene.state.devices.push_back(test::MakeDevice(2, 1, 21, 12, 1.0F));
+  scene.state.devices.push_back(test::MakeDevice(6, 1, 17, 12, 1.0F));
+  scene.state.disasters[0].x = 22.0F;
+  const Outlook outlook = scene.outlook();
+  ASSERT_EQ(outlook.devices.size(), 3U);
+  EXPECT_EQ(outlook.devices[0].id, 2);
+  EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
+  EXPECT_EQ(outlook.devices[1].id, 6) << "on the edge of the inner ring";
+  EXPECT_EQ(outlook.devices[2].id, 3) << "reached in 2 steps";
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F2 in the -20 ring now");
+  EXPECT_EQ(ShortOutlookText(scene.spec, outlook), "F2: -20 now");
+}
+
+TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
+  Scene scene;
+  scene.state.disasters[0].x = 18.0F;
+  const Outlook outlook = scene.outlook();
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
+            "F3 in the -5 ring now, -20 in about 3 steps");
+  EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-5 now, -20 in 3 steps");
+}
+
+TEST(Outlook, IsInTheHeadLineEvenWhereThereIsLittleSpace) {
+  Scene scene;
+  scene.state.disasters[0].x = 12.0F;
+  scene.state.seed = 18446744073709551615ULL;
+  scene.state.episode = 123456789;
+  scene.state.joint_return = -123456.7F;
+  scene.state.paused = true;
+  auto calm = scene.state;
+  calm.disasters[0].steps_left = 0;
+  const auto head = [&scene](const aquafarm_msgs::FarmState& state) {
+    const cv::Mat image = DrawFarm(scene.spec, state, {640, 640});
+    return image(cv::Rect(400, 24, 240, 14)).clone();
+  };
+  EXPECT_GT(cv::norm(head(scene.state), head(calm)), 300.0);
+}
+
+TEST(Outlook, SaysUntilWhenItIsKnown) {
+  Scene scene;
+  scene.state.disasters[0].x = 212.0F;  // it arrives after the 60 steps of a present course
+  EXPECT_FALSE(IsInDanger(scene.outlook()));
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
+            "disasters known until +60 steps");
+  scene.state.disasters[0].steps_left = 60;
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()), "");
 }
 
 TEST(Outlook, UsesTheRadiusOfTheQuadrant) {
@@ -136,6 +186,61 @@ TEST(Course, IsTheNewestPublishedForecastThatHasNotExpired) {
   EXPECT_DOUBLE_EQ(TrackAt(course.ahead, 10.0).y, 31.0);
   EXPECT_EQ(TrackAt(course.ahead, 10.0).radii.size(), 2U) << "rings of the true storm";
   EXPECT_EQ(scene.outlook().devices[0].arrivals.size(), 0U);
+}
+
+TEST(Course, GoesOnAfterTheLastPointOfAForecast) {
+  // The true storm comes to (20, 12); the forecast stops short of it, on its way to the device.
+  Scene scene;
+  const auto forecast = [&scene](const char* points) {
+    scene.storms = ReadStormTracks(
+        std::string(kRecorded) + "    forecasts: [{step: 0, points: [" + points + "]}]\n", 1000.0);
+    return scene.course();
+  };
+  const Course two = forecast("{step: 5, x: 35, y: 12}, {step: 10, x: 30, y: 14, radii: [5, 10]}");
+  EXPECT_EQ(two.kind, Course::Kind::kPublished);
+  EXPECT_EQ(two.known_until, 10.0);
+  EXPECT_DOUBLE_EQ(TrackAt(two.ahead, 20.0).x, 20.0);
+  EXPECT_DOUBLE_EQ(TrackAt(two.ahead, 20.0).y, 18.0);
+  EXPECT_DOUBLE_EQ(TrackAt(two.ahead, 30.0).x, 10.0) << "until the true track ends";
+  EXPECT_DOUBLE_EQ(TrackAt(two.ahead, 500.0).x, 10.0) << "and it stays there";
+  EXPECT_FALSE(scene.outlook().devices[0].arrivals.empty());
+  const Course one = forecast("{step: 10, x: 30, y: 12, radii: [5, 10]}");
+  EXPECT_DOUBLE_EQ(TrackAt(one.ahead, 25.0).x, 15.0) << "with the present motion";
+  scene.state.disasters[0].steps_left = 8;
+  EXPECT_DOUBLE_EQ(scene.course().ahead.back().step, 8.0);
+  EXPECT_DOUBLE_EQ(scene.course().ahead.back().x, 32.0);
+}
+
+TEST(Course, OfAStormThatHasNoRingsYetHasTheRisksOfItsForecast) {
+  Scene scene;
+  scene.state.disasters[0].radii.clear();
+  scene.state.disasters[0].risks.clear();
+  scene.storms = ReadStormTracks(R"(
+disasters:
+  - risks: [-20, -5]
+    track: [{step: 0, x: 40, y: 12}, {step: 40, x: 0, y: 12}]
+    forecasts: [{step: 0, points: [{step: 30, x: 10, y: 12, radii: [5, 10]}]}]
+)",
+                                 1000.0);
+  const Outlook outlook = scene.outlook();
+  ASSERT_EQ(outlook.devices[0].arrivals.size(), 2U);
+  EXPECT_EQ(outlook.devices[0].arrivals[0].risk, -5.0);
+  EXPECT_EQ(outlook.devices[0].arrivals[1].risk, -20.0);
+}
+
+TEST(Course, OfADisasterWithoutATrackGrowsButNeverShrinks) {
+  Scene scene;
+  scene.state.disasters[0].speed = 0.0F;  // 30 cells east of the device
+  EXPECT_TRUE(scene.outlook().devices[0].arrivals.empty());
+  scene.storms = ReadStormTracks("disasters: [{radius_growth: 0.5}]", 1000.0);
+  ASSERT_EQ(scene.outlook().devices[0].arrivals.size(), 2U);
+  EXPECT_EQ(scene.outlook().devices[0].arrivals[0].steps, 40.0) << "from radius 10 to 30";
+  scene.storms = ReadStormTracks("disasters: [{radius_growth: -0.5}]", 1000.0);
+  EXPECT_EQ(scene.course().ahead.back().radii, scene.course().ahead.front().radii);
+  scene.storms = ReadStormTracks("disasters: [{radius_growth: 0.5}]", 1000.0);
+  scene.state.disasters[0].quadrants = {0, 5, 5, 5, 0, 10, 10, 10};
+  EXPECT_EQ(scene.course().ahead.back().radii[0][0], 0.0) << "a missing quadrant";
+  EXPECT_EQ(scene.course().ahead.back().radii[0][1], 35.0);
 }
 
 TEST(Course, HasAConeWhereForecastsHaveAnError) {

@@ -95,6 +95,98 @@ TEST(Region, ShowsATrackOnlyWhereItIsTheDisasters) {
       << "set_disaster has moved it";
 }
 
+// The words for storms that follow their tracks; the middle of the farm is (12, 12).
+struct Storms {
+  aquafarm_msgs::FarmSpec spec = test::MakeSpec();
+  aquafarm_msgs::FarmState state = test::MakeState();
+
+  Storms() {
+    state.step = 0;
+    state.disasters.clear();
+  }
+  void Add(const std::string& track, float x, float y, const char* more = "") {
+    if (spec.scenario_yaml.empty()) spec.scenario_yaml = "disasters:\n";
+    spec.scenario_yaml += "  - risks: [-5]\n    track: [" + track + "]\n" + more;
+    auto disaster = test::MakeDisaster(int(state.disasters.size()), x, y);
+    disaster.radii = {10.0F};
+    disaster.risks = {-5.0F};
+    disaster.speed = 0.0F;
+    disaster.steps_left = 30;
+    state.disasters.push_back(disaster);
+  }
+  RegionWords words() const {
+    const StormTracks tracks = ReadStormTracks(spec.scenario_yaml, spec.cell_size_m);
+    std::vector<Course> courses;
+    for (std::size_t i = 0; i < state.disasters.size(); ++i) {
+      courses.push_back(CourseOf(spec, state, i, tracks));
+    }
+    return RegionText(spec, state, courses);
+  }
+};
+
+constexpr const char* kAway =
+    "{step: 0, x: 112, y: 12, radii: [10]}, {step: 30, x: 212, y: 12, radii: [10]}";
+
+TEST(RegionWords, OfAStormThatLeaves) {
+  Storms storms;
+  storms.Add(kAway, 112.0F, 12.0F);
+  EXPECT_EQ(storms.words().heading, "MOVING AWAY");
+  EXPECT_EQ(storms.words().lines[0], "centre 100 km E");
+  EXPECT_EQ(storms.words().lines[1], "dashed: way ahead");
+}
+
+TEST(RegionWords, OfAStormThatStays) {
+  Storms storms;
+  storms.Add("{step: 0, x: 112, y: 12, radii: [10]}", 112.0F, 12.0F);
+  EXPECT_EQ(storms.words().heading, "STAYS");
+}
+
+TEST(RegionWords, OfAStormOverTheFarmThatLeaves) {
+  Storms storms;
+  storms.Add("{step: 0, x: 30, y: 12, radii: [10]}, {step: 30, x: 212, y: 12, radii: [10]}", 30.0F,
+             12.0F);
+  EXPECT_EQ(storms.words().heading, "RING OVER THE FARM");
+  EXPECT_EQ(storms.words().lines[0], "centre 18 km E");
+  storms = Storms();
+  storms.Add("{step: 0, x: 30, y: 12, radii: [10]}, {step: 20, x: 12, y: 12, radii: [10]}", 30.0F,
+             12.0F);
+  EXPECT_EQ(storms.words().heading, "RING OVER THE FARM");
+  EXPECT_EQ(storms.words().lines[0].substr(0, 7), "closest");
+}
+
+TEST(RegionWords, OfAStormWithGrowingRings) {
+  Storms storms;
+  storms.Add("{step: 0, x: 112, y: 12, radii: [10]}, {step: 20, x: 122, y: 12, radii: [210]}",
+             112.0F, 12.0F);
+  EXPECT_EQ(storms.words().heading, "REACHES THE FARM");
+  EXPECT_EQ(storms.words().lines[0], "in 9 steps, centre 100 km E");
+}
+
+TEST(RegionWords, AreAboutTheStormThatComesAndNotTheFirst) {
+  Storms storms;
+  storms.Add(kAway, 112.0F, 12.0F);
+  storms.Add("{step: 0, x: 12, y: -188, radii: [10]}, {step: 25, x: 12, y: 12, radii: [10]}", 12.0F,
+             -188.0F);
+  EXPECT_EQ(storms.words().heading.substr(0, 7), "CLOSEST");
+  storms.state.disasters[1].x = 42.0F;  // it has left its track
+  storms.state.disasters[1].y = 12.0F;
+  storms.state.disasters[1].heading_deg = 270;
+  storms.state.disasters[1].speed = 1.0F;
+  EXPECT_EQ(storms.words().heading, "REGION");
+  EXPECT_EQ(storms.words().lines[1], "reaches it in about 8 steps");
+  storms.state.disasters[1].x = 212.0F;  // comes nearer, but does not arrive while it is known
+  storms.state.disasters[1].steps_left = 90;
+  EXPECT_EQ(storms.words().heading, "REGION");
+  EXPECT_EQ(storms.words().lines[1], "known until +60 steps");
+}
+
+TEST(RegionWords, SayUntilWhenAForecastIsKnown) {
+  Storms storms;
+  storms.Add(kAway, 112.0F, 12.0F,
+             "    forecasts: [{step: 0, points: [{step: 9, x: 142, y: 12, radii: [10]}]}]\n");
+  EXPECT_EQ(storms.words().lines[1], "known until +9 steps");
+}
+
 // Mean colour of a part of the map.
 cv::Scalar MeanAt(const cv::Mat& image, double x, double y, double cells) {
   const MapPlace place = PlaceMap(25, 25, kSize);

@@ -49,7 +49,8 @@ class Line {
   int right_;
 };
 
-// Draws the scenario, the time, the episode and, if there is space, the next danger.
+// Draws the scenario, the time, the episode and the next danger. The danger is shortened where it
+// does not fit, and the rest gives way to it.
 void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
              const Layout& layout, const Fonts& fonts) {
   const int left = layout.Px(10);
@@ -63,7 +64,10 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
                    Bgr(layout.style->words));
 
   const int gap = layout.Px(14);
-  Line line(image, {left, layout.Px(36)}, right);
+  const bool is_over = state.terminated || state.truncated;
+  const std::string brief = is_over ? "" : ShortOutlookText(spec, outlook);
+  const int kept = brief.empty() ? 0 : fonts.bold.Width(brief) + gap;
+  Line line(image, {left, layout.Px(36)}, right - kept);
   const auto pair = [&](const std::string& name_of, const std::string& value, Rgb color) {
     line.Put(fonts.small, name_of, layout.style->faint, layout.Px(5));
     line.Put(fonts.bold, value, color, gap);
@@ -77,10 +81,12 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   if (state.observer >= 0)
     pair("as seen by ship", std::to_string(state.observer), layout.style->words);
   if (state.paused) line.Put(fonts.bold, "paused", layout.style->GradeText(2), gap);
-  const std::string danger = OutlookText(spec, state, outlook);
-  const int danger_left = right - fonts.bold.Width(danger);
-  if (danger.empty() || state.terminated || state.truncated || danger_left < line.x()) return;
-  fonts.bold.Draw(image, danger, {danger_left, layout.Px(36)}, Bgr(layout.style->alarm));
+  if (brief.empty()) return;
+  const std::string full = OutlookText(spec, state, outlook);
+  const std::string& danger = right - fonts.bold.Width(full) >= line.x() ? full : brief;
+  const int danger_left = std::max(left, right - fonts.bold.Width(danger));
+  fonts.bold.Draw(image, danger, {danger_left, layout.Px(36)},
+                  Bgr(IsInDanger(outlook) ? layout.style->alarm : layout.style->words));
 }
 
 void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout,

@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "aquafarm_viz/scene/rings.h"
 #include "draw/course.h"
 #include "draw/free_space.h"
 #include "draw/nautical.h"
 #include "draw/symbols.h"
+#include "scene/outlook.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -71,45 +73,102 @@ void DrawRings(Inset& inset, const DisasterState& disaster, const Style& style) 
   }
 }
 
-// The heading above the inset and two lines below it.
-struct Words {
-  std::string heading{"REGION"};
-  std::array<std::string, 2> lines;
+// The disaster that the words are about.
+struct Subject {
+  std::size_t disaster{};
+  double danger{};  // steps until a ring covers a part of the farm
+  TrackPoint nearest;
+  double nearest_m{};
+  bool comes_nearer{};
 };
 
-// Says when a storm is nearest.
-Words ApproachWords(const FarmSpec& spec, const FarmState& state, const Course& course) {
-  const auto now = static_cast<double>(state.step);
-  const TrackPoint nearest = ClosestApproach(spec, course.ahead, now);
-  const std::string where = DistanceText(MetresFromFarm(spec, nearest.x, nearest.y)) + " " +
-                            PointFromFarm(spec, nearest.x, nearest.y);
-  const double ahead_s = (nearest.step - now) * spec.step_duration_s;
-  if (ahead_s <= 0.0) return {"MOVING AWAY", {"centre " + where, ""}};
-  Words words{"CLOSEST " + where, {"in " + HoursText(ahead_s), ""}};
-  if (spec.has_start_time) {
-    const auto time = static_cast<std::time_t>(state.world_time.sec + ahead_s);
-    words.lines[0] += ", " + TimeText(time, "%d %b %H:%M UTC");
+bool IsMoreUrgent(const Subject& a, const Subject& b) {
+  if (a.danger != b.danger) return a.danger < b.danger;
+  if (a.comes_nearer != b.comes_nearer) return a.comes_nearer;
+  return a.nearest_m < b.nearest_m;
+}
+
+std::optional<Subject> MostUrgent(const FarmSpec& spec, const FarmState& state,
+                                  const std::vector<Course>& courses) {
+  std::optional<Subject> best;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    if (!IsDrawn(state.disasters[i])) continue;
+    Subject one{i, StepsToFarm(spec, state.disasters[i], courses[i]),
+                ClosestApproach(spec, courses[i].ahead, courses[i].ahead.front().step), 0.0, false};
+    one.nearest_m = MetresFromFarm(spec, one.nearest.x, one.nearest.y);
+    one.comes_nearer = one.nearest.step > courses[i].ahead.front().step;
+    if (!best || IsMoreUrgent(one, *best)) best = one;
   }
+  return best;
+}
+
+std::string PlaceText(const FarmSpec& spec, double x, double y) {
+  return DistanceText(MetresFromFarm(spec, x, y)) + " " + PointFromFarm(spec, x, y);
+}
+
+// Says how the course is known, and until when if the disaster lasts longer.
+std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, const Course& course) {
+  const double known = course.known_until - course.ahead.front().step;
+  if (known < disaster.steps_left) return "known until +" + AheadText(spec, known);
+  if (course.kind == Course::Kind::kExtrapolated) return "";
+  if (course.kind == Course::Kind::kPublished) return "dashed: forecast";
+  return course.errors.empty() ? "dashed: way ahead" : "shaded: mean forecast error";
+}
+
+// Says when a storm whose course is given is nearest, or that its rings cover or reach the farm.
+RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subject& subject,
+                        const Course& course) {
+  constexpr double kMoved_m = 1.0;
+  constexpr const char* kOver = "RING OVER THE FARM";
+  const TrackPoint& now = course.ahead.front();
+  const std::string centre = "centre " + PlaceText(spec, now.x, now.y);
+  const double ahead_s = (subject.nearest.step - now.step) * spec.step_duration_s;
+  const bool is_over = subject.danger == 0.0;
+  if (ahead_s > 0.0) {
+    const std::string nearest = PlaceText(spec, subject.nearest.x, subject.nearest.y);
+    const std::string when = "in " + HoursText(ahead_s);
+    if (is_over) return {kOver, {"closest " + nearest + " " + when, ""}};
+    RegionWords words{"CLOSEST " + nearest, {when, ""}};
+    if (spec.has_start_time) {
+      const auto time = static_cast<std::time_t>(state.world_time.sec + ahead_s);
+      words.lines[0] += ", " + TimeText(time, "%d %b %H:%M UTC");
+    }
+    return words;
+  }
+  if (is_over) return {kOver, {centre, ""}};
+  if (std::isfinite(subject.danger)) {
+    return {"REACHES THE FARM", {"in " + AheadText(spec, subject.danger) + ", " + centre, ""}};
+  }
+  const TrackPoint& end = course.ahead.back();
+  const bool leaves =
+      MetresFromFarm(spec, end.x, end.y) > MetresFromFarm(spec, now.x, now.y) + kMoved_m;
+  return {leaves ? "MOVING AWAY" : "STAYS", {centre, ""}};
+}
+
+}  // namespace
+
+RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
+                       const std::vector<Course>& courses) {
+  const std::optional<Subject> subject = MostUrgent(spec, state, courses);
+  if (!subject) return {};
+  const DisasterState& disaster = state.disasters[subject->disaster];
+  const Course& course = courses[subject->disaster];
+  RegionWords words;
+  if (course.kind != Course::Kind::kExtrapolated) {
+    words = CourseWords(spec, state, *subject, course);
+    words.lines[1] = SourceText(spec, disaster, course);
+    return words;
+  }
+  // The present motion continued says when a ring comes, but not that none does.
+  words.lines[0] = "centre " + PlaceText(spec, disaster.x, disaster.y);
+  words.lines[1] = subject->danger == 0.0 ? "ring over the farm"
+                   : std::isfinite(subject->danger)
+                       ? "reaches it in about " + AheadText(spec, subject->danger)
+                       : SourceText(spec, disaster, course);
   return words;
 }
 
-Words WordsFor(const FarmSpec& spec, const FarmState& state, const std::vector<Course>& courses) {
-  Words words;
-  for (std::size_t i = 0; i < courses.size() && words.lines[0].empty(); ++i) {
-    const DisasterState& disaster = state.disasters[i];
-    if (!IsDrawn(disaster)) continue;
-    if (courses[i].kind != Course::Kind::kExtrapolated) {
-      words = ApproachWords(spec, state, courses[i]);
-      words.lines[1] = courses[i].kind == Course::Kind::kPublished ? "dashed: forecast"
-                       : courses[i].errors.empty()                 ? "dashed: way ahead"
-                                                                   : "shaded: mean forecast error";
-    } else if (IsOutside(spec, disaster)) {
-      words.lines[0] = "centre " + DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) +
-                       " " + PointFromFarm(spec, disaster.x, disaster.y);
-    }
-  }
-  return words;
-}
+namespace {
 
 // Draws the scale: a circle of half the reach with its radius.
 void DrawScale(Inset& inset, double reach_m, FreeSpace& space, const Layout& layout,
@@ -173,12 +232,12 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
     if (!IsOutside(spec, disaster)) continue;
     farthest_m = std::max(farthest_m, MetresFromFarm(spec, disaster.x, disaster.y));
   }
-  const Words words = WordsFor(spec, state, courses);
+  const RegionWords words = RegionText(spec, state, courses);
   const int side = std::min(room.width, room.height - 3 * row_px - layout.Px(4));
   // The map itself shows what is nearer.
   const bool is_far = farthest_m > spec.cell_size_m * std::hypot(spec.width, spec.height);
   const bool is_drawn = is_far && side >= layout.Px(kSmallestSide);
-  const bool has_course = words.heading != Words().heading;
+  const bool has_course = words.heading != RegionWords().heading;
   if (!is_drawn && !has_course) return;
   fonts.bold.Draw(image, fonts.bold.Fit(words.heading, room.width),
                   {room.x, room.y + fonts.small.cap_height()},

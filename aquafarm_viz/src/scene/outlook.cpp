@@ -53,12 +53,84 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
   }
 }
 
+// When the first ring covers a device, and the risk there and then.
 double FirstStep(const DeviceOutlook& device) {
+  if (device.risk_now < 0.0) return 0.0;
   return device.arrivals.empty() ? std::numeric_limits<double>::infinity()
                                  : device.arrivals.front().steps;
 }
 
+double FirstRisk(const DeviceOutlook& device) {
+  if (device.risk_now < 0.0 || device.arrivals.empty()) return device.risk_now;
+  return device.arrivals.front().risk;
+}
+
+double WorstRisk(const DeviceOutlook& device) {
+  return device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
+}
+
+bool IsMoreUrgent(const DeviceOutlook& a, const DeviceOutlook& b) {
+  if (FirstStep(a) != FirstStep(b)) return FirstStep(a) < FirstStep(b);
+  if (FirstRisk(a) != FirstRisk(b)) return FirstRisk(a) < FirstRisk(b);
+  return WorstRisk(a) < WorstRisk(b);
+}
+
+// Returns whether a ring covers a part of the farm. Quadrants run NE, SE, SW, NW.
+bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
+  constexpr double kEdge = 0.5;  // of a cell around its centre
+  const double east = spec.width - kEdge;
+  const double north = spec.height - kEdge;
+  for (const auto& ring : storm.radii) {
+    for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
+      const bool to_east = quadrant < 2;
+      const bool to_north = quadrant == 0 || quadrant == 3;
+      if (!(ring[quadrant] > 0.0)) continue;
+      if (to_east ? storm.x > east : storm.x < -kEdge) continue;
+      if (to_north ? storm.y > north : storm.y < -kEdge) continue;
+      const double away = std::hypot(std::clamp(storm.x, -kEdge, east) - storm.x,
+                                     std::clamp(storm.y, -kEdge, north) - storm.y);
+      if (away <= ring[quadrant]) return true;
+    }
+  }
+  return false;
+}
+
+double LargestRadius(const TrackPoint& storm) {
+  double largest = 0.0;
+  for (const auto& ring : storm.radii) {
+    largest = std::max(largest, *std::max_element(ring.begin(), ring.end()));
+  }
+  return largest;
+}
+
+// Returns whether a leg is so far from the farm that no ring can cover a part of it.
+bool IsFar(const FarmSpec& spec, const TrackPoint& from, const TrackPoint& to) {
+  const TrackPoint nearest = ClosestApproach(spec, {from, to}, from.step);
+  const double away =
+      std::hypot(nearest.x - (spec.width - 1) / 2.0, nearest.y - (spec.height - 1) / 2.0);
+  return away > std::max(LargestRadius(from), LargestRadius(to)) +
+                    std::hypot(spec.width, spec.height) / 2.0;
+}
+
 }  // namespace
+
+double StepsToFarm(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
+                   const Course& course) {
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  if (!disaster.known || disaster.steps_left <= 0) return kNever;
+  const Track& ahead = course.ahead;
+  const double now = ahead.front().step;
+  if (IsOverFarm(spec, ahead.front())) return 0.0;
+  for (std::size_t i = 1; i < ahead.size(); ++i) {
+    if (IsFar(spec, ahead[i - 1], ahead[i])) continue;
+    const Track leg{ahead[i - 1], ahead[i]};
+    for (double step = std::ceil(ahead[i - 1].step); step <= ahead[i].step; step += 1.0) {
+      if (step - now >= disaster.steps_left) return kNever;
+      if (IsOverFarm(spec, TrackAt(leg, step))) return step - now;
+    }
+  }
+  return kNever;
+}
 
 Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
                        const std::vector<Course>& courses) {
@@ -82,14 +154,12 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
     const bool extrapolated = courses[i].kind == Course::Kind::kExtrapolated;
     outlook.is_extrapolated = outlook.is_extrapolated || extrapolated;
     const double end = courses[i].ahead.back().step - double(state.step);
+    const double known = courses[i].known_until - double(state.step);
+    if (known < disaster.steps_left) outlook.known_until = std::min(outlook.known_until, known);
     last = std::max(last, int(std::min(end, double(kMostSteps))));
   }
   for (int step = 0; step <= last; ++step) AddStep(state, courses, step, devices, outlook);
-  std::stable_sort(outlook.devices.begin(), outlook.devices.end(),
-                   [](const DeviceOutlook& a, const DeviceOutlook& b) {
-                     if (FirstStep(a) != FirstStep(b)) return FirstStep(a) < FirstStep(b);
-                     return a.risk_now < b.risk_now;
-                   });
+  std::stable_sort(outlook.devices.begin(), outlook.devices.end(), IsMoreUrgent);
   return outlook;
 }
 
@@ -100,27 +170,47 @@ std::string AheadText(const FarmSpec& spec, double steps) {
   return Number(hours, hours < 10.0 ? 1 : 0) + " h";
 }
 
+namespace {
+
+std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
+  if (!std::isfinite(outlook.known_until)) return "";
+  return "disasters known until +" + AheadText(spec, outlook.known_until);
+}
+
+}  // namespace
+
+bool IsInDanger(const Outlook& outlook) {
+  return !outlook.devices.empty() && std::isfinite(FirstStep(outlook.devices.front()));
+}
+
 std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
   if (outlook.devices.empty()) return "";
   const DeviceOutlook& first = outlook.devices.front();
-  if (!first.arrivals.empty()) {
-    const RingArrival& next = first.arrivals.front();
-    return DisasterName(state.disasters[next.disaster].kind) + ", risk " + Number(next.risk, 0) +
-           ", reaches " + DeviceLabel(first.id) + " in " +
-           (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
-  }
-  if (first.risk_now < 0.0) {
-    return DeviceLabel(first.id) + " at risk " + Number(first.risk_now, 0) + " now";
-  }
-  return "";
+  const bool is_now = first.risk_now < 0.0;
+  const std::string now =
+      is_now ? DeviceLabel(first.id) + " in the " + Number(first.risk_now, 0) + " ring now" : "";
+  if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
+  const RingArrival& next = first.arrivals.front();
+  const std::string when =
+      std::string(" in ") + (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
+  if (is_now) return now + ", " + Number(next.risk, 0) + when;
+  return DisasterName(state.disasters[next.disaster].kind) + ", risk " + Number(next.risk, 0) +
+         ", reaches " + DeviceLabel(first.id) + when;
+}
+
+std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
+  if (outlook.devices.empty()) return "";
+  if (!IsInDanger(outlook)) return KnownText(spec, outlook);
+  const DeviceOutlook& first = outlook.devices.front();
+  return DeviceLabel(first.id) + ": " + DangerText(spec, first);
 }
 
 std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
-  if (!device.arrivals.empty()) {
-    const RingArrival& next = device.arrivals.front();
-    return Number(next.risk, 0) + between + AheadText(spec, next.steps);
-  }
-  return device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
+  const std::string now = device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
+  if (device.arrivals.empty()) return now;
+  const RingArrival& next = device.arrivals.front();
+  return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
+         AheadText(spec, next.steps);
 }
 
 }  // namespace aquafarm_viz

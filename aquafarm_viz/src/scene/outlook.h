@@ -7,6 +7,7 @@
 #include <aquafarm_msgs/FarmState.h>
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,11 @@ struct DeviceOutlook {
 struct Outlook {
   bool is_known{};         ///< false: too many devices to compute it; nothing can be said
   bool is_extrapolated{};  ///< true: at least one course is the present motion continued
-  std::vector<DeviceOutlook> devices;  ///< deployed devices, the soonest arrival first
+  /// Steps from now until which all courses are known; infinite: until the disasters end.
+  double known_until{std::numeric_limits<double>::infinity()};
+  std::vector<DeviceOutlook> devices;  ///< deployed devices, the soonest danger first: those in a
+                                       ///< ring now, then by first arrival; at equal times the
+                                       ///< worse risk first
 };
 
 /// Computes the outlook along the courses of the drawn disasters.
@@ -40,16 +45,30 @@ struct Outlook {
 Outlook ComputeOutlook(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                        const std::vector<Course>& courses);
 
+/// Returns when the first ring of a disaster covers a part of the farm [steps from now]: 0 if one
+/// does so now; infinite if none does along the course.
+double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
+                   const aquafarm_msgs::DisasterState& disaster, const Course& course);
+
 /// Returns a time ahead: "6.5 h" in a farm with a start time, else "12 steps".
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
 /// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
-/// "F2 at risk -20 now"; empty if no ring covers or reaches a device, or if it is not known.
+/// "F2 in the -5 ring now, -20 in 6.5 h"; without such a danger "disasters
+/// known until +12 h" if a course ends before its disaster; else empty, also if the outlook is not
+/// known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 
-/// Returns the outlook of one device in a few characters: "-10 in 6.5 h" or "-5 now"; empty if no
-/// ring covers or reaches it.
+/// Returns whether a ring covers or reaches a device.
+bool IsInDanger(const Outlook& outlook);
+
+/// Returns OutlookText in a few characters, such as "F2: -20 now".
+std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
+
+/// Returns the danger to a device in a few characters: "-10 in 6.5 h", "-5 now" if a ring covers
+/// it,
+/// "-5 now, -20 in 6.5 h" if a worse one follows; empty if no ring covers or reaches it.
 /// @param between  text between risk and time
 std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
                        const char* between = " in ");

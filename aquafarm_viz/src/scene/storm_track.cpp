@@ -19,6 +19,7 @@ using aquafarm_msgs::FarmState;
 constexpr double kHour_s = 3600.0;
 constexpr double kErrorLead_h = 24.0;           // between two entries of forecast_error_km
 constexpr double kSameCells = 1.0;              // a disaster this near its track follows it
+constexpr double kWorstRisk = -20.0;            // DisasterState.risks
 constexpr int kHorizon = 10000;                 // [steps]
 constexpr std::size_t kMaxErrorPoints = 4096U;  // of a course with errors
 
@@ -61,12 +62,16 @@ TrackPoint Present(const DisasterState& disaster, double step) {
 }
 
 // The rings of a forecast without rings are those of the true storm at that time.
-void AddRings(Track& course, const Track& truth, const TrackPoint& present) {
+void AddRings(Track& course, const Track& truth) {
   for (TrackPoint& point : course) {
+    const TrackPoint true_storm = TrackAt(truth, point.step);
     if (point.radii.empty()) {
-      point.radii = truth.empty() ? present.radii : TrackAt(truth, point.step).radii;
+      point.radii = true_storm.radii;
+      point.risks = true_storm.risks;
     }
-    if (point.risks.empty()) point.risks = present.risks;
+    if (point.risks.empty()) point.risks = true_storm.risks;
+    // A ring without a risk would count as calm.
+    point.risks.resize(std::max(point.risks.size(), point.radii.size()), kWorstRisk);
   }
 }
 
@@ -78,16 +83,43 @@ const PublishedForecast* Newest(const std::vector<PublishedForecast>& forecasts,
   return newest;
 }
 
-Course Extrapolated(const DisasterState& disaster, const TrackPoint& present) {
-  constexpr double kSteps = 60.0;  // farther ahead a present course means little
-  Course course{Course::Kind::kExtrapolated, {present, present}, {}, {}};
-  TrackPoint& end = course.ahead.back();
-  const double steps = std::min(kSteps, double(std::max(disaster.steps_left, 1)));
+// Moves a point along the present motion of a disaster.
+TrackPoint Moved(TrackPoint point, const DisasterState& disaster, double steps) {
   const double bearing = disaster.heading_deg % 360 * M_PI / 180.0;
-  end.step += steps;
-  end.x += steps * double(disaster.speed) * std::sin(bearing);
-  end.y += steps * double(disaster.speed) * std::cos(bearing);
+  point.step += steps;
+  point.x += steps * double(disaster.speed) * std::sin(bearing);
+  point.y += steps * double(disaster.speed) * std::cos(bearing);
+  return point;
+}
+
+Course Extrapolated(const DisasterState& disaster, const TrackPoint& present, double growth) {
+  constexpr double kSteps = 60.0;  // farther ahead a present course means little
+  const double steps = std::min(kSteps, double(std::max(disaster.steps_left, 1)));
+  Course course{Course::Kind::kExtrapolated,
+                {present, Moved(present, disaster, steps)},
+                {},
+                present.step + steps,
+                {}};
+  for (auto& ring : course.ahead.back().radii) {
+    for (double& radius : ring) {
+      // A missing quadrant stays missing, as in the farm.
+      if (radius > 0.0 || disaster.quadrants.empty()) radius += steps * std::max(0.0, growth);
+    }
+  }
   return course;
+}
+
+// Continues a forecast after its last point, as the farm does (aquafarm/farm/forecast.h): along its
+// last two points, or with the present motion if it has one point, until the true track ends.
+void Continue(Track& ahead, const Track& forecast, const DisasterState& disaster, double until) {
+  const TrackPoint last = forecast.back();
+  const double steps = until - last.step;
+  if (!(steps > 0.0)) return;
+  if (forecast.size() == 1) return ahead.push_back(Moved(last, disaster, steps));
+  const TrackPoint& before = forecast[forecast.size() - 2];
+  const double share = steps / (last.step - before.step);
+  ahead.push_back({until, last.x + share * (last.x - before.x),
+                   last.y + share * (last.y - before.y), last.radii, last.risks});
 }
 
 std::vector<double> ErrorsOf(const Track& ahead, const FarmSpec& spec,
@@ -118,7 +150,11 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
       for (const YAML::Node& forecast : disaster["forecasts"]) {
         storms.forecasts.back().push_back(
             {forecast["step"].as<double>(), ReadTrack(forecast["points"])});
+        for (TrackPoint& point : storms.forecasts.back().back().points) {
+          if (point.risks.empty() && !point.radii.empty()) point.risks = risks;
+        }
       }
+      storms.growths.push_back(disaster["radius_growth"].as<double>(0.0));
     }
     if (const YAML::Node view = scenario["view"]) {
       for (const YAML::Node& km : view["forecast_error_km"]) {
@@ -175,29 +211,36 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
   const DisasterState& disaster = state.disasters.at(index);
   const auto now = static_cast<double>(state.step);
   const TrackPoint present = Present(disaster, now);
+  const double growth = index < tracks.growths.size() ? tracks.growths[index] : 0.0;
   if (state.observer >= 0 || index >= tracks.tracks.size() || tracks.tracks[index].empty()) {
-    return Extrapolated(disaster, present);
+    return Extrapolated(disaster, present, growth);
   }
   const Track& truth = tracks.tracks[index];
   const TrackPoint expected = TrackAt(truth, now);
   if (std::hypot(expected.x - present.x, expected.y - present.y) >= kSameCells) {
-    return Extrapolated(disaster, present);
+    return Extrapolated(disaster, present, growth);
   }
   const PublishedForecast* forecast = Newest(tracks.forecasts[index], now);
-  Course course{
-      forecast != nullptr ? Course::Kind::kPublished : Course::Kind::kRecorded, {present}, {}, {}};
-  const double end = now + std::clamp(disaster.steps_left, 1, kHorizon);
-  for (const TrackPoint& point : forecast != nullptr ? forecast->points : truth) {
-    if (point.step > now && point.step < end) course.ahead.push_back(point);
-  }
   const Track& source = forecast != nullptr ? forecast->points : truth;
-  if (end > course.ahead.back().step) course.ahead.push_back(TrackAt(source, end));
-  course.ahead.back().step = std::max(course.ahead.back().step, now);
+  const double end = now + std::clamp(disaster.steps_left, 1, kHorizon);
+  Course course{forecast != nullptr ? Course::Kind::kPublished : Course::Kind::kRecorded,
+                {present},
+                {},
+                forecast != nullptr ? std::min(end, source.back().step) : end,
+                {}};
+  for (const TrackPoint& point : source) {
+    if (point.step > now) course.ahead.push_back(point);
+  }
+  if (forecast != nullptr) Continue(course.ahead, source, disaster, truth.back().step);
+  const TrackPoint last = TrackAt(course.ahead, end);
+  while (course.ahead.size() > 1 && course.ahead.back().step >= end) course.ahead.pop_back();
+  course.ahead.push_back(last);
+  course.ahead.back().step = end;
   for (const TrackPoint& point : truth) {
     if (point.step < now) course.past.push_back(point);
   }
   if (!course.past.empty()) course.past.push_back(present);
-  AddRings(course.ahead, truth, present);
+  AddRings(course.ahead, truth);
   if (forecast == nullptr) course.errors = ErrorsOf(course.ahead, spec, tracks.error_cells);
   return course;
 }

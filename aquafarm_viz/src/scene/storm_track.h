@@ -36,6 +36,7 @@ struct PublishedForecast {
 struct StormTracks {
   std::vector<Track> tracks;                              ///< one per disaster
   std::vector<std::vector<PublishedForecast>> forecasts;  ///< one list per disaster
+  std::vector<double> growths;      ///< of every radius [cells/step], one per disaster
   std::vector<double> error_cells;  ///< mean error after 24, 48, … hours; empty: not given
 };
 
@@ -57,12 +58,13 @@ TrackPoint ClosestApproach(const aquafarm_msgs::FarmSpec& spec, const Track& tra
 struct Course {
   enum class Kind {
     kRecorded,     ///< the storm follows its track
-    kPublished,    ///< newest forecast of an authority
-    kExtrapolated  ///< present rings at the present speed and heading
+    kPublished,    ///< newest forecast of an authority; after its last point as in the farm
+    kExtrapolated  ///< present speed and heading; the rings grow by radius_growth, never shrink
   };
   Kind kind{Kind::kExtrapolated};
   Track ahead;                 ///< from the present step on; at least one point
   Track past;                  ///< up to the present step; may be empty
+  double known_until{};        ///< step until which it is recorded, published or extrapolated
   std::vector<double> errors;  ///< mean forecast error at each point of `ahead` [cells], or empty
 };
 

@@ -328,7 +328,10 @@ void Run::Conclude(TrainingEnd end, const std::string& message, const RunFolder*
     case TrainingEnd::kInterrupted:
       return Fail(ExitCode::kInterrupted, "interrupted; saved in " + options_.run_dir);
     case TrainingEnd::kLost:
-      return Fail(ExitCode::kLost, message + "; saved in " + options_.run_dir);
+      return Fail(ExitCode::kLost,
+                  message + (group() == nullptr ? "; saved in " + options_.run_dir : last()));
+    case TrainingEnd::kBadInput:
+      return Fail(ExitCode::kBadInput, message + last());
     case TrainingEnd::kDiverged:
       return Fail(ExitCode::kDiverged, message + last());
     case TrainingEnd::kStorage:

@@ -31,8 +31,8 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
     throw InputError(
         "planner: got " + std::to_string(devices_) + " devices, expected at most " +
         std::to_string(kMostDevices) +
-        "; give another policy, such as policy:=fetch_by_value, or policy:=none if the "
-        "ships shall hold");
+        "; give another policy, such as policy:=fetch_by_value, or policy:=none to hold "
+        "the ships");
   }
   const std::size_t codes = std::size_t{1} << (2 * devices_);
   set_of_bits_.assign(codes, kNone);

@@ -130,6 +130,9 @@ class ScriptTest(unittest.TestCase):
                              named(verb, "a.yaml", "policy:=planner"))
             self.assertEqual([verb, "scenario:=a.yaml"], named(verb, "scenario:=a.yaml"))
         self.assertEqual(["train", "a.yaml"], named("train", "a.yaml"))
+        scenarios = SCRIPT.parent / "aquafarm_sim" / "scenarios"
+        for ranch, policy in (("two_squads", "planner"), ("paper", "generalist")):
+            self.assertEqual(f"policy:={policy}", named("sim", f"{scenarios}/{ranch}.yaml")[-1])
 
     def test_a_fraction_is_no_whole_number(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -139,6 +142,14 @@ class ScriptTest(unittest.TestCase):
                 name, value = argument.split(":=")
                 self.assertIn(f"{name}: got '{value}', expected a whole number", done.stdout)
             self.assertEqual([], os.listdir(folder))
+
+    def test_ranks_pass_on_the_initial_policy(self):
+        tools = SCRIPT.parent / "tools" / "commands"
+        for given, expected in (("/runs/a b", "paper|--init|/runs/a b|"), ("none", "paper|"),
+                                ("generalist", "paper|--init|generalist|")):
+            done = run("bash", "-c", 'set -eu; source "$0/launch.sh"; source "$0/ranks.sh"; '
+                       'rank_arguments "init:=$1"; printf "%s|" "${words[@]}"', tools, given)
+            self.assertEqual(expected, done.stdout)
 
     def test_ranks_refuse_what_needs_ros(self):
         for arguments, expected in ((["viz:=true"], "viz: got 'true' with ranks, expected one of:"),

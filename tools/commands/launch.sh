@@ -175,18 +175,36 @@ refuse_a_second_ranch() {
   fi
 }
 
+# policy_of RANCH.yaml: the policy that plays it without a training: generalist for one ship,
+# planner for several. A file that cannot be read is refused later.
+policy_of() {
+  /usr/bin/python3 - "$1" <<'PYTHON' 2>/dev/null || echo generalist
+import sys
+
+import yaml
+
+with open(sys.argv[1], encoding="utf-8") as file:
+    ranch = yaml.safe_load(file)
+agents = (ranch.get("ships") or {}).get("count", 1)
+agents += ((ranch.get("layout") or {}).get("devices") or {}).get("self_propelled", 0)
+print("planner" if agents > 1 else "generalist")
+PYTHON
+}
+
 # name_the_ranch NAME ARGUMENT…: prints its arguments, each followed by a zero byte. For evaluate and
-# sim it prints RANCH.yaml as scenario:=RANCH.yaml, and adds policy:=generalist unless a policy is given.
+# sim it prints RANCH.yaml as scenario:=RANCH.yaml, and adds the policy of policy_of unless one is given.
 name_the_ranch() {
-  local word names_ranch=0
+  local word ranch=""
   for word in "$@"; do
     if [[ $1 =~ ^(evaluate|sim)$ && $word == *.yaml && $word != *:=* && $word != -* ]]; then
-      names_ranch=1
+      ranch=$word
       word=scenario:=$word
     fi
     printf '%s\0' "$word"
   done
-  if [[ $names_ranch == 1 && " $*" != *" policy:="* ]]; then printf 'policy:=generalist\0'; fi
+  if [[ -n $ranch && " $*" != *" policy:="* ]]; then
+    printf 'policy:=%s\0' "$(policy_of "$ranch")"
+  fi
 }
 
 # launch NAME ARGUMENT…: roslaunch returns 0 even when a required node failed, so the nodes leave

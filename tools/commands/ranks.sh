@@ -23,6 +23,7 @@ rank_arguments() {
       options)
         [[ $value != none ]] || continue
         for option in $value; do words+=(--set "$option"); done ;;
+      init) [[ $value == none ]] || words+=(--init "$value") ;;
       run_dir) run=$value words+=(--run-dir "$value") ;;
       resume) [[ ! $value =~ ^([Tt]rue|1)$ ]] || words+=(--resume) ;;
       report) report=$value ;;
@@ -30,7 +31,7 @@ rank_arguments() {
       evaluation_episodes) words+=(--evaluate "$value") ;;
       random_episodes) words+=(--random "$value") ;;
       *) code=2 die "$name: got '$value' with ranks, expected one of: scenario, algorithm, \
-episodes, steps, farms, seed, credit, exploration, options, run_dir, resume, report, \
+episodes, steps, farms, seed, credit, exploration, options, init, run_dir, resume, report, \
 checkpoint_period_s, evaluation_episodes, random_episodes; ranks train without ROS" ;;
     esac
   done

@@ -18,6 +18,7 @@
 #include "aquafarm/agents/base/storage.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/scenario/validate.h"
 
 namespace aquafarm::agents {
 
@@ -77,7 +78,10 @@ struct ScenarioChoice {
 
   std::shared_ptr<const Scenario> Load() const {
     Scenario scenario = FindScenario(name, folder);
-    scenario.view.tokens = scenario.view.tokens || tokens;  // changes no farm, so keeps the hash
+    if (tokens && !scenario.view.tokens) {
+      scenario.view.tokens = true;  // changes no farm, so keeps the hash
+      ValidateScenario(scenario);
+    }
     if (max_steps == 0) return std::make_shared<const Scenario>(std::move(scenario));
     scenario.step_limit = max_steps;
     // Parsed from its text like a file, so that the hash is that of the text.

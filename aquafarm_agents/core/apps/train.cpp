@@ -92,10 +92,11 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "greedy evaluation episodes at the end; 0 disables them");
   app.add_option("--random", options.random_episodes,
                  "RANDOM episodes for comparison; 0 disables them");
-  app.add_option("--ranks", arguments.ranks,
-                 "number of processes of this host that train together, a power of two; the result "
-                 "is that of --ranks 1. 0: one process, or the processes that mpirun, srun or "
-                 "torchrun started")
+  app.add_option(
+         "--ranks", arguments.ranks,
+         "number of processes of this host that train together, a power of two; up to 8 have "
+         "the result of --ranks 1, more of them with the same option shards. 0: one "
+         "process, or the processes that mpirun, srun or torchrun started")
       ->check(CLI::Range(0, 4096));
   app.add_option("--rank-start", arguments.times.start_s,
                  "max seconds that a rank waits for the others at the start")

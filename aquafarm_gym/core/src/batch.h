@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "aquafarm/observation/farm_batch.h"
 #include "buffers.h"
+#include "turn.h"
 
 namespace aquafarm::python {
 
@@ -79,25 +79,6 @@ class Batch {
   const std::map<std::string, pybind11::array>& buffers() const { return buffers_; }
 
  private:
-  /// Rejects a call while a call of another thread runs. Acquired and released under the GIL, which
-  /// reset and step release during their work.
-  class Turn {
-   public:
-    explicit Turn(bool& busy) : busy_(busy) {
-      if (busy_) {
-        throw std::runtime_error(
-            "FarmBatch: another thread's call is still running; use one batch per thread");
-      }
-      busy_ = true;
-    }
-    ~Turn() { busy_ = false; }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-   private:
-    bool& busy_;
-  };
-
   const BufferType& TypeOf(const std::string& name) const;
   void Keep(const BufferType& type, pybind11::array array);
   /// Returns the farms selected by a mask. @throws InputError unless it is bool [N] with a true

@@ -28,6 +28,7 @@
 #include "aquafarm/base/check.h"
 #include "arguments.h"
 #include "batch.h"
+#include "turn.h"
 #ifdef AQUAFARM_WITH_BLAS
 #include "ppo/ppo_policy.h"
 #include "ppo/token_layout.h"
@@ -148,12 +149,14 @@ class BatchPolicy {
   }
 
   void Begin(py::handle seed) {
+    const Turn turn(busy_, "Policy");
     constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
     policy_->Begin(WholeNumber(seed, "Policy: seed", 0, kMost, "pass a seed of this range"),
                    spec_.farms);
   }
 
   py::array_t<std::uint8_t> Act(Batch& batch) {
+    const Turn turn(busy_, "Policy");
     if (batch.batch().farms() != spec_.farms ||
         batch.batch().scenario().hash != spec_.scenario_hash) {
       throw InputError("Policy: got a batch of " + std::to_string(batch.batch().farms()) +
@@ -175,6 +178,7 @@ class BatchPolicy {
   }
 
   py::object Values() const {
+    const Turn turn(busy_, "Policy");
     const std::vector<float>& values = policy_->values();
     if (values.empty()) return py::none();
     py::array_t<float> array({spec_.farms, spec_.agents});
@@ -207,6 +211,7 @@ class BatchPolicy {
   agents::StepResults results_;
   BatchOutput output_;
   std::vector<std::uint8_t> actions_;
+  mutable bool busy_{};
 };
 
 /// Plans for the only ship of farms of one scenario.
@@ -230,6 +235,7 @@ class ShipPlanner {
       throw InputError("Planner: got a batch of " + batch.batch().scenario().name + ", expected " +
                        scenario_->name + "; make a planner for this scenario");
     }
+    const Turn turn(busy_, "Planner");
     agents::Plan plan;
     batch.Inspect(number, [&](const Encoder&, const Farm& shown) {
       const py::gil_scoped_release release;
@@ -244,6 +250,7 @@ class ShipPlanner {
   std::shared_ptr<const Scenario> scenario_;
   Foresight foresight_;
   agents::Planner planner_;
+  bool busy_{};
 };
 
 double BoundOf(const Batch& batch, py::handle farm) {

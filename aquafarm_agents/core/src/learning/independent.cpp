@@ -170,7 +170,8 @@ std::unique_ptr<Policy> MakeIndependentPolicy(const Checkpoint& checkpoint,
     throw InputError("policy: " + checkpoint.algorithm + " of scenario " +
                      checkpoint.spec.scenario_name + " does not fit scenario " +
                      spec.scenario_name + ": agents: the policy has " + std::to_string(own) +
-                     ", the farm has " + std::to_string(spec.agents));
+                     ", the farm has " + std::to_string(spec.agents) +
+                     "; give policy:=planner, or policy:=none to hold the ships");
   }
   std::vector<std::unique_ptr<Policy>> policies;
   for (std::size_t i = 0; i < static_cast<std::size_t>(spec.agents); ++i) {

@@ -11,9 +11,11 @@ void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, Networ
   const EnvironmentSpec& own = checkpoint.spec;
   const auto refuse = [&](const std::string& what, const std::string& got,
                           const std::string& expected) {
-    throw InputError("policy: " + checkpoint.algorithm + " of scenario " + own.scenario_name +
-                     " does not fit scenario " + spec.scenario_name + ": " + what +
-                     ": the policy has " + got + ", the farm has " + expected);
+    throw InputError(
+        "policy: " + checkpoint.algorithm + " of scenario " + own.scenario_name +
+        " does not fit scenario " + spec.scenario_name + ": " + what + ": the policy has " + got +
+        ", the farm has " + expected +
+        (what == "agents" ? "; give policy:=planner, or policy:=none to hold the ships" : ""));
   };
   const auto compare = [&](const std::string& what, std::int32_t got, std::int32_t expected) {
     if (got != expected) refuse(what, std::to_string(got), std::to_string(expected));

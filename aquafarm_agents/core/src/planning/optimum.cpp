@@ -2,8 +2,10 @@
 #include "aquafarm/agents/planning/optimum.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
+#include "aquafarm/agents/base/text.h"
 #include "aquafarm/agents/planning/planner.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
@@ -62,11 +64,15 @@ void Bootstrap(const std::vector<Pair>& pairs, std::uint64_t seed, OptimumShare&
       sum.got += pair.got;
       sum.best += pair.best;
     }
-    shares.push_back(sum.got / sum.best);
+    if (sum.best > 0.0) shares.push_back(sum.got / sum.best);
+  }
+  if (shares.empty()) {
+    share.low = share.high = std::numeric_limits<double>::quiet_NaN();
+    return;
   }
   std::sort(shares.begin(), shares.end());
-  share.low = shares[kResamples / 40];
-  share.high = shares[kResamples - 1 - kResamples / 40];
+  share.low = shares[shares.size() / 40];
+  share.high = shares[shares.size() - 1 - shares.size() / 40];
 }
 
 }  // namespace
@@ -94,9 +100,14 @@ OptimumShare CompareWithOptimum(
   }
   share.planned = pairs.size();
   if (pairs.empty()) return share;
-  share.share = share.mean_return / share.mean_optimum;
   share.mean_return /= static_cast<double>(pairs.size());
   share.mean_optimum /= static_cast<double>(pairs.size());
+  if (!(share.mean_optimum > 0.0)) {
+    throw InputError("optimum: got a mean return of " + FormatNumber(share.mean_optimum) +
+                     " of the best plans, expected more than 0, since a share of it says nothing; "
+                     "evaluate without --optimum");
+  }
+  share.share = share.mean_return / share.mean_optimum;
   Bootstrap(pairs, seed, share);
   return share;
 }

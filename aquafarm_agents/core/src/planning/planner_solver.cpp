@@ -28,8 +28,11 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
                      "waiting; evaluate a learner instead");
   }
   if (devices_ > kMostDevices) {
-    throw InputError("planner: got " + std::to_string(devices_) + " devices, expected at most " +
-                     std::to_string(kMostDevices));
+    throw InputError(
+        "planner: got " + std::to_string(devices_) + " devices, expected at most " +
+        std::to_string(kMostDevices) +
+        "; give another policy, such as policy:=fetch_by_value, or policy:=none to hold "
+        "the ships");
   }
   const std::size_t codes = std::size_t{1} << (2 * devices_);
   set_of_bits_.assign(codes, kNone);
@@ -47,7 +50,7 @@ PlannerSolver::PlannerSolver(const Scenario& scenario, std::int32_t slots)
   if (state_count() > kMaxPlanStates) {
     throw InputError("planner: got " + std::to_string(state_count()) +
                      " states, expected at most " + std::to_string(kMaxPlanStates) +
-                     "; fewer devices or cells are needed");
+                     "; give fewer devices or cells, or policy:=fetch_by_value");
   }
   site_.resize(devices_);
   value_.resize(devices_);

@@ -14,17 +14,19 @@ namespace {
 struct Launcher {
   const char* rank;
   const char* size;
-  const char* local_size;  ///< processes on this host; nullptr if the launcher sets none
-  const char* job;         ///< differs between the jobs of a host
+  const char* local_size;          ///< processes on this host; nullptr if the launcher sets none
+  std::array<const char*, 2> job;  ///< differ between the jobs of a host; nullptr: none
 };
 
 // SLURM_NTASKS is also set in a batch script, outside any srun. SLURM_STEP_NUM_TASKS is not.
 constexpr std::array<Launcher, 4> kLaunchers{{
-    {"RANK", "WORLD_SIZE", "LOCAL_WORLD_SIZE", nullptr},
-    {"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", "OMPI_COMM_WORLD_LOCAL_SIZE",
-     "PMIX_NAMESPACE"},
-    {"PMI_RANK", "PMI_SIZE", "MPI_LOCALNRANKS", nullptr},
-    {"SLURM_PROCID", "SLURM_STEP_NUM_TASKS", nullptr, "SLURM_JOB_ID"},
+    {"RANK", "WORLD_SIZE", "LOCAL_WORLD_SIZE", {}},
+    {"OMPI_COMM_WORLD_RANK",
+     "OMPI_COMM_WORLD_SIZE",
+     "OMPI_COMM_WORLD_LOCAL_SIZE",
+     {"PMIX_NAMESPACE"}},
+    {"PMI_RANK", "PMI_SIZE", "MPI_LOCALNRANKS", {"PMI_JOBID"}},
+    {"SLURM_PROCID", "SLURM_STEP_NUM_TASKS", nullptr, {"SLURM_JOB_ID", "SLURM_STEP_ID"}},
 }};
 
 constexpr int kMaxRanks = 65536;
@@ -59,6 +61,16 @@ std::uint32_t Hash(std::string_view text) {
   return hash;
 }
 
+// Empty if the launcher does not say which job this is.
+std::string JobOf(const Launcher& launcher, const GetVariable& get) {
+  std::string job;
+  for (const char* const name : launcher.job) {
+    const char* const value = name == nullptr ? nullptr : get(name);
+    if (value != nullptr) job += std::string(job.empty() ? "" : ".") + value;
+  }
+  return job;
+}
+
 void ReadMaster(const Launcher& launcher, const GetVariable& get, RankVariables& variables) {
   if (const char* const address = get("MASTER_ADDR"); address != nullptr && *address != '\0') {
     variables.master_addr = address;
@@ -76,8 +88,8 @@ void ReadMaster(const Launcher& launcher, const GetVariable& get, RankVariables&
   }
   if (const char* const port = get("MASTER_PORT"); port != nullptr) {
     variables.master_port = ReadNumber("MASTER_PORT", port, 1, kMaxPort);
-  } else if (launcher.job != nullptr && get(launcher.job) != nullptr) {
-    variables.master_port = static_cast<int>(kFirstJobPort + Hash(get(launcher.job)) % kJobPorts);
+  } else if (const std::string job = JobOf(launcher, get); !job.empty()) {
+    variables.master_port = static_cast<int>(kFirstJobPort + Hash(job) % kJobPorts);
   }
 }
 

@@ -186,8 +186,7 @@ void Run::Agree(const EnvironmentSpec& spec, const Learner& learner, bool has_ch
   first.at("limits").at("steps").get_to(options_.steps);
 }
 
-// Fig. 6. A first environment provides the spec for the choice. The observation types depend on the
-// chosen algorithm.
+// Fig. 6. A first environment has the spec. The observation types depend on the chosen algorithm.
 void Run::Choose(const MakeEnvironment& make_environment) {
   const Choice choice = ChooseAlgorithm(make_environment(0)->spec());
   options_.algorithm = report_.status.algorithm = choice.algorithm;
@@ -318,23 +317,25 @@ void Run::Train(Environment& environment, Learner& learner, RunFolder* folder) {
 }
 
 void Run::Conclude(TrainingEnd end, const std::string& message, const RunFolder* folder) {
-  const auto last = [&] {
-    if (folder == nullptr) return std::string();
-    return "; the last valid checkpoint is " + folder->NewestCheckpoint().value_or("none");
-  };
+  const std::string saved = "; saved in " + options_.run_dir;
+  const std::string last = folder == nullptr ? ""
+                                             : "; the last valid checkpoint is " +
+                                                   folder->NewestCheckpoint().value_or("none");
   switch (end) {
     case TrainingEnd::kDone:
       return;
     case TrainingEnd::kInterrupted:
-      return Fail(ExitCode::kInterrupted, "interrupted; saved in " + options_.run_dir);
+      return Fail(ExitCode::kInterrupted, "interrupted" + saved);
     case TrainingEnd::kLost:
-      return Fail(ExitCode::kLost, message + "; saved in " + options_.run_dir);
+      return Fail(ExitCode::kLost, message + (group() == nullptr ? saved : last));
+    case TrainingEnd::kBadInput:
+      return Fail(ExitCode::kBadInput, message + last);
     case TrainingEnd::kDiverged:
-      return Fail(ExitCode::kDiverged, message + last());
+      return Fail(ExitCode::kDiverged, message + last);
     case TrainingEnd::kStorage:
-      return Fail(ExitCode::kStorage, message + last());
+      return Fail(ExitCode::kStorage, message + last);
     case TrainingEnd::kRankLost:
-      return Fail(ExitCode::kRankLost, message + last());
+      return Fail(ExitCode::kRankLost, message + last);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/scenario/validate.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 std::shared_ptr<const Scenario> WithTokens(const EnvironmentSpec& spec) {
   Scenario scenario = ParseScenario(spec.scenario_yaml, spec.scenario_name);
   scenario.view.tokens = true;
+  ValidateScenario(scenario);  // tokens need more memory
   return std::make_shared<const Scenario>(std::move(scenario));
 }
 

@@ -107,19 +107,30 @@ TrainingEnd Trainer::Run(const std::atomic<bool>* stop, const OnProgress& on_pro
   } catch (const LearnerFailed& error) {
     message_ = error.what();
     end = TrainingEnd::kDiverged;
-  } catch (const InputError& error) {  // the farms came back with another scenario
+  } catch (const InputError& error) {
     message_ = error.what();
-    end = TrainingEnd::kLost;
+    // Alone, the farms came back with another scenario. A rank has farms of its own.
+    end = options_.group == nullptr ? TrainingEnd::kLost : TrainingEnd::kBadInput;
   }
+  // The other ranks do not know of the error of this one, so it must not exchange anything more.
+  if (end == TrainingEnd::kLost && options_.group == nullptr) {
+    SaveWithoutFarms();
+    // In a shared launch Ctrl-C also stops the farms.
+    if (stop != nullptr && *stop) end = TrainingEnd::kInterrupted;
+  }
+  Report(on_progress);
+  return end;
+}
+
+void Trainer::SaveWithoutFarms() {
   try {
-    if (end == TrainingEnd::kLost) Save(false);
+    CountPending({*pending_});
+    pending_->Clear();
+    CountRestarts();
+    Save(false);
   } catch (const StorageError& error) {
     message_ += std::string("; ") + error.what();
   }
-  // In a shared launch Ctrl-C also stops the farms.
-  if (end == TrainingEnd::kLost && stop != nullptr && *stop) end = TrainingEnd::kInterrupted;
-  Report(on_progress);
-  return end;
 }
 
 void Trainer::Begin() {
@@ -146,6 +157,7 @@ void Trainer::Train(const std::atomic<bool>* stop, const OnProgress& on_progress
     is_saved_ = false;
     learner_.Step(*results_, Done(), actions_);
     results_ = &environment_.Step(actions_);
+    if (environment_.ConsumeRestart()) ++uncounted_restarts_;
     if (sync_interval_ > 1) {
       pending_->Add(*results_);
       if (pending_->calls() < sync_interval_) continue;
@@ -172,11 +184,17 @@ void Trainer::Count(const StepResults& results) {
   for (const std::uint8_t flag : results.started) started += flag;
   progress_.steps += results.started.size() - started;
   for (const EpisodeResult& result : results.finished) CountEpisode(result);
-  if (environment_.ConsumeRestart()) {
-    ++progress_.restarts;
-    next_episode_ += static_cast<std::uint64_t>(environment_.spec().farms);
-    notice_ = "the farms were lost and came back; training continues with new episodes";
-  }
+  CountRestarts();
+}
+
+// Must be called after the episodes that ended before the restarts were counted.
+void Trainer::CountRestarts() {
+  if (uncounted_restarts_ == 0) return;
+  progress_.restarts += uncounted_restarts_;
+  next_episode_ += std::uint64_t{uncounted_restarts_} *
+                   static_cast<std::uint64_t>(WholeSpec(environment_.spec(), options_.group).farms);
+  uncounted_restarts_ = 0;
+  notice_ = "the farms were lost and came back; training continues with new episodes";
 }
 
 void Trainer::CountEpisode(const EpisodeResult& result) {

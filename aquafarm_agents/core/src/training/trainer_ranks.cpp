@@ -73,6 +73,7 @@ bool Trainer::Synchronize(const std::atomic<bool>* stop) {
   }
   pending_->Clear();
   if (!parts.empty()) CountPending(parts);
+  CountRestarts();
   decision.saves = IsDue(saved_, options_.checkpoint_period_s) ? 1 : 0;
   decision.steps = progress_.steps;
   decision.episodes = progress_.episodes;

@@ -68,6 +68,25 @@ TEST(RankVariables, ReadsThoseOfSlurmInAStepOnly) {
   EXPECT_EQ(Read(given).master_addr, "node03");
   given["SLURM_STEP_NODELIST"] = "alpha,beta";
   EXPECT_EQ(Read(given).master_addr, "alpha");
+  const int port = Read(given).master_port;
+  given["SLURM_STEP_ID"] = "0";
+  const int first = Read(given).master_port;
+  given["SLURM_STEP_ID"] = "1";
+  EXPECT_NE(Read(given).master_port, first) << "two steps of one job collide";
+  given["SLURM_JOB_ID"] = "78";
+  EXPECT_NE(Read(given).master_port, port) << "two jobs on one host collide";
+}
+
+TEST(RankVariables, ReadsThoseOfMpichOnOneHost) {
+  Variables given{{"PMI_RANK", "1"}, {"PMI_SIZE", "2"}, {"MPI_LOCALNRANKS", "2"}};
+  EXPECT_EQ(Read(given).rank, 1);
+  EXPECT_EQ(Read(given).master_port, 29500);
+  given["PMI_JOBID"] = "4711.0";
+  const int port = Read(given).master_port;
+  given["PMI_JOBID"] = "4711.1";
+  EXPECT_NE(Read(given).master_port, port) << "two jobs on one host collide";
+  given["MASTER_PORT"] = "1234";
+  EXPECT_EQ(Read(given).master_port, 1234);
 }
 
 TEST(RankVariables, RefusesWrongValuesInOneLine) {

@@ -15,8 +15,11 @@
 namespace aquafarm::agents::test {
 namespace {
 
-constexpr int kRankLost = 6;       // exit code
-constexpr double kStopped = 30.0;  // s; issue 27
+constexpr int kRankLost = 6;  // exit code
+// Limits [s]. Issue 27 wants 30 s for a stop on an idle machine; a busy one needs longer to start
+// several processes with libtorch.
+constexpr double kStopped = 180.0;
+constexpr double kEnded = 600.0;
 
 using Words = std::vector<std::string>;
 
@@ -50,7 +53,7 @@ class Ranks : public FolderTest {
   }
   void RunToTheEnd(const std::string& run, const Words& more) {
     Process process(Train(run, more), OutputPath(run));
-    ASSERT_EQ(process.Wait(240.0), 0) << Output(run);
+    ASSERT_EQ(process.Wait(kEnded), 0) << Output(run);
   }
   void ExpectSameRuns(const std::string& a, const std::string& b) {
     ASSERT_NE(Newest(a), "");
@@ -61,6 +64,29 @@ class Ranks : public FolderTest {
       EXPECT_TRUE(ReadFile(folder_ + "/" + a + file) == ReadFile(folder_ + "/" + b + file))
           << file << " of " << a << " and " << b << " differ";
     }
+  }
+  /// Resumes "parts" and trains "whole" from the beginning, with one limit above that of "parts".
+  void ExpectThatPartsEndLikeAWhole(const Words& options) {
+    ASSERT_NE(Newest("parts"), "");
+    steps_ = std::to_string(ReadCheckpoint(Newest("parts")).steps + 5000);
+    Words resume = constant_;
+    resume.insert(resume.end(), options.begin(), options.end());
+    resume.emplace_back("--resume");
+    RunToTheEnd("parts", resume);
+    Words whole = constant_;
+    whole.insert(whole.end(), {"-o", "shards=8"});
+    RunToTheEnd("whole", whole);
+    ExpectSameRuns("whole", "parts");
+  }
+  /// Without schedules, which depend on the limit of steps.
+  const Words constant_{"-o", "learning_rate=0.001", "-o", "clip_range=0.2",
+                        "-o", "teacher=0",           "-x", "entropy:0.01"};
+  /// Options of a training that is stopped: it has no end of its own and saves after each rollout.
+  Words Endless() {
+    steps_ = "1000000000000";
+    Words words = constant_;
+    words.insert(words.end(), {"-o", "shards=8", "--checkpoint-period", "0"});
+    return words;
   }
   std::string algorithm_{"ppo"};
   std::string steps_{"20000"};
@@ -95,12 +121,10 @@ TEST_F(Ranks, RecurrentNetworksToo) {
 }
 
 TEST_F(Ranks, AKilledRankEndsTheOthersAndTheRunResumesWithAnyNumber) {
-  const Words often{"--checkpoint-period", "0", "-o", "shards=8"};
-  RunToTheEnd("whole", often);
-  Words resume = often;
-  resume.emplace_back("--resume");
   for (const int victim : {1, 0}) {
-    const Words command = Train("parts", victim == 1 ? often : resume);
+    Words options = Endless();
+    if (victim == 0) options.emplace_back("--resume");
+    const Words command = Train("parts", options);
     const std::string before = Newest("parts");
     const int port = Port();
     const int size = victim == 1 ? 2 : 4;
@@ -109,7 +133,7 @@ TEST_F(Ranks, AKilledRankEndsTheOthersAndTheRunResumesWithAnyNumber) {
       ranks.push_back(std::make_unique<Process>(AsRank(rank, size, port, command),
                                                 OutputPath("rank" + std::to_string(rank))));
     }
-    ASSERT_TRUE(WaitUntil([&] { return Newest("parts") != before; }, 60.0)) << Output("rank0");
+    ASSERT_TRUE(WaitUntil([&] { return Newest("parts") != before; }, kStopped)) << Output("rank0");
     ranks[static_cast<std::size_t>(victim)]->Kill(SIGKILL);
     const std::string message = "ranks: rank " + std::to_string(victim) + " of " +
                                 std::to_string(size) + " has ended or does not answer";
@@ -121,19 +145,17 @@ TEST_F(Ranks, AKilledRankEndsTheOthersAndTheRunResumesWithAnyNumber) {
       EXPECT_CONTAINS(output, message);
     }
   }
-  RunToTheEnd("parts", resume);
-  ExpectSameRuns("whole", "parts");
+  ExpectThatPartsEndLikeAWhole({"-o", "shards=8"});
 }
 
 TEST_F(Ranks, CtrlCSavesAndAnotherNumberResumes) {
-  RunToTheEnd("whole", {"-o", "shards=8"});
-  Process process(Train("parts", {"--ranks", "2", "--checkpoint-period", "0"}),
-                  OutputPath("parts"));
-  ASSERT_TRUE(WaitUntil([&] { return !Newest("parts").empty(); }, 60.0)) << Output("parts");
+  Words options = Endless();
+  options.insert(options.end(), {"--ranks", "2"});
+  Process process(Train("parts", options), OutputPath("parts"));
+  ASSERT_TRUE(WaitUntil([&] { return !Newest("parts").empty(); }, kStopped)) << Output("parts");
   process.Kill(SIGINT);
-  EXPECT_EQ(process.Wait(), 130) << Output("parts");
-  RunToTheEnd("parts", {"--ranks", "4", "--resume"});
-  ExpectSameRuns("whole", "parts");
+  EXPECT_EQ(process.Wait(kStopped), 130) << Output("parts");
+  ExpectThatPartsEndLikeAWhole({"--ranks", "4"});
 }
 
 TEST_F(Ranks, AMissingRankIsNamed) {

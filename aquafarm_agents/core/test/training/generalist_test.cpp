@@ -76,8 +76,26 @@ TEST(Generalist, RefusesSeveralShips) {
     MakePolicy(FindPolicy(kGeneralist), environment.spec());
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("agents: the policy has 1, the farm has 2"),
+    EXPECT_NE(std::string(error.what())
+                  .find("agents: the policy has 1, the farm has 2; give policy:=planner"),
               std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Generalist, RefusesARanchWhoseTokensNeedTooMuchMemory) {
+  Scenario large = LoadScenario(AQUAFARM_SCENARIO_DIR "/procedural.yaml");
+  large.width = large.height = 1000;
+  large.devices.count = 20;
+  large.view.waterways = false;
+  LocalEnvironment environment(Shipped("procedural", false), {1, kStatesBit, false, 1});
+  EnvironmentSpec spec = environment.spec();
+  spec.scenario_yaml = ToYaml(large);
+  try {
+    MakePolicy(FindPolicy(kGeneralist), spec);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("view.tokens: needs "), std::string::npos)
         << error.what();
   }
 }

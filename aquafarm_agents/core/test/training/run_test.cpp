@@ -3,9 +3,12 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "agents_fixture.h"
 #include "aquafarm/base/version.h"
@@ -145,6 +148,129 @@ TEST_F(RunTest, LostFarmsAreSaidAndTheLearnerIsSaved) {
   const RunReport resumed = Train(lose_after(1000000));
   EXPECT_EQ(resumed.code, ExitCode::kOk) << resumed.summary;
   EXPECT_GE(resumed.status.progress.steps, 2000U);
+}
+
+/// A farm that fails, is lost or comes back after some steps.
+class FailingEnvironment final : public Environment {
+ public:
+  /// @param played receives the farm steps, if given
+  FailingEnvironment(int steps, std::function<void()> fail, std::uint64_t* played = nullptr)
+      : steps_(steps),
+        played_(played),
+        fail_(std::move(fail)),
+        farms_(TinyFarm(), {4, kFeaturesBit, false, 1}) {}
+  const EnvironmentSpec& spec() const override { return farms_.spec(); }
+  const StepResults& Reset(std::uint64_t seed, std::uint64_t first) override {
+    return farms_.Reset(seed, first);
+  }
+  const StepResults& Step(const std::vector<std::uint8_t>& actions) override {
+    if (--steps_ != 0) {
+      const StepResults& results = farms_.Step(actions);
+      if (played_ != nullptr) {
+        *played_ += static_cast<std::uint64_t>(
+            std::count(results.started.begin(), results.started.end(), std::uint8_t{0}));
+      }
+      return results;
+    }
+    fail_();
+    has_restarted_ = true;
+    return farms_.Reset(1, 1000);
+  }
+  std::string Save() override { return farms_.Save(); }
+  const StepResults& Load(const std::string& bytes) override { return farms_.Load(bytes); }
+  bool ConsumeRestart() override { return std::exchange(has_restarted_, false); }
+
+ private:
+  int steps_;
+  std::uint64_t* played_;
+  std::function<void()> fail_;
+  bool has_restarted_{};
+  LocalEnvironment farms_;
+};
+
+/// Rank 0 of two; the other one has the same steps and gradients. Exchanges after `fails` is set
+/// would wait for a rank that makes other exchanges.
+class TwinGroup final : public ProcessGroup {
+ public:
+  explicit TwinGroup(const bool& fails) : ProcessGroup(0, 2), fails_(fails) {}
+  void Sum(std::vector<float>&, std::vector<double>&) override { Check(); }
+  std::vector<std::string> Gather(const std::string& bytes) override {
+    Check();
+    return {bytes, bytes};
+  }
+  std::string Broadcast(const std::string& bytes) override {
+    Check();
+    return bytes;
+  }
+
+ private:
+  void Check() const {
+    if (fails_) throw RankLost("ranks: rank 1 of 2 has ended");
+  }
+  const bool& fails_;
+};
+
+TEST_F(RunTest, ARankThatFailsSaysWhyAndExchangesNothingMore) {
+  options_.algorithm = "ppo";
+  options_.options = "shards=2 rollout_size=64 hidden_size=8 batch_size=32";
+  options_.checkpoint_period_s = 1000.0;
+  options_.evaluation_episodes = 0;
+  bool fails = false;
+  TwinGroup group(fails);
+  const auto train = [&](const std::function<void()>& fail) {
+    fails = false;
+    const RankedRun ranked{group, [&](std::uint8_t) {
+                             return std::make_unique<FailingEnvironment>(100, [&] {
+                               fails = true;
+                               fail();
+                             });
+                           }};
+    return agents::Train(options_, {}, {}, nullptr, &ranked);
+  };
+  const RunReport bad = train([] { throw InputError("family: no ranch"); });
+  EXPECT_EQ(bad.code, ExitCode::kBadInput);
+  EXPECT_EQ(bad.status.message, "family: no ranch; the last valid checkpoint is none");
+  EXPECT_GT(bad.status.progress.steps, 0U);
+  options_.run_dir += "2";
+  const RunReport lost = train([] { throw EnvironmentLost("sim node: gone"); });
+  EXPECT_EQ(lost.code, ExitCode::kLost);
+  EXPECT_EQ(lost.status.message, "sim node: gone; the last valid checkpoint is none");
+  EXPECT_FALSE(RunFolder::NewestCheckpoint(options_.run_dir).has_value());
+}
+
+TEST_F(RunTest, FarmsThatCameBackAreCountedWithAndWithoutShards) {
+  options_.algorithm = "ppo";
+  options_.steps = 2000;
+  options_.evaluation_episodes = 0;
+  options_.progress_period_s = 0.0;
+  for (const std::string shards : {"1", "2"}) {
+    options_.options = "rollout_size=64 hidden_size=8 batch_size=32 shards=" + shards;
+    options_.run_dir = folder_ + "/run" + shards;
+    statuses_.clear();
+    const RunReport report =
+        Train([](std::uint8_t) { return std::make_unique<FailingEnvironment>(100, [] {}); });
+    ASSERT_EQ(report.code, ExitCode::kOk) << report.status.message;
+    EXPECT_EQ(report.status.progress.restarts, 1U) << shards;
+    EXPECT_EQ(std::count_if(statuses_.begin(), statuses_.end(),
+                            [](const RunStatus& status) {
+                              return status.message.find("came back") != std::string::npos;
+                            }),
+              1)
+        << shards;
+  }
+}
+
+TEST_F(RunTest, LostFarmsOfSeveralShardsAreSavedWithAllSteps) {
+  options_.algorithm = "ppo";
+  options_.options = "shards=2 rollout_size=64 hidden_size=8 batch_size=32";
+  std::uint64_t played = 0;  // in 99 calls, which no number of rollouts fills
+  const RunReport report = Train([&](std::uint8_t) {
+    return std::make_unique<FailingEnvironment>(
+        100, [] { throw EnvironmentLost("gone"); }, &played);
+  });
+  EXPECT_EQ(report.code, ExitCode::kLost);
+  EXPECT_CONTAINS(report.summary, "gone; saved in " + options_.run_dir);
+  EXPECT_EQ(ReadCheckpoint(*RunFolder::NewestCheckpoint(options_.run_dir)).steps, played);
 }
 
 TEST_F(RunTest, AFullDiskEndsItAndKeepsTheLastGoodCheckpoint) {

@@ -21,7 +21,8 @@ struct OptimumShare {
   double mean_return{};
   double mean_optimum{};
   double share{};  ///< mean_return / mean_optimum
-  double low{};    ///< 95 % interval of the share, by bootstrap over episodes
+  double low{};    ///< 95 % interval of the share, by bootstrap over episodes, in those resamples
+                   ///< whose optimum is more than 0; NaN if there are none
   double high{};
   std::size_t solvable{};  ///< episodes in which the optimum delivers every device
   std::size_t solved{};    ///< those of them in which the policy delivered every device

@@ -22,8 +22,9 @@ using GetVariable = std::function<const char*(const char*)>;
 /// Slurm's srun, in this order, and MASTER_ADDR and MASTER_PORT.
 ///
 /// Without MASTER_ADDR rank 0 is on this host if all ranks are, or on the first host of a Slurm
-/// step. Without MASTER_PORT the port is 29500, or follows from the job so that two jobs on one
-/// host differ.
+/// step. Without MASTER_PORT the port follows from the job (PMIX_NAMESPACE of Open MPI, PMI_JOBID
+/// of mpiexec, SLURM_JOB_ID and SLURM_STEP_ID of srun), one of 10,000, so that two jobs on one host
+/// seldom meet. It is 29500 if the launcher sets none of these.
 /// @throws InputError naming the variable, its value and the expected range
 RankVariables ReadRankVariables(const GetVariable& get);
 

@@ -58,7 +58,8 @@ enum class TrainingEnd : std::uint8_t {
   kLost,
   kStorage,
   kDiverged,
-  kRankLost
+  kRankLost,
+  kBadInput  ///< a rank cannot continue, such as without a ranch of its family
 };
 
 /// Trains a learner on an environment: limits, progress, metrics, checkpoints, interruption. The
@@ -79,7 +80,9 @@ class Trainer {
   using OnProgress = std::function<void(const TrainingProgress&)>;
 
   /// Trains until a limit is reached or `stop` is set, then saves. Does not throw on failures of
-  /// the farms or the disk: they are reported by the returned end and message().
+  /// the farms, the disk or the ranks: they are reported by the returned end and message(). Without
+  /// other ranks a training that lost its farms is saved. A rank that failed exchanges nothing
+  /// more, so its caller must close the group.
   /// @param stop may be set by a signal handler; null if the training cannot be stopped
   TrainingEnd Run(const std::atomic<bool>* stop = nullptr, const OnProgress& on_progress = {});
 
@@ -96,6 +99,8 @@ class Trainer {
   void Begin();
   void Count(const StepResults& results);
   void CountEpisode(const EpisodeResult& result);
+  void CountRestarts();
+  void SaveWithoutFarms();
   void Report(const OnProgress& on_progress);
   void Summarise();
   void Save(bool with_environment);
@@ -119,6 +124,8 @@ class Trainer {
   LearnerStatus status_;
   std::string message_;
   std::string notice_;
+
+  std::uint32_t uncounted_restarts_{};
 
   const std::uint32_t sync_interval_;      // calls of the learner's Step
   std::unique_ptr<PendingSteps> pending_;  // since the last synchronization

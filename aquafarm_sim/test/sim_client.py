@@ -28,17 +28,10 @@ def state(**fields):
 
 
 def message(topic, kind, condition=lambda m: True):
-    """Returns the first message on a topic that satisfies a condition; fails after LIMIT_S.
-
-    It subscribes again every 10 s: rospy sometimes makes no connection to a topic that it has
-    just left.
-    """
+    """Returns the first message on a topic that satisfies a condition; fails after LIMIT_S."""
     end = time.monotonic() + LIMIT_S
     while time.monotonic() < end:
-        try:
-            got = rospy.wait_for_message(topic, kind, timeout=10.0)
-        except rospy.ROSException:
-            continue
+        got = rospy.wait_for_message(topic, kind, timeout=LIMIT_S)
         if condition(got):
             return got
     raise AssertionError(f"nothing fitting came on {topic}")

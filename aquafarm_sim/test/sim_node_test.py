@@ -180,8 +180,13 @@ class SimNodeTest(unittest.TestCase):
         charts.wait(lambda m: len(m) >= 2, "the chart again")
 
     def test_state_observation_and_risk_follow_the_farm(self):
+        # Listens before it moves: with another subscriber in this process no connection is new, so
+        # the farm does not send its last state again.
+        states = Recorder("state", FarmState)
+        self.addCleanup(states.subscriber.unregister)
         call("ship_0/move", direction=NORTH)
-        got = message("state", FarmState, lambda m: m.step == 1)
+        states.wait(lambda m: any(one.step == 1 for one in m), "the state after the move")
+        got = next(one for one in states.messages if one.step == 1)
         self.assertEqual(state().hash, got.hash)
         self.assertEqual("map", got.header.frame_id)
         self.assertEqual(1627084860, got.world_time.secs)

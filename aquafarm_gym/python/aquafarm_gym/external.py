@@ -67,14 +67,14 @@ class TrainingEnv(FarmEnv):
     def __init__(self, scenario: core.Scenario, episodes: int, path: pathlib.Path,
                  **options: Any) -> None:
         super().__init__(scenario, **options)
-        self._episodes, self.episodes_taken, self.steps_taken = episodes, 0, 0
+        self._limit, self.episodes_taken, self.steps_taken = episodes, 0, 0
         self._file = open(path, "w", newline="", encoding="utf-8")
         self._rows = csv.DictWriter(self._file, METRICS, restval="nan", extrasaction="ignore",
                                     lineterminator="\n")
         self._rows.writeheader()
 
     def reset(self, **options: Any) -> Any:
-        if self.episodes_taken == self._episodes:
+        if self.episodes_taken == self._limit:
             raise EpisodesOver
         return super().reset(**options)
 

@@ -26,6 +26,7 @@
 #include "aquafarm/agents/planning/team_planner.h"
 #include "aquafarm/agents/rescue/plan_report.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/grid/step_buffers.h"
 #include "arguments.h"
 #include "batch.h"
 #include "turn.h"
@@ -196,13 +197,7 @@ class BatchPolicy {
     }
     StepShape shape = sample_.shape();
     shape.farms = static_cast<std::size_t>(spec_.farms);
-    VisitStepFields(
-        [&](const StepField& field, auto& values, auto*& output) {
-          if (!field.IsIn(bits)) return;
-          values.resize(field.Size(shape));
-          output = values.data();
-        },
-        results_, output_);
+    SizeStepFields(shape, bits, results_, output_);
   }
 
   FarmBatch sample_;  // one farm, for the shapes

@@ -9,6 +9,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/forecast.h"
+#include "aquafarm/grid/step_buffers.h"
 #include "aquafarm/scenario/validate.h"
 #include "aquafarm/storms/to_disaster.h"
 #include "aquafarm_sim/server/farm_server.h"
@@ -145,12 +146,7 @@ aquafarm::BatchOutput FarmServer::Prepare(std::uint8_t encodings, StepResult& re
   result.truncated.resize(shape.farms);
   result.finished.clear();
   aquafarm::BatchOutput output;
-  aquafarm::VisitStepFields(
-      [&](const aquafarm::StepField& field, auto& values, auto*& to) {
-        values.resize(field.IsIn(encodings) ? field.Size(shape) : 0);
-        to = values.empty() ? nullptr : values.data();
-      },
-      result, output);
+  aquafarm::SizeStepFields(shape, encodings, result, output);
   return output;
 }
 

@@ -7,6 +7,7 @@
 
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/grid/step_buffers.h"
 #include "aquafarm/scenario/family.h"
 
 namespace aquafarm::agents {
@@ -60,13 +61,7 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
   const StepShape shape{static_cast<std::size_t>(spec_.farms),
                         static_cast<std::size_t>(spec_.agents),
                         static_cast<std::size_t>(spec_.feature_count), 0};
-  VisitStepFields(
-      [&](const StepField& field, auto& values, auto*& output) {
-        if (!field.IsIn(bits)) return;
-        values.resize(field.Size(shape));
-        output = values.data();
-      },
-      results_, output_);
+  SizeStepFields(shape, bits, results_, output_);
   results_.finished.reserve(shape.farms);
   for (std::size_t i = 0; i < shape.farms; ++i) farms_.push_back(MakeRanch(*family_, 0, i));
 }

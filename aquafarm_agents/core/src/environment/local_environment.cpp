@@ -8,6 +8,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/version.h"
+#include "aquafarm/grid/step_buffers.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 
 namespace aquafarm::agents {
@@ -114,13 +115,7 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
     bits |= kTermsField;
   }
   const StepShape shape = batch_.shape();
-  VisitStepFields(
-      [&](const StepField& field, auto& values, auto*& output) {
-        if (!field.IsIn(bits)) return;
-        values.resize(field.Size(shape));
-        output = values.data();
-      },
-      results_, output_);
+  SizeStepFields(shape, bits, results_, output_);
   results_.finished.reserve(shape.farms);
   with_states_ = (options.encodings & kStatesBit) != 0;
 }

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "aquafarm/grid/step_fields.h"
+
+namespace aquafarm {
+
+/// Resizes the arrays of a step's results and points an output at them. Fields that `bits` does not
+/// contain become empty, with null pointers.
+/// @param results arrays as in VisitStepFields @param output pointers as in BatchOutput
+template <typename Results, typename Output>
+void SizeStepFields(const StepShape& shape, std::uint8_t bits, Results& results, Output& output) {
+  VisitStepFields(
+      [&](const StepField& field, auto& values, auto*& to) {
+        values.resize(field.IsIn(bits) ? field.Size(shape) : 0);
+        to = values.empty() ? nullptr : values.data();
+      },
+      results, output);
+}
+
+}  // namespace aquafarm

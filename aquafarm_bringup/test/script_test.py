@@ -19,8 +19,15 @@ import rostest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from ranch import free_port  # noqa: E402
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools"))
+try:
+    from verbs import arguments, ranks, render  # noqa: E402
+except ImportError:  # the package stands alone; its tests are skipped
+    arguments = ranks = render = None
+
 PACKAGE = pathlib.Path(__file__).resolve().parent.parent
 SCRIPT = PACKAGE.parent / "aquafarm"
+TOOLS = SCRIPT.parent / "tools"
 LIMIT_S = 60
 INTERRUPTED = 130
 
@@ -38,7 +45,8 @@ def copy_script(tree, old, new):
     The text must occur exactly once.
     """
     count = 0
-    for source in [SCRIPT, *(SCRIPT.parent / "tools" / "commands").glob("*.sh")]:
+    for source in [SCRIPT, TOOLS / "run_verb", *TOOLS.glob("commands/*.sh"),
+                   *TOOLS.glob("verbs/*.py")]:
         text = source.read_text()
         count += text.count(old)
         target = tree / source.relative_to(SCRIPT.parent)
@@ -117,19 +125,16 @@ class ScriptTest(unittest.TestCase):
             done = run(SCRIPT, "evaluate", "viz:=perhaps", cwd=folder)
             self.assertEqual(2, done.returncode, done.stdout)
             self.assertIn("aquafarm: taking policy:=generalist\n", done.stdout)
-        launch = SCRIPT.parent / "tools" / "commands" / "launch.sh"
-
-        def named(*words):
-            done = run("bash", "-c", 'source "$0"; name_the_ranch "$@" | tr "\\0" "|"', launch, *words)
-            return done.stdout.rstrip("|").split("|")
+        def named(verb, *words):
+            return arguments.name_the_ranch(verb, words)
 
         for verb in ("evaluate", "sim"):
-            self.assertEqual([verb, "scenario:=my ranch.yaml", "seed:=3", "policy:=generalist"],
+            self.assertEqual(["scenario:=my ranch.yaml", "seed:=3", "policy:=generalist"],
                              named(verb, "my ranch.yaml", "seed:=3"))
-            self.assertEqual([verb, "scenario:=a.yaml", "policy:=planner"],
+            self.assertEqual(["scenario:=a.yaml", "policy:=planner"],
                              named(verb, "a.yaml", "policy:=planner"))
-            self.assertEqual([verb, "scenario:=a.yaml"], named(verb, "scenario:=a.yaml"))
-        self.assertEqual(["train", "a.yaml"], named("train", "a.yaml"))
+            self.assertEqual(["scenario:=a.yaml"], named(verb, "scenario:=a.yaml"))
+        self.assertEqual(["a.yaml"], named("train", "a.yaml"))
         scenarios = SCRIPT.parent / "aquafarm_sim" / "scenarios"
         for ranch, policy in (("two_squads", "planner"), ("paper", "generalist")):
             self.assertEqual(f"policy:={policy}", named("sim", f"{scenarios}/{ranch}.yaml")[-1])
@@ -144,12 +149,15 @@ class ScriptTest(unittest.TestCase):
             self.assertEqual([], os.listdir(folder))
 
     def test_ranks_pass_on_the_initial_policy(self):
-        tools = SCRIPT.parent / "tools" / "commands"
-        for given, expected in (("/runs/a b", "paper|--init|/runs/a b|"), ("none", "paper|"),
-                                ("generalist", "paper|--init|generalist|")):
-            done = run("bash", "-c", 'set -eu; source "$0/launch.sh"; source "$0/ranks.sh"; '
-                       'rank_arguments "init:=$1"; printf "%s|" "${words[@]}"', tools, given)
-            self.assertEqual(expected, done.stdout)
+        for given, expected in (("/runs/a b", ["paper", "--init", "/runs/a b"]), ("none", ["paper"]),
+                                ("generalist", ["paper", "--init", "generalist"])):
+            self.assertEqual((expected, None), ranks.program_arguments([f"init:={given}"]))
+
+    def test_ranks_pass_on_each_option_and_name_the_report(self):
+        self.assertEqual(
+            (["two_squads", "--set", "gamma=0.9", "--set", "hidden_size=32", "--resume"], "/r/1"),
+            ranks.program_arguments(["options:=gamma=0.9 hidden_size=32", "scenario:=two_squads",
+                                     "exploration:=auto", "resume:=true", "report:=/r/1"]))
 
     def test_ranks_refuse_what_needs_ros(self):
         for arguments, expected in ((["viz:=true"], "viz: got 'true' with ranks, expected one of:"),
@@ -280,7 +288,7 @@ class ScriptTest(unittest.TestCase):
         self.assertIn("test: got '--quick', expected --fast or nothing", done.stdout)
         done = run(SCRIPT, "bench", "simulator")
         self.assertEqual(2, done.returncode, done.stdout)
-        self.assertIn("bench: got 'simulator', expected sim, import, ros,", done.stdout)
+        self.assertIn("bench: got 'simulator', expected sim, import, tabular,", done.stdout)
 
     def test_a_picture_with_a_policy_wants_the_bag_first(self):
         done = run(SCRIPT, "render", "-o", "x.png", "--policy", "runs/x")
@@ -290,6 +298,15 @@ class ScriptTest(unittest.TestCase):
         done = run(SCRIPT, "render", "day.bag", "--policy")
         self.assertEqual(2, done.returncode, done.stdout)
         self.assertIn("--policy: got nothing, expected a run folder or checkpoint", done.stdout)
+
+    def test_only_the_maps_that_are_drawn_are_computed(self):
+        for words, expected in (("-o x.png", "--values-every 0"),
+                                ("-o x.png --layers risk,values", "--values-at 0"),
+                                ("-o x.png --layers=values --step 3 5", "--values-at 3 5"),
+                                ("-o x.mp4 --layers moves --every 4", "--values-every 4")):
+            self.assertEqual(expected.split(), render.maps_of_values(words.split()))
+        self.assertEqual(("runs/x", ["day.bag", "-o", "x.png", "--step", "-1"]), render.without_policy(
+            "day.bag -o x.png --policy runs/x --step -1".split()))
 
     def test_every_verb_has_help(self):
         for verb in ("setup", "build", "train", "evaluate", "sim", "play", "record", "replay",

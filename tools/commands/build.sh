@@ -123,3 +123,6 @@ build_core() {
     die "the plain cmake build of $1/core failed; log: $dir.log"
   fi
 }
+
+# build_tests LOG: builds the tests of the workspace.
+build_tests() { make -C "$ws/build" -k -j"$jobs" tests >"$1" 2>&1; }

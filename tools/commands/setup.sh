@@ -17,8 +17,6 @@ packages=(
   nlohmann-json3-dev libgeographiclib-dev libstb-dev libnetcdf-dev libmuparser-dev
   fonts-dejavu-core xvfb libgl1-mesa-dri iproute2
 )
-# For the tests of HTML pages alone: 130 MB to load, 420 MB on disk.
-browser_packages=(chromium chromium-driver python3-selenium)
 
 missing_packages() {
   comm -13 \

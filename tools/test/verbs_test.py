@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The stages of ./aquafarm test, the end of a launch, and child processes of tools/verbs."""
+import contextlib
+import io
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import threading
+import unittest
+from unittest import mock
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from verbs import bench, launch, tests, workspace  # noqa: E402
+
+
+class TestRun(unittest.TestCase):
+    """Runs the stages with programs that are replaced: nothing is built."""
+
+    def run_with(self, fast, **codes):
+        """Returns the exit code, the commands and the results; codes: of programs by name."""
+        with tempfile.TemporaryDirectory() as folder:
+            results = pathlib.Path(folder, "results")
+            commands = []
+
+            def run_child(command, **_):
+                words = [str(word) for word in command]
+                commands.append(" ".join(words))
+                name = pathlib.Path(words[0]).name
+                code = codes.get(name, 0)
+                for word in words:
+                    path = pathlib.Path(word.split("=")[-1])
+                    if path.suffix == ".xml" and code < 2:
+                        path.write_text("<testsuite/>", encoding="utf-8")
+                return code
+
+            with mock.patch.multiple(tests, RESULTS=results, WS=pathlib.Path(folder),
+                                     run_child=run_child, enter_ros=lambda: False,
+                                     build_core=lambda name: None, bootstrap=lambda *words: None,
+                                     run_bootstrap=lambda *words: codes.get(words[0], 0)), \
+                    contextlib.redirect_stdout(io.StringIO()) as out, \
+                    contextlib.redirect_stderr(out):
+                code = tests.run(fast)
+            return code, commands, {path.name for path in results.iterdir()}, out.getvalue()
+
+    def test_every_stage_passes(self):
+        code, commands, results, _ = self.run_with(fast=False)
+        self.assertEqual(0, code)
+        self.assertEqual(["python3", "ctest", "ctest", "run_ros_tests", "check_workspaces",
+                          "python3"],
+                         [pathlib.Path(line.split()[0]).name for line in commands])
+        self.assertFalse({name for name in results if name.startswith("stage-")})
+
+    def test_fast_leaves_out_the_other_workspaces(self):
+        _, commands, _, _ = self.run_with(fast=True)
+        self.assertFalse([line for line in commands if "check_workspaces" in line])
+
+    def test_a_failed_stage_fails_the_whole(self):
+        self.assertEqual(1, self.run_with(fast=True, ctest=1)[0])
+
+    def test_a_stage_without_results_counts_as_a_failed_test(self):
+        code, _, results, words = self.run_with(fast=True, ctest=2)
+        self.assertEqual(1, code)
+        self.assertLessEqual({"stage-aquafarm_sim_core.xml", "stage-aquafarm_agents_core.xml"}, results)
+        self.assertIn("the stage 'aquafarm_sim core' broke off; the end of ", words)
+        _, _, results, _ = self.run_with(fast=True, run_ros_tests=1)
+        self.assertIn("stage-tests_through_ROS.xml", results)
+
+    def test_what_cannot_be_installed_is_left_out_with_a_word(self):
+        code, _, _, words = self.run_with(fast=True, **{"--install": 3})
+        self.assertEqual(0, code)
+        self.assertIn("clang-14 cannot be installed: the check of locks is skipped", words)
+
+
+class TestEnd(unittest.TestCase):
+
+    def end(self, text, code, name="train"):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "exit")
+            if text is not None:
+                path.write_text(text, encoding="utf-8")
+            end = launch.read_end(path, code, name)
+            self.assertFalse(path.exists())
+            return end
+
+    def test_the_first_node_to_end_decides(self):
+        self.assertEqual((4, "the sim node is lost"), self.end("4\nthe sim node is lost\n", 0))
+        self.assertEqual((0, ""), self.end("0\n", 1))
+
+    def test_roslaunch_decides_if_no_node_has_left_a_code(self):
+        self.assertEqual((1, ""), self.end(None, 1))
+        self.assertEqual((137, "its node was killed before it ended"), self.end(None, 0, "sim"))
+
+
+class TestChild(unittest.TestCase):
+
+    def test_a_signal_reaches_the_child_which_ends_in_its_own_way(self):
+        threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+        code = workspace.run_child(
+            ["bash", "-c", "trap 'exit 9' TERM; for i in {1..600}; do sleep 0.1; done"])
+        self.assertEqual(9, code)
+        self.assertIs(signal.default_int_handler, signal.getsignal(signal.SIGINT))
+
+    def test_a_killed_child_has_the_code_of_a_shell(self):
+        self.assertEqual(137, workspace.run_child(["bash", "-c", "kill -9 $$"]))
+
+    def test_a_benchmark_shows_and_keeps_its_figures(self):
+        with tempfile.TemporaryDirectory() as folder, \
+                contextlib.redirect_stdout(io.StringIO()) as shown:
+            out = pathlib.Path(folder, "figures.txt")
+            lines = bench.show(["printf", "a_rate 3 1/s\\nwords\\n"], out)
+            self.assertEqual("a_rate 3 1/s\nwords\n", out.read_text(encoding="utf-8"))
+        self.assertEqual("a_rate 3 1/s\nwords\n", shown.getvalue())
+        self.assertEqual(["a_rate 3 1/s\n"], [line for line in lines if bench.FIGURE.match(line)])
+        with self.assertRaises(SystemExit) as ended:
+            bench.show(["false"])
+        self.assertEqual(1, ended.exception.code)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The verbs that start a launch file of aquafarm_bringup. Their exit code is that of the node that
+ended the launch."""
+import importlib.util
+import os
+import subprocess
+
+from . import arguments
+from .workspace import (CHECK_ARGUMENTS, INTERRUPTED, PYTHON, ROOT, WRONG_ARGUMENT, WS, Refused,
+                        bootstrap, ensure_built, enter_ros, run_child, say)
+
+LAUNCH_FILES = ROOT / "aquafarm_bringup" / "launch"
+QUIET_ROSLAUNCH = ROOT / "aquafarm_bringup" / "scripts" / "quiet_roslaunch"
+# roslaunch kills a node 15 s after Ctrl-C by default; a large checkpoint takes longer to write.
+SIGINT_LIMIT_S = 120
+KILLED = 137
+
+
+def without_verbose(words):
+    """Returns the words without verbose:=…, and whether roslaunch shows its own messages."""
+    kept, verbose = [], False
+    for word in words:
+        name, is_set, value = word.partition(":=")
+        if name == "verbose" and is_set:
+            if not arguments.FLAG.fullmatch(value):
+                raise Refused(f"verbose: got '{value}', expected true or false")
+            verbose = bool(arguments.TRUE.fullmatch(value))
+        else:
+            kept.append(word)
+    return kept, verbose
+
+
+def refuse_unknown(launch, words):
+    """Ends with a line if the launch file has no argument of this name; roslaunch ignores it."""
+    code = run_child([PYTHON, CHECK_ARGUMENTS, LAUNCH_FILES / f"{launch}.launch", *words],
+                     stdout=subprocess.DEVNULL)
+    if code != 0:
+        raise SystemExit(WRONG_ARGUMENT)
+
+
+def refuse_a_second_ranch(words):
+    """On a master that was there before, a second ranch of the same name would end the first."""
+    ns = dict(map(arguments.split, words)).get("ns", "aquafarm")
+    try:
+        listed = subprocess.run(["rosnode", "list"], stdout=subprocess.PIPE, text=True,
+                                stderr=subprocess.DEVNULL, timeout=10, check=False).stdout
+    except (OSError, subprocess.TimeoutExpired):
+        return
+    if f"/{ns}/sim" in listed.splitlines():
+        raise Refused(f"/{ns}/sim already runs on {os.environ['ROS_MASTER_URI']}; give "
+                      "ns:=another_name or another master")
+
+
+def complete(launch, words):
+    """Returns the options for roslaunch and the arguments, checked and with their defaults."""
+    options = [word for word in words if word.startswith("-")]
+    given = [arguments.with_full_path(word) for word in words if not word.startswith("-")]
+    refuse_unknown(launch, given)
+    given = arguments.with_defaults(launch, given, words)
+    arguments.check_values(launch, given)
+    return options, given
+
+
+def read_end(exit_file, code, launch):
+    """Returns the exit code that the first node to end has left, and its reason. roslaunch returns
+    0 even when a required node failed."""
+    lines = exit_file.read_text(encoding="utf-8").splitlines() if exit_file.is_file() else []
+    exit_file.unlink(missing_ok=True)
+    if lines:
+        return int(lines[0]), "".join(lines[1:2])
+    if code != 0:
+        return code, ""
+    reason = "its node was killed before it ended"
+    if launch == "train":
+        reason += "; resume:=true continues from the last checkpoint"
+    return KILLED, reason
+
+
+def report_end(what, code, reason=""):
+    """Prints how a verb ended; returns its exit code."""
+    if code == 0:
+        say(f"{what} ended well")
+    elif code == INTERRUPTED:
+        say(f"{what} was interrupted (exit code {INTERRUPTED})")
+    else:
+        say(f"{what} ended with exit code {code}: {reason or 'see above'}")
+    return code
+
+
+def launch(script, name, words):
+    if importlib.util.find_spec("roslaunch") is None:
+        bootstrap("setup")  # its loader reads the launch file
+    words, verbose = without_verbose(arguments.name_the_ranch(name, words))
+    options, given = complete(name, words)
+    ensure_built()
+    shares_master = enter_ros()
+    if shares_master and name not in ("replay", "benchmark"):
+        refuse_a_second_ranch(given)
+    os.environ["AQUAFARM_LAUNCHER"] = script  # for the next steps that nodes print
+    if not verbose:
+        os.environ.setdefault("ROSCONSOLE_FORMAT", "[${severity}] ${message}")
+        say(f"starting {name}; Ctrl-C ends it, verbose:=true shows roslaunch's own messages")
+    exit_file = WS / f"exit.{os.getpid()}"
+    exit_file.unlink(missing_ok=True)
+    # A signal ends roslaunch too, which lets its nodes save. In the background of a shell SIGINT is
+    # ignored, which the nodes would inherit.
+    code = run_child(["env", "--default-signal=INT,QUIT",
+                      "roslaunch" if verbose else QUIET_ROSLAUNCH, *options,
+                      f"--sigint-timeout={SIGINT_LIMIT_S}", "aquafarm_bringup", f"{name}.launch",
+                      *given, f"exit_file:={exit_file}"])
+    return report_end(name, *read_end(exit_file, code, name))
+
+
+def describe(name, about):
+    """Prints the help of a launch file: every argument with its meaning and default."""
+    print(f"usage: ./aquafarm {name} [name:=value…]\n\n{about}\n")
+    try:
+        from roslaunch.arg_dump import dump_args  # Debian's; setup installs it
+    except ImportError:
+        print("./aquafarm setup first; then this lists every argument with its meaning and default.")
+        return 0
+    dump_args([str(LAUNCH_FILES / f"{name}.launch")])
+    print('  verbose (default "false"): true shows the messages of roslaunch itself.')
+    return 0

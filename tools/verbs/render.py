@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""./aquafarm render: pictures and videos of bags, with a policy's choices if one is given."""
+import argparse
+import os
+import tempfile
+
+from .workspace import WS, Refused, ensure_built, enter_ros, replace_by, run_child
+
+VIDEOS = (".mp4", ".webm", ".gif")
+
+
+def maps_of_values(words):
+    """Returns the options of bag_policy for the maps that these arguments of render draw."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--step", nargs="*", default=[])
+    parser.add_argument("--every", default="1")
+    parser.add_argument("--layers", default="")
+    parser.add_argument("-o", "--output", default="")
+    drawn, _ = parser.parse_known_args(words)
+    if not {"values", "moves"} & set(drawn.layers.split(",")):
+        return ["--values-every", "0"]
+    if drawn.output.endswith(VIDEOS):
+        return ["--values-every", drawn.every]
+    return ["--values-at", *(drawn.step or ["0"])]
+
+
+def without_policy(words):
+    """Returns the value of --policy, None if it is not given, and the other arguments."""
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--policy", nargs="?", const="")
+    known, others = parser.parse_known_args(words)
+    if known.policy == "":
+        raise Refused("--policy: got nothing, expected a run folder or checkpoint")
+    return known.policy, others
+
+
+def render(words):
+    policy, words = without_policy(words)
+    if policy is not None and not (words and os.path.isfile(words[0])):
+        raise Refused(f"render: got '{words[0] if words else ''}', expected the bag first: "
+                      "render BAG -o FILE --policy P")
+    ensure_built()
+    enter_ros()
+    program = WS / "devel/lib/aquafarm_viz/render"
+    if policy is None:
+        replace_by(program, *words)
+    with tempfile.TemporaryDirectory() as folder:
+        asked = f"{folder}/asked.bag"
+        code = run_child([WS / "devel/lib/aquafarm_agents/bag_policy", words[0], policy, "-o", asked,
+                          *maps_of_values(words[1:])])
+        if code != 0:
+            return code
+        return run_child([program, asked, "--asked", *words])

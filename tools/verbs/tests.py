@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""./aquafarm test: builds and runs every test."""
+import os
+import shutil
+import sys
+import time
+
+from .workspace import (PYTHON, ROOT, WS, bootstrap, build_core, enter_ros, run_bootstrap, run_child,
+                        say)
+
+RESULTS = WS / "results"
+CORES = ("aquafarm_sim", "aquafarm_agents")
+# What some tests need and the suite does not: packages, and what is left out without them.
+EXTRAS = {"the tests of HTML pages are skipped": ("chromium", "chromium-driver", "python3-selenium"),
+          "the check of locks is skipped": ("clang-14",)}
+BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="{}"><failure/>\
+</testcase></testsuite>
+"""
+LAST_LINES = 20
+
+
+class Stages:
+    """The stages of a test run: when each begins, and which broke off."""
+
+    def __init__(self):
+        self._began = time.monotonic()
+        self.has_failed = False
+
+    def begin(self, what):
+        seconds = int(time.monotonic() - self._began)
+        say(f"{seconds // 60:2d}:{seconds % 60:02d} {what}")
+
+    def run(self, command, log=None, **variables):
+        """Runs a command that exits with 0 if all its tests pass."""
+        environment = dict(os.environ, **variables)
+        if log is None:
+            code = run_child(command, env=environment)
+        else:
+            with open(log, "w", encoding="utf-8") as words:
+                code = run_child(command, env=environment, stdout=words, stderr=words)
+        self.has_failed |= code != 0
+
+    def break_off(self, name, log):
+        """A stage that breaks off counts as a failed test; cases that never ran would go unmissed
+        otherwise."""
+        path = RESULTS / f"stage-{name.replace(' ', '_')}.xml"
+        path.write_text(BROKEN.format(name), encoding="utf-8")
+        lines = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
+        print(f"aquafarm: the stage '{name}' broke off; the end of {log}:", file=sys.stderr)
+        print("\n".join(lines.splitlines()[-LAST_LINES:]), file=sys.stderr, flush=True)
+
+
+def is_empty(path):
+    return not path.is_file() or path.stat().st_size == 0
+
+
+def build(stages):
+    for left_out, packages in EXTRAS.items():
+        if run_bootstrap("--install", *packages) != 0:
+            say(f"{', '.join(packages)} cannot be installed: {left_out}")
+    stages.begin("building the workspace")
+    bootstrap("build")
+    stages.begin("building the cores with plain cmake")
+    for core in CORES:
+        build_core(core)
+    for folder in (RESULTS, WS / "build/test_results", *WS.glob("core/*/test_results")):
+        shutil.rmtree(folder, ignore_errors=True)
+    RESULTS.mkdir(parents=True)
+
+
+def test_tools(stages):
+    stages.begin("testing the tools")
+    xml, log = RESULTS / "tools.xml", RESULTS / "tools.log"
+    stages.run([PYTHON, "-m", "pytest", "-q", "-p", "no:cacheprovider", f"--junitxml={xml}",
+                *sorted(ROOT.glob("tools/test/*_test.py"))], log, AQUAFARM_CAMPAIGNS=str(WS))
+    if is_empty(xml):
+        stages.break_off("tools", log)
+
+
+def test_cores(stages):
+    jobs = os.environ.get("AQUAFARM_JOBS") or str(len(os.sched_getaffinity(0)))
+    for core in CORES:
+        stages.begin(f"testing {core}/core without ROS")
+        xml, log = RESULTS / f"ctest-{core}.xml", RESULTS / f"{core}.log"
+        stages.run(["ctest", "--test-dir", WS / "core" / core, "-j", jobs, "--timeout", "300",
+                    "--output-on-failure", "-Q", "--output-log", log, "--output-junit", xml])
+        if is_empty(xml):
+            stages.break_off(f"{core} core", log)
+
+
+def test_through_ros(stages):
+    enter_ros()
+    log = RESULTS / "build_tests.log"
+    stages.begin(f"building the tests through ROS (log: {log})")
+    if run_bootstrap("--build-tests", log) != 0:
+        stages.break_off("build of the tests through ROS", log)
+    log = RESULTS / "run_tests.log"
+    stages.begin(f"testing through ROS (log: {log})")
+    # Failed tests are found in the results; an exit code other than 0 means that it broke off.
+    code = run_child([ROOT / "tools/run_ros_tests", WS / "build", log, "--jobs",
+                      os.environ.get("AQUAFARM_TEST_JOBS") or "1"],
+                     env=dict(os.environ, CTEST_OUTPUT_ON_FAILURE="1",
+                              ROS_TEST_RESULTS_DIR=str(WS / "build/test_results")))
+    if code != 0:
+        stages.break_off("tests through ROS", log)
+
+
+def run(fast):
+    """Runs every test; `fast` leaves out the builds in other kinds of workspace. Returns 1 if a
+    test failed."""
+    stages = Stages()
+    build(stages)
+    test_tools(stages)
+    test_cores(stages)
+    test_through_ros(stages)
+    if not fast:
+        stages.begin("building and running in the other kinds of workspace")
+        stages.run([ROOT / "tools/check_workspaces", WS / "workspaces", RESULTS / "workspaces.xml"])
+    stages.begin("adding up the results")
+    stages.run([PYTHON, ROOT / "tools/sum_results.py", RESULTS, *WS.glob("core/*/test_results"),
+                WS / "build/test_results"])
+    return int(stages.has_failed)

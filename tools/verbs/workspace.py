@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The workspace: its folders, its build by ./aquafarm, its ROS environment, child processes."""
+import os
+import pathlib
+import random
+import signal
+import socket
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+WS = pathlib.Path(os.path.realpath(os.environ.get("AQUAFARM_WS") or ROOT / ".ws"))
+PYTHON = "/usr/bin/python3"  # Debian's ROS belongs to it
+CHECK_ARGUMENTS = ROOT / "aquafarm_bringup" / "scripts" / "check_arguments"
+WRONG_ARGUMENT = 2
+INTERRUPTED = 130
+ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+class Refused(Exception):
+    """A verb cannot run: one line for the user, and the exit code."""
+
+    def __init__(self, line, code=WRONG_ARGUMENT):
+        super().__init__(line)
+        self.code = code
+
+
+def say(line):
+    print(f"aquafarm: {line}", flush=True)
+
+
+def run_child(command, on_signal=signal.SIGTERM, **options):
+    """Runs a command to its end and returns its exit code, 128 + N if signal N ended it.
+
+    A signal to this process ends the command, by `on_signal`; the command may need time to save.
+    """
+    with subprocess.Popen([str(word) for word in command], **options) as child:
+        before = {number: signal.signal(number, lambda *_: child.send_signal(on_signal))
+                  for number in ENDING_SIGNALS}
+        try:
+            code = child.wait()
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+    return code if code >= 0 else 128 - code
+
+
+def run_bootstrap(*words):
+    """Runs ./aquafarm for one of its own steps; returns its exit code."""
+    return run_child(["bash", ROOT / "aquafarm", *words])
+
+
+def bootstrap(*words):
+    """Runs ./aquafarm for one of its own steps; ends this process if that fails."""
+    code = run_bootstrap(*words)
+    if code != 0:
+        sys.exit(code)
+
+
+def ensure_built():
+    bootstrap("--ensure-built")
+
+
+def build_core(name):
+    """Builds a ROS-free core alone with plain cmake."""
+    bootstrap("--core", name)
+
+
+def program(name):
+    """Returns the path of a program that a build made."""
+    for folder in (WS / "core", WS / "devel" / "lib"):
+        for path in sorted(folder.rglob(name)):
+            if path.is_file() and os.access(path, os.X_OK):
+                return path
+    raise Refused(f"the build made no {name}", code=1)
+
+
+def is_port_open(port):
+    with socket.socket() as probe:
+        return probe.connect_ex(("127.0.0.1", port)) == 0
+
+
+def enter_ros():
+    """Takes the built workspace's ROS environment into this process. Returns whether the master may
+    be one that already runs (ROS_MASTER_URI is set)."""
+    sourced = subprocess.run(["bash", "-c", 'source "$0" && exec env -0', WS / "devel/setup.bash"],
+                             stdout=subprocess.PIPE, check=False)
+    if sourced.returncode != 0:
+        raise Refused(f"{WS}/devel/setup.bash: cannot be sourced; ./aquafarm build makes it", code=1)
+    words = (word.split("=", maxsplit=1) for word in os.fsdecode(sourced.stdout).split("\0") if word)
+    os.environ.update({name: value for name, value in words if name != "_"})
+    os.environ.setdefault("ROS_HOME", str(WS / "ros"))
+    os.environ.setdefault("ROS_LOG_DIR", f"{os.environ['ROS_HOME']}/log")
+    if not os.environ.get("ROS_HOSTNAME"):
+        os.environ.setdefault("ROS_IP", "127.0.0.1")
+    os.makedirs(os.environ["ROS_LOG_DIR"], exist_ok=True)
+    uri = os.environ.get("ROS_MASTER_URI")
+    if uri:
+        code = run_child([CHECK_ARGUMENTS, "--master", uri])
+        if code != 0:
+            sys.exit(WRONG_ARGUMENT)
+        return True
+    port = 11311
+    while is_port_open(port):
+        port = random.randint(11312, 12311)
+    if port != 11311:
+        say(f"port 11311 is taken, using {port}; set ROS_MASTER_URI to share a running master")
+    os.environ["ROS_MASTER_URI"] = f"http://127.0.0.1:{port}"
+    return False
+
+
+def replace_by(*command):
+    """Runs a command in place of this process."""
+    sys.stdout.flush()
+    try:
+        os.execvp(command[0], [str(word) for word in command])
+    except OSError as error:
+        raise Refused(f"{command[0]}: {error.strerror}; ./aquafarm build makes it", code=1) from None

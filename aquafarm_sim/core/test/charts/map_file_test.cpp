@@ -6,11 +6,11 @@
 #include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/charts/ascii_grid.h"
-#include "shared_data.h"
 
 namespace aquafarm {
 namespace {
@@ -228,8 +228,7 @@ std::string Bytes(const fs::path& path) {
 }
 
 TEST(RealMaps, AreReadAsMapServerReadsThem) {
-  const fs::path maps = SharedData() / "maps";
-  if (!fs::exists(maps)) GTEST_SKIP() << "no maps at " << maps;
+  const fs::path maps = fs::path(AQUAFARM_CORE_DIR) / "test" / "data" / "real";
   const MapFile ten = LoadMap((maps / "TenByTen.yaml").string());
   EXPECT_EQ(ten.occupancy.rows(), 10);
   EXPECT_EQ(ten.cell_size_m, 1.0);

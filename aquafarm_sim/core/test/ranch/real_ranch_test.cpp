@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranches built from published files; skipped if the files are missing.
+// Ranches built from published files: excerpts of every clone, and whole files, without which a
+// test is skipped.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -31,17 +32,15 @@ TEST(RealFiles, MakeARanchOffDongji) {
   EXPECT_TRUE(Says(ranch.decided, "strongest ring 64 kt"));
 }
 
-TEST(RealFiles, GiveDevicesTheirValueFromTheSea) {
-  const fs::path data = SharedData();
-  if (!fs::exists(data)) GTEST_SKIP() << "no real files at " << data;
+TEST(RealExcerpts, GiveDevicesTheirValueFromTheSea) {
   RanchRequest request;
   request.center = GeoPoint{24.8, 57.9};
   request.cell_size_m = 2000.0;
-  const std::string file = (data / "ocean" / "HYCOM_ST_GoO_20160428to20160503.nc").string();
+  const std::string file = (kData / "real" / "hycom_oman_2016.nc").string();
   request.sea = {{"salt", file, "so"}, {"warmth", file, "thetao"}};
   request.value = "warmth > 26 ? 80 : 40 + salt";
   const BuiltRanch ranch = BuildRanch(request);
-  EXPECT_TRUE(Says(ranch.decided, "salt: so of HYCOM_ST_GoO_20160428to20160503.nc at 2016-04-28T"));
+  EXPECT_TRUE(Says(ranch.decided, "salt: so of hycom_oman_2016.nc at 2016-04-28T"));
   ASSERT_EQ(ranch.scenario.devices.sites.size(), 4U);
   for (const DeviceSite& site : ranch.scenario.devices.sites) {
     EXPECT_TRUE(*site.value == 80.0F || (*site.value > 75.0F && *site.value < 79.0F));
@@ -52,6 +51,16 @@ TEST(RealFiles, GiveDevicesTheirValueFromTheSea) {
   EXPECT_NE(Refused(request).find("expected an expression"), std::string::npos);
   request.center = GeoPoint{30.0, 122.0};
   EXPECT_NE(Refused(request).find("expected the ranch at"), std::string::npos);
+}
+
+// Chart and track of every clone: the track has the rings of its own agency.
+TEST(RealExcerpts, OfJmaMakeARanch) {
+  RanchRequest request = Request();
+  request.track = (kData / "real" / "jma_in_fa_2021.txt").string();
+  const BuiltRanch ranch = BuildRanch(request);
+  EXPECT_TRUE(Says(ranch.decided, "nearest: 9 km at 2021-07-25T12:10:00Z")) << ranch.yaml;
+  EXPECT_EQ(ranch.scenario.disasters.size(), 1U);
+  EXPECT_GT(ranch.scenario.disasters[0].track.size(), 2U);
 }
 
 // The bulletins of the archive contain no forecasts; the storm continues its motion.

@@ -13,7 +13,6 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/sea/expression.h"
-#include "shared_data.h"
 #include "write_sea.h"
 
 namespace aquafarm {
@@ -417,9 +416,9 @@ TEST(Expressions, AreRefusedInOneLine) {
   EXPECT_NE(refused("1", "2bad").find("expected an expression"), std::string::npos);
 }
 
-TEST(RealFiles, OfHycomHaveSaltAndWarmth) {
-  const fs::path path = SharedData() / "ocean" / "HYCOM_ST_GoO_20160428to20160503.nc";
-  if (!fs::exists(path)) GTEST_SKIP() << "no field at " << path;
+TEST(RealExcerpts, OfHycomHaveSaltAndWarmth) {
+  const fs::path path =
+      fs::path(AQUAFARM_CORE_DIR) / "test" / "data" / "real" / "hycom_oman_2016.nc";
   const GeoFrame frame({24.6, 57.6}, 2000.0);
   const SeaField salt = LoadSeaField(path.string(), {"so", {}, 0.0}, frame, 25, 25);
   EXPECT_EQ(salt.depth_m, 0.0);

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The measures of §4.2, computed with numpy and independent of files and learners."""
+"""The measures of §4.2, computed with numpy and scipy, independent of files and learners."""
 import math
 
 import numpy as np
+from scipy import stats
 
 WINDOW = 50  # episodes in a moving mean
 BAND = 0.05  # half-width of the band of a converged learner, as a fraction of the plateau
@@ -48,7 +49,10 @@ def convergence(returns, successes, standard_errors=0.0):
 
 
 def interquartile_mean(values):
-    """Returns the mean of the middle half; values at a quarter's edge count with a fraction."""
+    """Returns the mean of the middle half; values at a quarter's edge count with a fraction.
+
+    Not scipy's trim_mean, which leaves out whole values only: one of five, not 1.25.
+    """
     values = np.sort(np.asarray(values, dtype=float))
     cut = len(values) / 4.0
     weights = np.ones(len(values))
@@ -64,22 +68,18 @@ def interquartile_mean(values):
 
 def bootstrap_interval(values, statistic=interquartile_mean, level=0.95, draws=2000, seed=1):
     """Returns the percentile bootstrap (Efron 1979) of a statistic over runs: (low, high)."""
-    values = np.asarray(values, dtype=float)
     if len(values) < 2:
         return (math.nan, math.nan)
-    chance = np.random.Generator(np.random.PCG64(seed))
-    picks = chance.integers(len(values), size=(draws, len(values)))
-    drawn = [statistic(values[pick]) for pick in picks]
-    low, high = np.quantile(drawn, [(1.0 - level) / 2.0, (1.0 + level) / 2.0])
-    return (float(low), float(high))
+    found = stats.bootstrap((np.asarray(values, dtype=float),), statistic, vectorized=False,
+                            n_resamples=draws, confidence_level=level, method="percentile",
+                            random_state=np.random.default_rng(seed)).confidence_interval
+    return (float(found.low), float(found.high))
 
 
-def wilson_interval(hits, count, z=1.959964):
-    """Returns the 95 % interval of a proportion (Wilson 1927): (low, high)."""
-    share, slack = hits / count, z * z / count
-    middle = (share + slack / 2.0) / (1.0 + slack)
-    half = z * math.sqrt(share * (1.0 - share) / count + slack / count / 4.0) / (1.0 + slack)
-    return (max(0.0, middle - half), min(1.0, middle + half))
+def wilson_interval(hits, count, level=0.95):
+    """Returns the interval of a proportion (Wilson 1927): (low, high)."""
+    found = stats.binomtest(int(hits), count).proportion_ci(level, method="wilson")
+    return (float(found.low), float(found.high))
 
 
 def return_per_step(returns, steps, window=WINDOW):

@@ -17,7 +17,7 @@ import unittest
 import rosbag
 import rostest
 
-from aquafarm_benchmark import figures, human, protocol, runs
+from aquafarm_benchmark import cluster, figures, human, protocol, runs
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, program  # noqa: E402
@@ -61,6 +61,12 @@ def stop_once_under_way(trainings):
         if metrics.exists() and metrics.stat().st_size > 4096:
             stopped += send_all(str(folder), signal.SIGSTOP)
     return stopped == len(trainings)
+
+
+def run_all(jobs, report=lambda text: None):
+    """Runs jobs, two in parallel, on this machine."""
+    with cluster.Cluster(jobs=2) as workers:
+        return runs.run_all(jobs, workers, report)
 
 
 class BenchmarkTest(unittest.TestCase):
@@ -296,15 +302,17 @@ class BenchmarkTest(unittest.TestCase):
 
     def test_a_run_that_cannot_be_resumed_fails_and_is_not_left_out(self):
         job = runs.Job("dqn", "dqn 1", self.folder / "dqn", self.folder / "dqn/evaluation.json",
-                       [["sh", "-c", "echo damaged; exit 2"]], 1.0, resumes=True)
-        with self.assertRaisesRegex(runs.RunFailed, "^dqn 1: exit code 2: damaged"):
-            runs.run_all([job], 1, lambda text: None)
+                       [["sh", "-c", "echo damaged $0; exit 2"]], 1.0, resumable=True)
+        job.folder.mkdir()
+        (job.folder / "run.json").write_text("{}")
+        with self.assertRaisesRegex(runs.RunFailed, "^dqn 1: exit code 2: damaged --resume"):
+            run_all([job])
 
     def test_a_policy_that_is_refused_after_its_training_fails_and_is_not_left_out(self):
         job = runs.Job("dqn", "dqn 1", self.folder / "dqn", self.folder / "dqn/evaluation.json",
                        [["true"], ["sh", "-c", "echo of another version; exit 2"]], 1.0)
         with self.assertRaisesRegex(runs.RunFailed, "^dqn 1: exit code 2: of another version"):
-            runs.run_all([job], 1, lambda text: None)
+            run_all([job])
 
     def test_networks_take_part_with_the_settings_of_the_protocol(self):
         one = self.start("out", "--algorithms", "dqn,lstm_dqn", episodes=20)
@@ -335,11 +343,11 @@ class BenchmarkTest(unittest.TestCase):
                     ("bad", "echo the disk is full; exit 3"), ("unfit", "echo too large; exit 2"))]
         words = []
         with self.assertRaisesRegex(runs.RunFailed, "^bad: exit code 3: the disk is full"):
-            runs.run_all(jobs, 2, words.append)
+            run_all(jobs, words.append)
         self.assertIn("failed: bad: exit code 3", words[0])
         self.assertTrue(runs.is_complete(jobs[0].result))
-        unfit = dataclasses.replace(jobs[2], next_command=0)
-        self.assertEqual({"unfit": "too large"}, runs.run_all([unfit], 1, words.append))
+        unfit = dataclasses.replace(jobs[2], command=0, started=None)
+        self.assertEqual({"unfit": "too large"}, run_all([unfit], words.append))
 
     def test_arguments_are_refused_with_what_is_allowed(self):
         (self.folder / "full").mkdir()
@@ -350,6 +358,7 @@ class BenchmarkTest(unittest.TestCase):
                 (("--runs", "-1"), "runs: got -1, expected 1 or more"),
                 (("--runs", "1e1"), "argument --runs: invalid int value: '1e1'"),
                 (("--output", self.folder / "full"), "is not empty and holds no benchmark"),
+                (("--scheduler", "cloud"), "scheduler: got 'cloud', expected local, slurm or an "),
                 (("--programs", self.folder), "there is no aquafarm_evaluate in")):
             with self.subTest(arguments=arguments):
                 one = self.start("out", *arguments)

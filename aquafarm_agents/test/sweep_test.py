@@ -90,6 +90,7 @@ class SweepTest(unittest.TestCase):
                 (("--seeds", "3-1"), "--seeds: got '3-1', expected different numbers"),
                 (("--seeds", "1,1"), "--seeds: got '1,1'"),
                 (("--jobs", "0"), "--jobs: got 0, expected at least 1"),
+                (("--scheduler", "cloud"), "scheduler: got 'cloud', expected local, slurm or an "),
                 (("--set", "gamma=0.9"), "--output: got ")):
             code, said = self.sweep(*words)
             self.assertEqual(code, 2, said)

@@ -11,7 +11,7 @@ packages=(
   rviz librviz-dev libimage-transport-dev image-transport-tools libcv-bridge-dev python3-cv-bridge
   libopencv-dev libgif-dev libfreetype-dev python3-opencv python3-numpy python3-matplotlib python3-setuptools
   python3-scipy python3-skimage python3-contourpy python3-jinja2 python3-jsonschema
-  python3-venv python3-torch python3-pandas python3-pytest pybind11-dev
+  python3-venv python3-torch python3-pandas python3-pytest python3-distributed pybind11-dev
   libtorch-dev libgloo-dev libopenblas0-pthread libblas-dev
   libeigen3-dev libyaml-cpp-dev libgtest-dev libbenchmark-dev librandom123-dev libcli11-dev
   nlohmann-json3-dev libgeographiclib-dev libstb-dev libnetcdf-dev libmuparser-dev

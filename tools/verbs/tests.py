@@ -13,6 +13,7 @@ CORES = ("aquafarm_sim", "aquafarm_agents")
 # What some tests need and the suite does not: packages, and what is left out without them.
 EXTRAS = {"the tests of HTML pages are skipped": ("chromium", "chromium-driver", "python3-selenium"),
           "the check of locks is skipped": ("clang-14",)}
+SLURM = {"the tests of batch files are skipped": ("munge", "slurmctld", "slurmd", "slurm-client")}
 BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="{}"><failure/>\
 </testcase></testsuite>
 """
@@ -55,7 +56,8 @@ def is_empty(path):
 
 
 def build(stages):
-    for left_out, packages in EXTRAS.items():
+    extras = {**EXTRAS, **(SLURM if os.environ.get("AQUAFARM_TEST_SLURM") == "1" else {})}
+    for left_out, packages in extras.items():
         if run_bootstrap("--install", *packages) != 0:
             say(f"{', '.join(packages)} cannot be installed: {left_out}")
     stages.begin("building the workspace")

@@ -3,6 +3,8 @@
 
 protocol  the learners, the length of their trainings, and the paper's results
 runs      the trainings, in parallel, each resumable
+cluster   the Dask workers that execute them: of this machine, a scheduler or Slurm
+worker    the part of a run that executes on a worker
 measures  convergence, stability, EA, interquartile means and intervals
 results   the table and the result files of a benchmark
 figures   Figs. 11 to 14 and the learning curves

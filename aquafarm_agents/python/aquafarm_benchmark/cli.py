@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-from aquafarm_benchmark import human, results, runs
+from aquafarm_benchmark import cluster, human, results, runs
 from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES, REFERENCES, Contestant
 
 _OK, _FAILED, _BAD_INPUT, _STORAGE, _INTERRUPTED = 0, 1, 2, 3, 130
@@ -65,7 +65,9 @@ def parse(arguments):
     parser.add_argument("--evaluation-seed", type=int, default=1000,
                         help="seed of those episodes, the same for all (default: 1000)")
     parser.add_argument("--jobs", type=int, default=0,
-                        help="runs side by side (default: one a core)")
+                        help="runs in parallel, of --scheduler local and slurm (default: one per "
+                        "core)")
+    parser.add_argument("--scheduler", default=cluster.LOCAL, help=cluster.HELP)
     parser.add_argument("--human", default="none",
                         help="folder with bags of ./aquafarm play, which become a row; a folder "
                         "in it is one person (default: none)")
@@ -79,6 +81,7 @@ def parse(arguments):
     if options.profile not in PROFILES:
         raise BadInput(f"profile: got '{options.profile}', expected one of: "
                        + ", ".join(PROFILES))
+    cluster.check(options.scheduler)
     profile = PROFILES[options.profile]
     _require_paper(options)
     for name in ("runs", "episodes", "evaluation_episodes", "max_steps"):
@@ -166,7 +169,6 @@ def make_jobs(options, contestants, folder):
     for one in contestants:
         farm = [one.scenario or options.scenario, "--max-steps", str(options.max_steps)]
         for seed in range(1, options.runs + 1) if one.repeats else (1,):
-            resumes = False
             run = folder / "runs" / one.name / f"seed_{seed}"
             commands = []
             if one.command:
@@ -174,15 +176,13 @@ def make_jobs(options, contestants, folder):
                                      [_external_command(one, options, seed, run)], one.cost))
                 continue
             if one.learns:
-                resumes = _has_begun(run)
                 commands.append([
                     train, *farm, "--algorithm", one.algorithm_name,
                     "--episodes", str(options.episodes),
                     "--seed", str(seed), "--run-dir", str(run), "--evaluate", "0", "--random", "0",
                     "--farms", str(FARMS), "--checkpoint-period", "120",
                     *(["--exploration", one.exploration] if one.exploration else []),
-                    *(word for option in one.options for word in ("--set", option)),
-                    *(["--resume"] if resumes else [])])
+                    *(word for option in one.options for word in ("--set", option))])
             episodes = options.evaluation_episodes
             episodes = min(episodes, one.episodes) if one.episodes else episodes
             commands.append([
@@ -191,12 +191,8 @@ def make_jobs(options, contestants, folder):
                 "--policy-seed", str(seed), "--write", str(run / "evaluation"),
                 *(["--route", str(run / "route.json")] if seed == 1 else [])])
             jobs.append(runs.Job(one.name, f"{one.name} {seed}" if one.repeats else one.name, run,
-                                 run / "evaluation.json", commands, one.cost, resumes))
+                                 run / "evaluation.json", commands, one.cost, one.learns))
     return jobs
-
-
-def _has_begun(run):
-    return (run / "run.json").exists() or any((run / "checkpoints").glob("step_*.ckpt"))
 
 
 def settings_of(options, contestants, farm):
@@ -221,7 +217,7 @@ def _settings_of_one(one):
 def claim(folder, settings):
     """Creates the folder; raises BadInput if it contains another benchmark or is in use.
 
-    Returns the descriptor of its lock, which is held until every process has closed it."""
+    Returns the descriptor of its lock, which is held until this process ends."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / "benchmark.json"
     there = None
@@ -315,12 +311,11 @@ def run(options):
     folder = options.output.resolve()
     people = read_people(options.human, farm) if options.human != "none" else []
     settings = settings_of(options, contestants, farm)
-    lock = claim(folder, settings)
+    claim(folder, settings)
     jobs = make_jobs(options, [*contestants, OPTIMUM], folder)
-    is_whole = not any(job.resumes or runs.is_complete(job.result) for job in jobs)
+    is_whole = not any(job.has_begun or runs.is_complete(job.result) for job in jobs)
     start = time.monotonic()
-    _say(f"{len(jobs)} runs, {options.jobs} side by side, in {folder}")
-    declined = runs.run_all(jobs, options.jobs, _say, lock)
+    declined = _run_jobs(jobs, options, folder)
     for name, reason in declined.items():
         _say(f"{name} does not take part: {reason}")
     if all(one.name in declined for one in contestants):
@@ -340,6 +335,15 @@ def run(options):
     settings.update(jobs=options.jobs, wall_s=round(seconds, 1) if is_whole else None)
     _conclude(folder, [one for one in contestants if one.name in found], found, settings, people)
     print(f"took {runs.describe_seconds(seconds)}; tables and figures are in {folder}")
+
+
+def _run_jobs(jobs, options, folder):
+    """Executes the jobs; returns the contestants that do not take part, and why."""
+    with cluster.Cluster(options.scheduler, options.jobs) as workers:
+        place = (f"{options.jobs} in parallel" if workers.is_local else
+                 f"on the scheduler {options.scheduler}")
+        _say(f"{len(jobs)} runs, {place}, in {folder}")
+        return runs.run_all(jobs, workers, _say)
 
 
 def _summarise(one, of_one, best, settings, people):
@@ -413,9 +417,12 @@ def main(arguments=None):
     try:
         run(parse(arguments))
         return _OK
-    except BadInput as error:
+    except (BadInput, cluster.BadScheduler) as error:
         print(error, file=sys.stderr)
         return _BAD_INPUT
+    except cluster.Lost as error:
+        print(error, file=sys.stderr)
+        return _FAILED
     except runs.RunFailed as error:
         print(f"some runs failed; the others are kept:\n{error}", file=sys.stderr)
         return _FAILED

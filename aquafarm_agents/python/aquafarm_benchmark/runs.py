@@ -1,30 +1,27 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trainings and evaluations as processes: parallel, resumable, and terminated on an interrupt."""
-import ctypes
+"""Trainings and evaluations as programs on the workers of Dask: parallel, resumable, executed again
+when a worker or the scheduler is lost, and terminated on an interrupt."""
 import dataclasses
+import fcntl
 import json
 import os
 import pathlib
 import re
 import shutil
 import signal
-import subprocess
 import time
 import typing
+from asyncio import CancelledError, TimeoutError
+
+from aquafarm_benchmark.worker import has_begun, last_line
 
 _REFUSED = 2  # exit code of a program for invalid input
-_LINGER_S = 10.0  # time for processes to save after Ctrl-C; roslaunch allows 15
+_LINGER_S = 12.0  # time for programs to save after Ctrl-C; roslaunch allows 15
+_PERIOD_S = 5.0  # between two checks of the scheduler
+_LOSSES = 5  # times that a run is submitted again after Dask gave it up with its workers
 _DONE = re.compile(r"(?:steps|episodes) ([\d,]+) / ([\d,]+)")
-
-_LIBC = ctypes.CDLL(None, use_errno=True)
-_PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
-
-
-def _end_with(parent):
-    """Called in a child: if its parent is killed, the child saves and exits as on Ctrl-C."""
-    _LIBC.prctl(_PR_SET_PDEATHSIG, signal.SIGINT)
-    if os.getppid() != parent:
-        os._exit(1)  # the parent was killed before the call
+# Variables of this process that change results or the output of programs.
+_PASSED_ON = re.compile(r"OPENBLAS_\w+|OMP_\w+|AQUAFARM_\w+")
 
 
 class RunFailed(RuntimeError):
@@ -44,41 +41,36 @@ class Job:
     result: pathlib.Path
     commands: typing.List[typing.List[str]]
     cost: float
-    resumes: bool = False  # its folder already contains a run
-    next_command: int = 0
-    process: typing.Optional[subprocess.Popen] = None
-    started: float = 0.0
+    resumable: bool = False  # the first command resumes a run with --resume
+    resumes: bool = False  # it was started with --resume
+    started: typing.Optional[float] = None
+    command: int = 0  # number of the command that runs, from 1
+    losses: int = 0
     done_at_start: float = 0.0
 
     @property
     def log(self):
         return self.folder.with_name(self.folder.name + ".log")
 
-    def start_next(self, lock):
-        """Starts the next command, which appends its output to the log and keeps `lock` open."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        parent = os.getpid()
-        with open(self.log, "ab") as log:
-            self.process = subprocess.Popen(self.commands[self.next_command], stdout=log,
-                                            stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
-                                            start_new_session=True,
-                                            pass_fds=[] if lock is None else [lock],
-                                            preexec_fn=lambda: _end_with(parent))
-        self.next_command += 1
+    @property
+    def has_begun(self):
+        """Whether its folder contains a run that it will resume."""
+        return self.resumable and has_begun(self.folder)
 
-    def last_words(self):
-        """Returns the last line of the log."""
-        text = self.log.read_text(errors="replace") if self.log.exists() else ""
-        lines = text.strip().splitlines()
-        return lines[-1] if lines else "it said nothing"
+    def note_start(self, event):
+        """Takes over that a worker has started a command."""
+        self.command, self.resumes = event["command"], event["resumes"]
+        if self.command == 1:
+            self.done_at_start = self.done() if self.resumes else 0.0
+            self.started = time.monotonic()
 
     def done(self):
         """Returns the completed fraction of the training, read from the log's last line: 0 before
         the training, 1 after it."""
-        if self.next_command > 1:
+        if self.command > 1:
             return 1.0
         found = [(int(done.replace(",", "")) / max(1, int(limit.replace(",", ""))))
-                 for done, limit in _DONE.findall(self.last_words())]
+                 for done, limit in _DONE.findall(last_line(self.log))]
         return min(1.0, max(found, default=0.0))
 
 
@@ -90,109 +82,201 @@ def is_complete(result):
         return False
 
 
-def run_all(jobs, at_once, report, lock=None, period_s=10.0):
-    """Runs the jobs without a result, the longest first, up to `at_once` in parallel.
+def run_all(jobs, cluster, report, period_s=10.0, complete=is_complete):
+    """Runs the jobs without a result on the workers of a cluster.Cluster, the longest first.
 
     report(text) is called with the progress every period_s seconds. Returns {contestant: reason}
     for contestants whose first program rejects its input (exit code 2, such as a table on a farm
     with too many states). Such an exit after the first command, or after a complete run of the
-    contestant, is a failure. lock is a file descriptor that every process keeps open until it ends.
-    Raises RunFailed if some runs failed (the others run nevertheless), Interrupted on Ctrl-C after
-    every process has saved and exited.
+    contestant, is a failure. complete(path) returns whether a result is complete. Raises RunFailed
+    if some runs failed (the others run nevertheless), Interrupted on Ctrl-C after every program has
+    saved and exited, cluster.Lost if the scheduler is lost for good.
     """
-    waiting = sorted((job for job in jobs if not is_complete(job.result)),
-                     key=lambda job: -job.cost)
-    over = len(jobs) - len(waiting)
-    if over:
-        report(f"{over} of {len(jobs)} runs are there already")
-    progress = _Progress(jobs, over, waiting, at_once)
-    took_part = {job.contestant for job in jobs if is_complete(job.result)}
-    running, failures, declined, told = [], [], {}, time.monotonic()
-    try:
-        while waiting or running:
-            while waiting and len(running) < at_once:
-                job = waiting.pop(0)
-                job.done_at_start = job.done() if job.resumes else 0.0
-                job.started = time.monotonic()
-                job.start_next(lock)
-                running.append(job)
-            time.sleep(0.05)
-            for job in list(running):
-                code = job.process.poll()
-                if code is None:
-                    continue
-                if code == 0 and job.next_command < len(job.commands):
-                    job.start_next(lock)
-                    continue
-                running.remove(job)
-                if code == 0 and is_complete(job.result):
-                    progress.finish(job)
-                    took_part.add(job.contestant)
-                    shutil.rmtree(job.folder / "checkpoints", ignore_errors=True)
-                elif (code == _REFUSED and not job.resumes and job.next_command == 1 and
-                      job.contestant not in took_part):
-                    declined.setdefault(job.contestant, job.last_words())
-                    waiting = [one for one in waiting if one.contestant != job.contestant]
-                else:
-                    failures.append(f"{job.name}: exit code {code}: {job.last_words()} ({job.log})")
-                    report("failed: " + failures[-1])
-            if time.monotonic() - told >= period_s and running:
-                told = time.monotonic()
-                report(progress.describe(running, waiting))
-    except BaseException as error:
-        _end(running)
-        if isinstance(error, KeyboardInterrupt):
-            raise Interrupted("interrupted; the same command resumes it") from None
-        raise
-    if failures:
-        raise RunFailed("\n".join(failures))
-    return declined
+    return _Runs(jobs, cluster, report, complete).run(period_s)
 
 
-def _end(running):
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)  # ignore repeated interrupts: this ends soon
-    for job in running:
-        job.process.send_signal(signal.SIGINT)
-    end = time.monotonic() + _LINGER_S
-    for job in running:
+class _Runs:
+    """The state of run_all."""
+
+    def __init__(self, jobs, cluster, report, complete):
+        self._cluster = cluster
+        self._report = report
+        self._complete = complete
+        self._waiting = sorted((job for job in jobs if not complete(job.result)),
+                               key=lambda job: -job.cost)
+        self._took_part = {job.contestant for job in jobs if complete(job.result)}
+        self._over = len(jobs) - len(self._waiting)
+        self._futures = {}  # submitted: {future: job}
+        self._jobs = {}  # by key of their future, for events
+        self._failures, self._declined = [], {}
+        self._progress = _Progress(jobs, self._over)
+        if self._over:
+            report(f"{self._over} of {len(jobs)} runs are there already")
+
+    def run(self, period_s):
+        told = checked = time.monotonic()
         try:
-            job.process.wait(max(0.0, end - time.monotonic()))
-        except subprocess.TimeoutExpired:
-            os.killpg(job.process.pid, signal.SIGKILL)
-            job.process.wait()
+            self._submit_all(self._waiting)
+            while self._futures:
+                for future in [one for one in self._futures if one.done()]:
+                    self._settle(future)
+                now = time.monotonic()
+                if now - checked >= _PERIOD_S and not self._cluster.is_local:
+                    checked = now
+                    if not self._cluster.is_alive():
+                        self._recover()
+                if now - told >= period_s and self._futures:
+                    told = now
+                    self._report(self._progress.describe(list(self._futures.values()),
+                                                         self._cluster.workers()))
+                time.sleep(0.05)
+        except BaseException as error:
+            self._end()
+            if isinstance(error, KeyboardInterrupt):
+                raise Interrupted("interrupted; the same command resumes it") from None
+            raise
+        if self._failures:
+            raise RunFailed("\n".join(self._failures))
+        return self._declined
+
+    def _submit_all(self, jobs):
+        if not jobs:
+            return
+        import cloudpickle
+        from aquafarm_benchmark import worker
+        cloudpickle.register_pickle_by_value(worker)  # a remote worker lacks the module
+        self._cluster.client.subscribe_topic(worker.TOPIC, self._note)
+        if not self._cluster.workers():
+            self._report("the scheduler has no worker yet; the runs wait for one")
+        for number, job in enumerate(jobs):
+            self._submit(job, -number)
+
+    def _submit(self, job, priority=0):
+        from aquafarm_benchmark import worker
+        job.folder.mkdir(parents=True, exist_ok=True)
+        environment = {name: value for name, value in os.environ.items()
+                       if _PASSED_ON.fullmatch(name)}
+        future = self._cluster.client.submit(
+            worker.perform, str(job.folder), job.commands, job.resumable, os.getcwd(), environment,
+            key=f"{job.name}-{os.urandom(8).hex()}", pure=False, priority=priority)
+        self._jobs[future.key] = job
+        self._futures[future] = job
+
+    def _note(self, event):
+        """Called in Dask's thread when a worker starts a command."""
+        _, message = event
+        job = self._jobs.get(message["key"])
+        if job is None:
+            return
+        if job.started is not None and message["command"] == 1:
+            self._report(f"{job.name}: its worker was lost; it runs again on {message['host']}")
+        job.note_start(message)
+
+    def _settle(self, future):
+        """Takes over the end of a run, which may be that of its worker."""
+        job = self._futures.pop(future)
+        if future.status == "cancelled":  # with the scheduler, or below
+            if job.contestant not in self._declined:
+                self._submit(job)
+            return
+        if future.status == "error":
+            self._settle_error(job, future.exception())
+            return
+        try:
+            outcome = future.result(timeout=_PERIOD_S)
+        except (OSError, TimeoutError, CancelledError):  # it was lost with worker or scheduler
+            self._futures[future] = job
+            return
+        if outcome is None:
+            self._submit(job)
+            return
+        job.resumes, code = outcome["resumes"], outcome["code"]
+        if code == 0 and self._complete(job.result):
+            self._progress.finish(job)
+            self._took_part.add(job.contestant)
+            shutil.rmtree(job.folder / "checkpoints", ignore_errors=True)
+        elif (code == _REFUSED and not job.resumes and outcome["commands"] == 1 and
+              job.contestant not in self._took_part):
+            self._declined.setdefault(job.contestant, outcome["words"])
+            self._cluster.cancel([one for one, other in self._futures.items()
+                                  if other.contestant == job.contestant])
+        elif job.contestant not in self._declined:
+            self._fail(f"{job.name}: exit code {code}: {outcome['words']} ({job.log})")
+
+    def _settle_error(self, job, error):
+        from distributed import KilledWorker
+        job.losses += 1
+        if isinstance(error, KilledWorker) and job.losses <= _LOSSES:
+            self._submit(job)
+            return
+        self._fail(f"{job.name}: {str(error).splitlines()[0] if str(error) else repr(error)}")
+
+    def _fail(self, text):
+        self._failures.append(text)
+        self._report("failed: " + text)
+
+    def _recover(self):
+        """Submits what is left to the scheduler that has replaced the one that was lost."""
+        left = list(self._futures.values())
+        self._cluster.reconnect(self._report)
+        self._futures.clear()
+        self._jobs.clear()
+        self._submit_all([job for job in left if not self._complete(job.result)])
+
+    def _end(self):
+        """Ends all programs and waits until they have saved."""
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)  # ignore repeated interrupts: this ends soon
+        self._cluster.cancel(list(self._futures))
+        end = time.monotonic() + _LINGER_S
+        for job in self._futures.values():
+            while job.started is not None and is_written(job.log) and time.monotonic() < end:
+                time.sleep(0.05)
+
+
+def is_written(log):
+    """Returns whether a program of a run still writes its log, which it keeps locked."""
+    try:
+        with open(log, "rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        pass
+    return False
 
 
 class _Progress:
     """Progress of all runs, and an estimate of the remaining time from complete runs."""
 
-    def __init__(self, jobs, over, waiting, at_once):
+    def __init__(self, jobs, over):
         self._count = len(jobs)
         self._costs = {job.contestant: job.cost for job in jobs}
         self._over = over
-        self._at_once = min(at_once, max(1, len(waiting)))
         self._took = {}  # durations of complete jobs by contestant [s]
 
     def finish(self, job):
         self._over += 1
-        if not job.resumes:
+        if not job.resumes and job.started is not None:
             self._took.setdefault(job.contestant, []).append(time.monotonic() - job.started)
 
-    def describe(self, running, waiting):
+    def describe(self, left, at_once):
+        """Returns one line. left are the jobs that are not over, at_once those in parallel."""
         now = time.monotonic()
         seconds = {name: sum(took) / len(took) for name, took in self._took.items()}
+        running = [job for job in left if job.started is not None]
+        done_of = {id(job): job.done() for job in running}
         for job in running:
-            done = job.done() - job.done_at_start
+            done = done_of[id(job)] - job.done_at_start
             if job.contestant not in seconds and done > 0.02:
                 seconds[job.contestant] = (now - job.started) / done
-        words = ", ".join(f"{job.name} {100.0 * job.done():.0f} %" for job in running)
-        text = f"{self._over} of {self._count} runs over; {words}"
+        words = ", ".join(f"{job.name} {100.0 * done_of[id(job)]:.0f} %" for job in running)
+        text = f"{self._over} of {self._count} runs over; {words or 'none runs yet'}"
         if seconds:
             of_unit = max(took / self._costs[name] for name, took in seconds.items())
-            left = sum(seconds.get(job.contestant, of_unit * job.cost) *
-                       (1.0 - (job.done() if job in running else 0.0))
-                       for job in [*running, *waiting])
-            text += f"; about {describe_seconds(left / self._at_once)} left"
+            work = sum(seconds.get(job.contestant, of_unit * job.cost) *
+                       (1.0 - done_of.get(id(job), 0.0)) for job in left)
+            text += f"; about {describe_seconds(work / max(1, min(at_once, len(left))))} left"
         return text
 
 

@@ -18,6 +18,7 @@ import os
 import pathlib
 import sys
 
+from aquafarm_benchmark import cluster
 from aquafarm_benchmark.cli import find_program
 from aquafarm_benchmark.runs import Interrupted, Job, RunFailed, run_all
 
@@ -71,9 +72,8 @@ def jobs_of(given, settings, train):
                 command += ["--steps", str(given.steps)]
             for word in chosen:
                 command += ["--set", word]
-            resumes = (folder / "run.json").is_file()
-            jobs.append(Job(str(number), folder.name, folder, folder / "evaluation.json",
-                            [command + (["--resume"] if resumes else [])], 1.0, resumes))
+            jobs.append(Job(str(number), folder.name, folder, folder / "evaluation.json", [command],
+                            1.0, resumable=True))
     return jobs
 
 
@@ -135,13 +135,15 @@ def arguments(words):
     parser.add_argument("--output", type=pathlib.Path, required=True,
                         help="folder for runs and tables")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1,
-                        help="number of trainings at a time")
+                        help="number of trainings in parallel, of --scheduler local and slurm")
+    parser.add_argument("--scheduler", default=cluster.LOCAL, help=cluster.HELP)
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of aquafarm_train (default: the workspace's, or that on PATH)")
     given = parser.parse_args(words)
     for name, low in (("steps", 0), ("episodes", 1), ("jobs", 1)):
         if getattr(given, name) < low:
             raise ValueError(f"--{name}: got {getattr(given, name)}, expected at least {low}")
+    cluster.check(given.scheduler)
     given.seed_list = parse_seeds(given.seeds)
     return given
 
@@ -165,6 +167,7 @@ def main(words=None):
         given = arguments(words)
         settings = combinations([parse_option(one) for one in given.set])
         train = find_program("aquafarm_train", given.programs)
+        given.output = given.output.resolve()
         if given.scenario.endswith((".yaml", ".yml")):
             given.scenario = str(pathlib.Path(given.scenario).resolve())
         check_plan(given, settings)
@@ -174,11 +177,15 @@ def main(words=None):
     jobs, code = jobs_of(given, settings, train), 0
     print(f"{len(settings)} combinations x {len(given.seed_list)} seeds = {len(jobs)} trainings")
     try:
-        declined = run_all(jobs, given.jobs, lambda text: print(text, flush=True))
+        with cluster.Cluster(given.scheduler, given.jobs) as workers:
+            declined = run_all(jobs, workers, lambda text: print(text, flush=True))
         for number, reason in declined.items():
             print(f"refused: {' '.join(settings[int(number)])}: {reason}", file=sys.stderr)
             code = 2
-    except RunFailed as error:
+    except cluster.BadScheduler as error:
+        print(f"aquafarm_sweep: {error}", file=sys.stderr)
+        return 2
+    except (RunFailed, cluster.Lost) as error:
         print(f"aquafarm_sweep: {error}", file=sys.stderr)
         code = 4
     except Interrupted as error:

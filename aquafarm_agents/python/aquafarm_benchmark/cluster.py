@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The workers of Dask that execute runs: of this process, of a scheduler, or of Slurm."""
+import logging
+import re
+import time
+
+LOCAL, SLURM = "local", "slurm"
+HELP = ("where runs execute: local (this machine's cores), slurm (jobs of Slurm, made by "
+        "dask-jobqueue), or the address of a Dask scheduler such as host:8786, which needs the same "
+        "files under the same paths (default: local)")
+
+_CONNECT_S = 25.0  # max wait for the scheduler at the start
+_RETURN_S = 600.0  # max wait for a scheduler that was lost
+_ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?[^/:\s]+:\d{1,5}")
+
+
+class BadScheduler(ValueError):
+    """The scheduler cannot be used; one line."""
+
+
+class Lost(RuntimeError):
+    """The scheduler did not come back; one line."""
+
+
+def check(scheduler):
+    """Raises BadScheduler if the text names no scheduler."""
+    if scheduler not in (LOCAL, SLURM) and not _ADDRESS.fullmatch(scheduler):
+        raise BadScheduler(f"scheduler: got '{scheduler}', expected local, slurm or an address such "
+                           "as host:8786")
+
+
+class Cluster:
+    """A connection with the workers, used as a context."""
+
+    def __init__(self, scheduler=LOCAL, jobs=1):
+        """Connects. jobs is the number of runs in parallel, of local and slurm; a scheduler has
+        workers of its own. Raises BadScheduler."""
+        self._scheduler = scheduler
+        self._made = None
+        self.client = None
+        self._identity = None
+        logging.disable(logging.ERROR)  # runs.py reports each lost worker and scheduler in one line
+        address = self._make(jobs)
+        try:
+            self._connect(address)
+        except (OSError, ValueError) as error:
+            self.close()
+            raise BadScheduler(
+                f"scheduler: got '{scheduler}', which does not answer within {_CONNECT_S:.0f} s; "
+                f"check its address, and that 'dask scheduler' runs there ({_first_line(error)})"
+            ) from None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    @property
+    def is_local(self):
+        return self._scheduler == LOCAL
+
+    def _make(self, jobs):
+        if self._scheduler == LOCAL:
+            from distributed import LocalCluster
+            self._made = LocalCluster(n_workers=1, threads_per_worker=jobs, processes=False,
+                                      dashboard_address=None, memory_limit=0)
+            return self._made
+        if self._scheduler == SLURM:
+            return self._make_slurm(jobs)
+        return self._scheduler if "//" in self._scheduler else "tcp://" + self._scheduler
+
+    def _make_slurm(self, jobs):
+        try:
+            from dask_jobqueue import SLURMCluster
+        except ImportError:
+            raise BadScheduler("scheduler: got 'slurm', but Python's package dask_jobqueue is "
+                               "missing; install it with 'pip install dask-jobqueue==0.8.1', or "
+                               "use docs/scale/dask.sbatch") from None
+        from dask import config
+        chosen = {"cores": 1, "processes": 1, "memory": "1GB"}
+        chosen.update({name: value for name, value in config.get("jobqueue.slurm", {}).items()
+                       if name in chosen and value is not None})
+        try:
+            self._made = SLURMCluster(**chosen)
+            self._made.scale(jobs=jobs)
+        except (OSError, ValueError, RuntimeError) as error:
+            raise BadScheduler(f"scheduler: slurm: {_first_line(error)}") from None
+        return self._made
+
+    def _connect(self, address):
+        from distributed import Client
+        self.client = Client(address, timeout=_CONNECT_S, set_as_default=False)
+        self._identity = self._ask_identity()
+
+    def _ask_identity(self):
+        return self.client.sync(self.client.scheduler.identity, callback_timeout=10.0)["id"]
+
+    def is_alive(self):
+        """Returns whether the scheduler to which the runs were submitted still answers."""
+        from tornado.util import TimeoutError as TornadoTimeout
+        try:
+            return self.client.status == "running" and self._ask_identity() == self._identity
+        except (OSError, TimeoutError, TornadoTimeout):
+            return False
+
+    def reconnect(self, report):
+        """Waits for a scheduler that was lost, and connects again. Raises Lost."""
+        if self._made is not None:
+            raise Lost(f"the scheduler '{self._scheduler}' of this process ended")
+        report(f"the scheduler {self._scheduler} was lost; waiting up to {_RETURN_S:.0f} s for it")
+        self._close_client()
+        end = time.monotonic() + _RETURN_S
+        while True:
+            try:
+                self._connect(self._make(0))
+                report(f"the scheduler {self._scheduler} answers again")
+                return
+            except (OSError, ValueError):
+                if time.monotonic() > end:
+                    raise Lost(f"the scheduler {self._scheduler} did not come back within "
+                               f"{_RETURN_S:.0f} s; the same command resumes") from None
+                time.sleep(1.0)
+
+    def workers(self):
+        """Returns the number of runs that the workers execute in parallel; 0 if it is unknown."""
+        try:
+            return sum(self.client.nthreads().values())
+        except OSError:  # the scheduler was just lost
+            return 0
+
+    def cancel(self, futures):
+        """Ends the programs of these futures, unless the scheduler was just lost, as then they
+        end by themselves."""
+        try:
+            if self.client is not None:
+                self.client.cancel(futures)
+        except (OSError, TimeoutError):
+            pass
+
+    def _close_client(self):
+        if self.client is not None:
+            client, self.client = self.client, None
+            client.close(timeout=5.0)
+
+    def close(self):
+        """Ends the connection, and the workers that it made."""
+        self._close_client()
+        if self._made is not None:
+            made, self._made = self._made, None
+            made.close(timeout=20.0)
+        logging.disable(logging.NOTSET)
+
+
+def _first_line(error):
+    return (str(error).splitlines() or [type(error).__name__])[0]

@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Tests of runs on the workers of a Dask scheduler, which are killed and started again."""
+import contextlib
+import io
+import os
+import pathlib
+import signal
+import sys
+import tempfile
+import time
+import unittest
+
+import rostest
+
+from aquafarm_benchmark import cli, cluster, runs, sweep, worker
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from processes import DATA, Program, free_port, program  # noqa: E402
+
+LIMIT_S = 240.0
+TABLES = ("runs.csv", "table.csv", "table.md")
+
+
+class Scheduler:
+    """A scheduler of Dask with workers as processes of this machine."""
+
+    def __init__(self, test, folder):
+        self._test = test
+        self._folder = folder
+        self._port = free_port()
+        self.address = f"127.0.0.1:{self._port}"
+        self._scheduler = None
+        self.start()
+
+    def start(self):
+        self._scheduler = Program(self._test, "/usr/bin/dask-scheduler", "--host", "127.0.0.1",
+                                  "--port", self._port, "--no-dashboard")
+
+    def add_worker(self):
+        """Starts a worker without a nanny, so that a killed one is not started again."""
+        folder = tempfile.mkdtemp(dir=self._folder)
+        return Program(self._test, "/usr/bin/dask-worker", f"tcp://{self.address}", "--nthreads", "1",
+                       "--no-nanny", "--no-dashboard", "--local-directory", folder)
+
+    def kill(self):
+        self._scheduler.kill()
+
+
+class DaskTest(unittest.TestCase):
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="aquafarm_dask_")
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def start(self, output, *arguments):
+        train = program("aquafarm_agents", "aquafarm_train")
+        return Program(self, program("aquafarm_agents", "aquafarm_benchmark"), DATA / "tiny.yaml",
+                       "--algorithms", "q_learning", "--runs", "2", "--episodes", "60000",
+                       "--evaluation-episodes", "30", "--programs", pathlib.Path(train).parent,
+                       "--output", self.folder / output, *arguments)
+
+    def under_way(self, output):
+        """Whether both trainings have completed some episodes."""
+        found = list(self.folder.glob(f"{output}/runs/q_learning/*/metrics.csv"))
+        return len(found) == 2 and all(path.stat().st_size > 4096 for path in found)
+
+    def test_a_benchmark_outlives_its_workers_and_its_scheduler(self):
+        whole = self.start("whole")
+        self.assertEqual(0, whole.code(LIMIT_S), whole.words())
+        scheduler = Scheduler(self, self.folder)
+        workers = [scheduler.add_worker(), scheduler.add_worker()]
+        part = self.start("parts", "--scheduler", scheduler.address)
+        part.wait_for(lambda: self.under_way("parts"), "two trainings", LIMIT_S)
+        workers.pop().kill()
+        part.wait_for(lambda: "its worker was lost; it runs again on" in part.words(),
+                      "the run of the lost worker", LIMIT_S)
+        scheduler.kill()
+        part.wait_for(lambda: f"the scheduler {scheduler.address} was lost" in part.words(),
+                      "the loss of the scheduler", LIMIT_S)
+        scheduler.start()
+        scheduler.add_worker()
+        self.assertEqual(0, part.code(LIMIT_S), part.words())
+        self.assertIn(f"the scheduler {scheduler.address} answers again", part.words())
+        self.assertNotIn("Traceback", part.words())
+        for name in TABLES:
+            self.assertEqual((self.folder / "whole" / name).read_text(),
+                             (self.folder / "parts" / name).read_text(), name)
+
+    def test_an_interrupt_ends_the_programs_of_the_workers(self):
+        scheduler = Scheduler(self, self.folder)
+        scheduler.add_worker()
+        one = self.start("out", "--episodes", "10000000", "--scheduler", scheduler.address)
+        trainings = self.folder / "out/runs/q_learning"
+        one.wait_for(lambda: list(trainings.glob("*/metrics.csv")), "a training", LIMIT_S)
+        one.send(signal.SIGINT)
+        self.assertEqual(130, one.code(LIMIT_S), one.words())
+        self.assertIn("the same command resumes it", one.words())
+        self.assertTrue(list(trainings.glob("*/checkpoints/step_*.ckpt")))
+        self.assertFalse([path for path in trainings.glob("*.log") if runs.is_written(path)])
+
+    def test_the_programs_of_a_killed_client_end(self):
+        scheduler = Scheduler(self, self.folder)
+        scheduler.add_worker()
+        one = self.start("out", "--episodes", "10000000", "--scheduler", scheduler.address)
+        trainings = self.folder / "out/runs/q_learning"
+        one.wait_for(lambda: list(trainings.glob("*/metrics.csv")), "a training", LIMIT_S)
+        one.kill()
+        end = time.monotonic() + LIMIT_S
+        while any(runs.is_written(path) for path in trainings.glob("*.log")):
+            self.assertLess(time.monotonic(), end, "the trainings outlive the benchmark")
+            time.sleep(0.1)
+
+    def test_a_sweep_gives_the_same_table(self):
+        train = pathlib.Path(program("aquafarm_agents", "aquafarm_train")).parent
+        scheduler = Scheduler(self, self.folder)
+        scheduler.add_worker()
+        for output, where in (("here", "local"), ("there", scheduler.address)):
+            with contextlib.redirect_stdout(io.StringIO()) as said:
+                code = sweep.main([str(DATA / "tiny.yaml"), "q_learning", "--set", "gamma=0.9,0.97",
+                                   "--seeds", "1-2", "--steps", "20000", "--episodes", "10",
+                                   "--output", str(self.folder / output), "--programs", str(train),
+                                   "--scheduler", where])
+            self.assertEqual(0, code, said.getvalue())
+        self.assertEqual((self.folder / "here/table.csv").read_text(),
+                         (self.folder / "there/table.csv").read_text())
+
+    def test_a_scheduler_that_does_not_answer_is_named_in_one_line(self):
+        address = f"127.0.0.1:{free_port()}"
+        before, cluster._CONNECT_S = cluster._CONNECT_S, 1.0
+        self.addCleanup(setattr, cluster, "_CONNECT_S", before)
+        self.assertLessEqual(before, 30.0)
+        with contextlib.redirect_stderr(io.StringIO()) as said, \
+                contextlib.redirect_stdout(io.StringIO()):
+            code = cli.main([str(DATA / "tiny.yaml"), "--algorithms", "random", "--output",
+                             str(self.folder / "out"), "--scheduler", address, "--programs",
+                             str(pathlib.Path(program("aquafarm_agents", "aquafarm_train")).parent)])
+        self.assertEqual(2, code)
+        self.assertRegex(said.getvalue(), f"^scheduler: got '{address}', which does not answer within")
+        self.assertEqual(1, said.getvalue().count("\n"), said.getvalue())
+
+    def test_a_worker_without_the_clients_files_is_named(self):
+        commands = [[str(self.folder / "train")]]
+        for folder, words in ((self.folder / "none", "there is no folder .*/none; expected"),
+                              (self.folder, "No such file or directory: .*/train; expected")):
+            with cluster.Cluster() as here:
+                future = here.client.submit(worker.perform, str(folder), commands, False,
+                                            str(self.folder), {})
+                with self.assertRaisesRegex(RuntimeError, f"^worker on .*: {words}"):
+                    future.result()
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_agents", "dask", DaskTest, sys.argv)

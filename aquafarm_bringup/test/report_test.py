@@ -197,6 +197,21 @@ class ReportTest(unittest.TestCase):
         self.assertIn(f"<b>{mean:.1f}", self.page.text)
         self.assertIn(f"{summary['episodes']} episodes, {distinct} distinct", self.page.words)
 
+    def test_the_policy_stands_next_to_the_references_with_intervals(self):
+        section = self.page.text[self.page.text.index("Next to the references"):]
+        section = section[:section.index("</section>")]
+        labels = ["RANDOM", "q_learning", "planner", "clairvoyant"]
+        places = [section.index(f"<span>{label}</span>") for label in labels]
+        self.assertEqual(sorted(places), places)
+        self.assertEqual(4, len(re.findall(r"<span>success \d+% \[\d+%, \d+%\]</span>", section)))
+        self.assertIn("<span>100.0% of the optimum</span>", section)  # of the optimum itself
+        self.assertEqual(3, section.count("<span>n = 100, "))
+
+    def test_it_lists_what_became_of_each_device(self):
+        found = re.findall(r"<td>F0 \w+( \w+)?</td>(.*?)</tr>", self.page.text)
+        self.assertEqual(1, len(found), "the cove has one device")
+        self.assertRegex(found[0][1], r"home at step \d+, health \d+%|left at sea, health \d+%")
+
     def test_the_interval_of_the_return_is_of_distinct_starts(self):
         rows = [{"return": value} for value in ("90", "110", "90", "110")]
         summary = {"return_per_episode": 100.0, "distinct_episodes": 4}

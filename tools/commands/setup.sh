@@ -15,7 +15,7 @@ packages=(
   libtorch-dev libgloo-dev libopenblas0-pthread libblas-dev
   libeigen3-dev libyaml-cpp-dev libgtest-dev libbenchmark-dev librandom123-dev libcli11-dev
   nlohmann-json3-dev libgeographiclib-dev libstb-dev libnetcdf-dev libmuparser-dev
-  fonts-dejavu-core xvfb libgl1-mesa-dri iproute2
+  libjs-dygraphs fonts-dejavu-core xvfb libgl1-mesa-dri iproute2
 )
 
 missing_packages() {

@@ -9,7 +9,7 @@ import roslib.packages
 
 LIMIT_S = 300
 FRAMES = 240  # approximate max number of frames of a video
-SIDE = ["--width", "640", "--height", "560"]
+SIDE = ["--width", "800", "--height", "640"]
 SEED = 1000  # of episodes that no training plays, the default of aquafarm_evaluate
 
 
@@ -25,16 +25,16 @@ def program(package, name):
     return found[0]
 
 
-def call(package, name, *arguments):
+def call(package, name, *arguments, limit_s=LIMIT_S):
     """Runs a program; on failure raises ReportError with its last line of stderr."""
     try:
-        subprocess.run([program(package, name), *map(str, arguments)], check=True, timeout=LIMIT_S,
+        subprocess.run([program(package, name), *map(str, arguments)], check=True, timeout=limit_s,
                        capture_output=True, text=True)
     except subprocess.CalledProcessError as error:
         words = (error.stderr or error.stdout).strip().splitlines()
         raise ReportError(words[-1] if words else f"{name} ended with {error.returncode}") from None
     except subprocess.TimeoutExpired:
-        raise ReportError(f"{name} took longer than {LIMIT_S} s") from None
+        raise ReportError(f"{name} took longer than {limit_s} s") from None
 
 
 def evaluate(run, folder, episodes):
@@ -55,6 +55,12 @@ def choose(rows):
         if row not in [one for _, one in chosen]:
             chosen.append((name, row))
     return chosen
+
+
+def result_text(row):
+    """Returns "return 269.6 in 63 steps, 3 of 3 home, all retrieved" for a row of evaluation.csv."""
+    return (f"return {float(row['return']):.1f} in {row['steps']} steps, {row['delivered']} of "
+            f"{row['devices']} home, {row['reason'].replace('_', ' ')}")
 
 
 def bag_of(run, folder, episode):

@@ -41,6 +41,16 @@ def tiles(pairs):
     return _render("tiles", pairs)
 
 
+def players(shown):
+    """Tiles of runs and references, from (label, large number, small lines, is_run)."""
+    return _render("players", shown)
+
+
+def curves(window, charts, style, scripts):
+    """Charts for scripts, which must be trusted; each chart has the keys id and title."""
+    return _render("curves", window, charts, style, scripts)
+
+
 def table(head, rows):
     """Table of rows of cells; scrolls horizontally if it is too wide."""
     return _render("table", head, rows)

@@ -13,7 +13,7 @@ matplotlib.use("svg")  # needs no display
 import numpy as np  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
 
-from aquafarm_report import films, intervals, page  # noqa: E402
+from aquafarm_report import compare, films, intervals, outcomes, page, references  # noqa: E402
 from aquafarm_report.films import ReportError  # noqa: E402
 
 WINDOW = 50  # episodes of the moving mean, as in the paper's measures
@@ -59,39 +59,26 @@ def count_text(summary, episodes):
 
 
 def interval_text(summary, rows):
-    """Returns "160.2 [157.0, 163.4]": the mean return and its 95 % interval, if there is one.
-
-    The interval is 1.96 standard errors; repetitions of a start do not count as evidence.
-    """
-    mean = f"{summary['return_per_episode']:.1f}"
-    distinct = summary.get("distinct_episodes") or 0
-    if distinct < 2:
-        return mean
-    returns = np.array([float(row["return"]) for row in rows])
-    margin = 1.96 * returns.std(ddof=1) / np.sqrt(distinct)
-    return f"{mean} [{returns.mean() - margin:.1f}, {returns.mean() + margin:.1f}]"
+    """Returns "160.2 [157.0, 163.4]": the mean return and its 95 % interval, if there is one."""
+    returns = [float(row["return"]) for row in rows]
+    return references.text(references.mean_interval(returns,
+                                                    summary.get("distinct_episodes") or 0))
 
 
 def show_episodes(run, folder, episodes):
     """Summary of a run's policy, its episodes, and sections: table, map and videos."""
     summary, rows = films.evaluate(run, folder, episodes)
-    shown, chart = [], None
+    shown, captions, results, chart = [], [], [], None
     for name, row in films.choose(rows):
         bag = films.bag_of(run, folder, int(row["episode"]))
         chart = chart or films.draw_map(bag)
-        caption = (f"{name}: episode {row['episode']} of seed {films.SEED}, return "
-                   f"{float(row['return']):.1f} in {row['steps']} steps, {row['delivered']} of "
-                   f"{row['devices']} home, {row['reason'].replace('_', ' ')}")
+        caption = (f"{name}: episode {row['episode']} of seed {films.SEED}, "
+                   f"{films.result_text(row)}")
         shown.append(page.film(films.draw_film(bag, int(row["steps"])), caption))
-    keys = (("success_rate", "success", "{:.1%}"), ("steps_per_episode", "steps", "{:.1f}"),
-            ("crashes_per_episode", "crashes", "{:.2f}"),
-            ("steps_in_disaster_per_episode", "steps in disaster", "{:.2f}"),
-            ("energy_kwh_per_episode", "energy, kWh", "{:.2f}"),
-            ("distance_km_per_episode", "distance, km", "{:.2f}"),
-            ("delivered_health", "health of what came home", "{:.3f}"))
-    table = page.table(["mean of an episode", ""], [
-        ("return per episode, 95 % interval", interval_text(summary, rows)),
-        *((name, form.format(summary[key])) for key, name, form in keys if key in summary)])
+        captions.append(f"{name}, episode {row['episode']}")
+        results.append(outcomes.read_outcomes(bag))
+    table = compare.measure_table([references.read_player(
+        summary["algorithm"], folder / "evaluation", is_run=True)])
     losses = []
     if "money" in summary:
         from aquafarm_report import money  # needs seconds to load, and few scenarios have it
@@ -103,7 +90,8 @@ def show_episodes(run, folder, episodes):
         page.section(f"Greedy play, {count_text(summary, len(rows))}", table), *losses,
         page.section("The ranch", page.picture(chart, "at the start of an episode")),
         page.section("Best, median and worst episode",
-                     f'<div class="films">{"".join(shown)}</div>')]
+                     f'<div class="films">{"".join(shown)}</div>',
+                     compare.outcome_table(captions, results))]
 
 
 def report_run(run, folder, episodes):
@@ -120,8 +108,13 @@ def report_run(run, folder, episodes):
         (f"{len(columns.get('return', [])):,}", "episodes trained"),
         (settings["seed"], "seed of the training"), (films.SEED, "seed of the episodes and films"),
         (settings["version"], "version")])
+    players = references.play_references(run / "scenario.yaml", folder, episodes)
+    players.insert(1, references.read_player(settings["algorithm"], folder / "evaluation",
+                                             is_run=True))
     return page.page(
-        f"{settings['algorithm']} on {settings['scenario']}", tiles, *sections, *curves,
+        f"{settings['algorithm']} on {settings['scenario']}", tiles,
+        page.section("Next to the references", references.show_tiles(players)), *sections,
+        *curves,
         page.section("Configuration",
                      page.details("run.json", json.dumps(settings, indent=2)),
                      page.details("scenario.yaml",
@@ -193,21 +186,27 @@ def report_benchmark(benchmark, folder, episodes):
                      page.details("benchmark.json", json.dumps(settings, indent=2))))
 
 
-def make(source, output, episodes=EPISODES):
-    """Writes the report of a run folder or a benchmark's folder; returns its path."""
-    source = pathlib.Path(source).resolve()
-    output = pathlib.Path(output).resolve() if output else source / "report.html"
-    kinds = {"run.json": report_run, "results.json": report_benchmark}
-    for name, report in kinds.items():
+def make_one(source, folder, episodes):
+    """Page of a run folder or of a benchmark's folder."""
+    for name, report in (("run.json", report_run), ("results.json", report_benchmark)):
         if (source / name).is_file():
-            break
-    else:
-        raise ReportError(f"{source}: neither a run (run.json) nor a benchmark (results.json)")
+            return report(source, folder, episodes)
+    raise ReportError(f"{source}: neither a run (run.json) nor a benchmark (results.json)")
+
+
+def make(sources, output, episodes=EPISODES):
+    """Writes the report of a run or benchmark, or the comparison of runs; returns its path."""
+    sources = [pathlib.Path(source).resolve() for source in sources]
+    default = sources[0] / "report.html" if len(sources) == 1 else "comparison.html"
+    output = pathlib.Path(output or default).resolve()
     with tempfile.TemporaryDirectory(prefix="aquafarm_report_") as folder:
+        work = pathlib.Path(folder)
         try:
-            text = report(source, pathlib.Path(folder), episodes)
+            text = (make_one(sources[0], work, episodes) if len(sources) == 1 else
+                    compare.report(sources, work, episodes, read_metrics))
         except (OSError, ValueError, KeyError) as error:
-            raise ReportError(f"{source}: cannot be reported on: {error!r}") from error
+            named = ", ".join(map(str, sources))
+            raise ReportError(f"{named}: cannot be reported on: {error!r}") from error
     try:
         temporary = output.with_name(output.name + ".part")
         temporary.write_text(text, encoding="utf-8")

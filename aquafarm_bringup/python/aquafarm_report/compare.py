@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Page that compares runs: returns with intervals, curves over each other, the same episodes."""
+import collections
+import json
+
+from aquafarm_report import curves, films, outcomes, page, references
+from aquafarm_report.films import ReportError
+
+MEASURES = (("return", "return", "{:.1f}"), ("steps", "steps", "{:.1f}"),
+            ("delivered", "devices home", "{:.2f}"),
+            ("delivered_health", "health of what came home", "{:.3f}"),
+            ("crashes", "crashes", "{:.2f}"), ("collisions", "collisions", "{:.2f}"),
+            ("steps_in_disaster", "steps in disaster", "{:.2f}"),
+            ("energy_kwh", "energy, kWh", "{:.2f}"), ("distance_km", "distance, km", "{:.1f}"))
+RARE = ("collisions", "energy_kwh", "distance_km")  # left out where they are 0 everywhere
+MOST_FILMS = 4  # runs whose episodes are shown
+
+
+class Run:
+    """A run folder with its settings, training and evaluation."""
+
+    def __init__(self, folder, work, episodes, read_metrics):
+        if not (folder / "run.json").is_file():
+            raise ReportError(f"{folder}: got no run (run.json), expected run folders to compare; "
+                              "a benchmark has its own report")
+        self.folder = folder
+        self.work = work
+        self.settings = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+        self.columns = read_metrics(folder / "metrics.csv")
+        work.mkdir()
+        films.evaluate(folder, work, episodes)
+        self.player = references.read_player(folder.name, work / "evaluation", is_run=True)
+
+    @property
+    def scenario(self):
+        return self.settings["scenario"]
+
+
+def label_runs(runs):
+    """Gives each run a short label: its folder's name, with a number if two are alike."""
+    names = collections.Counter(run.folder.name for run in runs)
+    seen = collections.Counter()
+    for run in runs:
+        name = run.folder.name
+        seen[name] += 1
+        number = f" ({seen[name]})" if names[name] > 1 else ""
+        run.player.label = f"{name}{number}: {run.settings['algorithm']}"
+
+
+def measure_table(players):
+    """Means with 95 % intervals, a column for each player."""
+    rows = []
+    for name, words, form in MEASURES:
+        if not all(name in one.rows[0] for one in players):
+            continue
+        if name in RARE and not any(any(references.column(one, name)) for one in players):
+            continue
+        rows.append([words] + [references.text(references.mean_interval(
+            references.column(one, name), one.distinct), form) for one in players])
+    rows.insert(1, ["success"] + [references.success_text(one) for one in players])
+    rows.append(["episodes, distinct"] + [f"{len(one.rows)}, {one.distinct}" for one in players])
+    return page.table(["mean of an episode, 95 % interval"] + [one.label for one in players], rows)
+
+
+def differences(runs):
+    """Table of the settings that are not the same in all runs."""
+    def flat(settings):
+        found = {key: value for key, value in settings.items()
+                 if isinstance(value, (str, int, float, bool)) and key != "options"}
+        for option in settings.get("options", "").split():
+            key, _, value = option.partition("=")
+            found[key] = value
+        return found
+
+    settings = [flat(run.settings) for run in runs]
+    keys = sorted({key for one in settings for key in one})
+    rows = [[key] + [one.get(key, "–") for one in settings] for key in keys
+            if len({str(one.get(key, "–")) for one in settings}) > 1]
+    if not rows:
+        return "<p>All settings are the same.</p>"
+    return page.table(["setting"] + [run.player.label for run in runs], rows)
+
+
+def choose_episodes(runs):
+    """[(reason, episode)]: the median return of the first run, and the largest difference."""
+    returns = [{int(row["episode"]): float(row["return"]) for row in run.player.rows}
+               for run in runs]
+    common = sorted(set.intersection(*(set(one) for one in returns)))
+    ranked = sorted(common, key=lambda episode: returns[0][episode])
+    chosen = [("the median return of the first run", ranked[len(ranked) // 2])]
+    apart = max(common, key=lambda episode: (max(one[episode] for one in returns) -
+                                             min(one[episode] for one in returns), -episode))
+    if apart != chosen[0][1]:
+        chosen.append(("the largest difference between the runs", apart))
+    return chosen
+
+
+def show_episode(runs, reason, episode):
+    """Films of one episode side by side, and what became of each device."""
+    shown, results = [], []
+    for run in runs:
+        row = next(one for one in run.player.rows if int(one["episode"]) == episode)
+        bag = films.bag_of(run.folder, run.work, episode)
+        caption = f"{run.player.label}: {films.result_text(row)}"
+        shown.append(page.film(films.draw_film(bag, int(row["steps"])), caption))
+        results.append(outcomes.read_outcomes(bag))
+    title = f"Episode {episode} of seed {films.SEED}: {reason}"
+    return page.section(title, f'<div class="films">{"".join(shown)}</div>',
+                        outcome_table([run.player.label for run in runs], results))
+
+
+def outcome_table(labels, results):
+    """One row for each device, a column for each episode."""
+    rows = []
+    for i, first in enumerate(results[0]):
+        rows.append([first.label] + [one[i].text() if i < len(one) else "–" for one in results])
+    return page.table(["device", *labels], rows)
+
+
+def report(folders, work, episodes, read_metrics):
+    """Page that compares run folders."""
+    runs = [Run(folder, work / str(i), episodes, read_metrics)
+            for i, folder in enumerate(folders)]
+    label_runs(runs)
+    sections = []
+    by_scenario = collections.defaultdict(list)
+    for run in runs:
+        by_scenario[run.settings.get("scenario_hash", run.scenario)].append(run)
+    for i, group in enumerate(by_scenario.values()):
+        place = work / f"references_{i}"
+        place.mkdir()
+        players = references.play_references(group[0].folder / "scenario.yaml", place, episodes)
+        own = [run.player for run in group]
+        title = f"Return on {group[0].scenario}"
+        sections.append(page.section(title, references.show_tiles(players[:1] + own +
+                                                                  players[1:])))
+    sections.append(curves.show([run.player.label for run in runs],
+                                [run.columns for run in runs]))
+    sections.append(page.section("Greedy play, 95 % intervals", measure_table([run.player for run in runs])))
+    sections.append(page.section("Settings that differ", differences(runs)))
+    if len(by_scenario) == 1:
+        for reason, episode in choose_episodes(runs):
+            sections.append(show_episode(runs[:MOST_FILMS], reason, episode))
+    else:
+        sections.append(page.section("Episodes", "<p>The runs have different scenarios, so they "
+                                                 "have no episodes in common.</p>"))
+    names = " and ".join([", ".join(run.folder.name for run in runs[:-1]), runs[-1].folder.name])
+    return page.page(f"Comparison of {names}", *sections)

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Training curves over each other: zoom by dragging, values under the pointer (dygraphs)."""
+import json
+import math
+import pathlib
+
+import numpy as np
+
+from aquafarm_report import page
+from aquafarm_report.films import ReportError
+
+LIBRARY = pathlib.Path("/usr/share/javascript/dygraphs")  # Debian's libjs-dygraphs
+POINTS = 1000  # max points of a curve
+WINDOW = 50  # episodes of a moving mean, as in the paper's measures
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
+# of Okabe and Ito (2008), Color universal design
+CURVES = (("return", "return per episode"), ("success", "success rate"),
+          ("loss", "mean square error [reward²]"))
+
+
+def smooth(values):
+    """Episodes and moving means of WINDOW episodes; a mean ignores missing values."""
+    values = np.asarray(values, dtype=float)
+    window = min(WINDOW, len(values))
+    known = np.isfinite(values)
+    ones = np.ones(window)
+    counts = np.convolve(known.astype(float), ones, mode="valid")
+    sums = np.convolve(np.where(known, values, 0.0), ones, mode="valid")
+    with np.errstate(invalid="ignore", divide="ignore"):
+        means = np.where(counts > 0.0, sums / counts, np.nan)
+    return np.arange(window, len(values) + 1), means
+
+
+def rows_of(columns, name):
+    """Rows [episode, mean of run 0, mean of run 1, …] for dygraphs; None where there is none."""
+    curves = [smooth(one[name]) if name in one else (np.array([]), np.array([]))
+              for one in columns]
+    last = max((int(episodes[-1]) for episodes, _ in curves if len(episodes)), default=0)
+    if last == 0 or not any(np.isfinite(means).any() for _, means in curves):
+        return []
+    first = min(int(episodes[0]) for episodes, _ in curves if len(episodes))
+    rows = []
+    for episode in np.unique(np.linspace(first, last, POINTS).astype(int)):
+        row = [int(episode)]
+        for episodes, means in curves:
+            at = episode - int(episodes[0]) if len(episodes) else -1
+            value = means[at] if 0 <= at < len(means) else math.nan
+            row.append(float(f"{value:.6g}") if math.isfinite(value) else None)
+        rows.append(row)
+    return rows
+
+
+def _library(name):
+    try:
+        return (LIBRARY / name).read_text(encoding="utf-8")
+    except OSError:
+        raise ReportError(f"{LIBRARY / name}: cannot be read, expected the Debian package "
+                          "libjs-dygraphs; run ./aquafarm setup") from None
+
+
+def show(labels, columns):
+    """Section with one chart for each measure, with a curve for each run; empty without curves."""
+    charts = []
+    for name, title in CURVES:
+        rows = rows_of(columns, name)
+        if rows:
+            charts.append({"id": f"curve_{name}", "title": title, "rows": rows})
+    if not charts:
+        return ""
+    settings = {"labels": ["episode", *labels], "charts": charts,
+                "colours": [COLOURS[i % len(COLOURS)] for i in range(len(labels))]}
+    data = json.dumps(settings, allow_nan=False).replace("</", "<\\/")
+    script = (pathlib.Path(__file__).resolve().parent / "templates" / "curves.js").read_text(
+        encoding="utf-8")
+    # Source maps would be other files.
+    library = _library("dygraph.min.js").replace("//# sourceMappingURL=dygraph.min.js.map", "")
+    style = _library("dygraph.min.css").partition("/*#")[0]
+    return page.section("Training curves", page.curves(
+        WINDOW, charts, style, [library, f'"use strict";const CURVES={data};\n{script}']))

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs and the references RANDOM, planner and clairvoyant on the same episodes, with intervals."""
+import csv
+import dataclasses
+import json
+import math
+
+import numpy as np
+from aquafarm_benchmark.measures import wilson_interval
+
+from aquafarm_report import films, page
+
+REFERENCES = (("random", "RANDOM"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
+EPISODES = 100  # of each reference, the first of those of the runs
+LIMIT_S = 120  # for each reference
+OPTIMUM = "clairvoyant"
+
+
+@dataclasses.dataclass
+class Player:
+    """Evaluation of a run or a reference; without episodes, `fault` is the reason."""
+    label: str
+    rows: list = dataclasses.field(default_factory=list)  # of evaluation.csv, by episode
+    distinct: int = 0
+    fault: str = ""
+    is_run: bool = False
+
+
+def read_player(label, prefix, is_run=False):
+    """Player from the files <prefix>.csv and <prefix>.json of aquafarm_evaluate."""
+    with open(prefix.with_suffix(".csv"), newline="") as file:
+        rows = sorted(csv.DictReader(file), key=lambda row: int(row["episode"]))
+    summary = json.loads(prefix.with_suffix(".json").read_text(encoding="utf-8"))
+    return Player(label, rows, summary.get("distinct_episodes") or 0, is_run=is_run)
+
+
+def play_references(scenario, folder, episodes):
+    """Plays the first evaluation episodes with each reference; a failure becomes its fault."""
+    players = []
+    for name, label in REFERENCES:
+        prefix = folder / f"reference_{name}"
+        try:
+            films.call("aquafarm_agents", "aquafarm_evaluate", name, scenario, "--episodes",
+                       min(episodes, EPISODES), "--seed", films.SEED, "--write", prefix,
+                       limit_s=LIMIT_S)
+            players.append(read_player(label, prefix))
+        except films.ReportError as error:
+            players.append(Player(label, fault=str(error)))
+    return players
+
+
+def mean_interval(values, distinct):
+    """(mean, low, high) of a 95 % interval of 1.96 standard errors; NaN bounds without one.
+
+    Repetitions of a start do not count as evidence.
+    """
+    values = np.asarray(values, dtype=float)
+    if distinct < 2:
+        return float(values.mean()), math.nan, math.nan
+    margin = 1.96 * values.std(ddof=1) / math.sqrt(distinct)
+    return float(values.mean()), float(values.mean() - margin), float(values.mean() + margin)
+
+
+def text(interval, form="{:.1f}"):
+    """Returns "160.2 [157.0, 163.4]"; without bounds the mean alone."""
+    mean, low, high = interval
+    found = form.format(mean)
+    if math.isnan(low):
+        return found
+    return f"{found} [{form.format(low)}, {form.format(high)}]"
+
+
+def column(player, name):
+    return [float(row[name]) for row in player.rows]
+
+
+def return_text(player):
+    return text(mean_interval(column(player, "return"), player.distinct))
+
+
+def success_text(player):
+    """Success rate with Wilson's 95 % interval, which counts each distinct start once."""
+    rate = float(np.mean(column(player, "success")))
+    count = max(1, min(player.distinct or 1, len(player.rows)))
+    low, high = wilson_interval(round(rate * count), count)
+    return f"{rate:.0%} [{low:.0%}, {high:.0%}]"
+
+
+def share_text(player, optimum):
+    """Share of the clairvoyant optimum on the same episodes; "–" where it is not known."""
+    if optimum is None or not optimum.rows or not player.rows:
+        return "–"
+    best = {row["episode"]: float(row["return"]) for row in optimum.rows}
+    pairs = [(float(row["return"]), best[row["episode"]]) for row in player.rows
+             if row["episode"] in best]
+    total = sum(one for _, one in pairs)
+    if not pairs or total <= 0.0:
+        return "–"
+    share = sum(one for one, _ in pairs) / total
+    return "below 0" if share < 0.0 else f"{share:.1%} of the optimum"
+
+
+def optimum_of(players):
+    return next((one for one in players if one.label == OPTIMUM and one.rows), None)
+
+
+def show_tiles(players):
+    """One tile for each player: return, success, share of the optimum, number of episodes."""
+    optimum = optimum_of(players)
+    shown = []
+    for one in players:
+        if not one.rows:
+            shown.append((one.label, "–", [one.fault], False))
+            continue
+        mean, _, interval = return_text(one).partition(" ")
+        lines = [interval, f"success {success_text(one)}", share_text(one, optimum),
+                 f"n = {len(one.rows)}, {one.distinct} distinct"]
+        shown.append((one.label, mean, [line for line in lines if line], one.is_run))
+    note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
+            f"seed {films.SEED}. RANDOM moves without a goal; the planner knows what ships know; "
+            "clairvoyant knows the storm's whole track.</p>")
+    return page.players(shown) + note

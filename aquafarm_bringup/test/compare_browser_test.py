@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The page that compares runs in headless Chromium: charts, tables, films, network."""
+import json
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from plan_browser_test import TOO_WIDE, open_browser, reason_to_skip  # noqa: E402
+from report_test import SCENARIO, run  # noqa: E402
+
+try:
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.by import By
+except ImportError:
+    ActionChains = By = None
+
+WIDTH, HEIGHT = 1280, 800
+EPISODES = 40
+RUNS = (("table", "q_learning"), ("other", "sarsa"))
+
+RANGES = "return charts.map(chart => chart.xAxisRange());"
+# Tables and figures that need scrolling.
+SCROLLING = """
+return [...document.querySelectorAll(".wide")].filter(one => one.scrollWidth > one.clientWidth)
+  .map(one => one.textContent.slice(0, 60));
+"""
+
+
+@unittest.skipIf(reason_to_skip(), reason_to_skip())
+class CompareBrowserTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_compare_browser_"))
+        cls.scenario = cls.folder / "cove.yaml"
+        # Another layout in every episode, so that there are intervals.
+        cls.scenario.write_text(SCENARIO.replace("layout: {", "layout: {mode: per_episode, "))
+        for name, algorithm in RUNS:
+            code, words = run("aquafarm_agents", "aquafarm_train", cls.scenario, "--algorithm",
+                              algorithm, "--episodes", 300, "--run-dir", cls.folder / name,
+                              "--evaluate", 0, "--random", 0)
+            assert code == 0, words
+        cls.page = cls.folder / "page.html"
+        code, words = run("aquafarm_bringup", "make_report",
+                          *(cls.folder / name for name, _ in RUNS), "-o", cls.page,
+                          "--episodes", EPISODES)
+        assert code == 0, words
+        cls.browser = open_browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.quit()
+        shutil.rmtree(cls.folder, ignore_errors=True)
+
+    def show(self, width=WIDTH):
+        self.browser.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride",
+            {"width": width, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": False})
+        for kind in ("browser", "performance"):
+            self.browser.get_log(kind)
+        self.browser.get(self.page.as_uri())
+
+    def chart(self, name):
+        """The drawing of a chart, scrolled into the window."""
+        place = self.browser.find_element(By.ID, name)
+        self.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", place)
+        return place
+
+    def test_no_errors_and_no_requests_but_the_page_itself(self):
+        self.show()
+        self.assertEqual([], self.browser.get_log("browser"))
+        addresses = set()
+        for entry in self.browser.get_log("performance"):
+            message = json.loads(entry["message"])["message"]
+            if message["method"] == "Network.requestWillBeSent":
+                addresses.add(message["params"]["request"]["url"])
+        self.assertEqual([self.page.as_uri()],
+                         [one for one in addresses if not one.startswith("data:")])
+
+    def test_it_fits_at_1280_pixels_without_scrolling_and_on_a_phone(self):
+        self.show()
+        self.assertEqual([], self.browser.execute_script(TOO_WIDE))
+        self.assertEqual([], self.browser.execute_script(SCROLLING))
+        self.show(width=390)
+        self.assertEqual([], self.browser.execute_script(TOO_WIDE))
+
+    def test_tiles_show_both_runs_between_the_references(self):
+        self.show()
+        tiles = [one.text.splitlines() for one in
+                 self.browser.find_elements(By.CSS_SELECTOR, ".wide-tiles .tile")]
+        self.assertEqual(["RANDOM", "table: q_learning", "other: sarsa", "planner", "clairvoyant"],
+                         [tile[0] for tile in tiles])
+        for tile in tiles:
+            self.assertRegex(tile[2], r"^\[-?[\d.]+, -?[\d.]+\]$")
+            self.assertRegex(tile[3], r"^success \d+% \[\d+%, \d+%\]$")
+            self.assertRegex(tile[5], rf"^n = {EPISODES}, \d+ distinct$")
+        self.assertEqual("100.0% of the optimum", tiles[-1][4])
+
+    def test_the_pointer_shows_the_value_of_every_run(self):
+        self.show()
+        place = self.chart("curve_return")
+        ActionChains(self.browser).move_to_element_with_offset(place, 100, 0).perform()
+        legend = self.browser.find_element(By.ID, "curve_return_legend").text
+        self.assertRegex(legend, r"\d+: .*table: q_learning: -?[\d.]+ .*other: sarsa: -?[\d.]+")
+        first = legend.partition(":")[0]
+        ActionChains(self.browser).move_to_element_with_offset(place, 200, 0).perform()
+        second = self.browser.find_element(By.ID, "curve_return_legend").text.partition(":")[0]
+        self.assertGreater(float(second), float(first))
+
+    def test_dragging_enlarges_a_part_of_all_curves_and_a_double_click_shows_all(self):
+        self.show()
+        whole = self.browser.execute_script(RANGES)
+        self.assertGreaterEqual(len(whole), 2)
+        place = self.chart("curve_return")
+        ActionChains(self.browser).move_to_element_with_offset(place, -100, 0).click_and_hold() \
+            .move_by_offset(200, 0).release().perform()
+        part = self.browser.execute_script(RANGES)
+        for now, before in zip(part, whole):
+            self.assertEqual(part[0], now)
+            self.assertLess(now[1] - now[0], 0.5 * (before[1] - before[0]))
+        ActionChains(self.browser).move_to_element(place).double_click().perform()
+        for now, before in zip(self.browser.execute_script(RANGES), whole):
+            self.assertAlmostEqual(before[1] - before[0], now[1] - now[0], delta=2)
+
+    def test_films_of_the_same_episode_stand_side_by_side_with_controls(self):
+        self.show()
+        boxes = self.browser.execute_script("""
+          return [...document.querySelectorAll(".films")].map(row =>
+            [...row.querySelectorAll("video, img")].map(one => {
+              const box = one.getBoundingClientRect();
+              return [box.top, box.width, one.tagName === "IMG" || one.controls]; }));""")
+        self.assertTrue(boxes)
+        for row in boxes:
+            self.assertEqual(len(RUNS), len(row))
+            for top, width, has_controls in row:
+                self.assertAlmostEqual(row[0][0], top, delta=1)
+                self.assertGreater(width, 480)
+                self.assertTrue(has_controls)
+
+    def test_it_compares_settings_measures_and_devices(self):
+        self.show()
+        words = self.browser.find_element(By.TAG_NAME, "body").text
+        for word in ("Settings that differ", "algorithm q_learning sarsa", "devices home",
+                     "the median return of the first run", "F0 "):
+            self.assertIn(word, words)
+
+    def test_only_runs_can_be_compared(self):
+        empty = self.folder / "empty"
+        empty.mkdir(exist_ok=True)
+        code, words = run("aquafarm_bringup", "make_report", self.folder / "table", empty, "-o",
+                          self.folder / "x.html", "--episodes", 2)
+        self.assertEqual((2, f"make_report: {empty}: got no run (run.json), expected run folders "
+                          "to compare; a benchmark has its own report\n"), (code, words))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("aquafarm_bringup", "compare_browser", CompareBrowserTest, sys.argv)

@@ -14,6 +14,7 @@ import tempfile
 import time
 import unittest
 
+import numpy as np
 import rosbag
 import rostest
 
@@ -149,6 +150,23 @@ class BenchmarkTest(unittest.TestCase):
         played = [run["return_per_episode"] for run in everything["runs"]["q_learning"]]
         bar = axes.patches[[one.name for one in shown].index("q_learning")]
         self.assertAlmostEqual(sum(played) / 2.0, bar.get_height(), places=9)
+
+    def test_the_square_error_is_smooth_with_a_band_and_names(self):
+        chance = np.random.default_rng(1)
+        shown = [one for one in protocol.CONTESTANTS if one.name in ("q_learning", "sarsa")]
+        errors = {"q_learning": 10.0 * np.exp(chance.normal(0.0, 0.5, (3, 400))),
+                  "sarsa": np.full((1, 400), 40.0)}
+        errors["q_learning"][:, :7] = math.nan  # nothing was learnt yet
+        runs = {name: [{"curve": {"loss": row}} for row in rows] for name, rows in errors.items()}
+        _, axes = figures.plt.subplots()
+        figures.plot_square_error(axes, shown, runs)
+        noisy, steady = axes.lines
+        self.assertEqual(351, len(noisy.get_xdata()))
+        self.assertLess(np.ptp(np.log(noisy.get_ydata())), 0.5)
+        np.testing.assert_allclose(steady.get_ydata(), 40.0)
+        self.assertEqual(2, len(axes.collections), "a band for each learner")
+        self.assertEqual(["Q-learning\n3 runs", "SARSA\n1 run"],
+                         sorted(text.get_text() for text in axes.texts))
 
     def played(self, name, *episodes, policy="clairvoyant", scenario=DATA / "tiny.yaml"):
         """Makes bags of evaluation episodes of seed 1000 in a folder, as if a person had played

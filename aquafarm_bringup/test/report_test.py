@@ -231,7 +231,7 @@ class ReportTest(unittest.TestCase):
         pictures = [cv2.imdecode(np.frombuffer(one, np.uint8), cv2.IMREAD_COLOR)
                     for one in self.page.embedded("image/png")]
         self.assertEqual(1, len(pictures))
-        self.assertEqual((560, 640, 3), pictures[0].shape)
+        self.assertEqual((640, 800, 3), pictures[0].shape)
         self.assertGreater(len(np.unique(pictures[0].reshape(-1, 3), axis=0)), 100)
 
     def test_the_films_are_of_the_best_the_median_and_the_worst_episode(self):
@@ -278,7 +278,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(len(figures) + 1, len(page.embedded("image/png")))
         for word in ("Benchmark on cove", "Q-learning, paper", "RANDOM", "The best learner",
                      "Seeds of the trainings", "evaluation_episodes",
-                     "its share of the optimum", "Mean return of the last episodes"):
+                     "its share of the optimum", "Mean return of all episodes so far"):
             self.assertIn(word, page.words)
         rows = json.loads((output / "results.json").read_text())["table"]
         best = next(row for row in rows if row["name"] == "q_learning")  # the only learner

@@ -126,24 +126,47 @@ def plot_average_rewards(axes, contestants, runs):
 
 def draw_square_error(path, contestants, runs):
     """Fig. 12c: mean square error of the learners' value estimates, over all runs."""
-    figure, axes = _axes("Mean square error (Fig. 12c)", "mean square error [reward²]")
+    figure, axes = _axes("Mean square error of the value estimates (Fig. 12c)",
+                         f"{measures.WINDOW}-episode mean square error [reward²]")
     plot_square_error(axes, contestants, runs)
     _save(figure, path)
 
 
 def plot_square_error(axes, contestants, runs):
-    """Mean over the runs of the squared TD error by episode, without RANDOM."""
+    """50-episode means of the squared TD error, without RANDOM: the geometric mean over the runs,
+    shaded by a standard deviation of the logarithm. Each line ends with its name."""
+    ends = []
     for one in contestants:
         errors = _curves(runs[one.name], "loss")
-        known = np.isfinite(errors).any(axis=0)
+        window = min(measures.WINDOW, errors.shape[1])
+        smooth = np.array([measures.known_moving_mean(row, window) for row in errors])
+        episodes = np.arange(window, errors.shape[1] + 1)
+        known = np.isfinite(smooth).all(axis=0) & (smooth > 0.0).all(axis=0)
         if not known.any():
             continue
-        episodes = np.arange(1, errors.shape[1] + 1)[known]
-        axes.plot(episodes, np.nanmean(errors[:, known], axis=0), color=one.colour,
-                  label=one.label)
+        logs = np.log(smooth[:, known])
+        mean, spread = logs.mean(axis=0), logs.std(axis=0)
+        axes.plot(episodes[known], np.exp(mean), color=one.colour, linewidth=1.8)
+        axes.fill_between(episodes[known], np.exp(mean - spread), np.exp(mean + spread),
+                          color=one.colour, alpha=0.2, linewidth=0)
+        ends.append((float(mean[-1]), episodes[known][-1], one, len(errors)))
     axes.set_yscale("log")
-    if axes.lines:
-        axes.legend(loc="upper right")
+    if ends:
+        axes.margins(x=0.0)
+        _name_ends(axes, ends)
+
+
+def _name_ends(axes, ends):
+    """Writes names next to the ends of lines, apart from each other on a logarithmic axis."""
+    low, high = np.log(axes.get_ylim())
+    gap = 0.1 * (high - low)  # height of two rows of text
+    below = -np.inf
+    for height, episode, one, count in sorted(ends, key=lambda end: end[0]):
+        below = max(height, below + gap)
+        axes.annotate(f"{one.label}\n{count} {'run' if count == 1 else 'runs'}",
+                      (episode, np.exp(height)), xytext=(1.015, (below - low) / (high - low)),
+                      textcoords=axes.transAxes, color=one.colour, va="center", fontsize=9,
+                      arrowprops={"arrowstyle": "-", "color": one.colour, "linewidth": 0.6})
 
 
 def draw_mean_score(path, contestants, runs):

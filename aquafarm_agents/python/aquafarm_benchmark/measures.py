@@ -20,6 +20,15 @@ def moving_mean(values, window=WINDOW):
     return (sums[window:] - sums[:-window]) / window
 
 
+def known_moving_mean(values, window=WINDOW):
+    """Returns moving means as moving_mean, of the known values only; NaN where there is none."""
+    values = np.asarray(values, dtype=float)
+    known = np.isfinite(values)
+    counts = np.convolve(known.astype(float), np.ones(window), mode="valid")
+    sums = np.convolve(np.where(known, values, 0.0), np.ones(window), mode="valid")
+    return np.where(counts > 0.0, sums / np.maximum(counts, 1.0), np.nan)
+
+
 def last_quarter(values):
     """Returns the episodes of the plateau, at least one."""
     values = np.asarray(values, dtype=float)

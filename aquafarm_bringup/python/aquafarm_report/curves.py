@@ -5,13 +5,13 @@ import math
 import pathlib
 
 import numpy as np
+from aquafarm_benchmark.measures import WINDOW, known_moving_mean
 
 from aquafarm_report import page
 from aquafarm_report.films import ReportError
 
 LIBRARY = pathlib.Path("/usr/share/javascript/dygraphs")  # Debian's libjs-dygraphs
 POINTS = 1000  # max points of a curve
-WINDOW = 50  # episodes of a moving mean, as in the paper's measures
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 # of Okabe and Ito (2008), Color universal design
 CURVES = (("return", "return per episode"), ("success", "success rate"),
@@ -20,15 +20,8 @@ CURVES = (("return", "return per episode"), ("success", "success rate"),
 
 def smooth(values):
     """Episodes and moving means of WINDOW episodes; a mean ignores missing values."""
-    values = np.asarray(values, dtype=float)
     window = min(WINDOW, len(values))
-    known = np.isfinite(values)
-    ones = np.ones(window)
-    counts = np.convolve(known.astype(float), ones, mode="valid")
-    sums = np.convolve(np.where(known, values, 0.0), ones, mode="valid")
-    with np.errstate(invalid="ignore", divide="ignore"):
-        means = np.where(counts > 0.0, sums / counts, np.nan)
-    return np.arange(window, len(values) + 1), means
+    return np.arange(window, len(values) + 1), known_moving_mean(values, window)
 
 
 def rows_of(columns, name):

@@ -122,12 +122,17 @@ def report_run(run, folder, episodes):
 
 
 CAPTIONS = {
-    "rewards": "Return of each training episode (Fig. 6 of the paper); higher is better",
-    "average_rewards": "Mean return of the last episodes during the training; higher is better",
-    "mean_square_error": "Mean square error of the value estimates during the training",
-    "repeated_trainings": "Mean return over the repeated trainings of each learner",
-    "mean_score": "Score of each learner over the training",
-    "evaluation": "Return and success of the trained policies in the evaluation episodes",
+    "rewards": "Return of each training episode of the first run and its 50-episode mean, by time "
+               "steps and by episodes (Fig. 12a of the paper); higher is better",
+    "average_rewards": "Mean return of all episodes so far, over all runs (Fig. 12b); higher is "
+                       "better",
+    "mean_square_error": "50-episode mean square error of the value estimates (Fig. 12c); shaded: "
+                         "one standard deviation over the runs",
+    "repeated_trainings": "50-episode mean return over the runs of each learner (Fig. 14); shaded: "
+                          "one standard deviation",
+    "mean_score": "Return per step during the training (Fig. 13); shaded: one standard deviation "
+                  "over the runs",
+    "evaluation": "Return in the evaluation episodes, with 95 % intervals",
     "losses": "Losses of the trained policies in money",
 }
 

@@ -55,9 +55,9 @@ int main(int argc, char** argv) {
       "policy cannot be used; 3: the bag could not be written.",
       "bag_policy");
   app.add_option("bag", bag, "bag with spec and every state")->required();
-  app.add_option(
-         "policy", policy,
-         "run folder, checkpoint file, random, planner, clairvoyant, do_nothing or fetch_by_value")
+  app.add_option("policy", policy,
+                 "run folder, checkpoint file, FILE.py, FILE.zip (docs/python.md), random, "
+                 "planner, clairvoyant, do_nothing or fetch_by_value")
       ->required();
   app.add_option("-o,--output", options.output,
                  "write the bag again with what the policy would do (choice) and its values");

@@ -9,6 +9,7 @@ import math
 import os
 import pathlib
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -343,6 +344,28 @@ class BenchmarkTest(unittest.TestCase):
             options = (self.folder / f"out/runs/{name}/seed_1/run.json").read_text()
             self.assertIn("mask_blocked=true", options)
             self.assertIn("device=cpu", options)
+
+    def test_a_library_of_another_package_is_a_row(self):
+        example = pathlib.Path(__file__).resolve().parents[1] / "examples/expected_sarsa"
+        build = self.folder / "build"
+        for command in (["-S", example, "-B", build], ["--build", build]):
+            done = subprocess.run(["cmake", *command], capture_output=True, text=True, check=False)
+            self.assertEqual(0, done.returncode, done.stdout + done.stderr)
+        library = build / "libexpected_sarsa.so"
+        one = self.start("out", "--algorithms", "q_learning", "--learner",
+                         f"expected_sarsa={library}", episodes=800)
+        self.assertEqual(0, one.code(240), one.words())
+        everything = json.loads((self.folder / "out/results.json").read_text())
+        rows = {row["name"]: row for row in everything["table"]}
+        self.assertEqual(["q_learning", "expected_sarsa", "clairvoyant"], list(rows))
+        self.assertEqual(1.0, rows["expected_sarsa"]["success_rate"])
+        self.assertIn("expected_sarsa", (self.folder / "out/table.md").read_text())
+        report = Program(self, program("aquafarm_bringup", "make_report"), self.folder / "out")
+        self.assertEqual(0, report.code(), report.words())
+        self.assertIn("expected_sarsa", (self.folder / "out/report.html").read_text())
+        absent = self.start("out", "--learner", "mine=/none/mine.so")
+        self.assertEqual(2, absent.code(), absent.words())
+        self.assertIn("there is no file /none/mine.so", absent.words())
 
     def test_interrupted_it_says_how_to_go_on(self):
         one = self.start("out", "--algorithms", "q_learning", episodes=10000000)

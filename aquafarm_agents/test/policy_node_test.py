@@ -48,10 +48,13 @@ class PolicyNodeTest(unittest.TestCase):
                            *parameters)
 
     def test_an_evaluation_is_that_of_this_process(self):
-        policy = self.trained()
+        python = self.folder / "mine.py"
+        python.write_text("def act(observations, masks):\n"
+                          "    return (masks * [3, 1, 4, 1, 5, 9, 2, 6, 5, 3]).argmax(axis=1)\n")
+        places = {"trained": self.trained(), "python": python}
         start_sim(self, self.namespace, TINY, "_farms:=4")
-        for name in ("trained", "random", "planner"):
-            where = policy if name == "trained" else name
+        for name in ("trained", "random", "planner", "python"):
+            where = places.get(name, name)
             ros = self.play(f"_policy:={where}", "_episodes:=40", "_seed:=9",
                             f"_output:={self.folder / name}_ros")
             self.assertEqual(0, ros.code(), ros.words())

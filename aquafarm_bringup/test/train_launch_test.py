@@ -5,6 +5,7 @@ import os
 import pathlib
 import shlex
 import signal
+import struct
 import sys
 import tempfile
 import time
@@ -47,6 +48,20 @@ class TrainLaunchTest(unittest.TestCase):
         names = {path.name for path in self.run_dir.rglob("*")}
         self.assertLessEqual({"metrics.csv", "scenario.yaml"}, names)
         self.assertFalse([name for name in names if name.endswith((".tmp", ".part"))])
+
+    def test_with_log_its_curves_are_event_files_of_tensorboard(self):
+        with self.train("episodes:=320", "log:=tensorboard") as ranch:
+            self.assertEqual(0, ranch.exit_code(60), ranch.words())
+        events, = (self.run_dir / "tensorboard").glob("events.out.tfevents.*")
+        content, texts = events.read_bytes(), []
+        while content:
+            length, = struct.unpack("<Q", content[:8])
+            texts.append(content[12:12 + length])
+            content = content[12 + length + 4:]
+        self.assertIn(b"brain.Event:2", texts[0])
+        self.assertEqual(7, len(texts[1:]), "means of 50 episodes and a rest of 20")
+        for text in texts[1:]:
+            self.assertIn(b"episode/return", text)
 
     def test_an_unknown_algorithm_ends_at_once_and_lists_what_there_is(self):
         with self.train("algorithm:=alphago") as ranch:

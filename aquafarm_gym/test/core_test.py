@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests of the Python module aquafarm_core: contents and memory of arrays, and rejected input."""
 import copy
+import importlib.util
 import os
 import pathlib
 import pickle
@@ -184,6 +185,19 @@ class CoreTest(unittest.TestCase):
             self.skipTest("this Python has the module installed")
         self.assertRegex(done.stderr, r"ImportError: aquafarm_core: got no native module for this "
                          r"Python from \[.*\] \(.*\), expected one; pip install ./aquafarm_gym, or")
+
+    @unittest.skipUnless(importlib.util.find_spec("aquafarm_core._pictures"), "built without OpenCV")
+    def test_a_painter_draws_the_present_state(self):
+        from aquafarm_core import pictures
+        batch = core.FarmBatch(PAPER, 2)
+        batch.reset(3)
+        painter = pictures.Painter(400, 320)
+        first = painter.draw(batch, 1).copy()
+        self.assertEqual((first.shape, first.dtype), ((320, 400, 3), np.uint8))
+        np.testing.assert_array_equal(pictures.Painter(400, 320).draw(batch, 1), first)
+        for actions in actions_of(1, batch, 5):
+            batch.step(actions)
+        self.assertTrue((painter.draw(batch, 1) != first).any())
 
     def test_rewards_are_the_sum_of_their_terms_and_finished_episodes_add_up(self):
         reef = core.Scenario.load(str(DATA / "reef.yaml"))

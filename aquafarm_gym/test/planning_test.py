@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests of planners, saved policies and rescue plans from Python.
+"""Tests of planners and saved policies from Python, which need no package from PyPI.
 
-Runs in the virtual environment given by --venv (venv_tools.py), or in the Python that starts it.
 The returns of `EVALUATED` are those that aquafarm_evaluate writes for the same episodes
 (--episodes 5 --farms 5 --seed 3 --max-steps 300).
 """
@@ -12,22 +11,14 @@ import subprocess
 import tempfile
 import unittest
 
-from venv_tools import enter_venv, run_tests
-
-WHY_NOT = enter_venv()
-
-if not WHY_NOT:
-    import aquafarm_core as core
-    import numpy as np
-    from aquafarm_gym import plan_rescue
+import aquafarm_core as core
+import numpy as np
+from venv_tools import run_tests
 
 DATA = pathlib.Path(__file__).resolve().parent / "data"
 ROOT = DATA.parents[2]
-TRACKS = ROOT / "aquafarm_sim" / "core" / "test" / "data"
 OLD_RUNS = ROOT / "aquafarm_agents" / "core" / "test" / "data" / "version_0_1_0"
 EVALUATION_SEED = 2**63 + 3  # of aquafarm_evaluate --seed 3
-BULLETIN = {"bulletin": TRACKS / "bulletin.json", "storm_name": "202106",
-            "at": "2021-07-25T00:00:00Z", "members": 50, "ships": 1}
 EVALUATED = {
     "planner": [280.60928, 265.60928, 271.60928, 276.60928, 273.60928],
     "clairvoyant": [280.60928, 280.60928, 280.60928, 276.60928, 280.60928],
@@ -52,7 +43,6 @@ def play(batch, policy):
     return [records[i] for i in range(batch.farms)]
 
 
-@unittest.skipIf(WHY_NOT, WHY_NOT)
 class PlanningTest(unittest.TestCase):
     def test_policies_play_as_in_aquafarm_evaluate(self):
         paper = shipped("paper")
@@ -65,8 +55,6 @@ class PlanningTest(unittest.TestCase):
 
     def test_a_network_plays_as_in_aquafarm_evaluate(self):
         """On this machine: another processor may round otherwise and choose another move."""
-        if not plays_ppo():
-            self.skipTest("built without BLAS")
         program = evaluate_program()
         if program is None:
             self.skipTest("aquafarm_evaluate is not built here")
@@ -84,8 +72,6 @@ class PlanningTest(unittest.TestCase):
         np.testing.assert_allclose([one["episode_return"] for one in records], expected, rtol=1e-4)
 
     def test_the_shipped_generalist_plays_a_farm_without_tokens(self):
-        if not plays_ppo():
-            self.skipTest("built without BLAS")
         paper = shipped("paper")
         batch = core.FarmBatch(paper, 5)
         batch.reset(EVALUATION_SEED)
@@ -163,26 +149,6 @@ class PlanningTest(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, f"^{words}"):
                 call()
 
-    def test_a_plan_is_the_content_of_plan_json(self):
-        plan = plan_rescue("zhoushan_infa_2021", **BULLETIN)
-        self.assertEqual((plan["format"], plan["version"]), ("aquafarm_plan", 1))
-        self.assertEqual(plan["outcome"]["kind"], "nothing_can_be_saved")
-        again = plan_rescue("zhoushan_infa_2021", **BULLETIN)
-        for one in (plan, again):
-            del one["provenance"]  # the time of the computation
-        self.assertEqual(plan, again)
-
-    def test_wrong_options_are_refused_in_one_line(self):
-        for changes, words in (
-                ({"at": "2021-07-25T00:00:00"}, "at: got '2021-07-25T00:00:00', expected a time"),
-                ({"members": 5}, r"members: got 5, expected a whole number in \[10, 20000\]"),
-                ({"ships": 1.5}, r"ships: got 1.5, expected a whole number in \[0, 64\]"),
-                ({"speed_kn": "10"}, r"speed_kn: got '10', expected a number in \[0.1, 60.0\]"),
-                ({"storm_name": ""}, ".*bulletin.json: got 2 storms, expected "),
-                ({"bulletin": "none.json"}, "none.json: ")):
-            with self.assertRaisesRegex(ValueError, f"^{words}"):
-                plan_rescue("zhoushan_infa_2021", **{**BULLETIN, **changes})
-
 
 def evaluate_program():
     """Returns the path of aquafarm_evaluate, None if it is not built here."""
@@ -194,14 +160,5 @@ def evaluate_program():
     return found[0] if found else None
 
 
-def plays_ppo():
-    """Returns whether the package was built with BLAS."""
-    try:
-        core.Policy(str(DATA / "ppo"), shipped("paper"))
-    except ValueError as error:
-        return "cannot play" not in str(error)
-    return True
-
-
 if __name__ == "__main__":
-    run_tests("planning", PlanningTest, WHY_NOT)
+    run_tests("planning", PlanningTest, "")

@@ -35,7 +35,8 @@ def with_full_path(word):
     """Returns 'run_dir:=here' with an absolute path, and other arguments unchanged."""
     name, value = split(word)
     looks_like_path = name in PATHS or (
-        name in PATHS_OR_NAMES and ("/" in value or value.endswith(".yaml")))
+        name in PATHS_OR_NAMES and ("/" in value or value.endswith((".yaml", ".py", ".zip")) or
+                                    ".py:" in value))
     if looks_like_path and value not in ("", "auto", "none"):
         value = os.path.realpath(value)
     return f"{name}:={value}"

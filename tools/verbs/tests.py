@@ -18,6 +18,9 @@ BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="
 </testcase></testsuite>
 """
 LAST_LINES = 20
+# CI ends the test command after 90 minutes. Checks of the wheel that begin later than this after the
+# start are skipped.
+WHEEL_END_S = 55 * 60
 
 
 class Stages:
@@ -27,8 +30,12 @@ class Stages:
         self._began = time.monotonic()
         self.has_failed = False
 
+    def seconds(self):
+        """Returns the time since the start."""
+        return int(time.monotonic() - self._began)
+
     def begin(self, what):
-        seconds = int(time.monotonic() - self._began)
+        seconds = self.seconds()
         say(f"{seconds // 60:2d}:{seconds % 60:02d} {what}")
 
     def run(self, command, log=None, **variables):
@@ -107,6 +114,17 @@ def test_through_ros(stages):
         stages.break_off("tests through ROS", log)
 
 
+def test_wheel(stages):
+    log = RESULTS / "python.log"
+    stages.begin(f"testing the wheel with tools from PyPI, as far as there is time (log: {log})")
+    stages.run([ROOT / "tools/check_python", WS / "python", "--short", "--limit",
+                max(1, WHEEL_END_S - stages.seconds()), "--xml", RESULTS / "python.xml"], log,
+               CCACHE_DIR=os.environ.get("CCACHE_DIR", str(WS / "ccache")),
+               CMAKE_CXX_COMPILER_LAUNCHER="ccache")
+    if is_empty(RESULTS / "python.xml"):
+        stages.break_off("wheel", log)
+
+
 def run(fast):
     """Runs every test; `fast` leaves out the builds in other kinds of workspace. Returns 1 if a
     test failed."""
@@ -118,6 +136,7 @@ def run(fast):
     if not fast:
         stages.begin("building and running in the other kinds of workspace")
         stages.run([ROOT / "tools/check_workspaces", WS / "workspaces", RESULTS / "workspaces.xml"])
+        test_wheel(stages)
     stages.begin("adding up the results")
     stages.run([PYTHON, ROOT / "tools/sum_results.py", RESULTS, *WS.glob("core/*/test_results"),
                 WS / "build/test_results"])

@@ -192,10 +192,10 @@ int Main(int argc, char** argv) {
   CLI::App app("Plays a saved policy greedily on episodes of evaluation seeds, and reports.");
   app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
   app.option_defaults()->always_capture_default();
-  app.add_option(
-         "policy", arguments.policy,
-         "run folder, checkpoint file, generalist, random, planner, clairvoyant, do_nothing or "
-         "fetch_by_value")
+  app.add_option("policy", arguments.policy,
+                 "run folder, checkpoint file, FILE.py, FILE.zip (docs/python.md), generalist, "
+                 "random, planner, clairvoyant, do_nothing or "
+                 "fetch_by_value")
       ->required();
   app.add_option("scenario", arguments.scenario.name,
                  "scenario file or name; empty: the one in the policy's run folder");

@@ -166,21 +166,16 @@ int Main(int argc, char** argv) {
   RunOptions& options = arguments.options;
   arguments.environment.farms = 0;
   CLI::App app("Trains an agent on the farm in this process. Ctrl-C saves; --resume continues.");
-  app.footer(ListAlgorithms() +
-             "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 6 another "
-             "rank ended, 130 "
-             "interrupted and saved");
   app.option_defaults()->always_capture_default();
   AddOptions(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
-  }
-  for (const std::string& setting : arguments.settings) options.options += " " + setting;
-  options.arguments.assign(argv, argv + argc);
   return RunWithExitCodes(app, [&] {
+    app.footer(ListAlgorithms() +
+               "\nexit codes: 0 trained, 2 bad argument, 3 storage, 5 learning failed, 6 another "
+               "rank ended, 130 "
+               "interrupted and saved");
+    app.parse(argc, argv);
+    for (const std::string& setting : arguments.settings) options.options += " " + setting;
+    options.arguments.assign(argv, argv + argc);
     try {
       return Run(arguments, argv);
     } catch (const RankLost& error) {

@@ -73,7 +73,8 @@ def parse(arguments):
                         "in it is one person (default: none)")
     parser.add_argument("--learner", action="append", default=[], metavar="NAME=COMMAND",
                         help="a learner of another package as a row: a program that trains and "
-                        "evaluates as aquafarm_gym.external describes; may be repeated")
+                        "evaluates as aquafarm_gym.external describes, or a shared library (.so) "
+                        "that registers NAME; may be repeated")
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of aquafarm_train and aquafarm_evaluate (default: the "
                         "workspace's, or those on PATH)")
@@ -122,8 +123,22 @@ def _external(text, number):
     if not re.fullmatch("[a-z][a-z0-9_]*", name) or not words:
         raise BadInput(f"learner: got '{text}', expected NAME=COMMAND with a name of a-z, 0-9 and _, "
                        "such as mine=python3 my_learner.py")
-    return Contestant(name, name, _EXTERNAL_COLOURS[number % len(_EXTERNAL_COLOURS)],
-                      command=words)
+    colour = _EXTERNAL_COLOURS[number % len(_EXTERNAL_COLOURS)]
+    if len(words) > 1 or not words[0].endswith(".so"):
+        return Contestant(name, name, colour, command=words)
+    library = pathlib.Path(words[0]).resolve()
+    if not library.is_file():
+        raise BadInput(f"learner: got '{text}', but there is no file {library}; expected a shared "
+                       "library that registers the learner")
+    return Contestant(name, name, colour, library=str(library))
+
+
+def _load_in_programs(contestants):
+    """Makes the programs of this benchmark load the libraries of its learners."""
+    libraries = [one.library for one in contestants if one.library]
+    if libraries:
+        there = os.environ.get("AQUAFARM_LEARNERS", "")
+        os.environ["AQUAFARM_LEARNERS"] = ":".join([*libraries, *filter(None, [there])])
 
 
 def _external_command(one, options, seed, run):
@@ -211,6 +226,8 @@ def _settings_of_one(one):
         settings["scenario"] = one.scenario
     if one.command:
         settings["command"] = list(one.command)
+    if one.library:
+        settings["library"] = one.library
     return settings
 
 
@@ -301,6 +318,7 @@ def _require_alike(name, of_one):
 
 def run(options):
     """Runs the complete protocol: trains, evaluates, writes and draws."""
+    _load_in_programs(options.learners)
     farm, has_money = look_at_farm(options)
     names = set(options.algorithms)
     if has_money:

@@ -54,6 +54,7 @@ class Contestant:
     paper_row: str = ""  # key of PAPER_TABLE; empty if Table 1 has no such row
     named_only: bool = False  # True: takes part only if --algorithms names it
     command: typing.Tuple[str, ...] = ()  # of a learner of another package; see --learner
+    library: str = ""  # shared library that registers this learner; see --learner
 
     @property
     def algorithm_name(self):

@@ -61,7 +61,8 @@ PolicyParams ReadPolicyParams(const ros::NodeHandle& node) {
   if (params.policy.empty()) {
     throw aquafarm::InputError(
         "~policy: got nothing, expected a run folder, a checkpoint file, "
-        "generalist, random, planner, clairvoyant, do_nothing or fetch_by_value");
+        "FILE.py, FILE.zip, generalist, random, planner, clairvoyant, do_nothing or "
+        "fetch_by_value");
   }
   if (params.mode != "evaluate" && params.mode != "act") {
     throw aquafarm::InputError("~mode: got '" + params.mode + "', expected evaluate or act");

@@ -29,12 +29,10 @@
 #include "aquafarm/grid/step_buffers.h"
 #include "arguments.h"
 #include "batch.h"
-#include "turn.h"
-#ifdef AQUAFARM_WITH_BLAS
 #include "ppo/ppo_policy.h"
 #include "ppo/token_layout.h"
 #include "training/token_policy.h"
-#endif
+#include "turn.h"
 
 namespace aquafarm::python {
 namespace py = pybind11;
@@ -70,12 +68,9 @@ const std::map<std::string, Make>& BuiltIn() {
 
 /// Learned policies that need no libtorch, by the algorithm of their checkpoint.
 const std::map<std::string, Make>& Learned() {
-  static const std::map<std::string, Make> makers{
-#ifdef AQUAFARM_WITH_BLAS
-      {"ppo", agents::MakePpoPolicyWithoutTorch},
-#endif
-      {"q_learning", agents::MakeTabularPolicy},
-      {"sarsa", agents::MakeTabularPolicy}};
+  static const std::map<std::string, Make> makers{{"ppo", agents::MakePpoPolicyWithoutTorch},
+                                                  {"q_learning", agents::MakeTabularPolicy},
+                                                  {"sarsa", agents::MakeTabularPolicy}};
   return makers;
 }
 
@@ -93,12 +88,10 @@ std::string& PolicyFolder() {
 /// Makes a learned policy. One that reads entity tokens plays on other farms, too.
 std::unique_ptr<agents::Policy> MakeLearned(Make make, const Checkpoint& checkpoint,
                                             const EnvironmentSpec& spec) {
-#ifdef AQUAFARM_WITH_BLAS
   if (agents::HasTokens(checkpoint.spec) && !agents::HasTokens(spec)) {
     return std::make_unique<agents::TokenPolicy>(
         spec, [&](const EnvironmentSpec& farms) { return make(checkpoint, farms); });
   }
-#endif
   return make(checkpoint, spec);
 }
 

@@ -6,7 +6,8 @@
 RUN is a run folder of ./aquafarm train or aquafarm_train; its metrics.csv has one line per episode.
 Each point is the mean of --window episodes at the farm steps of the last one. TensorBoard reads
 RUN/tensorboard (tensorboard --logdir runs); Weights & Biases gets one run per folder, offline unless
-WANDB_MODE is online. --follow continues until Ctrl-C or until all runs have ended.
+WANDB_MODE is online. --follow waits for runs that begin later and continues until Ctrl-C or until all
+runs have ended. Only --to wandb needs a package from PyPI. The file also runs alone: python3 logs.py.
 """
 from __future__ import annotations
 
@@ -17,6 +18,8 @@ import math
 import os
 import pathlib
 import shutil
+import socket
+import struct
 import sys
 import time
 from collections.abc import Iterator
@@ -43,26 +46,77 @@ class Sink(Protocol):
         """Writes what is left."""
 
 
+def _crc32c_table() -> list[int]:
+    """Returns the table of CRC-32C (Castagnoli, reflected polynomial 0x82f63b78; RFC 3720, B.4)."""
+    table = []
+    for value in range(256):
+        for _ in range(8):
+            value = value >> 1 ^ (0x82f63b78 if value & 1 else 0)
+        table.append(value)
+    return table
+
+
+_TABLE = _crc32c_table()
+
+
+def crc32c(data: bytes) -> int:
+    """Returns the CRC-32C of bytes."""
+    crc = 0xffffffff
+    for byte in data:
+        crc = crc >> 8 ^ _TABLE[(crc ^ byte) & 255]
+    return crc ^ 0xffffffff
+
+
+def _record(data: bytes) -> bytes:
+    """Returns a TFRecord: length, CRC of the length, data, CRC of the data. The CRCs are rotated and
+    shifted (tensorflow/tsl: lib/hash/crc32c.h, Mask)."""
+    def masked(part: bytes) -> bytes:
+        crc = crc32c(part)
+        return struct.pack("<I", ((crc >> 15 | crc << 17) + 0xa282ead8) & 0xffffffff)
+    length = struct.pack("<Q", len(data))
+    return length + masked(length) + data + masked(data)
+
+
+def _varint(value: int) -> bytes:
+    """Returns a number in the wire format of protocol buffers."""
+    parts = []
+    while value > 127:
+        parts.append(value & 127 | 128)
+        value >>= 7
+    return bytes([*parts, value])
+
+
+def _text(field: int, data: bytes) -> bytes:
+    """Returns a text or message field of a protocol buffer."""
+    return _varint(field << 3 | 2) + _varint(len(data)) + data
+
+
 class TensorBoard:
-    """Rewrites RUN/tensorboard with the writer of the package tensorboard."""
+    """Rewrites RUN/tensorboard: an event file (tensorboard/compat/proto: event.proto,
+    summary.proto)."""
 
     def __init__(self, run: pathlib.Path) -> None:
-        from tensorboard.summary.writer.event_file_writer import EventFileWriter
         folder = run / "tensorboard"
         shutil.rmtree(folder, ignore_errors=True)
-        self._writer: Any = EventFileWriter(str(folder))
+        folder.mkdir(parents=True)
+        name = f"events.out.tfevents.{time.time_ns() // 1000}.{socket.gethostname()}.{os.getpid()}"
+        self._file = open(folder / name, "wb")
+        self._write(_text(3, b"brain.Event:2"))  # file_version
+
+    def _write(self, content: bytes) -> None:
+        self._file.write(_record(struct.pack("<Bd", 1 << 3 | 1, time.time()) + content))
+        self._file.flush()
 
     def add(self, steps: int, values: dict[str, float]) -> None:
         """Adds a point."""
-        from tensorboard.compat.proto.event_pb2 import Event
-        from tensorboard.compat.proto.summary_pb2 import Summary
-        scalars = [Summary.Value(tag=name, simple_value=value) for name, value in values.items()]
-        self._writer.add_event(Event(wall_time=time.time(), step=steps,
-                                     summary=Summary(value=scalars)))
+        summary = b"".join(
+            _text(1, _text(1, name.encode()) + struct.pack("<Bf", 2 << 3 | 5, value))
+            for name, value in values.items())
+        self._write(_varint(2 << 3) + _varint(steps) + _text(5, summary))
 
     def close(self) -> None:
-        """Writes what is left."""
-        self._writer.close()
+        """Closes the file."""
+        self._file.close()
 
 
 class WeightsAndBiases:
@@ -176,23 +230,30 @@ class Curves:
 
 
 def log_runs(runs: list[pathlib.Path], kind: str = "tensorboard", window: int = 50,
-             follow: bool = False) -> list[int]:
-    """Logs run folders; returns the number of points of each. kind: tensorboard or wandb. Raises
-    ValueError for a folder without a run, and ImportError without the package of `kind`."""
+             follow: bool = False, endless: bool = False) -> list[int]:
+    """Logs run folders; returns the number of points of each. kind: tensorboard or wandb.
+    follow: until the runs have ended; with endless only until Ctrl-C. Raises ValueError for a folder
+    without a run, and ImportError without the package wandb."""
+    try:
+        while follow and not all((run / "metrics.csv").is_file() for run in runs):
+            time.sleep(PERIOD_S)
+    except KeyboardInterrupt:
+        follow = False  # logs what is there
     for run in runs:
         if not (run / "metrics.csv").is_file() and not (run / "run.json").is_file():
             raise ValueError(f"{run}: got no metrics.csv, expected a run folder of ./aquafarm train")
     curves = [Curves(run, kind, window) for run in runs]
     try:
         while True:
-            ended = follow and all(one.has_ended() for one in curves)
+            ended = follow and not endless and all(one.has_ended() for one in curves)
             for one in curves:
                 one.update()
             if ended or not follow:
                 break
             time.sleep(PERIOD_S)
     except KeyboardInterrupt:
-        pass
+        for one in curves:
+            one.update()
     finally:
         for one in curves:
             one.close()
@@ -207,13 +268,16 @@ def main() -> int:
     parser.add_argument("--to", choices=sorted(SINKS), default="tensorboard")
     parser.add_argument("--window", type=int, default=50, help="number of episodes per point")
     parser.add_argument("--follow", action="store_true", help="continue while runs train")
+    parser.add_argument("--endless", action="store_true",
+                        help="with --follow: continue until Ctrl-C, as a run may be resumed")
     given = parser.parse_args()
     if given.window < 1:
         parser.error(f"--window: got {given.window}, expected at least 1")
     try:
-        points = log_runs(given.runs, given.to, given.window, given.follow)
+        points = log_runs(given.runs, given.to, given.window, given.follow,
+                          given.endless)
     except ImportError as error:
-        print(f"logs: {error}; pip install {given.to}", file=sys.stderr)
+        print(f"logs: {error}; pip install wandb", file=sys.stderr)
         return 3
     except ValueError as error:
         print(f"logs: {error}", file=sys.stderr)

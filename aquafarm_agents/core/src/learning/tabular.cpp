@@ -2,7 +2,6 @@
 #include "aquafarm/agents/learning/tabular.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "aquafarm/agents/base/options.h"
@@ -11,8 +10,6 @@
 namespace aquafarm::agents {
 namespace {
 
-// Marks agents that are not in play: they have no last action.
-constexpr auto kNoAction = std::numeric_limits<std::uint64_t>::max();
 constexpr float kLossShare = 0.01F;  // weight of one step in the moving average of the loss
 
 std::size_t Entries(const EnvironmentSpec& spec) {
@@ -50,9 +47,8 @@ TabularOptions TabularOptions::Parse(const std::string& text, std::string& resol
   return options;
 }
 
-template <typename Rule>
-TabularLearner<Rule>::TabularLearner(const EnvironmentSpec& spec, std::uint64_t seed,
-                                     const std::string& options)
+TableLearner::TableLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                           const std::string& options)
     : options_(TabularOptions::Parse(options, resolved_)),
       farms_(spec.farms),
       table_(spec, static_cast<float>(options_.initial_value)),
@@ -60,11 +56,56 @@ TabularLearner<Rule>::TabularLearner(const EnvironmentSpec& spec, std::uint64_t 
       pending_(Entries(spec)),
       loss_(std::nanf("")) {}
 
+void TableLearner::SetProgress(double progress) {
+  explorer_.SetProgress(progress);
+  learning_rate_ = static_cast<float>(options_.learning_rate.At(progress));
+}
+
+void TableLearner::AddLoss(float loss) {
+  loss_ = std::isnan(loss_) ? loss : loss_ + kLossShare * (loss - loss_);
+}
+
+LearnerStatus TableLearner::status() const {
+  return {loss_, static_cast<float>(explorer_.level()), learning_rate_};
+}
+
+std::unique_ptr<Policy> TableLearner::GreedyPolicy() const {
+  return std::make_unique<GreedyTabularPolicy>(table_, options_.mask_illegal);
+}
+
+void TableLearner::SavePolicy(Checkpoint& checkpoint) const {
+  checkpoint.SetArray("table", table_.values);
+  checkpoint.sections["mask_illegal"] = options_.mask_illegal ? "1" : "0";
+}
+
+void TableLearner::Save(Checkpoint& checkpoint) const {
+  SavePolicy(checkpoint);
+  explorer_.Save(checkpoint);
+  checkpoint.SetArray("pending", pending_);
+  checkpoint.SetArray("loss", std::vector<float>{loss_});
+}
+
+void TableLearner::Load(const Checkpoint& checkpoint) {
+  std::vector<float> values;
+  std::vector<float> loss;
+  std::vector<std::uint64_t> pending;
+  checkpoint.GetArray("table", table_.values.size(), values);
+  checkpoint.GetArray("pending", pending_.size(), pending);
+  checkpoint.GetArray("loss", 1, loss);
+  for (const std::uint64_t offset : pending) {
+    if (offset != kNoAction && offset >= values.size())
+      throw InputError("checkpoint: section 'pending': out of range");
+  }
+  explorer_.Load(checkpoint);
+  table_.values = std::move(values);
+  pending_ = std::move(pending);
+  loss_ = loss[0];
+}
+
 template <typename Rule>
 void TabularLearner<Rule>::Step(const StepResults& results, double progress,
                                 std::vector<std::uint8_t>& actions) {
-  explorer_.SetProgress(progress);
-  learning_rate_ = static_cast<float>(options_.learning_rate.At(progress));
+  SetProgress(progress);
   actions.resize(pending_.size());
   const float rate = learning_rate_;
   const auto discount = static_cast<float>(options_.gamma);
@@ -76,9 +117,7 @@ void TabularLearner<Rule>::Step(const StepResults& results, double progress,
     const auto f = static_cast<std::size_t>(farm);
     const bool is_transition = results.started[f] == 0;
     for (std::int32_t agent = 0; agent < table_.agents; ++agent, ++entry) {
-      const ActionMask allowed = options_.mask_illegal
-                                     ? static_cast<ActionMask>(results.legal[entry] & kAllActions)
-                                     : kAllActions;
+      const ActionMask allowed = AllowedOf(results.legal[entry]);
       const std::size_t row = table_.Row(agent, results.index[entry]);
       const Best best = BestOf(values + row, allowed);
       const std::uint8_t action = explorer_.Choose(values + row, allowed, best, entry);
@@ -95,51 +134,7 @@ void TabularLearner<Rule>::Step(const StepResults& results, double progress,
       actions[entry] = action;
     }
   }
-  if (learnt == 0) return;
-  const float loss = error_sum / static_cast<float>(learnt);
-  loss_ = std::isnan(loss_) ? loss : loss_ + kLossShare * (loss - loss_);
-}
-
-template <typename Rule>
-LearnerStatus TabularLearner<Rule>::status() const {
-  return {loss_, static_cast<float>(explorer_.level()), learning_rate_};
-}
-
-template <typename Rule>
-std::unique_ptr<Policy> TabularLearner<Rule>::GreedyPolicy() const {
-  return std::make_unique<GreedyTabularPolicy>(table_, options_.mask_illegal);
-}
-
-template <typename Rule>
-void TabularLearner<Rule>::SavePolicy(Checkpoint& checkpoint) const {
-  checkpoint.SetArray("table", table_.values);
-  checkpoint.sections["mask_illegal"] = options_.mask_illegal ? "1" : "0";
-}
-
-template <typename Rule>
-void TabularLearner<Rule>::Save(Checkpoint& checkpoint) const {
-  SavePolicy(checkpoint);
-  explorer_.Save(checkpoint);
-  checkpoint.SetArray("pending", pending_);
-  checkpoint.SetArray("loss", std::vector<float>{loss_});
-}
-
-template <typename Rule>
-void TabularLearner<Rule>::Load(const Checkpoint& checkpoint) {
-  std::vector<float> values;
-  std::vector<float> loss;
-  std::vector<std::uint64_t> pending;
-  checkpoint.GetArray("table", table_.values.size(), values);
-  checkpoint.GetArray("pending", pending_.size(), pending);
-  checkpoint.GetArray("loss", 1, loss);
-  for (const std::uint64_t offset : pending) {
-    if (offset != kNoAction && offset >= values.size())
-      throw InputError("checkpoint: section 'pending': out of range");
-  }
-  explorer_.Load(checkpoint);
-  table_.values = std::move(values);
-  pending_ = std::move(pending);
-  loss_ = loss[0];
+  if (learnt > 0) AddLoss(error_sum / static_cast<float>(learnt));
 }
 
 template class TabularLearner<QLearningRule>;

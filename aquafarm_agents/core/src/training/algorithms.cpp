@@ -2,6 +2,7 @@
 #include "aquafarm/agents/training/algorithms.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "aquafarm/agents/base/options.h"
 #include "aquafarm/agents/curiosity/curiosity.h"
@@ -16,6 +17,7 @@
 #include "aquafarm/agents/planning/planner_policy.h"
 #include "aquafarm/agents/planning/team_planner.h"
 #include "aquafarm/agents/ppo/ppo.h"
+#include "aquafarm/agents/training/register_learner.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/suggest.h"
 #include "aquafarm/scenario/scenario_yaml.h"
@@ -110,10 +112,8 @@ std::string DescribeDeciders(std::int32_t ships, std::int32_t devices, bool netw
   return text + (ships + devices == 1 ? " decides" : " decide");
 }
 
-}  // namespace
-
-const std::vector<Algorithm>& Algorithms() {
-  static const std::vector<Algorithm> algorithms{
+std::vector<Algorithm> OwnAlgorithms() {
+  return {
       {"random", "draws among all or reachable actions; the baseline (§4.2)", false, 100000,
        RandomEncodings, Make<RandomLearner>, MakeRandomPolicy},
       {"q_learning", "tabular Q-learning (Eq. 12)", true, 4000000, WithCuriosityToo<Tabular>,
@@ -147,6 +147,29 @@ const std::vector<Algorithm>& Algorithms() {
       {"fetch_by_value", "each ship fetches the most valuable device that it can still bring home",
        false, 0, WithoutOptions<kStatesBit>, nullptr, MakeBuiltIn<FetchByValuePolicy>},
   };
+}
+
+// Returns those of this package, then the registered ones.
+std::vector<Algorithm> AllAlgorithms() {
+  std::vector<Algorithm> all = OwnAlgorithms();
+  const char* const libraries = std::getenv(kLearnersVariable);
+  for (const Algorithm& one : LoadLearners(libraries == nullptr ? "" : libraries)) {
+    const auto has_its_name = [&one](const Algorithm& other) {
+      return std::string_view(other.name) == one.name;
+    };
+    if (std::any_of(all.begin(), all.end(), has_its_name)) {
+      throw InputError(std::string("learner ") + one.name +
+                       ": registered twice or like one of aquafarm, expected another name");
+    }
+    all.push_back(one);
+  }
+  return all;
+}
+
+}  // namespace
+
+const std::vector<Algorithm>& Algorithms() {
+  static const std::vector<Algorithm> algorithms = AllAlgorithms();
   return algorithms;
 }
 

@@ -44,6 +44,12 @@ SavedPolicy FindPolicy(const std::string& where) {
     saved.checkpoint.version.clear();
     return saved;
   }
+  if (IsPythonPolicy(where)) {
+    saved.process = std::make_shared<PolicyProcess>(where);
+    saved.checkpoint.algorithm = "python";
+    saved.encodings = saved.process->encodings();
+    return saved;
+  }
   for (const Algorithm& algorithm : Algorithms()) {
     if (algorithm.learns || where != algorithm.name) continue;
     saved.checkpoint.algorithm = where;
@@ -58,7 +64,8 @@ SavedPolicy FindPolicy(const std::string& where) {
       if (!newest) {
         throw InputError(where +
                          ": contains neither policy.ckpt nor a checkpoint; expected a run "
-                         "folder, a checkpoint file, generalist, random, planner, clairvoyant, "
+                         "folder, a checkpoint file, FILE.py, FILE.zip, generalist, random, "
+                         "planner, clairvoyant, "
                          "do_nothing or fetch_by_value");
       }
       saved.path = *newest;
@@ -70,6 +77,7 @@ SavedPolicy FindPolicy(const std::string& where) {
 }
 
 std::unique_ptr<Policy> MakePolicy(const SavedPolicy& saved, const EnvironmentSpec& spec) {
+  if (saved.process != nullptr) return MakePythonPolicy(saved.process, spec);
   const std::string& version = saved.checkpoint.version;  // empty for policies that do not learn
   if (!version.empty() && version != spec.version) {
     throw InputError(saved.path + ": was trained by aquafarm " + version + ", expected " +

@@ -10,6 +10,7 @@
 /// farms; updates are in farm order. A truncated episode bootstraps like any other step.
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,15 +60,14 @@ struct TabularOptions {
   static TabularOptions Parse(const std::string& text, std::string& resolved);
 };
 
-template <typename Rule>
-class TabularLearner final : public Learner {
+/// A table with its exploration, checkpoints and greedy policy. A derived class adds Step.
+class TableLearner : public Learner {
  public:
-  TabularLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
+  /// @throws InputError if the farm is too large for a table, or an option is wrong
+  TableLearner(const EnvironmentSpec& spec, std::uint64_t seed, const std::string& options);
 
   std::uint8_t encodings() const override { return kIndexBit; }
   std::string options() const override { return resolved_; }
-  void Step(const StepResults& results, double progress,
-            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override;
   std::unique_ptr<Policy> GreedyPolicy() const override;
   void SavePolicy(Checkpoint& checkpoint) const override;
@@ -76,15 +76,35 @@ class TabularLearner final : public Learner {
 
   const QTable& table() const { return table_; }
 
- private:
+ protected:
+  /// Sets ε or the temperature, and the learning rate. @param progress of the run, [0, 1]
+  void SetProgress(double progress);
+  /// Actions that an agent may choose: all, or the legal ones with mask_illegal.
+  ActionMask AllowedOf(ActionMask legal) const {
+    return options_.mask_illegal ? static_cast<ActionMask>(legal & kAllActions) : kAllActions;
+  }
+  /// Adds the mean squared TD error of a step to the reported loss.
+  void AddLoss(float loss);
+
+  /// In pending_: the agent is not in play, so it has no last action.
+  inline static constexpr auto kNoAction = std::numeric_limits<std::uint64_t>::max();
+
   std::string resolved_;
   TabularOptions options_;
   std::int32_t farms_;
   QTable table_;
   Explorer explorer_;
-  std::vector<std::uint64_t> pending_;  // [N, S] offset into values of the current (s, a)
+  std::vector<std::uint64_t> pending_;  ///< [N, S] offset into values of the current (s, a)
   float learning_rate_{};
   float loss_;
+};
+
+template <typename Rule>
+class TabularLearner final : public TableLearner {
+ public:
+  using TableLearner::TableLearner;
+  void Step(const StepResults& results, double progress,
+            std::vector<std::uint8_t>& actions) override;
 };
 
 extern template class TabularLearner<QLearningRule>;

@@ -6,6 +6,7 @@
 
 #include "aquafarm/agents/environment/policy.h"
 #include "aquafarm/agents/learning/checkpoint.h"
+#include "aquafarm/agents/training/python_policy.h"
 
 namespace aquafarm::agents {
 
@@ -18,11 +19,13 @@ struct SavedPolicy {
   std::string path;       ///< source file, or the name of a built-in policy
   Checkpoint checkpoint;  ///< contents of the file; a built-in policy has only the algorithm
   std::uint8_t encodings{};
+  std::shared_ptr<PolicyProcess> process;  ///< of a policy in Python, which is then the policy
 };
 
 /// Finds a policy by path or name.
-/// @param where a run folder, a policy or checkpoint file, or generalist, random, planner,
-/// clairvoyant, do_nothing or fetch_by_value
+/// @param where a run folder, a policy or checkpoint file, a policy in Python (FILE.py,
+/// FILE.py:FUNCTION or FILE.zip, python_policy.h), or generalist, random, planner, clairvoyant,
+/// do_nothing or fetch_by_value
 /// @throws InputError if there is no such policy, or the file is damaged
 SavedPolicy FindPolicy(const std::string& where);
 

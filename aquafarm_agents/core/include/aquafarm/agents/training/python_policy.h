@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Policies in Python: a function act(observations, masks) in a file, or a model of
+/// Stable-Baselines3. They run in a process of their own, so that they may use any Python and any
+/// package. aquafarm_agents/scripts/serve_policy.py is that process and describes the messages.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/environment/policy.h"
+#include "aquafarm/base/mutex.h"
+
+namespace aquafarm::agents {
+
+/// Returns whether the text is FILE.py, FILE.py:FUNCTION or FILE.zip.
+bool IsPythonPolicy(const std::string& where);
+
+/// A Python process that chooses actions. The program is $AQUAFARM_PYTHON, else the python of the
+/// active virtual environment, else python3. Thread-safe.
+class PolicyProcess {
+ public:
+  /// Starts the process and waits until the policy is loaded.
+  /// @throws InputError with the reason in one line
+  explicit PolicyProcess(const std::string& where);
+  ~PolicyProcess();
+  PolicyProcess(const PolicyProcess&) = delete;
+  PolicyProcess& operator=(const PolicyProcess&) = delete;
+
+  /// The observation type that the policy reads, one of EncodingBits.
+  std::uint8_t encodings() const { return encodings_; }
+
+  /// Chooses the actions of all agents. @param actions is resized to [N, S]
+  /// @throws InputError if the policy fails or returns no valid actions
+  void Act(const EnvironmentSpec& spec, const StepResults& results,
+           std::vector<std::uint8_t>& actions);
+
+ private:
+  std::string ReadLine(int limit_s);
+  void Send(const void* bytes, std::size_t count);
+  void Receive(void* bytes, std::size_t count, int limit_s);
+  [[noreturn]] void Fail(const std::string& reason) const;
+  std::uint8_t KindOf(const std::string& line) const;
+  void Stop();
+  void Start(const std::vector<std::string>& command, bool keeps_python_path);
+
+  std::string where_;
+  int socket_{-1};
+  int process_{-1};
+  std::uint8_t encodings_{};
+  Mutex mutex_;  // held during a request and its answer
+};
+
+/// Returns a policy that asks `process`, which several policies may share.
+std::unique_ptr<Policy> MakePythonPolicy(std::shared_ptr<PolicyProcess> process,
+                                         const EnvironmentSpec& spec);
+
+}  // namespace aquafarm::agents

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm/agents/training/python_policy.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <numeric>
+
+#include "agents_fixture.h"
+#include "aquafarm/agents/training/saved_policy.h"
+
+namespace aquafarm::agents::test {
+namespace {
+
+class PythonPolicies : public FolderTest {
+ protected:
+  PythonPolicies() { setenv("AQUAFARM_PYTHON", "/usr/bin/python3", 1); }
+
+  std::string Write(const std::string& text) const {
+    const std::string path = folder_ + "/mine.py";
+    std::ofstream(path) << text;
+    return path;
+  }
+  std::string Refusal(const std::string& where) const {
+    return MessageOf<InputError>([&] { FindPolicy(where); });
+  }
+};
+
+// Actions of the function in ten steps must equal those of `expected`.
+template <typename Expected>
+void ExpectSame(const std::string& where, std::uint8_t kind, const Expected& expected) {
+  const SavedPolicy saved = FindPolicy(where);
+  ASSERT_EQ(saved.encodings, kind);
+  LocalEnvironment environment(TinyFarm(), {3, saved.encodings, false, 1});
+  const auto policy = MakePolicy(saved, environment.spec());
+  const StepResults* results = &environment.Reset(5);
+  std::vector<std::uint8_t> actions;
+  for (int step = 0; step < 10; ++step) {
+    policy->Act(*results, actions);
+    ASSERT_EQ(actions.size(), 3U);
+    for (std::size_t i = 0; i < actions.size(); ++i) {
+      ASSERT_EQ(actions[i], expected(*results, i, environment.spec())) << "step " << step;
+    }
+    results = &environment.Step(actions);
+  }
+}
+
+TEST_F(PythonPolicies, AFunctionReceivesTheIndex) {
+  const std::string path = Write(
+      "OBSERVATION = 'index'\n"
+      "def act(observations, masks):\n"
+      "    return observations % 10\n");
+  ExpectSame(path, kIndexBit,
+             [](const StepResults& results, std::size_t i, const EnvironmentSpec&) {
+               return results.index[i] % 10;
+             });
+}
+
+TEST_F(PythonPolicies, AFunctionReceivesTheFeatures) {
+  const std::string path = Write(
+      "def best(observations, masks):\n"
+      "    return observations.argmax(axis=1) % 10\n");
+  ExpectSame(path + ":best", kFeaturesBit,
+             [](const StepResults& results, std::size_t i, const EnvironmentSpec& spec) {
+               const auto begin =
+                   results.features.begin() + static_cast<std::ptrdiff_t>(i) * spec.feature_count;
+               return (std::max_element(begin, begin + spec.feature_count) - begin) % 10;
+             });
+}
+
+TEST_F(PythonPolicies, AFunctionReceivesPlanesAndMasks) {
+  const std::string path = Write(
+      "OBSERVATION = 'planes'\n"
+      "def act(observations, masks):\n"
+      "    assert observations.ndim == 4\n"
+      "    return (observations.sum(axis=(1, 2, 3)) + masks.sum(axis=1)) % 10\n");
+  ExpectSame(path, kPlanesBit,
+             [](const StepResults& results, std::size_t i, const EnvironmentSpec& spec) {
+               const std::ptrdiff_t size =
+                   static_cast<std::ptrdiff_t>(spec.plane_count) * spec.height * spec.width;
+               const auto begin = results.planes.begin() + static_cast<std::ptrdiff_t>(i) * size;
+               const int legal = __builtin_popcount(results.legal[i] & 0x3ffU);
+               return std::accumulate(begin, begin + size, legal) % 10;
+             });
+}
+
+TEST_F(PythonPolicies, WhatCannotBePlayedIsNamedInOneLine) {
+  EXPECT_EQ(Refusal("/none/mine.py"),
+            "policy /none/mine.py: got no file /none/mine.py, expected a Python file with "
+            "act(observations, masks)");
+  const auto refusal_of = [this](const std::string& text) {
+    const std::string path = Write(text);
+    const std::string words = Refusal(path);
+    const std::string start = "policy " + path + ": ";
+    return words.substr(0, start.size()) == start ? words.substr(start.size()) : words;
+  };
+  EXPECT_EQ(refusal_of("def play():\n    pass\n"),
+            "has no function act, expected act(observations, masks)");
+  EXPECT_EQ(refusal_of("import no_such_package\n"),
+            "ModuleNotFoundError: No module named 'no_such_package'");
+  EXPECT_EQ(refusal_of("OBSERVATION = 'smell'\ndef act(o, m):\n    pass\n"),
+            "OBSERVATION: got 'smell', expected one of: features, planes, index");
+  EXPECT_EQ(refusal_of("import os\nos._exit(4)\n"),
+            "its Python process has ended; its last lines are above");
+  EXPECT_CONTAINS(Refusal("/none/model.zip"), "is no model of Stable-Baselines3");
+  setenv("AQUAFARM_PYTHON", "/none/python3", 1);
+  EXPECT_EQ(Refusal("mine.py"),
+            "policy mine.py: cannot start /none/python3: No such file or directory; set "
+            "AQUAFARM_PYTHON to a Python");
+}
+
+TEST_F(PythonPolicies, AFunctionThatFailsIsNamedInOneLine) {
+  const auto words = [this](const std::string& body) {
+    const SavedPolicy saved = FindPolicy(Write("def act(observations, masks):\n    " + body));
+    LocalEnvironment environment(TinyFarm(), {2, saved.encodings, false, 1});
+    const auto policy = MakePolicy(saved, environment.spec());
+    std::vector<std::uint8_t> actions;
+    return MessageOf<InputError>([&] { policy->Act(environment.Reset(1), actions); });
+  };
+  EXPECT_CONTAINS(words("return 1 / 0"), ": ZeroDivisionError: division by zero");
+  EXPECT_CONTAINS(words("return [1.5, 2]"),
+                  "act: got float64 of shape (2,), expected integers of shape (2,)");
+  EXPECT_CONTAINS(words("return [10, 0]"), "act: got actions in [0, 10], expected [0, 9]");
+}
+
+}  // namespace
+}  // namespace aquafarm::agents::test

@@ -49,13 +49,14 @@ class TestRun(unittest.TestCase):
         code, commands, results, _ = self.run_with(fast=False)
         self.assertEqual(0, code)
         self.assertEqual(["python3", "ctest", "ctest", "run_ros_tests", "check_workspaces",
-                          "python3"],
+                          "check_python", "python3"],
                          [pathlib.Path(line.split()[0]).name for line in commands])
         self.assertFalse({name for name in results if name.startswith("stage-")})
 
     def test_fast_leaves_out_the_other_workspaces(self):
         _, commands, _, _ = self.run_with(fast=True)
-        self.assertFalse([line for line in commands if "check_workspaces" in line])
+        self.assertFalse([line for line in commands
+                          if "check_workspaces" in line or "check_python" in line])
 
     def test_a_failed_stage_fails_the_whole(self):
         self.assertEqual(1, self.run_with(fast=True, ctest=1)[0])

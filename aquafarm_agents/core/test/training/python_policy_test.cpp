@@ -73,7 +73,7 @@ TEST_F(PythonPolicies, AFunctionReceivesPlanesAndMasks) {
       "OBSERVATION = 'planes'\n"
       "def act(observations, masks):\n"
       "    assert observations.ndim == 4\n"
-      "    return (observations.sum(axis=(1, 2, 3)) + masks.sum(axis=1)) % 10\n");
+      "    return (observations.sum(axis=(1, 2, 3), dtype=int) + masks.sum(axis=1)) % 10\n");
   ExpectSame(path, kPlanesBit,
              [](const StepResults& results, std::size_t i, const EnvironmentSpec& spec) {
                const std::ptrdiff_t size =

@@ -11,6 +11,9 @@ DANGEROUS = re.compile(
     r"|shell=True|os\.system\(|os\.popen\(|std::system\(|[^\w:.]popen\(|dlopen\("
     r"|(?<![\w.])eval\(|(?<![\w.])exec\(")
 
+# Sources that execute a program because their user named it as one.
+ALLOWED = {"aquafarm_agents/core/src/training/register_learner.cpp": "dlopen("}
+
 
 def sources():
     """Tracked programs and libraries, without tests and the checks of other packages."""
@@ -32,7 +35,8 @@ def test_no_source_executes_what_it_reads():
     for name, text in sources():
         count += 1
         for number, line in enumerate(text.splitlines(), 1):
-            if DANGEROUS.search(line):
+            allowed = name in ALLOWED and ALLOWED[name] in line
+            if DANGEROUS.search(line) and not allowed:
                 found.append(f"{name}:{number}: {line.strip()}")
     assert count > 300
     assert not found, "\n".join(found)

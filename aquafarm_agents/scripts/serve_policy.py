@@ -73,7 +73,7 @@ def load_model(path):
         with zipfile.ZipFile(path) as archive:
             module = json.loads(archive.read("data"))["policy_class"]["__module__"]
     except (OSError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
-        raise BadPolicy(f"is no model of Stable-Baselines3 ({error})") from None
+        raise BadPolicy(f"is not a model of Stable-Baselines3 ({error})") from None
     if module not in MODELS:
         raise BadPolicy(f"got a model with a policy of {module}, expected one of: "
                         f"{', '.join(MODELS)}; write a function act(observations, masks) for others")

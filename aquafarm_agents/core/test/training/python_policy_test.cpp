@@ -102,7 +102,7 @@ TEST_F(PythonPolicies, WhatCannotBePlayedIsNamedInOneLine) {
             "OBSERVATION: got 'smell', expected one of: features, planes, index");
   EXPECT_EQ(refusal_of("import os\nos._exit(4)\n"),
             "its Python process has ended; its last lines are above");
-  EXPECT_CONTAINS(Refusal("/none/model.zip"), "is no model of Stable-Baselines3");
+  EXPECT_CONTAINS(Refusal("/none/model.zip"), "is not a model of Stable-Baselines3");
   setenv("AQUAFARM_PYTHON", "/none/python3", 1);
   EXPECT_EQ(Refusal("mine.py"),
             "policy mine.py: cannot start /none/python3: No such file or directory; set "

@@ -51,6 +51,7 @@ set(AQUAFARM_PLAIN_SOURCES
 # They need BLAS.
 set(AQUAFARM_PPO_POLICY_SOURCES
   src/ppo/actor.cpp
+  src/ppo/central_actor_critic.cpp
   src/ppo/feed_forward.cpp
   src/ppo/lstm_actor_critic.cpp
   src/ppo/make_actor_critic.cpp

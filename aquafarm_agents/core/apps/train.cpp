@@ -66,9 +66,9 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
                  "limit of farm steps; 0: none, or without any limit the algorithm's own, and "
                  "eight a state of a large table");
   app.add_option("-s,--seed", options.seed, "seed of episodes and exploration");
-  app.add_option(
-         "-f,--farms", arguments.environment.farms,
-         "number of parallel farms; 0: the algorithm's default, 256 for ppo and 16 for others")
+  app.add_option("-f,--farms", arguments.environment.farms,
+                 "number of parallel farms; 0: the algorithm's default, 256 for ppo and mappo, 16 "
+                 "for others")
       ->check(CLI::Range(0, kMaxFarms));
   app.add_option("-t,--threads", arguments.environment.threads,
                  "number of threads that step the farms")
@@ -83,7 +83,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("-o,--set", arguments.settings, "option of the learner, key=value");
   app.add_option("--init", options.init,
                  "run folder, checkpoint or generalist whose weights the learner begins with "
-                 "(ppo); empty: random weights");
+                 "(ppo, mappo); empty: random weights");
   app.add_option("--credit", options.credit,
                  "where the scenario shares the reward, agents learn from their own part of it, or "
                  "from the sum: own, shared");

@@ -68,7 +68,8 @@ const std::map<std::string, Make>& BuiltIn() {
 
 /// Learned policies that need no libtorch, by the algorithm of their checkpoint.
 const std::map<std::string, Make>& Learned() {
-  static const std::map<std::string, Make> makers{{"ppo", agents::MakePpoPolicyWithoutTorch},
+  static const std::map<std::string, Make> makers{{"mappo", agents::MakePpoPolicyWithoutTorch},
+                                                  {"ppo", agents::MakePpoPolicyWithoutTorch},
                                                   {"q_learning", agents::MakeTabularPolicy},
                                                   {"sarsa", agents::MakeTabularPolicy}};
   return makers;
@@ -310,7 +311,7 @@ void DefinePolicies(py::module_& module) {
   py::class_<BatchPolicy>(module, "Policy", R"(Chooses the actions of all agents of a batch.
 
 name: planner, clairvoyant, fetch_by_value, do_nothing, random, generalist (docs/generalist.md), or a
-run folder or checkpoint of aquafarm_train (ppo, q_learning, sarsa). The first three see the complete
+run folder or checkpoint of aquafarm_train (ppo, mappo, q_learning, sarsa). The first three see the complete
 farms.)")
       .def(py::init([](const std::string& name, std::shared_ptr<Scenario> scenario,
                        const py::object& farms, const py::object& seed) {

@@ -2,8 +2,14 @@
 #include "ppo/actor.h"
 
 #include "networks/farm_rows.h"
+#include "ppo/central_actor_critic.h"
 
 namespace aquafarm::agents {
+namespace {
+
+constexpr ActionMask kDoneMask = 1;  // an agent that is done has nothing to decide
+
+}  // namespace
 
 Actor::Actor(const EnvironmentSpec& spec, const PpoOptions& options, std::size_t state_size)
     : options_(options),
@@ -25,7 +31,7 @@ void Actor::Begin(std::size_t farms) {
 void Actor::Observe(ActorCritic& network, const StepResults& results) {
   const float* seen = results.features.data();
   for (std::size_t i = 0; i < entries(); ++i, seen += features_) {
-    masks_[i] = LegalMask(results.legal[i], seen, options_);
+    masks_[i] = results.in_play[i] == 0 ? kDoneMask : LegalMask(results.legal[i], seen, options_);
     started_[i] = results.started[i / agents_];
   }
   state_before_ = state_;
@@ -34,10 +40,22 @@ void Actor::Observe(ActorCritic& network, const StepResults& results) {
   rows.features = results.features.data();
   rows.state = state_before_.data();
   rows.started = started_.data();
+  if (network.joint_agents() > 0) Join(network.joint_agents(), results.features);
+  rows.joint = joint_.data();
   const float* const outputs = network.Forward(rows, state_size_ == 0 ? nullptr : state_.data());
   distribution_.Compute(outputs, masks_.data(), entries());
   for (std::size_t i = 0; i < entries(); ++i) {
     values_[i] = outputs[i * kActorCriticOutputs + kActionCount];
+  }
+}
+
+void Actor::Join(std::size_t joint_agents, const std::vector<float>& features) {
+  const std::size_t size = joint_agents * features_;
+  joint_.resize(entries() * size);
+  for (std::size_t i = 0; i < entries(); ++i) {
+    const std::size_t agent = i % agents_;
+    JoinObservations(features.data() + (i - agent) * features_, agents_, features_, agent,
+                     joint_.data() + i * size);
   }
 }
 

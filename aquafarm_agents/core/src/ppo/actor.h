@@ -20,8 +20,8 @@ class Actor {
 
   /// Clears the recurrent states. @param farms N
   void Begin(std::size_t farms);
-  /// Computes masks, probabilities and values for the observations of `results` and advances the
-  /// recurrent states of their agents.
+  /// Computes masks (only action 0 for an agent that is done), probabilities and values for the
+  /// observations of `results` and advances the recurrent states of their agents.
   void Observe(ActorCritic& network, const StepResults& results);
 
   /// Draws actions from the probabilities; agent i draws from stream i.
@@ -39,12 +39,15 @@ class Actor {
   const std::vector<float>& state_before() const { return state_before_; }
 
  private:
+  void Join(std::size_t joint_agents, const std::vector<float>& features);
+
   const PpoOptions options_;
   const std::size_t agents_;
   const std::size_t features_;
   const std::size_t state_size_;
   std::vector<ActionMask> masks_;
   std::vector<float> values_;
+  std::vector<float> joint_;  // [N, S, joint_agents, F]
   std::vector<std::uint8_t> started_;
   std::vector<float> state_;
   std::vector<float> state_before_;

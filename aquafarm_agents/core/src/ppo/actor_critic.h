@@ -22,6 +22,7 @@ struct SequenceRows {
   const float* features{};        ///< [steps, sequences, F]
   const float* state{};           ///< [sequences, state_size] before the first step
   const std::uint8_t* started{};  ///< [steps, sequences] 1: the state is cleared before this step
+  const float* joint{};           ///< [steps, sequences, joint_agents, F] by JoinObservations
   std::size_t rows() const { return steps * sequences; }
 };
 
@@ -33,6 +34,11 @@ class ActorCritic {
   virtual std::size_t state_size() const = 0;
   /// Max number of rows for which Forward is efficient.
   virtual std::size_t chunk_rows() const = 0;
+
+  /// Number of agents whose observations the value depends on; 0 if only on the agent's own.
+  virtual std::size_t joint_agents() const { return 0; }
+  /// Number of the first weights that a saved policy consists of.
+  virtual std::size_t policy_size() const { return weights_.size(); }
 
   /// Computes the outputs and stores the activations that Backward needs.
   /// @param state_after [sequences, state_size] after the last step; nullptr if not needed

@@ -2,7 +2,6 @@
 #include "ppo/feed_forward.h"
 
 #include "ppo/ppo_loss.h"
-#include "ppo/weight_drawer.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -11,13 +10,13 @@ constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
 
 }  // namespace
 
-FeedForward::FeedForward(std::size_t features, std::size_t hidden, std::uint64_t seed)
-    : first_{0, features, hidden},
+FeedForward::FeedForward(std::size_t features, std::size_t hidden, const WeightOrigin& origin)
+    : first_{origin.begin, features, hidden},
       second_{first_.end(), hidden, hidden},
       head_{second_.end(), hidden, kOutputs} {
   weights_.resize(head_.end());
   gradient_.resize(head_.end());
-  WeightDrawer drawer(seed);
+  WeightDrawer drawer(origin);
   drawer.Draw(first_, weights_);
   drawer.Draw(second_, weights_);
   drawer.DrawHead(head_, weights_);

@@ -6,13 +6,14 @@
 
 #include "ppo/actor_critic.h"
 #include "ppo/linear.h"
+#include "ppo/weight_drawer.h"
 
 namespace aquafarm::agents {
 
 /// The feed-forward ActorCritic: two hidden layers with ReLU.
 class FeedForward final : public ActorCritic {
  public:
-  FeedForward(std::size_t features, std::size_t hidden, std::uint64_t seed);
+  FeedForward(std::size_t features, std::size_t hidden, const WeightOrigin& origin);
 
   std::size_t state_size() const override { return 0; }
   std::size_t chunk_rows() const override { return 256; }

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "ppo/ppo_loss.h"
-#include "ppo/weight_drawer.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -26,14 +25,15 @@ ConstRow At(const float* values, std::size_t size) {
 
 }  // namespace
 
-LstmActorCritic::LstmActorCritic(std::size_t features, std::size_t hidden, std::uint64_t seed)
+LstmActorCritic::LstmActorCritic(std::size_t features, std::size_t hidden,
+                                 const WeightOrigin& origin)
     : hidden_(hidden),
-      first_{0, features, hidden},
+      first_{origin.begin, features, hidden},
       gates_{first_.end(), hidden, kGates * hidden},
       recurrent_{gates_.end(), hidden, kGates * hidden},
       head_{recurrent_.bias(), 2 * hidden, kOutputs} {
   weights_.resize(std::max(head_.end(), recurrent_.end()));
-  WeightDrawer drawer(seed);
+  WeightDrawer drawer(origin);
   for (const Linear* layer : {&first_, &gates_, &recurrent_}) drawer.Draw(*layer, weights_);
   weights_.resize(head_.end());  // the recurrent matrix has no bias
   drawer.DrawHead(head_, weights_);

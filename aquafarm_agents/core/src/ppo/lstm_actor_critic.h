@@ -6,6 +6,7 @@
 
 #include "ppo/actor_critic.h"
 #include "ppo/linear.h"
+#include "ppo/weight_drawer.h"
 
 namespace aquafarm::agents {
 
@@ -20,7 +21,7 @@ namespace aquafarm::agents {
 /// the start of an episode.
 class LstmActorCritic final : public ActorCritic {
  public:
-  LstmActorCritic(std::size_t features, std::size_t hidden, std::uint64_t seed);
+  LstmActorCritic(std::size_t features, std::size_t hidden, const WeightOrigin& origin);
 
   std::size_t state_size() const override { return 2 * hidden_; }
   std::size_t chunk_rows() const override { return 512; }

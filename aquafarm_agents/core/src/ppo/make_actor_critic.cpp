@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ppo/make_actor_critic.h"
 
+#include <utility>
+
 #include "aquafarm/base/check.h"
+#include "ppo/central_actor_critic.h"
 #include "ppo/feed_forward.h"
 #include "ppo/lstm_actor_critic.h"
 #include "ppo/token_actor_critic.h"
@@ -18,8 +21,15 @@ std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const 
                        ", expected 0 in a scenario without view.tokens, which the teacher reads; "
                        "set view.tokens, or teacher=0");
     }
-    return MakeActorCritic(static_cast<std::size_t>(spec.feature_count), hidden, options.recurrent,
-                           seed);
+    const auto features = static_cast<std::size_t>(spec.feature_count);
+    if (!options.central) return MakeActorCritic(features, hidden, options.recurrent, {seed});
+    return MakeCentralActorCritic(features, static_cast<std::size_t>(spec.agents), hidden,
+                                  options.recurrent, seed);
+  }
+  if (options.central) {
+    throw InputError(
+        "algorithm: got mappo in a scenario with view.tokens, expected ppo, whose network reads "
+        "entity tokens; set algorithm ppo, or use a scenario without view.tokens");
   }
   if (options.recurrent) {
     throw InputError(
@@ -30,9 +40,19 @@ std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const 
 }
 
 std::unique_ptr<ActorCritic> MakeActorCritic(std::size_t features, std::size_t hidden,
-                                             bool recurrent, std::uint64_t seed) {
-  if (recurrent) return std::make_unique<LstmActorCritic>(features, hidden, seed);
-  return std::make_unique<FeedForward>(features, hidden, seed);
+                                             bool recurrent, const WeightOrigin& origin) {
+  if (recurrent) return std::make_unique<LstmActorCritic>(features, hidden, origin);
+  return std::make_unique<FeedForward>(features, hidden, origin);
+}
+
+std::unique_ptr<ActorCritic> MakeCentralActorCritic(std::size_t features, std::size_t agents,
+                                                    std::size_t hidden, bool recurrent,
+                                                    std::uint64_t seed) {
+  constexpr std::uint32_t kCriticNetwork = 1;
+  auto policy = MakeActorCritic(features, hidden, recurrent, {seed});
+  const WeightOrigin origin{seed, kCriticNetwork, policy->weights().size()};
+  auto critic = MakeActorCritic(features * agents, hidden, recurrent, origin);
+  return std::make_unique<CentralActorCritic>(agents, std::move(policy), std::move(critic));
 }
 
 }  // namespace aquafarm::agents

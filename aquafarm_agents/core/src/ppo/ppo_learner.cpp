@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <utility>
 
 #include "aquafarm/agents/learning/warm_start.h"
@@ -52,23 +53,31 @@ Rollout::Shape RolloutShape(const EnvironmentSpec& shard, const PpoOptions& opti
   shape.agents = static_cast<std::size_t>(shard.agents);
   shape.features = static_cast<std::size_t>(shard.feature_count);
   shape.state_size = state_size;
+  shape.is_team = options.IsTeam(shard.team_reward);
   if (options.recurrent) {
     shape.sequence_length = static_cast<std::size_t>(options.sequence_length);
   }
   return shape;
 }
 
-// The weights of a policy or of a training checkpoint for a network of `size` weights.
-std::vector<float> WeightsOf(const Checkpoint& checkpoint, std::size_t size) {
-  std::vector<float> weights;
+// Replaces the weights of `network` by those of a policy or of a training checkpoint. A policy of
+// MAPPO contains no weights for the value, which keeps its initial ones.
+void ReplaceWeights(const Checkpoint& checkpoint, ActorCritic& network) {
   const std::size_t got = checkpoint.Section("weights").size() / sizeof(float);
-  if (got != size) {
+  if (got != network.weights().size() && got != network.policy_size()) {
     throw InputError("network: got a policy with " + std::to_string(got) + " weights, expected " +
-                     std::to_string(size) + ": train with its options (" + checkpoint.options +
-                     ")");
+                     std::to_string(network.policy_size()) + ": train with its options (" +
+                     checkpoint.options + ")");
   }
-  checkpoint.GetArray("weights", size, weights);
-  return weights;
+  std::vector<float> weights;
+  checkpoint.GetArray("weights", got, weights);
+  std::copy(weights.begin(), weights.end(), network.weights().begin());
+}
+
+// The weights of which a saved policy consists.
+std::vector<float> PolicyWeights(const ActorCritic& network) {
+  const auto begin = network.weights().begin();
+  return {begin, begin + static_cast<std::ptrdiff_t>(network.policy_size())};
 }
 
 /// Copies the results of `count` farms from `first` on.
@@ -195,16 +204,16 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
     return {updater_.value_error(), entropy_, static_cast<float>(updater_.learning_rate())};
   }
   std::unique_ptr<Policy> GreedyPolicy() const override {
-    return std::make_unique<PpoPolicy>(spec_, options_, network_->weights());
+    return std::make_unique<PpoPolicy>(spec_, options_, PolicyWeights(*network_));
   }
   void SavePolicy(Checkpoint& checkpoint) const override {
-    checkpoint.SetArray("weights", network_->weights());
+    checkpoint.SetArray("weights", PolicyWeights(*network_));
   }
   void Save(Checkpoint& checkpoint) const override;
   void Load(const Checkpoint& checkpoint) override;
   void LoadWeights(const Checkpoint& checkpoint) override {
     CheckFits(checkpoint, spec_, NetworkKind::kMlp);
-    network_->weights() = WeightsOf(checkpoint, network_->weights().size());
+    ReplaceWeights(checkpoint, *network_);
   }
 
  private:
@@ -231,10 +240,14 @@ const StepResults& PpoLearner::ResultsOf(std::size_t shard, const StepResults& r
 
 void PpoLearner::Step(const StepResults& results, double progress,
                       std::vector<std::uint8_t>& actions) {
+  Rollout::Rewards rewards;
+  rewards.scale = static_cast<float>(options_.reward_scale);
+  // With a team reward an agent's reward is the sum already.
+  if (!spec_.team_reward) rewards.team_share = static_cast<float>(options_.team_share.At(progress));
   for (std::size_t i = 0; i < shards_.size(); ++i) {
     const StepResults& own = ResultsOf(i, results);
     shards_[i].farm_steps += FarmSteps(own);
-    shards_[i].rollout.Complete(own, static_cast<float>(options_.reward_scale));
+    shards_[i].rollout.Complete(own, rewards);
   }
   if (shards_.front().rollout.IsFull()) Update(results, progress);
   actions.clear();
@@ -273,38 +286,54 @@ void PpoLearner::Load(const Checkpoint& checkpoint) {
   updater_.set_entropy(entropy_);
 }
 
-}  // namespace
-
-std::uint8_t PpoEncodings(const std::string& options) {
+std::uint8_t EncodingsOf(const std::string& options, bool central) {
   std::string resolved;
-  PpoOptions::Parse(options, resolved);
+  PpoOptions::Parse(options, resolved, central);
   return kFeaturesBit;
 }
 
-std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
-                                 const std::string& text) {
+/// @param central MAPPO @param group of the rank; nullptr: the learner has all shards
+std::unique_ptr<PpoLearner> MakeLearner(const EnvironmentSpec& spec, std::uint64_t seed,
+                                        const std::string& text, bool central,
+                                        ProcessGroup* group) {
   std::string resolved;
-  const PpoOptions options = PpoOptions::Parse(text, resolved);
-  PrepareTorch(options.threads);
-  return std::make_unique<PpoLearner>(spec, seed, options, resolved, nullptr);
-}
-
-std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
-                                               const std::string& text, ProcessGroup& group) {
-  std::string resolved;
-  const PpoOptions options = PpoOptions::Parse(text, resolved);
-  if (options.exploration.is_curious()) {
+  const PpoOptions options = PpoOptions::Parse(text, resolved, central);
+  if (group != nullptr && options.exploration.is_curious()) {
     throw InputError("exploration: got " + ToString(options.exploration) + " with " +
-                     std::to_string(group.size()) +
+                     std::to_string(group->size()) +
                      " ranks, expected one without icm: curiosity learns in one process");
   }
   PrepareTorch(options.threads);
-  return std::make_unique<PpoLearner>(spec, seed, options, resolved, &group);
+  return std::make_unique<PpoLearner>(spec, seed, options, resolved, group);
+}
+
+}  // namespace
+
+std::uint8_t PpoEncodings(const std::string& options) { return EncodingsOf(options, false); }
+std::uint8_t MappoEncodings(const std::string& options) { return EncodingsOf(options, true); }
+
+std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
+                                 const std::string& options) {
+  return MakeLearner(spec, seed, options, false, nullptr);
+}
+std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t seed,
+                                   const std::string& options) {
+  return MakeLearner(spec, seed, options, true, nullptr);
+}
+
+std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
+                                               const std::string& options, ProcessGroup& group) {
+  return MakeLearner(spec, seed, options, false, &group);
+}
+std::unique_ptr<ShardedLearner> MakeMappoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
+                                                 const std::string& options, ProcessGroup& group) {
+  return MakeLearner(spec, seed, options, true, &group);
 }
 
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec) {
   std::string resolved;
-  PrepareTorch(PpoOptions::Parse(checkpoint.options, resolved).threads);
+  const bool central = checkpoint.algorithm == kMappo;
+  PrepareTorch(PpoOptions::Parse(checkpoint.options, resolved, central).threads);
   return MakePpoPolicyWithoutTorch(checkpoint, spec);
 }
 

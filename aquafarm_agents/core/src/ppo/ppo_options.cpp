@@ -44,9 +44,10 @@ std::int32_t PpoOptions::Horizon(std::size_t entries) const {
   return (horizon + sequence_length - 1) / sequence_length * sequence_length;
 }
 
-PpoOptions PpoOptions::Parse(const std::string& text, std::string& resolved) {
+PpoOptions PpoOptions::Parse(const std::string& text, std::string& resolved, bool central) {
   OptionReader reader(text);
   PpoOptions options = Defaults(ReadWord(reader, "preset", Preset::kTuned, kPresets));
+  options.central = central;
   ReadWhole(reader, "hidden_size", 1, 4096, options.hidden_size);
   options.recurrent = reader.Flag("recurrent", options.recurrent);
   ReadWhole(reader, "sequence_length", 1, 1000, options.sequence_length);
@@ -68,6 +69,7 @@ PpoOptions PpoOptions::Parse(const std::string& text, std::string& resolved) {
                                          ExplorationOf::kPolicies);
   reader.Resolve("exploration", ToString(options.exploration));
   options.teacher = reader.GetSchedule("teacher", options.teacher, 0.0, 1000.0);
+  options.team_share = reader.GetSchedule("team_share", options.team_share, 0.0, 1.0);
   options.policy = ReadWord(reader, "policy", options.policy, kPolicyModes);
   ReadWhole(reader, "threads", 1, 256, options.threads);
   ReadWhole(reader, "shards", 1, kMaxShards, options.shards);

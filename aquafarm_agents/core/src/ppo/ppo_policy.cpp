@@ -8,11 +8,20 @@
 #include "ppo/make_actor_critic.h"
 
 namespace aquafarm::agents {
+namespace {
+
+// A policy of MAPPO consists of the network for the logits.
+PpoOptions WithoutCritic(PpoOptions options) {
+  options.central = false;
+  return options;
+}
+
+}  // namespace
 
 PpoPolicy::PpoPolicy(const EnvironmentSpec& spec, const PpoOptions& options,
                      const std::vector<float>& weights)
     : options_(options),
-      network_(MakeActorCritic(spec, options, 0)),
+      network_(MakeActorCritic(spec, WithoutCritic(options), 0)),
       actor_(spec, options, network_->state_size()) {
   if (weights.size() != network_->weights().size()) {
     throw InputError("weights: got " + std::to_string(weights.size()) + " numbers, expected " +
@@ -34,10 +43,13 @@ void PpoPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actio
   } else {
     actor_.TakeBest(actions);
   }
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    if (results.in_play[i] == 0) actions[i] = 0;
+  }
+  if (options_.central) return;
   values_.resize(actions.size());
   for (std::size_t i = 0; i < actions.size(); ++i) {
     const bool is_active = results.in_play[i] != 0;
-    if (!is_active) actions[i] = 0;
     values_[i] = is_active ? actor_.values()[i] / static_cast<float>(options_.reward_scale) : 0.0F;
   }
 }
@@ -45,10 +57,15 @@ void PpoPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actio
 std::unique_ptr<Policy> MakePpoPolicyWithoutTorch(const Checkpoint& checkpoint,
                                                   const EnvironmentSpec& spec) {
   std::string resolved;
-  const PpoOptions options = PpoOptions::Parse(checkpoint.options, resolved);
+  const bool central = checkpoint.algorithm == kMappo;
+  const PpoOptions options = PpoOptions::Parse(checkpoint.options, resolved, central);
   CheckFits(checkpoint, spec, NetworkKind::kMlp);
   std::vector<float> weights;
   checkpoint.GetArray("weights", checkpoint.Section("weights").size() / sizeof(float), weights);
+  if (central) {  // a checkpoint of a training also has the weights of the value
+    const auto trained = MakeActorCritic(spec, options, 0);
+    if (weights.size() == trained->weights().size()) weights.resize(trained->policy_size());
+  }
   return std::make_unique<PpoPolicy>(spec, options, weights);
 }
 

@@ -13,7 +13,8 @@
 namespace aquafarm::agents {
 
 /// Acts with the weights of an ActorCritic, greedily or by sampling (PpoOptions::policy). Its
-/// values are V(s) in units of reward. Inactive agents get action 0 and value 0.
+/// values are V(s) in units of reward; a policy of MAPPO has none. Inactive agents get action 0 and
+/// value 0.
 class PpoPolicy final : public Policy {
  public:
   /// @throws InputError if the size of `weights` differs from that of the network

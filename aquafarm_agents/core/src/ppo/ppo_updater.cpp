@@ -8,6 +8,7 @@
 
 #include "aquafarm/agents/learning/learner.h"
 #include "aquafarm/base/check.h"
+#include "ppo/central_actor_critic.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -116,8 +117,9 @@ void PpoUpdater::Update(const std::vector<Input>& inputs, const Context& context
 }
 
 void PpoUpdater::Fail(const std::string& what, const Context& context) const {
-  throw LearnerFailed("ppo: " + what + " in gradient step " + std::to_string(adam_.steps() + 1) +
-                      ", after " + std::to_string(context.farm_steps) +
+  throw LearnerFailed(std::string(options_.algorithm()) + ": " + what + " in gradient step " +
+                      std::to_string(adam_.steps() + 1) + ", after " +
+                      std::to_string(context.farm_steps) +
                       " farm steps; expected a finite number: lower learning_rate or "
                       "reward_scale");
 }
@@ -190,6 +192,7 @@ PpoLoss PpoUpdater::LearnChunk(const Rollout& rollout, const std::uint32_t* sequ
   rows.features = features_.data();
   rows.state = state_.data();
   rows.started = started_.data();
+  rows.joint = joint_.data();
   const float* const outputs = network_.Forward(rows, nullptr);
   const PpoRows recorded{masks_.data(),      actions_.data(), log_probs_.data(), values_.data(),
                          advantages_.data(), targets_.data(), weights_.data()};
@@ -207,7 +210,9 @@ void PpoUpdater::Gather(const Rollout& rollout, const std::uint32_t* sequences, 
   const std::size_t rows = count * length_;
   const std::size_t width = rollout.shape().features;
   const std::size_t state_size = rollout.shape().state_size;
+  const std::size_t joint_size = network_.joint_agents() * width;
   features_.resize(rows * width);
+  joint_.resize(rows * joint_size);
   state_.resize(count * state_size);
   started_.resize(rows);
   masks_.resize(rows);
@@ -226,6 +231,11 @@ void PpoUpdater::Gather(const Rollout& rollout, const std::uint32_t* sequences, 
       const std::size_t slot = begin + t * rollout.shape().entries;
       const std::size_t row = t * count + i;
       std::copy_n(rollout.features(slot), width, features_.data() + row * width);
+      if (joint_size > 0) {
+        const std::size_t agent = slot % rollout.shape().agents;
+        JoinObservations(rollout.features(slot - agent), rollout.shape().agents, width, agent,
+                         joint_.data() + row * joint_size);
+      }
       started_[row] = rollout.started(slot) ? 1 : 0;
       masks_[row] = rollout.mask(slot);
       actions_[row] = rollout.action(slot);

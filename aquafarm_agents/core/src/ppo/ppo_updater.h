@@ -101,6 +101,7 @@ class PpoUpdater {
   float inverse_deviation_{1.0F};
   float weight_{};  // weight of a row in a minibatch
   std::vector<float> features_;
+  std::vector<float> joint_;
   std::vector<float> state_;
   std::vector<std::uint8_t> started_;
   std::vector<ActionMask> masks_;

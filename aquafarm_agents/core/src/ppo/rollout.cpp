@@ -2,12 +2,26 @@
 #include "ppo/rollout.h"
 
 #include <algorithm>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
 #include "aquafarm/base/check.h"
 
 namespace aquafarm::agents {
+namespace {
+
+float TeamReward(const StepResults& results, std::size_t first, std::size_t agents) {
+  const auto begin = results.rewards.begin() + static_cast<std::ptrdiff_t>(first);
+  return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(agents), 0.0F);
+}
+
+// Exact for a share of 0, so that trainings without a team's share keep their bits.
+float Blend(float own, float team, float share) {
+  return share == 0.0F ? own : own + share * (team - own);
+}
+
+}  // namespace
 
 Rollout::Rollout(const Shape& shape)
     : shape_(shape),
@@ -22,18 +36,22 @@ Rollout::Rollout(const Shape& shape)
       rewards_(slots()),
       ends_(slots(), StepEnd::kNoTransition) {}
 
-void Rollout::Complete(const StepResults& results, float reward_scale) {
+void Rollout::Complete(const StepResults& results, const Rewards& rewards) {
   if (!is_open_) return;
   is_open_ = false;
+  float team = 0.0F;
   const std::size_t first = (steps_ - 1) * shape_.entries;
   for (std::size_t entry = 0; entry < shape_.entries; ++entry) {
     const std::size_t farm = entry / shape_.agents;
     StepEnd& end = ends_[first + entry];
-    rewards_[first + entry] = results.rewards[entry] * reward_scale;
+    if (entry % shape_.agents == 0) team = TeamReward(results, entry, shape_.agents);
+    rewards_[first + entry] =
+        rewards.scale * Blend(results.rewards[entry], team, rewards.team_share);
     if (end == StepEnd::kNoTransition) continue;
     if (results.started[farm] != 0) {
       end = StepEnd::kNoTransition;  // the farm was lost and replaced by a new one
-    } else if (results.IsDone(entry, farm)) {
+    } else if (shape_.is_team ? IsTerminated(static_cast<EndReason>(results.reasons[farm]))
+                              : results.IsDone(entry, farm)) {
       end = StepEnd::kTerminated;
     } else if (static_cast<EndReason>(results.reasons[farm]) != EndReason::kNone) {
       end = StepEnd::kTruncated;
@@ -59,7 +77,7 @@ void Rollout::Add(const StepResults& results, const std::vector<ActionMask>& mas
   }
   for (std::size_t entry = 0; entry < shape_.entries; ++entry) {
     const std::size_t farm = entry / shape_.agents;
-    const bool is_active = results.in_play[entry] != 0 &&
+    const bool is_active = (shape_.is_team || results.in_play[entry] != 0) &&
                            static_cast<EndReason>(results.reasons[farm]) == EndReason::kNone;
     ends_[first + entry] = is_active ? StepEnd::kContinues : StepEnd::kNoTransition;
     started_[first + entry] = results.started[farm];

@@ -23,6 +23,13 @@ class Rollout {
     std::size_t state_size{};
     std::size_t sequence_length{
         1};  ///< the recurrent state is stored at every sequence_length-th step
+    /// An agent that is done earns until its farm's episode ends, because its return is the team's.
+    bool is_team{};
+  };
+  /// What an agent learns from: scale · ((1 − share) · its reward + share · the sum of its farm's).
+  struct Rewards {
+    float scale{1.0F};
+    float team_share{};
   };
   explicit Rollout(const Shape& shape);
 
@@ -31,7 +38,7 @@ class Rollout {
   bool IsFull() const { return steps_ == shape_.steps && !is_open_; }
 
   /// Records the results of the last decisions; does nothing if there are none.
-  void Complete(const StepResults& results, float reward_scale);
+  void Complete(const StepResults& results, const Rewards& rewards);
   /// Records decisions [E]. @param state [E, state_size] before them
   void Add(const StepResults& results, const std::vector<ActionMask>& masks,
            const std::vector<std::uint8_t>& actions, const std::vector<float>& log_probs,

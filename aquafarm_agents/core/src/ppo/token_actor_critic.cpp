@@ -61,7 +61,7 @@ TokenActorCritic::TokenActorCritic(const TokenLayout& layout, std::size_t hidden
   head_ = next(hidden, kOutputs);
   weights_.resize(end);
   gradient_.resize(end);
-  WeightDrawer drawer(seed);
+  WeightDrawer drawer({seed});
   drawer.Draw(ship_, weights_);
   for (const Tokens& tokens : kinds_) {
     drawer.Draw(tokens.first, weights_);

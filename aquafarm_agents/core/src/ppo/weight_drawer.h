@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "aquafarm/base/rng.h"
@@ -10,10 +12,18 @@
 
 namespace aquafarm::agents {
 
-/// Draws initial weights from (seed, learner), uniform in ±1/√fan_in as in PyTorch.
+/// Where the weights of a network are in a flat vector, and which random numbers draw them.
+struct WeightOrigin {
+  std::uint64_t seed{};
+  std::uint32_t network{};  ///< index of the network in its learner; each draws its own numbers
+  std::size_t begin{};      ///< index of its first weight
+};
+
+/// Draws initial weights from (seed, network, learner), uniform in ±1/√fan_in as in PyTorch.
 class WeightDrawer {
  public:
-  explicit WeightDrawer(std::uint64_t seed) : rng_({seed, 0, RngStream::kLearner, 0}) {}
+  explicit WeightDrawer(const WeightOrigin& origin)
+      : rng_({origin.seed, origin.network, RngStream::kLearner, 0}) {}
 
   void Draw(const Linear& layer, std::vector<float>& weights) {
     const float limit = 1.0F / std::sqrt(static_cast<float>(layer.inputs));

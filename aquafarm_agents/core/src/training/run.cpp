@@ -216,7 +216,7 @@ void Run::Initialize(Learner& learner) {
   if (fits == nullptr || saved.checkpoint.algorithm != options_.algorithm) {
     throw InputError("init: got " + options_.init + ", a policy of " + saved.checkpoint.algorithm +
                      ", for algorithm " + options_.algorithm +
-                     "; expected a policy of ppo for ppo without icm; set algorithm ppo");
+                     "; expected a policy of ppo for ppo, or of mappo for mappo, without icm");
   }
   try {
     fits->LoadWeights(saved.checkpoint);

@@ -106,6 +106,23 @@ TEST(TwoShips, AreLedHomeByActorsAsPrinted) {
   EXPECT_GE(SuccessAfter("maddpg", kPrinted, 40000, TwoShips()), 0.98);
 }
 
+const std::string kTogether =
+    "hidden_size=32 rollout_size=512 batch_size=128 epochs=4 learning_rate=linear:0.003:0:1 "
+    "gamma=0.97 ";
+
+TEST(TwoShips, AreLedHomeByOnePolicyWithAValueThatSeesAll) {
+  EXPECT_GE(SuccessAfter("mappo", kTogether, 40000, TwoShips()), 0.98);
+  EXPECT_GE(SuccessAfter("mappo", kTogether + "team_share=linear:0:1:0.5", 40000, TwoShips()),
+            0.98);
+  EXPECT_GE(SuccessAfter("mappo", kTogether, 40000, TwoShips(), /*credit=*/0), 0.98);
+}
+
+TEST(TwoShips, AreLedHomeByOnePolicyThatRemembers) {
+  EXPECT_GE(
+      SuccessAfter("mappo", kTogether + "recurrent=true sequence_length=8", 40000, TwoShips()),
+      0.98);
+}
+
 // In a replay filled by one episode the oldest time steps have no complete window.
 TEST(Maddpg, LearnsWithMemoryFromAReplayThatHoldsNoStart) {
   Scenario scenario = TwoShips();
@@ -152,6 +169,11 @@ TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {
   EXPECT_GE(SuccessAfter("q_learning", "", 200000, SmartDevices()), 0.98);
   EXPECT_GE(SuccessAfter("independent_dqn", kSmall, 24000, SmartDevices()), 0.98);
   EXPECT_GE(SuccessAfter("vdn", kSmall, 24000, SmartDevices()), 0.98);
+}
+
+TEST(SmartDevices, AreLedHomeByOnePolicyWithAValueThatSeesAll) {
+  EXPECT_GE(SuccessAfter("mappo", kTogether, 40000, SmartDevices()), 0.98);
+  EXPECT_GE(SuccessAfter("mappo", kTogether + "team_share=1", 40000, SmartDevices()), 0.98);
 }
 
 // Agents that are delivered early are done. The values of the others must not depend on them.
@@ -218,6 +240,7 @@ TEST(DoneAgents, EndTheirTransitionsInAReplayWhileTheOthersGoOn) {
 }
 
 class Saved : public testing::TestWithParam<std::string> {};
+class SavedWithDevice : public Saved {};  // learners with the option device
 
 Checkpoint PolicyOf(const Learner& learner, const std::string& algorithm,
                     const EnvironmentSpec& spec) {
@@ -230,7 +253,9 @@ Checkpoint PolicyOf(const Learner& learner, const std::string& algorithm,
 }
 
 TEST_P(Saved, LearnersOfSeveralAgentsGoOnBitForBit) {
-  const std::string options = "hidden_size=8 batch_size=8 learning_starts=50 buffer_size=500";
+  const std::string options = GetParam() == "mappo"
+                                  ? "hidden_size=8 rollout_size=300 batch_size=32 team_share=0.5"
+                                  : "hidden_size=8 batch_size=8 learning_starts=50 buffer_size=500";
   const Algorithm& entry = FindAlgorithm(GetParam());
   LocalEnvironment environment(Share(SmartDevices()), {2, entry.encodings(options), false, 1});
   const auto one = entry.make(environment.spec(), 1, options);
@@ -307,6 +332,7 @@ void ExpectTheOwnShareIsEnough(const std::string& algorithm, const std::string& 
 // A ship's own node has only the observations of that ship.
 TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
   ExpectTheOwnShareIsEnough(GetParam(), "hidden_size=8");
+  if (GetParam() == "mappo") ExpectTheOwnShareIsEnough("mappo", "hidden_size=8 recurrent=true");
   if (GetParam() != "maddpg") return;
   ExpectTheOwnShareIsEnough("maddpg", "hidden_size=8 shared=false");
   ExpectTheOwnShareIsEnough("maddpg", "hidden_size=8 recurrent=true");
@@ -314,7 +340,7 @@ TEST_P(Saved, PoliciesPlayAShipByItsOwnShareAsAmongAll) {
 }
 
 // The weights are the same on every device. On a machine with CUDA this test is weaker.
-TEST_P(Saved, PoliciesTrainedOnCudaPlayWhereThereIsNone) {
+TEST_P(SavedWithDevice, PoliciesTrainedOnCudaPlayWhereThereIsNone) {
   const Algorithm& entry = FindAlgorithm(GetParam());
   LocalEnvironment environment(Share(TwoShips()), {1, kFeaturesBit, false, 1});
   const auto learner = entry.make(environment.spec(), 1, "hidden_size=8 device=cpu");
@@ -368,9 +394,13 @@ TEST(DoneAgents, AreNeitherAskedNorValuedWhereverTheyStand) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Saved,
+INSTANTIATE_TEST_SUITE_P(All, SavedWithDevice,
                          testing::Values("dqn", "lstm_dqn", "independent_dqn",
                                          "independent_lstm_dqn", "vdn", "maddpg"),
+                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(All, Saved,
+                         testing::Values("dqn", "lstm_dqn", "independent_dqn",
+                                         "independent_lstm_dqn", "vdn", "maddpg", "mappo"),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <complex>
 
 #include "aquafarm/base/rng.h"
+#include "ppo/central_actor_critic.h"
 #include "ppo/make_actor_critic.h"
 #include "ppo/ppo_loss.h"
 
@@ -131,7 +132,7 @@ Complex DefinedLoss(const Vector& weights, const Batch& batch, bool recurrent,
 }
 
 void ExpectAgrees(bool recurrent, std::size_t steps, std::size_t sequences) {
-  const auto network = MakeActorCritic(kFeatures, kHidden, recurrent, 9);
+  const auto network = MakeActorCritic(kFeatures, kHidden, recurrent, {9});
   for (float& weight : network->weights()) weight *= 3.0F;  // so that the gates saturate
   const Batch batch = MakeBatch(steps, sequences, network->state_size());
   Vector weights(network->weights().begin(), network->weights().end());
@@ -159,7 +160,7 @@ TEST(Lstm, OutputsAndGradientThroughTimeEqualTheDefinition) { ExpectAgrees(true,
 
 TEST(ActorCritic, GradientsAddUpOverChunks) {
   for (const bool recurrent : {false, true}) {
-    const auto network = MakeActorCritic(kFeatures, kHidden, recurrent, 9);
+    const auto network = MakeActorCritic(kFeatures, kHidden, recurrent, {9});
     const Batch batch = MakeBatch(1, 4, network->state_size());
     network->Forward(batch.rows(), nullptr);
     network->Backward(batch.rows(), batch.slopes.data());
@@ -172,8 +173,92 @@ TEST(ActorCritic, GradientsAddUpOverChunks) {
   }
 }
 
+// The observations of three agents as `joint`.
+Batch WithJoint(const Batch& batch, std::size_t agents) {
+  RandomStream rng({6, 0, RngStream::kLearner, 0});
+  Batch joint = batch;
+  joint.features.clear();
+  for (std::size_t i = 0; i < batch.features.size() * agents; ++i) {
+    joint.features.push_back(rng.Uniform(-1.0F, 1.0F));
+  }
+  return joint;
+}
+
+/// State of the policy (first half) or of the critic (second half) of each sequence.
+std::vector<float> HalfOf(const std::vector<float>& state, std::size_t sequences, bool second) {
+  const std::size_t size = state.size() / sequences / 2;
+  std::vector<float> half;
+  for (std::size_t s = 0; s < sequences; ++s) {
+    const auto begin = state.begin() + static_cast<std::ptrdiff_t>((2 * s + second) * size);
+    half.insert(half.end(), begin, begin + static_cast<std::ptrdiff_t>(size));
+  }
+  return half;
+}
+
+/// Network `part` of a central network on its own: 0 is the policy, 1 the critic.
+void ExpectPartAgrees(ActorCritic& central, const Batch& batch, const Batch& joint, bool recurrent,
+                      bool is_critic) {
+  constexpr std::size_t kAgents = 3;
+  const auto own =
+      MakeActorCritic(is_critic ? kFeatures * kAgents : kFeatures, kHidden, recurrent, {1});
+  const std::size_t begin = is_critic ? central.policy_size() : 0;
+  ASSERT_LE(begin + own->weights().size(), central.weights().size());
+  std::copy_n(central.weights().begin() + static_cast<std::ptrdiff_t>(begin), own->weights().size(),
+              own->weights().begin());
+  Batch part = is_critic ? joint : batch;
+  part.state = HalfOf(batch.state, batch.sequences, is_critic);
+  std::vector<float> state(part.state.size());
+  const float* const expected = own->Forward(part.rows(), recurrent ? state.data() : nullptr);
+
+  SequenceRows rows = batch.rows();
+  rows.joint = joint.features.data();
+  std::vector<float> both(batch.state.size());
+  const float* const outputs = central.Forward(rows, recurrent ? both.data() : nullptr);
+  const auto belongs = [&](std::size_t i) { return (i % kWidth == kActionCount) == is_critic; };
+  for (std::size_t i = 0; i < batch.slopes.size(); ++i) {
+    if (!belongs(i)) {
+      part.slopes[i] = 0.0F;
+      continue;
+    }
+    ASSERT_EQ(outputs[i], expected[i]) << i;
+  }
+  EXPECT_EQ(HalfOf(both, batch.sequences, is_critic), state);
+
+  own->Backward(part.rows(), part.slopes.data());
+  std::fill(central.gradient().begin(), central.gradient().end(), 0.0F);
+  central.Backward(rows, batch.slopes.data());
+  for (std::size_t i = 0; i < own->gradient().size(); ++i) {
+    ASSERT_EQ(central.gradient()[begin + i], own->gradient()[i]) << i;
+  }
+}
+
+// The parts alone are compared with the definition above.
+TEST(Central, LogitsAreThoseOfThePolicyAndTheValueThatOfTheCritic) {
+  for (const bool recurrent : {false, true}) {
+    const auto made = MakeCentralActorCritic(kFeatures, 3, kHidden, recurrent, 9);
+    ActorCritic& central = *made;
+    EXPECT_EQ(central.joint_agents(), 3U);
+    EXPECT_NE(central.weights()[0], central.weights()[central.policy_size()]);
+    const Batch batch = MakeBatch(recurrent ? 5 : 1, 4, central.state_size());
+    const Batch joint = WithJoint(batch, 3);
+    ExpectPartAgrees(central, batch, joint, recurrent, /*is_critic=*/false);
+    ExpectPartAgrees(central, batch, joint, recurrent, /*is_critic=*/true);
+  }
+}
+
+TEST(Central, AnAgentsOwnObservationComesFirst) {
+  const std::vector<float> farm{1, 2, 3, 4, 5, 6};
+  std::vector<float> joint(6);
+  JoinObservations(farm.data(), 3, 2, 0, joint.data());
+  EXPECT_EQ(joint, farm);
+  JoinObservations(farm.data(), 3, 2, 1, joint.data());
+  EXPECT_EQ(joint, (std::vector<float>{3, 4, 1, 2, 5, 6}));
+  JoinObservations(farm.data(), 3, 2, 2, joint.data());
+  EXPECT_EQ(joint, (std::vector<float>{5, 6, 1, 2, 3, 4}));
+}
+
 TEST(Lstm, StepByStepEqualsTheWholeSequence) {
-  const auto network = MakeActorCritic(kFeatures, kHidden, true, 9);
+  const auto network = MakeActorCritic(kFeatures, kHidden, true, {9});
   const Batch batch = MakeBatch(5, 3, network->state_size());
   const float* whole = network->Forward(batch.rows(), nullptr);
   const std::vector<float> expected(whole, whole + batch.slopes.size());

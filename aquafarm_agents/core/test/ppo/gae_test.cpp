@@ -87,12 +87,13 @@ StepResults Outcome(EndReason reason, bool started, std::vector<std::uint8_t> in
 }
 
 // Records one decision after `before` and its results `after`.
-Rollout Recorded(const StepResults& before, const StepResults& after) {
-  Rollout rollout({1, 2, 2, 1, 0, 1});
-  rollout.Complete(before, 1.0F);  // without effect: there is no decision yet
+Rollout Recorded(const StepResults& before, const StepResults& after, bool is_team = false,
+                 float team_share = 0.0F) {
+  Rollout rollout({1, 2, 2, 1, 0, 1, is_team});
+  rollout.Complete(before, {});  // without effect: there is no decision yet
   rollout.Add(before, {1, 1}, {0, 0}, {0, 0}, {10, 20}, {});
   EXPECT_FALSE(rollout.IsFull());
-  rollout.Complete(after, 0.5F);
+  rollout.Complete(after, {0.5F, team_share});
   EXPECT_TRUE(rollout.IsFull());
   rollout.Finish({100, 200}, 1.0F, 1.0F);
   return rollout;
@@ -122,6 +123,30 @@ TEST(Rollout, LearnsFromStepsOfActiveAgentsOnly) {
   // The farm was lost during the episode and replaced by another one.
   rollout = Recorded(going, Outcome(EndReason::kNone, true, {1, 1}));
   EXPECT_FALSE(rollout.IsValid(0));
+}
+
+// Rewards 2 and 4, scaled by 0.5.
+TEST(Rollout, AddsTheTeamsShareOfTheRewards) {
+  const StepResults going = Outcome(EndReason::kNone, false, {1, 1});
+  Rollout rollout = Recorded(going, going, /*is_team=*/true, 1.0F);
+  EXPECT_FLOAT_EQ(rollout.advantage(0), 3.0F + 100.0F - 10.0F);
+  EXPECT_FLOAT_EQ(rollout.advantage(1), 3.0F + 200.0F - 20.0F);
+  rollout = Recorded(going, going, /*is_team=*/true, 0.25F);
+  EXPECT_FLOAT_EQ(rollout.advantage(0), 0.5F * (0.75F * 2.0F + 0.25F * 6.0F) + 100.0F - 10.0F);
+  EXPECT_FLOAT_EQ(rollout.advantage(1), 0.5F * (0.75F * 4.0F + 0.25F * 6.0F) + 200.0F - 20.0F);
+}
+
+TEST(Rollout, AnAgentThatIsDoneEarnsTheTeamsRewardsUntilTheEpisodeEnds) {
+  const StepResults going = Outcome(EndReason::kNone, false, {1, 1});
+  const StepResults done = Outcome(EndReason::kNone, false, {1, 0});
+  Rollout rollout = Recorded(going, done, /*is_team=*/true, 1.0F);
+  EXPECT_FLOAT_EQ(rollout.advantage(1), 3.0F + 200.0F - 20.0F) << "done in this step";
+  rollout = Recorded(done, done, /*is_team=*/true, 1.0F);
+  EXPECT_TRUE(rollout.IsValid(1)) << "done before";
+  EXPECT_FLOAT_EQ(rollout.advantage(1), 3.0F + 200.0F - 20.0F);
+  rollout =
+      Recorded(done, Outcome(EndReason::kAllRetrieved, false, {1, 0}), /*is_team=*/true, 1.0F);
+  EXPECT_FLOAT_EQ(rollout.advantage(1), 3.0F - 20.0F) << "the episode terminated";
 }
 
 }  // namespace

@@ -136,24 +136,61 @@ TEST(Ppo, PlaysAShipByItsOwnShareAsAmongAll) {
   }
 }
 
-TEST(Ppo, ALossThatIsNotFiniteEndsTheTraining) {
-  const std::string options = "hidden_size=8 rollout_size=64 batch_size=32";
+void ExpectThatANanEndsTheTraining(const std::string& algorithm, const std::string& more = "") {
+  const std::string options = "hidden_size=8 rollout_size=64 batch_size=32" + more;
   LocalEnvironment environment(TinyFarm(), {8, kFeaturesBit, false, 1});
-  const auto learner = MakePpo(environment.spec(), 1, options);
+  const auto learner = FindAlgorithm(algorithm).make(environment.spec(), 1, options);
   Checkpoint checkpoint;
   learner->Save(checkpoint);
   std::string& weights = checkpoint.sections["weights"];
   std::fill_n(weights.begin() + 40, 4, '\xff');  // a NaN
   learner->Load(checkpoint);
   TrainerOptions trainer_options;
-  trainer_options.algorithm = "ppo";
+  trainer_options.algorithm = algorithm;
   trainer_options.steps = 200000;
   Trainer trainer(environment, *learner, trainer_options);
   EXPECT_EQ(trainer.Run(), TrainingEnd::kDiverged);
-  EXPECT_CONTAINS(trainer.message(), "ppo: loss: got ");
+  EXPECT_EQ(trainer.message().find(algorithm + ": loss: got "), 0U) << trainer.message();
   EXPECT_CONTAINS(trainer.message(),
-                  "in gradient step 1, after 64 farm steps; expected a finite "
-                  "number: lower learning_rate or reward_scale");
+                  "farm steps; expected a finite number: lower learning_rate or "
+                  "reward_scale");
+}
+
+TEST(Ppo, ALossThatIsNotFiniteEndsTheTraining) {
+  ExpectThatANanEndsTheTraining("ppo");
+  ExpectThatANanEndsTheTraining("ppo", " recurrent=true sequence_length=4");
+  ExpectThatANanEndsTheTraining("mappo");
+}
+
+TEST(Mappo, RefusesEntityTokens) {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.view.tokens = true;
+  LocalEnvironment environment(Share(scenario), {1, kFeaturesBit, false, 1});
+  EXPECT_CONTAINS(MessageOf<InputError>([&] { MakeMappo(environment.spec(), 1, ""); }),
+                  "algorithm: got mappo in a scenario with view.tokens, expected ppo");
+}
+
+// The value's network is not part of a policy, which acts by an agent's own observation.
+TEST(Mappo, PoliciesAreThoseOfPpoWithoutValues) {
+  Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.ships.count = 2;
+  scenario.ports.cells = {{2, 0}, {2, 1}};
+  LocalEnvironment environment(Share(scenario), {1, kFeaturesBit, false, 1});
+  const EnvironmentSpec& spec = environment.spec();
+  Checkpoint policies[2];
+  const Learner* made[2];
+  const auto ppo = MakePpo(spec, 1, "hidden_size=8");
+  const auto mappo = MakeMappo(spec, 1, "hidden_size=8");
+  made[0] = ppo.get();
+  made[1] = mappo.get();
+  for (int i = 0; i < 2; ++i) made[i]->SavePolicy(policies[i]);
+  EXPECT_EQ(policies[0].Section("weights"), policies[1].Section("weights"));
+  const auto policy = mappo->GreedyPolicy();
+  policy->Begin(1, 1);
+  std::vector<std::uint8_t> actions;
+  policy->Act(environment.Reset(1, 0), actions);
+  EXPECT_EQ(actions.size(), 2U);
+  EXPECT_TRUE(policy->values().empty());
 }
 
 TEST(Ppo, WrongOptionsAreAnsweredWithWhatIsAllowed) {

@@ -13,7 +13,7 @@ TEST(Algorithms, AnUnknownNameIsAnsweredWithThoseThereAre) {
             "algorithm: got 'dqm' (did you mean 'dqn'?), expected one of: random, q_learning, "
             "sarsa, dqn, "
             "lstm_dqn, independent_dqn, independent_lstm_dqn, vdn, "
-            "maddpg, ppo, planner, clairvoyant, do_nothing, fetch_by_value");
+            "maddpg, ppo, mappo, planner, clairvoyant, do_nothing, fetch_by_value");
 }
 
 TEST(Algorithms, EachCanBeMadeAndSaysItsOptions) {
@@ -62,7 +62,7 @@ std::string Lively(const Algorithm& algorithm) {
   if (name.find("lstm_dqn") != std::string::npos) return small + " sequence_length=4 burn_in=2";
   if (name == "maddpg")
     return "hidden_size=8 batch_size=8 learning_starts=20 buffer_size=300 recurrent=true";
-  if (name == "ppo") return "hidden_size=8 rollout_size=90 batch_size=32";
+  if (name == "ppo" || name == "mappo") return "hidden_size=8 rollout_size=90 batch_size=32";
   return name == "dqn" || name == "independent_dqn" || name == "vdn" ? small : "";
 }
 
@@ -100,13 +100,16 @@ TEST(Algorithms, EachContinuesBitForBit) {
     if (algorithm.make == nullptr) continue;
     ExpectContinues(algorithm, Lively(algorithm));
     if (!algorithm.learns) continue;
-    const bool samples = std::string(algorithm.name) == "ppo";
+    const std::string name = algorithm.name;
+    const bool samples = name == "ppo" || name == "mappo";
     const std::string explored = samples ? "entropy:0.01" : "boltzmann:5";
     ExpectContinues(algorithm, Lively(algorithm) + " exploration=icm:1+" + explored);
   }
   // In the middle of a rollout and of a sequence.
-  ExpectContinues(FindAlgorithm("ppo"),
-                  "hidden_size=8 rollout_size=90 batch_size=32 recurrent=true sequence_length=7");
+  for (const char* name : {"ppo", "mappo"}) {
+    ExpectContinues(FindAlgorithm(name),
+                    "hidden_size=8 rollout_size=90 batch_size=32 recurrent=true sequence_length=7");
+  }
   for (const char* name : {"dqn", "lstm_dqn"}) {
     const Algorithm& algorithm = FindAlgorithm(name);
     ExpectContinues(algorithm, Lively(algorithm) + " ema_rate=0.02 repetition_penalty=2");

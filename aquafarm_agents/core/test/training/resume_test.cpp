@@ -47,12 +47,17 @@ class Resume : public FolderTest {
         << "metrics differ";
   }
 
-  /// @param run name of the run; it begins with the name of the algorithm
+  static std::string StepsOf(const std::string& run) {
+    if (run.find(".memory") != std::string::npos) return "200000";
+    return run.find("ppo") != std::string::npos ? "400000" : "8000000";
+  }
+  /// @param run name of the run: the name of the algorithm, `.memory` for a recurrent network, and
+  /// more
   std::vector<std::string> Command(const std::string& run, bool resume) const {
     std::vector<std::string> command{AQUAFARM_TRAIN,
                                      "paper",
                                      "--steps",
-                                     run.rfind("ppo", 0) == 0 ? "400000" : "8000000",
+                                     StepsOf(run),
                                      "--farms",
                                      "8",
                                      "--run-dir",
@@ -65,6 +70,9 @@ class Resume : public FolderTest {
                                      "0.05",
                                      "--scenarios",
                                      AQUAFARM_SCENARIO_DIR};
+    if (run.find(".memory") != std::string::npos) {
+      command.insert(command.end(), {"--set", "recurrent=true", "--set", "hidden_size=16"});
+    }
     if (resume) command.emplace_back("--resume");
     return command;
   }
@@ -102,7 +110,7 @@ TEST_F(Resume, WorksForLimitsByEpisodes) {
 }
 
 TEST_F(Resume, KilledEqualsNeverStopped) {
-  for (const std::string name : {"q_learning", "sarsa", "ppo"}) {
+  for (const std::string name : {"q_learning", "sarsa", "ppo", "ppo.memory", "mappo.memory"}) {
     const std::string whole = name + ".whole";
     const std::string parts = name + ".parts";
     Process uninterrupted(Command(whole, false), Output(whole));

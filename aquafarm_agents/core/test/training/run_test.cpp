@@ -318,27 +318,50 @@ TEST_F(Programs, RefuseWhatTheyDoNotKnow) {
   EXPECT_CONTAINS(output_, "contains neither policy.ckpt nor a checkpoint");
 }
 
-TEST_F(Programs, NameTheLastGoodCheckpointOfATrainingThatDivergedAndPlayIt) {
-  std::vector<std::string> command{AQUAFARM_TRAIN, "paper", "-d", folder_ + "/run", "-a", "dqn"};
+class Diverging : public Programs {
+ protected:
+  /// Trains with more options, which must end the training. `said` is part of the reason.
+  void ExpectTheLastGoodCheckpointIsPlayed(const std::string& algorithm,
+                                           const std::vector<std::string>& options,
+                                           const std::string& said);
+  int runs_{};
+};
+
+void Diverging::ExpectTheLastGoodCheckpointIsPlayed(const std::string& algorithm,
+                                                    const std::vector<std::string>& options,
+                                                    const std::string& said) {
+  const std::string run = folder_ + "/run" + std::to_string(runs_++);
+  std::vector<std::string> command{AQUAFARM_TRAIN, "paper", "-d", run, "-a", algorithm};
   command.insert(command.end(), {"-f", "4", "-n", "100000", "--checkpoint-period", "0"});
-  // The weights grow by 1 per update until the gradients of such rewards overflow a float.
-  for (const char* option :
-       {"learning_rate=1", "reward_scale=1e9", "max_grad_norm=0", "loss=mse", "gamma=1",
-        "target_update_interval=1", "priority_exponent=0", "hidden_size=128", "batch_size=8",
-        "learning_starts=500", "buffer_size=1000"}) {
+  for (const char* option : {"learning_rate=1", "reward_scale=1e9", "max_grad_norm=0", "gamma=1"}) {
     command.insert(command.end(), {"-o", option});
   }
+  for (const std::string& option : options) command.insert(command.end(), {"-o", option});
   ASSERT_EQ(Run(command), static_cast<int>(ExitCode::kDiverged)) << output_;
-  EXPECT_CONTAINS(output_, "farm steps, on the batch drawn from seed 1 at position ");
+  EXPECT_CONTAINS(output_, said);
   const std::string words = "; the last valid checkpoint is ";
   const std::size_t at = output_.find(words);
   ASSERT_NE(at, std::string::npos) << output_;
   const std::size_t begin = at + words.size();
   const std::string path = output_.substr(begin, output_.find('\n', begin) - begin);
   EXPECT_GT(ReadCheckpoint(path).steps, 0U);
-  EXPECT_FALSE(std::filesystem::exists(folder_ + "/run/policy.ckpt"));
-  EXPECT_EQ(Run({AQUAFARM_EVALUATE, path, "-e", "2"}), 0) << output_;
-  EXPECT_CONTAINS(output_, "dqn on paper: success ");
+  EXPECT_FALSE(std::filesystem::exists(run + "/policy.ckpt"));
+  EXPECT_EQ(Run({AQUAFARM_EVALUATE, path, "-e", "2", "--max-steps", "50"}), 0) << output_;
+  EXPECT_CONTAINS(output_, algorithm + " on paper: success ");
+}
+
+// The weights grow by 1 per update until the gradients of such rewards overflow a float.
+TEST_F(Diverging, NameTheLastGoodCheckpointAndPlayIt) {
+  ExpectTheLastGoodCheckpointIsPlayed(
+      "dqn",
+      {"loss=mse", "target_update_interval=1", "priority_exponent=0", "hidden_size=128",
+       "batch_size=8", "learning_starts=500", "buffer_size=1000"},
+      "farm steps, on the batch drawn from seed 1 at position ");
+  const std::vector<std::string> small{"rollout_size=128", "batch_size=32",
+                                       "normalize_advantages=false"};
+  const std::string said = "farm steps; expected a finite number: lower learning_rate";
+  ExpectTheLastGoodCheckpointIsPlayed("ppo", small, said);
+  ExpectTheLastGoodCheckpointIsPlayed("mappo", small, said);
 }
 
 TEST_F(Programs, TrainAndEvaluateOnTheShippedFarm) {

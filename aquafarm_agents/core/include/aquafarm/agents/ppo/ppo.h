@@ -11,6 +11,10 @@
 ///
 /// Only termination stops bootstrapping. A truncated episode is bootstrapped with the value of its
 /// last observation. Masked actions have probability 0 in π and π_old.
+///
+/// MAPPO (Yu et al. 2022, arXiv:2103.01955) is PPO for several agents: one policy plays all of
+/// them, each by its own observation, and V depends on the observations of all agents of the farm.
+/// V is needed only for learning, so a ship can act by its own observation alone.
 
 #include <memory>
 #include <string>
@@ -22,13 +26,19 @@ namespace aquafarm::agents {
 
 /// Observation types (EncodingBits) that PPO reads. @throws InputError if an option is wrong
 std::uint8_t PpoEncodings(const std::string& options);
+std::uint8_t MappoEncodings(const std::string& options);
 /// @throws InputError if an option is wrong
 std::unique_ptr<Learner> MakePpo(const EnvironmentSpec& spec, std::uint64_t seed,
                                  const std::string& options);
+std::unique_ptr<Learner> MakeMappo(const EnvironmentSpec& spec, std::uint64_t seed,
+                                   const std::string& options);
 /// Makes the learner of one rank of a process group.
 /// @param spec of the farms of this rank @throws InputError if an option is wrong
 std::unique_ptr<ShardedLearner> MakePpoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
                                                const std::string& options, ProcessGroup& group);
+std::unique_ptr<ShardedLearner> MakeMappoOfRanks(const EnvironmentSpec& spec, std::uint64_t seed,
+                                                 const std::string& options, ProcessGroup& group);
+/// Makes the policy of a checkpoint of PPO or MAPPO.
 /// @throws InputError if the policy does not fit farms of `spec`; the message names the difference
 std::unique_ptr<Policy> MakePpoPolicy(const Checkpoint& checkpoint, const EnvironmentSpec& spec);
 

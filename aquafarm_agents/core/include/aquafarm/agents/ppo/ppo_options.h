@@ -18,8 +18,11 @@ enum class PolicyMode : std::uint8_t {
 inline constexpr int kPolicyModeCount = 2;
 std::string_view ToString(PolicyMode value);
 
-/// Options of PPO. Two presets give the defaults: *tuned* for a fixed layout, *large* for layouts
-/// that change in each episode. docs/algorithms.md has the measurements.
+/// Name of the PPO of several agents with a value that depends on all of their observations.
+inline constexpr const char* kMappo = "mappo";
+
+/// Options of PPO and MAPPO. Two presets give the defaults: *tuned* for a fixed layout, *large* for
+/// layouts that change in each episode. docs/algorithms.md has the measurements.
 struct PpoOptions {
   std::int32_t hidden_size{128};     ///< units of each hidden layer; of the LSTM if recurrent
   bool recurrent{false};             ///< an LSTM instead of the second hidden layer
@@ -51,12 +54,25 @@ struct PpoOptions {
   /// are added in a fixed order, so results depend on the number of shards, not of processes.
   std::int32_t shards{1};
 
+  /// MAPPO: the value depends on the observations of all agents of a farm; set by the algorithm.
+  bool central{false};
+  /// Share w of the team in what an agent learns from: (1 − w) · its own reward + w · the sum of
+  /// all agents' rewards.
+  Schedule team_share{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
+
+  const char* algorithm() const { return central ? kMappo : "ppo"; }
+  /// Returns whether agents learn from the team's rewards at some time of the training.
+  /// @param team_reward as in EnvironmentSpec
+  bool IsTeam(bool team_reward) const {
+    return team_reward || team_share.At(0.0) > 0.0 || team_share.At(1.0) > 0.0;
+  }
   /// Returns the steps per agent in one rollout. @param entries farms × agents
   std::int32_t Horizon(std::size_t entries) const;
 
   /// Parses "key=value …". @param resolved receives the values of all options
+  /// @param central the options are those of MAPPO
   /// @throws InputError if a key is unknown or a value is out of range
-  static PpoOptions Parse(const std::string& text, std::string& resolved);
+  static PpoOptions Parse(const std::string& text, std::string& resolved, bool central = false);
 };
 
 }  // namespace aquafarm::agents

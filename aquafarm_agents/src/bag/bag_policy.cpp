@@ -125,9 +125,8 @@ class PolicyProbe {
     choice_.step = state.step;
     choice_.policy = name_;
     asked_hash_ = state.hash;
-    std::string farms = farms_.Save();
-    policy_->Act(environment_.Load(farms), choice_.actions);
-    if (rewinds_) asked_states_.push_back(std::move(farms));
+    policy_->Act(environment_.CopyStatesFrom({&farms_.farm(0)}), choice_.actions);
+    if (rewinds_) asked_states_.push_back(farms_.Save());
     choice_.values = policy_->values();
     value_ = std::nanf("");
     if (!choice_.values.empty()) {

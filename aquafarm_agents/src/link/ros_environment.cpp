@@ -110,6 +110,13 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
         "scenario " + spec_.scenario_name +
         ": too many states for a table, expected a learner with a network; use algorithm auto");
   }
+  if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) {
+    copies_ = std::make_unique<aquafarm::FarmBatch>(
+        std::make_shared<const aquafarm::Scenario>(
+            aquafarm::ParseScenario(spec_.scenario_yaml, spec_.scenario_name)),
+        spec_.farms);
+    results_.states.resize(static_cast<std::size_t>(spec_.farms));
+  }
   if (now.spec.farms != spec_.farms) Reset(now.state.seed);
 }
 
@@ -174,7 +181,12 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
 
 // The farm states need a separate call, which is cheap relative to a planning step.
 void RosEnvironment::Take(StepResult& result) {
-  if ((options_.encodings & aquafarm::agents::kStatesBit) != 0) results_.states = Save();
+  if (copies_ != nullptr) {
+    copies_->Load(Save());
+    for (std::int32_t i = 0; i < spec_.farms; ++i) {
+      results_.states[static_cast<std::size_t>(i)] = &copies_->farm(i);
+    }
+  }
   turn_ = result.turn;
   aquafarm::VisitStepFields([](const aquafarm::StepField&, auto& to, auto& from) { to.swap(from); },
                             results_, result);

@@ -161,7 +161,11 @@ class BatchPolicy {
     }
     batch.InspectAll([&](FarmBatch& farms) {
       farms.Write(output_);
-      if ((policy_->encodings() & agents::kStatesBit) != 0) results_.states = farms.Save();
+      for (std::size_t i = 0; i < results_.states.size(); ++i) {
+        const auto farm = static_cast<std::int32_t>(i);
+        copies_->farm(farm).CopyStateFrom(farms.farm(farm));
+        results_.states[i] = &copies_->farm(farm);
+      }
     });
     {
       const py::gil_scoped_release release;
@@ -192,6 +196,9 @@ class BatchPolicy {
     StepShape shape = sample_.shape();
     shape.farms = static_cast<std::size_t>(spec_.farms);
     SizeStepFields(shape, bits, results_, output_);
+    if ((policy_->encodings() & agents::kStatesBit) == 0) return;
+    copies_ = std::make_unique<FarmBatch>(sample_.farm(0).shared_scenario(), spec_.farms);
+    results_.states.resize(shape.farms);
   }
 
   FarmBatch sample_;  // one farm, for the shapes
@@ -199,6 +206,7 @@ class BatchPolicy {
   std::unique_ptr<agents::Policy> policy_;
   agents::StepResults results_;
   BatchOutput output_;
+  std::unique_ptr<FarmBatch> copies_;  // which planners read while others step the batch
   std::vector<std::uint8_t> actions_;
   mutable bool busy_{};
 };

@@ -46,7 +46,7 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
   spec_.width = family_->family->width.max;
   spec_.height = family_->family->height.max;
   spec_.step_limit = std::max(spec_.step_limit, kMaxRanchSteps);
-  if ((options.encodings & (kIndexBit | kPlanesBit)) != 0) {
+  if ((options.encodings & (kIndexBit | kPlanesBit | kStatesBit)) != 0) {
     throw InputError("scenario " + spec_.scenario_name +
                      ": is a family of ranches of different sizes, expected a learner that reads "
                      "features: use algorithm ppo");

@@ -117,7 +117,7 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
   const StepShape shape = batch_.shape();
   SizeStepFields(shape, bits, results_, output_);
   results_.finished.reserve(shape.farms);
-  with_states_ = (options.encodings & kStatesBit) != 0;
+  if ((options.encodings & kStatesBit) != 0) results_.states.resize(shape.farms);
 }
 
 const StepResults& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
@@ -141,7 +141,9 @@ const StepResults& LocalEnvironment::Step(const std::vector<std::uint8_t>& actio
 
 void LocalEnvironment::Complete() {
   if (own_rewards_) UseOwnRewards(results_);
-  if (with_states_) results_.states = batch_.Save();
+  for (std::size_t i = 0; i < results_.states.size(); ++i) {  // Load replaces the farms
+    results_.states[i] = &std::as_const(batch_).farm(static_cast<std::int32_t>(i));
+  }
   results_.finished.clear();
 }
 
@@ -157,7 +159,17 @@ std::string LocalEnvironment::Save() { return batch_.Save(); }
 
 const StepResults& LocalEnvironment::Load(const std::string& bytes) {
   batch_.Load(TakeSavedFarms(bytes, share_, spec_.farms));
+  return Change([](std::size_t, Farm&) {});
+}
+
+const StepResults& LocalEnvironment::CopyStatesFrom(const std::vector<const Farm*>& farms) {
+  AQUAFARM_CHECK_EQ(farms.size(), static_cast<std::size_t>(spec_.farms));
+  return Change([&farms](std::size_t i, Farm& farm) { farm.CopyStateFrom(*farms[i]); });
+}
+
+const StepResults& LocalEnvironment::Change(const std::function<void(std::size_t, Farm&)>& change) {
   for (std::int32_t i = 0; i < spec_.farms; ++i) {
+    change(static_cast<std::size_t>(i), batch_.farm(i));
     batch_.set_stride(i, static_cast<std::uint64_t>(share_.total));
   }
   batch_.Write(output_);

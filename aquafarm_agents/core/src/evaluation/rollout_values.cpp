@@ -10,42 +10,14 @@
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/agents/evaluation/evaluation.h"
 #include "aquafarm/base/check.h"
+#include "evaluation/free_cells.h"
 
 namespace aquafarm::agents {
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kCellsAtOnce = 64;
-
 bool IsStopped(const std::atomic<bool>* stop) { return stop != nullptr && *stop; }
-
-// One copy of the farm per cell that ship 0 can occupy, and those cells.
-class Starts {
- public:
-  Starts(const std::shared_ptr<const Scenario>& scenario, const Farm& farm)
-      : width_(farm.scenario().width), state_(farm.Save()) {
-    Farm moved(scenario);
-    moved.Load(state_);
-    for (std::int32_t i = 0; i < farm.scenario().CellCount(); ++i) {
-      try {
-        moved.PlaceShip(0, {i % width_, i / width_});
-        cells_.push_back(i);
-      } catch (const InputError&) {  // blocked or occupied
-      }
-    }
-  }
-  const std::vector<std::int32_t>& cells() const { return cells_; }
-  void Put(std::size_t start, Farm& farm) const {
-    farm.Load(state_);
-    farm.PlaceShip(0, {cells_[start] % width_, cells_[start] / width_});
-  }
-
- private:
-  std::int32_t width_;
-  std::string state_;
-  std::vector<std::int32_t> cells_;
-};
 
 // The reward of all agents of a farm in the last step.
 double RewardOf(const StepResults& results, const EnvironmentSpec& spec, std::size_t farm) {
@@ -57,16 +29,17 @@ double RewardOf(const StepResults& results, const EnvironmentSpec& spec, std::si
   return spec.team_reward ? sum / static_cast<double>(agents) : sum;  // each agent receives the sum
 }
 
-// Plays all farms to the end of their current episodes. @returns the return of each farm
-std::vector<double> PlayOut(LocalEnvironment& environment, const std::string& farms, Policy& policy,
-                            std::uint64_t seed, double discount, const std::atomic<bool>* stop) {
+// Plays all farms to the end of their current episodes. @param results of the farms as they are
+// @returns the return of each farm
+std::vector<double> PlayOut(LocalEnvironment& environment, const StepResults* results,
+                            Policy& policy, std::uint64_t seed, double discount,
+                            const std::atomic<bool>* stop) {
   const std::int32_t count = environment.spec().farms;
   std::vector<double> returns(static_cast<std::size_t>(count));
   std::vector<bool> over(returns.size());
   std::int32_t left = count;
   double weight = 1.0;  // of the reward of the next step
   policy.Begin(seed, count);
-  const StepResults* results = &environment.Load(farms);
   std::vector<std::uint8_t> actions;
   while (left > 0 && !IsStopped(stop)) {
     policy.Act(*results, actions);
@@ -125,19 +98,18 @@ RolloutValues PlayValues(const std::shared_ptr<const Scenario>& scenario, std::u
   Farm farm(scenario);
   for (std::int32_t k = 0; k < episodes && !IsStopped(stop); ++k) {
     farm.Reset(values.seed, episode + static_cast<std::uint64_t>(k));
-    const Starts starts(scenario, farm);
+    const std::vector<Cell> starts = FreeCells(farm);
     std::vector<double> here(cells, std::numeric_limits<double>::quiet_NaN());
-    for (std::size_t first = 0; first < starts.cells().size(); first += kCellsAtOnce) {
-      const std::size_t count = std::min(kCellsAtOnce, starts.cells().size() - first);
-      FarmBatch farms(scenario, static_cast<std::int32_t>(count));
-      for (std::size_t i = 0; i < count; ++i) {
-        starts.Put(first + i, farms.farm(static_cast<std::int32_t>(i)));
-      }
-      LocalEnvironment environment(scenario, {farms.farms(), encodings, false, 1});
+    for (std::size_t first = 0; first < starts.size(); first += kCellsAtOnce) {
+      const std::size_t count = std::min(kCellsAtOnce, starts.size() - first);
+      LocalEnvironment environment(scenario,
+                                   {static_cast<std::int32_t>(count), encodings, false, 1});
       const std::unique_ptr<Policy> policy = make_policy(environment.spec());
-      const auto returns = PlayOut(environment, farms.Save(), *policy, values.seed, discount, stop);
+      const auto returns = PlayOut(environment, &PlaceInEach(farm, starts, first, environment),
+                                   *policy, values.seed, discount, stop);
       for (std::size_t i = 0; i < count; ++i) {
-        here[static_cast<std::size_t>(starts.cells()[first + i])] = returns[i];
+        const Cell start = starts[first + i];
+        here[static_cast<std::size_t>(LinearIndex(start, values.width))] = returns[i];
       }
     }
     for (std::size_t i = 0; i < cells; ++i) values.value[i] += here[i] / episodes;

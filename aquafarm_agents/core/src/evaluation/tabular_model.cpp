@@ -82,14 +82,20 @@ TabularModel::TabularModel(const Scenario& scenario) : not_finite_(WhyNotFinite(
   farm.Reset(1, 0);
   std::unordered_map<std::uint32_t, std::size_t> rows{{encoder.Index(farm, 0), 0}};
   states_.push_back(encoder.Index(farm, 0));
-  std::vector<std::string> saved{farm.Save()};
+  const auto copy_of = [&endless](const Farm& original) {
+    auto copy = std::make_unique<Farm>(endless, original.shared_layout());
+    copy->CopyStateFrom(original);
+    return copy;
+  };
+  std::vector<std::unique_ptr<const Farm>> found_farms;
+  found_farms.push_back(copy_of(farm));
   constexpr std::size_t kEnd = static_cast<std::size_t>(-1);
   for (std::size_t row = 0; row < states_.size(); ++row) {  // breadth first
-    const std::string from = std::move(saved[row]);
+    const std::unique_ptr<const Farm> from = std::move(found_farms[row]);
     next_.emplace_back();
     reward_.emplace_back();
     for (std::uint8_t action = 0; action < kActionCount; ++action) {
-      farm.Load(from);
+      farm.CopyStateFrom(*from);
       if (action == 0) legal_.push_back(farm.LegalActions(0));
       farm.Step(&action);
       reward_[row][action] = farm.ships()[0].reward;
@@ -99,7 +105,7 @@ TabularModel::TabularModel(const Scenario& scenario) : not_finite_(WhyNotFinite(
       if (farm.over() && is_new) rows.erase(found);
       if (farm.over() || !is_new) continue;
       states_.push_back(state);
-      saved.push_back(farm.Save());
+      found_farms.push_back(copy_of(farm));
     }
   }
   for (auto& row : next_) std::replace(row.begin(), row.end(), kEnd, end());

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/base/check.h"
 #include "planning/water_distance.h"
 
 namespace aquafarm::agents {
@@ -157,22 +157,18 @@ std::uint8_t FetchByValue::Sail(const Farm& farm, std::int32_t id,
 }
 
 FetchByValuePolicy::FetchByValuePolicy(const EnvironmentSpec& spec)
-    : scenario_(
-          std::make_shared<const Scenario>(ParseScenario(spec.scenario_yaml, spec.scenario_name))) {
-}
+    : agents_(static_cast<std::size_t>(spec.agents)) {}
 
 void FetchByValuePolicy::Begin(std::uint64_t, std::int32_t farms) {
-  farms_ = std::make_unique<FarmBatch>(scenario_, farms);
   fetchers_.assign(static_cast<std::size_t>(farms), {});
 }
 
 void FetchByValuePolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
-  farms_->Load(results.states);
-  const auto agents = static_cast<std::size_t>(scenario_->AgentCount());
-  actions.assign(fetchers_.size() * agents, 0);
+  AQUAFARM_CHECK_EQ(results.states.size(), fetchers_.size());
+  actions.assign(fetchers_.size() * agents_, 0);
   for (std::size_t i = 0; i < fetchers_.size(); ++i) {
-    const Farm& farm = farms_->farm(static_cast<std::int32_t>(i));
-    if (!farm.over()) fetchers_[i].Act(farm, actions.data() + i * agents);
+    const Farm& farm = *results.states[i];
+    if (!farm.over()) fetchers_[i].Act(farm, actions.data() + i * agents_);
   }
 }
 

@@ -12,15 +12,14 @@ PlannerPolicy::PlannerPolicy(const EnvironmentSpec& spec, Foresight foresight)
       planner_(*scenario_) {}
 
 void PlannerPolicy::Begin(std::uint64_t, std::int32_t farms) {
-  farms_ = std::make_unique<FarmBatch>(scenario_, farms);
   courses_.assign(static_cast<std::size_t>(farms), {});
 }
 
 void PlannerPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
-  farms_->Load(results.states);
+  AQUAFARM_CHECK_EQ(results.states.size(), courses_.size());
   actions.resize(courses_.size());
   for (std::size_t i = 0; i < courses_.size(); ++i) {
-    const Farm& farm = farms_->farm(static_cast<std::int32_t>(i));
+    const Farm& farm = *results.states[i];
     actions[i] = farm.over() ? 0 : Follow(farm, courses_[i]);
   }
 }

@@ -316,16 +316,15 @@ TeamPlannerPolicy::TeamPlannerPolicy(const EnvironmentSpec& spec, Foresight fore
       planner_(*scenario_, foresight) {}
 
 void TeamPlannerPolicy::Begin(std::uint64_t, std::int32_t farms) {
-  farms_ = std::make_unique<FarmBatch>(scenario_, farms);
   courses_.assign(static_cast<std::size_t>(farms), {});
 }
 
 void TeamPlannerPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
-  farms_->Load(results.states);
-  const auto agents = static_cast<std::size_t>(farms_->agents());
+  AQUAFARM_CHECK_EQ(results.states.size(), courses_.size());
+  const auto agents = static_cast<std::size_t>(scenario_->AgentCount());
   actions.assign(courses_.size() * agents, 0);
   for (std::size_t i = 0; i < courses_.size(); ++i) {
-    const Farm& farm = farms_->farm(static_cast<std::int32_t>(i));
+    const Farm& farm = *results.states[i];
     if (!farm.over()) planner_.Act(farm, courses_[i], actions.data() + i * agents);
   }
 }

@@ -9,7 +9,7 @@
 namespace aquafarm::agents {
 namespace {
 
-// The hash stays that of the farms, whose states are loaded.
+// The hash stays that of the farms, whose states are copied.
 std::shared_ptr<const Scenario> WithTokens(const EnvironmentSpec& spec) {
   Scenario scenario = ParseScenario(spec.scenario_yaml, spec.scenario_name);
   scenario.view.tokens = true;
@@ -39,7 +39,7 @@ void TokenPolicy::Begin(std::uint64_t seed, std::int32_t farms) {
 }
 
 void TokenPolicy::Act(const StepResults& results, std::vector<std::uint8_t>& actions) {
-  policy_->Act(farms_->Load(results.states), actions);
+  policy_->Act(farms_->CopyStatesFrom(results.states), actions);
   values_ = policy_->values();
 }
 

@@ -10,8 +10,8 @@
 
 namespace aquafarm::agents {
 
-/// Plays a policy that reads entity tokens on farms whose features are not tokens: loads the saved
-/// states of the farms into farms in this process, which encode their views as tokens. The views
+/// Plays a policy that reads entity tokens on farms whose features are not tokens: copies the
+/// farms to farms of its own, which encode their views as tokens. The views
 /// are those of the scenario, so a ship observes as little as its scenario allows.
 class TokenPolicy final : public Policy {
  public:

@@ -36,7 +36,7 @@ TEST(FamilyEnvironment, EachEpisodePlaysAnotherRanchOfTheSeed) {
 }
 
 TEST(FamilyEnvironment, RefusesObservationsOfAFixedSize) {
-  for (const std::uint8_t bit : {kIndexBit, kPlanesBit}) {
+  for (const std::uint8_t bit : {kIndexBit, kPlanesBit, kStatesBit}) {
     try {
       FamilyEnvironment environment(Family(), {2, bit, false, 1});
       FAIL();

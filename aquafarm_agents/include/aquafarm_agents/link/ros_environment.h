@@ -11,10 +11,12 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/observation/farm_batch.h"
 #include "aquafarm_agents/link/call_limit.h"
 
 namespace aquafarm_agents {
@@ -77,7 +79,8 @@ class RosEnvironment final : public aquafarm::agents::Environment {
 
   aquafarm::agents::EnvironmentSpec spec_;
   aquafarm::agents::StepResults results_;
-  aquafarm_msgs::Step step_;  // reused buffer
+  std::unique_ptr<aquafarm::FarmBatch> copies_;  // of the farms; null unless requested
+  aquafarm_msgs::Step step_;                     // reused buffer
   std::uint64_t sequence_;
   bool restarted_{};
   int restarts_{};  // since the last end of an episode

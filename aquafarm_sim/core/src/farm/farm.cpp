@@ -76,14 +76,19 @@ void Farm::DrawStorms() {
     const DrawnStorm drawn =
         DrawStorm(*storms, record_.seed, record_.episode, static_cast<std::int32_t>(id), x, y);
     storms_[id] = drawn.storm;
-    tracks_[id].reset();
-    if (drawn_[id] == nullptr || drawn_[id].use_count() > 1) {
-      drawn_[id] = std::make_shared<std::vector<Waypoint>>();
-    }
     storm_errors_.assign(1, drawn.errors);
-    placer_.Place(drawn.storm->path, storm_errors_, storms->risks, *drawn_[id]);
-    tracks_[id] = drawn_[id];
+    placer_.Place(drawn.storm->path, storm_errors_, storms->risks, DrawnTrack(id));
   }
+}
+
+// Makes the track of a drawn storm one that only this farm owns, and returns it.
+std::vector<Waypoint>& Farm::DrawnTrack(std::size_t id) {
+  tracks_[id].reset();
+  if (drawn_[id] == nullptr || drawn_[id].use_count() > 1) {
+    drawn_[id] = std::make_shared<std::vector<Waypoint>>();
+  }
+  tracks_[id] = drawn_[id];
+  return *drawn_[id];
 }
 
 const ArchivedStorm* Farm::DrawnStormOf(std::int32_t disaster) const {
@@ -224,19 +229,21 @@ bool Farm::Occupied(std::int32_t index) const {
   return found != 0;
 }
 
-void Farm::PlaceShip(std::int32_t ship, Cell cell) {
+bool Farm::CanPlaceShip(std::int32_t ship, Cell cell) const {
   AQUAFARM_CHECK_LT(static_cast<std::size_t>(ship), ships_.size());
   const bool on_map =
       cell.x >= 0 && cell.x < scenario_->width && cell.y >= 0 && cell.y < scenario_->height;
-  const std::int32_t index = on_map ? LinearIndex(cell, scenario_->width) : kNone;
-  Ship& one = ships_[static_cast<std::size_t>(ship)];
-  const bool is_free =
-      on_map && (layout_->bits(cell) & kBlockedBits) == 0 &&
-      (one.cell == cell || (layout_->bits(cell) & kPortBit) != 0 || !Occupied(index));
-  if (!is_free) {
+  if (!on_map || (layout_->bits(cell) & kBlockedBits) != 0) return false;
+  return ships_[static_cast<std::size_t>(ship)].cell == cell ||
+         (layout_->bits(cell) & kPortBit) != 0 || !Occupied(LinearIndex(cell, scenario_->width));
+}
+
+void Farm::PlaceShip(std::int32_t ship, Cell cell) {
+  if (!CanPlaceShip(ship, cell)) {
     throw InputError("cell: got (" + std::to_string(cell.x) + ", " + std::to_string(cell.y) +
                      "), expected free water on the map");
   }
+  Ship& one = ships_[static_cast<std::size_t>(ship)];
   one.cell = cell;
   if (one.own_device != kNone) devices_[static_cast<std::size_t>(one.own_device)].cell = cell;
   IndexShips();

@@ -12,6 +12,7 @@
 #include "aquafarm/farm/farm.h"
 #include "aquafarm/grid/action.h"
 #include "aquafarm/scenario/validate.h"
+#include "aquafarm/storms/draw_storm.h"
 #include "base/cbor.h"
 #include "farm/farm_records.h"
 
@@ -242,6 +243,43 @@ void Farm::Load(const std::string& bytes) {
     throw InputError(std::string("state: damaged bytes: ") + error.what());
   }
   *this = std::move(loaded);
+}
+
+void Farm::CopyStateFrom(const Farm& from) {
+  AQUAFARM_CHECK_EQ(scenario_->hash, from.scenario_->hash);
+  if (this == &from) return;
+  if (own_layout_ != nullptr && scenario_->layout == LayoutMode::kPerEpisode) {
+    if (scenario_->view.NeedsRoutes() == from.scenario_->view.NeedsRoutes()) {
+      *own_layout_ = *from.layout_;
+    } else {
+      generator_->Generate(from.seed(), from.episode(), *own_layout_);
+    }
+  }
+  ships_ = from.ships_;
+  ship_index_ = from.ship_index_;
+  devices_ = from.devices_;
+  disasters_ = from.disasters_;
+  CopyTracksFrom(from);
+  forecasts_ = from.forecasts_;
+  record_ = from.record_;
+  remaining_ = from.remaining_;
+}
+
+// What `from` has of its scenario becomes that of this farm's scenario, which may be another
+// object.
+void Farm::CopyTracksFrom(const Farm& from) {
+  const std::vector<DisasterSpec>& specs = scenario_->disasters;
+  tracks_ = from.tracks_;
+  tracks_changed_ = from.tracks_changed_;
+  for (std::size_t id = 0; id < specs.size(); ++id) {
+    const DisasterSpec& theirs = from.scenario_->disasters[id];
+    if (from.tracks_[id].get() == &theirs.track) tracks_[id] = {scenario_, &specs[id].track};
+    if (!specs[id].storms) continue;
+    const ArchivedStorm* const first = StormsOf(*theirs.storms, from.seed()).data();
+    storms_[id] = &StormsOf(*specs[id].storms,
+                            from.seed())[static_cast<std::size_t>(from.storms_[id] - first)];
+    if (from.tracks_[id] == from.drawn_[id]) DrawnTrack(id) = *from.drawn_[id];
+  }
 }
 
 // The hash detects damaged bytes. Forged bytes must not cause out-of-bounds access either.

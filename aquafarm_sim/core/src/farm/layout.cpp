@@ -62,7 +62,7 @@ void LayoutGenerator::Generate(std::uint64_t seed, std::uint64_t episode, Layout
   Reserve(layout);
   for (std::uint32_t attempt = 0; attempt < kMaxTries; ++attempt) {
     if (!TryPlace(seed, episode, attempt, layout)) continue;
-    if (scenario_.view.waterways || scenario_.view.tokens) ChartAllWays(layout);
+    if (scenario_.view.NeedsRoutes()) ChartAllWays(layout);
     return;
   }
   throw InputError(std::string(crowded_) + ": too crowded: no layout of " +

@@ -240,7 +240,7 @@ void CheckPlaces(const Scenario& scenario) {
   const std::uint64_t ways =
       static_cast<std::uint64_t>(scenario.CellCount()) *
       static_cast<std::uint64_t>(scenario.PortCount() + scenario.FetchableCount());
-  if ((scenario.view.waterways || scenario.view.tokens) && ways > kMostWays) {
+  if (scenario.view.NeedsRoutes() && ways > kMostWays) {
     throw FieldError(scenario.view.tokens ? "view.tokens" : "view.waterways",
                      "needs " + Format(ways) +
                          " ways (cells times ports and devices), expected at most " +

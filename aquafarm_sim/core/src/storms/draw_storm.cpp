@@ -9,13 +9,16 @@
 
 namespace aquafarm {
 
+const std::vector<ArchivedStorm>& StormsOf(const StormsSpec& storms, std::uint64_t seed) {
+  AQUAFARM_CHECK_EQ(storms.library != nullptr, true);
+  return IsEvaluationSeed(seed) ? storms.library->evaluation : storms.library->training;
+}
+
 DrawnStorm DrawStorm(const StormsSpec& storms, std::uint64_t seed, std::uint64_t episode,
                      std::int32_t disaster, double x, double y) {
-  AQUAFARM_CHECK_EQ(storms.library != nullptr, true);
   constexpr double kWeakest = 0.3;  // of the recorded wind
   constexpr double kHour_s = 3600.0;
-  const auto& among =
-      IsEvaluationSeed(seed) ? storms.library->evaluation : storms.library->training;
+  const std::vector<ArchivedStorm>& among = StormsOf(storms, seed);
   const StormPerturbation& by = storms.perturbation;
   RandomStream rng({seed, episode, RngStream::kStorm, static_cast<std::uint32_t>(disaster)});
   DrawnStorm drawn;

@@ -67,6 +67,79 @@ TEST(SaveLoad, AnotherScenarioIsRefusedWithWhatDiffers) {
   }
 }
 
+/// Expects that a copy of a farm continues as the farm does, also in the next episode.
+void ExpectCopy(Farm copy, Farm& farm) {
+  copy.CopyStateFrom(farm);
+  EXPECT_EQ(copy.Save(), farm.Save());
+  EXPECT_EQ(copy.StartHash(), farm.StartHash()) << "the layout is the same";
+  for (int i = 0; i < 20; ++i) {
+    RandomSteps(farm, 1, static_cast<std::uint64_t>(i));
+    RandomSteps(copy, 1, static_cast<std::uint64_t>(i));
+    ASSERT_EQ(copy.Hash(), farm.Hash()) << "step " << i;
+  }
+  farm.Reset(farm.seed(), farm.episode() + 1);
+  copy.Reset(copy.seed(), copy.episode() + 1);
+  EXPECT_EQ(copy.Save(), farm.Save());
+}
+
+TEST(CopyStateFrom, ContinuesBitIdenticallyInEveryLayoutMode) {
+  for (const LayoutMode mode : {LayoutMode::kFixed, LayoutMode::kPerEpisode}) {
+    Scenario scenario = CrowdedScenario(2);
+    scenario.layout = mode;
+    Farm farm = MakeFarm(scenario);
+    farm.Reset(11, 4);
+    RandomSteps(farm, 37, 1);
+    ExpectCopy(MakeFarm(scenario), farm);
+    ExpectCopy(Farm(farm.shared_scenario(), farm.shared_layout()), farm);
+  }
+}
+
+TEST(CopyStateFrom, CopiesDisastersAndForecastsThatArrived) {
+  Scenario scenario = CrowdedScenario(1);
+  DisasterSpec spec = StillDisaster(3, 3, {2}, {-20});
+  spec.start.reset();
+  spec.track = {{0, 1, 1, 1, {2}, {-20}}, {60, 9, 5, 1, {2}, {-20}}};
+  spec.forecasts = {{0, {{30, 4, 4, 1, {}, {}}}}};
+  Farm copy = MakeFarm(scenario);
+  {
+    Farm farm = MakeFarm(scenario);
+    RandomSteps(farm, 5, 1);
+    farm.SetDisaster(0, spec);
+    farm.SetDisaster(2, StillDisaster(5, 5, {2}, {-10}));
+    copy.CopyStateFrom(farm);
+    EXPECT_EQ(copy.Save(), farm.Save());
+    EXPECT_EQ(copy.forecasts()[0]->size(), 1U);
+    ExpectCopy(MakeFarm(scenario), farm);
+  }
+  RandomSteps(copy, 10, 2);  // the original and its scenario no longer exist
+  EXPECT_EQ(copy.disasters().size(), 3U);
+}
+
+TEST(CopyStateFrom, DrawsRoutesThatTheOtherFarmHasNot) {
+  Scenario scenario = CrowdedScenario(1);
+  scenario.layout = LayoutMode::kPerEpisode;
+  Farm farm = MakeFarm(scenario);
+  farm.Reset(3, 8);
+  RandomSteps(farm, 5, 1);
+  scenario.view.waterways = true;
+  Farm copy = MakeFarm(scenario);
+  copy.CopyStateFrom(farm);
+  EXPECT_EQ(copy.StartHash(), farm.StartHash());
+  Farm drawn = MakeFarm(scenario);
+  drawn.Reset(3, 8);
+  EXPECT_FALSE(copy.layout().ways.empty());
+  EXPECT_EQ(copy.layout().way_count(), drawn.layout().way_count());
+  ASSERT_EQ(copy.layout().ways.size(), drawn.layout().ways.size());
+  for (std::size_t i = 0; i < drawn.layout().ways.size(); ++i) {
+    EXPECT_EQ(copy.layout().ways[i].steps, drawn.layout().ways[i].steps);
+  }
+}
+
+TEST(CopyStateFrom, AFarmOfAnotherScenarioIsAProgrammingError) {
+  Farm tiny = MakeFarm(TinyScenario());
+  EXPECT_THROW(tiny.CopyStateFrom(MakeFarm(CrowdedScenario(2))), LogicError);
+}
+
 TEST(SetDisaster, ReplacesOneInPlay) {
   Farm farm = MakeFarm(CrowdedScenario(1));
   RandomSteps(farm, 5, 1);

@@ -152,9 +152,12 @@ TEST(PlaceShip, PutsItOnFreeWaterAloneAndItGoesOnFromThere) {
   farm.PlaceShip(1, {4, 4});
   farm.PlaceShip(0, {2, 2});
   for (const Cell cell : {Cell{-1, 0}, Cell{5, 0}, Cell{3, 3}, Cell{0, 0}, Cell{4, 4}}) {
+    EXPECT_FALSE(farm.CanPlaceShip(0, cell)) << cell.x << ' ' << cell.y;
     EXPECT_THROW(farm.PlaceShip(0, cell), InputError) << cell.x << ' ' << cell.y;
     EXPECT_EQ(farm.ships()[0].cell, (Cell{2, 2}));
   }
+  EXPECT_TRUE(farm.CanPlaceShip(0, {2, 2})) << "its own cell";
+  EXPECT_TRUE(farm.CanPlaceShip(1, {4, 3}));
   const std::uint8_t actions[] = {Act(Action::kPickup), Act(Action::kWest)};
   farm.Step(actions);
   EXPECT_EQ(farm.ships()[0].outcome, Outcome::kOk);

@@ -119,6 +119,27 @@ TEST(DrawnStorms, AreRepeatedSavedAndLoaded) {
   EXPECT_EQ(farm.Hash(), other.Hash()) << "a loaded farm draws as before";
 }
 
+TEST(DrawnStorms, OfACopyAreThoseOfItsOwnScenario) {
+  auto loaded = std::make_shared<const Scenario>(LoadScenario(kShipped.string()));
+  Farm copy(Shipped());
+  {
+    Farm farm(loaded);
+    farm.Reset(5, 11);
+    copy.CopyStateFrom(farm);
+    EXPECT_EQ(copy.Save(), farm.Save());
+    EXPECT_NE(copy.DrawnStormOf(0), farm.DrawnStormOf(0));
+    EXPECT_EQ(copy.DrawnStormOf(0)->id, farm.DrawnStormOf(0)->id);
+    const auto before = allocations.load();
+    copy.CopyStateFrom(farm);
+    EXPECT_EQ(allocations, before) << "a further copy needs no memory";
+  }
+  loaded.reset();
+  Farm same(Shipped());
+  same.Reset(5, 11);
+  EXPECT_EQ(copy.Hash(), same.Hash());
+  EXPECT_EQ(copy.DrawnStormOf(0), same.DrawnStormOf(0));
+}
+
 TEST(DrawnStorms, AreReplacedByABulletinUntilTheNextEpisode) {
   Farm farm(Shipped());
   farm.Reset(5, 1);

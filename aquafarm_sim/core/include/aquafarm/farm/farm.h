@@ -94,6 +94,8 @@ class Farm {
   void Step(const std::uint8_t* actions);
 
   const Scenario& scenario() const { return *scenario_; }
+  /// The scenario as a shared pointer, for other farms of the same scenario.
+  const std::shared_ptr<const Scenario>& shared_scenario() const { return scenario_; }
   /// Chart, ports and initial device cells of this episode.
   const Layout& layout() const { return *layout_; }
   /// The layout as a shared pointer, for other farms with the same fixed layout.
@@ -156,6 +158,11 @@ class Farm {
   /// @throws InputError when the bytes are damaged or belong to another version or scenario; the
   ///         farm is then unchanged
   void Load(const std::string& bytes);
+  /// Becomes a copy of a farm of the same scenario, with its episode in progress, and then
+  /// continues bit-identically. The scenarios may be two objects, which may differ in what ships
+  /// observe.
+  /// @throws InputError when the layout has to be drawn again for other observations and cannot be
+  void CopyStateFrom(const Farm& from);
 
   /// Applies a bulletin: replaces disaster `id`, or adds a disaster when `id` equals their number.
   /// A spec without start keeps the current centre; a new disaster needs a start or a track. The
@@ -171,9 +178,11 @@ class Farm {
   /// @throws InputError on an id or forecast out of range; the farm is then unchanged
   void IssueForecast(std::int32_t id, const IssuedForecast& forecast);
 
+  /// Returns whether PlaceShip may move a ship to a cell: one on the map that is not blocked, and
+  /// that no other ship occupies unless it is a port.
+  bool CanPlaceShip(std::int32_t ship, Cell cell) const;
   /// Moves a ship to another cell, to query an agent's behaviour there.
-  /// @throws InputError when the cell is off the map, blocked or occupied; the farm is then
-  ///         unchanged
+  /// @throws InputError unless CanPlaceShip; the farm is then unchanged
   void PlaceShip(std::int32_t ship, Cell cell);
 
  private:
@@ -193,6 +202,8 @@ class Farm {
   void CrashInto(const Ship& ship, std::int32_t id, std::uint8_t bits);
   void ResetTracks();
   void DrawStorms();
+  std::vector<Waypoint>& DrawnTrack(std::size_t id);
+  void CopyTracksFrom(const Farm& from);
   void HashState(Hasher& hasher) const;
   Track Owned(std::size_t id, std::vector<Waypoint> track) const;
   void CheckConsistent() const;

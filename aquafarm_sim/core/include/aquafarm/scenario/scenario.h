@@ -206,6 +206,9 @@ struct MoneySpec {
 
 /// Observation settings of the agents (§2.3).
 struct ViewSpec {
+  /// Whether features contain routes, which a layout then has.
+  bool NeedsRoutes() const { return waterways || tokens; }
+
   ViewMode mode{ViewMode::kFull};
   float sensor_radius{5.0F};
   std::int32_t bulletin_period{20};  ///< [steps]; 0: no bulletins

@@ -4,6 +4,7 @@
 /// Draws the storm of an episode from the storms of a scenario.
 
 #include <cstdint>
+#include <vector>
 
 #include "aquafarm/scenario/scenario.h"
 #include "aquafarm/tracks/place_storm.h"
@@ -16,9 +17,12 @@ struct DrawnStorm {
   StormErrors errors;
 };
 
-/// Draws a storm with equal probability: of the evaluation years if `seed` is an evaluation seed
-/// (rng.h), else of the years for training. The displaced storm's closest approach to (x, y) is at
-/// approach_h, shifted by at most perturbation.start_h.
+/// Returns the storms that a seed draws from: those of the evaluation years if it is an evaluation
+/// seed (rng.h), else those of the years for training.
+const std::vector<ArchivedStorm>& StormsOf(const StormsSpec& storms, std::uint64_t seed);
+
+/// Draws one of StormsOf with equal probability. The displaced storm's closest approach to (x, y)
+/// is at approach_h, shifted by at most perturbation.start_h.
 /// @param disaster id of the disaster @param x, y middle of the farm [cells]
 DrawnStorm DrawStorm(const StormsSpec& storms, std::uint64_t seed, std::uint64_t episode,
                      std::int32_t disaster, double x, double y);

@@ -19,11 +19,15 @@
 #include "aquafarm/grid/action.h"
 #include "aquafarm/grid/step_fields.h"
 
+namespace aquafarm {
+class Farm;
+}
+
 namespace aquafarm::agents {
 
 /// Bit mask of observation types. kOwnRewardsBit requests each agent's individual reward where the
-/// scenario gives every agent the team's sum. kStatesBit requests the complete farm states; only
-/// planners use it.
+/// scenario gives every agent the team's sum. kStatesBit requests the complete farms; planners use
+/// it.
 enum EncodingBits : std::uint8_t {
   kIndexBit = kIndexField,
   kFeaturesBit = kFeaturesField,
@@ -77,20 +81,20 @@ struct StepResults {
     return in_play[entry] == 0 || IsTerminated(static_cast<EndReason>(reasons[farm]));
   }
 
-  std::vector<float> rewards;          ///< [N, S]
-  std::vector<float> terms;            ///< [N, S, kRewardTermCount]; empty unless requested
-  std::vector<float> energy;           ///< [N, S] consumed in the step [kWh]
-  std::vector<float> distance;         ///< [N, S] travelled in the step [km]
-  std::vector<std::uint8_t> outcomes;  ///< [N, S] Outcome
-  std::vector<ActionMask> legal;       ///< [N, S] for the next step
-  std::vector<std::uint8_t> in_play;   ///< [N, S] 0 if this agent is done until the next episode
-  std::vector<std::uint8_t> reasons;   ///< [N] EndReason; kNone while the episode continues
-  std::vector<std::uint8_t> started;   ///< [N] 1 at an episode's first observation
-  std::vector<std::uint64_t> hashes;   ///< [N]; empty unless requested
-  std::vector<std::uint32_t> index;    ///< [N, S]; empty unless requested
-  std::vector<float> features;         ///< [N, S, F]; empty unless requested
-  std::vector<std::uint8_t> planes;    ///< [N, S, P, H, W]; empty unless requested
-  std::string states;  ///< all farms in the format of Save(); empty unless requested
+  std::vector<float> rewards;           ///< [N, S]
+  std::vector<float> terms;             ///< [N, S, kRewardTermCount]; empty unless requested
+  std::vector<float> energy;            ///< [N, S] consumed in the step [kWh]
+  std::vector<float> distance;          ///< [N, S] travelled in the step [km]
+  std::vector<std::uint8_t> outcomes;   ///< [N, S] Outcome
+  std::vector<ActionMask> legal;        ///< [N, S] for the next step
+  std::vector<std::uint8_t> in_play;    ///< [N, S] 0 if this agent is done until the next episode
+  std::vector<std::uint8_t> reasons;    ///< [N] EndReason; kNone while the episode continues
+  std::vector<std::uint8_t> started;    ///< [N] 1 at an episode's first observation
+  std::vector<std::uint64_t> hashes;    ///< [N]; empty unless requested
+  std::vector<std::uint32_t> index;     ///< [N, S]; empty unless requested
+  std::vector<float> features;          ///< [N, S, F]; empty unless requested
+  std::vector<std::uint8_t> planes;     ///< [N, S, P, H, W]; empty unless requested
+  std::vector<const Farm*> states;      ///< [N] the farms themselves; empty unless requested
   std::vector<EpisodeResult> finished;  ///< episodes that ended in this step, ordered by farm
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,6 +32,11 @@ class LocalEnvironment final : public Environment {
   const StepResults& Step(const std::vector<std::uint8_t>& actions) override;
   std::string Save() override;
   const StepResults& Load(const std::string& bytes) override;
+  /// Changes the farms, such as by Farm::CopyStateFrom. @param change called for each farm, with
+  /// its index @returns their current results with an empty `finished`
+  const StepResults& Change(const std::function<void(std::size_t, Farm&)>& change);
+  /// Continues copies of farms of the same scenario, such as StepResults::states. @param farms [N]
+  const StepResults& CopyStatesFrom(const std::vector<const Farm*>& farms);
 
   /// The farms, for tools that inspect them.
   const FarmBatch& batch() const { return batch_; }
@@ -43,7 +49,6 @@ class LocalEnvironment final : public Environment {
   EnvironmentSpec spec_;
   const FarmShare share_;
   bool own_rewards_{};
-  bool with_states_{};
   StepResults results_;
   BatchOutput output_;
 };

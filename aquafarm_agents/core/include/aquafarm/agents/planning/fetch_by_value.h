@@ -12,13 +12,12 @@
 /// ends with them. A ship keeps its device until it is aboard or can no longer be brought home. A
 /// self-propelled device sails to the nearest port.
 
+#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "aquafarm/agents/environment/policy.h"
 #include "aquafarm/farm/farm.h"
-#include "aquafarm/observation/farm_batch.h"
 
 namespace aquafarm::agents {
 
@@ -60,8 +59,7 @@ class FetchByValuePolicy final : public Policy {
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
  private:
-  std::shared_ptr<const Scenario> scenario_;
-  std::unique_ptr<FarmBatch> farms_;
+  std::size_t agents_;
   std::vector<FetchByValue> fetchers_;
 };
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Planning as a Policy, for farms in this process or behind ROS. It loads the saved states of the
-/// farms into its own farms and plans there. It sees the complete farm, even with a partial view,
-/// so it is a reference and not a fair comparison for learners that see less.
+/// Planning as a Policy, for farms in this process or behind ROS. It sees the complete farm, even
+/// with a partial view, so it is a reference and not a fair comparison for learners that see less.
 
 #include <memory>
 #include <string>
@@ -11,7 +10,6 @@
 
 #include "aquafarm/agents/environment/policy.h"
 #include "aquafarm/agents/planning/planner.h"
-#include "aquafarm/observation/farm_batch.h"
 
 namespace aquafarm::agents {
 
@@ -41,7 +39,6 @@ class PlannerPolicy final : public Policy {
   std::shared_ptr<const Scenario> scenario_;
   Foresight foresight_;
   Planner planner_;
-  std::unique_ptr<FarmBatch> farms_;
   std::vector<PlanState> courses_;
 };
 

@@ -18,7 +18,6 @@
 
 #include "aquafarm/agents/environment/policy.h"
 #include "aquafarm/agents/planning/planner.h"
-#include "aquafarm/observation/farm_batch.h"
 
 namespace aquafarm::agents {
 
@@ -68,7 +67,6 @@ class TeamPlannerPolicy final : public Policy {
  private:
   std::shared_ptr<const Scenario> scenario_;
   TeamPlanner planner_;
-  std::unique_ptr<FarmBatch> farms_;
   std::vector<TeamPlanner::PlanState> courses_;
 };
 

@@ -100,11 +100,8 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
   }
   spec_ = FromMsg(now.spec);
   if (options_.farms > 0) spec_.farms = options_.farms;
-  own_rewards_ = (options_.encodings & aquafarm::agents::kOwnRewardsBit) != 0 && spec_.team_reward;
-  if (own_rewards_) {
-    spec_.team_reward = false;
-    encodings_ |= StepResult::TERMS;
-  }
+  own_rewards_ = aquafarm::agents::WantsOwnRewards(options_.encodings, spec_);
+  if (own_rewards_) encodings_ |= StepResult::TERMS;
   if ((options_.encodings & aquafarm::agents::kIndexBit) != 0 && spec_.state_count == 0) {
     throw InputError(
         "scenario " + spec_.scenario_name +

@@ -2,12 +2,14 @@
 #include "aquafarm/agents/environment/family_environment.h"
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/grid/step_buffers.h"
+#include "aquafarm/observation/for_each_farm.h"
 #include "aquafarm/scenario/family.h"
 
 namespace aquafarm::agents {
@@ -39,7 +41,10 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
     : family_(std::move(family)),
       encoder_(*family_),
       spec_(MakeSpec(*family_, encoder_, options.farms)),
-      share_(WholeOr(share, options.farms)) {
+      share_(WholeOr(share, options.farms)),
+      own_rewards_(WantsOwnRewards(options.encodings, spec_)),
+      threads_(std::max(1, std::min(options.threads, options.farms))),
+      views_(static_cast<std::size_t>(threads_)) {
   AQUAFARM_CHECK_EQ(family_->family.has_value(), true);
   spec_.state_count = 0;
   spec_.plane_count = 0;
@@ -53,25 +58,24 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
   }
   std::uint8_t bits = options.encodings & kFeaturesBit;
   if (options.hashes) bits |= kHashesField;
-  if ((options.encodings & kOwnRewardsBit) != 0 && spec_.team_reward) {
-    own_rewards_ = true;
-    spec_.team_reward = false;
-    bits |= kTermsField;
-  }
+  if (own_rewards_) bits |= kTermsField;
   const StepShape shape{static_cast<std::size_t>(spec_.farms),
                         static_cast<std::size_t>(spec_.agents),
                         static_cast<std::size_t>(spec_.feature_count), 0};
   SizeStepFields(shape, bits, results_, output_);
   results_.finished.reserve(shape.farms);
-  for (std::size_t i = 0; i < shape.farms; ++i) farms_.push_back(MakeRanch(*family_, 0, i));
+  MakeRanch(*family_, 0, 0);  // fails early if no ranch of the family has a valid layout
 }
 
 const StepResults& FamilyEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
-  for (std::size_t i = 0; i < farms_.size(); ++i) {
-    const std::uint64_t farm = static_cast<std::uint64_t>(share_.first) + i;
-    farms_[i] = MakeRanch(*family_, seed, first_episode + farm);
-    Write(i, true);
-  }
+  std::vector<std::optional<Farm>> drawn(static_cast<std::size_t>(spec_.farms));
+  const auto draw = [&](std::int32_t i, std::int32_t) {
+    const auto farm = static_cast<std::uint64_t>(share_.first + i);
+    drawn[static_cast<std::size_t>(i)] = MakeRanch(*family_, seed, first_episode + farm);
+  };
+  ForEachFarm(spec_.farms, threads_, std::cref(draw));
+  farms_ = std::move(drawn);
+  for (std::int32_t i = 0; i < spec_.farms; ++i) Write(i, 0, true);
   Complete();
   return results_;
 }
@@ -80,28 +84,30 @@ const StepResults& FamilyEnvironment::Step(const std::vector<std::uint8_t>& acti
   AQUAFARM_CHECK_EQ(actions.size(), results_.rewards.size());
   AQUAFARM_CHECK_LE(*std::max_element(actions.begin(), actions.end()),
                     static_cast<int>(Action::kHold));
-  const auto agents = static_cast<std::size_t>(spec_.agents);
-  for (std::size_t i = 0; i < farms_.size(); ++i) {
-    const bool starts = farms_[i].over();
+  AQUAFARM_CHECK_EQ(farms_.size(), static_cast<std::size_t>(spec_.farms));  // after Reset or Load
+  const auto step = [&](std::int32_t i, std::int32_t thread) {
+    std::optional<Farm>& farm = farms_[static_cast<std::size_t>(i)];
+    const bool starts = farm->over();
     if (starts) {
-      farms_[i] = MakeRanch(*family_, farms_[i].seed(),
-                            farms_[i].episode() + static_cast<std::uint64_t>(share_.total));
+      farm = MakeRanch(*family_, farm->seed(),
+                       farm->episode() + static_cast<std::uint64_t>(share_.total));
     } else {
-      farms_[i].Step(actions.data() + i * agents);
+      farm->Step(actions.data() + static_cast<std::ptrdiff_t>(i) * spec_.agents);
     }
-    Write(i, starts);
-  }
+    Write(i, thread, starts);
+  };
+  ForEachFarm(spec_.farms, threads_, std::cref(step));
   Complete();
-  for (std::size_t i = 0; i < farms_.size(); ++i) {
-    if (!farms_[i].over()) continue;
-    results_.finished.push_back(
-        ToResult(farms_[i].record(), share_.first + static_cast<std::int32_t>(i)));
+  for (std::int32_t i = 0; i < spec_.farms; ++i) {
+    if (!farm(i).over()) continue;
+    results_.finished.push_back(ToResult(farm(i).record(), share_.first + i));
   }
   return results_;
 }
 
-void FamilyEnvironment::Write(std::size_t i, bool started) {
-  WriteFarm(farms_[i], encoder_, i, started, view_, output_);
+void FamilyEnvironment::Write(std::int32_t i, std::int32_t thread, bool started) {
+  WriteFarm(farm(i), encoder_, static_cast<std::size_t>(i), started,
+            views_[static_cast<std::size_t>(thread)], output_);
 }
 
 void FamilyEnvironment::Complete() {
@@ -111,10 +117,10 @@ void FamilyEnvironment::Complete() {
 
 std::string FamilyEnvironment::Save() {
   nlohmann::json states = nlohmann::json::array();
-  for (const Farm& farm : farms_) {
-    const std::string bytes = farm.Save();
+  for (const std::optional<Farm>& farm : farms_) {
+    const std::string bytes = farm->Save();
     states.push_back(
-        {farm.seed(), farm.episode(), nlohmann::json::binary({bytes.begin(), bytes.end()})});
+        {farm->seed(), farm->episode(), nlohmann::json::binary({bytes.begin(), bytes.end()})});
   }
   std::string bytes;
   nlohmann::json::to_cbor(states, bytes);
@@ -122,26 +128,25 @@ std::string FamilyEnvironment::Save() {
 }
 
 const StepResults& FamilyEnvironment::Load(const std::string& bytes) {
-  std::vector<Farm> loaded;
+  std::vector<std::optional<Farm>> loaded;
   try {
     const nlohmann::json states =
         nlohmann::json::from_cbor(TakeSavedFarms(bytes, share_, spec_.farms));
-    if (!states.is_array() || states.size() != farms_.size()) {
+    if (!states.is_array() || states.size() != static_cast<std::size_t>(spec_.farms)) {
       throw InputError("state: got " + std::to_string(states.size()) + " farms, expected " +
-                       std::to_string(farms_.size()));
+                       std::to_string(spec_.farms));
     }
-    loaded.reserve(farms_.size());
     for (const nlohmann::json& state : states) {
       loaded.push_back(
           MakeRanch(*family_, state.at(0).get<std::uint64_t>(), state.at(1).get<std::uint64_t>()));
       const auto& farm = state.at(2).get_binary();
-      loaded.back().Load(std::string(farm.begin(), farm.end()));
+      loaded.back()->Load(std::string(farm.begin(), farm.end()));
     }
   } catch (const nlohmann::json::exception& error) {
     throw InputError(std::string("state: damaged bytes: ") + error.what());
   }
   farms_ = std::move(loaded);
-  for (std::size_t i = 0; i < farms_.size(); ++i) Write(i, farms_[i].step() == 0);
+  for (std::int32_t i = 0; i < spec_.farms; ++i) Write(i, 0, farm(i).step() == 0);
   Complete();
   return results_;
 }

@@ -69,6 +69,12 @@ EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
   return result;
 }
 
+bool WantsOwnRewards(std::uint8_t encodings, EnvironmentSpec& spec) {
+  if ((encodings & kOwnRewardsBit) == 0 || !spec.team_reward) return false;
+  spec.team_reward = false;
+  return true;
+}
+
 void UseOwnRewards(StepResults& results) {
   AQUAFARM_CHECK_EQ(results.terms.size(), results.rewards.size() * kRewardTermCount);
   for (std::size_t entry = 0; entry < results.rewards.size(); ++entry) {
@@ -101,7 +107,8 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
                                    const EnvironmentOptions& options, const FarmShare& share)
     : batch_(std::move(scenario), options.farms, options.threads),
       spec_(MakeSpec(batch_.scenario(), batch_.encoder(), options.farms)),
-      share_(WholeOr(share, options.farms)) {
+      share_(WholeOr(share, options.farms)),
+      own_rewards_(WantsOwnRewards(options.encodings, spec_)) {
   if ((options.encodings & kIndexBit) != 0 && spec_.state_count == 0) {
     throw InputError(
         "scenario " + spec_.scenario_name +
@@ -109,11 +116,7 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
   }
   std::uint8_t bits = options.encodings & (kIndexBit | kFeaturesBit | kPlanesBit);
   if (options.hashes) bits |= kHashesField;
-  if ((options.encodings & kOwnRewardsBit) != 0 && spec_.team_reward) {
-    own_rewards_ = true;
-    spec_.team_reward = false;
-    bits |= kTermsField;
-  }
+  if (own_rewards_) bits |= kTermsField;
   const StepShape shape = batch_.shape();
   SizeStepFields(shape, bits, results_, output_);
   results_.finished.reserve(shape.farms);

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "aquafarm/base/rng.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "environment_contract.h"
 
@@ -27,12 +28,34 @@ TEST(FamilyEnvironment, EachEpisodePlaysAnotherRanchOfTheSeed) {
   FamilyEnvironment environment(Family(), {2, kFeaturesBit, true, 1});
   environment.Reset(4, 10);
   const Farm ranch = MakeRanch(*Family(), 4, 11);
-  EXPECT_EQ(environment.farms()[1].StartHash(), ranch.StartHash());
+  EXPECT_EQ(environment.farm(1).StartHash(), ranch.StartHash());
   std::set<std::int32_t> widths;
   for (std::uint64_t episode = 0; episode < 30; ++episode) {
     widths.insert(MakeRanch(*Family(), 4, episode).scenario().width);
   }
   EXPECT_GE(widths.size(), 5U);
+}
+
+TEST(FamilyEnvironment, ResultsDoNotDependOnTheNumberOfThreads) {
+  FamilyEnvironment one(Family(), {5, kFeaturesBit, true, 1});
+  FamilyEnvironment three(Family(), {5, kFeaturesBit, true, 3});
+  const StepResults* expected = &one.Reset(4, 10);
+  const StepResults* results = &three.Reset(4, 10);
+  std::size_t finished = 0;
+  RandomStream rng({1, 0, RngStream::kExploration, 0});
+  std::vector<std::uint8_t> actions(expected->rewards.size());
+  for (int step = 0; step < 400; ++step) {
+    ASSERT_EQ(results->hashes, expected->hashes) << "step " << step;
+    ASSERT_EQ(results->features, expected->features) << "step " << step;
+    for (std::uint8_t& action : actions) {
+      action = static_cast<std::uint8_t>(rng.Below(kActionCount));
+    }
+    expected = &one.Step(actions);
+    results = &three.Step(actions);
+    finished += results->finished.size();
+  }
+  EXPECT_GT(finished, 0U) << "farms start later episodes";
+  EXPECT_EQ(three.Save(), one.Save());
 }
 
 TEST(FamilyEnvironment, RefusesObservationsOfAFixedSize) {

@@ -8,10 +8,12 @@
 #include <atomic>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/observation/for_each_farm.h"
 #include "base/cbor.h"
 
 namespace aquafarm {
@@ -27,6 +29,25 @@ bool MayUseThreads() {
 }
 
 }  // namespace
+
+void ForEachFarm(std::int32_t count, std::int32_t threads,
+                 const std::function<void(std::int32_t i, std::int32_t thread)>& body) {
+  if (threads == 1 || !MayUseThreads()) {
+    for (std::int32_t i = 0; i < count; ++i) body(i, 0);
+    return;
+  }
+  std::exception_ptr failure;  // exceptions must not leave the parallel region
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::int32_t i = 0; i < count; ++i) {
+    try {
+      body(i, omp_get_thread_num());
+    } catch (...) {
+#pragma omp critical(aquafarm_for_each_farm_failure)
+      failure = std::current_exception();
+    }
+  }
+  if (failure) std::rethrow_exception(failure);
+}
 
 FarmBatch::FarmBatch(std::shared_ptr<const Scenario> scenario, std::int32_t farms,
                      std::int32_t threads)
@@ -84,21 +105,10 @@ void FarmBatch::StartNext(std::int32_t i, const BatchOutput& output) {
 }
 
 void FarmBatch::Step(const std::uint8_t* actions, const BatchOutput& output) {
-  if (threads_ == 1 || !MayUseThreads()) {
-    for (std::int32_t i = 0; i < farms(); ++i) StepOne(i, 0, actions, output);
-    return;
-  }
-  std::exception_ptr failure;  // exceptions must not leave the parallel region
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (std::int32_t i = 0; i < farms(); ++i) {
-    try {
-      StepOne(i, omp_get_thread_num(), actions, output);
-    } catch (...) {
-#pragma omp critical(aquafarm_farm_batch_failure)
-      failure = std::current_exception();
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  const auto step = [&](std::int32_t i, std::int32_t thread) {
+    StepOne(i, thread, actions, output);
+  };
+  ForEachFarm(farms(), threads_, std::cref(step));
 }
 
 void FarmBatch::StepOne(std::int32_t i, std::int32_t thread, const std::uint8_t* actions,

@@ -112,6 +112,10 @@ class EnvironmentLost : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Returns whether `encodings` request each agent's own reward where the scenario gives every agent
+/// the team's sum. If so, `spec` then has no team reward, and the farms must return kTermsField.
+bool WantsOwnRewards(std::uint8_t encodings, EnvironmentSpec& spec);
+
 /// Replaces each agent's reward by the sum of its own reward terms. @param results with terms
 void UseOwnRewards(StepResults& results);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "aquafarm/agents/environment/environment.h"
@@ -33,20 +34,21 @@ class FamilyEnvironment final : public Environment {
   std::string Save() override;
   const StepResults& Load(const std::string& bytes) override;
 
-  /// The farms, for tools that inspect them.
-  const std::vector<Farm>& farms() const { return farms_; }
+  /// A farm, for tools that inspect it. Precondition: Reset or Load was called.
+  const Farm& farm(std::int32_t i) const { return *farms_[static_cast<std::size_t>(i)]; }
 
  private:
-  void Write(std::size_t i, bool started);
+  void Write(std::int32_t i, std::int32_t thread, bool started);
   void Complete();
 
   std::shared_ptr<const Scenario> family_;
   Encoder encoder_;
   EnvironmentSpec spec_;
   const FarmShare share_;
-  bool own_rewards_{};
-  std::vector<Farm> farms_;
-  View view_;
+  const bool own_rewards_;
+  const std::int32_t threads_;
+  std::vector<std::optional<Farm>> farms_;  // empty before the first Reset or Load
+  std::vector<View> views_;                 // one per thread
   StepResults results_;
   BatchOutput output_;
 };

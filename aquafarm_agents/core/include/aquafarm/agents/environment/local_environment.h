@@ -48,7 +48,7 @@ class LocalEnvironment final : public Environment {
   FarmBatch batch_;
   EnvironmentSpec spec_;
   const FarmShare share_;
-  bool own_rewards_{};
+  const bool own_rewards_;
   StepResults results_;
   BatchOutput output_;
 };

@@ -3,6 +3,7 @@
 # aquafarm_gym compiles them with plain structs in the place of the messages of ROS.
 set(AQUAFARM_DRAWING_SOURCES
   src/base/checks.cpp
+  src/base/disaster_kinds.cpp
   src/base/palette.cpp
   src/base/text.cpp
   src/draw/background.cpp

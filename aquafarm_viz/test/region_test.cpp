@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/draw/image.h"
 #include "draw/nautical.h"
@@ -208,11 +209,22 @@ TEST(Rings, LeaveTheWaterBlue) {
   EXPECT_GT(water[0], water[2] + 15.0) << "more blue than red in the gale";
 }
 
+TEST(DisasterKinds, HaveTheNamesOfTheConstantsOfTheMessage) {
+  EXPECT_EQ(DisasterName(DisasterState::TYPHOON), "typhoon");
+  EXPECT_EQ(DisasterName(DisasterState::STORM_SURGE), "storm surge");
+  EXPECT_EQ(DisasterName(DisasterState::WAVE), "wave");
+  EXPECT_EQ(DisasterName(DisasterState::RED_TIDE), "red tide");
+  EXPECT_EQ(DisasterName(DisasterState::OIL_SPILL), "oil spill");
+  EXPECT_EQ(DisasterName(DisasterState::CHEMICAL_SPILL), "chemical spill");
+  EXPECT_EQ(DisasterName(DisasterState::CHEMICAL_SPILL + 1), "disaster");
+}
+
 TEST(Rings, HaveAPatternForEachKind) {
   const auto spec = test::MakeSpec();
   auto state = test::MakeState();
   state.disasters = {test::MakeDisaster(0, 16.0F, 16.0F)};
   state.disasters[0].speed = 0.0F;
+  ASSERT_EQ(DisasterKindCount(), std::size_t{DisasterState::CHEMICAL_SPILL} + 1);
   std::vector<cv::Mat> drawn;
   for (std::uint8_t kind = DisasterState::TYPHOON; kind <= DisasterState::CHEMICAL_SPILL; ++kind) {
     state.disasters[0].kind = kind;

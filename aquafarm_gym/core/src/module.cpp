@@ -12,6 +12,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/version.h"
 #include "aquafarm/observation/farm_batch.h"
+#include "aquafarm/scenario/enums.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "batch.h"
 #include "policies.h"
@@ -60,6 +61,8 @@ void DefineConstants(py::module_& module) {
   module.attr("SOURCE_POLICY_FOLDER") = AQUAFARM_POLICY_DIR;
   module.attr("ACTIONS") = Names(kActionCount, NameOf<Action>);
   module.attr("HOLD") = static_cast<int>(Action::kHold);
+  module.attr("DEVICE_KINDS") = Names(kDeviceKindCount, NameOf<DeviceKind>);
+  module.attr("DISASTER_KINDS") = Names(kDisasterKindCount, NameOf<DisasterKind>);
   module.attr("OUTCOMES") = Names(kOutcomeCount, NameOf<Outcome>);
   module.attr("REASONS") = Names(kEndReasonCount, NameOf<EndReason>);
   module.attr("STEP_LIMIT") = static_cast<int>(EndReason::kStepLimit);

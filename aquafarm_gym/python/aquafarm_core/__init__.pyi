@@ -6,6 +6,8 @@ import numpy as np
 import numpy.typing as npt
 
 ACTIONS: list[str]
+DEVICE_KINDS: list[str]
+DISASTER_KINDS: list[str]
 HOLD: int
 OPTIMISED: bool
 OUTCOMES: list[str]
@@ -16,9 +18,9 @@ STEP_LIMIT: int
 TERMS: list[str]
 VERSION: str
 __version__: str
-__all__ = ["ACTIONS", "HOLD", "OPTIMISED", "OUTCOMES", "PLANES", "REASONS", "SCENARIO_FOLDER",
-           "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Planner", "Policy", "Scenario",
-           "team_bound"]
+__all__ = ["ACTIONS", "DEVICE_KINDS", "DISASTER_KINDS", "HOLD", "OPTIMISED", "OUTCOMES", "PLANES",
+           "REASONS", "SCENARIO_FOLDER", "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Planner",
+           "Policy", "Scenario", "team_bound"]
 
 class Scenario:
     """A complete farm, as described by its file."""

@@ -12,6 +12,7 @@
 #include "aquafarm/observation/encoder.h"
 #include "aquafarm/ranch/ranch_builder.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/storms/presets.h"
 
 namespace aquafarm {
 namespace {
@@ -228,10 +229,11 @@ void AddStormOptions(CLI::App& app, Arguments& arguments) {
 
 void AddRanchOptions(CLI::App& app, Arguments& arguments) {
   RanchRequest& ranch = arguments.ranch;
+  std::string kinds;
+  for (const std::string& kind : DisasterPresetNames()) kinds += (kinds.empty() ? "" : ", ") + kind;
   app.add_option(
       "--disaster", ranch.disasters,
-      "another disaster as KIND:KEY=NUMBER,… such as wave:height_m=4,radius_km=5; kinds: "
-      "storm, storm_surge, wave, red_tide, oil_spill, chemical_spill");
+      "another disaster as KIND:KEY=NUMBER,… such as wave:height_m=4,radius_km=5; kinds: " + kinds);
   app.add_option("--ports", ranch.ports, "ports, spread along the shore")
       ->check(CLI::Range(1, 256));
   app.add_option("--port", arguments.ports,

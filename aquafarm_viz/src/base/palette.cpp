@@ -2,7 +2,6 @@
 #include "aquafarm_viz/base/palette.h"
 
 #include <aquafarm_msgs/DeviceState.h>
-#include <aquafarm_msgs/DisasterState.h>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +11,6 @@ namespace aquafarm_viz {
 namespace {
 
 using aquafarm_msgs::DeviceState;
-using aquafarm_msgs::DisasterState;
 
 std::vector<cv::Point2f> RegularPolygon(int corners, double radius, double first_deg) {
   std::vector<cv::Point2f> points;
@@ -111,25 +109,6 @@ Rgb GradeColor(std::uint8_t grade) {
   static constexpr std::array<Rgb, 4> kGrades{
       {{0x33, 0x8d, 0xf0}, {0xfc, 0xd5, 0x2b}, {0xfd, 0x7e, 0x14}, {0xe0, 0x31, 0x31}}};
   return grade >= 1 && grade <= kGrades.size() ? kGrades[grade - 1U] : kUnknown;
-}
-
-std::string DisasterName(std::uint8_t kind) {
-  switch (kind) {
-    case DisasterState::TYPHOON:
-      return "typhoon";
-    case DisasterState::STORM_SURGE:
-      return "storm surge";
-    case DisasterState::WAVE:
-      return "wave";
-    case DisasterState::RED_TIDE:
-      return "red tide";
-    case DisasterState::OIL_SPILL:
-      return "oil spill";
-    case DisasterState::CHEMICAL_SPILL:
-      return "chemical spill";
-    default:
-      return "disaster";
-  }
 }
 
 int MoveBearingDeg(std::uint8_t action) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/rings.h"
 #include "draw/symbols.h"
 
@@ -59,7 +60,9 @@ class Pattern {
   Pattern(std::uint8_t kind, int period_px) : side_(2 * period_px) {
     distances_.reserve(std::size_t(side_) * std::size_t(side_));
     for (int y = 0; y < side_; ++y) {
-      for (int x = 0; x < side_; ++x) distances_.push_back(Distance(kind, x, y, period_px));
+      for (int x = 0; x < side_; ++x) {
+        distances_.push_back(DistanceToPattern(kind, x, y, period_px));
+      }
     }
   }
   const float* Row(int row) const {
@@ -68,40 +71,15 @@ class Pattern {
   int side() const { return side_; }
 
  private:
-  static double ToLine(double at, double period) {
-    const double rest = std::fmod(std::fmod(at, period) + period, period);
-    return std::min(rest, period - rest);
-  }
-  static float Distance(std::uint8_t kind, int x, int y, int period) {
-    const double p = period;
-    const double falling = ToLine(x + y, p) / std::sqrt(2.0);
-    const double rising = ToLine(x - y, p) / std::sqrt(2.0);
-    switch (kind) {
-      case DisasterState::TYPHOON:
-        return float(falling);
-      case DisasterState::STORM_SURGE:
-        return float(ToLine(y, p));
-      case DisasterState::WAVE:
-        return float(ToLine(y + 0.18 * p * std::sin(CV_PI * x / p), p));
-      case DisasterState::RED_TIDE: {  // dots in staggered rows
-        const double shifted = x + (y / period % 2 == 0 ? 0.0 : 0.5 * p);
-        return float(std::max(0.0, std::hypot(ToLine(shifted, p), ToLine(y, p)) - 0.8));
-      }
-      case DisasterState::OIL_SPILL:
-        return float(std::min(falling, rising));
-      default:
-        return float(ToLine(x, p));
-    }
-  }
-
   int side_;
   std::vector<float> distances_;
 };
 
-constexpr std::size_t kKinds = 6;
-using Patterns = std::array<std::optional<Pattern>, kKinds>;  // of the kinds that are drawn
+using Patterns = std::vector<std::optional<Pattern>>;  // of the kinds that are drawn
 
-std::size_t KindIndex(std::uint8_t kind) { return std::min<std::size_t>(kind, kKinds - 1); }
+std::size_t KindIndex(std::uint8_t kind) {
+  return std::min<std::size_t>(kind, DisasterKindCount() - 1);
+}
 
 // The rings of a disaster in pixels of the map.
 struct Rings {
@@ -212,7 +190,7 @@ void ShadeDisasters(cv::Mat& map, const FarmState& state, const cv::Mat1b& land,
     if (IsDrawn(disaster)) all.push_back(InPixels(disaster, layout));
   }
   if (all.empty()) return;
-  Patterns patterns;
+  Patterns patterns(DisasterKindCount());
   for (const Rings& rings : all) {
     auto& pattern = patterns[KindIndex(rings.kind)];
     if (!pattern) pattern.emplace(rings.kind, layout.Px(13));

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "aquafarm_viz/scene/rings.h"
 #include "draw/nautical.h"

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <opencv2/imgproc.hpp>
 
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/nautical.h"
 #include "draw/region.h"

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/names.h"

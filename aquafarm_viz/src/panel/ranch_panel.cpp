@@ -13,6 +13,7 @@
 #include <pluginlib/class_list_macros.hpp>
 #include <string>
 
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/names.h"

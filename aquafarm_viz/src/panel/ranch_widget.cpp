@@ -8,6 +8,7 @@
 #include <climits>
 #include <utility>
 
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 
 namespace aquafarm_viz {
@@ -165,8 +166,8 @@ void RanchWidget::AddDisaster(QBoxLayout* layout) {
   auto* row = new QHBoxLayout();
   layout->addLayout(row);
   auto* kind = new QComboBox();
-  for (std::uint8_t i = 0; i <= aquafarm_msgs::DisasterState::CHEMICAL_SPILL; ++i) {
-    kind->addItem(Text(DisasterName(i)));
+  for (std::size_t i = 0; i < DisasterKindCount(); ++i) {
+    kind->addItem(Text(DisasterName(static_cast<std::uint8_t>(i))));
   }
   auto* grade = new QComboBox();
   grade->addItems({"blue", "yellow", "orange", "red"});

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "aquafarm_viz/base/checks.h"
+#include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"

@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -111,21 +113,30 @@ class Reader {
 template <typename Record>
 struct FieldsOf;
 
+inline std::array<float, kRewardTermCount> Numbers(const RewardTerms& terms) {
+  std::array<float, kRewardTermCount> numbers{};
+  std::memcpy(numbers.data(), &terms, sizeof(terms));
+  return numbers;
+}
+
 template <>
 struct FieldsOf<Ship> {
   template <typename Archive, typename S>
   static void Visit(Archive& a, S& ship) {
-    auto& t = ship.terms;
     a.Field("cell", ship.cell);
     a.Field("own_device", ship.own_device);
     a.Field("aboard", ship.aboard);
     a.Field("in_play", ship.in_play);
     a.Field("action", ship.action);
     a.Field("outcome", ship.outcome);
-    a.Fields("terms", t.crash, t.disaster, t.pickup, t.drop_off, t.illegal, t.collision, t.step);
+    std::array<float, kRewardTermCount> t = Numbers(ship.terms);
+    a.Fields("terms", t[0], t[1], t[2], t[3], t[4], t[5], t[6]);
+    for (std::size_t i = 7; i < t.size(); ++i) {  // terms that were added later
+      a.Added((std::string(kRewardTermNames[i]) + "_term").c_str(), t[i]);
+    }
+    if constexpr (Archive::kReads) std::memcpy(&ship.terms, t.data(), sizeof(ship.terms));
     a.Field("reward", ship.reward);
     a.Field("return", ship.episode_return);
-    a.Added("energy_term", t.energy);
     a.Added("energy", ship.energy);
     a.Added("distance", ship.distance);
     a.Added("episode_energy", ship.episode_energy);

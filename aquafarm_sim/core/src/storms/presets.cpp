@@ -188,16 +188,20 @@ constexpr std::array<Preset, 6> kPresets{{
 }};
 
 const Preset& FindPreset(const std::string& name) {
-  std::vector<std::string> names;
   for (const Preset& preset : kPresets) {
     if (name == preset.name) return preset;
-    names.emplace_back(preset.name);
   }
   throw InputError("disaster: got " + internal::Quoted(name) + ", expected one of " +
-                   internal::List(names));
+                   internal::List(DisasterPresetNames()));
 }
 
 }  // namespace
+
+std::vector<std::string> DisasterPresetNames() {
+  std::vector<std::string> names;
+  for (const Preset& preset : kPresets) names.emplace_back(preset.name);
+  return names;
+}
 
 DisasterSpec ParseDisasterPreset(const std::string& text, const GridScale& scale) {
   const std::size_t colon = text.find(':');

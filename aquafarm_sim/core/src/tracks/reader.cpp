@@ -70,35 +70,16 @@ StormFile ParseStormFile(const std::string& text, const std::string& origin_name
                "track");
   }
   file.format = *format;
-  const std::string plain(internal::WithoutMark(text));
-  switch (file.format) {
-    case TrackFormat::kCma:
-      file.tracks = internal::ReadCma(plain, place);
-      break;
-    case TrackFormat::kJma:
-      file.tracks = internal::ReadJma(plain, place);
-      break;
-    case TrackFormat::kAtcf:
-      file.tracks = internal::ReadAtcf(plain, place);
-      break;
-    case TrackFormat::kIbtracs:
-      file.tracks = internal::ReadIbtracs(plain, place);
-      break;
-    case TrackFormat::kArchive:
-      file.tracks = internal::ReadArchive(plain, place);
-      break;
-    case TrackFormat::kBulletin:
-    case TrackFormat::kWeatherService:
-      place.line = 0;
-      place.locate_bytes = clean.size();
-      place.locate = [&clean](const std::string& path) {
-        return internal::LineOfJson(clean, path);
-      };
-      file.tracks = file.format == TrackFormat::kBulletin
-                        ? internal::ReadBulletin(clean, place)
-                        : internal::ReadWeatherService(clean, place);
-      break;
+  const auto* const reader =
+      std::find_if(internal::kTrackReaders.begin(), internal::kTrackReaders.end(),
+                   [&file](const auto& one) { return one.format == file.format; });
+  AQUAFARM_CHECK_EQ(reader != internal::kTrackReaders.end(), true);
+  if (reader->is_json) {
+    place.line = 0;
+    place.locate_bytes = clean.size();
+    place.locate = [&clean](const std::string& path) { return internal::LineOfJson(clean, path); };
   }
+  file.tracks = reader->read(reader->is_json ? clean : internal::WithoutMark(text), place);
   TellApart(file, place);
   return file;
 }

@@ -65,9 +65,6 @@ Rgb SeverityColor(double severity);
 /// The colour of a bulletin's grade: 1 blue, 2 yellow, 3 orange, 4 red.
 Rgb GradeColor(std::uint8_t grade);
 
-/// The name of a disaster kind, such as "red tide".
-std::string DisasterName(std::uint8_t kind);
-
 /// The bearing of a move [degrees], clockwise from north; -1 if the action is not a move.
 int MoveBearingDeg(std::uint8_t action);
 

@@ -17,6 +17,7 @@
 /// widens both rings; the disaster ends after `duration_h` (default 24).
 
 #include <string>
+#include <vector>
 
 #include "aquafarm/scenario/scenario.h"
 
@@ -28,6 +29,9 @@ struct GridScale {
   double step_duration_s{180.0};
   bool south{};  ///< true if south of the equator
 };
+
+/// Names of the kinds of presets.
+std::vector<std::string> DisasterPresetNames();
 
 /// Parses a disaster from its description. Its centre is drawn anywhere on the enlarged map.
 /// @throws InputError "disaster: wave: height_m: got 1, expected [2.5, 30]"; for an unknown kind or

@@ -232,8 +232,8 @@ StormTrack ReadStorm(const JsonObject& storm, ParseContext& place) {
 
 }  // namespace
 
-std::vector<StormTrack> ReadBulletin(const std::string& text, ParseContext& place) {
-  const Json document = ParseJson(text, place);
+std::vector<StormTrack> ReadBulletin(std::string_view text, ParseContext& place) {
+  const Json document = ParseJson(std::string(text), place);
   std::vector<StormTrack> tracks;
   if (document.is_object()) {  // one storm without an enclosing list
     tracks.push_back(ReadStorm(JsonObject(document, "", place), place));

@@ -123,8 +123,8 @@ void ReadLandfall(const JsonObject& point, StormTrack& track, ParseContext& plac
 
 }  // namespace
 
-std::vector<StormTrack> ReadWeatherService(const std::string& text, ParseContext& place) {
-  const Json document = ParseJson(text, place);
+std::vector<StormTrack> ReadWeatherService(std::string_view text, ParseContext& place) {
+  const Json document = ParseJson(std::string(text), place);
   const JsonObject answer(document, "", place);
   const std::string code = answer.Text({"code"});
   if (!code.empty() && code != "200") {

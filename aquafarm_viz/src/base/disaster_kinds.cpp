@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/base/disaster_kinds.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+double ToLine(double at, double period) {
+  const double rest = std::fmod(std::fmod(at, period) + period, period);
+  return std::min(rest, period - rest);
+}
+
+float Falling(int x, int y, int period) {
+  return static_cast<float>(ToLine(x + y, period) / std::sqrt(2.0));
+}
+
+float Rising(int x, int y, int period) {
+  return static_cast<float>(ToLine(x - y, period) / std::sqrt(2.0));
+}
+
+float Level(int, int y, int period) { return static_cast<float>(ToLine(y, period)); }
+
+float Upright(int x, int, int period) { return static_cast<float>(ToLine(x, period)); }
+
+float Waves(int x, int y, int period) {
+  return static_cast<float>(ToLine(y + 0.18 * period * std::sin(kPi * x / period), period));
+}
+
+float StaggeredDots(int x, int y, int period) {
+  const double shifted = x + (y / period % 2 == 0 ? 0.0 : 0.5 * period);
+  return static_cast<float>(
+      std::max(0.0, std::hypot(ToLine(shifted, period), ToLine(y, period)) - 0.8));
+}
+
+float Crossed(int x, int y, int period) {
+  return std::min(Falling(x, y, period), Rising(x, y, period));
+}
+
+struct DisasterKind {
+  const char* name;
+  float (*distance)(int x, int y, int period);  // to the nearest line of its pattern
+};
+
+// In the order of the constants of DisasterState.
+constexpr std::array<DisasterKind, 6> kKinds{{{"typhoon", Falling},
+                                              {"storm surge", Level},
+                                              {"wave", Waves},
+                                              {"red tide", StaggeredDots},
+                                              {"oil spill", Crossed},
+                                              {"chemical spill", Upright}}};
+
+}  // namespace
+
+std::size_t DisasterKindCount() { return kKinds.size(); }
+
+std::string DisasterName(std::uint8_t kind) {
+  return kind < kKinds.size() ? kKinds[kind].name : "disaster";
+}
+
+float DistanceToPattern(std::uint8_t kind, int x, int y, int period) {
+  return kKinds[std::min<std::size_t>(kind, kKinds.size() - 1)].distance(x, y, period);
+}
+
+}  // namespace aquafarm_viz

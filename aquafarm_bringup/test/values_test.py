@@ -21,7 +21,7 @@ from sensor_msgs.msg import PointCloud2
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"))
 
 from aquafarm_report import values_topics  # noqa: E402
-from aquafarm_report.values import ValuesError, compare, make, read  # noqa: E402
+from aquafarm_report.values import ValuesError, compare, make, read, strength  # noqa: E402
 
 
 def slope(height=12, width=14):
@@ -96,6 +96,17 @@ class ValuesTest(unittest.TestCase):
         self.assertIn("not that one causes the other", report["note"])
         self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
         self.assertEqual(3, len(os.listdir(self.folder.name)), "no temporary file is left")
+
+    def test_a_ranch_without_a_sea_has_a_picture_of_its_values(self):
+        output = os.path.join(self.folder.name, "calm")
+        self.assertEqual([], make(written(self.folder.name, slope(), {}), output))
+        self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
+
+    def test_a_correlation_has_words(self):
+        self.assertEqual("strong: the return falls with the sea's value", strength(-0.9))
+        self.assertEqual("weak: the return rises with the sea's value", strength(0.2))
+        self.assertEqual("no relation", strength(0.05))
+        self.assertEqual("not comparable", strength(None))
 
     def test_another_file_is_refused(self):
         path = pathlib.Path(self.folder.name) / "x.json"

@@ -76,32 +76,83 @@ def said(number):
     return "-" if number is None else f"{number:+.2f}"
 
 
+def strength(rho):
+    """A rank correlation in words."""
+    if rho is None:
+        return "not comparable"
+    if abs(rho) < 0.1:
+        return "no relation"
+    size = "weak" if abs(rho) < 0.4 else "clear" if abs(rho) < 0.7 else "strong"
+    return f"{size}: the return {'rises' if rho > 0 else 'falls'} with the sea's value"
+
+
+def draw_map(axis, field, km, colours, label):
+    """One map, north up, land and rocks hatched."""
+    height, width = field.shape
+    axis.set_facecolor("0.82")
+    axis.patch.set(hatch="////", edgecolor="0.65", linewidth=0.0)
+    image = axis.imshow(field, origin="lower", cmap=colours, extent=(0, width * km, 0, height * km))
+    axis.figure.colorbar(image, ax=axis, label=label, fraction=0.05 * height / width, pad=0.02)
+    axis.set_xlabel("east [km]")
+
+
+def draw_relation(axis, values, field, units, result):
+    """Return against the sea's value, a dot for each cell, with medians of tenths of the cells."""
+    known = np.isfinite(values) & np.isfinite(field)
+    x, y = field[known], values[known]
+    axis.scatter(x, y, s=9, color="#0072b2", alpha=0.35, linewidth=0, label="a cell")
+    if len(x) >= FEWEST_CELLS and np.ptp(x) > 0.0:
+        parts = np.array_split(np.argsort(x, kind="stable"), 10)
+        axis.plot([np.median(x[part]) for part in parts], [np.median(y[part]) for part in parts],
+                  color="#d55e00", linewidth=2, marker="o", markersize=4,
+                  label="medians of tenths of the cells")
+    axis.set_xlabel(f"value of the sea [{units}]")
+    axis.set_title(f"{strength(result['spearman_rho'])}\nSpearman's rho "
+                   f"{said(result['spearman_rho'])}, SSIM {said(result['ssim'])}, turned over "
+                   f"{said(result['ssim_turned'])}, {result['cells']} cells", fontsize=10)
+    axis.grid(alpha=0.3)
+
+
 def draw(text, values, layers, results, path):
-    """Draws the maps side by side, north up, land in grey."""
-    maps = [("$V_\\pi$", "points", values, "magma", "")]
-    maps += [(name, units, field, "viridis",
-              f"rho {said(result['spearman_rho'])}, SSIM {said(result['ssim'])} "
-              f"(turned {said(result['ssim_turned'])})")
-             for (name, units, field), result in zip(layers, results)]
+    """Draws the maps side by side, and below each sea the return against its value."""
     km = text["cell_size_m"] / 1000.0
     height, width = values.shape
-    figure, axes = pyplot.subplots(1, len(maps), figsize=(4.6 * len(maps), 4.4), squeeze=False,
-                                   constrained_layout=True)
-    for axis, (name, units, field, colours, words) in zip(axes[0], maps):
-        axis.set_facecolor("0.6")
-        image = axis.imshow(field, origin="lower", cmap=colours,
-                            extent=(0, width * km, 0, height * km))
-        figure.colorbar(image, ax=axis, shrink=0.8, label=units)
-        axis.set_title(name)
-        axis.set_xlabel(f"east [km]\n{words}")
+    tall = min(1.6, max(0.5, height / width))
+    rows = 2 if layers else 1
+    figure, axes = pyplot.subplots(rows, 1 + len(layers), squeeze=False, constrained_layout=True,
+                                   figsize=(5.0 * (1 + len(layers)),
+                                            4.2 * tall + (4.0 if layers else 1.2)),
+                                   height_ratios=[4.2 * tall, 3.2][:rows])
+    draw_map(axes[0][0], values, km, "viridis", "return [points]")
+    axes[0][0].set_title("return of a start in this cell")
     axes[0][0].set_ylabel("north [km]")
+    for column, ((name, units, field), result) in enumerate(zip(layers, results), start=1):
+        draw_map(axes[0][column], field, km, "cividis", f"[{units}]")
+        axes[0][column].set_title(name.replace("_", " "))
+        draw_relation(axes[1][column], values, field, units, result)
+    if layers:
+        axes[1][1].set_ylabel("return of a start in the cell")
+        axes[1][1].legend(fontsize=9)
+        draw_key(axes[1][0], text)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
-    figure.suptitle(f"{text['scenario']}: what starting in a cell pays, and the sea ({episodes})")
+    figure.suptitle(f"{text['policy']} on {text['scenario']}: where a start pays, and the sea "
+                    f"({episodes})")
     temporary = f"{path}.part"
     figure.savefig(temporary, dpi=110, format="png")
     pyplot.close(figure)
     os.replace(temporary, path)
+
+
+def draw_key(axis, text):
+    """What the figure shows, in words."""
+    axis.axis("off")
+    axis.text(0.0, 0.95, "\n".join((
+        "Upper left: the return if the ship starts", f"in a cell and {text['policy']} steers it.",
+        "Next to it: the sea. Hatched: land, rocks", "or unknown.", "",
+        "Below each sea: the return of each cell", "against the sea's value there. Rho compares",
+        "ranks (1: same order, −1: opposite order);", "SSIM compares the shapes of the maps.",
+        "Neither says that one causes the other.")), va="top", fontsize=10)
 
 
 def make(values_file, output):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests of runs on the workers of a Dask scheduler, which are killed and started again."""
 import contextlib
+import csv
 import io
 import os
 import pathlib
@@ -13,12 +14,13 @@ import unittest
 
 import rostest
 
-from aquafarm_benchmark import cli, cluster, runs, sweep, worker
+from aquafarm_benchmark import cli, cluster, many, runs, sweep, worker
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, free_port, program  # noqa: E402
 
 LIMIT_S = 240.0
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 TABLES = ("runs.csv", "table.csv", "table.md")
 
 
@@ -125,6 +127,58 @@ class DaskTest(unittest.TestCase):
             self.assertEqual(0, code, said.getvalue())
         self.assertEqual((self.folder / "here/table.csv").read_text(),
                          (self.folder / "there/table.csv").read_text())
+
+    def many(self, *words):
+        """Runs the command; returns (exit code, what it said)."""
+        programs = pathlib.Path(program("aquafarm_agents", "aquafarm_evaluate")).parent
+        with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said):
+            code = many.main([words[0], "--programs", str(programs), *map(str, words[1:])])
+        return code, said.getvalue()
+
+    def test_many_evaluations_give_the_same_table(self):
+        scheduler = Scheduler(self, self.folder)
+        scheduler.add_worker()
+        for output, where in (("here", "local"), ("there", scheduler.address)):
+            code, said = self.many("evaluate", DATA / "tiny.yaml", DATA / "pair.yaml", "--policy",
+                                   "planner", "--policy", "random", "--output",
+                                   self.folder / output, "--scheduler", where, "--", "-e", "20")
+            self.assertEqual(0, code, said)
+        table = (self.folder / "here/table.csv").read_text()
+        self.assertEqual(5, len(table.splitlines()))
+        self.assertEqual(table, (self.folder / "there/table.csv").read_text())
+
+    def test_many_plans_are_a_table_and_a_bad_ranch_is_named(self):
+        storm = ROOT / "aquafarm_sim/scenarios/archives/zhoushan_cma.txt"
+        words = ("plan", "zhoushan_infa_2021", "zhoushan_mitag_2019", "paper", "--output",
+                 self.folder / "out", "--", "--storm", storm, "--storm-name", "In-fa", "--members",
+                 "20", "--scenarios", ROOT / "aquafarm_sim/scenarios", "--at")
+        code, said = self.many(*words, "2021-07-24T00:00:00Z")
+        self.assertEqual(4, code, said)
+        self.assertRegex(said, r"refused: 0002_paper: .*expected")
+        with open(self.folder / "out/table.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(["zhoushan_infa_2021", "zhoushan_mitag_2019"], [row["ranch"] for row in rows])
+        for row in rows:
+            self.assertEqual("plan", row["outcome"])
+            self.assertLess(float(row["mean_loss"]), float(row["mean_loss_without_plan"]))
+        code, said = self.many(*words, "2021-07-24T06:00:00Z")
+        self.assertEqual(2, code, said)
+        self.assertIn("which compares something else (many.json), expected a new folder", said)
+
+    def test_workers_of_this_process_listen_on_the_loopback_address_alone(self):
+        def ports():
+            own = {os.readlink(path) for path in pathlib.Path("/proc/self/fd").glob("*")
+                   if path.is_symlink() and os.path.lexists(path)}
+            for name in ("tcp", "tcp6"):
+                for line in pathlib.Path("/proc/net", name).read_text().splitlines()[1:]:
+                    words = line.split()
+                    if words[3] == "0A" and f"socket:[{words[9]}]" in own:  # it listens
+                        yield words[1].split(":")[0]
+        before = len(list(ports()))
+        with cluster.Cluster(jobs=2):
+            found = list(ports())
+        self.assertGreaterEqual(len(found), before)
+        self.assertLessEqual(set(found), {"0100007F"}, "hexadecimal addresses; 0100007F: 127.0.0.1")
 
     def test_a_scheduler_that_does_not_answer_is_named_in_one_line(self):
         address = f"127.0.0.1:{free_port()}"

@@ -8,6 +8,7 @@ sim_node           the sim node of a training, with its trainer; or alone: the t
                    and is resumed with new episodes, so that its result may differ
 recorder           a sim node that keeps every episode as a bag
 benchmark          a benchmark, alone or with its trainings
+ranks, workers     kill_cluster.py
 """
 import os
 import pathlib
@@ -245,15 +246,19 @@ class Benchmark:
     def results(self, folder):
         return {name: (folder / name).read_bytes() for name in self.TABLES}
 
+    def reference(self, name):
+        folder = self.place / name
+        begin = time.monotonic()
+        code, words = common.execute(*self.command(folder), seconds=LIMIT_S)
+        self.seconds = time.monotonic() - begin
+        if self.campaign.check(code == 0, f"{name}: exit code {code}: {words[-600:]}"):
+            self.expected = self.results(folder)
+
     def try_once(self, number):
         if self.expected is None:
-            folder = self.place / "benchmark_whole"
-            begin = time.monotonic()
-            code, words = common.execute(*self.command(folder), seconds=LIMIT_S)
-            self.seconds = time.monotonic() - begin
-            if not self.campaign.check(code == 0, f"benchmark: exit code {code}: {words[-600:]}"):
+            self.reference("benchmark_whole")
+            if self.expected is None:
                 return
-            self.expected = self.results(folder)
         folder = self.place / f"benchmark_{number}"
         if interrupted_run(self.campaign, "benchmark", lambda: self.command(folder), self.seconds,
                            whole_group=True):
@@ -272,13 +277,14 @@ KINDS = {
 
 def run(campaign):
     """Count is the number of runs; the kinds take turns."""
-    made = {}
+    from campaigns import kill_cluster  # which uses this module
+    made, all_kinds = {}, {**KINDS, "ranks": kill_cluster.Ranks, "workers": kill_cluster.Workers}
     with tempfile.TemporaryDirectory(prefix="aquafarm_kill_") as place:
-        kinds = campaign.kinds(KINDS)
+        kinds = campaign.kinds(all_kinds)
         number = 0
         while campaign.more(number) and not campaign.failures:
             kind = kinds[number % len(kinds)]
             if kind not in made:
-                made[kind] = KINDS[kind](campaign, pathlib.Path(place))
+                made[kind] = all_kinds[kind](campaign, pathlib.Path(place))
             made[kind].try_once(number // len(kinds))
             number += 1

@@ -42,8 +42,8 @@ def test_a_failure_is_reported_with_exit_code_1(tmp_path):
 def test_an_unknown_kind_is_refused_with_those_there_are():
     done = campaign("kill", "--only", "tables,dog")
     assert done.returncode == 2
-    assert ("--only: got 'dog', expected one of: tables, networks, sim_node, recorder, benchmark"
-            in done.stderr)
+    assert ("--only: got 'dog', expected one of: tables, networks, sim_node, recorder, benchmark, "
+            "ranks, workers" in done.stderr)
 
 
 def test_a_program_that_is_not_built_is_named(tmp_path):

@@ -30,6 +30,7 @@ bags in ./played, which ./aquafarm benchmark human:=played compares with the lea
 # Verbs that are a program of the workspace with its own arguments and --help.
 PROGRAMS = {
     "ask": [WS / "devel/lib/aquafarm_agents/bag_policy"],
+    "many": ["rosrun", "aquafarm_agents", "aquafarm_many"],
     "plan": ["rosrun", "aquafarm_bringup", "make_plan"],
     "report": ["rosrun", "aquafarm_bringup", "make_report"],
     "scenario": [WS / "devel/lib/aquafarm_sim/aquafarm_scenario"],
@@ -37,9 +38,9 @@ PROGRAMS = {
     "values": ["rosrun", "aquafarm_bringup", "compare_values"],
     "verify": ["rosrun", "aquafarm_bringup", "verify_bag"],
 }
-TAKE_ARGUMENTS_AS_THEY_ARE = ("plan", "scenario")
+TAKE_ARGUMENTS_AS_THEY_ARE = ("many", "plan", "scenario")
 HELP = ("-h", "--help", "--ros-args")
-ALL = """setup, build, train, evaluate, benchmark, sweep, scenario, sim, play, record, replay, render, \
+ALL = """setup, build, train, evaluate, benchmark, sweep, many, scenario, sim, play, record, replay, render, \
 report, values, ask, verify, test, bench or --help"""
 
 

@@ -9,10 +9,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <thread>
 #include <vector>
@@ -59,25 +61,35 @@ inline pid_t StartRank(int rank, int ranks, int port, char** argv) {
 /// @returns the exit code of the first rank that failed
 inline int RunLocalRanks(int ranks, char** argv) {
   StopOnSignals();
+  std::signal(SIGCHLD, SIG_DFL);  // if the caller ignored it, waitpid would find no child
   const int port = FreePort();
   std::vector<pid_t> pids;
-  for (int rank = 0; rank < ranks; ++rank) pids.push_back(StartRank(rank, ranks, port, argv));
+  for (int rank = 0; rank < ranks; ++rank) {
+    pids.push_back(StartRank(rank, ranks, port, argv));
+    if (pids.back() > 0) continue;
+    std::fprintf(stderr, "ranks: cannot start rank %d of %d: %s; start fewer ranks\n", rank, ranks,
+                 std::strerror(errno));
+    for (const pid_t pid : pids) {
+      if (pid > 0) kill(pid, SIGKILL);
+    }
+    return static_cast<int>(ExitCode::kRankLost);
+  }
   int result = 0;
   bool is_forwarded = false;
   for (int left = ranks; left > 0;) {
     if (stop_requested && !is_forwarded) {
       is_forwarded = true;
       for (const pid_t pid : pids) {
-        if (pid > 0) kill(pid, SIGINT);
+        if (pid != 0) kill(pid, SIGINT);
       }
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     for (int rank = 0; rank < ranks; ++rank) {
       pid_t& pid = pids[static_cast<std::size_t>(rank)];
       int status = 0;
-      if (pid == 0 || (pid > 0 && waitpid(pid, &status, WNOHANG) != pid)) continue;
-      const bool has_ended = pid > 0 && WIFEXITED(status);
-      if (pid > 0 && WIFSIGNALED(status)) {
+      if (pid == 0 || waitpid(pid, &status, WNOHANG) != pid) continue;
+      const bool has_ended = WIFEXITED(status);
+      if (WIFSIGNALED(status)) {
         std::fprintf(stderr, "rank %d was ended by signal %d\n", rank, WTERMSIG(status));
       }
       const int code = has_ended ? WEXITSTATUS(status) : static_cast<int>(ExitCode::kRankLost);

@@ -62,9 +62,15 @@ class Cluster:
 
     def _make(self, jobs):
         if self._scheduler == LOCAL:
+            from dask import config
             from distributed import LocalCluster
-            self._made = LocalCluster(n_workers=1, threads_per_worker=jobs, processes=False,
-                                      dashboard_address=None, memory_limit=0)
+            # Dask always opens its HTTP servers: on the loopback address, without any page.
+            place = "127.0.0.1:0"
+            with config.set({"distributed.scheduler.http.routes": [],
+                             "distributed.worker.http.routes": []}):
+                self._made = LocalCluster(n_workers=1, threads_per_worker=jobs, processes=False,
+                                          dashboard_address=place, worker_dashboard_address=place,
+                                          memory_limit=0)
             return self._made
         if self._scheduler == SLURM:
             return self._make_slurm(jobs)

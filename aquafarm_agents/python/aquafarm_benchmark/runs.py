@@ -42,6 +42,7 @@ class Job:
     commands: typing.List[typing.List[str]]
     cost: float
     resumable: bool = False  # the first command resumes a run with --resume
+    good_codes: typing.Tuple[int, ...] = (0,)  # exit codes of the last command with a result
     resumes: bool = False  # it was started with --resume
     started: typing.Optional[float] = None
     command: int = 0  # number of the command that runs, from 1
@@ -191,7 +192,7 @@ class _Runs:
             self._submit(job)
             return
         job.resumes, code = outcome["resumes"], outcome["code"]
-        if code == 0 and self._complete(job.result):
+        if code in job.good_codes and self._complete(job.result):
             self._progress.finish(job)
             self._took_part.add(job.contestant)
             shutil.rmtree(job.folder / "checkpoints", ignore_errors=True)

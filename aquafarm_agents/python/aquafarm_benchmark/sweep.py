@@ -148,17 +148,23 @@ def arguments(words):
     return given
 
 
+def require_same(folder, name, task, advice=""):
+    """Writes the task of a folder into its file `name`; refuses a folder of another task."""
+    text = json.dumps(task, indent=1)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / name
+    if path.is_file() and path.read_text("utf-8") != text:
+        raise ValueError(f"--output: got {folder}, which compares something else ({name}), expected "
+                         f"a new folder{advice}")
+    path.write_text(text, "utf-8")
+
+
 def check_plan(given, settings):
     """Writes what the folder compares; refuses a folder of another comparison."""
-    plan = json.dumps({"scenario": given.scenario, "algorithm": given.algorithm,
-                       "steps": given.steps, "episodes": given.episodes, "options": settings},
-                      indent=1)
-    path = given.output / "sweep.json"
-    given.output.mkdir(parents=True, exist_ok=True)
-    if path.is_file() and path.read_text("utf-8") != plan:
-        raise ValueError(f"--output: got {given.output}, which compares something else (sweep.json),"
-                         " expected a new folder; other seeds may be added to an old one")
-    path.write_text(plan, "utf-8")
+    require_same(given.output, "sweep.json",
+                 {"scenario": given.scenario, "algorithm": given.algorithm, "steps": given.steps,
+                  "episodes": given.episodes, "options": settings},
+                 "; other seeds may be added to an old one")
 
 
 def main(words=None):

@@ -102,9 +102,11 @@ TEST_F(Ranks, EveryNumberOfRanksGivesTheSameBits) {
   RunToTheEnd("one", {"-o", "shards=8"});
   RunToTheEnd("two", {"--ranks", "2"});
   RunToTheEnd("four", {"--ranks", "4"});
+  RunToTheEnd("eight", {"--ranks", "8"});
   EXPECT_GT(ReadFile(folder_ + "/one/metrics.csv").size(), 10000U);  // many episodes
   ExpectSameRuns("one", "two");
   ExpectSameRuns("one", "four");
+  ExpectSameRuns("one", "eight");
   EXPECT_CONTAINS(Output("two"), "ranks      2");
 }
 
@@ -146,6 +148,15 @@ TEST_F(Ranks, AKilledRankEndsTheOthersAndTheRunResumesWithAnyNumber) {
     }
   }
   ExpectThatPartsEndLikeAWhole({"-o", "shards=8"});
+}
+
+TEST_F(Ranks, EndWithAParentThatIgnoredTheEndOfItsChildren) {
+  steps_ = "1000";
+  Words words{"/usr/bin/env", "--ignore-signal=CHLD"};
+  const Words train = Train("run", {"--ranks", "2"});
+  words.insert(words.end(), train.begin(), train.end());
+  Process process(words, OutputPath("run"));
+  EXPECT_EQ(process.Wait(kStopped), 0) << Output("run");
 }
 
 TEST_F(Ranks, CtrlCSavesAndAnotherNumberResumes) {

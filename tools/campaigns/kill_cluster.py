@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Kinds of the campaign kill for programs that consist of several processes.
+
+ranks      a training in several ranks, of which one is killed; the others must end with exit code 6.
+           Another number of ranks resumes it
+workers    a benchmark on two workers of Dask; a worker or the scheduler is killed and replaced while
+           the benchmark goes on. Its tables must be those of an undisturbed one
+"""
+import os
+import signal
+import socket
+import subprocess
+import time
+
+from campaigns import common, kill
+
+RANK_LOST = 6        # exit code
+KILLS = 5            # in one run; the last attempt is left to end
+STOP_S = 30.0        # issue 27: the others stop within this time on an idle machine
+BUSY_STOP_S = 180.0  # a busy one needs longer to start processes
+LIMIT_S = 600
+ARGUMENTS = ["-n", "40000", *kill.NETWORKS["ppo"][2:], "-o", "shards=8"]
+
+
+def children(pid):
+    """Returns the process ids of the children of a process."""
+    try:
+        with open(f"/proc/{pid}/task/{pid}/children", encoding="ascii") as file:
+            return list(map(int, file.read().split()))
+    except OSError:
+        return []
+
+
+class Ranks:
+    """A training in two, four or eight ranks; a random one is killed."""
+
+    def __init__(self, campaign, place):
+        self.campaign = campaign
+        self.place = place
+        self.trainer = campaign.program("aquafarm_train")
+        self.expected, self.seconds = None, 0.0
+
+    def command(self, folder, ranks):
+        return [*kill.command(self.trainer, "ppo", ARGUMENTS, folder, kill.holds_run(folder)),
+                *(["--ranks", str(ranks)] if ranks else [])]
+
+    def reference(self):
+        folder = self.place / "ranks_whole"
+        begin = time.monotonic()
+        code, words = common.execute(*self.command(folder, 0), seconds=LIMIT_S)
+        self.seconds = time.monotonic() - begin
+        if self.campaign.check(code == 0, f"ranks: uninterrupted: exit code {code}: {words}"):
+            self.expected = kill.results(folder)
+
+    def attempt(self, folder, is_last):
+        """One start. Returns whether the training is complete, or None after a failure."""
+        ranks = self.campaign.rng.choice((2, 4, 8))
+        process = subprocess.Popen(self.command(folder, ranks), stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        victim, begin = None, time.monotonic()
+        try:
+            words = process.communicate(
+                timeout=LIMIT_S if is_last else self.campaign.rng.uniform(0.1, 2.0 * self.seconds))[0]
+        except subprocess.TimeoutExpired:
+            found = children(process.pid)
+            if found and not is_last:
+                victim, begin = self.campaign.rng.choice(found), time.monotonic()
+                os.kill(victim, signal.SIGKILL)
+            words = process.communicate(timeout=LIMIT_S)[0]
+        took, words = time.monotonic() - begin, words.decode(errors="replace")
+        if victim is None:
+            good = self.campaign.check(process.returncode == 0,
+                                       f"ranks: exit code {process.returncode}: {words[-600:]}")
+            return True if good else None
+        self.campaign.attempt("kills of one of several ranks")
+        if took > STOP_S:
+            self.campaign.attempt(f"stops that took more than {STOP_S:.0f} s")
+        self.campaign.check(took < BUSY_STOP_S, f"ranks: the others ended after {took:.0f} s")
+        if process.returncode == 0:
+            return True  # the rank had just ended
+        good = self.campaign.check(process.returncode == RANK_LOST,
+                                   f"ranks: exit code {process.returncode}: {words[-600:]}")
+        return False if good else None
+
+    def try_once(self, number):
+        if self.expected is None:
+            self.reference()
+        folder = self.place / f"ranks_{number}"
+        done = False
+        for kills in range(KILLS + 1):
+            done = self.attempt(folder, kills == KILLS)
+            if done is not False:
+                break
+        if done and self.expected:
+            kill.compare(self.campaign, "ranks", folder, self.expected, kill.results(folder))
+        common.remove(folder)
+
+
+class Workers(kill.Benchmark):
+    """A benchmark on the workers of a Dask scheduler, which are killed and replaced."""
+
+    def __init__(self, campaign, place):
+        super().__init__(campaign, place)
+        self.port = 0
+        self.processes = []  # the scheduler, then its workers
+
+    def start(self, number):
+        """Starts the scheduler (0) or a worker."""
+        words = (["scheduler", "--host", "127.0.0.1", "--port", str(self.port)] if number == 0 else
+                 ["worker", f"tcp://127.0.0.1:{self.port}", "--nthreads", "1", "--no-nanny",
+                  "--local-directory", str(self.place)])
+        return subprocess.Popen(["/usr/bin/dask", *words, "--no-dashboard"],
+                                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                stderr=subprocess.DEVNULL)
+
+    def end(self, number):
+        self.processes[number].kill()
+        self.processes[number].wait()
+
+    def disturb(self, process):
+        """Kills and replaces until the benchmark ends; returns its output."""
+        for _ in range(KILLS):
+            try:
+                return process.communicate(timeout=self.campaign.rng.uniform(1.0, self.seconds))[0]
+            except subprocess.TimeoutExpired:
+                number = self.campaign.rng.choice((0, 1, 1, 2, 2))
+                self.end(number)
+                self.campaign.attempt("kills of a Dask worker" if number else
+                                      "kills of a Dask scheduler")
+                time.sleep(self.campaign.rng.uniform(0.0, 2.0))
+                self.processes[number] = self.start(number)
+                for other in range(1, len(self.processes)):
+                    if self.processes[other].poll() is not None:  # it ended with the scheduler
+                        self.processes[other] = self.start(other)
+        return self.outlast(process)
+
+    def outlast(self, process):
+        """Replaces workers that end with a killed scheduler until the benchmark ends."""
+        end = time.monotonic() + LIMIT_S
+        while time.monotonic() < end:
+            try:
+                return process.communicate(timeout=2.0)[0]
+            except subprocess.TimeoutExpired:
+                for other in range(1, len(self.processes)):
+                    if self.processes[other].poll() is not None:
+                        self.processes[other] = self.start(other)
+        process.kill()
+        self.campaign.fail(f"workers: the benchmark did not end within {LIMIT_S} s")
+        return process.communicate()[0]
+
+    def try_once(self, number):
+        if self.expected is None:
+            self.reference("workers_whole")
+        with socket.socket() as one:
+            one.bind(("127.0.0.1", 0))
+            self.port = one.getsockname()[1]
+        folder = self.place / f"workers_{number}"
+        self.processes = [self.start(0), self.start(1), self.start(2)]
+        try:
+            process = subprocess.Popen([*self.command(folder), "--scheduler",
+                                        f"127.0.0.1:{self.port}"], stdin=subprocess.DEVNULL,
+                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            words = self.disturb(process).decode(errors="replace")
+        finally:
+            for other in range(len(self.processes)):
+                self.end(other)
+        if self.campaign.check(process.returncode == 0,
+                               f"workers: exit code {process.returncode}: {words[-800:]}"):
+            kill.compare(self.campaign, "workers", folder, self.expected, self.results(folder))
+        common.remove(folder)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The batch files of docs/scale in a Slurm of one node. ./aquafarm test names the workspace; without
 one, and without the programs of Slurm, the tests are skipped."""
+import importlib.util
 import os
 import pathlib
 import subprocess
@@ -83,11 +84,32 @@ def test_an_array_trains_one_seed_per_job(slurm, tmp_path):
     assert len(list((tmp_path / "slurm").glob(f"aquafarm-seeds-{job}_*.txt"))) == 5
 
 
-def test_a_sweep_on_dask_workers_of_a_job_gives_the_table_of_this_machine(slurm, tmp_path):
-    sweep = [ROOT / "aquafarm_agents/scripts/aquafarm_sweep", "procedural", "ppo", "--seeds", "1-2",
-             "--steps", "12000", "--episodes", "20", "--programs", TRAIN.parent, "--output"]
+def sweep(output):
+    """Returns a command that trains two seeds."""
+    return list(map(str, [ROOT / "aquafarm_agents/scripts/aquafarm_sweep", "procedural", "ppo",
+                          "--seeds", "1-2", "--steps", "12000", "--episodes", "20", "--programs",
+                          TRAIN.parent, "--output", output]))
+
+
+@pytest.fixture(scope="module", name="table")
+def table_without_slurm(tmp_path_factory):
+    output = tmp_path_factory.mktemp("sweep") / "here"
+    subprocess.run(sweep(output), timeout=LIMIT_S, check=True)
+    return (output / "table.csv").read_text()
+
+
+def test_a_sweep_on_dask_workers_of_a_job_gives_the_table_of_this_machine(slurm, tmp_path, table):
     slurm.call("sbatch", "--wait", "--chdir", tmp_path, "--ntasks=2", ROOT / "docs/scale/dask.sbatch",
-               *sweep, tmp_path / "there")
+               *sweep(tmp_path / "there"))
     assert "2 trainings" in output_of(tmp_path)
-    subprocess.run(list(map(str, [*sweep, tmp_path / "here"])), timeout=LIMIT_S, check=True)
-    assert (tmp_path / "there/table.csv").read_text() == (tmp_path / "here/table.csv").read_text()
+    assert (tmp_path / "there/table.csv").read_text() == table
+
+
+@pytest.mark.skipif(importlib.util.find_spec("dask_jobqueue") is None,
+                    reason="dask-jobqueue of PyPI is not installed")
+def test_a_sweep_that_submits_its_workers_gives_the_table_of_this_machine(slurm, tmp_path, table):
+    done = subprocess.run([*sweep(tmp_path / "there"), "--scheduler", "slurm", "--jobs", "2"],
+                          cwd=tmp_path, env=slurm.environment, timeout=LIMIT_S, check=False,
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (tmp_path / "there/table.csv").read_text() == table

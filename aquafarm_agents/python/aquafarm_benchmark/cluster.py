@@ -88,7 +88,8 @@ class Cluster:
         chosen.update({name: value for name, value in config.get("jobqueue.slurm", {}).items()
                        if name in chosen and value is not None})
         try:
-            self._made = SLURMCluster(**chosen)
+            self._made = SLURMCluster(**chosen,
+                                      scheduler_options={"dashboard_address": "127.0.0.1:0"})
             self._made.scale(jobs=jobs)
         except (OSError, ValueError, RuntimeError) as error:
             raise BadScheduler(f"scheduler: slurm: {_first_line(error)}") from None

@@ -19,6 +19,11 @@ else()
   include(${agents_dir}/PlainSources.cmake)
   set(policy_sources ${AQUAFARM_PLAIN_SOURCES} ${AQUAFARM_PPO_POLICY_SOURCES})
   list(TRANSFORM policy_sources PREPEND ${agents_dir}/)
+  if(NOT uses_blas)
+    list(TRANSFORM AQUAFARM_PPO_POLICY_SOURCES PREPEND ${agents_dir}/)
+    set_source_files_properties(${AQUAFARM_PPO_POLICY_SOURCES} PROPERTIES
+      COMPILE_DEFINITIONS AQUAFARM_GEMM_BY_EIGEN)
+  endif()
   add_library(aquafarm_policies STATIC EXCLUDE_FROM_ALL ${policy_sources})
   set_target_properties(aquafarm_policies PROPERTIES
     POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden)
@@ -30,6 +35,4 @@ target_link_libraries(aquafarm_policies
 if(uses_blas OR TARGET aquafarm_agents_plain)
   target_include_directories(aquafarm_policies SYSTEM PRIVATE ${AQUAFARM_BLAS_INCLUDE})
   target_link_libraries(aquafarm_policies PRIVATE ${AQUAFARM_BLAS})
-else()
-  target_compile_definitions(aquafarm_policies PRIVATE AQUAFARM_GEMM_BY_EIGEN)
 endif()

@@ -16,7 +16,6 @@
 #include <ctime>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -24,6 +23,7 @@
 
 #include "aquafarm/agents/base/exit_code.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/base/mutex.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm_agents/link/duplicate_node.h"
 #include "aquafarm_agents/nodes/node.h"
@@ -267,7 +267,7 @@ class PlanNode {
       PlanMessages messages = keeper_.plan();
       Publish(messages);
       Report(messages.plan, had_plan);
-      const std::lock_guard<std::mutex> lock(shown_mutex_);
+      const aquafarm::MutexLock lock(shown_mutex_);
       shown_ = std::move(messages.plan);
     } catch (const std::exception& error) {
       ROS_ERROR("plan: %s", error.what());
@@ -302,7 +302,7 @@ class PlanNode {
   }
 
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-    const std::lock_guard<std::mutex> lock(shown_mutex_);
+    const aquafarm::MutexLock lock(shown_mutex_);
     using Status = diagnostic_msgs::DiagnosticStatus;
     const bool has_plan = shown_.result != RescuePlan::NONE;
     const bool is_stop = !shown_.warnings.empty() && shown_.warnings.front().severity == "stop";
@@ -339,8 +339,8 @@ class PlanNode {
   std::string told_fault_;
   std::string told_text_;
 
-  std::mutex shown_mutex_;
-  RescuePlan shown_ = NoPlan();
+  aquafarm::Mutex shown_mutex_;
+  RescuePlan shown_ AQUAFARM_GUARDED_BY(shown_mutex_) = NoPlan();
 
   static RescuePlan NoPlan() {
     RescuePlan plan;

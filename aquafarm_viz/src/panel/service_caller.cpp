@@ -19,7 +19,7 @@ ServiceCaller::ServiceCaller(ros::NodeHandle node, double limit_s, OnAnswer on_a
 
 ServiceCaller::~ServiceCaller() {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     ending_ = true;
     if (armed_ != nullptr) armed_->shutdown();
   }
@@ -30,7 +30,7 @@ ServiceCaller::~ServiceCaller() {
 
 void ServiceCaller::Enqueue(const std::string& name, std::function<std::string()> job) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     if (jobs_.size() < kMostWaiting) {
       jobs_.push_back(std::move(job));
       job = nullptr;
@@ -49,7 +49,7 @@ std::string ServiceCaller::LimitInWords() const {
 }
 
 bool ServiceCaller::Arm(ros::ServiceClient* client) {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   if (ending_) return false;
   armed_ = client;
   end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(limit_);
@@ -60,39 +60,38 @@ bool ServiceCaller::Arm(ros::ServiceClient* client) {
 }
 
 bool ServiceCaller::Disarm() {
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const aquafarm::MutexLock lock(mutex_);
   armed_ = nullptr;
   changed_.notify_all();
   return cut_off_;
 }
 
 void ServiceCaller::Work() {
-  std::unique_lock<std::mutex> lock(mutex_);
+  aquafarm::MutexLock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return ending_ || !jobs_.empty(); });
+    while (!ending_ && jobs_.empty()) lock.Wait(changed_);
     if (ending_) return;
     const auto job = std::move(jobs_.front());
     jobs_.pop_front();
-    lock.unlock();
+    lock.Unlock();
     const std::string line = job();
     if (!line.empty()) on_answer_(line);
-    lock.lock();
+    lock.Lock();
   }
 }
 
 void ServiceCaller::Watch() {
-  std::unique_lock<std::mutex> lock(mutex_);
+  aquafarm::MutexLock lock(mutex_);
   while (!ending_) {
     if (armed_ == nullptr || cut_off_) {
-      changed_.wait(lock, [this] { return ending_ || (armed_ != nullptr && !cut_off_); });
-      continue;
+      lock.Wait(changed_);
+    } else if (Clock::now() < end_) {
+      const Clock::time_point end = end_;
+      lock.WaitUntil(changed_, end);  // returns early if this call ends or the next is armed
+    } else {
+      cut_off_ = true;
+      armed_->shutdown();
     }
-    const std::uint64_t call = calls_;
-    const bool is_over = changed_.wait_until(
-        lock, end_, [this, call] { return ending_ || armed_ == nullptr || calls_ != call; });
-    if (is_over) continue;
-    cut_off_ = true;
-    armed_->shutdown();
   }
 }
 

@@ -9,10 +9,11 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <type_traits>
+
+#include "aquafarm/base/mutex.h"
 
 namespace aquafarm_viz {
 
@@ -69,14 +70,14 @@ class ServiceCaller {
   ros::NodeHandle node_;
   const std::chrono::duration<double> limit_;
   const OnAnswer on_answer_;
-  std::mutex mutex_;  // guards the rest
+  aquafarm::Mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::function<std::string()>> jobs_;
-  ros::ServiceClient* armed_{};
-  Clock::time_point end_;  // deadline of the armed call
-  std::uint64_t calls_{};  // number of calls armed so far
-  bool cut_off_{};
-  bool ending_{};
+  std::deque<std::function<std::string()>> jobs_ AQUAFARM_GUARDED_BY(mutex_);
+  ros::ServiceClient* armed_ AQUAFARM_GUARDED_BY(mutex_){};
+  Clock::time_point end_ AQUAFARM_GUARDED_BY(mutex_);  // deadline of the armed call
+  std::uint64_t calls_ AQUAFARM_GUARDED_BY(mutex_){};  // number of calls armed so far
+  bool cut_off_ AQUAFARM_GUARDED_BY(mutex_){};
+  bool ending_ AQUAFARM_GUARDED_BY(mutex_){};
   std::thread worker_;
   std::thread watcher_;
 };

@@ -4,10 +4,11 @@
 #include <chrono>
 #include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
+
+#include "aquafarm/base/mutex.h"
 
 namespace aquafarm_agents {
 
@@ -30,7 +31,7 @@ class NewestWork {
   /// Waits for the end of the present call. A waiting request is dropped.
   ~NewestWork() {
     {
-      const std::lock_guard<std::mutex> lock(mutex_);
+      const aquafarm::MutexLock lock(mutex_);
       ending_ = true;
     }
     changed_.notify_all();
@@ -40,7 +41,7 @@ class NewestWork {
   /// Never waits for work.
   void Ask(Request request) {
     {
-      const std::lock_guard<std::mutex> lock(mutex_);
+      const aquafarm::MutexLock lock(mutex_);
       waiting_ = std::move(request);
     }
     changed_.notify_all();
@@ -48,46 +49,45 @@ class NewestWork {
 
   /// Returns whether a request waits or is worked on.
   bool busy() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     return waiting_.has_value() || working_;
   }
 
   /// Returns for how long the present call has run [s]; 0 if there is none.
   double busy_s() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
+    const aquafarm::MutexLock lock(mutex_);
     return working_ ? std::chrono::duration<double>(Clock::now() - began_).count() : 0.0;
   }
 
  private:
   void Run() {
-    std::unique_lock<std::mutex> lock(mutex_);
+    aquafarm::MutexLock lock(mutex_);
     Clock::time_point next = Clock::now();
     while (true) {
-      changed_.wait(lock, [this] { return ending_ || waiting_; });
+      while (!ending_ && !waiting_) lock.Wait(changed_);
       // Requests that arrive during the pause replace the waiting one.
-      changed_.wait_until(lock, next, [this] { return ending_; });
+      while (!ending_ && Clock::now() < next) lock.WaitUntil(changed_, next);
       if (ending_) return;
-      if (Clock::now() < next) continue;
       const Request request = std::move(*waiting_);
       waiting_.reset();
       working_ = true;
       began_ = Clock::now();
       next = began_ + std::chrono::duration_cast<Clock::duration>(min_period_);
-      lock.unlock();
+      lock.Unlock();
       work_(request);
-      lock.lock();
+      lock.Lock();
       working_ = false;
     }
   }
 
   const std::function<void(const Request&)> work_;
   const std::chrono::duration<double> min_period_;
-  mutable std::mutex mutex_;
+  mutable aquafarm::Mutex mutex_;
   std::condition_variable changed_;
-  std::optional<Request> waiting_;
-  bool working_{};
-  Clock::time_point began_;  // of the present call
-  bool ending_{};
+  std::optional<Request> waiting_ AQUAFARM_GUARDED_BY(mutex_);
+  bool working_ AQUAFARM_GUARDED_BY(mutex_){};
+  Clock::time_point began_ AQUAFARM_GUARDED_BY(mutex_);  // of the present call
+  bool ending_ AQUAFARM_GUARDED_BY(mutex_){};
   std::thread thread_;  // last: it uses all others
 };
 

@@ -12,7 +12,8 @@ RESULTS = WS / "results"
 CORES = ("aquafarm_sim", "aquafarm_agents")
 # What some tests need and the suite does not: packages, and what is left out without them.
 EXTRAS = {"the tests of HTML pages are skipped": ("chromium", "chromium-driver", "python3-selenium"),
-          "the check of locks is skipped": ("clang-14",)}
+          "the check of locks is skipped": ("clang-14",),
+          "the check of clang-tidy is skipped": ("clang-tidy-14",)}
 SLURM = {"the tests of batch files are skipped": ("munge", "slurmctld", "slurmd", "slurm-client")}
 BROKEN = """<testsuite tests="1" failures="1"><testcase classname="stage" name="{}"><failure/>\
 </testcase></testsuite>

@@ -38,6 +38,7 @@ std::vector<std::string> BulletinFolder::New() {
   marked_ = std::move(marked);
   std::sort(fresh.begin(), fresh.end());
   std::vector<std::string> files;
+  files.reserve(fresh.size());
   for (auto& one : fresh) files.push_back(std::move(one.second));
   return files;
 }

@@ -211,8 +211,9 @@ LandShare ShareOfLand(const AsciiGrid& grid, const GeoFrame& frame, std::int32_t
   for (std::int32_t y = 0; y < height; ++y) {
     for (std::int32_t x = 0; x < width; ++x) {
       for (int k = 0; k < kSamples * kSamples; ++k) {
+        const int row_of_sample = k / kSamples;
         const GeoPoint point = frame.ToGeo(x + (k % kSamples + 0.5) / kSamples - 0.5,
-                                           y + (k / kSamples + 0.5) / kSamples - 0.5);
+                                           y + (row_of_sample + 0.5) / kSamples - 0.5);
         const auto [column, row] = grid.Nearest(point);
         share(y, x) += grid.Covers(point) ? LandAt(grid.value(row, column), sea_level) : 1.0F;
       }

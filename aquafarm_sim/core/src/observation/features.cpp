@@ -28,6 +28,7 @@ std::vector<std::string> Numbered(const std::string& thing, std::int32_t count,
 
 std::vector<std::string> ForEachMove(const std::string& what) {
   std::vector<std::string> names;
+  names.reserve(kMoveCount);
   for (int move = 0; move < kMoveCount; ++move) {
     names.push_back(what + std::string(ToString(static_cast<Action>(move))));
   }

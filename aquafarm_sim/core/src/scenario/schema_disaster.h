@@ -57,6 +57,7 @@ void Resolve(const std::vector<std::string>& files, const WorldFrame* frame,
 /// Returns the largest radius of each ring.
 inline std::vector<float> Largest(const std::vector<QuadrantRadii>& quadrants) {
   std::vector<float> radii;
+  radii.reserve(quadrants.size());
   for (const QuadrantRadii& ring : quadrants) {
     radii.push_back(*std::max_element(ring.begin(), ring.end()));
   }

@@ -134,6 +134,7 @@ std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const st
   std::vector<int> ids(static_cast<std::size_t>(rank));
   file.Need(nc_inq_vardimid(file.id(), variable, ids.data()), name);
   std::vector<Dimension> dimensions;
+  dimensions.reserve(ids.size());
   for (const int id : ids) dimensions.push_back(ReadDimension(file, id, name));
   const auto count = [&dimensions](Axis axis) {
     return std::count_if(dimensions.begin(), dimensions.end(),

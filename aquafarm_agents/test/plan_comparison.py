@@ -113,6 +113,7 @@ class Comparison:
             self.fields("provenance.inputs[]", one, got, role=None, path=None, hash=None)
         self.same("outcome.exit_code", plan["outcome"]["exit_code"], message.result)
         self.same("outcome.text", plan["outcome"]["text"], message.text)
+        self.same("outcome.unknown", plan["outcome"]["unknown"] or "", message.unknown)
         for one, got in self.each(plan["warnings"], message.warnings):
             self.fields("warnings[]", one, got, code=None, severity=None, text=None, advice=None)
             self.ids("warnings[]", one, got, "ship")

@@ -363,6 +363,43 @@ TEST_F(PlanMessages, LossesAndChanges) {
   }
 }
 
+// Numbers that nobody knows: 0 would look harmless.
+TEST_F(PlanMessages, WithUnknownWindsEveryNumberOfTheStormIsNaN) {
+  agents::PlanReport report = *report_;
+  report.result = agents::PlanResult::kStormUnknown;
+  const RescuePlan unknown = ReadPlan(agents::ToJson(*case_, *ensemble_, report, {}), "x").plan;
+  EXPECT_TRUE(plan().unknown.empty());
+  EXPECT_EQ(unknown.unknown.find("The storm's winds are unknown from "), 0U) << unknown.unknown;
+  std::vector<double> numbers{unknown.expected_value, unknown.bound};
+  for (const auto& device : unknown.devices) {
+    numbers.insert(numbers.end(), {device.home, device.expected_damage, device.expected_loss,
+                                   device.expected_loss_idle});
+    numbers.insert(numbers.end(), device.home_before.begin(), device.home_before.end());
+    for (const auto& arrival : device.arrival) {
+      numbers.push_back(arrival.probability);
+      EXPECT_TRUE(arrival.q05.isZero() && arrival.q50.isZero() && arrival.q95.isZero());
+    }
+    for (const auto& deadline : device.deadlines) {
+      EXPECT_FALSE(deadline.possible || deadline.open);
+      EXPECT_TRUE(deadline.leave.isZero());
+    }
+  }
+  for (const auto& hazard : unknown.hazard) {
+    numbers.insert(numbers.end(), hazard.probability.begin(), hazard.probability.end());
+  }
+  for (const auto& loss : {unknown.loss, unknown.loss_idle}) {
+    numbers.insert(numbers.end(),
+                   {loss.mean, loss.standard_error, loss.q05, loss.q50, loss.q95, loss.cvar05});
+    EXPECT_TRUE(loss.exceedance_loss.empty());
+  }
+  for (const auto& row : unknown.what_if) {
+    numbers.insert(numbers.end(), {row.mean_loss, row.q95, static_cast<double>(row.all_home),
+                                   row.difference, row.difference_low, row.difference_high});
+  }
+  for (const double number : numbers) EXPECT_TRUE(std::isnan(number)) << number;
+  EXPECT_EQ(unknown.devices.size(), plan().devices.size());
+}
+
 TEST_F(PlanMessages, AFileThatIsNoPlanIsRefusedInOneLine) {
   const auto refusal = [](const std::string& json) {
     try {

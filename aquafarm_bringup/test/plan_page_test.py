@@ -88,7 +88,8 @@ class PlanFileTest(unittest.TestCase):
 
     def test_every_sample_fits(self):
         for plan in (self.plan, plan_sample.nothing_to_save(), plan_sample.storm_stays_away(),
-                     plan_sample.storm_unknown(), plan_sample.storm_unknown_aboard()):
+                     plan_sample.storm_unknown(), plan_sample.storm_unknown_of_before(),
+                     plan_sample.storm_unknown_aboard()):
             document.check(plan, "x.json")
 
     def test_a_missing_key_is_named(self):
@@ -269,7 +270,16 @@ class PageTest(unittest.TestCase):
         self.assertNotIn("left behind", words)
 
     def test_a_storm_without_known_winds_is_unknown_and_not_harmless(self):
-        words = words_of(plan_sample.storm_unknown())
+        for plan in (plan_sample.storm_unknown(), plan_sample.storm_unknown_of_before()):
+            self.check_unknown(words_of(plan))
+            for feature in geojson.feature_collection(plan)["features"]:
+                one = feature["properties"]
+                if one["layer"] == "device":
+                    self.assertIn("winds are unknown", one["left_behind"])
+                    self.assertIn("unknown", one["unknown"])
+                    self.assertEqual((None, None), (one["probability_home"], one["expected_loss"]))
+
+    def check_unknown(self, words):
         for part in ("Stop. It is unknown whether the storm reaches the devices",
                      "When must the ships leave? Unknown.", "What do I lose? Unknown.",
                      "How sure is it? Not at all.",

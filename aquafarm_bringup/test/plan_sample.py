@@ -425,11 +425,33 @@ def storm_unknown():
     """The bulletin has neither winds nor radii: nothing is known."""
     plan = copy.deepcopy(storm_stays_away())
     text = "It is unknown whether the storm reaches the devices: its wind and radii are unknown."
-    plan["outcome"] = {"kind": "storm_unknown", "exit_code": 12, "text": text}
+    plan["outcome"] = {
+        "kind": "storm_unknown", "exit_code": 12, "text": text, "unknown":
+        "The storm's winds are unknown from 2021-07-24T00:00:00Z on."
+    }
     plan["warnings"] = [{
         "code": "storm_unknown", "severity": "stop", "text": text,
         "advice": "Get the next bulletin."
     }]
+    plan["hazard"]["timeline"] = [{"time": stamp(h), "probability": [None] * 3} for h in range(42)]
+    nothing = {**dict.fromkeys(plan["loss"]["idle"]), "exceedance": []}
+    plan["loss"].update(with_plan=nothing, idle=nothing)
+    plan["plan"].update(expected_value=None, bound=None)
+    for left in plan["plan"]["left_behind"]:
+        left.update(reason="winds_unknown", text="the storm's winds are unknown")
+    for device in plan["devices"]:
+        device.update(expected_damage=None, expected_loss=None, expected_loss_idle=None)
+        device["odds"] = {"home": None, "home_before": [None] * 3}
+        device["arrival"] = [{"probability": None, "q05": None, "q50": None, "q95": None}] * 3
+    return plan
+
+
+def storm_unknown_of_before():
+    """As storm_unknown, of a program that wrote zeros: its page must not show them."""
+    plan = copy.deepcopy(storm_stays_away())
+    new = storm_unknown()
+    plan.update(warnings=new["warnings"], outcome={**new["outcome"]})
+    del plan["outcome"]["unknown"]
     plan["hazard"]["timeline"] = [{"time": stamp(h), "probability": [0.0] * 3} for h in range(42)]
     return plan
 

@@ -299,6 +299,7 @@ void SetMoney(const Json& document, RescuePlan& plan) {
 void SetWords(const Json& document, RescuePlan& plan) {
   plan.result = document.at("outcome").at("exit_code").get<std::uint8_t>();
   plan.text = document.at("outcome").at("text").get<std::string>();
+  plan.unknown = Text(document.at("outcome").value("unknown", Json()));
   Convert(document.at("warnings"), plan.warnings, [](const Json& one, auto& warning) {
     warning.code = one.at("code").get<std::string>();
     warning.severity = one.at("severity").get<std::string>();

@@ -6,7 +6,7 @@ import numpy as np
 
 from .document import Clock
 from .geodesy import LocalPlane
-from .words import is_unknown, kind_name, left_reason, order_text
+from .words import is_unknown, kind_name, left_reason, order_text, unknown_reason
 
 CIRCLE_POINTS = 72
 
@@ -81,7 +81,8 @@ def _devices(plan):
                        fetch=order.get("fetch"),
                        deliver=order.get("deliver"),
                        left_behind=reasons.get(device["id"]),
-                       expected_loss=None if is_unknown(plan) else device["expected_loss"])
+                       expected_loss=None if is_unknown(plan) else device["expected_loss"],
+                       unknown=unknown_reason(plan))
 
 
 def _routes(plan, place):
@@ -108,6 +109,7 @@ def _orders(plan):
                            action=order["action"],
                            time=order["time"],
                            probability=None if is_unknown(plan) else order["probability"],
+                           unknown=unknown_reason(plan),
                            text=order_text(plan, order))
 
 

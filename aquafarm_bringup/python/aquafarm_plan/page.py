@@ -46,7 +46,7 @@ def render(plan):
         map=drawing,
         timeline=line,
         region=figures.region(plan),
-        curve=figures.curve(plan),
+        curve=None if words.is_unknown(plan) else figures.curve(plan),
         answers=words.answers(plan),
         basis=BASIS,
         order_text=lambda order: words.order_text(plan, order),

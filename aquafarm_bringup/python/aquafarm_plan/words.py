@@ -27,6 +27,12 @@ def is_unknown(plan):
     return plan["outcome"]["kind"] == "storm_unknown"
 
 
+def unknown_reason(plan):
+    """Why the numbers of a plan are unknown; None if they are known."""
+    outcome = plan["outcome"]
+    return (outcome.get("unknown") or outcome["text"]) if is_unknown(plan) else None
+
+
 def chance(plan, share):
     """The chance of an order or of a device. Without known winds no share is an all-clear."""
     return "unknown" if is_unknown(plan) or share is None else percent(share)

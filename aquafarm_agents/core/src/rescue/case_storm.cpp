@@ -118,49 +118,63 @@ StormTrack FromRecord(const RescueRequest& request, RescueCase& rescue) {
   return track;
 }
 
-// Returns the ratio of a ring to its estimate from the wind; 0 if one of them is unknown.
-double SizeOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
-  if (!at.wind_mps || at.radii_km[ring] <= 0.0) return 0.0;
-  double squares = 0.0;
-  for (const double radius_km : at.quadrants_km[ring]) squares += radius_km * radius_km;
-  const double median_km =
-      EstimateRadius(storm.wind_kt[ring], *at.wind_mps, at.position.latitude, at.averaging_min)
-          .median_km;
-  return median_km > 0.0 ? std::sqrt(squares / kQuadrantCount) / median_km : 0.0;
+// Returns the wind, or the lowest one of the grade; 0 if both are unknown.
+double WindOf(const StormWaypoint& at) { return at.wind_mps.value_or(LowestWindOf(at.grade)); }
+
+// Returns the estimate of a ring from the wind; 0 if the storm does not reach its wind.
+double MedianOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
+  return EstimateRadius(storm.wind_kt[ring], WindOf(at), at.position.latitude, at.averaging_min)
+      .median_km;
 }
 
-// Keeps the size of the last report with radii in the forecast: estimated radii become the
+// Returns the ratio of a ring to its estimate from the wind; 0 if one of them is unknown.
+double SizeOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
+  const double median_km = MedianOf(storm, at, ring);
+  if (at.radii_km[ring] <= 0.0 || median_km <= 0.0) return 0.0;
+  double squares = 0.0;
+  for (const double radius_km : at.quadrants_km[ring]) squares += radius_km * radius_km;
+  return std::sqrt(squares / kQuadrantCount) / median_km;
+}
+
+// Sets the rings of a fix to their estimates times the size of the last report, to the power of
+// what is left of it. The size also holds for winds that the storm does not reach there.
+void Resize(const StormWaypoint& report, double kept, StormRings& storm, StormWaypoint& at) {
+  const std::size_t widest = storm.wind_kt.size() - 1;
+  const double outermost = SizeOf(storm, report, widest);
+  at.size = outermost > 0.0 ? std::pow(outermost, kept) : 1.0;
+  std::array<double, kQuadrantCount> outer{};
+  outer.fill(std::numeric_limits<double>::infinity());
+  for (std::size_t ring = storm.wind_kt.size(); ring-- > 0;) {
+    const double own = SizeOf(storm, report, ring);
+    const double radius_km =
+        MedianOf(storm, at, ring) * (own > 0.0 ? std::pow(own, kept) : at.size);
+    for (double& edge : outer) edge = std::min(edge, radius_km);
+    at.quadrants_km[ring] = outer;
+    at.radii_km[ring] = outer[0];
+  }
+}
+
+// Keeps the size of the last report with radii after it: estimated radii become the
 // estimate times a factor that returns to 1 with the memory of a storm's size. What is remembered
 // is the logarithm of the factor in units of its spread at the storm's strength (SizeSigma).
 // @returns the lead time of that report; minus infinity if there is none
 double CarrySize(const ForecastErrors& errors, std::int64_t issued, StormRings& storm) {
   const StormWaypoint* report = nullptr;
-  for (const StormWaypoint& at : storm.waypoints) {
-    if (!at.forecast && !at.estimated && !at.silent && at.radii_km.back() > 0.0) report = &at;
+  for (StormWaypoint& at : storm.waypoints) {
+    if (at.forecast || !at.is_reported) continue;
+    at.keeps_radii = true;
+    report = &at;
   }
   if (report == nullptr) return -std::numeric_limits<double>::infinity();
   const StormWaypoint last = *report;
   const auto sigma = [&storm](const StormWaypoint& at) {
-    return SizeSigma(storm.wind_kt.back(), at.wind_mps.value_or(0.0), at.position.latitude,
-                     at.averaging_min);
+    return SizeSigma(storm.wind_kt.back(), WindOf(at), at.position.latitude, at.averaging_min);
   };
   for (StormWaypoint& at : storm.waypoints) {
-    if (!at.forecast || !at.estimated || !at.wind_mps || at.time <= last.time) continue;
+    if (!at.estimated || WindOf(at) <= 0.0 || at.time <= last.time) continue;
     const double since_h = static_cast<double>(at.time - last.time) / kHour_s;
     const double kept = std::exp(-since_h / errors.size_memory_h) * sigma(at) / sigma(last);
-    std::array<double, kQuadrantCount> outer{};
-    outer.fill(std::numeric_limits<double>::infinity());
-    for (std::size_t ring = storm.wind_kt.size(); ring-- > 0;) {
-      const double own = SizeOf(storm, last, ring);
-      const double size = own > 0.0 ? own : SizeOf(storm, last, storm.wind_kt.size() - 1);
-      const double radius_km =
-          EstimateRadius(storm.wind_kt[ring], *at.wind_mps, at.position.latitude, at.averaging_min)
-              .median_km *
-          (size > 0.0 ? std::pow(size, kept) : 1.0);
-      for (std::size_t q = 0; q < outer.size(); ++q) outer[q] = std::min(outer[q], radius_km);
-      at.quadrants_km[ring] = outer;
-      at.radii_km[ring] = outer[0];
-    }
+    Resize(last, kept, storm, at);
   }
   return static_cast<double>(last.time - issued) / kHour_s;
 }

@@ -51,12 +51,12 @@ class JsonReport {
   }
   Json PlaceOf(Cell cell) const { return OfPlace(case_.frame.ToGeo(cell.x, cell.y)); }
   double StepTime(std::int32_t step) const { return step * ensemble_.options().step_s; }
-  double MemberShare(std::int32_t count) const {
-    return Share(static_cast<double>(count) / ensemble_.members());
+  // With unknown winds no member has winds, which does not mean that it is safe: null.
+  Json Known(Json value) const { return AreWindsUnknown() ? Json(nullptr) : std::move(value); }
+  Json Chance(double share) const { return Known(Share(share)); }
+  Json MemberShare(std::int32_t count) const {
+    return Chance(static_cast<double>(count) / ensemble_.members());
   }
-
-  // With unknown winds no member stops a ship, which does not mean that it is safe: null.
-  Json Chance(double share) const { return AreWindsUnknown() ? Json(nullptr) : Json(Share(share)); }
   bool AreWindsUnknown() const { return report_.result == PlanResult::kStormUnknown; }
 
   Json Provenance(const PlanProvenance& provenance) const {
@@ -89,8 +89,10 @@ class JsonReport {
       default:
         break;
     }
-    return {
-        {"kind", kind}, {"exit_code", static_cast<int>(report_.result)}, {"text", report_.text}};
+    return {{"kind", kind},
+            {"exit_code", static_cast<int>(report_.result)},
+            {"text", report_.text},
+            {"unknown", AreWindsUnknown() ? Json(WhyUnknown(case_)) : Json(nullptr)}};
   }
 
   Json Clock() const {
@@ -247,6 +249,7 @@ class JsonReport {
     }
     Json frames = Json::array();
     for (const std::int32_t step : StepsEvery(2.0)) {
+      if (AreWindsUnknown()) break;  // an empty grid stands for zeros
       Json percents = Json::array();
       for (std::int32_t ring = 0; ring < ensemble_.rings(); ++ring) {
         percents.push_back(Percents(ring, step));
@@ -313,7 +316,7 @@ class JsonReport {
         const auto rank = static_cast<std::size_t>(
             std::max(0.0, std::ceil(share * static_cast<double>(sorted.size())) - 1.0));
         return sorted[rank] == Ensemble::kNoArrival ? Json(nullptr)
-                                                    : Json(Time(StepTime(sorted[rank])));
+                                                    : Known(Time(StepTime(sorted[rank])));
       };
       list.push_back(
           {{"probability", MemberShare(static_cast<std::int32_t>(reached - sorted.begin()))},
@@ -328,9 +331,9 @@ class JsonReport {
     Json list = Json::array();
     for (const Deadline& one : report_.deadlines[device]) {
       list.push_back({{"probability", one.probability},
-                      {"leave", TimeOrNull(one.leave_s)},
-                      {"open", one.is_open},
-                      {"ship", OfId(one.ship)}});
+                      {"leave", Known(TimeOrNull(one.leave_s))},
+                      {"open", one.is_open && !AreWindsUnknown()},
+                      {"ship", Known(OfId(one.ship))}});
     }
     return list;
   }
@@ -360,9 +363,9 @@ class JsonReport {
                       {"order", order},
                       {"odds", {{"home", Chance(outcome.home)}, {"home_before", before}}},
                       {"arrival", Arrivals(device.cell)},
-                      {"expected_damage", Share(damage)},
-                      {"expected_loss", Money(std::max(0.0, outcome.mean_loss))},
-                      {"expected_loss_idle", Money(outcome.mean_loss_idle)},
+                      {"expected_damage", Chance(damage)},
+                      {"expected_loss", Known(Money(std::max(0.0, outcome.mean_loss)))},
+                      {"expected_loss_idle", Known(Money(outcome.mean_loss_idle))},
                       {"deadlines", DeadlinesOf(d)}});
     }
     return list;
@@ -406,8 +409,8 @@ class JsonReport {
                                    : std::string("most value saved on average")},
         {"method", report_.plan.is_exhaustive ? "exhaustive over sequences of direct trips"
                                               : "bounded search over sequences of direct trips"},
-        {"expected_value", Money(report_.plan.saved)},
-        {"bound", Money(std::max(report_.plan.bound, report_.plan.saved))},
+        {"expected_value", Known(Money(report_.plan.saved))},
+        {"bound", Known(Money(std::max(report_.plan.bound, report_.plan.saved)))},
         {"routes", routes},
         {"left_behind", LeftBehindOf(case_, report_)}};
   }
@@ -418,8 +421,8 @@ class JsonReport {
     return {{"currency", case_.currency.empty() ? Json(nullptr) : Json(case_.currency)},
             {"insured", Money(insured)},
             {"operating_cost", nullptr},
-            {"with_plan", LossOf(report_.plan.loss)},
-            {"idle", LossOf(report_.plan.loss_idle)}};
+            {"with_plan", AreWindsUnknown() ? UnknownLoss() : LossOf(report_.plan.loss)},
+            {"idle", AreWindsUnknown() ? UnknownLoss() : LossOf(report_.plan.loss_idle)}};
   }
 
   Json AllDeadlines() const {
@@ -439,15 +442,14 @@ class JsonReport {
     Json list = Json::array();
     for (const WhatIf& row : report_.what_if) {
       Json one{{"change", row.change}, {"text", row.text}, {"possible", row.is_possible}};
-      const auto or_null = [&](double value) {
-        return row.is_possible ? Json(Money(value)) : Json(nullptr);
-      };
-      one["mean_loss"] = or_null(row.loss.mean);
-      one["q95"] = or_null(row.loss.q95);
-      one["devices_home"] = AreWindsUnknown() ? Json(nullptr) : or_null(row.devices_home);
-      one["all_home"] = row.is_possible ? Chance(row.all_home) : Json(nullptr);
+      const bool is_known = row.is_possible && !AreWindsUnknown();
+      const auto or_null = [&](double value) { return is_known ? Json(value) : Json(nullptr); };
+      one["mean_loss"] = or_null(Money(row.loss.mean));
+      one["q95"] = or_null(Money(row.loss.q95));
+      one["devices_home"] = or_null(Money(row.devices_home));
+      one["all_home"] = or_null(Share(row.all_home));
       one["difference"] = nullptr;
-      if (row.is_possible) {
+      if (is_known) {
         one["difference"] = {{"mean", Money(row.difference)},
                              {"low", Money(row.difference_low)},
                              {"high", Money(row.difference_high)}};

@@ -47,6 +47,21 @@ Json LossOf(std::vector<float> losses) {
           {"exceedance", exceedance}};
 }
 
+Json UnknownLoss() {
+  return {{"mean", nullptr},
+          {"standard_error", nullptr},
+          {"q05", nullptr},
+          {"q50", nullptr},
+          {"q95", nullptr},
+          {"cvar05", nullptr},
+          {"exceedance", Json::array()}};
+}
+
+std::string WhyUnknown(const RescueCase& rescue) {
+  return "The storm's winds are unknown from " + FormatUtc(rescue.storm.passage.unknown[0]) +
+         " on: no chance, arrival, loss, deadline or comparison is known, and none of them is 0.";
+}
+
 Json WarningsOf(const RescueCase& rescue) {
   Json list = Json::array();
   for (const RescueWarning& one : rescue.warnings) {
@@ -67,7 +82,10 @@ Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report) {
     if (outcome.ship != kNone) continue;
     const char* reason = "too_late";
     std::string text = "no ship can have it in port before the winds with a chance of 50 %.";
-    if (problem.CarrierOf(d) != kNone) {
+    if (report.result == PlanResult::kStormUnknown) {
+      reason = "winds_unknown";
+      text = "the storm's winds are unknown, so that no trip can be judged.";
+    } else if (problem.CarrierOf(d) != kNone) {
       reason = "unreachable";
       text = "it is aboard a ship that can bring it to no open port.";
     } else if (outcome.mean_loss_idle <= 0.0) {

@@ -27,6 +27,10 @@ Json OfPlace(GeoPoint place);
 std::string Hex(std::uint64_t value);
 /// Summary and exceedance curve. @param losses one per member, at least one
 Json LossOf(std::vector<float> losses);
+/// A loss that is not known: null.
+Json UnknownLoss();
+/// Why a plan with PlanResult::kStormUnknown has no numbers.
+std::string WhyUnknown(const RescueCase& rescue);
 /// Devices without an order, each with the reason.
 Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report);
 Json WarningsOf(const RescueCase& rescue);

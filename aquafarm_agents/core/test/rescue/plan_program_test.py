@@ -104,6 +104,7 @@ class PlanProgram(unittest.TestCase):
         self.assertEqual(0, code, words)
         self.check_file(plan, 0)
         self.assertEqual("plan", plan["outcome"]["kind"])
+        self.assertIsNone(plan["outcome"]["unknown"])
         self.assertTrue(words.startswith(plan["outcome"]["text"] + "\n"))
         self.assertRegex(words.splitlines()[0], r"^\d of 2 ships leave and save [\d.]+ of [\d.]+ ")
         self.assertTrue(plan["plan"]["routes"])
@@ -163,8 +164,32 @@ class PlanProgram(unittest.TestCase):
         self.assertIn("Deadlines, losses and comparisons are unknown.\n", words)
         for device in plan["devices"]:
             self.assertIn(f"\n  {device['name']}: unknown\n", words)
-            self.assertEqual({None}, {device["odds"]["home"], *device["odds"]["home_before"]})
-        self.assertIsNone(plan["what_if"][0]["all_home"])
+        self.check_nothing_is_known(plan)
+
+    def check_nothing_is_known(self, plan):
+        """No number looks harmless: chances, arrivals, hazard, losses and deadlines are null."""
+        self.assertRegex(plan["outcome"]["unknown"],
+                         r"^The storm's winds are unknown from 2021-07-24T\S+Z on: no chance")
+        for device in plan["devices"]:
+            known = [device["odds"]["home"], *device["odds"]["home_before"],
+                     device["expected_damage"], device["expected_loss"],
+                     device["expected_loss_idle"]]
+            known += [value for one in device["arrival"] for value in one.values()]
+            known += [one[key] for one in device["deadlines"] for key in ("leave", "ship")]
+            self.assertEqual({None}, set(known), device["name"])
+            self.assertEqual({False}, {one["open"] for one in device["deadlines"]})
+        times = plan["hazard"]["timeline"]
+        self.assertEqual({None}, {share for one in times for share in one["probability"]})
+        self.assertEqual([], plan["hazard"]["frames"])
+        for name in ("with_plan", "idle"):
+            loss = dict(plan["loss"][name])
+            self.assertEqual([], loss.pop("exceedance"))
+            self.assertEqual({None}, set(loss.values()))
+        for row in plan["what_if"]:
+            keys = ("mean_loss", "q95", "devices_home", "all_home", "difference")
+            self.assertEqual({None}, {row[key] for key in keys}, row)
+        self.assertEqual({"winds_unknown"}, {one["reason"] for one in plan["plan"]["left_behind"]})
+        self.assertEqual((None, None), (plan["plan"]["expected_value"], plan["plan"]["bound"]))
         self.assertIsNone(plan["deadlines"]["no_departure_after"])
 
     def test_thirteen_if_the_bulletin_is_older_than_twelve_hours(self):

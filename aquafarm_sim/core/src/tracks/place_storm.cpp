@@ -35,7 +35,7 @@ class RingScale {
       : path_(path), point_(point), wind_(wind), size_(size) {}
 
   PlacedRing Ring(std::size_t k) const {
-    if (!wind_.changed) return {size_, 0.0};
+    if (!wind_.changed || point_.keeps_radii) return {size_, 0.0};
     const double median_km = MedianOf(k);
     if (point_.radius[k] > 0.0 && point_.median_km[k] > 0.0) {
       return {size_ * median_km / point_.median_km[k], 0.0};
@@ -50,13 +50,14 @@ class RingScale {
     return EstimateRadius(path_.wind_kt[k], wind_.mps, point_.latitude, point_.averaging_min)
         .median_km;
   }
-  // Ratio of the recorded to the estimated radius of the next weaker wind that has both; else 1.
+  // Ratio of the recorded to the estimated radius of the next weaker wind that has both; else that
+  // of the storm.
   double AnomalyOutside(std::size_t k) const {
     for (std::size_t outer = k + 1; outer < path_.rings; ++outer) {
       if (point_.median_km[outer] <= 0.0 || point_.radius[outer] <= 0.0) continue;
       return point_.radius[outer] * path_.cell_size_km / point_.median_km[outer];
     }
-    return 1.0;
+    return point_.size;
   }
 
   const StormPath& path_;

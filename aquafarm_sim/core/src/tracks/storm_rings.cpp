@@ -111,8 +111,12 @@ StormRings ToRings(const StormTrack& track, RingReduction reduction,
     Quadrants outer{};
     waypoint.silent = !weak;
     for (auto wind = storm.wind_kt.rbegin(); wind != storm.wind_kt.rend(); ++wind) {
-      waypoint.estimated = EstimateRing(fix, *wind) || waypoint.estimated;
+      const bool is_estimated = EstimateRing(fix, *wind);
+      waypoint.estimated = is_estimated || waypoint.estimated;
       const WindRing* ring = fix.Ring(*wind);
+      if (wind == storm.wind_kt.rbegin()) {
+        waypoint.is_reported = !is_estimated && ring != nullptr && Largest(ring->radius_km) > 0.0;
+      }
       waypoint.silent = waypoint.silent && ring == nullptr;
       waypoint.estimated = waypoint.estimated || (ring != nullptr && ring->estimated);
       Quadrants radii = ring == nullptr ? Quadrants{} : Reduced(*ring, reduction);

@@ -122,6 +122,32 @@ TEST(PlacedStorm, GainsARingScaledAsTheNextWeakerOne) {
   EXPECT_NEAR(placed.radii[0], anomaly * EstimateRadius(64, 35.0, 30.0, 2).median_km, 1e-3);
 }
 
+TEST(PlacedStorm, GainsItsFirstRingInTheSizeOfTheStorm) {
+  StormTrack track = WestGoing(1);
+  track.fixes[0].wind_mps = 16.0;
+  track.fixes[0].grade = StormGrade::kTropicalDepression;
+  track.fixes[0].rings.clear();
+  StormPath path = PathOf(track);
+  StormErrors stronger;
+  stronger.wind_add_mps = 4.0;
+  const float usual = Place(path, {stronger})[0].radii[2];
+  EXPECT_NEAR(usual, EstimateRadius(34, 20.0, 30.0, 2).median_km, 1e-3);
+  path.points[0].size = 1.8;
+  EXPECT_NEAR(Place(path, {stronger})[0].radii[2], 1.8F * usual, 1e-3F);
+  EXPECT_EQ(Place(path, {})[0].radii[2], 0.0F);
+}
+
+TEST(PlacedStorm, KeepsMeasuredRadiiOfAnotherWind) {
+  StormPath path = PathOf(WestGoing(1));
+  StormErrors weaker;
+  weaker.wind_add_mps = -20.0;
+  EXPECT_EQ(Place(path, {weaker})[0].radii[2], 0.0F);
+  path.points[0].keeps_radii = true;
+  weaker.size_factor = 0.5;
+  EXPECT_EQ(Place(path, {weaker})[0].radii, (std::vector<float>{20.0F, 50.0F, 150.0F}));
+  EXPECT_EQ(Place(path, {weaker})[0].grade, 1);  // the risk is that of the wind
+}
+
 TEST(PlacedStorm, KeepsQuadrants) {
   StormTrack track = WestGoing(2);
   track.fixes[0].rings[0].radius_km = {400.0, 300.0, 0.0, 200.0};

@@ -38,9 +38,12 @@ struct StormWaypoint {
   std::vector<std::array<double, 4>> quadrants_km;
   std::optional<double> pressure_hpa;
   std::optional<double> wind_mps;
-  bool forecast{};  ///< predicted, not observed; between two waypoints: at least one of them is
-  bool silent{};    ///< radii and wind are unknown and radii_km are 0; between two waypoints: at
-                    ///< least one of them is silent
+  bool forecast{};     ///< predicted, not observed; between two waypoints: at least one of them is
+  bool silent{};       ///< radii and wind are unknown and radii_km are 0; between two waypoints: at
+                       ///< least one of them is silent
+  bool is_reported{};  ///< the radius of the weakest wind is recorded, or derived from one
+  bool keeps_radii{};  ///< see StormPoint; ToRings leaves this and `size` as they are
+  double size{1.0};    ///< see StormPoint
 };
 
 /// A storm as rings of wind.

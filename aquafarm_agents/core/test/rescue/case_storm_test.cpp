@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The size of a storm from its report to the members of an ensemble.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "aquafarm/base/check.h"
+#include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/tracks/reader.h"
+#include "aquafarm/tracks/wind_radii.h"
+#include "rescue/case_parts.h"
+#include "rescue/storm_member.h"
+
+namespace aquafarm::agents {
+namespace {
+
+const std::string kScenarios = AQUAFARM_SCENARIO_DIR;
+constexpr std::int64_t kHour_s = 3600;
+constexpr std::size_t kGale = 2;  // ring of 34 kt
+
+// A storm north of the ranch off Zhoushan that moves north by half a degree an hour.
+class Storm : public ::testing::Test {
+ protected:
+  Storm() {
+    request_.storm = kScenarios + "/archives/zhoushan_cma.txt";
+    request_.storm_name = "2106";
+    request_.at = ParseUtc("at", "2021-07-23T18:00:00Z");
+    case_ = MakeRescueCase(
+        std::make_shared<const Scenario>(LoadScenario(kScenarios + "/zhoushan_infa_2021.yaml")),
+        request_);
+    case_.storm.known_until = *request_.at + 24 * kHour_s;
+  }
+
+  // Adds a fix. @param gale_km recorded radius of 34 kt; 0: none is recorded
+  void Add(int hours, double wind_mps, double gale_km, bool forecast) {
+    StormFix fix;
+    fix.time = case_.start + hours * kHour_s;
+    fix.position = {30.0 + 0.02 * hours, 122.7};
+    fix.wind_mps = wind_mps;
+    fix.averaging_min = 2;
+    fix.grade = GradeOfWind(wind_mps);
+    fix.forecast = forecast;
+    if (gale_km > 0.0) AddRing({34, {gale_km, gale_km, gale_km, gale_km}, false}, fix.rings);
+    track_.fixes.push_back(fix);
+  }
+
+  // Radii [km] of gales at a point in 4,000 members.
+  std::vector<double> Gales(std::size_t point) {
+    UseStorm(track_, request_, case_);
+    MemberSampler sampler(case_.forecast, case_.ensemble);
+    std::vector<StormState> states;
+    std::vector<double> radii;
+    for (std::int32_t member = 0; member < 4000; ++member) {
+      sampler.Draw(member, states);
+      radii.push_back(static_cast<double>(states[point].radius[kGale][0]) *
+                      case_.scenario->cell_size_m / 1000.0);
+    }
+    std::sort(radii.begin(), radii.end());
+    return radii;
+  }
+  static double Median(double wind_mps, double latitude) {
+    return EstimateRadius(34, wind_mps, latitude, 2).median_km;
+  }
+
+  RescueRequest request_;
+  RescueCase case_;
+  StormTrack track_;
+};
+
+TEST_F(Storm, AReportedSizeHoldsWhereTheForecastIsBelowAGale) {
+  Add(-6, 25.0, 3.0 * Median(25.0, 29.88), false);
+  Add(0, 25.0, 3.0 * Median(25.0, 30.0), false);
+  Add(12, 16.0, 0.0, true);  // below 17.2 m/s: no ring, but in many members it has gales
+  const std::vector<double> radii = Gales(2);
+  const auto first = std::upper_bound(radii.begin(), radii.end(), 0.0);
+  const auto count = static_cast<double>(radii.end() - first);
+  EXPECT_GT(count, 1000.0);
+  EXPECT_LT(count, 3000.0);
+  // 3 times the estimate, of which 93 % of the logarithm are left after 12 hours.
+  const double size = std::pow(3.0, std::exp(-12.0 / 165.0));
+  const double of_a_gale = first[(radii.end() - first) / 2];
+  EXPECT_NEAR(of_a_gale / Median(18.5, 30.24), size, 0.25 * size);
+}
+
+TEST_F(Storm, AnErrorOfTheWindDoesNotChangeReportedRadii) {
+  Add(-6, 17.5, 200.0, false);
+  Add(0, 17.5, 200.0, false);  // just a gale: half of the errors of the wind are below it
+  Add(12, 17.5, 0.0, true);
+  const std::vector<double> radii = Gales(1);
+  EXPECT_GT(radii.front(), 200.0 * std::exp(-4.5 * 0.1)) << "10 % are the error of a report";
+  EXPECT_NEAR(radii[2000], 200.0, 2.0);
+  EXPECT_NEAR(std::log(radii[3365] / radii[2000]), 0.1, 0.01);  // one standard deviation
+  EXPECT_EQ(Gales(2).front(), 0.0) << "the forecast has no measured radii";
+}
+
+TEST_F(Storm, AReportOfGalesAloneIsAReport) {
+  Add(-6, 40.0, 500.0, false);
+  Add(0, 40.0, 500.0, false);  // no radius of 50 and 64 kt
+  Add(12, 40.0, 0.0, true);
+  UseStorm(track_, request_, case_);
+  EXPECT_EQ(case_.forecast.size_report_h,
+            static_cast<double>(case_.start - *case_.storm.issued) / kHour_s);
+  EXPECT_GT(case_.storm.rings.waypoints[2].radii_km[kGale], 1.2 * Median(40.0, 30.24));
+}
+
+}  // namespace
+}  // namespace aquafarm::agents

@@ -153,6 +153,21 @@ void ReadShips(const RescueRequest& request, RescueCase& rescue) {
   }
 }
 
+// Returns the energy of the ranch's ships, with prices if the plan has the currency of the ranch.
+std::optional<RescueEnergy> EnergyOf(const Scenario& scenario, const RescueRequest& request) {
+  if (!scenario.energy) return std::nullopt;
+  const EnergyFigures& ships = scenario.energy->ships;
+  RescueEnergy energy;
+  energy.per_km = ships.per_km;
+  energy.per_device = ships.per_device;
+  energy.idle_kw = ships.idle_per_step / (scenario.step_duration_s / kHour_s);
+  if (scenario.money && request.currency == scenario.money->currency) {
+    energy.per_kwh = scenario.money->kwh;
+    energy.per_hour = scenario.money->ship_hour;
+  }
+  return energy;
+}
+
 }  // namespace
 
 double ExposureDamage(const RescueCase& rescue) {
@@ -187,6 +202,7 @@ void ReadFleet(const RescueRequest& request, RescueCase& rescue) {
   problem.handling_s = scenario.step_duration_s;
   problem.exposure_damage = ExposureDamage(rescue);
   problem.risk_averse = request.risk_averse;
+  problem.energy = EnergyOf(scenario, request);
 }
 
 }  // namespace aquafarm::agents

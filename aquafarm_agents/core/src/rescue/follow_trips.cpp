@@ -61,6 +61,7 @@ class Follower {
     order.time_s = time_s_;
     order.probability = Share(CountAlive(alive_));
     route.km += order.km;
+    route.kwh += order.kwh;
     route.orders.push_back(std::move(order));
   }
 
@@ -75,22 +76,26 @@ class Follower {
     Add(std::move(order), route);
   }
 
-  // Returns the distance [km].
-  double Sail(std::size_t to, ShipRoute& route) {
+  // Sets distance and energy of an order.
+  void Sail(std::size_t to, ShipRoute& route, RescueOrder& order) {
     const SeaRoute& way = model_.routes().Between(place_, to);
     for (std::size_t i = 0; i < way.cells.size(); ++i) {
       route.path.push_back({way.cells[i], time_s_ + way.length[i] * model_.Pace(ship_)});
     }
+    const TripEffort effort = model_.Effort(ship_, place_, to, aboard_.size());
     model_.Move(ship_, place_, to, time_s_, alive_);
     place_ = to;
-    return way.length.back() * model_.problem().cell_size_km;
+    order.km = way.length.back() * model_.problem().cell_size_km;
+    order.kwh = effort.kwh;
+    route.hours += effort.hours;
+    plan_.cost += model_.Cost(effort);
   }
 
   void Fetch(std::size_t device, ShipRoute& route) {
     RescueOrder order;
     order.kind = OrderKind::kFetch;
     order.device = static_cast<std::int32_t>(device);
-    order.km = Sail(model_.PlaceOfDevice(device), route);
+    Sail(model_.PlaceOfDevice(device), route, order);
     order.cell = model_.problem().devices[device].cell;
     plan_.devices[device].fetch_s = time_s_;
     aboard_.push_back(order.device);
@@ -101,7 +106,7 @@ class Follower {
     RescueOrder order;
     order.kind = OrderKind::kDeliver;
     order.port = static_cast<std::int32_t>(port);
-    order.km = Sail(model_.PlaceOfPort(port), route);
+    Sail(model_.PlaceOfPort(port), route, order);
     order.cell = model_.problem().ports[port].cell;
     order.devices = aboard_;
     for (const std::int32_t device : aboard_) Save(static_cast<std::size_t>(device), order.port);

@@ -52,6 +52,9 @@ class JsonReport {
   Json PlaceOf(Cell cell) const { return OfPlace(case_.frame.ToGeo(cell.x, cell.y)); }
   double StepTime(std::int32_t step) const { return step * ensemble_.options().step_s; }
   // With unknown winds no member has winds, which does not mean that it is safe: null.
+  Json Kwh(double kwh) const {
+    return case_.problem.energy ? Json(Rounded(kwh, 0.001)) : Json(nullptr);
+  }
   Json Known(Json value) const { return AreWindsUnknown() ? Json(nullptr) : std::move(value); }
   Json Chance(double share) const { return Known(Share(share)); }
   Json MemberShare(std::int32_t count) const {
@@ -381,7 +384,7 @@ class JsonReport {
                {"device", OfId(order.device)},
                {"port", OfId(order.port)},
                {"km", Km(order.km)},
-               {"kwh", nullptr},
+               {"kwh", Kwh(order.kwh)},
                {"probability", Chance(order.probability)}};
       if (order.kind == OrderKind::kDeliver) one["devices"] = order.devices;
       list.push_back(std::move(one));
@@ -398,21 +401,16 @@ class JsonReport {
       }
       routes.push_back({{"ship", route.ship},
                         {"km", Km(route.km)},
-                        {"kwh", nullptr},
+                        {"kwh", Kwh(route.kwh)},
                         {"orders", Orders(route)},
                         {"path", path}});
     }
-    const double averse = case_.problem.risk_averse;
-    return {
-        {"objective", averse > 0.0 ? "least mean loss of the worst " + Short(100.0 * averse, 1) +
-                                         " % of the futures"
-                                   : std::string("most value saved on average")},
-        {"method", report_.plan.is_exhaustive ? "exhaustive over sequences of direct trips"
-                                              : "bounded search over sequences of direct trips"},
-        {"expected_value", Known(Money(report_.plan.saved))},
-        {"bound", Known(Money(std::max(report_.plan.bound, report_.plan.saved)))},
-        {"routes", routes},
-        {"left_behind", LeftBehindOf(case_, report_)}};
+    return {{"objective", ObjectiveOf(case_.problem)},
+            {"method", MethodOf(case_.problem, report_.plan)},
+            {"expected_value", Known(Money(report_.plan.saved))},
+            {"bound", Known(Money(std::max(report_.plan.bound, report_.plan.saved)))},
+            {"routes", routes},
+            {"left_behind", LeftBehindOf(case_, report_)}};
   }
 
   Json Loss() const {
@@ -420,7 +418,7 @@ class JsonReport {
     for (const RescueDevice& device : case_.problem.devices) insured += device.value;
     return {{"currency", case_.currency.empty() ? Json(nullptr) : Json(case_.currency)},
             {"insured", Money(insured)},
-            {"operating_cost", nullptr},
+            {"operating_cost", IsPriced(case_.problem) ? Json(Money(report_.plan.cost)) : nullptr},
             {"with_plan", AreWindsUnknown() ? UnknownLoss() : LossOf(report_.plan.loss)},
             {"idle", AreWindsUnknown() ? UnknownLoss() : LossOf(report_.plan.loss_idle)}};
   }

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "aquafarm/agents/rescue/rescue_plan.h"
+#include "rescue/case_parts.h"
 
 namespace aquafarm::agents {
 
@@ -62,6 +63,30 @@ std::string WhyUnknown(const RescueCase& rescue) {
          " on: no chance, arrival, loss, deadline or comparison is known, and none of them is 0.";
 }
 
+bool IsPriced(const RescueProblem& problem) {
+  return problem.energy && (problem.energy->per_kwh > 0.0 || problem.energy->per_hour > 0.0);
+}
+
+std::string ObjectiveOf(const RescueProblem& problem) {
+  const bool is_averse = problem.risk_averse > 0.0;
+  const std::string text = is_averse
+                               ? "least mean loss of the worst " +
+                                     Short(100.0 * problem.risk_averse, 1) + " % of the futures"
+                               : "most value saved on average";
+  if (!IsPriced(problem)) return text;
+  return text + (is_averse ? ", plus" : ", less") + " the cost of energy and ship-hours";
+}
+
+std::string MethodOf(const RescueProblem& problem, const RescuePlan& plan) {
+  std::string text = plan.is_exhaustive ? "exhaustive over sequences of direct trips"
+                                        : "bounded search over sequences of direct trips";
+  if (problem.risk_averse > 0.0 && std::isfinite(plan.averse_gap)) {
+    text += "; none of them has an objective that is lower by more than " +
+            Short(plan.averse_gap, plan.averse_gap < 100.0 ? 2 : 0);
+  }
+  return text;
+}
+
 Json WarningsOf(const RescueCase& rescue) {
   Json list = Json::array();
   for (const RescueWarning& one : rescue.warnings) {
@@ -95,8 +120,9 @@ Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report) {
       reason = "no_ship";
       text = "there is no ship.";
     } else if (report.deadlines[d].back().leave_s) {
-      reason = "no_ship";
-      text = "the ships save more with other devices first.";
+      reason = IsPriced(problem) ? "not_worth_it" : "no_ship";
+      text = "the ships save more with other devices first";
+      text += IsPriced(problem) ? ", or a trip to it costs more than it saves." : ".";
     }
     list.push_back(
         {{"device", d}, {"reason", reason}, {"text", problem.devices[d].name + ": " + text}});

@@ -31,6 +31,12 @@ Json LossOf(std::vector<float> losses);
 Json UnknownLoss();
 /// Why a plan with PlanResult::kStormUnknown has no numbers.
 std::string WhyUnknown(const RescueCase& rescue);
+/// Whether the plan has costs of energy or ship-hours.
+bool IsPriced(const RescueProblem& problem);
+/// What the plan maximises or minimises, in words.
+std::string ObjectiveOf(const RescueProblem& problem);
+/// How the plan was found, in words.
+std::string MethodOf(const RescueProblem& problem, const RescuePlan& plan);
 /// Devices without an order, each with the reason.
 Json LeftBehindOf(const RescueCase& rescue, const PlanReport& report);
 Json WarningsOf(const RescueCase& rescue);

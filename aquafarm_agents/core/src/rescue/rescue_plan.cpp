@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <string>
@@ -24,7 +25,7 @@ constexpr std::size_t kAlternatives = 8;
 // Trips of the ships so far.
 struct Team {
   DeviceSet devices{};
-  double saved{};
+  double net{};
   std::vector<const TripPlan*> trips;  // by ship; nullptr: it stays
 };
 
@@ -63,15 +64,13 @@ RescuePlan PlanOf(const TripModel& model, const Team& team) {
   for (std::size_t ship = 0; ship < team.trips.size(); ++ship) {
     if (team.trips[ship] != nullptr) trips.push_back({ship, team.trips[ship]->stops});
   }
-  RescuePlan plan = FollowTrips(model, trips);
-  plan.saved = team.saved;
-  return plan;
+  return FollowTrips(model, trips);
 }
 
 // Keeps the best teams of each set of devices, and of all sets.
 bool Narrow(std::vector<Team>& teams, std::size_t alternatives) {
   std::stable_sort(teams.begin(), teams.end(),
-                   [](const Team& a, const Team& b) { return a.saved > b.saved; });
+                   [](const Team& a, const Team& b) { return a.net > b.net; });
   std::map<DeviceSet, std::size_t> count;
   const auto is_spare = [&](const Team& team) { return ++count[team.devices] > alternatives; };
   teams.erase(std::remove_if(teams.begin(), teams.end(), is_spare), teams.end());
@@ -79,6 +78,123 @@ bool Narrow(std::vector<Team>& teams, std::size_t alternatives) {
   teams.resize(kMostTeams);
   return true;
 }
+
+// The best teams by the mean over weighted members.
+class TeamSearch {
+ public:
+  TeamSearch(const TripModel& model, std::size_t alternatives, const MemberWeights& weights = {})
+      : teams_(1) {
+    const RescueProblem& problem = model.problem();
+    for (std::size_t ship = 0; ship < problem.ships.size(); ++ship) {
+      const RescueShip& one = problem.ships[ship];
+      const auto cell = static_cast<std::size_t>(one.cell.y * problem.water.cols() + one.cell.x);
+      const Kind kind{cell, one.speed_kn, one.ready_s, one.capacity, one.aboard};
+      if (tables_.count(kind) == 0) tables_[kind] = SearchTrips(model, ship, alternatives, weights);
+      AddShip(one, tables_[kind]);
+      if (Narrow(teams_, alternatives)) is_exhaustive_ = false;
+    }
+  }
+
+  const std::vector<Team>& teams() const { return teams_; }  // the best one first
+  bool is_exhaustive() const { return is_exhaustive_; }
+
+ private:
+  // Ships of one kind in one place have the same trips.
+  using Kind = std::tuple<std::size_t, double, double, std::int32_t, std::vector<std::int32_t>>;
+
+  void AddShip(const RescueShip& ship, const TripTable& table) {
+    is_exhaustive_ = is_exhaustive_ && table.is_exhaustive;
+    std::vector<Team> next;
+    for (const Team& team : teams_) {
+      if (ship.aboard.empty() || table.plans.empty()) {  // it stays
+        next.push_back(team);
+        next.back().trips.push_back(nullptr);
+      }
+      for (const auto& [devices, plans] : table.plans) {
+        if ((team.devices & devices) != 0) continue;
+        for (const TripPlan& trips : plans) {
+          next.push_back({team.devices | devices, team.net + trips.net, team.trips});
+          next.back().trips.push_back(&trips);
+        }
+      }
+    }
+    teams_ = std::move(next);
+  }
+
+  std::map<Kind, TripTable> tables_;
+  std::vector<Team> teams_;
+  bool is_exhaustive_{true};
+};
+
+// Searches the plan with the least mean of the worst members plus cost. That mean is the largest
+// one over all weights of the members of at most 1 / (share · members) each. Fictitious play (Brown
+// 1951, Iterative solution of games by fictitious play): in each round the weights are those of the
+// worst members of the plans of all rounds so far, and the search answers with its best plans for
+// them. The least weighted loss of a round is a lower bound for all plans.
+class AverseSearch {
+ public:
+  AverseSearch(const TripModel& model, const TeamSearch& by_mean, RescuePlan best)
+      : model_(model), best_(std::move(best)), last_(best_) {
+    is_exhaustive_ = by_mean.is_exhaustive();
+    Judge(by_mean, kJudgedByMean);
+    std::vector<double> sum(best_.loss.size(), 0.0);
+    for (int round = 1; round <= kRounds && Value(best_) > bound_ + kEnough; ++round) {
+      AddTail(last_.loss, sum);
+      MemberWeights weights;
+      for (const double one : sum) weights.push_back(static_cast<float>(one / round));
+      const TeamSearch search(model, kAlternatives, weights);
+      last_ = PlanOf(model, search.teams().front());
+      double loss = last_.cost;
+      for (std::size_t m = 0; m < weights.size(); ++m) {
+        loss += static_cast<double>(weights[m]) * static_cast<double>(last_.loss[m]);
+      }
+      bound_ = std::max(bound_, loss);
+      is_exhaustive_ = is_exhaustive_ && search.is_exhaustive();
+      Judge(search, kJudged);
+    }
+  }
+
+  RescuePlan Take() {
+    best_.averse_gap = is_exhaustive_ ? std::max(0.0, Value(best_) - bound_)
+                                      : std::numeric_limits<double>::infinity();
+    return std::move(best_);
+  }
+
+ private:
+  static constexpr int kRounds = 12;
+  static constexpr std::size_t kJudgedByMean = 300;  // plans whose worst members are looked at
+  static constexpr std::size_t kJudged = 40;
+  static constexpr double kEnough = 1e-4;
+
+  double Share() const { return model_.problem().risk_averse; }
+  double Value(const RescuePlan& plan) const { return MeanOfWorst(plan.loss, Share()) + plan.cost; }
+
+  void Judge(const TeamSearch& search, std::size_t limit) {
+    for (std::size_t i = 0; i < std::min(limit, search.teams().size()); ++i) {
+      RescuePlan other = PlanOf(model_, search.teams()[i]);
+      if (Value(other) < Value(best_)) best_ = std::move(other);
+    }
+  }
+
+  // Adds the weights of the worst members: their weighted loss is the mean of the worst share.
+  void AddTail(const std::vector<float>& losses, std::vector<double>& sum) const {
+    std::vector<std::size_t> order(losses.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return losses[a] > losses[b]; });
+    const double wanted = std::max(1e-9, Share() * static_cast<double>(losses.size()));
+    double rest = wanted;
+    for (std::size_t i = 0; i < order.size() && rest > 0.0; ++i, rest -= 1.0) {
+      sum[order[i]] += std::min(1.0, rest) / wanted;
+    }
+  }
+
+  const TripModel& model_;
+  RescuePlan best_;
+  RescuePlan last_;
+  double bound_{-std::numeric_limits<double>::infinity()};
+  bool is_exhaustive_{true};
+};
 
 }  // namespace
 
@@ -118,46 +234,12 @@ LossSummary Summarize(std::vector<float> losses) {
 RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble) {
   RequireValid(problem);
   const TripModel model(problem, ensemble);
-  const std::size_t alternatives = problem.risk_averse > 0.0 ? kAlternatives : 1;
-  // Ships of one kind in one place have the same trips.
-  using Kind = std::tuple<std::size_t, double, double, std::int32_t, std::vector<std::int32_t>>;
-  std::map<Kind, TripTable> tables;
-  std::vector<Team> teams(1);
-  bool is_exhaustive = true;
-  for (std::size_t ship = 0; ship < problem.ships.size(); ++ship) {
-    const RescueShip& one = problem.ships[ship];
-    const auto cell = static_cast<std::size_t>(one.cell.y * problem.water.cols() + one.cell.x);
-    const Kind kind{cell, one.speed_kn, one.ready_s, one.capacity, one.aboard};
-    if (tables.count(kind) == 0) tables[kind] = SearchTrips(model, ship, alternatives);
-    const TripTable& table = tables[kind];
-    is_exhaustive = is_exhaustive && table.is_exhaustive;
-    std::vector<Team> next;
-    for (const Team& team : teams) {
-      if (one.aboard.empty() || table.plans.empty()) {  // it stays
-        next.push_back(team);
-        next.back().trips.push_back(nullptr);
-      }
-      for (const auto& [devices, plans] : table.plans) {
-        if ((team.devices & devices) != 0) continue;
-        for (const TripPlan& trips : plans) {
-          next.push_back({team.devices | devices, team.saved + trips.saved, team.trips});
-          next.back().trips.push_back(&trips);
-        }
-      }
-    }
-    if (Narrow(next, alternatives)) is_exhaustive = false;
-    teams = std::move(next);
-  }
-  RescuePlan best = PlanOf(model, teams.front());  // the best mean
-  for (std::size_t i = 1; i < teams.size() && problem.risk_averse > 0.0; ++i) {
-    RescuePlan other = PlanOf(model, teams[i]);
-    if (MeanOfWorst(other.loss, problem.risk_averse) <
-        MeanOfWorst(best.loss, problem.risk_averse)) {
-      best = std::move(other);
-    }
-  }
+  const bool is_averse = problem.risk_averse > 0.0;
+  const TeamSearch search(model, is_averse ? kAlternatives : 1);
+  RescuePlan best = PlanOf(model, search.teams().front());  // the best mean
+  if (is_averse) best = AverseSearch(model, search, std::move(best)).Take();
   for (std::size_t d = 0; d < problem.devices.size(); ++d) best.bound += model.BoundOf(d);
-  best.is_exhaustive = is_exhaustive;
+  best.is_exhaustive = search.is_exhaustive();
   return best;
 }
 

@@ -104,14 +104,39 @@ const float* TripModel::LossIdle(std::size_t device) const {
   return LossUntil(device, std::numeric_limits<double>::max());
 }
 
-double TripModel::Saved(std::size_t device, double time_s, const Alive& alive) const {
+double TripModel::Saved(std::size_t device, double time_s, const Alive& alive,
+                        const MemberWeights& weights) const {
   const float* idle = LossIdle(device);
   const float* until = LossUntil(device, time_s);
   float saved = 0.0F;
+  if (!weights.empty()) {
+    for (std::size_t member = 0; member < alive.size(); ++member) {
+      saved += weights[member] * static_cast<float>(alive[member]) * (idle[member] - until[member]);
+    }
+    return static_cast<double>(saved);
+  }
   for (std::size_t member = 0; member < alive.size(); ++member) {
     saved += static_cast<float>(alive[member]) * (idle[member] - until[member]);
   }
   return static_cast<double>(saved) / static_cast<double>(alive.size());
+}
+
+TripEffort TripModel::Effort(std::size_t ship, std::size_t from, std::size_t to,
+                             std::size_t aboard) const {
+  if (!problem_.energy) return {};
+  const RescueEnergy& energy = *problem_.energy;
+  const double length = routes_.Length(from, to);
+  TripEffort effort;
+  effort.hours = (length * Pace(ship) + problem_.handling_s) / 3600.0;
+  effort.kwh = energy.per_km * length * problem_.cell_size_km *
+                   (1.0 + energy.per_device * static_cast<double>(aboard)) +
+               energy.idle_kw * effort.hours;
+  return effort;
+}
+
+double TripModel::Cost(const TripEffort& effort) const {
+  if (!problem_.energy) return 0.0;
+  return problem_.energy->per_kwh * effort.kwh + problem_.energy->per_hour * effort.hours;
 }
 
 std::int32_t TripModel::NearestPort(std::size_t place) const {
@@ -126,7 +151,7 @@ std::int32_t TripModel::NearestPort(std::size_t place) const {
   return best;
 }
 
-double TripModel::BoundOf(std::size_t device) const {
+double TripModel::BoundOf(std::size_t device, const MemberWeights& weights) const {
   const std::int32_t port = NearestPort(PlaceOfDevice(device));
   if (port == kNone) return 0.0;
   const std::int32_t carrier = problem_.CarrierOf(device);
@@ -145,7 +170,7 @@ double TripModel::BoundOf(std::size_t device) const {
   if (!std::isfinite(deliver_s)) return 0.0;
   Alive alive(static_cast<std::size_t>(ensemble_.members()), 1);
   Stay(problem_.devices[device].cell, fetch_s, alive);
-  return Saved(device, deliver_s, alive);
+  return Saved(device, deliver_s, alive, weights);
 }
 
 std::vector<TimedCell> TripModel::FirstTrip(std::size_t ship, std::size_t device) const {

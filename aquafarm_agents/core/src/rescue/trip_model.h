@@ -15,6 +15,21 @@ namespace aquafarm::agents {
 /// By member: 1 while the ship still works.
 using Alive = std::vector<std::int16_t>;  // as wide as the steps of arrival, for vector code
 
+/// Weight of each member, their sum is 1; empty: all are equal.
+using MemberWeights = std::vector<float>;
+
+/// Energy and duration of a part of a trip.
+struct TripEffort {
+  double kwh{};
+  double hours{};
+
+  TripEffort& operator+=(const TripEffort& other) {
+    kwh += other.kwh;
+    hours += other.hours;
+    return *this;
+  }
+};
+
 /// Returns the number of members in which a ship works.
 std::int32_t CountAlive(const Alive& alive);
 
@@ -48,12 +63,17 @@ class TripModel {
   /// Loss of a device that is never delivered, [members].
   const float* LossIdle(std::size_t device) const;
   /// Mean value that is saved by delivering a device at a time in the members of `alive`.
-  double Saved(std::size_t device, double time_s, const Alive& alive) const;
+  double Saved(std::size_t device, double time_s, const Alive& alive,
+               const MemberWeights& weights = {}) const;
+  /// Effort of a way and the work at its end. @param aboard devices on the way
+  TripEffort Effort(std::size_t ship, std::size_t from, std::size_t to, std::size_t aboard) const;
+  /// Cost of an effort.
+  double Cost(const TripEffort& effort) const;
 
   /// Returns the open port nearest to a place; kNone if there is none in reach.
   std::int32_t NearestPort(std::size_t place) const;
   /// Upper bound of the value that any ship can save of a device.
-  double BoundOf(std::size_t device) const;
+  double BoundOf(std::size_t device, const MemberWeights& weights = {}) const;
   /// Returns the times of a ship's first trip to a device, relative to its departure: for each cell
   /// the time when it leaves it, and the time of delivery at the end. A ship with devices aboard
   /// delivers them first. Empty if there is no way, or another ship has the device aboard.

@@ -15,9 +15,10 @@ constexpr DeviceSet Bit(std::size_t device) { return DeviceSet{1} << device; }
 
 class TripSearch {
  public:
-  TripSearch(const TripModel& model, std::size_t ship, std::size_t alternatives)
-      : model_(model), ship_(ship), alternatives_(alternatives) {
-    for (std::size_t d = 0; d < Devices(); ++d) bound_.push_back(model.BoundOf(d));
+  TripSearch(const TripModel& model, std::size_t ship, std::size_t alternatives,
+             const MemberWeights& weights)
+      : model_(model), ship_(ship), alternatives_(alternatives), weights_(weights) {
+    for (std::size_t d = 0; d < Devices(); ++d) bound_.push_back(model.BoundOf(d, weights));
     std::vector<Node> layer(1);
     Node& start = layer[0];
     for (const std::int32_t device : Ship().aboard) {
@@ -46,7 +47,8 @@ class TripSearch {
   struct Node {
     std::size_t place{};
     double time_s{};
-    double saved{};
+    double net{};       // value saved, less the cost until now
+    double settled{};   // net value at the last delivery
     DeviceSet taken{};  // fetched or delivered
     DeviceSet aboard{};
     std::vector<TripStop> stops;
@@ -117,6 +119,8 @@ class TripSearch {
     child = node;
     child.place = place;
     child.stops.push_back(stop);
+    const auto aboard = static_cast<std::size_t>(Count(node.aboard));
+    child.net -= model_.Cost(model_.Effort(ship_, node.place, place, aboard));
     model_.Move(ship_, node.place, place, child.time_s, child.alive);
     return true;
   }
@@ -134,13 +138,15 @@ class TripSearch {
     Node child;
     if (!Go(node, model_.PlaceOfPort(port), {OrderKind::kDeliver, port}, child)) return;
     for (std::size_t d = 0; d < Devices(); ++d) {
-      if ((child.aboard & Bit(d)) != 0) child.saved += model_.Saved(d, child.time_s, child.alive);
+      if ((child.aboard & Bit(d)) == 0) continue;
+      child.net += model_.Saved(d, child.time_s, child.alive, weights_);
     }
     // A ship that starts with devices aboard must bring them to a port, whatever that saves. In
     // a port it stays if winds stop it in all members.
-    if (child.saved <= node.saved && !node.stops.empty()) return;
+    if (child.net <= node.settled && !node.stops.empty()) return;
     if (node.stops.empty() && IsInPort() && CountAlive(child.alive) == 0) return;
     child.aboard = 0;
+    child.settled = child.net;
     Record(child);
     if (CountAlive(child.alive) > 0) next.push_back(std::move(child));
   }
@@ -148,14 +154,14 @@ class TripSearch {
   void Record(const Node& node) {
     std::vector<TripPlan>& plans = table_.plans[node.taken];
     const auto at = std::find_if(plans.begin(), plans.end(),
-                                 [&](const TripPlan& plan) { return plan.saved < node.saved; });
+                                 [&](const TripPlan& plan) { return plan.net < node.net; });
     if (at == plans.end() && plans.size() >= alternatives_) return;
-    plans.insert(at, {node.taken, node.saved, node.stops});
+    plans.insert(at, {node.taken, node.net, node.stops});
     if (plans.size() > alternatives_) plans.pop_back();
   }
 
   double Promise(const Node& node) const {
-    double promise = node.saved;
+    double promise = node.net;
     for (std::size_t d = 0; d < Devices(); ++d) {
       if ((node.taken & Bit(d)) == 0 || (node.aboard & Bit(d)) != 0) promise += bound_[d];
     }
@@ -181,14 +187,16 @@ class TripSearch {
   const TripModel& model_;
   std::size_t ship_;
   std::size_t alternatives_;
+  const MemberWeights& weights_;
   std::vector<double> bound_;  // by device
   TripTable table_;
 };
 
 }  // namespace
 
-TripTable SearchTrips(const TripModel& model, std::size_t ship, std::size_t alternatives) {
-  return TripSearch(model, ship, alternatives).Take();
+TripTable SearchTrips(const TripModel& model, std::size_t ship, std::size_t alternatives,
+                      const MemberWeights& weights) {
+  return TripSearch(model, ship, alternatives, weights).Take();
 }
 
 }  // namespace aquafarm::agents

@@ -24,17 +24,18 @@ struct TripStop {
 /// The stops of one ship with their value.
 struct TripPlan {
   DeviceSet devices{};  ///< those delivered
-  double saved{};       ///< mean value
+  double net{};         ///< mean value saved, less the cost
   std::vector<TripStop> stops;
 };
 
 /// Best trip plans of one ship, by set of devices.
 struct TripTable {
-  std::map<DeviceSet, std::vector<TripPlan>> plans;  ///< by decreasing value
+  std::map<DeviceSet, std::vector<TripPlan>> plans;  ///< by decreasing net value
   bool is_exhaustive{true};
 };
 
-/// @param alternatives max number of plans per set of devices
-TripTable SearchTrips(const TripModel& model, std::size_t ship, std::size_t alternatives);
+/// @param alternatives max number of plans per set of devices @param weights of the mean
+TripTable SearchTrips(const TripModel& model, std::size_t ship, std::size_t alternatives,
+                      const MemberWeights& weights = {});
 
 }  // namespace aquafarm::agents

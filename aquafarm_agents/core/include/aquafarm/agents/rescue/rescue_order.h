@@ -26,6 +26,7 @@ struct RescueOrder {
   std::int32_t port{kNone};           ///< leave, if in a port; deliver
   std::vector<std::int32_t> devices;  ///< deliver: all devices that are unloaded
   double km{};                        ///< since the previous order
+  double kwh{};                       ///< since the previous order; 0 without RescueProblem::energy
   double probability{};               ///< that the order is carried out
 };
 

@@ -13,6 +13,8 @@ namespace aquafarm::agents {
 struct ShipRoute {
   std::int32_t ship{};
   double km{};
+  double kwh{};    ///< 0 without RescueProblem::energy
+  double hours{};  ///< from each departure to the delivery before the next one
   std::vector<RescueOrder> orders;
   std::vector<TimedCell> path;
 };
@@ -37,6 +39,10 @@ struct RescuePlan {
   std::vector<std::uint8_t> home_count;  ///< by member: devices in port at the end
   double saved{};                        ///< mean value saved, compared with no departure
   double bound{};                        ///< upper bound of `saved` over all plans
+  double cost{};                         ///< of energy and ship-hours
+  /// With risk_averse: the mean of the worst members plus cost is at most this above the least one
+  /// of all sequences of direct trips; infinity if the search was not exhaustive.
+  double averse_gap{};
   bool is_exhaustive{};
 };
 

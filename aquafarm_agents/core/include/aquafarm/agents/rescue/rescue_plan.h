@@ -11,6 +11,10 @@
 ///   per ship: sequences of trips, extended device by device, each with the members in which
 ///   the ship still works ──> best value per set of devices ──> best disjoint sets of all ships
 ///
+/// Energy and ship-hours with prices (RescueEnergy) are subtracted from the value: a trip that
+/// costs more than it saves is left out. With risk_averse, the search is repeated with weights on
+/// the worst members of the plans found (`averse_gap` states how far from the best plan it may be).
+///
 /// The value of a plan is additive over devices, so the combination is exact. The search keeps the
 /// best kWidth partial sequences of each length. If there are never more, it is exhaustive
 /// (`is_exhaustive`), and the plan is the best of this class. `bound` is an upper bound of the

@@ -22,6 +22,7 @@
 /// never loses more than the value that it still has.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,21 @@ struct RescueShip {
   std::vector<std::int32_t> aboard{};  ///< devices that it carries at the start; may be empty
 };
 
+/// Energy and cost of the ships. The energy is that of the ranch (farm/energy.h) in calm water; in
+/// rough sea a ship needs more:
+///
+///   kWh  = per_km · km · (1 + per_device · devices aboard) + idle_kw · hours
+///   cost = per_kwh · kWh + per_hour · hours
+///
+/// A ship consumes and costs nothing while it is in a port before a departure.
+struct RescueEnergy {
+  double per_km{};      ///< [kWh/km]
+  double per_device{};  ///< added to a factor of 1 for each device aboard
+  double idle_kw{};
+  double per_kwh{};   ///< in the currency of the devices' values; 0: the plan ignores energy
+  double per_hour{};  ///< the same, of a ship under way or at work
+};
+
 /// Inputs of PlanRescue.
 struct RescueProblem {
   Grid<std::uint8_t> water;  ///< [H, W] 1: ships can go there
@@ -68,6 +84,7 @@ struct RescueProblem {
   std::int32_t abort_ring{};  ///< ring of the ensemble whose winds stop a ship
   double exposure_damage{};   ///< share of the value per step of the ensemble and unit of |risk|
   double risk_averse{};       ///< 0: max mean; else the share of worst members whose mean counts
+  std::optional<RescueEnergy> energy{};  ///< nullopt: energy and costs are not known
 
   /// Returns the ship that starts with a device aboard; kNone if the device lies at its site.
   std::int32_t CarrierOf(std::size_t device) const;

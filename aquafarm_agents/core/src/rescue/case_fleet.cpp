@@ -153,7 +153,8 @@ void ReadShips(const RescueRequest& request, RescueCase& rescue) {
   }
 }
 
-// Returns the energy of the ranch's ships, with prices if the plan has the currency of the ranch.
+// Returns the energy of the ranch's ships, with prices if the values of the devices are given in
+// the currency of the prices. The values of a layout are in units of the reward.
 std::optional<RescueEnergy> EnergyOf(const Scenario& scenario, const RescueRequest& request) {
   if (!scenario.energy) return std::nullopt;
   const EnergyFigures& ships = scenario.energy->ships;
@@ -161,7 +162,9 @@ std::optional<RescueEnergy> EnergyOf(const Scenario& scenario, const RescueReque
   energy.per_km = ships.per_km;
   energy.per_device = ships.per_device;
   energy.idle_kw = ships.idle_per_step / (scenario.step_duration_s / kHour_s);
-  if (scenario.money && request.currency == scenario.money->currency) {
+  const bool is_in_currency =
+      scenario.money && !request.devices.empty() && request.currency == scenario.money->currency;
+  if (is_in_currency) {
     energy.per_kwh = scenario.money->kwh;
     energy.per_hour = scenario.money->ship_hour;
   }

@@ -130,6 +130,26 @@ class PlanProgram(unittest.TestCase):
         self.assertIn("shares of 60 possible storms\n", words)
         self.assertIn(f"written: {self.folder / 'plan.json'}\n", words)
 
+    def test_energy_and_costs(self):
+        _, words, free = self.plan_of(bulletin(26.5), "--ships", 1, "--speed", 30, "--currency", "CNY")
+        self.assertIsNone(free["loss"]["operating_cost"], "values of the ranch are no currency")
+        for route in free["plan"]["routes"]:
+            self.assertGreater(route["kwh"], 1.2 * route["km"], words)  # energy.per_km, and idle
+            self.assertAlmostEqual(route["kwh"], sum(one["kwh"] for one in route["orders"]), 1)
+        place = free["devices"][0]["position"]
+        costs = []
+        for value in (1_000_000, 10):
+            devices = self.write("devices.csv", "name,latitude,longitude,kind,value\nF1,"
+                                 f"{place['latitude']},{place['longitude']},monitoring,{value}\n")
+            _, words, plan = self.plan_of(bulletin(26.5), "--ships", 1, "--speed", 30, "--currency",
+                                          "CNY", "--devices", devices)
+            self.check_file(plan, plan["outcome"]["exit_code"])
+            costs.append(plan["loss"]["operating_cost"])
+            self.assertIn("cost of energy and ship-hours", plan["plan"]["objective"])
+        self.assertGreater(costs[0], 100, "CNY 2 per kWh, CNY 1,200 per ship-hour")
+        self.assertEqual(0, costs[1], "the trip costs more than the device is worth")
+        self.assertEqual(["not_worth_it"], [one["reason"] for one in plan["plan"]["left_behind"]])
+
     def test_ten_if_nothing_can_be_saved(self):
         code, words, plan = self.plan_of(bulletin(30.0, 0.1), "--ships", 2, "--speed", 0.5)
         self.assertEqual(10, code, words)

@@ -131,7 +131,8 @@ class PlanProgram(unittest.TestCase):
         self.assertIn(f"written: {self.folder / 'plan.json'}\n", words)
 
     def test_energy_and_costs(self):
-        _, words, free = self.plan_of(bulletin(26.5), "--ships", 1, "--speed", 30, "--currency", "CNY")
+        _, words, free = self.plan_of(bulletin(26.5), "--ships", 1, "--speed", 30,
+                                      "--currency", "CNY")
         self.assertIsNone(free["loss"]["operating_cost"], "values of the ranch are no currency")
         for route in free["plan"]["routes"]:
             self.assertGreater(route["kwh"], 1.2 * route["km"], words)  # energy.per_km, and idle

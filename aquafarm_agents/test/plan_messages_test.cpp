@@ -363,7 +363,7 @@ TEST_F(PlanMessages, LossesAndChanges) {
   }
 }
 
-// Numbers that nobody knows: 0 would look harmless.
+// Numbers that are not known: 0 would look harmless.
 TEST_F(PlanMessages, WithUnknownWindsEveryNumberOfTheStormIsNaN) {
   agents::PlanReport report = *report_;
   report.result = agents::PlanResult::kStormUnknown;

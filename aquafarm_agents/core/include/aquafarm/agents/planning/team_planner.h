@@ -10,8 +10,8 @@
 ///   3. repeat both if a disaster changes its heading, or if a ship deviates from its plan or has
 ///      completed it
 ///
-/// Self-propelled devices plan their own routes. Step 1 considers distances only: neither energy nor
-/// the kinds and damage of devices; step 2 considers all of them. The result is not optimal;
+/// Self-propelled devices plan their own routes. Step 1 considers distances only: neither energy
+/// nor the kinds and damage of devices; step 2 considers all of them. The result is not optimal;
 /// team_bound.h bounds it, with energy, kinds and damage.
 
 #include <cstdint>

@@ -33,9 +33,16 @@ std::string Hex(std::uint64_t hash) {
   return text;
 }
 
+// All sections by name.
+std::map<std::string, std::string_view> SectionsOf(const Checkpoint& checkpoint) {
+  std::map<std::string, std::string_view> all = checkpoint.lent;
+  for (const auto& [name, bytes] : checkpoint.sections) all[name] = bytes;
+  return all;
+}
+
 nlohmann::json ToIndex(const Checkpoint& c) {
   nlohmann::json sections = nlohmann::json::array();
-  for (const auto& [name, bytes] : c.sections) sections.push_back({name, bytes.size()});
+  for (const auto& [name, bytes] : SectionsOf(c)) sections.push_back({name, bytes.size()});
   return {{"kind", c.kind},
           {"algorithm", c.algorithm},
           {"options", c.options},
@@ -147,12 +154,53 @@ Checkpoint Parse(std::string_view bytes) {
 
 }  // namespace
 
-const std::string& Checkpoint::Section(const std::string& name) const {
-  const auto found = sections.find(name);
-  if (found == sections.end()) {
-    throw InputError("checkpoint: has no section '" + name + "' (it is of kind " + kind + ")");
+std::string_view Checkpoint::Section(const std::string& name) const {
+  if (const auto found = sections.find(name); found != sections.end()) return found->second;
+  if (const auto found = lent.find(name); found != lent.end()) return found->second;
+  throw InputError("checkpoint: has no section '" + name + "' (it is of kind " + kind + ")");
+}
+
+void Checkpoint::SetNumbers(const std::string& name, const std::map<std::string, Number>& numbers) {
+  nlohmann::json fields = nlohmann::json::object();
+  for (const auto& [field, number] : numbers) {
+    std::visit([&, &key = field](auto value) { fields[key] = value; }, number);
   }
-  return found->second;
+  sections[name].clear();
+  nlohmann::json::to_cbor(fields, sections[name]);
+}
+
+std::map<std::string, Checkpoint::Number> Checkpoint::GetNumbers(const std::string& name) const {
+  const nlohmann::json fields = nlohmann::json::from_cbor(Section(name), true, false);
+  std::map<std::string, Number> numbers;
+  bool is_valid = fields.is_object();
+  for (auto field = fields.begin(); is_valid && field != fields.end(); ++field) {
+    is_valid = field->is_number();
+    if (field->is_number_unsigned()) {
+      numbers[field.key()] = field->get<std::uint64_t>();
+    } else if (is_valid) {
+      numbers[field.key()] = field->get<double>();
+    }
+  }
+  if (!is_valid) {
+    throw InputError("checkpoint: section '" + name +
+                     "': is damaged, expected named numbers; use another checkpoint");
+  }
+  return numbers;
+}
+
+void Checkpoint::AddPart(const std::string& prefix, Checkpoint part) {
+  for (auto& [name, bytes] : part.sections) sections[prefix + name] = std::move(bytes);
+  for (const auto& [name, bytes] : part.lent) lent[prefix + name] = bytes;
+}
+
+Checkpoint Checkpoint::Part(const std::string& prefix) const {
+  Checkpoint part;
+  static_cast<CheckpointInfo&>(part) = *this;
+  for (const auto& [name, bytes] : SectionsOf(*this)) {
+    if (name.compare(0, prefix.size(), prefix) != 0) continue;
+    part.sections[name.substr(prefix.size())] = bytes;
+  }
+  return part;
 }
 
 void Checkpoint::CheckSize(const std::string& name, std::size_t got, std::size_t expected) {
@@ -169,7 +217,7 @@ void WriteCheckpoint(const std::string& path, const Checkpoint& checkpoint) {
   header.format = kCheckpointFormat;
   header.index_bytes = index.size();
   std::vector<std::string_view> parts{index};  // the sections are not copied: a table may be large
-  for (const auto& [name, bytes] : checkpoint.sections) {
+  for (const auto& [name, bytes] : SectionsOf(checkpoint)) {
     parts.emplace_back(bytes);
     header.section_bytes += bytes.size();
   }
@@ -219,6 +267,21 @@ void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
   if (checkpoint.spec.team_reward != spec.team_reward) {
     refuse("credit", credit(checkpoint.spec.team_reward), credit(spec.team_reward));
   }
+}
+
+void CheckFit(const Checkpoint& policy, const EnvironmentSpec& spec, const std::string& what,
+              const std::string& got, const std::string& expected) {
+  if (got == expected) return;
+  throw InputError(
+      "policy: " + policy.algorithm + " of scenario " + policy.spec.scenario_name +
+      " does not fit scenario " + spec.scenario_name + ": " + what + ": the policy has " + got +
+      ", the farm has " + expected +
+      (what == "agents" ? "; give policy:=planner, or policy:=none to hold the ships" : ""));
+}
+
+void CheckFit(const Checkpoint& policy, const EnvironmentSpec& spec, const std::string& what,
+              std::int64_t got, std::int64_t expected) {
+  CheckFit(policy, spec, what, std::to_string(got), std::to_string(expected));
 }
 
 }  // namespace aquafarm::agents

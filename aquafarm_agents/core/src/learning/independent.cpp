@@ -22,20 +22,9 @@ std::uint64_t SeedOf(std::uint64_t seed, std::size_t agent) {
 
 std::string PrefixOf(std::size_t agent) { return "agent" + std::to_string(agent) + "/"; }
 
-void Join(const Checkpoint& part, std::size_t agent, Checkpoint& whole) {
-  for (const auto& [name, bytes] : part.sections) whole.sections[PrefixOf(agent) + name] = bytes;
-}
-
 Checkpoint PartOf(const Checkpoint& whole, std::size_t agent) {
-  Checkpoint part = whole;
+  Checkpoint part = whole.Part(PrefixOf(agent));
   part.spec = SpecOfOne(whole.spec);
-  part.sections.clear();
-  const std::string prefix = PrefixOf(agent);
-  for (const auto& [name, bytes] : whole.sections) {
-    if (name.compare(0, prefix.size(), prefix) == 0) {
-      part.sections[name.substr(prefix.size())] = bytes;
-    }
-  }
   return part;
 }
 
@@ -135,14 +124,15 @@ class IndependentLearner final : public Learner {
     for (std::size_t i = 0; i < learners_.size(); ++i) {
       Checkpoint part;
       learners_[i]->SavePolicy(part);
-      Join(part, i, checkpoint);
+      checkpoint.AddPart(PrefixOf(i), std::move(part));
     }
   }
   void Save(Checkpoint& checkpoint) const override {
     for (std::size_t i = 0; i < learners_.size(); ++i) {
       Checkpoint part;
+      part.lends = checkpoint.lends;
       learners_[i]->Save(part);
-      Join(part, i, checkpoint);
+      checkpoint.AddPart(PrefixOf(i), std::move(part));
     }
   }
   void Load(const Checkpoint& checkpoint) override {
@@ -165,14 +155,7 @@ std::unique_ptr<Learner> MakeIndependent(const EnvironmentSpec& spec, std::uint6
 std::unique_ptr<Policy> MakeIndependentPolicy(const Checkpoint& checkpoint,
                                               const EnvironmentSpec& spec,
                                               const MakeAgentPolicy& make) {
-  const std::int32_t own = checkpoint.spec.agents;
-  if (own != spec.agents) {
-    throw InputError("policy: " + checkpoint.algorithm + " of scenario " +
-                     checkpoint.spec.scenario_name + " does not fit scenario " +
-                     spec.scenario_name + ": agents: the policy has " + std::to_string(own) +
-                     ", the farm has " + std::to_string(spec.agents) +
-                     "; give policy:=planner, or policy:=none to hold the ships");
-  }
+  CheckFit(checkpoint, spec, "agents", checkpoint.spec.agents, spec.agents);
   std::vector<std::unique_ptr<Policy>> policies;
   for (std::size_t i = 0; i < static_cast<std::size_t>(spec.agents); ++i) {
     policies.push_back(make(PartOf(checkpoint, i), SpecOfOne(spec)));

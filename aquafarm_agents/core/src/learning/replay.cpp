@@ -4,8 +4,24 @@
 #include <algorithm>
 
 #include "aquafarm/base/check.h"
+#include "learning/saved_numbers.h"
 
 namespace aquafarm::agents {
+namespace {
+
+/// The stored time steps of a replay, as saved.
+struct Place {
+  std::uint64_t oldest{};
+  std::uint64_t size{};
+};
+
+template <typename Self, typename Visit>
+void VisitPlace(Self& place, const Visit& visit) {
+  visit("oldest", place.oldest);
+  visit("size", place.size);
+}
+
+}  // namespace
 
 SumTree::SumTree(std::size_t leaves) : leaves_(1) {
   while (leaves_ < leaves) leaves_ *= 2;
@@ -124,22 +140,24 @@ std::size_t Replay<Scalar>::bytes() const {
 
 template <typename Scalar>
 void Replay<Scalar>::Save(Checkpoint& checkpoint) const {
-  checkpoint.SetArray("replay.place", std::vector<std::uint64_t>{oldest_, size_});
-  checkpoint.SetArray("replay.observations", observations_);
-  checkpoint.SetArray("replay.carry", carry_);
-  checkpoint.SetArray("replay.rewards", rewards_);
-  checkpoint.SetArray("replay.legal", legal_);
-  checkpoint.SetArray("replay.actions", actions_);
-  checkpoint.SetArray("replay.reasons", reasons_);
-  checkpoint.SetArray("replay.started", started_);
+  const Place place{oldest_, size_};
+  SaveNumbers(checkpoint, "replay", [&place](const auto& visit) { VisitPlace(place, visit); });
+  checkpoint.LendArray("replay.observations", observations_);
+  checkpoint.LendArray("replay.carry", carry_);
+  checkpoint.LendArray("replay.rewards", rewards_);
+  checkpoint.LendArray("replay.legal", legal_);
+  checkpoint.LendArray("replay.actions", actions_);
+  checkpoint.LendArray("replay.reasons", reasons_);
+  checkpoint.LendArray("replay.started", started_);
 }
 
 template <typename Scalar>
 void Replay<Scalar>::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> place;
-  checkpoint.GetArray("replay.place", 2, place);
-  if (place[0] >= moments_ || place[1] > moments_) {
-    throw InputError("checkpoint: section 'replay.place': out of range");
+  Place place;
+  LoadNumbers<std::uint64_t>(checkpoint, "replay", "replay.place",
+                             [&place](const auto& visit) { VisitPlace(place, visit); });
+  if (place.oldest >= moments_ || place.size > moments_) {
+    throw InputError("checkpoint: section 'replay': out of range");
   }
   checkpoint.GetArray("replay.observations", observations_.size(), observations_);
   checkpoint.GetArray("replay.carry", carry_.size(), carry_);
@@ -148,8 +166,8 @@ void Replay<Scalar>::Load(const Checkpoint& checkpoint) {
   checkpoint.GetArray("replay.actions", actions_.size(), actions_);
   checkpoint.GetArray("replay.reasons", reasons_.size(), reasons_);
   checkpoint.GetArray("replay.started", started_.size(), started_);
-  oldest_ = place[0];
-  size_ = place[1];
+  oldest_ = place.oldest;
+  size_ = place.size;
 }
 
 template class Replay<float>;

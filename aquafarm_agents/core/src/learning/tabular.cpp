@@ -74,7 +74,7 @@ std::unique_ptr<Policy> TableLearner::GreedyPolicy() const {
 }
 
 void TableLearner::SavePolicy(Checkpoint& checkpoint) const {
-  checkpoint.SetArray("table", table_.values);
+  checkpoint.LendArray("table", table_.values);
   checkpoint.sections["mask_illegal"] = options_.mask_illegal ? "1" : "0";
 }
 
@@ -159,17 +159,10 @@ void GreedyTabularPolicy::Act(const StepResults& results, std::vector<std::uint8
 std::unique_ptr<Policy> MakeTabularPolicy(const Checkpoint& checkpoint,
                                           const EnvironmentSpec& spec) {
   const EnvironmentSpec& own = checkpoint.spec;
-  const auto compare = [&](const std::string& what, auto got, auto expected) {
-    if (got == expected) return;
-    throw InputError("policy: " + checkpoint.algorithm + " of scenario " + own.scenario_name +
-                     " does not fit scenario " + spec.scenario_name + ": " + what +
-                     ": the policy has " + std::to_string(got) + ", the farm has " +
-                     std::to_string(expected));
-  };
-  compare("width", own.width, spec.width);
-  compare("height", own.height, spec.height);
-  compare("agents", own.agents, spec.agents);
-  compare("tabular states", own.state_count, spec.state_count);
+  CheckFit(checkpoint, spec, "width", own.width, spec.width);
+  CheckFit(checkpoint, spec, "height", own.height, spec.height);
+  CheckFit(checkpoint, spec, "agents", own.agents, spec.agents);
+  CheckFit(checkpoint, spec, "tabular states", own.state_count, spec.state_count);
   QTable table(spec, 0.0F);
   checkpoint.GetArray("table", table.values.size(), table.values);
   return std::make_unique<GreedyTabularPolicy>(std::move(table),

@@ -9,16 +9,8 @@ namespace aquafarm::agents {
 
 void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, NetworkKind network) {
   const EnvironmentSpec& own = checkpoint.spec;
-  const auto refuse = [&](const std::string& what, const std::string& got,
-                          const std::string& expected) {
-    throw InputError(
-        "policy: " + checkpoint.algorithm + " of scenario " + own.scenario_name +
-        " does not fit scenario " + spec.scenario_name + ": " + what + ": the policy has " + got +
-        ", the farm has " + expected +
-        (what == "agents" ? "; give policy:=planner, or policy:=none to hold the ships" : ""));
-  };
   const auto compare = [&](const std::string& what, std::int32_t got, std::int32_t expected) {
-    if (got != expected) refuse(what, std::to_string(got), std::to_string(expected));
+    CheckFit(checkpoint, spec, what, got, expected);
   };
   compare("agents", own.agents, spec.agents);
   if (network == NetworkKind::kCnn) {
@@ -31,7 +23,7 @@ void CheckFits(const Checkpoint& checkpoint, const EnvironmentSpec& spec, Networ
                                               spec.feature_names.begin(), spec.feature_names.end());
     if (mine == own.feature_names.end() || theirs == spec.feature_names.end()) return;
     const auto number = mine - own.feature_names.begin();
-    refuse("feature " + std::to_string(number), *mine, *theirs);
+    CheckFit(checkpoint, spec, "feature " + std::to_string(number), *mine, *theirs);
   }
 }
 

@@ -8,6 +8,7 @@ namespace aquafarm::agents {
 namespace {
 
 constexpr float kSmallestPriority = 1e-4F;
+constexpr const char* kLargest = "priorities.largest";
 
 }  // namespace
 
@@ -92,8 +93,8 @@ void ReplaySampler<Scalar>::Save(Checkpoint& checkpoint) const {
   for (std::size_t row = 0; row < replay_.rows(); ++row) {
     priorities.push_back(priorities_->Get(row));
   }
-  priorities.push_back(largest_priority_);
   checkpoint.SetArray("priorities", priorities);
+  checkpoint.SetArray(kLargest, std::vector<float>{largest_priority_});
 }
 
 template <typename Scalar>
@@ -107,9 +108,13 @@ void ReplaySampler<Scalar>::Load(const Checkpoint& checkpoint) {
   }
   if (!priorities_) return;
   std::vector<float> priorities;
-  checkpoint.GetArray("priorities", replay_.rows() + 1, priorities);
+  std::vector<float> largest;
+  // In older checkpoints the largest priority follows those of the rows.
+  const bool is_apart = checkpoint.Has(kLargest);
+  checkpoint.GetArray("priorities", replay_.rows() + (is_apart ? 0 : 1), priorities);
+  if (is_apart) checkpoint.GetArray(kLargest, 1, largest);
   for (std::size_t row = 0; row < replay_.rows(); ++row) priorities_->Set(row, priorities[row]);
-  largest_priority_ = priorities.back();
+  largest_priority_ = is_apart ? largest[0] : priorities.back();
 }
 
 template class ReplaySampler<float>;

@@ -79,7 +79,7 @@ void Trainer::Resume(const Checkpoint& checkpoint, const std::string& path) {
     }
     // The section is missing if the farms were lost when the checkpoint was saved.
     if (checkpoint.Has("environment")) {
-      results_ = &environment_.Load(checkpoint.Section("environment"));
+      results_ = &environment_.Load(std::string(checkpoint.Section("environment")));
     }
   } catch (const InputError& error) {
     throw InputError(path + ": " + error.what());
@@ -253,6 +253,7 @@ void Trainer::Save(bool with_environment) {
   saved_ = Clock::now();
   if (folder_ == nullptr && options_.group == nullptr) return;
   Checkpoint checkpoint;
+  checkpoint.lends = options_.group == nullptr;  // ranks send their sections to rank 0
   checkpoint.kind = Checkpoint::kTraining;
   checkpoint.algorithm = options_.algorithm;
   checkpoint.options = learner_.options();

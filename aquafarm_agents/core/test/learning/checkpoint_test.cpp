@@ -9,6 +9,7 @@
 #include "agents_fixture.h"
 #include "aquafarm/agents/learning/tabular.h"
 #include "aquafarm/agents/training/saved_policy.h"
+#include "learning/saved_numbers.h"
 
 namespace aquafarm::agents::test {
 namespace {
@@ -105,6 +106,78 @@ TEST_F(CheckpointFile, MissingAndWrongSectionsAreNamed) {
   EXPECT_CONTAINS(MessageOf<InputError>([&] { checkpoint.Section("streams"); }), "'streams'");
   EXPECT_CONTAINS(MessageOf<InputError>([&] { checkpoint.GetArray("table", 4, values); }),
                   "section 'table': got 12 bytes, expected 16");
+}
+
+TEST_F(CheckpointFile, LentArraysAreWrittenWithoutACopy) {
+  const std::string path = folder_ + "/a.ckpt";
+  std::vector<float> table(1000, 1.0F);
+  Checkpoint lends = Example();
+  lends.sections.erase("table");
+  lends.lends = true;
+  lends.LendArray("table", table);
+  lends.LendArray("agent1/a", table);
+  EXPECT_EQ(static_cast<const void*>(lends.Section("table").data()), table.data());
+  table[7] = 2.0F;
+  WriteCheckpoint(path, lends);
+  const std::string written = ReadFile(path);
+  const Checkpoint read = ReadCheckpoint(path);
+  std::vector<float> values;
+  read.GetArray("table", 1000, values);
+  EXPECT_EQ(values, table);
+
+  Checkpoint copies = Example();
+  copies.LendArray("table", table);
+  copies.LendArray("agent1/a", table);
+  EXPECT_NE(static_cast<const void*>(copies.Section("table").data()), table.data());
+  WriteCheckpoint(path, copies);
+  EXPECT_EQ(ReadFile(path), written) << "the file is the same";
+
+  Checkpoint whole;
+  whole.AddPart("agent1/", lends);
+  EXPECT_EQ(static_cast<const void*>(whole.Section("agent1/table").data()), table.data());
+  EXPECT_EQ(whole.Part("agent1/").Section("table"), lends.Section("table"));
+  EXPECT_FALSE(whole.Part("agent2/").Has("table"));
+}
+
+struct Learnt {
+  double due{0.25};
+  std::uint64_t steps{1ULL << 60U};
+  float loss{0.1F};
+};
+
+template <typename Self, typename Visit>
+void VisitLearnt(Self& self, const Visit& visit) {
+  visit("due", self.due);
+  visit("steps", self.steps);
+  visit("loss", self.loss);
+}
+
+TEST(SavedNumbers, AreReadByNameOrInTheOrderOfOlderVersions) {
+  const Learnt saved;
+  Checkpoint checkpoint = Example();
+  SaveNumbers(checkpoint, "learnt", [&](const auto& visit) { VisitLearnt(saved, visit); });
+  Learnt loaded{0.0, 0, 0.0F};
+  const auto load = [&] {
+    LoadNumbers<double>(checkpoint, "learnt", "learnt.numbers",
+                        [&](const auto& visit) { VisitLearnt(loaded, visit); });
+  };
+  load();
+  EXPECT_EQ(loaded.due, saved.due);
+  EXPECT_EQ(loaded.steps, saved.steps);
+  EXPECT_EQ(loaded.loss, saved.loss);
+
+  checkpoint.sections.erase("learnt");
+  EXPECT_CONTAINS(MessageOf<InputError>(load), "no section 'learnt'");
+  checkpoint.SetArray("learnt.numbers", std::vector<double>{0.5, 3.0, 0.75});
+  load();
+  EXPECT_EQ(loaded.due, 0.5);
+  EXPECT_EQ(loaded.steps, 3U);
+  EXPECT_EQ(loaded.loss, 0.75F);
+
+  checkpoint.SetNumbers("learnt", {{"due", 0.5}, {"steps", std::uint64_t{3}}});
+  EXPECT_CONTAINS(MessageOf<InputError>(load), "section 'learnt': has no number 'loss'");
+  checkpoint.sections["learnt"] = "\xff";
+  EXPECT_CONTAINS(MessageOf<InputError>(load), "section 'learnt': is damaged");
 }
 
 TEST_F(CheckpointFile, AnUnwritablePlaceIsSaid) {

@@ -122,6 +122,18 @@ TEST(Replay, ContinuesFromACheckpoint) {
   EXPECT_EQ(checkpoint.sections, again.sections);
   TwoFarms small(3, 1);
   EXPECT_THROW(small.replay().Load(checkpoint), InputError);
+
+  // Version 0.1.0 saved the oldest time step and their number by position.
+  const auto place = checkpoint.GetNumbers("replay");
+  checkpoint.sections.erase("replay");
+  checkpoint.SetArray("replay.place",
+                      std::vector<std::uint64_t>{std::get<std::uint64_t>(place.at("oldest")),
+                                                 std::get<std::uint64_t>(place.at("size"))});
+  TwoFarms older(4, 1);
+  older.replay().Load(checkpoint);
+  Checkpoint newer;
+  older.replay().Save(newer);
+  EXPECT_EQ(newer.sections, again.sections);
 }
 
 TEST(Replay, AMillionTransitionsTakeLessThan300Mebibytes) {

@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "aquafarm/agents/base/storage.h"
@@ -20,10 +22,9 @@ namespace aquafarm::agents {
 
 inline constexpr std::uint32_t kCheckpointFormat = 2;
 
-/// Content of a checkpoint file: a learner during a training, or a policy.
-struct Checkpoint {
-  // Metadata.
-  std::string kind;          ///< kTraining or kPolicy
+/// Metadata of a checkpoint.
+struct CheckpointInfo {
+  std::string kind;          ///< Checkpoint::kTraining or kPolicy
   std::string algorithm;     ///< such as q_learning
   std::string options;       ///< resolved options of the learner
   std::string version;       ///< version of the suite that wrote it
@@ -31,30 +32,66 @@ struct Checkpoint {
   EnvironmentSpec spec;      ///< spec of the training farms, without the YAML text
   std::uint64_t steps{};     ///< farm steps of training so far
   std::uint64_t episodes{};  ///< episodes of training so far
+};
+
+/// Content of a checkpoint file: a learner during a training, or a policy.
+struct Checkpoint : CheckpointInfo {
+  /// A number of a section of named numbers.
+  using Number = std::variant<double, std::uint64_t>;
 
   std::map<std::string, std::string> sections;  ///< raw bytes by name
+  /// Further sections, whose memory belongs to the learner; see LendArray.
+  std::map<std::string, std::string_view> lent;
+  /// True if the checkpoint is written before the learner changes, so that large arrays need no
+  /// copy.
+  bool lends{};
 
   inline static constexpr const char* kTraining = "training";
   inline static constexpr const char* kPolicy = "policy";
 
-  bool Has(const std::string& name) const { return sections.count(name) != 0; }
+  bool Has(const std::string& name) const {
+    return sections.count(name) != 0 || lent.count(name) != 0;
+  }
   /// @throws InputError if there is no such section
-  const std::string& Section(const std::string& name) const;
+  std::string_view Section(const std::string& name) const;
 
   template <typename T>
   void SetArray(const std::string& name, const std::vector<T>& values) {
-    sections[name].assign(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    sections[name] = BytesOf(values);
   }
+  /// As SetArray. If `lends`, the section refers to `values`, which must outlive the checkpoint and
+  /// not change before it is written.
+  template <typename T>
+  void LendArray(const std::string& name, const std::vector<T>& values) {
+    if (!lends) return SetArray(name, values);
+    lent[name] = BytesOf(values);
+  }
+  template <typename T>
+  void LendArray(const std::string& name, std::vector<T>&& values) = delete;
   /// @throws InputError unless the section has exactly `size` values
   template <typename T>
   void GetArray(const std::string& name, std::size_t size, std::vector<T>& values) const {
-    const std::string& bytes = Section(name);
+    const std::string_view bytes = Section(name);
     CheckSize(name, bytes.size(), size * sizeof(T));
     values.resize(size);
     bytes.copy(reinterpret_cast<char*>(values.data()), bytes.size());
   }
 
+  /// Sets a section of named numbers, as a CBOR map.
+  void SetNumbers(const std::string& name, const std::map<std::string, Number>& numbers);
+  /// @throws InputError if the section is missing or damaged
+  std::map<std::string, Number> GetNumbers(const std::string& name) const;
+
+  /// Adds the sections of a part, such as the learner of one agent, with a prefix.
+  void AddPart(const std::string& prefix, Checkpoint part);
+  /// Returns the sections that AddPart added with a prefix, with the metadata of this checkpoint.
+  Checkpoint Part(const std::string& prefix) const;
+
  private:
+  template <typename T>
+  static std::string_view BytesOf(const std::vector<T>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+  }
   static void CheckSize(const std::string& name, std::size_t got, std::size_t expected);
 };
 
@@ -71,5 +108,12 @@ Checkpoint ReadCheckpoint(const std::string& path);
 void CheckContinues(const Checkpoint& checkpoint, const std::string& path,
                     const std::string& algorithm, const std::string& options, std::uint64_t seed,
                     const EnvironmentSpec& spec);
+
+/// Checks that a property of a policy is that of the farms it plays on.
+/// @throws InputError "policy: dqn of scenario paper does not fit scenario x: features: …"
+void CheckFit(const Checkpoint& policy, const EnvironmentSpec& spec, const std::string& what,
+              const std::string& got, const std::string& expected);
+void CheckFit(const Checkpoint& policy, const EnvironmentSpec& spec, const std::string& what,
+              std::int64_t got, std::int64_t expected);
 
 }  // namespace aquafarm::agents

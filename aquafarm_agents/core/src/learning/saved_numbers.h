@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Numbers of a learner as a checkpoint's section of named numbers. One list of fields serves to
+// save and to load them: fields(visit) calls visit(name, number) for each.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <type_traits>
+#include <variant>
+#include <vector>
+
+#include "aquafarm/agents/learning/checkpoint.h"
+#include "aquafarm/base/check.h"
+
+namespace aquafarm::agents {
+
+template <typename Fields>
+void SaveNumbers(Checkpoint& checkpoint, const std::string& section, const Fields& fields) {
+  std::map<std::string, Checkpoint::Number> numbers;
+  fields([&numbers](const char* name, const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    using Saved = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
+    numbers[name] = static_cast<Saved>(value);
+  });
+  checkpoint.SetNumbers(section, numbers);
+}
+
+// Loads the numbers from `section`, or from the array `positional` of older versions, which had
+// values of type `Positional` in the order of the fields.
+template <typename Positional, typename Fields>
+void LoadNumbers(const Checkpoint& checkpoint, const std::string& section,
+                 const std::string& positional, const Fields& fields) {
+  if (!checkpoint.Has(section) && checkpoint.Has(positional)) {
+    std::size_t count = 0;
+    fields([&count](const char*, const auto&) { ++count; });
+    std::vector<Positional> values;
+    checkpoint.GetArray(positional, count, values);
+    auto next = values.begin();
+    fields([&next](const char*, auto& value) {
+      value = static_cast<std::decay_t<decltype(value)>>(*next++);
+    });
+    return;
+  }
+  const std::map<std::string, Checkpoint::Number> numbers = checkpoint.GetNumbers(section);
+  fields([&](const char* name, auto& value) {
+    const auto found = numbers.find(name);
+    if (found == numbers.end()) {
+      throw InputError("checkpoint: section '" + section + "': has no number '" + name +
+                       "'; use another checkpoint");
+    }
+    std::visit([&](auto number) { value = static_cast<std::decay_t<decltype(value)>>(number); },
+               found->second);
+  });
+}
+
+}  // namespace aquafarm::agents

@@ -162,6 +162,14 @@ class PlanNodeTest(unittest.TestCase):
             self.assertEqual(list(route.path_stamps), [at.header.stamp for at in path.poses])
         spaces = {marker.ns for marker in markers[-1].markers}
         self.assertLessEqual({"plan_route", "plan_cone", "plan_device", "plan_outcome"}, spaces)
+        before = len(markers)
+        while len(markers) == before and time.monotonic() < end:
+            time.sleep(0.02)
+        self.assertGreater(len(markers), before, "the markers are published again")
+        self.assertTrue(markers[-1].markers)
+        for marker in markers[-1].markers:
+            self.assertEqual(marker.ADD, marker.action)
+            self.assertGreaterEqual(marker.lifetime.to_sec(), 5.0, "they go if the node dies")
         self.assertEqual(20 * 14, len(charts[-1].data))
         self.assertEqual({0, 100}, set(charts[-1].data))
 

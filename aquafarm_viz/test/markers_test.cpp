@@ -227,6 +227,28 @@ TEST(StateMarkers, StayBelowTheHeightAtWhichRvizCutsOff) {
   }
 }
 
+TEST(StateMarkers, HaveTextOfElevenPixelsInAWindowOf1280x720) {
+  // There the view of the whole farm is about 600 pixels high; whole_view.cpp adds 7 % on each
+  // side.
+  constexpr double kView_px = 600.0 / 1.14;
+  Layers layers;
+  layers.labels = true;
+  for (const int side : {10, 25, 40, 60, 200}) {
+    const auto spec = test::MakeSpec(side);
+    int texts = 0;
+    for (const auto& array : {SpecMarkers(spec, false, layers),
+                              StateMarkers(spec, test::MakeState(), nullptr, layers)}) {
+      for (const auto& marker : array.markers) {
+        if (marker.type != Marker::TEXT_VIEW_FACING || marker.action != Marker::ADD) continue;
+        ++texts;
+        EXPECT_GE(marker.scale.z / (side * spec.cell_size_m) * kView_px, 11.0)
+            << marker.ns << " on " << side << " cells";
+      }
+    }
+    EXPECT_GT(texts, 5);
+  }
+}
+
 TEST(StateMarkers, SayEpisodeStepAndReturn) {
   const auto status = ByKey(StateMarkers(test::MakeSpec(), test::MakeState())).at({"status", 0});
   EXPECT_EQ(status.text, "0 h 51 min   episode 12   step 17   return -42.5");

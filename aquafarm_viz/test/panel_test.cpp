@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <QApplication>
+#include <QFontInfo>
 #include <QImage>
 #include <boost/make_shared.hpp>
 #include <cmath>
@@ -373,6 +374,24 @@ TEST(RanchWidget, ShowsTablesAndTheCurve) {
     told = told || (line->text() == "<b>paused</b>" && line->textFormat() == Qt::PlainText);
   }
   EXPECT_TRUE(told);
+}
+
+TEST(RanchWidget, FitsAWindowOf1280x720WithTextOfElevenPixels) {
+  RanchModel model = Filled();
+  model.Take(Training(1, 1.0F));
+  model.Take(Training(2, 2.0F));
+  Asked asked;
+  RanchWidget widget(model, asked.Buttons());
+  widget.resize(640, 600);  // half of the window; rviz has a menu, tools, tabs and a status bar
+  widget.Refresh();
+  EXPECT_LE(widget.minimumSizeHint().height(), 600);
+  EXPECT_LE(widget.minimumSizeHint().width(), 640) << "half of it is left for the ranch";
+  int seen = 0;
+  for (const auto* part : widget.findChildren<QWidget*>()) {
+    ++seen;
+    EXPECT_GE(QFontInfo(part->font()).pixelSize(), 11) << part->metaObject()->className();
+  }
+  EXPECT_GT(seen, 30);
 }
 
 }  // namespace

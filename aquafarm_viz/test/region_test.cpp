@@ -9,7 +9,9 @@
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/draw/image.h"
+#include "draw/course.h"
 #include "draw/nautical.h"
+#include "draw/symbols.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {
@@ -133,7 +135,7 @@ TEST(RegionWords, OfAStormThatLeaves) {
   storms.Add(kAway, 112.0F, 12.0F);
   EXPECT_EQ(storms.words().heading, "MOVING AWAY");
   EXPECT_EQ(storms.words().lines[0], "centre 100 km E");
-  EXPECT_EQ(storms.words().lines[1], "dashed: way ahead");
+  EXPECT_EQ(storms.words().lines[1], "dashed: course ahead");
 }
 
 TEST(RegionWords, OfAStormThatStays) {
@@ -179,6 +181,46 @@ TEST(RegionWords, AreAboutTheStormThatComesAndNotTheFirst) {
   storms.state.disasters[1].steps_left = 90;
   EXPECT_EQ(storms.words().heading, "REGION");
   EXPECT_EQ(storms.words().lines[1], "known until +60 steps");
+}
+
+TEST(RegionWords, GiveTheWindAtTheClosestApproach) {
+  Storms storms;
+  storms.Add(
+      "{step: 0, x: 112, y: 12, radii: [10], wind_mps: 30}, "
+      "{step: 20, x: 12, y: 12, radii: [10], wind_mps: 40}",
+      112.0F, 12.0F);
+  EXPECT_EQ(storms.words().heading.substr(0, 7), "CLOSEST");
+  EXPECT_EQ(storms.words().lines[1], "wind 40 m/s then");
+  const Track track = ReadStormTracks(storms.spec.scenario_yaml, 1000.0).tracks[0];
+  EXPECT_EQ(WindText(TrackAt(track, 6.0)), "33 m/s") << "interpolated";
+  EXPECT_EQ(WindText(ReadStormTracks(kTrack, 1000.0).tracks[1][0]), "") << "the track has no wind";
+}
+
+TEST(Region, MarksHaveTheWindAhead) {
+  const auto spec = test::MakeSpec();
+  Course course;
+  course.kind = Course::Kind::kRecorded;
+  course.ahead = {{0.0, 2.0, 2.0, {}, {}, 30.0}, {400.0, 22.0, 22.0, {}, {}, 50.0}};
+  cv::Mat image(640, 640, CV_8UC3, cv::Scalar(0, 0, 0));
+  const Layout layout = MakeLayout(25, 25, kSize);
+  const auto marks = DrawCourse(
+      image, spec, course,
+      [](double x, double y) {
+        return cv::Point2d{20.0 * x, 20.0 * y};
+      },
+      layout);
+  ASSERT_FALSE(marks.empty());
+  EXPECT_EQ(marks[0].longer.substr(0, marks[0].text.size() + 1), marks[0].text + " ");
+  EXPECT_EQ(marks[0].longer.substr(marks[0].longer.size() - 4), " m/s");
+  course.ahead[1].wind_mps.reset();
+  EXPECT_EQ(DrawCourse(
+                image, spec, course,
+                [](double x, double y) {
+                  return cv::Point2d{20.0 * x, 20.0 * y};
+                },
+                layout)[0]
+                .longer,
+            "");
 }
 
 TEST(RegionWords, SayUntilWhenAForecastIsKnown) {

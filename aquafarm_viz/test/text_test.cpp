@@ -62,5 +62,10 @@ TEST(Count, HasCommasBetweenThousands) {
   EXPECT_EQ(Count(1234567), "1,234,567");
 }
 
+TEST(SeedText, NamesTheSeedsOfEvaluationEpisodesAsCommandsDo) {
+  EXPECT_EQ(SeedText(7), "7");
+  EXPECT_EQ(SeedText(9223372036854776808U), "evaluation 1000");
+}
+
 }  // namespace
 }  // namespace aquafarm_viz

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/node/viz_node.h"
+
 #include <gtest/gtest.h>
 #include <nav_msgs/Path.h>
 #include <ros/ros.h>
@@ -11,6 +13,7 @@
 #include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -232,6 +235,21 @@ TEST_F(VizNodeTest, OutlivesHostileMessages) {
   Announce(61);
   Play(61, 1);
   EXPECT_TRUE(Until([&] { return count.status.substr(0, 10) == "episode 61"; }));
+}
+
+TEST_F(VizNodeTest, HasALightStyle) {
+  ros::NodeHandle own("~");
+  EXPECT_EQ(ReadVizParams(own).style, &DarkStyle());
+  own.setParam("style", "light");
+  EXPECT_EQ(ReadVizParams(own).style, &LightStyle());
+  own.setParam("style", "blue");
+  try {
+    ReadVizParams(own);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& fault) {
+    EXPECT_STREQ(fault.what(), "style: got 'blue', expected dark or light");
+  }
+  own.deleteParam("style");
 }
 
 TEST_F(VizNodeTest, DrawsNoFasterThanItsRate) {

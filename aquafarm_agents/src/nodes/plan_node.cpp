@@ -10,6 +10,7 @@
 #include <std_msgs/Time.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <cstdio>
@@ -39,7 +40,8 @@ namespace agents = aquafarm::agents;
 using agents::ExitCode;
 using aquafarm_msgs::RescuePlan;
 
-constexpr double kHeartbeat_s = 1.0;  // the panel waits for five of them
+constexpr double kHeartbeat_s = 1.0;   // the panel waits for five of them
+constexpr double kMarkerLife_s = 5.0;  // as long as the panel waits for a heartbeat
 constexpr double kPlanLimit_s = 60.0;
 
 struct PlanParams {
@@ -200,6 +202,31 @@ class PlanNode {
     const ros::WallTime wall = ros::WallTime::now();
     now.data = ros::Time(wall.sec, wall.nsec);
     heartbeat_.publish(now);
+    RenewMarkers(wall);
+  }
+
+  // Publishes the markers again: rviz removes them some seconds after the last time. rviz counts
+  // their lifetime in ROS time, which may run faster than the wall clock.
+  void RenewMarkers(const ros::WallTime& wall) {
+    const aquafarm::MutexLock lock(markers_mutex_);
+    const ros::Time now = ros::Time::now();
+    const double ran_s = (now - renewed_).toSec();
+    const double pace = renewed_.isZero() ? 1.0 : ran_s / (wall - renewed_wall_).toSec();
+    lifetime_ = ros::Duration(kMarkerLife_s * std::clamp(pace, 1.0, 1000.0));
+    renewed_ = now;
+    renewed_wall_ = wall;
+    if (drawn_.markers.empty() || markers_.getNumSubscribers() == 0) return;
+    for (auto& marker : drawn_.markers) marker.lifetime = lifetime_;
+    markers_.publish(drawn_);
+  }
+
+  void PublishMarkers(const RescuePlan& plan) {
+    const aquafarm::MutexLock lock(markers_mutex_);
+    drawn_ = PlanMarkers(plan);
+    for (auto& marker : drawn_.markers) marker.lifetime = lifetime_;
+    markers_.publish(drawn_);
+    // Only a new plan deletes the markers of the last one.
+    drawn_.markers.erase(drawn_.markers.begin());
   }
 
   void OnState(const aquafarm_msgs::FarmStateConstPtr& state) {
@@ -288,7 +315,7 @@ class PlanNode {
     for (std::size_t ship = 0; ship < paths_.size(); ++ship) {
       paths_[ship].publish(PathOfShip(plan, static_cast<std::int32_t>(ship)));
     }
-    markers_.publish(PlanMarkers(plan));
+    PublishMarkers(plan);
     plan_.publish(plan);
   }
 
@@ -338,6 +365,13 @@ class PlanNode {
   std::vector<ros::Publisher> paths_;  // by ship
   std::string told_fault_;
   std::string told_text_;
+
+  aquafarm::Mutex markers_mutex_;
+  // Without the marker that deletes.
+  visualization_msgs::MarkerArray drawn_ AQUAFARM_GUARDED_BY(markers_mutex_);
+  ros::Duration lifetime_ AQUAFARM_GUARDED_BY(markers_mutex_){kMarkerLife_s};
+  ros::Time renewed_ AQUAFARM_GUARDED_BY(markers_mutex_);
+  ros::WallTime renewed_wall_ AQUAFARM_GUARDED_BY(markers_mutex_);
 
   aquafarm::Mutex shown_mutex_;
   RescuePlan shown_ AQUAFARM_GUARDED_BY(shown_mutex_) = NoPlan();

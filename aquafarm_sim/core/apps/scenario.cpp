@@ -9,6 +9,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/charts/map_file.h"
+#include "aquafarm/farm/farm_text.h"
 #include "aquafarm/observation/encoder.h"
 #include "aquafarm/ranch/ranch_builder.h"
 #include "aquafarm/scenario/scenario_yaml.h"
@@ -176,7 +177,9 @@ void Run(const Arguments& arguments) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
   RefuseUnused(arguments, ranch.scenario);
-  if (ranch.scenario.width <= 200) std::printf("%s\n", RenderAscii(ranch.scenario).c_str());
+  if (ranch.scenario.width <= 200) {
+    std::printf("%s%s\n\n", RenderAscii(ranch.scenario).c_str(), kMapKey);
+  }
   for (const std::string& line : ranch.decided) std::printf("%s\n", line.c_str());
   if (!arguments.map.empty()) SaveMap(ToMap(ranch.scenario), arguments.map);
   if (arguments.output.empty()) return;

@@ -20,6 +20,7 @@ inline constexpr char kCompressed[] = "image/compressed";
 inline constexpr char kRoute[] = "route";  ///< in the namespace ship_<id>
 
 inline constexpr char kLayersParam[] = "layers";
+inline constexpr char kStyleParam[] = "style";
 inline constexpr char kRateParam[] = "rate_hz";
 inline constexpr char kWidthParam[] = "image_width";
 inline constexpr char kHeightParam[] = "image_height";

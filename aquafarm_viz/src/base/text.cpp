@@ -176,6 +176,12 @@ std::string Number(double value, int decimals) {
   return zero && text[0] == '-' ? text.data() + 1 : text.data();
 }
 
+std::string SeedText(std::uint64_t seed) {
+  constexpr std::uint64_t kEvaluationBit = std::uint64_t{1} << 63U;
+  if ((seed & kEvaluationBit) == 0) return std::to_string(seed);
+  return "evaluation " + std::to_string(seed & ~kEvaluationBit);
+}
+
 std::string Count(std::uint64_t value) {
   std::string text = std::to_string(value);
   for (auto at = static_cast<std::ptrdiff_t>(text.size()) - 3; at > 0; at -= 3) {

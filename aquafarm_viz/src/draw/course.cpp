@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "draw/free_space.h"
+#include "draw/nautical.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -118,7 +119,9 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
     FillCircle(image, at, 3.2 * layout.unit, Bgr(layout.style->halo));
     FillCircle(image, at, 2.2 * layout.unit, Bgr(layout.style->label));
     const double lead = double(i) * hours;
-    marks.push_back({at, "+" + Number(lead, lead == std::floor(lead) ? 0 : 1) + " h"});
+    const std::string text = "+" + Number(lead, lead == std::floor(lead) ? 0 : 1) + " h";
+    const std::string wind = WindText(point);
+    marks.push_back({at, text, wind.empty() ? "" : text + " " + wind});
   }
   return marks;
 }
@@ -130,9 +133,14 @@ void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace&
     space.Block({cvRound(mark.at.x) - half, cvRound(mark.at.y) - half, 2 * half, 2 * half});
   }
   for (const CourseMark& mark : marks) {
-    const cv::Size size(fonts.small.Width(mark.text), fonts.small.cap_height());
-    const auto place = space.Take(size, mark.at, 24.0 * layout.unit + size.width / 2.0);
-    if (place) DrawLabel(image, fonts.small, mark.text, place->tl(), layout);
+    for (const std::string& text : {mark.longer, mark.text}) {
+      if (text.empty()) continue;
+      const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
+      const auto place = space.Take(size, mark.at, 24.0 * layout.unit + size.width / 2.0);
+      if (!place) continue;
+      DrawLabel(image, fonts.small, text, place->tl(), layout);
+      break;
+    }
   }
 }
 

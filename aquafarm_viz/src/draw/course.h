@@ -23,12 +23,13 @@ using ToPixel = std::function<cv::Point2d(double x, double y)>;
 
 /// A mark on the way ahead.
 struct CourseMark {
-  cv::Point2d at;    ///< [pixels]
-  std::string text;  ///< such as "+6 h"
+  cv::Point2d at;      ///< [pixels]
+  std::string text;    ///< such as "+6 h"
+  std::string longer;  ///< such as "+6 h 38 m/s", used if there is space for it; may be empty
 };
 
-/// Draws a course: the past as a solid line, the way ahead dashed with marks at round hours, and
-/// the mean forecast error as a cone. Draws nothing for an extrapolated course.
+/// Draws a course: the past as a solid line, the way ahead dashed with marks at round hours and
+/// winds, and the mean forecast error as a cone. Draws nothing for an extrapolated course.
 /// @return the marks, for labels
 std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                                    const Course& course, const ToPixel& to_pixel,

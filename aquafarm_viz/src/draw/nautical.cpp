@@ -53,6 +53,10 @@ std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, dou
   return point + " at " + Number(km_h, km_h < 10.0 ? 1 : 0) + " km/h";
 }
 
+std::string WindText(const TrackPoint& point) {
+  return point.wind_mps ? Number(*point.wind_mps, 0) + " m/s" : "";
+}
+
 std::string HoursText(double seconds) {
   const double hours = seconds / kHour_s;
   return Number(hours, hours < 10.0 ? 1 : 0) + " h";

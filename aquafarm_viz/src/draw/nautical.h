@@ -8,6 +8,8 @@
 #include <ctime>
 #include <string>
 
+#include "scene/storm_track.h"
+
 namespace aquafarm_viz {
 
 /// Returns a distance such as "850 m", "1.8 km" or "89 km".
@@ -29,6 +31,9 @@ std::string TimeText(std::time_t utc, const char* format);
 /// Returns the compass bearing and the speed of a moving centre, such as "NW at 18 km/h"; in cells
 /// per step on a farm without a geographic position; "stands still" at speed 0.
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step);
+
+/// Returns a disaster's max sustained wind, such as "38 m/s"; empty if it is not given.
+std::string WindText(const TrackPoint& point);
 
 /// Returns a duration such as "31 h" or "4.5 h".
 std::string HoursText(double seconds);

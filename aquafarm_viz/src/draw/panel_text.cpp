@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "aquafarm_viz/base/disaster_kinds.h"
+#include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/nautical.h"
 #include "draw/region.h"
@@ -78,7 +79,7 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
        layout.style->words);
   pair("return", Number(state.joint_return, 1),
        state.joint_return < 0.0F ? layout.style->bad : layout.style->good);
-  pair("seed", std::to_string(state.seed), layout.style->faint);
+  pair("seed", SeedText(state.seed), layout.style->faint);
   if (state.observer >= 0)
     pair("as seen by ship", std::to_string(state.observer), layout.style->words);
   if (state.paused) line.Put(fonts.bold, "paused", layout.style->GradeText(2), gap);
@@ -232,12 +233,13 @@ void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, con
   ListEachDevice(panel, spec, state, outlook, layout);
 }
 
-void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state, const Layout& layout,
-                   int rows) {
+void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
+                   const std::vector<Course>& courses, const Layout& layout, int rows) {
   static constexpr std::array<const char*, 5> kGrades{"", "blue", "yellow", "orange", "red"};
   int shown = 0;
   panel.Heading("DISASTERS", "");
-  for (const auto& disaster : state.disasters) {
+  for (std::size_t i = 0; i < state.disasters.size(); ++i) {
+    const auto& disaster = state.disasters[i];
     if (!disaster.known || 3 * (shown + 1) > rows) continue;
     ++shown;
     const bool over = disaster.steps_left <= 0;
@@ -253,8 +255,9 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state, c
         over                  ? ""
         : spec.has_start_time ? "ends in " + HoursText(disaster.steps_left * spec.step_duration_s)
                               : Count(std::uint64_t(disaster.steps_left)) + " steps left";
-    panel.Detail(disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago", "",
-                 layout.style->faint);
+    const std::string wind = over ? "" : WindText(courses[i].ahead.front());
+    panel.Detail(disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago",
+                 wind.empty() ? "" : "wind " + wind, layout.style->words);
   }
   if (shown == 0) panel.Detail("none known", "", layout.style->faint);
 }
@@ -328,7 +331,7 @@ void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
   if (overlays.training != nullptr) DrawTrainingLine(image, *overlays.training, layout, fonts);
   Panel panel(image, layout, fonts);
   ListDevices(panel, spec, state, forecasts.outlook, layout);
-  ListDisasters(panel, spec, state, layout, std::max(3, panel.RowsLeft() - 7));
+  ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
   ListShips(panel, state, layout);
   DrawRegion(image, panel.Room(), spec, state, forecasts.courses, layout, fonts);
 }

@@ -112,7 +112,7 @@ std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, cons
   if (known < disaster.steps_left) return "known until +" + AheadText(spec, known);
   if (course.kind == Course::Kind::kExtrapolated) return "";
   if (course.kind == Course::Kind::kPublished) return "dashed: forecast";
-  return course.errors.empty() ? "dashed: way ahead" : "shaded: mean forecast error";
+  return course.errors.empty() ? "dashed: course ahead" : "shaded: mean forecast error";
 }
 
 // Says when a storm whose course is given is nearest, or that its rings cover or reach the farm.
@@ -157,6 +157,11 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
   if (course.kind != Course::Kind::kExtrapolated) {
     words = CourseWords(spec, state, *subject, course);
     words.lines[1] = SourceText(spec, disaster, course);
+    const std::string wind = WindText(subject->nearest);
+    const bool is_later = subject->nearest.step > course.ahead.front().step;
+    if (is_later && !wind.empty() && course.known_until >= subject->nearest.step) {
+      words.lines[1] = "wind " + wind + " then";
+    }
     return words;
   }
   // The present motion continued says when a ring comes, but not that none does.

@@ -71,6 +71,9 @@ class Maker {
       : cell_m_(spec.cell_size_m),
         // On large farms objects are drawn larger than a cell to stay visible.
         thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
+        // With the whole farm in a view of 600 pixels, capitals have 11 pixels or more.
+        word_m_(
+            std::max(0.6 * thing_m_, 0.022 * std::max(spec.width, spec.height) * spec.cell_size_m)),
         layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
         header_(header) {
     header_.frame_id = names::kMapFrame;
@@ -78,6 +81,7 @@ class Maker {
 
   double cell_m() const { return cell_m_; }
   double thing_m() const { return thing_m_; }
+  double word_m() const { return word_m_; }
   double layer_m() const { return layer_m_; }
 
   Marker Make(const char* space, int id, int type, Layer layer, double x, double y) const {
@@ -130,6 +134,7 @@ class Maker {
  private:
   double cell_m_;
   double thing_m_;
+  double word_m_;
   double layer_m_;
   std_msgs::Header header_;
 };
@@ -203,8 +208,9 @@ void AddPorts(MarkerArray& array, const Maker& maker, const FarmSpec& spec) {
     disc.scale.z = 0.5 * maker.layer_m();
     disc.color = Color(kPort);
     array.markers.push_back(disc);
-    Marker letter = maker.Text("port_letter", port.id, port.cell.x, port.cell.y,
-                               PortLetter(port.id), 0.8 * maker.thing_m(), kInk);
+    Marker letter =
+        maker.Text("port_letter", port.id, port.cell.x, port.cell.y, PortLetter(port.id),
+                   std::max(0.8 * maker.thing_m(), maker.word_m()), kInk);
     letter.pose.position.z = kDeviceLayer * maker.layer_m();  // below ships in the port
     array.markers.push_back(letter);
   }
@@ -235,7 +241,7 @@ void AddLabels(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     array.markers.push_back(IsLabelled(spec, device)
                                 ? maker.Text("device_label", device.id, device.x + aside,
                                              device.y - aside, DeviceLabel(device.id),
-                                             0.6 * maker.thing_m(), kDirectionColor)
+                                             maker.word_m(), kDirectionColor)
                                 : maker.Delete("device_label", device.id));
   }
 }
@@ -317,7 +323,7 @@ void AddShip(MarkerArray& array, const Maker& maker, const ShipState& ship, cons
   array.markers.push_back(deck);
   const double aside = 0.75 * maker.thing_m() / maker.cell_m();
   array.markers.push_back(maker.Text("ship_name", ship.id, ship.x + aside, ship.y - aside,
-                                     std::to_string(ship.id), 0.6 * maker.thing_m(), kPaper));
+                                     std::to_string(ship.id), maker.word_m(), kPaper));
 }
 
 void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, const FarmState& state,
@@ -401,7 +407,7 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const DisasterStat
   array.markers.push_back(eye);
   const double below = 0.9 * maker.thing_m() / maker.cell_m();
   array.markers.push_back(maker.Text("disaster_name", disaster.id, disaster.x, disaster.y - below,
-                                     DisasterName(disaster.kind), 0.6 * maker.thing_m(), kPaper));
+                                     DisasterName(disaster.kind), maker.word_m(), kPaper));
   if (!(disaster.speed > 0.0F)) {
     array.markers.push_back(maker.Delete("heading", disaster.id));
     return;

@@ -36,17 +36,20 @@ VizParams ReadVizParams(const ros::NodeHandle& node) {
   VizParams params;
   aquafarm_sim::Params reader(node);
   std::string layers;
+  std::string style = "dark";
   reader.Number(names::kRateParam, 0.1, 1000.0, params.rate_hz);
   reader.Int(names::kWidthParam, kMinImageSide, kMaxImageSide, params.image.width);
   reader.Int(names::kHeightParam, kMinImageSide, kMaxImageSide, params.image.height);
   reader.Text(names::kLayersParam, layers);
+  reader.Text(names::kStyleParam, style);
   reader.RefuseOthers();
   if (node.hasParam(names::kLayersParam)) params.layers = ParseLayers(layers);
+  params.style = &StyleByName(style);
   return params;
 }
 
 VizNode::VizNode(ros::NodeHandle node, const VizParams& params)
-    : node_(node), layers_(params.layers), painter_(params.image) {
+    : node_(node), layers_(params.layers), painter_(params.image, *params.style) {
   markers_ = node.advertise<visualization_msgs::MarkerArray>(
       names::kMarkers, 10,
       [this](const ros::SingleSubscriberPublisher& subscriber) { OnMarkerSubscriber(subscriber); });

@@ -18,9 +18,17 @@ using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
-constexpr std::size_t kMostDevices = 256;
+constexpr std::size_t kMostDevices = 1000;  // of a scenario
 constexpr int kMostSteps = 1000;
 constexpr double kWorse = 0.5;  // a risk must be lower by this much to count as another ring
+
+double LargestRadius(const TrackPoint& storm) {
+  double largest = 0.0;
+  for (const auto& ring : storm.radii) {
+    largest = std::max(largest, *std::max_element(ring.begin(), ring.end()));
+  }
+  return largest;
+}
 
 double RiskAt(const TrackPoint& storm, double x, double y) {
   const double east = x - storm.x;
@@ -41,7 +49,11 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
     const auto& disaster = state.disasters[i];
     if (!disaster.known || disaster.steps_left <= step) continue;
     const TrackPoint storm = TrackAt(courses[i].ahead, double(state.step) + step);
+    const double reach = LargestRadius(storm);
     for (std::size_t d = 0; d < devices.size(); ++d) {
+      const double east = devices[d]->x - storm.x;
+      const double north = devices[d]->y - storm.y;
+      if (east * east + north * north > reach * reach) continue;  // most devices in most steps
       DeviceOutlook& device = outlook.devices[d];
       const double risk = RiskAt(storm, devices[d]->x, devices[d]->y);
       if (step == 0) {
@@ -94,14 +106,6 @@ bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
     }
   }
   return false;
-}
-
-double LargestRadius(const TrackPoint& storm) {
-  double largest = 0.0;
-  for (const auto& ring : storm.radii) {
-    largest = std::max(largest, *std::max_element(ring.begin(), ring.end()));
-  }
-  return largest;
 }
 
 // Returns whether a leg is so far from the farm that no ring can cover a part of it.

@@ -53,7 +53,7 @@ std::string RanchModel::Headline() const {
   std::string text = spec.scenario_name + "   episode " + Count(state.episode) + "   step " +
                      Count(state.step) + " / " +
                      Count(std::uint64_t(std::max(0, spec.step_limit))) + "   return " +
-                     Number(state.joint_return, 1) + "   seed " + std::to_string(state.seed);
+                     Number(state.joint_return, 1) + "   seed " + SeedText(state.seed);
   if (state.paused) text += "   paused";
   return text;
 }

@@ -34,6 +34,7 @@ TrackPoint ReadPoint(const YAML::Node& node) {
     point.radii.push_back({r, r, r, r});
   }
   for (const YAML::Node& risk : node["risks"]) point.risks.push_back(risk.as<double>());
+  if (const YAML::Node wind = node["wind_mps"]) point.wind_mps = wind.as<double>();
   return point;
 }
 
@@ -175,14 +176,19 @@ TrackPoint TrackAt(const Track& track, double step) {
   const TrackPoint& before = *(after - 1);
   const double share = (step - before.step) / (after->step - before.step);
   const auto mix = [share](double a, double b) { return a + share * (b - a); };
-  return {step, mix(before.x, after->x), mix(before.y, after->y),
+  return {step,
+          mix(before.x, after->x),
+          mix(before.y, after->y),
           Between(before.radii, after->radii,
                   [&](const auto& a, const auto& b) {
                     std::array<double, 4> radii{};
                     for (std::size_t q = 0; q < 4; ++q) radii[q] = mix(a[q], b[q]);
                     return radii;
                   }),
-          Between(before.risks, after->risks, mix)};
+          Between(before.risks, after->risks, mix),
+          before.wind_mps && after->wind_mps
+              ? std::optional<double>(mix(*before.wind_mps, *after->wind_mps))
+              : std::nullopt};
 }
 
 TrackPoint ClosestApproach(const FarmSpec& spec, const Track& track, double from_step) {
@@ -210,7 +216,7 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
                 const StormTracks& tracks) {
   const DisasterState& disaster = state.disasters.at(index);
   const auto now = static_cast<double>(state.step);
-  const TrackPoint present = Present(disaster, now);
+  TrackPoint present = Present(disaster, now);
   const double growth = index < tracks.growths.size() ? tracks.growths[index] : 0.0;
   if (state.observer >= 0 || index >= tracks.tracks.size() || tracks.tracks[index].empty()) {
     return Extrapolated(disaster, present, growth);
@@ -223,6 +229,7 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
   const PublishedForecast* forecast = Newest(tracks.forecasts[index], now);
   const Track& source = forecast != nullptr ? forecast->points : truth;
   const double end = now + std::clamp(disaster.steps_left, 1, kHorizon);
+  present.wind_mps = expected.wind_mps;
   Course course{forecast != nullptr ? Course::Kind::kPublished : Course::Kind::kRecorded,
                 {present},
                 {},

@@ -9,6 +9,7 @@
 #include <aquafarm_msgs/FarmState.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct TrackPoint {
   double y{};
   std::vector<std::array<double, 4>> radii{};  ///< to the NE, SE, SW, NW [cells], one per ring
   std::vector<double> risks{};                 ///< one per ring, worst first; empty: not given
+  std::optional<double> wind_mps{};            ///< max sustained wind; nullopt: not given
 };
 
 /// The track of one disaster; empty if it has none.

@@ -262,9 +262,9 @@ class Writer {
            (forecast.agency.empty() ? "" : "  # " + OneLine(forecast.agency)) +
            "\n        points:");
       for (const StormFix& fix : forecast.fixes) {
-        Line("          - {time: " + FormatTime(fix.time) +
-             ", latitude: " + Short(fix.position.latitude, 3) +
-             ", longitude: " + Short(fix.position.longitude, 3) + "}");
+        Line("          - {time: " + FormatTime(fix.time) + ", latitude: " +
+             Short(fix.position.latitude, 3) + ", longitude: " + Short(fix.position.longitude, 3) +
+             (fix.wind_mps ? ", wind_mps: " + Short(*fix.wind_mps, 1) : "") + "}");
       }
     }
   }

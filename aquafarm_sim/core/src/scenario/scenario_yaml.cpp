@@ -133,6 +133,12 @@ std::uint64_t HashScenario(const Scenario& scenario) {
   Scenario rules = scenario;
   rules.name.clear();
   rules.description.clear();
+  for (DisasterSpec& disaster : rules.disasters) {
+    for (Waypoint& point : disaster.track) point.wind_mps.reset();
+    for (IssuedForecast& forecast : disaster.forecasts) {
+      for (Waypoint& point : forecast.points) point.wind_mps.reset();
+    }
+  }
   return HashBytes(Write(rules));
 }
 

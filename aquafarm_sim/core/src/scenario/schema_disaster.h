@@ -21,7 +21,6 @@ struct GeoFix {
   std::vector<float> radii_km;
   std::vector<QuadrantRadii> quadrants_km;  ///< instead of radii_km
   std::optional<float> pressure_hpa;        ///< informative only; has no effect
-  std::optional<float> wind_mps;            ///< informative only; has no effect
 };
 
 /// Parameters that convert a GeoFix to a Waypoint. Pointers to it are null if no file is read,
@@ -64,6 +63,8 @@ inline std::vector<float> Largest(const std::vector<QuadrantRadii>& quadrants) {
   return radii;
 }
 
+inline constexpr Interval<float> kWind_mps{0.0F, 150.0F};
+
 template <typename Archive, typename W>
 void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const GradeRisks& by_grade) {
   const ListOf<Interval<float>> radii{kRadius, 1, kMaxRings};
@@ -90,10 +91,10 @@ void VisitWaypoint(Archive& a, W& waypoint, const WorldFrame* frame, const Grade
     a.When(real, "there is a time");
     a.Field("quadrants_km", fix.quadrants_km, quadrants);
     a.Field("pressure_hpa", fix.pressure_hpa, Interval<float>{800.0F, 1100.0F});
-    a.Field("wind_mps", fix.wind_mps, Interval<float>{0.0F, 150.0F});
     if (real) Resolve(fix, frame, a.path(), waypoint);
   }
   a.Always();
+  a.Field("wind_mps", waypoint.wind_mps, kWind_mps);
   a.Field("grade", waypoint.grade, kGrade, Need::kRequired);
   if constexpr (Archive::kReads) {
     if (!by_grade.empty()) waypoint.risks = by_grade[static_cast<std::size_t>(waypoint.grade - 1)];
@@ -125,6 +126,7 @@ void VisitForecastPoint(Archive& a, P& point, const WorldFrame* frame, const Gra
     if (real) std::tie(point.step, point.x, point.y) = std::tie(there.step, there.x, there.y);
   }
   a.Always();
+  a.Field("wind_mps", point.wind_mps, kWind_mps);
 }
 
 template <typename Archive, typename F>

@@ -130,8 +130,30 @@ disasters:
   EXPECT_FLOAT_EQ(track[0].radii[1], 95.5F);
   EXPECT_EQ(track[1].risks, (std::vector<float>{-20.0F, -5.0F})) << "the disaster's own";
   EXPECT_EQ(track[2].risks, (std::vector<float>{-10.0F, -8.0F}));
+  EXPECT_EQ(track[1].wind_mps, 33.0F);
+  EXPECT_EQ(track[2].wind_mps, std::nullopt);
   EXPECT_EQ(scenario.disasters[0].radii, track[0].radii);
   EXPECT_EQ(scenario.disasters[0].grade, 3);
+}
+
+TEST(Reader, KeepsWindsOfTracksAndForecastsWithoutEffect) {
+  const std::string head =
+      "name: x\ndisasters:\n  - kind: typhoon\n    risks: [-20, -5]\n    track:\n";
+  const auto ranch = [&head](const std::string& wind) {
+    return ParseScenario(head + "      - {step: 0, x: 0, y: 0, radii: [1, 2], grade: 3" + wind +
+                             "}\n      - {step: 9, x: 9, y: 0, radii: [1, 2], grade: 3}\n" +
+                             "    forecasts:\n      - step: 0\n        points:\n" +
+                             "          - {step: 5, x: 4, y: 0" + wind + "}\n",
+                         "ranch.yaml");
+  };
+  const Scenario windy = ranch(", wind_mps: 38.5");
+  const Scenario back = ParseScenario(ToYaml(windy), "again");
+  EXPECT_EQ(back.disasters[0].track[0].wind_mps, 38.5F);
+  EXPECT_EQ(back.disasters[0].track[1].wind_mps, std::nullopt);
+  EXPECT_EQ(back.disasters[0].forecasts[0].points[0].wind_mps, 38.5F);
+  EXPECT_EQ(windy.hash, ranch("").hash) << "policies and bags of the scenario stay valid";
+  EXPECT_EQ(windy.hash, back.hash);
+  EXPECT_THROW(ranch(", wind_mps: 151"), InputError);
 }
 
 // A scenario that sets every key of a file to a value other than the default.

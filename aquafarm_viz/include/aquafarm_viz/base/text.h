@@ -59,4 +59,8 @@ std::string Number(double value, int decimals);
 /// Formats a count with commas between thousands.
 std::string Count(std::uint64_t value);
 
+/// Formats a seed: "7"; "evaluation 1000" for the seeds of evaluation episodes, which have the
+/// highest bit set (aquafarm/base/rng.h).
+std::string SeedText(std::uint64_t seed);
+
 }  // namespace aquafarm_viz

@@ -20,9 +20,10 @@ namespace aquafarm_viz {
 
 /// The parameters of the node, from its private namespace.
 struct VizParams {
-  double rate_hz{20.0};  ///< max drawings per second of wall time, (0, 1000]
-  ImageSize image;       ///< [pixels], each side in [kMinImageSide, kMaxImageSide]
-  Layers layers;         ///< layers of the pictures and markers
+  double rate_hz{20.0};              ///< max drawings per second of wall time, (0, 1000]
+  ImageSize image;                   ///< [pixels], each side in [kMinImageSide, kMaxImageSide]
+  Layers layers;                     ///< layers of the pictures and markers
+  const Style* style{&DarkStyle()};  ///< colours of the pictures
 };
 
 /// Reads the parameters.

@@ -13,6 +13,10 @@
 
 namespace aquafarm {
 
+/// The marks of maps in text; the script `keyboard` has the same line.
+inline constexpr const char kMapKey[] =
+    "0…9 ship  d device  P port  # island  o rock  ~ disaster  . water";
+
 /// The mark of a chart cell (CellBits); `device_mark` stands for a device site.
 char ChartMark(std::uint8_t bits, char device_mark);
 

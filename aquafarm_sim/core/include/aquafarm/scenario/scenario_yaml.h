@@ -21,7 +21,7 @@ Scenario ParseScenario(const std::string& text, const std::string& origin_name);
 std::string ToYaml(const Scenario& scenario);
 
 /// Hash of the parameters that affect episodes: HashBytes of ToYaml with an empty name and
-/// description. ParseScenario stores it in Scenario::hash.
+/// description and without winds. ParseScenario stores it in Scenario::hash.
 std::uint64_t HashScenario(const Scenario& scenario);
 
 /// Converts a time with its zone, Z or ±HH:MM, to UTC seconds since 1970. @throws InputError

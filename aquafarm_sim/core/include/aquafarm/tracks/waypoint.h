@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace aquafarm {
@@ -24,6 +25,8 @@ struct Waypoint {
   /// Radii by quadrant, one entry per ring; `radii` then holds the largest radius of each ring.
   /// Empty if all rings are circles.
   std::vector<QuadrantRadii> quadrants{};
+  /// Max sustained wind near the centre, for pictures only: it has no effect on the farm.
+  std::optional<float> wind_mps{};
 };
 
 /// Risks of the rings for grades 1 to 4, worst risk first; empty if unset.

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm_agents/link/duplicate_node.h"
 
-#include <netdb.h>
 #include <poll.h>
 #include <ros/master.h>
 #include <ros/network.h>
 #include <ros/this_node.h>
 #include <sys/socket.h>
-#include <unistd.h>
+#include <xmlrpcpp/XmlRpcSocket.h>
 
 #include <cerrno>
 #include <cstdint>
-#include <memory>
 #include <string>
 
 #include "aquafarm/base/check.h"
@@ -33,27 +31,17 @@ bool Completes(int connection) {
          fault == 0;
 }
 
-bool Connects(const addrinfo& address) {
-  const int connection = socket(
-      address.ai_family, address.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, address.ai_protocol);
-  if (connection < 0) return false;
-  const bool connected = connect(connection, address.ai_addr, address.ai_addrlen) == 0 ||
-                         (errno == EINPROGRESS && Completes(connection));
-  close(connection);
-  return connected;
-}
-
 /// True if a process accepts connections on the port; false if the host does not respond in time.
+/// A connection is enough: a node that is stopped or hangs does not answer, but has the name.
 bool IsListenedOn(const std::string& host, std::uint32_t port) {
-  addrinfo wanted{};
-  wanted.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found) != 0) return false;
-  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(found, &freeaddrinfo);
-  for (const addrinfo* one = found; one != nullptr; one = one->ai_next) {
-    if (Connects(*one)) return true;
-  }
-  return false;
+  using XmlRpc::XmlRpcSocket;  // as roscpp connects to nodes
+  const int connection = XmlRpcSocket::socket();
+  if (connection < 0) return false;
+  const bool connected = XmlRpcSocket::setNonBlocking(connection) &&
+                         XmlRpcSocket::connect(connection, host, static_cast<int>(port)) &&
+                         Completes(connection);
+  XmlRpcSocket::close(connection);
+  return connected;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/charts/map_file.h"
@@ -14,9 +15,12 @@
 #include "aquafarm/ranch/ranch_builder.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm/storms/presets.h"
+#include "base/text.h"
 
 namespace aquafarm {
 namespace {
+
+using internal::ParseNumber;
 
 struct Arguments {
   RanchRequest ranch;
@@ -40,11 +44,10 @@ struct Arguments {
 std::pair<double, double> Pair(const std::string& name, const std::string& text, char between,
                                const char* expected) {
   const std::size_t at = text.find(between);
-  double first = 0.0;
-  double second = 0.0;
-  if (at != std::string::npos && CLI::detail::lexical_cast(text.substr(0, at), first) &&
-      CLI::detail::lexical_cast(text.substr(at + 1), second)) {
-    return {first, second};
+  if (at != std::string::npos) {
+    const std::optional<double> first = ParseNumber(text.substr(0, at));
+    const std::optional<double> second = ParseNumber(text.substr(at + 1));
+    if (first && second) return {*first, *second};
   }
   throw InputError(name + ": got '" + text + "', expected " + expected);
 }
@@ -62,11 +65,9 @@ GeoPoint Place(const std::string& name, const std::string& text) {
 double Metres(const std::string& text) {
   const bool km = text.size() > 2 && text.compare(text.size() - 2, 2, "km") == 0;
   const std::size_t unit = km ? 2 : !text.empty() && text.back() == 'm' ? 1 : 0;
-  double value = 0.0;
-  if (!CLI::detail::lexical_cast(text.substr(0, text.size() - unit), value)) {
-    throw InputError("cell: got '" + text + "', expected a length such as 200m or 0.2km");
-  }
-  return km ? value * 1000.0 : value;
+  const std::optional<double> value = ParseNumber(text.substr(0, text.size() - unit));
+  if (!value) throw InputError("cell: got '" + text + "', expected a length such as 200m or 0.2km");
+  return km ? *value * 1000.0 : *value;
 }
 
 // Parses "salinity=sea.nc:so"; the file name may contain a colon, the variable may not.

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 import unittest
+import warnings
 
 import rostest
 
@@ -185,6 +186,7 @@ class DaskTest(unittest.TestCase):
         before, cluster._CONNECT_S = cluster._CONNECT_S, 1.0
         self.addCleanup(setattr, cluster, "_CONNECT_S", before)
         self.assertLessEqual(before, 30.0)
+        warnings.simplefilter("ignore")  # tornado's, which python3 -m unittest shows
         with contextlib.redirect_stderr(io.StringIO()) as said, \
                 contextlib.redirect_stdout(io.StringIO()):
             code = cli.main([str(DATA / "tiny.yaml"), "--algorithms", "random", "--output",

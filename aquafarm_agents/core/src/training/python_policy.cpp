@@ -27,6 +27,8 @@ constexpr int kStartLimit_s = 180;  // importing torch takes long on a busy mach
 constexpr int kAnswerLimit_s = 60;
 constexpr int kChildSocket = 3;
 constexpr std::uint32_t kMaxWords = 4096;  // bytes of an error
+constexpr const char* kEnded =
+    "its Python process has ended, its last lines are above; AQUAFARM_PYTHON selects a Python";
 
 bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -179,7 +181,7 @@ void PolicyProcess::Send(const void* bytes, std::size_t count) {
   while (count > 0) {
     const ssize_t sent = send(socket_, next, count, MSG_NOSIGNAL);
     if (sent < 0 && errno == EINTR) continue;
-    if (sent <= 0) Fail("its Python process has ended; its last lines are above");
+    if (sent <= 0) Fail(kEnded);
     next += sent;
     count -= static_cast<std::size_t>(sent);
   }
@@ -198,7 +200,7 @@ void PolicyProcess::Receive(void* bytes, std::size_t count, int limit_s) {
     if (found <= 0) continue;
     const ssize_t got = recv(socket_, next, count, 0);
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) Fail("its Python process has ended; its last lines are above");
+    if (got <= 0) Fail(kEnded);
     next += got;
     count -= static_cast<std::size_t>(got);
   }

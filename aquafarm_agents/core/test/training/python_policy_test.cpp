@@ -101,7 +101,8 @@ TEST_F(PythonPolicies, WhatCannotBePlayedIsNamedInOneLine) {
   EXPECT_EQ(refusal_of("OBSERVATION = 'smell'\ndef act(o, m):\n    pass\n"),
             "OBSERVATION: got 'smell', expected one of: features, planes, index");
   EXPECT_EQ(refusal_of("import os\nos._exit(4)\n"),
-            "its Python process has ended; its last lines are above");
+            "its Python process has ended, its last lines are above; AQUAFARM_PYTHON selects a "
+            "Python");
   EXPECT_CONTAINS(Refusal("/none/model.zip"), "is not a model of Stable-Baselines3");
   setenv("AQUAFARM_PYTHON", "/none/python3", 1);
   EXPECT_EQ(Refusal("mine.py"),

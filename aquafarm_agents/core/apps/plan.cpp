@@ -133,7 +133,7 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--storm", request.storm, "recorded track: plans as at --at (a hindcast)");
   app.add_option("--storm-name", request.storm_name, "storm in that file, if it has several");
   app.add_option("--at", arguments.at,
-                 "start of the plan, UTC as 2021-07-24T12:00:00Z; default: now, or the newest "
+                 "start of the plan, UTC as 2021-07-24T12:00Z; default: now, or the newest "
                  "report of an old bulletin");
   app.add_option("--devices", request.devices,
                  "CSV: name,latitude,longitude,kind,value[,damaged]; default: those of the ranch");

@@ -251,7 +251,7 @@ void AddRanchOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--lead", ranch.lead_h, "hours before the widest ring comes")
       ->check(CLI::Range(0.0, 240.0))
       ->needs(app.get_option("--track"));
-  app.add_option("--start", arguments.start, "UTC as 2021-07-24T12:00:00Z, instead of --lead");
+  app.add_option("--start", arguments.start, "UTC as 2021-07-24T12:00Z, instead of --lead");
   app.add_option("--seed", ranch.seed, "of the layout");
 }
 

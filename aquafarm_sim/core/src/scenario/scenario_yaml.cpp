@@ -143,16 +143,12 @@ std::uint64_t HashScenario(const Scenario& scenario) {
 }
 
 std::int64_t ParseUtc(const std::string& name, const std::string& text) {
-  std::int64_t seconds = 0;
-  if (internal::ParseTime(text, seconds)) return seconds;
-  // A local time must state its zone.
-  const std::string zone = text.size() < 6 ? "" : text.substr(text.size() - 6);
-  if (!zone.empty() && (zone[0] == '+' || zone[0] == '-') && zone[3] == ':') {
-    if (const auto utc = internal::ParseDateTime(text, 0)) return *utc;
-  }
+  const auto utc = internal::ParseDateTime(text, 0);
+  // A time without a zone depends on the zone that is assumed.
+  if (utc && utc == internal::ParseDateTime(text, 3600)) return *utc;
   throw InputError(name + ": got '" + text +
-                   "', expected a UTC time as 2021-07-24T12:00:00Z, or a local one with its zone, "
-                   "as 2021-07-24T20:00:00+08:00");
+                   "', expected a UTC time as 2021-07-24T12:00Z, or a local one with its zone, as "
+                   "2021-07-24T20:00+08:00");
 }
 
 }  // namespace aquafarm

@@ -106,9 +106,8 @@ TEST(Program, RefusesWrongArguments) {
       {"--sea-risk 1", "--sea-risk requires --sea"},
       {"--sea-level nan", "sea_level: got nan, expected [-100000, 100000]"},
       {"--start noon",
-       "start: got 'noon', expected a UTC time as 2021-07-24T12:00:00Z, or a local one with its "
-       "zone, "
-       "as 2021-07-24T20:00:00+08:00"},
+       "start: got 'noon', expected a UTC time as 2021-07-24T12:00Z, or a local one with its zone, "
+       "as 2021-07-24T20:00+08:00"},
       {"--chart /nowhere.json --center 30,122", "/nowhere.json: cannot read: No such file"},
       {"--devices 0", "--devices: Value 0 not in range"},
       {"--frob", "The following argument was not expected: --frob"},

@@ -348,5 +348,16 @@ TEST(Times, AreReadAndWrittenAsUtc) {
   EXPECT_FALSE(internal::ParseTime("1899-12-31T23:59:59Z", seconds));
 }
 
+TEST(Times, OfOptionsNeedAZoneAndMayLeaveOutSeconds) {
+  for (const char* text : {"2021-07-24T12:00:00Z", "2021-07-24T12:00Z", "2021-07-24 12:00Z",
+                           "2021-07-24T20:00+08:00", "2021-07-24T08:30:00-03:30"}) {
+    EXPECT_EQ(ParseUtc("at", text), 1627128000) << text;
+  }
+  for (const char* text : {"", "noon", "2021-07-24T12:00", "2021-07-24T12:00:00", "2021-07-24",
+                           "2021-07-24T25:00Z", "2021-07-24T12:00Zx"}) {
+    EXPECT_THROW(ParseUtc("at", text), InputError) << text;
+  }
+}
+
 }  // namespace
 }  // namespace aquafarm

@@ -24,7 +24,10 @@ std::string ToYaml(const Scenario& scenario);
 /// description and without winds. ParseScenario stores it in Scenario::hash.
 std::uint64_t HashScenario(const Scenario& scenario);
 
-/// Converts a time with its zone, Z or ±HH:MM, to UTC seconds since 1970. @throws InputError
+/// Converts a time to UTC seconds since 1970: YYYY-MM-DDTHH:MM[:SS] and a zone, Z or ±HH:MM. A time
+/// without a zone is refused.
+/// @param name of the option or column, for the message
+/// @throws InputError
 std::int64_t ParseUtc(const std::string& name, const std::string& text);
 
 }  // namespace aquafarm

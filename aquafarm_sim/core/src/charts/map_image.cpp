@@ -116,7 +116,29 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
   return image;
 }
 
+// Refuses a PNG with a chunk longer than the file: stb allocates the stated length before it reads.
+void CheckPngChunks(const std::string& bytes, const ParseContext& place) {
+  constexpr std::size_t kSignature = 8;
+  constexpr std::size_t kAround = 12;  // length and name before a chunk's data, checksum after it
+  if (bytes.compare(0, kSignature, "\x89PNG\r\n\x1a\n") != 0) return;
+  std::size_t at = kSignature;
+  while (bytes.size() - at >= kAround) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      length = length * 256 + static_cast<unsigned char>(bytes[at + i]);
+    }
+    const std::size_t left = bytes.size() - at - kAround;
+    if (length > left) {
+      place.Fail("got a chunk of " + std::to_string(length) + " bytes, expected at most the " +
+                 std::to_string(left) + " that the file still has; is it cut off?");
+    }
+    if (bytes.compare(at + 4, 4, "IEND") == 0) return;
+    at += length + kAround;
+  }
+}
+
 MapImage ParseWithStb(const std::string& bytes, const ParseContext& place) {
+  CheckPngChunks(bytes, place);
   const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(std::min<std::size_t>(bytes.size(), 1U << 30U));
   int width = 0;

@@ -78,6 +78,7 @@ class DocCommandsTest(unittest.TestCase):
         (script.parent / ".ws").symlink_to(cls.folder / "ws")
         # The reader's folder: the files that the pages name, next to ./aquafarm.
         cls.place = script.parent
+        (cls.place / "aquafarm_sim").symlink_to(REPOSITORY / "aquafarm_sim")
         (cls.place / "coast.json").write_text(COAST)
         storms = json.loads((DATA / "bulletin.json").read_text(encoding="utf-8-sig"))
         (cls.place / "bulletin.json").write_text(json.dumps(storms[:1]), encoding="utf-8")

@@ -119,6 +119,12 @@ inline std::array<float, kRewardTermCount> Numbers(const RewardTerms& terms) {
   return numbers;
 }
 
+inline RewardTerms TermsOf(const std::array<float, kRewardTermCount>& numbers) {
+  RewardTerms terms;
+  std::memcpy(static_cast<void*>(&terms), numbers.data(), sizeof(terms));
+  return terms;
+}
+
 template <>
 struct FieldsOf<Ship> {
   template <typename Archive, typename S>
@@ -134,7 +140,7 @@ struct FieldsOf<Ship> {
     for (std::size_t i = 7; i < t.size(); ++i) {  // terms that were added later
       a.Added((std::string(kRewardTermNames[i]) + "_term").c_str(), t[i]);
     }
-    if constexpr (Archive::kReads) std::memcpy(&ship.terms, t.data(), sizeof(ship.terms));
+    if constexpr (Archive::kReads) ship.terms = TermsOf(t);
     a.Field("reward", ship.reward);
     a.Field("return", ship.episode_return);
     a.Added("energy", ship.energy);

@@ -9,6 +9,7 @@ with the command. All its files are in a temporary folder, and a Slurm of this h
 import os
 import pathlib
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -17,6 +18,7 @@ import time
 
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue", "sinfo")
 START_S = 120.0
+LIMIT_S = 600.0  # of a command in the cluster
 CPUS = 8  # that Slurm gives away, whatever the machine has
 
 CONFIGURATION = """ClusterName=aquafarm_test
@@ -132,7 +134,7 @@ class OneNodeSlurm:
     def call(self, *command, check=True, **variables):
         """Runs a command in the cluster; returns its output."""
         done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=False,
-                              env={**self.environment, **variables})
+                              env={**self.environment, **variables}, timeout=LIMIT_S)
         if check and done.returncode != 0:
             raise RuntimeError(f"{' '.join(map(str, command))}: exit code {done.returncode}: "
                                f"{done.stderr}")
@@ -140,6 +142,7 @@ class OneNodeSlurm:
 
 
 def main(words):
+    signal.signal(signal.SIGTERM, lambda number, _: sys.exit(128 + number))  # ends the daemons
     if not words or words[0] in ("-h", "--help"):
         print(__doc__)
         return 0 if words else 2

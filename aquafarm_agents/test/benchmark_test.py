@@ -284,7 +284,7 @@ class BenchmarkTest(unittest.TestCase):
         self.assertEqual(2, len(before))
         again = self.start("parts", *arguments, episodes=60000)
         self.assertEqual(0, again.code(), again.words())
-        self.assertIn("3 of 3 runs are there already", again.words())
+        self.assertIn("3 of 3 runs are already complete", again.words())
         self.assertEqual(before, {path: path.stat().st_mtime_ns
                                   for path in trainings.rglob("policy.ckpt")})
 

@@ -85,6 +85,7 @@ class DocCommandsTest(unittest.TestCase):
         shutil.copy(DATA / "cma.txt", cls.place / "CH2021BST.txt")
         shutil.copy(REPOSITORY / "aquafarm_sim/scenarios/zhoushan_infa_2021.yaml",
                     cls.place / "my_ranch.yaml")
+        (cls.folder / "ws" / "built").touch()  # after the link to aquafarm_sim
 
     @classmethod
     def tearDownClass(cls):

@@ -18,6 +18,7 @@ TRUE = re.compile(r"[Tt]rue|1")
 NUMBER = re.compile(r"-?[0-9.]+([eE][-+]?[0-9]+)?")
 FRACTION = re.compile(r".*\..*[1-9].*")
 RECORD = re.compile(r"[Tt]rue|[Ff]alse|0|1|all|every:[1-9][0-9]*|best|worst|failures")
+CHOICES = {"log": ("none", "tensorboard", "wandb"), "style": ("dark", "light")}
 FLAGS = ("resume", "viz", "rviz", "headless", "paused", "loop")
 COUNTS = re.compile(r"runs|jobs|ranks|farms|seed|start_episode|start_step|.*episodes")
 NUMBERS = re.compile(r"speed|.*steps|.*_s|.*_hz")
@@ -52,6 +53,8 @@ def check_value(launch, name, value):
         expect(value in ("sim", "train", "evaluate"), "sim, train or evaluate")
     elif name == "record":
         expect(RECORD.fullmatch(value), "all, every:N, best, worst, failures or false")
+    elif name in CHOICES:
+        expect(value in CHOICES[name], f"one of: {', '.join(CHOICES[name])}")
     elif name in FLAGS:
         expect(FLAG.fullmatch(value), "true or false")
     elif name == "bag" and launch == "replay" and not os.path.isfile(value):

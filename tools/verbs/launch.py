@@ -107,7 +107,7 @@ def launch(script, name, words):
     code = run_child(["env", "--default-signal=INT,QUIT",
                       "roslaunch" if verbose else QUIET_ROSLAUNCH, *options,
                       f"--sigint-timeout={SIGINT_LIMIT_S}", "aquafarm_bringup", f"{name}.launch",
-                      *given, f"exit_file:={exit_file}"])
+                      *given, f"exit_file:={exit_file}"], goes_on=True)
     return report_end(name, *read_end(exit_file, code, name))
 
 

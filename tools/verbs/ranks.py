@@ -2,7 +2,7 @@
 """./aquafarm train with ranks:=N: a training in several processes of this machine, without ROS."""
 from . import arguments
 from .launch import report_end
-from .workspace import Refused, ensure_built, enter_ros, program, run_child
+from .workspace import WS, Refused, ensure_built, enter_ros, run_child
 
 # Arguments of train.launch that are options of aquafarm_train, and the values that leave them out.
 OPTIONS = {"ranks": "--ranks", "algorithm": "--algorithm", "episodes": "--episodes",
@@ -44,7 +44,7 @@ def train(words):
     arguments.check_values("train", given)
     options, report = program_arguments(given)
     ensure_built()
-    code = run_child([program("aquafarm_train"), *options])
+    code = run_child([WS / "devel/lib/aquafarm_agents/aquafarm_train", *options], goes_on=True)
     if code == 0 and report is not None:
         enter_ros()
         code = run_child(["rosrun", "aquafarm_bringup", "make_report", report])

@@ -12,7 +12,7 @@ VIDEOS = (".mp4", ".webm", ".gif")
 def maps_of_values(words):
     """Returns the options of bag_policy for the maps that these arguments of render draw."""
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
-    parser.add_argument("--step", nargs="*", default=[])
+    parser.add_argument("--step", nargs="*", action="extend", default=[])
     parser.add_argument("--every", default="1")
     parser.add_argument("--layers", default="")
     parser.add_argument("-o", "--output", default="")

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import random
+import shutil
 import signal
 import socket
 import subprocess
@@ -29,19 +30,26 @@ def say(line):
     print(f"aquafarm: {line}", flush=True)
 
 
-def run_child(command, on_signal=signal.SIGTERM, **options):
+def run_child(command, goes_on=False, **options):
     """Runs a command to its end and returns its exit code, 128 + N if signal N ended it.
 
-    A signal to this process ends the command, by `on_signal`; the command may need time to save.
+    A signal to this process ends the command by SIGTERM; the command may need time to save. Then
+    this process ends with 128 + the signal's number, unless it `goes_on` to report the end.
     """
+    received = []
     with subprocess.Popen([str(word) for word in command], **options) as child:
-        before = {number: signal.signal(number, lambda *_: child.send_signal(on_signal))
-                  for number in ENDING_SIGNALS}
+        def end(number, _):
+            received.append(number)
+            child.send_signal(signal.SIGTERM)
+
+        before = {number: signal.signal(number, end) for number in ENDING_SIGNALS}
         try:
             code = child.wait()
         finally:
             for number, handler in before.items():
                 signal.signal(number, handler)
+    if received and not goes_on:
+        sys.exit(128 + received[0])
     return code if code >= 0 else 128 - code
 
 
@@ -66,8 +74,17 @@ def build_core(name):
     bootstrap("--core", name)
 
 
+def use_ccache():
+    """The same sources are compiled in several kinds of workspace; ccache reuses the results of the
+    first."""
+    if shutil.which("ccache") is not None:
+        os.environ.setdefault("CCACHE_DIR", str(WS / "ccache"))
+        os.environ.setdefault("CCACHE_MAXSIZE", "2G")
+        os.environ.setdefault("CMAKE_CXX_COMPILER_LAUNCHER", "ccache")
+
+
 def program(name):
-    """Returns the path of a program that a build made."""
+    """Returns the path of a program that a build of a core made, else one of the workspace."""
     for folder in (WS / "core", WS / "devel" / "lib"):
         for path in sorted(folder.rglob(name)):
             if path.is_file() and os.access(path, os.X_OK):

@@ -19,8 +19,8 @@ from aquafarm_benchmark import cluster, human, results, runs
 from aquafarm_benchmark.protocol import FARMS, OPTIMUM, PROFILES, REFERENCES, Contestant
 
 _OK, _FAILED, _BAD_INPUT, _STORAGE, _INTERRUPTED = 0, 1, 2, 3, 130
-_EPILOG = """exit codes: 0 all is there, 1 some runs failed (the others are kept), 2 bad argument,
-3 storage, 130 interrupted (the same command goes on)"""
+_EPILOG = """exit codes: 0 all results exist, 1 some runs failed (the others are kept), 2 bad argument,
+3 storage, 130 interrupted (the same command resumes)"""
 
 
 _LOCK_LIMIT_S = 15.0  # time for the trainings of a killed benchmark to save and exit
@@ -42,7 +42,7 @@ def parse(arguments):
         prog="aquafarm_benchmark", epilog=_EPILOG,
         description="Trains every learner several times, measures them as the paper's §4.2 does, "
         "and ends with Table 1 next to ours and the figures. Killed or interrupted, the same "
-        "command goes on: finished runs are kept, others resume from their checkpoints.")
+        "command resumes: finished runs are kept, others continue from their checkpoints.")
     parser.add_argument("scenario", nargs="?", default="paper",
                         help="scenario file, or the name of a shipped one (default: paper)")
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("benchmark"),
@@ -424,6 +424,22 @@ def _processor():
 
 def _say(text):
     print(text, flush=True)
+
+
+def exit_code(name, command):
+    """Runs a command of this package and returns its exit code; what ends it early is printed in
+    one line. SIGTERM saves and exits as SIGINT does."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        return command()
+    except (ValueError, BadInput) as error:
+        code, words = _BAD_INPUT, str(error)
+    except (runs.Interrupted, KeyboardInterrupt) as error:
+        code, words = _INTERRUPTED, str(error) or "interrupted"
+    except (OSError, subprocess.SubprocessError) as error:
+        code, words = _STORAGE, f"storage: {error}"
+    print(f"{name}: {words}", file=sys.stderr)
+    return code
 
 
 def main(arguments=None):

@@ -100,15 +100,18 @@ class Cluster:
         self.client = Client(address, timeout=_CONNECT_S, set_as_default=False)
         self._identity = self._ask_identity()
 
+    def _ask(self, question, **arguments):
+        """Returns the answer of the scheduler. Raises TimeoutError, an OSError, after 10 s."""
+        return self.client.sync(question, **arguments, callback_timeout=10.0)
+
     def _ask_identity(self):
-        return self.client.sync(self.client.scheduler.identity, callback_timeout=10.0)["id"]
+        return self._ask(self.client.scheduler.identity)["id"]
 
     def is_alive(self):
         """Returns whether the scheduler to which the runs were submitted still answers."""
-        from tornado.util import TimeoutError as TornadoTimeout
         try:
             return self.client.status == "running" and self._ask_identity() == self._identity
-        except (OSError, TimeoutError, TornadoTimeout):
+        except OSError:
             return False
 
     def reconnect(self, report):
@@ -132,7 +135,7 @@ class Cluster:
     def workers(self):
         """Returns the number of runs that the workers execute in parallel; 0 if it is unknown."""
         try:
-            return sum(self.client.nthreads().values())
+            return sum(self._ask(self.client.scheduler.ncores, workers=None).values())
         except OSError:  # the scheduler was just lost
             return 0
 
@@ -141,8 +144,8 @@ class Cluster:
         end by themselves."""
         try:
             if self.client is not None:
-                self.client.cancel(futures)
-        except (OSError, TimeoutError):
+                self._ask(self.client._cancel, futures=list(futures))  # cancel() has no limit
+        except OSError:
             pass
 
     def _close_client(self):

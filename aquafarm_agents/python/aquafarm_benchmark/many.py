@@ -7,7 +7,8 @@ of a cluster, and writes one table.
 
 Arguments after -- go to aquafarm_plan or aquafarm_evaluate. FOLDER/table.md and table.csv have a row
 for each ranch (and policy); FOLDER/runs has the result files and logs. After Ctrl-C the same command
-resumes. Exit codes: 0 all is there, 2 wrong argument, 4 some ranches failed, 130 interrupted.
+resumes. Exit codes: 0 all results exist, 2 wrong argument, 3 storage, 4 some ranches failed,
+130 interrupted.
 """
 import argparse
 import csv
@@ -17,8 +18,8 @@ import pathlib
 import sys
 
 from aquafarm_benchmark import cluster
-from aquafarm_benchmark.cli import BadInput, find_program
-from aquafarm_benchmark.runs import Interrupted, Job, RunFailed, is_complete, run_all
+from aquafarm_benchmark.cli import exit_code, find_program
+from aquafarm_benchmark.runs import Job, RunFailed, is_complete, run_all
 from aquafarm_benchmark.sweep import require_same
 
 # Exit codes of aquafarm_plan after which its plan file is complete (docs/plan.md).
@@ -139,14 +140,8 @@ def _run(given):
 
 def main(words=None):
     """The command; returns its exit code."""
-    try:
-        return _run(arguments(sys.argv[1:] if words is None else words))
-    except (ValueError, BadInput) as error:
-        print(f"aquafarm_many: {error}", file=sys.stderr)
-        return 2
-    except Interrupted as error:
-        print(f"aquafarm_many: {error}", file=sys.stderr)
-        return 130
+    words = sys.argv[1:] if words is None else words
+    return exit_code("aquafarm_many", lambda: _run(arguments(words)))
 
 
 if __name__ == "__main__":

@@ -112,7 +112,7 @@ class _Runs:
         self._failures, self._declined = [], {}
         self._progress = _Progress(jobs, self._over)
         if self._over:
-            report(f"{self._over} of {len(jobs)} runs are there already")
+            report(f"{self._over} of {len(jobs)} runs are already complete")
 
     def run(self, period_s):
         told = checked = time.monotonic()
@@ -226,13 +226,16 @@ class _Runs:
 
     def _end(self):
         """Ends all programs and waits until they have saved."""
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.SIG_IGN)  # ignore repeated interrupts: this ends soon
+        numbers = (signal.SIGINT, signal.SIGTERM)
+        # Ignore repeated interrupts: this ends soon.
+        before = [signal.signal(number, signal.SIG_IGN) for number in numbers]
         self._cluster.cancel(list(self._futures))
         end = time.monotonic() + _LINGER_S
         for job in self._futures.values():
             while job.started is not None and is_written(job.log) and time.monotonic() < end:
                 time.sleep(0.05)
+        for number, handler in zip(numbers, before):
+            signal.signal(number, handler)
 
 
 def is_written(log):
@@ -272,7 +275,7 @@ class _Progress:
             if job.contestant not in seconds and done > 0.02:
                 seconds[job.contestant] = (now - job.started) / done
         words = ", ".join(f"{job.name} {100.0 * done_of[id(job)]:.0f} %" for job in running)
-        text = f"{self._over} of {self._count} runs over; {words or 'none runs yet'}"
+        text = f"{self._over} of {self._count} runs complete; {words or 'no run is executing'}"
         if seconds:
             of_unit = max(took / self._costs[name] for name, took in seconds.items())
             work = sum(seconds.get(job.contestant, of_unit * job.cost) *

@@ -19,8 +19,8 @@ import pathlib
 import sys
 
 from aquafarm_benchmark import cluster
-from aquafarm_benchmark.cli import find_program
-from aquafarm_benchmark.runs import Interrupted, Job, RunFailed, run_all
+from aquafarm_benchmark.cli import exit_code, find_program
+from aquafarm_benchmark.runs import Job, RunFailed, run_all
 
 # 97.5 % quantiles of Student's t with 1 to 30 degrees of freedom; 1.96 beyond.
 STUDENT = (12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179,
@@ -167,19 +167,14 @@ def check_plan(given, settings):
                  "; other seeds may be added to an old one")
 
 
-def main(words=None):
-    """The command; returns its exit code: 0, 2 wrong argument, 4 failed runs, 130 interrupted."""
-    try:
-        given = arguments(words)
-        settings = combinations([parse_option(one) for one in given.set])
-        train = find_program("aquafarm_train", given.programs)
-        given.output = given.output.resolve()
-        if given.scenario.endswith((".yaml", ".yml")):
-            given.scenario = str(pathlib.Path(given.scenario).resolve())
-        check_plan(given, settings)
-    except ValueError as error:
-        print(f"aquafarm_sweep: {error}", file=sys.stderr)
-        return 2
+def _run(words):
+    given = arguments(words)
+    settings = combinations([parse_option(one) for one in given.set])
+    train = find_program("aquafarm_train", given.programs)
+    given.output = given.output.resolve()
+    if given.scenario.endswith((".yaml", ".yml")):
+        given.scenario = str(pathlib.Path(given.scenario).resolve())
+    check_plan(given, settings)
     jobs, code = jobs_of(given, settings, train), 0
     print(f"{len(settings)} combinations x {len(given.seed_list)} seeds = {len(jobs)} trainings")
     try:
@@ -188,15 +183,9 @@ def main(words=None):
         for number, reason in declined.items():
             print(f"refused: {' '.join(settings[int(number)])}: {reason}", file=sys.stderr)
             code = 2
-    except cluster.BadScheduler as error:
-        print(f"aquafarm_sweep: {error}", file=sys.stderr)
-        return 2
     except (RunFailed, cluster.Lost) as error:
         print(f"aquafarm_sweep: {error}", file=sys.stderr)
         code = 4
-    except Interrupted as error:
-        print(f"aquafarm_sweep: {error}", file=sys.stderr)
-        return 130
     results = {}
     for job in jobs:
         if job.result.is_file():
@@ -207,6 +196,12 @@ def main(words=None):
     (given.output / "table.csv").write_text(csv_of(rows), "utf-8")
     print(f"\n{text}\nwritten: {given.output / 'table.md'}, table.csv")
     return code
+
+
+def main(words=None):
+    """The command; returns its exit code: 0, 2 wrong argument, 3 storage, 4 failed runs, 130
+    interrupted."""
+    return exit_code("aquafarm_sweep", lambda: _run(words))
 
 
 if __name__ == "__main__":

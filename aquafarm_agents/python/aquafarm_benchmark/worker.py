@@ -36,7 +36,7 @@ def last_line(log):
     """Returns the last line of a log."""
     text = log.read_text(errors="replace") if log.exists() else ""
     lines = text.strip().splitlines()
-    return lines[-1] if lines else "it said nothing"
+    return lines[-1] if lines else "no output"
 
 
 def _started(command, log, cwd, environment):

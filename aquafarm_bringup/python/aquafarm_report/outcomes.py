@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What became of each device in a recorded episode."""
+"""Outcome of each device in a recorded episode."""
 import dataclasses
 
 import rosbag

@@ -36,6 +36,7 @@ import numpy as np
 
 TYPES = {"features": np.float32, "planes": np.uint8, "index": np.uint32}
 ACTIONS = 10
+MAX_WORDS = 4000  # bytes of an error; the program reads at most 4,096
 
 # Modules of the policies in saved models, with the classes that load them.
 MODELS = {
@@ -127,9 +128,10 @@ def choose(act, kind, shape, observations, masks):
 
 
 def words_of(error):
-    """Returns an exception in one line."""
+    """Returns an exception in one line of at most MAX_WORDS bytes."""
     text = str(error) if isinstance(error, BadPolicy) else f"{type(error).__name__}: {error}"
-    return " ".join(text.split())[:4000]
+    words = " ".join(text.split()).encode(errors="replace")[:MAX_WORDS]
+    return words.decode(errors="ignore").encode()  # without a part of a character at its end
 
 
 def serve(stream, kind, act):
@@ -144,7 +146,7 @@ def serve(stream, kind, act):
         try:
             answer = np.uint32(0).tobytes() + choose(act, kind, shape, observations, masks)
         except Exception as error:  # any error of the policy is reported to the program
-            words = words_of(error).encode()
+            words = words_of(error)
             answer = np.uint32(len(words)).tobytes() + words
         stream.write(answer)
         stream.flush()
@@ -156,7 +158,7 @@ def main():
     try:
         kind, act = load(os.path.expanduser(sys.argv[2]))
     except (Exception, SystemExit) as error:
-        stream.write(words_of(error).encode() + b"\n")
+        stream.write(words_of(error) + b"\n")
         stream.flush()
         return 1
     stream.write(kind.encode() + b"\n")

@@ -24,7 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kStartLimit_s = 180;  // importing torch takes long on a busy machine
-constexpr int kAnswerLimit_s = 60;
 constexpr int kChildSocket = 3;
 constexpr std::uint32_t kMaxWords = 4096;  // bytes of an error
 constexpr const char* kEnded =
@@ -93,7 +92,10 @@ bool IsPythonPolicy(const std::string& where) {
          where.find(".py:") != std::string::npos;
 }
 
-PolicyProcess::PolicyProcess(const std::string& where) : where_(where) {
+PolicyProcess::PolicyProcess(const std::string& where, int answer_limit_s)
+    : where_(where),
+      answer_limit_{answer_limit_s,
+                    "expected its actions: make act faster, or play fewer farms at a time"} {
   const char* const chosen = Variable("AQUAFARM_PYTHON");
   const char* const venv = Variable("VIRTUAL_ENV");
   std::string python = "python3";
@@ -106,7 +108,9 @@ PolicyProcess::PolicyProcess(const std::string& where) : where_(where) {
   const bool is_default = chosen == nullptr && venv == nullptr;
   Start({python, ServerPath(), std::to_string(kChildSocket), where_}, is_default);
   try {
-    encodings_ = KindOf(ReadLine(kStartLimit_s));
+    encodings_ = KindOf(ReadLine({kStartLimit_s,
+                                  "expected the kind of its observations: make its import faster, "
+                                  "or start it on a less busy machine"}));
   } catch (...) {
     Stop();
     throw;
@@ -166,10 +170,10 @@ void PolicyProcess::Fail(const std::string& reason) const {
   throw InputError("policy " + where_ + ": " + reason);
 }
 
-std::string PolicyProcess::ReadLine(int limit_s) {
+std::string PolicyProcess::ReadLine(const Limit& limit) {
   std::string line;
   for (char one = 0; line.size() < kMaxWords;) {
-    Receive(&one, 1, limit_s);
+    Receive(&one, 1, limit);
     if (one == '\n') break;
     line += one;
   }
@@ -187,14 +191,16 @@ void PolicyProcess::Send(const void* bytes, std::size_t count) {
   }
 }
 
-void PolicyProcess::Receive(void* bytes, std::size_t count, int limit_s) {
+void PolicyProcess::Receive(void* bytes, std::size_t count, const Limit& limit) {
   using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::seconds(limit_s);
+  const auto end = Clock::now() + std::chrono::seconds(limit.seconds);
   char* next = static_cast<char*>(bytes);
   while (count > 0) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
-    if (left <= 0) Fail("no answer within " + std::to_string(limit_s) + " s");
+    if (left <= 0) {
+      Fail("got no answer within " + std::to_string(limit.seconds) + " s, " + limit.expected);
+    }
     pollfd ready{socket_, POLLIN, 0};
     const int found = poll(&ready, 1, static_cast<int>(left));
     if (found <= 0) continue;
@@ -209,6 +215,21 @@ void PolicyProcess::Receive(void* bytes, std::size_t count, int limit_s) {
 void PolicyProcess::Act(const EnvironmentSpec& spec, const StepResults& results,
                         std::vector<std::uint8_t>& actions) {
   const MutexLock lock(mutex_);
+  if (!broken_.empty()) throw InputError(broken_);
+  std::string reported;
+  try {
+    reported = Ask(spec, results, actions);
+  } catch (const std::exception& error) {
+    broken_ = error.what();
+    shutdown(socket_, SHUT_RDWR);  // so that no later request reads what is left of this answer
+    throw;
+  }
+  if (!reported.empty()) Fail(reported);
+}
+
+// Returns an error that the process reports, or an empty text after the actions.
+std::string PolicyProcess::Ask(const EnvironmentSpec& spec, const StepResults& results,
+                               std::vector<std::uint8_t>& actions) {
   const Observations seen = ObservationsOf(encodings_, spec, results);
   const auto rows = static_cast<std::uint32_t>(results.legal.size());
   const std::array<std::uint32_t, 4> header{rows, seen.shape[0], seen.shape[1], seen.shape[2]};
@@ -216,17 +237,22 @@ void PolicyProcess::Act(const EnvironmentSpec& spec, const StepResults& results,
   Send(seen.data, seen.size);
   Send(results.legal.data(), results.legal.size() * sizeof(ActionMask));
   std::uint32_t length = 0;  // of an error
-  Receive(&length, sizeof(length), kAnswerLimit_s);
+  Receive(&length, sizeof(length), answer_limit_);
+  if (length > kMaxWords) {
+    Fail("got an error of " + std::to_string(length) + " bytes, expected at most " +
+         std::to_string(kMaxWords) + ": build again, so that serve_policy.py fits this program");
+  }
   if (length > 0) {
-    std::string words(std::min(length, kMaxWords), '\0');
-    Receive(words.data(), words.size(), kAnswerLimit_s);
-    Fail(words);
+    std::string words(length, '\0');
+    Receive(words.data(), words.size(), answer_limit_);
+    return words;
   }
   actions.resize(rows);
-  Receive(actions.data(), rows, kAnswerLimit_s);
+  Receive(actions.data(), rows, answer_limit_);
   for (const std::uint8_t action : actions) {
     if (action >= kActionCount) Fail("got action " + std::to_string(action) + ", expected [0, 9]");
   }
+  return "";
 }
 
 std::unique_ptr<Policy> MakePythonPolicy(std::shared_ptr<PolicyProcess> process,

@@ -2,6 +2,7 @@
 #include "aquafarm/agents/training/python_policy.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <fstream>
 #include <numeric>
@@ -122,6 +123,80 @@ TEST_F(PythonPolicies, AFunctionThatFailsIsNamedInOneLine) {
   EXPECT_CONTAINS(words("return [1.5, 2]"),
                   "act: got float64 of shape (2,), expected integers of shape (2,)");
   EXPECT_CONTAINS(words("return [10, 0]"), "act: got actions in [0, 10], expected [0, 9]");
+}
+
+// Starts the policy of a file and lets it act twice on the same farms.
+class TwoActs {
+ public:
+  explicit TwoActs(const std::string& where, int limit_s = PolicyProcess::kAnswerLimit_s)
+      : process_(where, limit_s), environment_(TinyFarm(), {2, process_.encodings(), false, 1}) {
+    const StepResults& results = environment_.Reset(1);
+    for (std::string& words : words_) {
+      words = MessageOf<InputError>([&] { process_.Act(environment_.spec(), results, actions_); });
+    }
+  }
+  const std::string& first() const { return words_[0]; }
+  const std::string& second() const { return words_[1]; }
+  const std::vector<std::uint8_t>& actions() const { return actions_; }
+
+ private:
+  PolicyProcess process_;
+  LocalEnvironment environment_;
+  std::vector<std::uint8_t> actions_;
+  std::array<std::string, 2> words_;
+};
+
+TEST_F(PythonPolicies, ALongErrorIsCutBetweenCharactersAndTheNextAnswerFollowsIt) {
+  const std::string path = Write(
+      "calls = []\n"
+      "def act(observations, masks):\n"
+      "    calls.append(1)\n"
+      "    if len(calls) == 1:\n"
+      "        raise ValueError(1400 * '\\u6d77')\n"
+      "    return [7, 8]\n");
+  std::string words = "policy " + path + ": ValueError: ";
+  for (int i = 0; i < (4000 - 12) / 3; ++i) words += "\u6d77";
+  const TwoActs acts(path);
+  EXPECT_EQ(acts.first(), words);
+  EXPECT_EQ(acts.second(), "");
+  EXPECT_EQ(acts.actions(), (std::vector<std::uint8_t>{7, 8}));
+}
+
+TEST_F(PythonPolicies, AfterNoAnswerInTimeALateAnswerIsNeverRead) {
+  const std::string path = Write(
+      "import time\n"
+      "def act(observations, masks):\n"
+      "    time.sleep(2)\n"
+      "    return [7, 8]\n");
+  const TwoActs acts(path, 1);
+  EXPECT_EQ(acts.first(), "policy " + path +
+                              ": got no answer within 1 s, expected its actions: make act faster, "
+                              "or play fewer farms at a time");
+  EXPECT_EQ(acts.second(), acts.first());
+  EXPECT_TRUE(acts.actions().empty());
+}
+
+TEST_F(PythonPolicies, AfterAnAnswerThatCannotBeReadLaterCallsThrowTheSameLine) {
+  const std::string path = Write(
+      "import os\n"
+      "def act(observations, masks):\n"
+      "    os.write(3, (5000).to_bytes(4, 'little'))\n"
+      "    return [7, 8]\n");
+  const TwoActs acts(path);
+  EXPECT_EQ(acts.first(), "policy " + path +
+                              ": got an error of 5000 bytes, expected at most 4096: build again, "
+                              "so that serve_policy.py fits this program");
+  EXPECT_EQ(acts.second(), acts.first());
+}
+
+TEST_F(PythonPolicies, AProcessThatHasEndedIsNamedByEachCall) {
+  const std::string path = Write(
+      "import os\n"
+      "def act(observations, masks):\n"
+      "    os._exit(4)\n");
+  const TwoActs acts(path);
+  EXPECT_CONTAINS(acts.first(), ": its Python process has ended");
+  EXPECT_EQ(acts.second(), acts.first());
 }
 
 }  // namespace

@@ -21,9 +21,12 @@ bool IsPythonPolicy(const std::string& where);
 /// active virtual environment, else python3. Thread-safe.
 class PolicyProcess {
  public:
+  /// Max time of an answer [s].
+  static constexpr int kAnswerLimit_s = 60;
+
   /// Starts the process and waits until the policy is loaded.
   /// @throws InputError with the reason in one line
-  explicit PolicyProcess(const std::string& where);
+  explicit PolicyProcess(const std::string& where, int answer_limit_s = kAnswerLimit_s);
   ~PolicyProcess();
   PolicyProcess(const PolicyProcess&) = delete;
   PolicyProcess& operator=(const PolicyProcess&) = delete;
@@ -32,14 +35,24 @@ class PolicyProcess {
   std::uint8_t encodings() const { return encodings_; }
 
   /// Chooses the actions of all agents. @param actions is resized to [N, S]
-  /// @throws InputError if the policy fails or returns no valid actions
+  /// @throws InputError if the policy fails or returns no valid actions. After an error that the
+  ///   process did not report itself, such as no answer in time, the connection is closed, and each
+  ///   later call throws the same line.
   void Act(const EnvironmentSpec& spec, const StepResults& results,
            std::vector<std::uint8_t>& actions);
 
  private:
-  std::string ReadLine(int limit_s);
+  /// Max time of an answer, and the end of the line that is thrown after it.
+  struct Limit {
+    int seconds;
+    const char* expected;
+  };
+
+  std::string ReadLine(const Limit& limit);
+  std::string Ask(const EnvironmentSpec& spec, const StepResults& results,
+                  std::vector<std::uint8_t>& actions);
   void Send(const void* bytes, std::size_t count);
-  void Receive(void* bytes, std::size_t count, int limit_s);
+  void Receive(void* bytes, std::size_t count, const Limit& limit);
   [[noreturn]] void Fail(const std::string& reason) const;
   std::uint8_t KindOf(const std::string& line) const;
   void Stop();
@@ -49,7 +62,9 @@ class PolicyProcess {
   int socket_{-1};
   int process_{-1};
   std::uint8_t encodings_{};
-  Mutex mutex_;  // held during a request and its answer
+  Limit answer_limit_;
+  std::string broken_;  // the error after which the connection was closed; empty before
+  Mutex mutex_;         // held during a request and its answer
 };
 
 /// Returns a policy that asks `process`, which several policies may share.

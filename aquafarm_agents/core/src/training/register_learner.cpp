@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -23,18 +24,22 @@ std::vector<Registration>& Registrations() {
 }
 
 void LoadLibrary(const std::string& path) {
+  static std::set<void*> loaded;  // one handle per library, whatever path names it
   const std::size_t count = Registrations().size();
   // Never closed, because its code is in use until the program ends.
-  if (dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL) == nullptr) {
+  void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
     const char* const reason = dlerror();
     throw InputError(std::string(kLearnersVariable) + ": " + path + ": cannot be loaded (" +
                      (reason == nullptr ? "no reason given" : reason) +
                      "), expected a shared library that registers a learner");
   }
+  if (loaded.count(library) != 0) return;
   if (Registrations().size() == count) {
     throw InputError(std::string(kLearnersVariable) + ": " + path +
                      ": registers no learner, expected a call of RegisterLearner while it loads");
   }
+  loaded.insert(library);
 }
 
 }  // namespace

@@ -27,7 +27,8 @@ inline constexpr const char* kLearnersVariable = "AQUAFARM_LEARNERS";
 /// @returns true, so that the call can initialize a static object
 bool RegisterLearner(const Algorithm& algorithm, const char* built_with = kVersion);
 
-/// Loads the libraries and returns all registered learners in their order.
+/// Loads the libraries and returns all registered learners in their order. A library that is listed
+/// or loaded before adds nothing.
 /// @param libraries paths separated by ':'; may be empty
 /// @throws InputError if a library cannot be loaded, registers nothing or was built with the
 /// headers of another version

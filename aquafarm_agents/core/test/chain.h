@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/learning/exploration.h"
+
+namespace aquafarm::agents::test {
+
+/// A chain of three states with hand-made results.
+struct Chain {
+  EnvironmentSpec spec;
+  StepResults results;
+  std::vector<std::uint8_t> actions;
+
+  Chain() {
+    spec.farms = spec.agents = 1;
+    spec.state_count = 3;
+    results.rewards = {0.0F};
+    results.legal = {kAllActions};
+    results.reasons = {0};
+    results.started = {1};
+    results.in_play = {1};
+    results.index = {0};
+  }
+  template <typename L>
+  std::uint8_t Notify(L& learner, std::uint32_t state, float reward,
+                      EndReason reason = EndReason::kNone) {
+    results.index[0] = state;
+    results.rewards[0] = reward;
+    results.reasons[0] = static_cast<std::uint8_t>(reason);
+    learner.Step(results, 0.0, actions);
+    results.started[0] = 0;
+    return actions[0];
+  }
+};
+
+}  // namespace aquafarm::agents::test

@@ -51,10 +51,15 @@ FamilyEnvironment::FamilyEnvironment(std::shared_ptr<const Scenario> family,
   spec_.width = family_->family->width.max;
   spec_.height = family_->family->height.max;
   spec_.step_limit = std::max(spec_.step_limit, kMaxRanchSteps);
-  if ((options.encodings & (kIndexBit | kPlanesBit | kStatesBit)) != 0) {
-    throw InputError("scenario " + spec_.scenario_name +
-                     ": is a family of ranches of different sizes, expected a learner that reads "
-                     "features: use algorithm ppo");
+  const std::string is_family =
+      "scenario " + spec_.scenario_name + ": is a family of ranches of different sizes, expected ";
+  if ((options.encodings & kStatesBit) != 0) {
+    throw InputError(is_family +
+                     "one ranch: planners need one ranch; evaluate a policy that reads features, "
+                     "or generalist");
+  }
+  if ((options.encodings & (kIndexBit | kPlanesBit)) != 0) {
+    throw InputError(is_family + "a learner that reads features: use algorithm ppo");
   }
   std::uint8_t bits = options.encodings & kFeaturesBit;
   if (options.hashes) bits |= kHashesField;

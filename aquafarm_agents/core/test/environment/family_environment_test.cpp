@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "agents_fixture.h"
 #include "aquafarm/base/rng.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "environment_contract.h"
@@ -59,14 +60,18 @@ TEST(FamilyEnvironment, ResultsDoNotDependOnTheNumberOfThreads) {
 }
 
 TEST(FamilyEnvironment, RefusesObservationsOfAFixedSize) {
-  for (const std::uint8_t bit : {kIndexBit, kPlanesBit, kStatesBit}) {
-    try {
-      FamilyEnvironment environment(Family(), {2, bit, false, 1});
-      FAIL();
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find("use algorithm ppo"), std::string::npos);
-    }
-  }
+  const auto refusal_of = [](std::uint8_t bit) {
+    return MessageOf<InputError>([bit] { FamilyEnvironment(Family(), {2, bit, false, 1}); });
+  };
+  const std::string start =
+      "scenario ranch_family: is a family of ranches of different sizes, expected ";
+  const std::string of_learners = start + "a learner that reads features: use algorithm ppo";
+  EXPECT_EQ(refusal_of(kIndexBit), of_learners);
+  EXPECT_EQ(refusal_of(kPlanesBit), of_learners);
+  EXPECT_EQ(refusal_of(kStatesBit),
+            start +
+                "one ranch: planners need one ranch; evaluate a policy that reads features, or "
+                "generalist");
 }
 
 TEST(FamilyEnvironment, ARanchThatCannotBeDrawnIsNamed) {

@@ -93,7 +93,7 @@ def test_cores(stages):
     for core in CORES:
         stages.begin(f"testing {core}/core without ROS")
         xml, log = RESULTS / f"ctest-{core}.xml", RESULTS / f"{core}.log"
-        stages.run(["ctest", "--test-dir", WS / "core" / core, "-j", jobs, "--timeout", "300",
+        stages.run(["ctest", "--test-dir", WS / "core" / core, "-j", jobs, "--timeout", "900",
                     "--output-on-failure", "-Q", "--output-log", log, "--output-junit", xml])
         if is_empty(xml):
             stages.break_off(f"{core} core", log)

@@ -16,6 +16,8 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
 double ExposureDamage(const RescueCase& rescue);
 /// Reads ports, devices and ships.
 void ReadFleet(const RescueRequest& request, RescueCase& rescue);
+/// Whether the plan has costs of energy or ship-hours.
+bool IsPriced(const RescueProblem& problem);
 /// Formats a number with few digits.
 std::string Short(double value, int digits);
 

@@ -71,6 +71,10 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
 
 }  // namespace
 
+bool IsPriced(const RescueProblem& problem) {
+  return problem.energy && (problem.energy->per_kwh > 0.0 || problem.energy->per_hour > 0.0);
+}
+
 std::string Short(double value, int digits) {
   char text[64];
   const int count = std::snprintf(text, sizeof(text), "%.*f", digits, value);

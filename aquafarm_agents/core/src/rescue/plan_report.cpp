@@ -37,41 +37,86 @@ bool IsReached(const RescueCase& rescue, const Ensemble& ensemble, const RescueP
   });
 }
 
+// Returns whether winds are unknown near the ranch during the plan. Members then interpolate from
+// no winds at all, and also those that reach a device reach it too late.
+bool AreWindsUnknown(const RescueCase& rescue, const Ensemble& ensemble) {
+  const double end_s = (ensemble.steps() - 1) * ensemble.options().step_s;
+  const std::int64_t from = rescue.storm.passage.unknown[0];
+  return from != 0 && from <= rescue.start + static_cast<std::int64_t>(end_s);
+}
+
+// Returns the problem in which only devices aboard are worth a trip.
+RescueProblem OnlyAboard(RescueProblem problem) {
+  for (std::size_t d = 0; d < problem.devices.size(); ++d) {
+    if (problem.CarrierOf(d) == kNone) problem.devices[d].value = 0.0;
+  }
+  return problem;
+}
+
+// Returns whether a plan that ignores costs saves anything.
+bool SavesWithoutCosts(const RescueProblem& problem, const Ensemble& ensemble) {
+  RescueProblem without = problem;
+  without.energy.reset();
+  without.risk_averse = 0.0;
+  return PlanRescue(without, ensemble).saved > 0.0;
+}
+
+void Warn(const char* code, const char* severity, const std::string& advice, PlanReport& report,
+          RescueCase& rescue) {
+  rescue.warnings.push_back({code, severity, report.text, advice});
+}
+
+void JudgeUnknown(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
+  report.result = PlanResult::kStormUnknown;
+  report.text = std::string("It is unknown ") +
+                (IsReached(rescue, ensemble, report.plan) ? "when" : "whether") +
+                " the storm reaches the devices: its wind and radii are unknown from " +
+                FormatUtc(rescue.storm.passage.unknown[0]) + ".";
+  Warn("storm_unknown", "stop", "Get the next bulletin.", report, rescue);
+}
+
+void JudgeNothingSaved(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
+  report.result = PlanResult::kNothingSaved;
+  const RescueProblem& problem = rescue.problem;
+  const std::string advice = report.plan.routes.empty()
+                                 ? "Keep the ships in port."
+                                 : "Ships with devices aboard: heed the warnings of their own; "
+                                   "keep the others in port.";
+  if (IsPriced(problem) && SavesWithoutCosts(problem, ensemble)) {
+    report.text = problem.risk_averse > 0.0
+                      ? "No trip saves more in the worst " + Short(100.0 * problem.risk_averse, 1) +
+                            " % of the futures than it costs: no ship leaves to fetch a device."
+                      : "No trip saves more than it costs: no ship leaves to fetch a device.";
+    return Warn("not_worth_it", "warning",
+                advice + " Ships could still save devices: check the values and prices.", report,
+                rescue);
+  }
+  report.text = problem.ships.empty()
+                    ? "There is no ship, so nothing can be saved."
+                    : "No ship can bring a device to a port before the winds that stop ships: "
+                      "nothing can be saved.";
+  Warn("nothing_can_be_saved", "stop", advice, report, rescue);
+}
+
 void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
   const StormRecord& storm = rescue.storm;
-  const std::string until = FormatUtc(
-      rescue.start + static_cast<std::int64_t>((ensemble.steps() - 1) * ensemble.options().step_s));
+  if (AreWindsUnknown(rescue, ensemble)) return JudgeUnknown(rescue, ensemble, report);
   if (!IsReached(rescue, ensemble, report.plan)) {
-    const bool is_unknown = storm.passage.unknown[0] != 0;
-    report.result = is_unknown ? PlanResult::kStormUnknown : PlanResult::kStormStaysAway;
-    report.text = is_unknown
-                      ? "It is unknown whether the storm reaches the devices: its wind and radii "
-                        "are unknown from " +
-                            FormatUtc(storm.passage.unknown[0]) + "."
-                      : "No winds of the storm reach a device in any of " +
-                            std::to_string(ensemble.members()) + " futures until " + until +
-                            ". What follows is unknown: plan again with the next bulletin.";
-    rescue.warnings.push_back({is_unknown ? "storm_unknown" : "storm_stays_away",
-                               is_unknown ? "stop" : "warning", report.text,
-                               "Get the next bulletin."});
-  } else if (report.plan.saved <= 0.0) {
-    report.result = PlanResult::kNothingSaved;
-    report.text = rescue.problem.ships.empty()
-                      ? "There is no ship, so nothing can be saved."
-                      : "No ship can bring a device to a port before the winds that stop ships: "
-                        "nothing can be saved.";
-    rescue.warnings.push_back({"nothing_can_be_saved", "stop", report.text,
-                               report.plan.routes.empty()
-                                   ? "Keep the ships in port."
-                                   : "Ships with devices aboard: heed the warnings of their own; "
-                                     "keep the others in port."});
-  } else {
-    report.result = storm.age_h >= 12.0 ? PlanResult::kBulletinOld : PlanResult::kPlan;
-    report.text = std::to_string(report.plan.routes.size()) + " of " +
-                  std::to_string(rescue.problem.ships.size()) + " ships leave and save " +
-                  Money(rescue, report.plan.saved) + " of " +
-                  Money(rescue, Summarize(report.plan.loss_idle).mean) + " on average.";
+    const std::string until =
+        FormatUtc(rescue.start +
+                  static_cast<std::int64_t>((ensemble.steps() - 1) * ensemble.options().step_s));
+    report.result = PlanResult::kStormStaysAway;
+    report.text = "No winds of the storm reach a device in any of " +
+                  std::to_string(ensemble.members()) + " futures until " + until +
+                  ". What follows is unknown: plan again with the next bulletin.";
+    return Warn("storm_stays_away", "warning", "Get the next bulletin.", report, rescue);
   }
+  if (report.plan.saved <= 0.0) return JudgeNothingSaved(rescue, ensemble, report);
+  report.result = storm.age_h >= 12.0 ? PlanResult::kBulletinOld : PlanResult::kPlan;
+  report.text = std::to_string(report.plan.routes.size()) + " of " +
+                std::to_string(rescue.problem.ships.size()) + " ships leave and save " +
+                Money(rescue, report.plan.saved) + " of " +
+                Money(rescue, Summarize(report.plan.loss_idle).mean) + " on average.";
 }
 
 // With unknown winds no member stops a ship, which does not mean that it is safe.
@@ -180,10 +225,12 @@ std::optional<double> NoDepartureAfter(const RescueProblem& problem, const PlanR
 
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble) {
   PlanReport report;
-  report.plan = PlanRescue(rescue.problem, ensemble);
-  report.deadlines =
-      Deadlines(rescue.problem, ensemble, {kDeadlineShares.begin(), kDeadlineShares.end()});
-  report.what_if = CompareChanges(rescue.problem, ensemble, report.plan);
+  // With unknown winds no trip can be judged: only ships with devices aboard get orders.
+  const RescueProblem problem =
+      AreWindsUnknown(rescue, ensemble) ? OnlyAboard(rescue.problem) : rescue.problem;
+  report.plan = PlanRescue(problem, ensemble);
+  report.deadlines = Deadlines(problem, ensemble, {kDeadlineShares.begin(), kDeadlineShares.end()});
+  report.what_if = CompareChanges(problem, ensemble, report.plan);
   Judge(rescue, ensemble, report);
   if (report.result != PlanResult::kStormUnknown) WarnOfWaysHome(rescue, report);
   const auto rank = [](const RescueWarning& one) {

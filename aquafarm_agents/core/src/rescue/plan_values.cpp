@@ -63,10 +63,6 @@ std::string WhyUnknown(const RescueCase& rescue) {
          " on: no chance, arrival, loss, deadline or comparison is known, and none of them is 0.";
 }
 
-bool IsPriced(const RescueProblem& problem) {
-  return problem.energy && (problem.energy->per_kwh > 0.0 || problem.energy->per_hour > 0.0);
-}
-
 std::string ObjectiveOf(const RescueProblem& problem) {
   const bool is_averse = problem.risk_averse > 0.0;
   const std::string text = is_averse

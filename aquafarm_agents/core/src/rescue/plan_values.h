@@ -31,8 +31,6 @@ Json LossOf(std::vector<float> losses);
 Json UnknownLoss();
 /// Why a plan with PlanResult::kStormUnknown has no numbers.
 std::string WhyUnknown(const RescueCase& rescue);
-/// Whether the plan has costs of energy or ship-hours.
-bool IsPriced(const RescueProblem& problem);
 /// What the plan maximises or minimises, in words.
 std::string ObjectiveOf(const RescueProblem& problem);
 /// How the plan was found, in words.

@@ -15,7 +15,7 @@ namespace aquafarm::agents {
 /// Outcome of a plan, and the exit code of aquafarm_plan.
 enum class PlanResult : std::uint8_t {
   kPlan = 0,             ///< ships leave
-  kNothingSaved = 10,    ///< winds come, and no ship can save anything
+  kNothingSaved = 10,    ///< winds come, and no ship can save anything worth its cost
   kStormStaysAway = 11,  ///< no member of the ensemble reaches a device in the known time
   kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near
   kBulletinOld = 13,     ///< ships leave by the plan, but the bulletin is older than 12 hours

@@ -136,29 +136,57 @@ double SizeOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring
   return std::sqrt(squares / kQuadrantCount) / median_km;
 }
 
-// Sets the rings of a fix to their estimates times the size of the last report, to the power of
-// what is left of it. The size also holds for winds that the storm does not reach there.
-void Resize(const StormWaypoint& report, double kept, StormRings& storm, StormWaypoint& at) {
-  const std::size_t widest = storm.wind_kt.size() - 1;
-  const double outermost = SizeOf(storm, report, widest);
-  at.size = outermost > 0.0 ? std::pow(outermost, kept) : 1.0;
-  std::array<double, kQuadrantCount> outer{};
+// Returns whether the radii of a ring are reported at a fix, or derived from reported ones.
+bool IsReported(const StormFix& fix, const StormWaypoint& at, std::int32_t wind_kt) {
+  const WindRing* ring = fix.Ring(wind_kt);
+  if (ring == nullptr && wind_kt == 34 && at.is_reported) ring = fix.Ring(30);
+  return ring != nullptr && !ring->estimated;
+}
+
+// Sets the estimated rings of a fix to their estimates times the size of the last report, to the
+// power of what is left of it. The size also holds for winds that the storm does not reach there.
+// Reported rings are kept: an estimated one never ends within a stronger one that is reported.
+void Resize(const StormWaypoint& report, double kept, const StormFix& fix, StormRings& storm,
+            StormWaypoint& at) {
+  using Edge = std::array<double, kQuadrantCount>;
+  const std::size_t rings = storm.wind_kt.size();
+  const bool has_own = IsReported(fix, at, storm.wind_kt.back());
+  const double outermost = SizeOf(storm, has_own ? at : report, rings - 1);
+  at.size = outermost > 0.0 ? std::pow(outermost, has_own ? 1.0 : kept) : 1.0;
+  std::vector<Edge> reported(rings, Edge{});  // the largest of this ring and stronger ones
+  for (std::size_t ring = 0; ring < rings; ++ring) {
+    if (ring > 0) reported[ring] = reported[ring - 1];
+    if (!IsReported(fix, at, storm.wind_kt[ring])) continue;
+    for (std::size_t q = 0; q < kQuadrantCount; ++q) {
+      reported[ring][q] = std::max(reported[ring][q], at.quadrants_km[ring][q]);
+    }
+  }
+  Edge outer{};
   outer.fill(std::numeric_limits<double>::infinity());
-  for (std::size_t ring = storm.wind_kt.size(); ring-- > 0;) {
+  for (std::size_t ring = rings; ring-- > 0;) {
     const double own = SizeOf(storm, report, ring);
     const double radius_km =
         MedianOf(storm, at, ring) * (own > 0.0 ? std::pow(own, kept) : at.size);
-    for (double& edge : outer) edge = std::min(edge, radius_km);
+    if (IsReported(fix, at, storm.wind_kt[ring])) {
+      outer = at.quadrants_km[ring];
+    } else {
+      for (std::size_t q = 0; q < kQuadrantCount; ++q) {
+        outer[q] = std::min(outer[q], std::max(radius_km, reported[ring][q]));
+      }
+    }
     at.quadrants_km[ring] = outer;
-    at.radii_km[ring] = outer[0];
+    at.radii_km[ring] = *std::max_element(outer.begin(), outer.end());
   }
 }
 
 // Keeps the size of the last report with radii after it: estimated radii become the
 // estimate times a factor that returns to 1 with the memory of a storm's size. What is remembered
 // is the logarithm of the factor in units of its spread at the storm's strength (SizeSigma).
+// @param track of the rings, with the same fixes
 // @returns the lead time of that report; minus infinity if there is none
-double CarrySize(const ForecastErrors& errors, std::int64_t issued, StormRings& storm) {
+double CarrySize(const ForecastErrors& errors, std::int64_t issued, const StormTrack& track,
+                 StormRings& storm) {
+  AQUAFARM_CHECK_EQ(track.fixes.size(), storm.waypoints.size());
   const StormWaypoint* report = nullptr;
   for (StormWaypoint& at : storm.waypoints) {
     if (at.forecast || !at.is_reported) continue;
@@ -170,11 +198,12 @@ double CarrySize(const ForecastErrors& errors, std::int64_t issued, StormRings& 
   const auto sigma = [&storm](const StormWaypoint& at) {
     return SizeSigma(storm.wind_kt.back(), WindOf(at), at.position.latitude, at.averaging_min);
   };
-  for (StormWaypoint& at : storm.waypoints) {
+  for (std::size_t i = 0; i < storm.waypoints.size(); ++i) {
+    StormWaypoint& at = storm.waypoints[i];
     if (!at.estimated || WindOf(at) <= 0.0 || at.time <= last.time) continue;
     const double since_h = static_cast<double>(at.time - last.time) / kHour_s;
     const double kept = std::exp(-since_h / errors.size_memory_h) * sigma(at) / sigma(last);
-    Resize(last, kept, storm, at);
+    Resize(last, kept, track.fixes[i], storm, at);
   }
   return static_cast<double>(last.time - issued) / kHour_s;
 }
@@ -243,7 +272,7 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
   StormRecord& storm = rescue.storm;
   storm.name = NameOf(track);
   storm.rings = ToRings(track, RingReduction::kQuadrants);
-  rescue.forecast.size_report_h = CarrySize(request.errors, *storm.issued, storm.rings);
+  rescue.forecast.size_report_h = CarrySize(request.errors, *storm.issued, track, storm.rings);
   if (*storm.known_until <= rescue.start) {
     throw InputError(storm.file + ": got a storm known until " + FormatUtc(*storm.known_until) +
                      ", expected one that is known after " + FormatUtc(rescue.start) +

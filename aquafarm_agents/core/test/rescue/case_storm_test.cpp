@@ -104,5 +104,33 @@ TEST_F(Storm, AReportOfGalesAloneIsAReport) {
   EXPECT_GT(case_.storm.rings.waypoints[2].radii_km[kGale], 1.2 * Median(40.0, 30.24));
 }
 
+// The forecast states the quadrants of gales, but not those of stronger winds.
+TEST_F(Storm, ReportedQuadrantsOfAForecastAreKept) {
+  Add(-6, 40.0, 150.0, false);
+  Add(0, 40.0, 150.0, false);
+  Add(12, 40.0, 0.0, true);
+  AddRing({34, {400.0, 300.0, 100.0, 60.0}, false}, track_.fixes.back().rings);
+  UseStorm(track_, request_, case_);
+  const StormWaypoint& at = case_.storm.rings.waypoints[2];
+  EXPECT_TRUE(at.estimated) << "the radii of 50 and 64 kt";
+  EXPECT_EQ(at.quadrants_km[kGale], (std::array<double, 4>{400.0, 300.0, 100.0, 60.0}));
+  EXPECT_EQ(at.radii_km[kGale], 400.0);
+  EXPECT_GT(at.radii_km[1], 60.0);
+  EXPECT_LE(at.quadrants_km[1][3], 60.0) << "no ring extends beyond one of a weaker wind";
+}
+
+TEST_F(Storm, AnEstimatedRingContainsAStrongerOneThatIsReported) {
+  Add(-6, 40.0, 100.0, false);
+  Add(0, 40.0, 100.0, false);
+  Add(12, 40.0, 0.0, true);
+  const double wide_km = 0.9 * Median(40.0, 30.24);  // more than the report's gales
+  AddRing({50, {wide_km, 50.0, 50.0, 50.0}, false}, track_.fixes.back().rings);
+  UseStorm(track_, request_, case_);
+  const StormWaypoint& at = case_.storm.rings.waypoints[2];
+  EXPECT_EQ(at.quadrants_km[1][0], wide_km);
+  EXPECT_GE(at.quadrants_km[kGale][0], wide_km);
+  EXPECT_LT(at.quadrants_km[kGale][1], wide_km) << "of the size of the report";
+}
+
 }  // namespace
 }  // namespace aquafarm::agents

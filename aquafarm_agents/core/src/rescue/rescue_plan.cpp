@@ -130,18 +130,24 @@ class TeamSearch {
 // one over all weights of the members of at most 1 / (share · members) each. Fictitious play (Brown
 // 1951, Iterative solution of games by fictitious play): in each round the weights are those of the
 // worst members of the plans of all rounds so far, and the search answers with its best plans for
-// them. The least weighted loss of a round is a lower bound for all plans.
+// them. The least weighted loss of a round is a lower bound for all plans. All other members have a
+// small weight, so that a trip that helps in these alone is made too: the mixed weights are also at
+// most 1 / (share · members) each, so the bound holds. Among plans with the same mean of the worst
+// the one with the best mean is taken.
 class AverseSearch {
  public:
-  AverseSearch(const TripModel& model, const TeamSearch& by_mean, RescuePlan best)
+  AverseSearch(const TripModel& model, const TeamSearch& by_mean, RescuePlan best, int rounds)
       : model_(model), best_(std::move(best)), last_(best_) {
     is_exhaustive_ = by_mean.is_exhaustive();
     Judge(by_mean, kJudgedByMean);
     std::vector<double> sum(best_.loss.size(), 0.0);
-    for (int round = 1; round <= kRounds && Value(best_) > bound_ + kEnough; ++round) {
+    for (int round = 1; round <= rounds && !IsEnough(); ++round) {
       AddTail(last_.loss, sum);
+      const double others = kOthers / static_cast<double>(sum.size());
       MemberWeights weights;
-      for (const double one : sum) weights.push_back(static_cast<float>(one / round));
+      for (const double one : sum) {
+        weights.push_back(static_cast<float>((1.0 - kOthers) * one / round + others));
+      }
       const TeamSearch search(model, kAlternatives, weights);
       last_ = PlanOf(model, search.teams().front());
       double loss = last_.cost;
@@ -161,18 +167,26 @@ class AverseSearch {
   }
 
  private:
-  static constexpr int kRounds = 12;
   static constexpr std::size_t kJudgedByMean = 300;  // plans whose worst members are looked at
   static constexpr std::size_t kJudged = 40;
   static constexpr double kEnough = 1e-4;
+  static constexpr double kOthers = 1e-4;  // sum of the weights that all members share alike
 
   double Share() const { return model_.problem().risk_averse; }
   double Value(const RescuePlan& plan) const { return MeanOfWorst(plan.loss, Share()) + plan.cost; }
 
+  bool IsEnough() const { return Value(best_) <= bound_ + kEnough + kOthers * Value(best_); }
+  bool IsBetter(const RescuePlan& a, const RescuePlan& b) const {
+    const double difference = Value(a) - Value(b);
+    const double same = 1e-6 * std::max(1.0, std::abs(Value(b)));  // losses are floats
+    if (std::abs(difference) > same) return difference < 0.0;
+    return a.saved - a.cost > b.saved - b.cost + same;
+  }
+
   void Judge(const TeamSearch& search, std::size_t limit) {
     for (std::size_t i = 0; i < std::min(limit, search.teams().size()); ++i) {
       RescuePlan other = PlanOf(model_, search.teams()[i]);
-      if (Value(other) < Value(best_)) best_ = std::move(other);
+      if (IsBetter(other, best_)) best_ = std::move(other);
     }
   }
 
@@ -231,13 +245,13 @@ LossSummary Summarize(std::vector<float> losses) {
   return summary;
 }
 
-RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble) {
+RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble, int averse_rounds) {
   RequireValid(problem);
   const TripModel model(problem, ensemble);
   const bool is_averse = problem.risk_averse > 0.0;
   const TeamSearch search(model, is_averse ? kAlternatives : 1);
   RescuePlan best = PlanOf(model, search.teams().front());  // the best mean
-  if (is_averse) best = AverseSearch(model, search, std::move(best)).Take();
+  if (is_averse) best = AverseSearch(model, search, std::move(best), averse_rounds).Take();
   for (std::size_t d = 0; d < problem.devices.size(); ++d) best.bound += model.BoundOf(d);
   best.is_exhaustive = search.is_exhaustive();
   return best;

@@ -42,7 +42,10 @@ class Changes {
     for (std::size_t port = 0; port < problem.ports.size(); ++port) ClosePort(port);
     RescueProblem larger = problem;
     for (RescueShip& ship : larger.ships) ++ship.capacity;
-    if (!larger.ships.empty()) Add("capacity+1", "every ship carries one more device", larger);
+    if (!larger.ships.empty()) {
+      rows_.push_back(
+          Compare("capacity+1", "every ship carries one more device", plan, PlanMore(larger)));
+    }
     std::stable_sort(rows_.begin(), rows_.end(), [](const WhatIf& a, const WhatIf& b) {
       if (a.is_possible != b.is_possible) return a.is_possible;
       return a.loss.mean < b.loss.mean;
@@ -52,8 +55,23 @@ class Changes {
   std::vector<WhatIf> Take() { return std::move(rows_); }
 
  private:
+  RescuePlan Plan(const RescueProblem& changed) const {
+    return PlanRescue(changed, ensemble_, kAverseRoundsToCompare);
+  }
+  // Plans a change that keeps the trips of the plan possible. The short risk-averse search may miss
+  // them; the plan is then kept.
+  RescuePlan PlanMore(const RescueProblem& changed) const {
+    RescuePlan found = Plan(changed);
+    const double share = changed.risk_averse;
+    if (share <= 0.0) return found;
+    RescuePlan kept = PlayRescue(changed, ensemble_, plan_);
+    const auto value = [share](const RescuePlan& plan) {
+      return MeanOfWorst(plan.loss, share) + plan.cost;
+    };
+    return value(kept) < value(found) ? kept : found;
+  }
   void Add(const std::string& change, const std::string& text, const RescueProblem& changed) {
-    rows_.push_back(Compare(change, text, plan_, PlanRescue(changed, ensemble_)));
+    rows_.push_back(Compare(change, text, plan_, Plan(changed)));
   }
   void AddImpossible(const std::string& change, const std::string& text) {
     WhatIf row;
@@ -82,8 +100,7 @@ class Changes {
       RescueProblem changed = problem_;
       changed.ships.push_back(OneMore());
       changed.ships.back().cell = port.cell;
-      WhatIf row = Compare("ships+1", "one ship more, at " + port.name, plan_,
-                           PlanRescue(changed, ensemble_));
+      WhatIf row = Compare("ships+1", "one ship more, at " + port.name, plan_, PlanMore(changed));
       if (!best || row.loss.mean < best->loss.mean) best = std::move(row);
     }
     if (best) rows_.push_back(std::move(*best));
@@ -100,7 +117,7 @@ class Changes {
       RescueProblem changed = problem_;
       changed.ships.erase(changed.ships.begin() + static_cast<std::ptrdiff_t>(ship));
       WhatIf row = Compare("ships-1", "one ship fewer, without " + problem_.ships[ship].name, plan_,
-                           PlanRescue(changed, ensemble_));
+                           Plan(changed));
       if (!best || row.loss.mean < best->loss.mean) best = std::move(row);
     }
     if (best) return rows_.push_back(std::move(*best));

@@ -97,6 +97,55 @@ TEST(RiskAverse, NoOtherOrderHasAMeanOfTheWorstThatIsLowerByMoreThanTheGap) {
   }
 }
 
+// The trip of a ship to one device and home, as a route for PlayRescue.
+ShipRoute TripTo(std::int32_t ship, std::int32_t device, std::int32_t port) {
+  ShipRoute route;
+  route.ship = ship;
+  RescueOrder fetch;
+  fetch.kind = OrderKind::kFetch;
+  fetch.device = device;
+  RescueOrder deliver;
+  deliver.kind = OrderKind::kDeliver;
+  deliver.port = port;
+  route.orders = {fetch, deliver};
+  return route;
+}
+
+// In the worst storms no ship saves the devices that are in danger first. Ships that are idle still
+// fetch them for the other storms: this costs nothing.
+TEST(RiskAverse, AnIdleShipFetchesWhatItCanSaveInStormsThatAreNotTheWorst) {
+  RescueProblem problem = test::SmallRescue();
+  problem.devices.push_back({"F4", "monitoring", {1, 6}, 90.0, 0.0});
+  problem.devices.push_back({"F5", "monitoring", {5, 4}, 60.0, 0.0});
+  problem.devices.push_back({"F6", "monitoring", {8, 7}, 30.0, 0.0});
+  problem.ships.push_back({"ship 3", {11, 0}, 30.0, 2, 600.0});
+  problem.ships.push_back({"ship 4", {11, 9}, 20.0, 1, 0.0});
+  problem.exposure_damage = 0.05;  // what the winds reach is lost
+  const Ensemble ensemble(test::PassingStorm(), test::SmallEnsemble(400), test::SitesOf(problem));
+  int fetched = 0;
+  for (const int hours : {3, 4}) {
+    for (RescueShip& ship : problem.ships) ship.ready_s = 3600.0 * hours;
+    for (const double share : {0.05, 0.2}) {
+      problem.risk_averse = share;
+      const RescuePlan plan = PlanRescue(problem, ensemble);
+      fetched += static_cast<int>(plan.routes.size());
+      for (std::int32_t ship = 0; ship < 4; ++ship) {
+        const auto is_own = [ship](const ShipRoute& route) { return route.ship == ship; };
+        if (std::any_of(plan.routes.begin(), plan.routes.end(), is_own)) continue;
+        for (std::int32_t device = 0; device < 6; ++device) {
+          if (plan.devices[static_cast<std::size_t>(device)].ship != kNone) continue;
+          RescuePlan more = plan;
+          more.routes.push_back(TripTo(ship, device, ship % 2));
+          const double saved = PlayRescue(problem, ensemble, more).saved;
+          EXPECT_LE(saved, plan.saved + 1e-3) << "ship " << ship << ", device " << device
+                                              << ", ready after " << hours << " h, worst " << share;
+        }
+      }
+    }
+  }
+  EXPECT_GT(fetched, 4);
+}
+
 class Energy : public ::testing::Test {
  protected:
   Energy() {

@@ -46,9 +46,15 @@ LossSummary Summarize(std::vector<float> losses);
 /// @param share in (0, 1]
 double MeanOfWorst(std::vector<float> losses, double share);
 
+/// Rounds of the search with risk_averse, of a plan and of a plan that is only compared with it.
+inline constexpr int kAverseRounds = 12;
+inline constexpr int kAverseRoundsToCompare = 3;
+
 /// Makes the best plan.
+/// @param averse_rounds max rounds of the search with risk_averse
 /// @throws InputError if the numbers of the problem do not fit together
-RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble);
+RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble,
+                      int averse_rounds = kAverseRounds);
 
 /// Plays the orders of a plan in the members of another ensemble with the same ranch and steps.
 /// `bound` and `is_exhaustive` of the result are not set.

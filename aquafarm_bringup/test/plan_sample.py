@@ -331,7 +331,7 @@ def sample(members=1000, seed=1):
                       "capacity": 1, "ready": stamp(6)
                   } for i, p in enumerate((0, 3))], "devices": devices,
         "plan": {
-            "objective": "expected return", "method": "team search on the mean risk",
+            "objective": "most value saved on average", "method": "team search on the mean risk",
             "expected_value": 512.3, "bound": 520.1, "routes": routes, "left_behind": [{
                 "device": 5, "reason": "too_late", "text": "F6: no ship is free before the gale"
             }]

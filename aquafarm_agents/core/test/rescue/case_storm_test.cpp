@@ -45,15 +45,15 @@ class Storm : public ::testing::Test {
     track_.fixes.push_back(fix);
   }
 
-  // Radii [km] of gales at a point in 4,000 members.
-  std::vector<double> Gales(std::size_t point) {
+  // Radii [km] of a ring at a point in 4,000 members.
+  std::vector<double> Gales(std::size_t point, std::size_t ring = kGale) {
     UseStorm(track_, request_, case_);
     MemberSampler sampler(case_.forecast, case_.ensemble);
     std::vector<StormState> states;
     std::vector<double> radii;
     for (std::int32_t member = 0; member < 4000; ++member) {
       sampler.Draw(member, states);
-      radii.push_back(static_cast<double>(states[point].radius[kGale][0]) *
+      radii.push_back(static_cast<double>(states[point].radius[ring][0]) *
                       case_.scenario->cell_size_m / 1000.0);
     }
     std::sort(radii.begin(), radii.end());
@@ -92,6 +92,18 @@ TEST_F(Storm, AnErrorOfTheWindDoesNotChangeReportedRadii) {
   EXPECT_NEAR(radii[2000], 200.0, 2.0);
   EXPECT_NEAR(std::log(radii[3365] / radii[2000]), 0.1, 0.01);  // one standard deviation
   EXPECT_EQ(Gales(2).front(), 0.0) << "the forecast has no measured radii";
+}
+
+// The report has no 50 kt winds, but its wind may be too low by a little.
+TEST_F(Storm, AWindThatIsReachedByTheErrorOfTheReportHasItsRing) {
+  Add(-6, 24.5, 200.0, false);
+  Add(0, 24.5, 200.0, false);
+  Add(12, 24.5, 0.0, true);
+  const std::vector<double> radii = Gales(1, 1);
+  EXPECT_EQ(radii.front(), 0.0);
+  EXPECT_GT(radii.back(), 20.0) << "50 kt are 25.7 m/s";
+  EXPECT_LT(radii.back(), Gales(1).back());
+  EXPECT_GT(Gales(1).front(), 200.0 * std::exp(-4.5 * 0.1)) << "the reported gales stay";
 }
 
 TEST_F(Storm, AReportOfGalesAloneIsAReport) {

@@ -148,6 +148,21 @@ TEST(PlacedStorm, KeepsMeasuredRadiiOfAnotherWind) {
   EXPECT_EQ(Place(path, {weaker})[0].grade, 1);  // the risk is that of the wind
 }
 
+TEST(PlacedStorm, AddsARingThatIsNewlyReachedNextToMeasuredOnes) {
+  StormTrack track = WestGoing(1);
+  track.fixes[0].wind_mps = 25.0;  // 50 kt are 25.7 m/s
+  track.fixes[0].rings.erase(track.fixes[0].rings.begin() + 1, track.fixes[0].rings.end());
+  StormPath path = PathOf(track);
+  path.points[0].keeps_radii = true;
+  StormErrors stronger;
+  stronger.wind_add_mps = 3.0;
+  ASSERT_EQ(Place(path, {})[0].radii[1], 0.0F);
+  const std::vector<float> radii = Place(path, {stronger})[0].radii;
+  EXPECT_EQ(radii[2], 300.0F) << "the measured ring stays";
+  EXPECT_GT(radii[1], 10.0F);
+  EXPECT_LE(radii[1], radii[2]);
+}
+
 TEST(PlacedStorm, KeepsQuadrants) {
   StormTrack track = WestGoing(2);
   track.fixes[0].rings[0].radius_km = {400.0, 300.0, 0.0, 200.0};

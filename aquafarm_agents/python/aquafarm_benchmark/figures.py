@@ -141,15 +141,17 @@ def plot_square_error(axes, contestants, runs):
         window = min(measures.WINDOW, errors.shape[1])
         smooth = np.array([measures.known_moving_mean(row, window) for row in errors])
         episodes = np.arange(window, errors.shape[1] + 1)
+        smooth = smooth[np.isfinite(smooth).any(axis=1)]  # without runs that had no update
         known = np.isfinite(smooth).all(axis=0) & (smooth > 0.0).all(axis=0)
-        if not known.any():
+        if not len(smooth) or not known.any():
             continue
         logs = np.log(smooth[:, known])
         mean, spread = logs.mean(axis=0), logs.std(axis=0)
-        axes.plot(episodes[known], np.exp(mean), color=one.colour, linewidth=1.8)
+        axes.plot(episodes[known], np.exp(mean), color=one.colour, linewidth=1.8,
+                  label=one.label)
         axes.fill_between(episodes[known], np.exp(mean - spread), np.exp(mean + spread),
                           color=one.colour, alpha=0.2, linewidth=0)
-        ends.append((float(mean[-1]), episodes[known][-1], one, len(errors)))
+        ends.append((float(mean[-1]), episodes[known][-1], one, len(smooth)))
     axes.set_yscale("log")
     if ends:
         axes.margins(x=0.0)

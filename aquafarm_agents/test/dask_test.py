@@ -60,7 +60,7 @@ class DaskTest(unittest.TestCase):
     def start(self, output, *arguments):
         train = program("aquafarm_agents", "aquafarm_train")
         return Program(self, program("aquafarm_agents", "aquafarm_benchmark"), DATA / "tiny.yaml",
-                       "--algorithms", "q_learning", "--runs", "2", "--episodes", "60000",
+                       "--algorithms", "q_learning", "--runs", "2", "--episodes", "400000",
                        "--evaluation-episodes", "30", "--programs", pathlib.Path(train).parent,
                        "--output", self.folder / output, *arguments)
 

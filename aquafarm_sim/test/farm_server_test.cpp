@@ -147,6 +147,7 @@ TEST(FarmServer, GoesOnWithoutTheLateIfToldToUntilTheyAreBack) {
   EXPECT_EQ(Outcome::HELD, answer.code);
   EXPECT_EQ(12U, answer.step);
   EXPECT_TRUE(ranch->counters().absent.empty());
+  EXPECT_EQ((std::vector<std::uint64_t>{0, 1}), ranch->counters().absences);
   ranch->SetListener(nullptr);
   EXPECT_EQ("absent 1;back 1;", ears.heard) << "each at once, however short the absence was";
 }

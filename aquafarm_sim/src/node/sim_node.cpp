@@ -105,6 +105,18 @@ double ResidentMebibytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
 }
 
+// Returns the ships that were absent between two diagnoses only.
+std::vector<std::int32_t> ReturnedShips(const ServerCounters& before, const ServerCounters& now) {
+  std::vector<std::int32_t> ships;
+  for (std::size_t i = 0; i < now.absences.size(); ++i) {
+    const auto ship = static_cast<std::int32_t>(i);
+    const bool is_absent = std::count(now.absent.begin(), now.absent.end(), ship) > 0;
+    const std::uint64_t earlier = i < before.absences.size() ? before.absences[i] : 0;
+    if (!is_absent && now.absences[i] > earlier) ships.push_back(ship);
+  }
+  return ships;
+}
+
 }  // namespace
 
 SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
@@ -223,6 +235,11 @@ void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
   if (now.barrier_timeouts > diagnosed_.barrier_timeouts) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "barrier timed out");
+  }
+  const std::vector<std::int32_t> returned = ReturnedShips(diagnosed_, now);
+  if (!returned.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
+                   "held without a command in time, and returned: ship " + Joined(returned));
   }
   if (!now.absent.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN,

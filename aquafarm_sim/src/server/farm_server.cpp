@@ -51,6 +51,7 @@ FarmServer::FarmServer(std::shared_ptr<const aquafarm::Scenario> scenario,
                                        std::chrono::nanoseconds(1))),
       actions_(static_cast<std::size_t>(agents_)) {
   const MutexLock lock(mutex_);
+  counters_.absences.resize(static_cast<std::size_t>(agents_));
   batch_->Reset(options.seed, 0, {});
   EpisodeBegan();
 }
@@ -211,6 +212,7 @@ void FarmServer::MarkMissingAbsent() {
   for (const std::int32_t ship : missing) {
     barrier_.SetAbsent(ship, true);
     ++counters_.late_ships;
+    ++counters_.absences[static_cast<std::size_t>(ship)];
   }
   Notify([&](FarmListener& listener) { listener.OnPresence(missing, false); });
 }

@@ -66,16 +66,17 @@ struct ServerOptions {
 struct ServerCounters {
   std::uint64_t farm_steps{};  ///< steps, summed over all farms
   std::uint64_t late_ships{};  ///< paced: holds without a command; lockstep: ships gone absent
-  std::uint64_t barrier_timeouts{};  ///< lockstep: commands that returned TIMEOUT
-  std::uint64_t superseded{};        ///< commands replaced by another one of the same ship
-  std::uint64_t dropped_clients{};   ///< expired claims
-  std::uint64_t refused{};           ///< requests refused with any other code
-  std::uint64_t saves{};             ///< successful save_state calls
-  std::vector<std::int32_t> absent;  ///< ships that lockstep does not wait for
-  double joint_step_age_s{1e9};      ///< time since the last joint step
-  std::string fault;                 ///< error that paused the paced farm; empty if there is none
-  std::uint64_t untold{};            ///< number of failed notifications of the listener
-  std::string untold_why;            ///< reason of the last failure; empty if there is none
+  std::uint64_t barrier_timeouts{};     ///< lockstep: commands that returned TIMEOUT
+  std::uint64_t superseded{};           ///< commands replaced by another one of the same ship
+  std::uint64_t dropped_clients{};      ///< expired claims
+  std::uint64_t refused{};              ///< requests refused with any other code
+  std::uint64_t saves{};                ///< successful save_state calls
+  std::vector<std::int32_t> absent;     ///< ships that lockstep does not wait for
+  std::vector<std::uint64_t> absences;  ///< by ship: number of times that it went absent
+  double joint_step_age_s{1e9};         ///< time since the last joint step
+  std::string fault;       ///< error that paused the paced farm; empty if there is none
+  std::uint64_t untold{};  ///< number of failed notifications of the listener
+  std::string untold_why;  ///< reason of the last failure; empty if there is none
 };
 
 /// The current state of the farms. It is valid during the callback, while no farm steps.

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -180,11 +179,25 @@ std::string PolicyProcess::ReadLine(const Limit& limit) {
   return line;
 }
 
-void PolicyProcess::Send(const void* bytes, std::size_t count) {
+void PolicyProcess::Await(int events, Clock::time_point end, const Limit& limit) const {
+  for (;;) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+    if (left <= 0) {
+      Fail("got no answer within " + std::to_string(limit.seconds) + " s, " + limit.expected);
+    }
+    pollfd ready{socket_, static_cast<short>(events), 0};
+    if (poll(&ready, 1, static_cast<int>(left)) > 0) return;
+  }
+}
+
+void PolicyProcess::Send(const void* bytes, std::size_t count, const Limit& limit) {
+  const auto end = Clock::now() + std::chrono::seconds(limit.seconds);
   const char* next = static_cast<const char*>(bytes);
   while (count > 0) {
-    const ssize_t sent = send(socket_, next, count, MSG_NOSIGNAL);
-    if (sent < 0 && errno == EINTR) continue;
+    Await(POLLOUT, end, limit);
+    const ssize_t sent = send(socket_, next, count, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && (errno == EINTR || errno == EAGAIN)) continue;
     if (sent <= 0) Fail(kEnded);
     next += sent;
     count -= static_cast<std::size_t>(sent);
@@ -192,18 +205,10 @@ void PolicyProcess::Send(const void* bytes, std::size_t count) {
 }
 
 void PolicyProcess::Receive(void* bytes, std::size_t count, const Limit& limit) {
-  using Clock = std::chrono::steady_clock;
   const auto end = Clock::now() + std::chrono::seconds(limit.seconds);
   char* next = static_cast<char*>(bytes);
   while (count > 0) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
-    if (left <= 0) {
-      Fail("got no answer within " + std::to_string(limit.seconds) + " s, " + limit.expected);
-    }
-    pollfd ready{socket_, POLLIN, 0};
-    const int found = poll(&ready, 1, static_cast<int>(left));
-    if (found <= 0) continue;
+    Await(POLLIN, end, limit);
     const ssize_t got = recv(socket_, next, count, 0);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) Fail(kEnded);
@@ -233,9 +238,9 @@ std::string PolicyProcess::Ask(const EnvironmentSpec& spec, const StepResults& r
   const Observations seen = ObservationsOf(encodings_, spec, results);
   const auto rows = static_cast<std::uint32_t>(results.legal.size());
   const std::array<std::uint32_t, 4> header{rows, seen.shape[0], seen.shape[1], seen.shape[2]};
-  Send(header.data(), sizeof(header));
-  Send(seen.data, seen.size);
-  Send(results.legal.data(), results.legal.size() * sizeof(ActionMask));
+  Send(header.data(), sizeof(header), answer_limit_);
+  Send(seen.data, seen.size, answer_limit_);
+  Send(results.legal.data(), results.legal.size() * sizeof(ActionMask), answer_limit_);
   std::uint32_t length = 0;  // of an error
   Receive(&length, sizeof(length), answer_limit_);
   if (length > kMaxWords) {

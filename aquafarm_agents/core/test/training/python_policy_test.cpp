@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "aquafarm/agents/training/python_policy.h"
 
+#include <sys/types.h>
+
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <numeric>
@@ -160,6 +163,33 @@ TEST_F(PythonPolicies, ALongErrorIsCutBetweenCharactersAndTheNextAnswerFollowsIt
   EXPECT_EQ(acts.first(), words);
   EXPECT_EQ(acts.second(), "");
   EXPECT_EQ(acts.actions(), (std::vector<std::uint8_t>{7, 8}));
+}
+
+TEST_F(PythonPolicies, AProcessThatDoesNotReadIsNamedInTime) {
+  const std::string id = folder_ + "/id";
+  const std::string path = Write(
+      "import os\n"
+      "OBSERVATION = 'planes'\n"
+      "open('" +
+      id +
+      "', 'w').write(str(os.getpid()))\n"
+      "def act(observations, masks):\n"
+      "    return [9] * len(masks)\n");
+  const auto process = std::make_shared<PolicyProcess>(path, 1);
+  pid_t number = 0;
+  std::ifstream(id) >> number;
+  ASSERT_GT(number, 1);
+  ASSERT_EQ(0, kill(number, SIGSTOP));
+  // More observations than the socket keeps.
+  LocalEnvironment environment(TinyFarm(), {8192, process->encodings(), false, 1});
+  const auto policy = MakePythonPolicy(process, environment.spec());
+  const StepResults& results = environment.Reset(1);
+  ASSERT_GT(results.planes.size(), 1U << 20U);
+  std::vector<std::uint8_t> actions;
+  EXPECT_EQ(MessageOf<InputError>([&] { policy->Act(results, actions); }),
+            "policy " + path +
+                ": got no answer within 1 s, expected its actions: make act faster, or play fewer "
+                "farms at a time");
 }
 
 TEST_F(PythonPolicies, AfterNoAnswerInTimeALateAnswerIsNeverRead) {

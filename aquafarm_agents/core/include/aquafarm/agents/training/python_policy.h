@@ -5,6 +5,7 @@
 /// Stable-Baselines3. They run in a process of their own, so that they may use any Python and any
 /// package. aquafarm_agents/scripts/serve_policy.py is that process and describes the messages.
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ bool IsPythonPolicy(const std::string& where);
 /// active virtual environment, else python3. Thread-safe.
 class PolicyProcess {
  public:
-  /// Max time of an answer [s].
+  /// Max time of an answer, and of sending the observations [s].
   static constexpr int kAnswerLimit_s = 60;
 
   /// Starts the process and waits until the policy is loaded.
@@ -42,6 +43,8 @@ class PolicyProcess {
            std::vector<std::uint8_t>& actions);
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   /// Max time of an answer, and the end of the line that is thrown after it.
   struct Limit {
     int seconds;
@@ -51,7 +54,8 @@ class PolicyProcess {
   std::string ReadLine(const Limit& limit);
   std::string Ask(const EnvironmentSpec& spec, const StepResults& results,
                   std::vector<std::uint8_t>& actions);
-  void Send(const void* bytes, std::size_t count);
+  void Await(int events, Clock::time_point end, const Limit& limit) const;
+  void Send(const void* bytes, std::size_t count, const Limit& limit);
   void Receive(void* bytes, std::size_t count, const Limit& limit);
   [[noreturn]] void Fail(const std::string& reason) const;
   std::uint8_t KindOf(const std::string& line) const;

@@ -19,12 +19,15 @@ import time
 
 from campaigns import common, ros
 
-# Arguments of each learner. Each takes about a second.
-TABLES = {"q_learning": ["-n", "400000"], "sarsa": ["-n", "400000"],
-          "random": ["-n", "400000"]}
-NETWORKS = {"dqn": ["-n", "3000", "-o", "hidden=16", "-o", "start=200", "-o", "replay=2000"],
-            "ppo": ["-n", "8000", "-f", "16", "-o", "hidden_size=16", "-o", "rollout_size=512",
-                    "-o", "batch_size=128"]}
+# Scenario and arguments of each learner. Each takes about a second.
+TABLES = {name: ["paper", "-n", "400000"] for name in ("q_learning", "sarsa", "random")}
+REPLAY = ["-n", "3000", "-o", "hidden_size=16", "-o", "learning_starts=200", "-o", "buffer_size=2000"]
+ROLLOUT = ["-f", "16", "-o", "hidden_size=16", "-o", "rollout_size=512", "-o", "batch_size=128"]
+NETWORKS = {"dqn": ["paper", *REPLAY],
+            "lstm_dqn": ["paper", *REPLAY],
+            "maddpg": ["two_squads", *REPLAY],
+            "mappo": ["two_squads", "-n", "8000", *ROLLOUT],
+            "ppo": ["paper", "-n", "8000", *ROLLOUT]}
 MOST_KILLS = 30      # in one run; the last attempt is left to end
 LIMIT_S = 300
 SIM_STEPS = 64_000   # of a training through a sim node; each call steps 16 farms
@@ -35,7 +38,8 @@ TINY = common.ROOT / "aquafarm_agents" / "test" / "data" / "tiny.yaml"
 
 
 def command(trainer, name, arguments, folder, resume):
-    return [str(trainer), "paper", "-a", name, *arguments, "--checkpoint-period", "0.02",
+    scenario, *others = arguments
+    return [str(trainer), scenario, "-a", name, *others, "--checkpoint-period", "0.02",
             "--evaluate", "0", "--random", "0", "--scenarios", str(common.SCENARIOS), "-d",
             str(folder), *(["--resume"] if resume else [])]
 

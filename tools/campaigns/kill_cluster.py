@@ -19,7 +19,7 @@ KILLS = 5            # in one run; the last attempt is left to end
 STOP_S = 30.0        # issue 27: the others stop within this time on an idle machine
 BUSY_STOP_S = 180.0  # a busy one needs longer to start processes
 LIMIT_S = 600
-ARGUMENTS = ["-n", "40000", *kill.NETWORKS["ppo"][2:], "-o", "shards=8"]
+ARGUMENTS = ["paper", "-n", "40000", *kill.ROLLOUT, "-o", "shards=8"]
 
 
 def children(pid):

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import unittest.mock
 from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
@@ -125,6 +126,19 @@ class TestChild(unittest.TestCase):
         with self.assertRaises(SystemExit) as ended:
             bench.show(["false"])
         self.assertEqual(1, ended.exception.code)
+
+    def test_the_figures_before_a_benchmark_that_fails_are_kept(self):
+        benches = {"good": lambda: bench.show(["echo", "a_rate 3 1/s"]),
+                   "bad": lambda: bench.show(["false"])}
+        with tempfile.TemporaryDirectory() as folder, \
+                unittest.mock.patch.multiple(bench, WS=pathlib.Path(folder), BENCHES=benches,
+                                             bootstrap=lambda verb: None), \
+                contextlib.redirect_stdout(io.StringIO()), self.assertRaises(SystemExit):
+            try:
+                bench.bench(None)
+            finally:
+                self.assertEqual("a_rate 3 1/s\n",
+                                 pathlib.Path(folder, "bench_all.txt").read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":

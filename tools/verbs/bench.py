@@ -110,9 +110,10 @@ def bench(name):
     if name is not None:
         BENCHES[name]()
         return 0
-    lines = [line for run in BENCHES.values() for line in run()]
-    out = WS / "bench_all.txt"
-    out.write_text("".join(lines), encoding="utf-8")
+    lines, out = [], WS / "bench_all.txt"
+    for run in BENCHES.values():
+        lines += run()
+        out.write_text("".join(lines), encoding="utf-8")  # kept if a later benchmark fails
     say(f"all figures, also in {out}:")
     print("".join(line for line in lines if FIGURE.match(line)), end="")
     return 0

@@ -4,8 +4,9 @@
 
 Usage: bench_ranks.py AQUAFARM_TRAIN [--steps N] [--repetitions N]
 
-Runs take turns, so that other programs disturb them alike. Prints a table, then one line
-`name value unit` per figure. Ends with code 1 if the policies of different ranks differ.
+Runs take turns, so that other programs disturb them alike. Prints a table, then the bars (speed and
+share of exchanges of two ranks, with 95 % intervals, and whether the policies have equal bytes), then
+one line `name value unit` per figure. Ends with code 1 if the policies of different ranks differ.
 """
 
 import argparse
@@ -19,6 +20,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from paired_ratio import describe, mean, paired_ratio
+
 HIDDEN = 128
 FEATURES = 81  # of paper.yaml
 OUTPUTS = 10
@@ -27,6 +30,8 @@ ROLLOUT = 16384  # agent steps
 EPOCHS = 2
 BATCHES = (256, 2048)
 RANKS = (1, 2, 4)
+MIN_SPEED = 1.8  # bars of two ranks on two cores
+MAX_EXCHANGE = 0.08
 
 
 def train(program, ranks, batch, steps, folder):
@@ -93,16 +98,27 @@ def measure(program, steps, repetitions, batch):
     return results
 
 
+def bars(batch, one, two, cores):
+    """Returns a line: the bars of two ranks, met or missed. @param one, two results of train()"""
+    speed = paired_ratio([run[0] for run in one], [run[0] for run in two])
+    share = mean([run[1] for run in two])
+    speed_met = "met" if speed[0] >= MIN_SPEED else "missed"
+    share_met = "met" if share[0] <= MAX_EXCHANGE else "missed"
+    return (f"batch {batch}, n = {len(one)}, {min(cores, 2)} cores: speed of two ranks {describe(speed)} "
+            f"times, bar {MIN_SPEED}: {speed_met}; in exchanges {describe(share)} of the time, bar "
+            f"{MAX_EXCHANGE}: {share_met}; policies of {', '.join(map(str, RANKS))} ranks equal")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", help="aquafarm_train")
-    parser.add_argument("--steps", type=int, default=500000)
-    parser.add_argument("--repetitions", type=int, default=3)
+    parser.add_argument("--steps", type=int, default=1500000)
+    parser.add_argument("--repetitions", type=int, default=5)
     arguments = parser.parse_args()
     cores = len(os.sched_getaffinity(0))
     print(f"{cores} cores, load {os.getloadavg()[0]:.1f}, {arguments.repetitions} repetitions of "
           f"{arguments.steps} steps, {WEIGHTS} weights")
-    figures = []
+    figures, lines = [], []
     print("batch  ranks  µs/step  of it in exchanges  MiB/rank  processor µs/step  speed  predicted")
     for batch in BATCHES:
         results = measure(arguments.program, arguments.steps, arguments.repetitions, batch)
@@ -127,6 +143,8 @@ def main():
                 figures.append((f"ranks_speed_batch_{batch}", f"{speed:.3f}", "times"))
                 figures.append((f"ranks_exchange_batch_{batch}", f"{100 * fraction:.1f}", "%"))
         figures.append((f"ranks_sum_batch_{batch}", f"{1e6 * exchange:.0f}", "us"))
+        lines.append(bars(batch, results[1], results[2], cores))
+    print(*lines, sep="\n")
     for figure in figures:
         print(*figure)
 

@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 import warnings
 
 import rostest
@@ -82,10 +83,15 @@ class DaskTest(unittest.TestCase):
         scheduler.kill()
         part.wait_for(lambda: f"the scheduler {scheduler.address} was lost" in part.words(),
                       "the loss of the scheduler", LIMIT_S)
+        back = f"the scheduler {scheduler.address} answers again"
+        scheduler.start()
+        part.wait_for(lambda: back in part.words(), "the new connection", LIMIT_S)
+        scheduler.kill()  # while the client submits the runs again, or soon after
+        part.wait_for(lambda: part.words().count("was lost; waiting") == 2, "the second loss", LIMIT_S)
         scheduler.start()
         scheduler.add_worker()
         self.assertEqual(0, part.code(LIMIT_S), part.words())
-        self.assertIn(f"the scheduler {scheduler.address} answers again", part.words())
+        self.assertEqual(2, part.words().count(back), part.words())
         self.assertNotIn("Traceback", part.words())
         for name in TABLES:
             self.assertEqual((self.folder / "whole" / name).read_text(),
@@ -195,6 +201,50 @@ class DaskTest(unittest.TestCase):
         self.assertEqual(2, code)
         self.assertRegex(said.getvalue(), f"^scheduler: got '{address}', which does not answer within")
         self.assertEqual(1, said.getvalue().count("\n"), said.getvalue())
+
+    def refusal_of_slurm(self, **programs):
+        """Returns the line for scheduler slurm on a host with these programs alone."""
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+        for name, script in programs.items():
+            (folder / name).write_text("#!/bin/sh\n" + script + "\n")
+            (folder / name).chmod(0o755)
+        with unittest.mock.patch.dict(os.environ, PATH=str(folder)), \
+                self.assertRaises(cluster.BadScheduler) as refused:
+            cluster.Cluster("slurm")
+        return str(refused.exception)
+
+    def test_slurm_is_refused_at_once_where_it_is_missing_or_does_not_answer(self):
+        self.assertRegex(self.refusal_of_slurm(),
+                         "^scheduler: got 'slurm', but this host has no sbatch; start it on")
+        words = self.refusal_of_slurm(sbatch="exit 1", sinfo="echo 'sinfo: no controller' >&2; exit 1")
+        self.assertRegex(words, "whose controller does not answer; .* [(]sinfo: no controller[)]$")
+        self.assertIn("sinfo'", self.refusal_of_slurm(sbatch="exit 1"))
+
+    def test_a_scheduler_that_is_lost_again_and_again_ends_the_benchmark(self):
+        class Dying:
+            """A cluster that is lost whenever runs are submitted."""
+            is_local = False
+            client = unittest.mock.Mock()
+            client.submit.side_effect = RuntimeError("Tried sending message after closing")
+            connections = 0
+
+            def workers(self):
+                return 1
+
+            def is_alive(self):
+                return False
+
+            def reconnect(self, _):
+                self.connections += 1
+
+        job = runs.Job("c", "c_1", self.folder / "c_1", self.folder / "c_1.json", [["true"]], 1.0)
+        here = Dying()
+        one = runs._Runs([], here, lambda _: None, lambda _: False)
+        one._futures = {"future": job}
+        with self.assertRaisesRegex(cluster.Lost, "^the scheduler was lost 20 times and no run "
+                                                  "completed in between; .* the same command resumes"):
+            one._recover()
+        self.assertEqual(20, here.connections)
 
     def test_a_worker_without_the_clients_files_is_named(self):
         commands = [[str(self.folder / "train")]]

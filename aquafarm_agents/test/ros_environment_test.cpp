@@ -212,6 +212,59 @@ TEST(RosEnvironment, StartsAfreshWhenAnotherHasMovedOrResetTheFarms) {
   }
 }
 
+TEST(RosEnvironment, AShareOfTheFarmsIsThatOfThisProcess) {
+  RosEnvironmentOptions options;
+  options.farms = 2;
+  options.encodings = kFeaturesBit;
+  options.hashes = true;
+  options.share = {4, 8};
+  RosEnvironment ros(ros::NodeHandle("pair"), options);
+  const auto scenario = std::make_shared<const aquafarm::Scenario>(
+      aquafarm::ParseScenario(ros.spec().scenario_yaml, ros.spec().scenario_name));
+  LocalEnvironment local(scenario, {2, kFeaturesBit, true, 1}, options.share);
+  EXPECT_GT(ExpectSameTransitions(ros, local, 500), 10U);
+  // A rank takes its part of the farms of all ranks.
+  LocalEnvironment all(scenario, {8, kFeaturesBit, true, 1});
+  all.Reset(9);
+  ExpectSame(ros.Load(all.Save()), local.Load(all.Save()));
+  std::size_t ended = 0;
+  RandomActions random(3);
+  for (int step = 0; step < 200; ++step) {
+    const auto actions = random.Next(Entries(local.spec()));
+    const StepResults& got = ros.Step(actions);
+    const StepResults& expected = local.Step(actions);
+    ExpectSame(got, expected);
+    ExpectSameFinished(got, expected);
+    ended += expected.finished.size();
+  }
+  EXPECT_GT(ended, 5U);
+}
+
+TEST(RosEnvironment, AShareKeepsToItsEpisodesAfterALossOfTheFarms) {
+  ros::NodeHandle node("pair");
+  RosEnvironmentOptions options;
+  options.farms = 2;
+  options.encodings = 0;
+  options.share = {4, 8};
+  std::vector<std::string> notices;
+  options.on_notice = [&notices](const std::string& text) { notices.push_back(text); };
+  RosEnvironment environment(node, options);
+  environment.Reset(1, 3);
+  const std::vector<std::uint8_t> actions(Entries(environment.spec()), 0);
+  std::size_t ended = 0;
+  while (ended == 0) ended = environment.Step(actions).finished.size();
+  aquafarm_msgs::Reset reset;
+  ASSERT_TRUE(node.serviceClient<aquafarm_msgs::Reset>("reset").call(reset));
+  environment.Step(actions);
+  EXPECT_TRUE(environment.ConsumeRestart());
+  ASSERT_EQ(notices.size(), 1U);
+  // Farms 0 to 7 have started 3 to 10; farm 4 or 5 may have started 15 or 16. 19 = 3 + 2 * 8.
+  EXPECT_CONTAINS(notices.back(), "fresh episodes from number 19");
+  aquafarm_msgs::GetState state;
+  ASSERT_TRUE(node.serviceClient<aquafarm_msgs::GetState>("get_state").call(state));
+  EXPECT_EQ(state.response.state.episode, 23U);
+}
+
 TEST(RosEnvironment, EndsWhereAnotherTrainsOnTheSameFarms) {
   ros::NodeHandle node("paper");
   RosEnvironment environment(node, {});

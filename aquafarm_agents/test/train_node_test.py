@@ -16,10 +16,12 @@ from aquafarm_msgs.srv import Claim
 from sensor_msgs.msg import PointCloud2
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from processes import (DATA, Program, newest_checkpoint, program, start_agent,  # noqa: E402
-                       start_sim)
+from processes import (DATA, Program, free_port, newest_checkpoint, program,  # noqa: E402
+                       start_agent, start_sim)
 
 TINY = DATA / "tiny.yaml"
+PPO = "hidden_size=16 rollout_size=512 batch_size=128"
+CONSTANT = "learning_rate=0.001 clip_range=0.2 teacher=0"  # no schedule: the limit of steps changes nothing
 
 
 class TrainNodeTest(unittest.TestCase):
@@ -58,6 +60,65 @@ class TrainNodeTest(unittest.TestCase):
                 ["policy.ckpt", "metrics.csv", "scenario.yaml", "evaluation.csv",
                  "evaluation_random.csv"])
             self.assertIn("success 100.0 %", ros.words())
+
+    def ranks(self, run, *parameters):
+        """Starts two ranks. Each has the sim node of its own namespace."""
+        port, started = str(free_port()), []
+        for rank in range(2):
+            variables = {"RANK": str(rank), "WORLD_SIZE": "2", "MASTER_PORT": port,
+                         "OMP_NUM_THREADS": "1"}
+            with unittest.mock.patch.dict(os.environ, variables):
+                started.append(start_agent(
+                    self, "train_node", f"{self.namespace}/rank_{rank}",
+                    f"_run_dir:={self.folder / run}", "_algorithm:=ppo", "_farms:=16",
+                    "_evaluation_episodes:=50", "_random_episodes:=10", "_rank_start_s:=120",
+                    "_rank_answer_s:=120", *parameters))
+        return started
+
+    def start_sims(self):
+        for rank in range(2):
+            start_sim(self, f"{self.namespace}/rank_{rank}", TINY)
+
+    def test_ranks_with_sim_nodes_of_their_own_train_as_in_process(self):
+        self.start_sims()
+        first, second = self.ranks("ros", "_steps:=20000", "_seed:=3", f"_options:={PPO}")
+        self.assertEqual(0, first.code(), first.words() + second.words())
+        self.assertEqual(0, second.code(), second.words())
+        self.assertIn("ranks      2, ", first.words())
+        self.assertNotIn("trained", second.words())
+        for ranks in ("1", "2"):
+            local = self.in_process(f"local_{ranks}", "--algorithm", "ppo", "--steps", "20000",
+                                    "--farms", "16", "--seed", "3", "--ranks", ranks,
+                                    *[word for one in PPO.split() for word in ("--set", one)])
+            self.assertEqual(0, local.code(), local.words())
+            newest = newest_checkpoint(self.folder / "ros")
+            self.assert_same_files(
+                "ros", f"local_{ranks}",
+                ["policy.ckpt", "metrics.csv", "scenario.yaml", "evaluation.csv",
+                 "evaluation_random.csv", f"checkpoints/{newest}"])
+
+    def test_a_killed_rank_ends_the_other_and_both_resume_in_the_same_bits(self):
+        self.start_sims()
+        options = f"_options:={PPO} {CONSTANT}"
+        first, second = self.ranks("parts", "_steps:=1e12", "_checkpoint_period_s:=0", options)
+        first.wait_for(lambda: newest_checkpoint(self.folder / "parts"), "a checkpoint")
+        second.send(signal.SIGKILL)
+        self.assertEqual(6, first.code(), first.words())
+        self.assertIn("ranks: rank 1 of 2 has ended or does not answer", first.words())
+        self.assertRegex(first.words(), "go on      roslaunch aquafarm_bringup ranks.launch .*"
+                                        f" resume:=true run_dir:={self.folder / 'parts'} ranks:=2")
+        limit = 10000 + int(newest_checkpoint(self.folder / "parts")[len("step_"):-len(".ckpt")])
+        first, second = self.ranks("parts", f"_steps:={limit}", "_resume:=true", options)
+        self.assertEqual(0, first.code(), first.words() + second.words())
+        self.assertIn("resuming from", first.words())
+        whole = self.in_process("whole", "--algorithm", "ppo", "--steps", str(limit), "--farms",
+                                "16", "--ranks", "1",
+                                *[word for one in f"{PPO} {CONSTANT}".split()
+                                  for word in ("--set", one)])
+        self.assertEqual(0, whole.code(), whole.words())
+        newest = newest_checkpoint(self.folder / "whole")
+        self.assert_same_files("whole", "parts",
+                               ["policy.ckpt", "metrics.csv", f"checkpoints/{newest}"])
 
     def test_whoever_looks_at_its_values_changes_no_bit(self):
         start_sim(self, self.namespace, TINY)
@@ -180,13 +241,24 @@ class TrainNodeTest(unittest.TestCase):
                 self.assertEqual(2, run.code(), run.words())
                 self.assertIn(words, run.words())
 
-    def test_copies_that_a_launcher_of_ranks_starts_are_refused(self):
-        variables = {"RANK": "1", "WORLD_SIZE": "2"}
-        with unittest.mock.patch.dict(os.environ, variables):
-            run = self.train("run")
-        self.assertEqual(2, run.code(), run.words())
-        self.assertIn("WORLD_SIZE: got 2, expected 1 or none: train_node trains in one process",
-                      run.words())
+    def test_ranks_that_cannot_train_are_refused(self):
+        for parameters, words in (
+                ((), "WORLD_SIZE: got 2 with algorithm q_learning, which learns in one process"),
+                (("_algorithm:=ppo",), "~farms: got 0 with 2 ranks, expected the number of farms")):
+            with unittest.mock.patch.dict(os.environ, {"RANK": "1", "WORLD_SIZE": "2"}):
+                run = self.train("run", *parameters)
+            self.assertEqual(2, run.code(), run.words())
+            self.assertIn(words, run.words())
+
+    def test_a_second_node_of_the_same_name_is_refused(self):
+        start_sim(self, self.namespace, TINY)
+        first = self.train("run", "_steps:=1e9", "_checkpoint_period_s:=0.05", "__name:=twin")
+        first.wait_for(lambda: newest_checkpoint(self.folder / "run"), "a checkpoint")
+        second = self.train("other", "__name:=twin")
+        self.assertEqual(2, second.code(), second.words())
+        self.assertIn(f"node {self.namespace}/twin is already running at", second.words())
+        first.send(signal.SIGINT)
+        self.assertEqual(130, first.code(), first.words())
 
     def test_without_a_sim_node_it_says_so_and_ends(self):
         run = self.train("run", wait_s=2)

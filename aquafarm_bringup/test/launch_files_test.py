@@ -48,7 +48,7 @@ class LaunchFilesTest(unittest.TestCase):
     def test_the_launch_files_are_there(self):
         names = {path.stem for path in FILES}
         self.assertLessEqual({"train", "evaluate", "benchmark", "plan", "sim", "play", "record",
-                              "replay", "agents", "agent"}, names)
+                              "replay", "agents", "agent", "ranks"}, names)
 
     def test_every_argument_says_what_it_is_and_has_a_default(self):
         for path in FILES:
@@ -127,6 +127,41 @@ class LaunchFilesTest(unittest.TestCase):
             config = load(file.name, [])
         self.assertEqual([], config.config_errors)
         self.assertEqual(["boat"], [node.machine_name for node in config.nodes])
+
+    def test_every_rank_gets_a_trainer_and_a_sim_node(self):
+        config = load(LAUNCH / "ranks.launch", ["ranks:=4", "farms:=64"])
+        self.assertEqual(sorted(f"/aquafarm/rank_{rank}/{name}" for rank in range(4)
+                                for name in ("sim", "train")),
+                         sorted(node.namespace + node.name for node in config.nodes))
+        for node in config.nodes:
+            if node.name != "train":
+                continue
+            rank = int(node.namespace.strip("/")[-1])
+            variables = dict(node.env_args)
+            self.assertEqual((str(rank), "4", "127.0.0.1"), tuple(
+                variables[name] for name in ("RANK", "WORLD_SIZE", "MASTER_ADDR")))
+            self.assertEqual(rank == 0, node.required)
+        values = {name: parameter.value for name, parameter in config.params.items()}
+        self.assertEqual((16, 64), (values["/aquafarm/rank_3/sim/farms"],
+                                    values["/aquafarm/rank_3/train/farms"]))
+
+    def test_ranks_can_be_placed_on_another_host(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".launch") as file:
+            file.write(f"""<launch>
+              <machine name="node2" address="10.0.0.2" env-loader="/opt/ranch/env.sh" user="crew"/>
+              <include file="{LAUNCH / 'ranks.launch'}">
+                <arg name="ranks" value="4"/> <arg name="first_rank" value="1"/>
+                <arg name="count" value="2"/> <arg name="machine" value="node2"/>
+              </include>
+            </launch>""")
+            file.flush()
+            config = load(file.name, [])
+        self.assertEqual([], config.config_errors)
+        self.assertEqual({"/aquafarm/rank_1/", "/aquafarm/rank_2/"},
+                         {node.namespace for node in config.nodes})
+        for node in config.nodes:
+            self.assertEqual("node2", node.machine_name)
+            self.assertNotIn("ROS_IP", dict(node.env_args), "env-loader sets it")
 
     def test_every_node_is_bound_to_the_loopback_address(self):
         for path in FILES:

@@ -309,6 +309,30 @@ TEST(FarmServerServices, ResetOutOfRangeChangesNothing) {
   EXPECT_EQ(hash, StateOf(*ranch).hash);
 }
 
+TEST(FarmServerServices, FarmsOfSeveralNodesPlayEpisodesAStrideApart) {
+  aquafarm::Scenario scenario = aquafarm::test::TinyScenario();
+  scenario.step_limit = 1;
+  const auto ranch = MakeRanch(scenario);
+  aquafarm_msgs::Reset call;
+  call.request.farms = 2;
+  call.request.has_episode = true;
+  call.request.episode = 6;
+  call.request.stride = 1;
+  ranch->Reset(call.request, call.response);
+  EXPECT_EQ(Outcome::BAD_VALUE, call.response.code);
+  EXPECT_EQ("stride: got 1, expected 0 or at least 2, the number of farms", call.response.message);
+  EXPECT_EQ(0U, StateOf(*ranch).episode);
+  for (const std::uint32_t stride : {8U, 0U}) {  // 0: the number of farms
+    call.request.stride = stride;
+    ranch->Reset(call.request, call.response);
+    ASSERT_TRUE(call.response.ok) << call.response.message;
+    EXPECT_EQ(6U, StateOf(*ranch).episode);
+    StepAll(*ranch, {kNorth, kNorth});
+    StepAll(*ranch, {kNorth, kNorth});  // starts the next episodes
+    EXPECT_EQ(stride == 0 ? 8U : 14U, StateOf(*ranch).episode);
+  }
+}
+
 TEST(FarmServerServices, RepeatingAResetBeginsNoFurtherEpisode) {
   const auto ranch = MakeRanch(aquafarm::test::TinyScenario());
   aquafarm_msgs::Reset call;

@@ -107,8 +107,52 @@ def test_a_sweep_on_dask_workers_of_a_job_gives_the_table_of_this_machine(slurm,
     assert (tmp_path / "there/table.csv").read_text() == table
 
 
-@pytest.mark.skipif(importlib.util.find_spec("dask_jobqueue") is None,
-                    reason="dask-jobqueue of PyPI is not installed")
+PROBE = """#!/usr/bin/python3
+import os, subprocess, sys
+from distributed import Client
+from distributed.security import Security
+address = sys.argv[2]
+with Client(address, timeout=120) as client:
+    print("own key:", client.submit(sum, [1, 2]).result())
+subprocess.run("openssl req -x509 -newkey rsa:2048 -nodes -subj /CN=other -keyout key -out cert",
+               shell=True, check=True, capture_output=True)
+other = Security(require_encryption=True, tls_client_cert="cert", tls_client_key="key",
+                 tls_ca_file=os.environ["DASK_DISTRIBUTED__COMM__TLS__CA_FILE"])
+for place, security in ((address, other),
+                        (address.replace("tls", "tcp"), Security(require_encryption=False))):
+    try:
+        Client(place, timeout=10, security=security)
+    except (OSError, RuntimeError) as error:
+        print("refused", place[:3])
+"""
+
+
+def test_the_scheduler_of_a_job_refuses_programs_without_its_key(slurm, tmp_path):
+    (tmp_path / "probe").write_text(PROBE)
+    (tmp_path / "probe").chmod(0o755)
+    slurm.call("sbatch", "--wait", "--chdir", tmp_path, "--ntasks=2", "--time=10",
+               ROOT / "docs/scale/dask.sbatch", tmp_path / "probe")
+    output = output_of(tmp_path)
+    for words in ("own key: 3", "refused tls", "refused tcp"):
+        assert words in output, output
+    assert not list(tmp_path.glob(".aquafarm-dask-*"))  # the key
+
+
+needs_jobqueue = pytest.mark.skipif(importlib.util.find_spec("dask_jobqueue") is None,
+                                    reason="dask-jobqueue of PyPI is not installed")
+
+
+@needs_jobqueue
+def test_a_job_that_slurm_refuses_is_reported_in_one_line(slurm, tmp_path):
+    done = subprocess.run([*sweep(tmp_path / "there"), "--scheduler", "slurm"], cwd=tmp_path,
+                          env={**slurm.environment, "DASK_JOBQUEUE__SLURM__QUEUE": "nowhere"},
+                          timeout=LIMIT_S, check=False, capture_output=True, text=True)
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert done.stderr.startswith("scheduler: got 'slurm', which does not accept a job: ")
+    assert "invalid partition" in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+@needs_jobqueue
 def test_a_sweep_that_submits_its_workers_gives_the_table_of_this_machine(slurm, tmp_path, table):
     done = subprocess.run([*sweep(tmp_path / "there"), "--scheduler", "slurm", "--jobs", "2"],
                           cwd=tmp_path, env=slurm.environment, timeout=LIMIT_S, check=False,

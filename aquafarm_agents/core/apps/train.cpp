@@ -118,26 +118,17 @@ RunReport TrainHere(Arguments& arguments, ProcessGroup* group) {
   };
   if (group == nullptr) return Train(options, make, Print, &stop_requested);
   const auto make_share = [&](std::uint8_t encodings) {
-    EnvironmentOptions share = environment;
-    share.encodings = encodings;
-    share.farms /= group->size();
-    if (share.farms * group->size() != environment.farms) {
-      throw InputError("farms: got " + std::to_string(environment.farms) + " with " +
-                       std::to_string(group->size()) + " ranks, expected a multiple of the ranks");
-    }
-    return MakeLocalFarms(arguments.scenario.Load(), share,
-                          {share.farms * group->rank(), environment.farms});
+    const FarmShare share = ShareOfRank(environment.farms, group->rank(), group->size());
+    EnvironmentOptions own = environment;
+    own.encodings = encodings;
+    own.farms /= group->size();
+    return MakeLocalFarms(arguments.scenario.Load(), own, share);
   };
   const RankedRun ranked{*group, make_share};
   const auto print = [&](const RunStatus& status) {
     if (group->rank() == 0) Print(status);
   };
-  RunReport report = Train(options, make, print, &stop_requested, &ranked);
-  if (group->rank() == 0) return report;
-  const bool is_ok = report.code == ExitCode::kOk || report.code == ExitCode::kInterrupted;
-  report.summary =
-      is_ok ? "" : "rank " + std::to_string(group->rank()) + ": " + report.status.message + "\n";
-  return report;
+  return Train(options, make, print, &stop_requested, &ranked);
 }
 
 int Run(Arguments& arguments, char** argv) {

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The workers of Dask that execute runs: of this process, of a scheduler, or of Slurm."""
+import contextlib
 import logging
 import re
+import shutil
+import subprocess
 import time
 
 LOCAL, SLURM = "local", "slurm"
@@ -10,6 +13,7 @@ HELP = ("where runs execute: local (this machine's cores), slurm (jobs of Slurm,
         "files under the same paths (default: local)")
 
 _CONNECT_S = 25.0  # max wait for the scheduler at the start
+_SUBMIT_S = 120.0  # max wait for sbatch
 _RETURN_S = 600.0  # max wait for a scheduler that was lost
 _ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?[^/:\s]+:\d{1,5}")
 
@@ -77,6 +81,7 @@ class Cluster:
         return self._scheduler if "//" in self._scheduler else "tcp://" + self._scheduler
 
     def _make_slurm(self, jobs):
+        _check_slurm()
         try:
             from dask_jobqueue import SLURMCluster
         except ImportError:
@@ -91,8 +96,14 @@ class Cluster:
             self._made = SLURMCluster(**chosen,
                                       scheduler_options={"dashboard_address": "127.0.0.1:0"})
             self._made.scale(jobs=jobs)
+            # scale() submits in Dask's thread, which only logs what sbatch refuses.
+            self._made.sync(self._made._correct_state, callback_timeout=_SUBMIT_S)
         except (OSError, ValueError, RuntimeError) as error:
-            raise BadScheduler(f"scheduler: slurm: {_first_line(error)}") from None
+            with contextlib.suppress(AssertionError):  # Dask's, of workers that were never submitted
+                self.close()
+            raise BadScheduler(f"scheduler: got 'slurm', which does not accept a job: "
+                               f"{_refusal(error)}; check queue and limits in "
+                               "~/.config/dask/jobqueue.yaml") from None
         return self._made
 
     def _connect(self, address):
@@ -127,6 +138,7 @@ class Cluster:
                 report(f"the scheduler {self._scheduler} answers again")
                 return
             except (OSError, ValueError):
+                self._close_client()  # of a scheduler that was lost again at this moment
                 if time.monotonic() > end:
                     raise Lost(f"the scheduler {self._scheduler} did not come back within "
                                f"{_RETURN_S:.0f} s; the same command resumes") from None
@@ -160,6 +172,31 @@ class Cluster:
             made, self._made = self._made, None
             made.close(timeout=20.0)
         logging.disable(logging.NOTSET)
+
+
+def _check_slurm():
+    """Raises BadScheduler if this host cannot submit jobs to Slurm."""
+    if shutil.which("sbatch") is None:
+        raise BadScheduler("scheduler: got 'slurm', but this host has no sbatch; start it on a host "
+                           "that submits jobs to Slurm (Debian's package slurm-client), or use local "
+                           "or the address of a Dask scheduler")
+    try:
+        done = subprocess.run(["sinfo", "--noheader"], capture_output=True, text=True, check=False,
+                              timeout=_CONNECT_S)
+        fault = "" if done.returncode == 0 else done.stderr.strip() or f"exit code {done.returncode}"
+    except subprocess.TimeoutExpired:
+        fault = f"no answer within {_CONNECT_S:.0f} s"
+    except OSError as error:
+        fault = str(error)
+    if fault:
+        raise BadScheduler("scheduler: got 'slurm', whose controller does not answer; check "
+                           f"SLURM_CONF and the output of sinfo ({fault.splitlines()[0]})")
+
+
+def _refusal(error):
+    """Returns the line of sbatch in an error of dask-jobqueue, or the first line."""
+    found = re.search(r"^sbatch: (?:error: )?(.+)$", str(error), re.MULTILINE)
+    return found[1] if found else _first_line(error)
 
 
 def _first_line(error):

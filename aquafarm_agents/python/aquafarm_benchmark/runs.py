@@ -13,12 +13,14 @@ import time
 import typing
 from asyncio import CancelledError, TimeoutError
 
+from aquafarm_benchmark.cluster import Lost
 from aquafarm_benchmark.worker import has_begun, last_line
 
 _REFUSED = 2  # exit code of a program for invalid input
 _LINGER_S = 12.0  # time for programs to save after Ctrl-C; roslaunch allows 15
 _PERIOD_S = 5.0  # between two checks of the scheduler
 _LOSSES = 5  # times that a run is submitted again after Dask gave it up with its workers
+_RECOVERIES = 20  # losses of the scheduler in a row, without a run that completes in between
 _DONE = re.compile(r"(?:steps|episodes) ([\d,]+) / ([\d,]+)")
 # Variables of this process that change results or the output of programs.
 _PASSED_ON = re.compile(r"OPENBLAS_\w+|OMP_\w+|AQUAFARM_\w+")
@@ -110,6 +112,7 @@ class _Runs:
         self._futures = {}  # submitted: {future: job}
         self._jobs = {}  # by key of their future, for events
         self._failures, self._declined = [], {}
+        self._recoveries = 0
         self._progress = _Progress(jobs, self._over)
         if self._over:
             report(f"{self._over} of {len(jobs)} runs are already complete")
@@ -178,10 +181,10 @@ class _Runs:
         job = self._futures.pop(future)
         if future.status == "cancelled":  # with the scheduler, or below
             if job.contestant not in self._declined:
-                self._submit(job)
+                self._submit_again(future, job)
             return
         if future.status == "error":
-            self._settle_error(job, future.exception())
+            self._settle_error(future, job, future.exception())
             return
         try:
             outcome = future.result(timeout=_PERIOD_S)
@@ -189,11 +192,12 @@ class _Runs:
             self._futures[future] = job
             return
         if outcome is None:
-            self._submit(job)
+            self._submit_again(future, job)
             return
         job.resumes, code = outcome["resumes"], outcome["code"]
         if code in job.good_codes and self._complete(job.result):
             self._progress.finish(job)
+            self._recoveries = 0
             self._took_part.add(job.contestant)
             shutil.rmtree(job.folder / "checkpoints", ignore_errors=True)
         elif (code == _REFUSED and not job.resumes and outcome["commands"] == 1 and
@@ -204,11 +208,20 @@ class _Runs:
         elif job.contestant not in self._declined:
             self._fail(f"{job.name}: exit code {code}: {outcome['words']} ({job.log})")
 
-    def _settle_error(self, job, error):
+    def _submit_again(self, future, job):
+        """As _submit. Keeps the ended future for _recover if the scheduler was lost."""
+        try:
+            self._submit(job)
+        except Exception:  # Dask raises several types
+            if self._cluster.is_local or self._cluster.is_alive():
+                raise
+            self._futures[future] = job
+
+    def _settle_error(self, future, job, error):
         from distributed import KilledWorker
         job.losses += 1
         if isinstance(error, KilledWorker) and job.losses <= _LOSSES:
-            self._submit(job)
+            self._submit_again(future, job)
             return
         self._fail(f"{job.name}: {str(error).splitlines()[0] if str(error) else repr(error)}")
 
@@ -219,10 +232,20 @@ class _Runs:
     def _recover(self):
         """Submits what is left to the scheduler that has replaced the one that was lost."""
         left = list(self._futures.values())
-        self._cluster.reconnect(self._report)
-        self._futures.clear()
-        self._jobs.clear()
-        self._submit_all([job for job in left if not self._complete(job.result)])
+        while True:
+            self._recoveries += 1
+            if self._recoveries > _RECOVERIES:
+                raise Lost(f"the scheduler was lost {_RECOVERIES} times and no run completed in "
+                           "between; check its output, then the same command resumes")
+            self._cluster.reconnect(self._report)
+            self._futures.clear()
+            self._jobs.clear()
+            try:
+                self._submit_all([job for job in left if not self._complete(job.result)])
+                return
+            except Exception:  # Dask raises several types if the scheduler is lost at this moment
+                if self._cluster.is_alive():
+                    raise
 
     def _end(self):
         """Ends all programs and waits until they have saved."""

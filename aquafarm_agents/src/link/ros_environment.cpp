@@ -59,9 +59,9 @@ EnvironmentSpec FromMsg(const aquafarm_msgs::FarmSpec& message) {
   return spec;
 }
 
-EpisodeResult FromMsg(const aquafarm_msgs::EpisodeSummary& message) {
+EpisodeResult FromMsg(const aquafarm_msgs::EpisodeSummary& message, std::int32_t first_farm) {
   EpisodeResult result;
-  result.farm = message.farm;
+  result.farm = first_farm + message.farm;
   result.seed = message.seed;
   result.episode = message.episode;
   result.steps = message.steps;
@@ -100,6 +100,7 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
   }
   spec_ = FromMsg(now.spec);
   if (options_.farms > 0) spec_.farms = options_.farms;
+  share_ = aquafarm::agents::WholeOr(options_.share, spec_.farms);
   own_rewards_ = aquafarm::agents::WantsOwnRewards(options_.encodings, spec_);
   if (own_rewards_) encodings_ |= StepResult::TERMS;
   if ((options_.encodings & aquafarm::agents::kIndexBit) != 0 && spec_.state_count == 0) {
@@ -122,7 +123,8 @@ const StepResults& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first
   reset.request.has_seed = true;
   reset.request.seed = seed;
   reset.request.has_episode = true;
-  reset.request.episode = first_episode;
+  reset.request.episode = first_episode + static_cast<std::uint64_t>(share_.first);
+  reset.request.stride = static_cast<std::uint32_t>(share_.total);
   reset.request.farms = spec_.farms;
   reset.request.encodings = encodings_;
   reset.request.sequence = ++sequence_;
@@ -134,7 +136,8 @@ const StepResults& RosEnvironment::Reset(std::uint64_t seed, std::uint64_t first
                      " now, expected " + spec_.scenario_name + " as before");
   }
   seed_ = seed;
-  next_episode_ = first_episode + static_cast<std::uint64_t>(spec_.farms);
+  offset_ = first_episode % static_cast<std::uint64_t>(share_.total);
+  next_episode_ = first_episode + static_cast<std::uint64_t>(share_.total);
   Take(reset.response.result);
   return results_;
 }
@@ -171,7 +174,7 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
   if (!results_.finished.empty()) restarts_ = 0;
   for (const EpisodeResult& ended : results_.finished) {  // its farm continues N episodes later
     next_episode_ =
-        std::max(next_episode_, ended.episode + static_cast<std::uint64_t>(spec_.farms) + 1);
+        std::max(next_episode_, ended.episode + static_cast<std::uint64_t>(share_.total) + 1);
   }
   return results_;
 }
@@ -189,7 +192,9 @@ void RosEnvironment::Take(StepResult& result) {
                             results_, result);
   if (own_rewards_) aquafarm::agents::UseOwnRewards(results_);
   results_.finished.clear();
-  for (const auto& summary : result.finished) results_.finished.push_back(FromMsg(summary));
+  for (const auto& summary : result.finished) {
+    results_.finished.push_back(FromMsg(summary, share_.first));
+  }
 }
 
 std::string RosEnvironment::Save() {
@@ -200,8 +205,10 @@ std::string RosEnvironment::Save() {
 }
 
 const StepResults& RosEnvironment::Load(const std::string& bytes) {
+  if (share_.total != spec_.farms) Reset(seed_);  // states hold no distance of episodes
+  const std::string own = aquafarm::agents::TakeSavedFarms(bytes, share_, spec_.farms);
   aquafarm_msgs::LoadState load;
-  load.request.data.assign(bytes.begin(), bytes.end());
+  load.request.data.assign(own.begin(), own.end());
   load.request.encodings = encodings_;
   CallOrThrow(load_client_, names::kLoadState, load);
   if (!load.response.ok) throw InputError("sim node: load refused: " + load.response.message);
@@ -218,7 +225,16 @@ void RosEnvironment::ReadProgress() {
     const auto state = GetState(farm, false).state;
     seed_ = state.seed;
     next_episode_ = std::max(next_episode_, state.episode + 1);
+    const auto total = static_cast<std::uint64_t>(share_.total);
+    offset_ = (state.episode + total - static_cast<std::uint64_t>(share_.first + farm)) % total;
   }
+}
+
+// Other environments play the episodes between two of a farm, so a farm keeps to its own ones.
+std::uint64_t RosEnvironment::NextRound() const {
+  if (share_.total == spec_.farms) return next_episode_;
+  const auto total = static_cast<std::uint64_t>(share_.total);
+  return next_episode_ + (offset_ + total - next_episode_ % total) % total;
 }
 
 aquafarm_msgs::GetState::Response RosEnvironment::GetState(std::int32_t farm, bool with_spec) {
@@ -234,9 +250,10 @@ void RosEnvironment::Restart(const std::string& why) {
   if (++restarts_ > kMostRestarts) {
     throw EnvironmentLost("sim node: another client keeps changing the farms: " + why);
   }
+  const std::uint64_t next = NextRound();
   Notice("the farms are not as they were left (" + why +
-         "); continuing with fresh episodes from number " + std::to_string(next_episode_));
-  Reset(seed_, next_episode_);
+         "); continuing with fresh episodes from number " + std::to_string(next));
+  Reset(seed_, next);
   restarted_ = true;
 }
 

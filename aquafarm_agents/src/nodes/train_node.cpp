@@ -10,11 +10,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
 
-#include "aquafarm/agents/ranks/rank_variables.h"
+#include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/agents/ranks/process_group.h"
 #include "aquafarm/agents/training/run.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/limits.h"
+#include "aquafarm_agents/link/duplicate_node.h"
 #include "aquafarm_agents/link/ros_environment.h"
 #include "aquafarm_agents/nodes/node.h"
 #include "aquafarm_agents/nodes/signals.h"
@@ -36,18 +39,9 @@ constexpr double kTerminalPeriod_s = 1.0;  // one line that renews itself
 struct TrainParams {
   agents::RunOptions run;
   RosEnvironmentOptions environment;
+  agents::GroupTimes times;
   double values_period_s{2.0};
 };
-
-// Several copies of the node would each train alone, in the same run folder.
-void RefuseRanks() {
-  const auto ranks =
-      aquafarm::agents::ReadRankVariables([](const char* name) { return std::getenv(name); });
-  if (ranks.world_size < 2) return;
-  throw aquafarm::InputError(ranks.launcher + ": got " + std::to_string(ranks.world_size) +
-                             ", expected 1 or none: train_node trains in one process; use "
-                             "aquafarm_train or ./aquafarm train ranks:=N");
-}
 
 TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   TrainParams params;
@@ -71,6 +65,8 @@ TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   reader.Int("random_episodes", 0, 10000000, params.run.random_episodes);
   reader.Number("sim_timeout_s", 0.0, 86400.0, params.environment.wait_limit_s);
   reader.Number("call_limit_s", 0.1, 86400.0, params.environment.call_limit_s);
+  reader.Number("rank_start_s", 1.0, 86400.0, params.times.start_s);
+  reader.Number("rank_answer_s", 1.0, 86400.0, params.times.answer_s);
   reader.Number("values_period_s", 0.0, 86400.0, params.values_period_s);
   reader.RefuseOthers();
   params.run.episodes = static_cast<std::uint64_t>(episodes);
@@ -163,13 +159,16 @@ class ProgressLine {
 /// Reports the status: always on a topic, periodically on the console.
 class StatusReporter {
  public:
-  StatusReporter(ros::NodeHandle& node, agents::RunOptions options)
+  /// @param prints whether the progress also goes to the console, as on rank 0
+  StatusReporter(ros::NodeHandle& node, agents::RunOptions options, bool prints)
       : options_(std::move(options)),
+        prints_(prints),
         publisher_(node.advertise<TrainingStatus>(aquafarm_sim::names::kTraining, 10, true)) {}
 
   void Notify(const agents::RunStatus& status) {
     last_ = status;
     Publish(ToMsg(status, options_, ExitCode::kOk));
+    if (!prints_) return;
     if (!status.message.empty()) {
       line_.Close();
       ROS_INFO("%s", status.message.c_str());
@@ -196,30 +195,55 @@ class StatusReporter {
   void Publish(const TrainingStatus& message) { publisher_.publish(message); }
 
   const agents::RunOptions options_;
+  const bool prints_;
   ros::Publisher publisher_;
   agents::RunStatus last_;
   ProgressLine line_;
 };
 
-agents::RunReport Train(ros::NodeHandle& node, TrainParams params) {
-  StatusReporter reporter(node, params.run);
+agents::RunReport Train(ros::NodeHandle& node, TrainParams params, agents::ProcessGroup* group) {
+  StatusReporter reporter(node, params.run, group == nullptr || group->rank() == 0);
   ValuesPublisher values(node, params.values_period_s);
   params.environment.stop = &stop_requested;
   params.environment.on_notice = [&reporter](const std::string& text) { reporter.Warn(text); };
+  const auto make = [&node, &params](std::uint8_t encodings) {
+    RosEnvironmentOptions options = params.environment;
+    options.encodings = encodings;
+    return std::make_unique<RosEnvironment>(node, options);
+  };
+  const auto make_share = [&node, &params, group](std::uint8_t encodings) {
+    RosEnvironmentOptions options = params.environment;
+    options.encodings = encodings;
+    options.share = agents::ShareOfRank(options.farms, group->rank(), group->size());
+    options.farms /= group->size();
+    return std::make_unique<RosEnvironment>(node, options);
+  };
+  std::optional<agents::RankedRun> ranked;
+  if (group != nullptr) ranked.emplace(agents::RankedRun{*group, make_share});
   agents::RunReport report = agents::Train(
-      params.run,
-      [&](std::uint8_t encodings) {
-        params.environment.encodings = encodings;
-        return std::make_unique<RosEnvironment>(node, params.environment);
-      },
+      params.run, make,
       [&reporter, &values](const agents::RunStatus& status) {
         if (status.phase != RunPhase::kEnded) reporter.Notify(status);
         if (status.learner == nullptr) return;
         values.Refresh([&status] { return status.learner->GreedyPolicy(); });
       },
-      &stop_requested);
+      &stop_requested, ranked ? &*ranked : nullptr);
   reporter.End(report);
   return report;
+}
+
+/// Connects with the other ranks, each of which has a sim node of its own. Returns null if this
+/// process trains alone.
+std::unique_ptr<agents::ProcessGroup> JoinRanks(const TrainParams& params) {
+  const agents::RankVariables variables =
+      agents::ReadRankVariables([](const char* name) { return std::getenv(name); });
+  if (variables.world_size < 2) return nullptr;
+  agents::CheckRanks(params.run.algorithm, variables.world_size, variables.launcher);
+  if (params.environment.farms == 0) {
+    throw aquafarm::InputError("~farms: got 0 with " + std::to_string(variables.world_size) +
+                               " ranks, expected the number of farms of all ranks");
+  }
+  return agents::JoinProcessGroup(variables, params.times);
 }
 
 int End(ExitCode code, const std::string& summary) {
@@ -258,8 +282,15 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
     return script != nullptr ? std::string(script) + " " + name
                              : "roslaunch aquafarm_bringup " + name + ".launch";
   };
-  if (report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost) {
+  const bool can_resume = report.code == ExitCode::kInterrupted || report.code == ExitCode::kLost ||
+                          report.code == ExitCode::kRankLost;
+  if (can_resume) {
     if (report.farms == 0) return "";  // it never started
+    if (report.ranks > 1) {
+      return "go on      roslaunch aquafarm_bringup ranks.launch" + Arguments(report, run) +
+             " resume:=true" + Argument("run_dir", run.run_dir) +
+             Argument("ranks", std::to_string(report.ranks)) + "\n";
+    }
     // The script reads missing arguments from the run folder; roslaunch cannot.
     return "go on      " + launch("train") + (script != nullptr ? "" : Arguments(report, run)) +
            " resume:=true" + Argument("run_dir", run.run_dir) + "\n";
@@ -273,11 +304,15 @@ std::string Next(const agents::RunReport& report, const agents::RunOptions& run)
 
 int RunTrainNode() {
   try {
+    RefuseTwin();  // such as the ranks of an mpirun without names of their own
     ros::NodeHandle node;
-    RefuseRanks();
     const TrainParams params = ReadTrainParams(ros::NodeHandle("~"));
-    const agents::RunReport report = Train(node, params);
-    return End(report.code, report.summary + Next(report, params.run));
+    const std::unique_ptr<agents::ProcessGroup> group = JoinRanks(params);
+    const agents::RunReport report = Train(node, params, group.get());
+    const bool is_first = group == nullptr || group->rank() == 0;
+    return End(report.code, report.summary + (is_first ? Next(report, params.run) : ""));
+  } catch (const agents::RankLost& error) {
+    return End(ExitCode::kRankLost, std::string(error.what()) + "\n");
   } catch (const aquafarm::InputError& error) {
     return End(ExitCode::kBadInput, std::string("train_node: ") + error.what() + "\n");
   } catch (const std::exception& error) {

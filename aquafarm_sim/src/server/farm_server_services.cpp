@@ -208,6 +208,12 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
     if (farms < 1 || farms > kMaxFarms) {
       return Answer(Outcome::BAD_VALUE, OutOfRange("farms", farms, 1, kMaxFarms), response);
     }
+    if (request.stride != 0 && request.stride < static_cast<std::uint32_t>(farms)) {
+      return Answer(Outcome::BAD_VALUE,
+                    "stride: got " + std::to_string(request.stride) + ", expected 0 or at least " +
+                        std::to_string(farms) + ", the number of farms",
+                    response);
+    }
     if (const auto refusal = CheckAnswerSize(farms, request.encodings)) {
       return Answer(refusal->code, refusal->message, response);
     }
@@ -225,7 +231,7 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
     const std::uint64_t first = request.has_episode ? request.episode
                                 : request.has_seed  ? 0
                                                     : NextEpisode();
-    if (!goes_on) StartEpisodes(farms, seed, first);
+    if (!goes_on) StartEpisodes(farms, seed, first, request.stride);
     batch_->Write(Prepare(request.encodings, response.result));
     Describe(response.result);
     response.seed = batch_->farm(0).seed();
@@ -240,13 +246,14 @@ void FarmServer::Reset(const aquafarm_msgs::Reset::Request& request,
 }
 
 // If a layout cannot be generated, the current episodes must stay unchanged.
-void FarmServer::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first) {
+void FarmServer::StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first,
+                               std::uint32_t stride) {
   if (farms != batch_->farms() || scenario_->layout == aquafarm::LayoutMode::kPerEpisode) {
     auto fresh = std::make_unique<aquafarm::FarmBatch>(scenario_, farms, options_.threads);
-    fresh->Reset(seed, first, {});
+    fresh->Reset(seed, first, {}, stride);
     batch_ = std::move(fresh);
   } else {
-    batch_->Reset(seed, first, {});
+    batch_->Reset(seed, first, {}, stride);
   }
   RecordStarts();
   ForgetAnswers();

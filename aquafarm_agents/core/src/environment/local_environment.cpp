@@ -29,6 +29,14 @@ std::string ToBytes(const nlohmann::json& farms) {
 
 }  // namespace
 
+FarmShare ShareOfRank(std::int32_t farms, int rank, int ranks) {
+  if (farms % ranks != 0) {
+    throw InputError("farms: got " + std::to_string(farms) + " with " + std::to_string(ranks) +
+                     " ranks, expected a multiple of the ranks");
+  }
+  return {farms / ranks * rank, farms};
+}
+
 std::string TakeSavedFarms(const std::string& bytes, const FarmShare& share, std::int32_t count) {
   if (share.total == count) return bytes;
   const nlohmann::json all = SavedFarms(bytes);
@@ -124,10 +132,8 @@ LocalEnvironment::LocalEnvironment(std::shared_ptr<const Scenario> scenario,
 }
 
 const StepResults& LocalEnvironment::Reset(std::uint64_t seed, std::uint64_t first_episode) {
-  for (std::int32_t i = 0; i < spec_.farms; ++i) {
-    batch_.Start(i, seed, first_episode + static_cast<std::uint64_t>(share_.first + i),
-                 static_cast<std::uint64_t>(share_.total), output_);
-  }
+  batch_.Reset(seed, first_episode + static_cast<std::uint64_t>(share_.first), output_,
+               static_cast<std::uint64_t>(share_.total));
   Complete();
   return results_;
 }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <future>
 #include <thread>
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
 #include <torch/csrc/distributed/c10d/TCPStore.hpp>
@@ -81,6 +82,29 @@ std::string LocalAddress(const std::string& host) {
   return address[0] == '\0' ? host : address;
 }
 
+// c10d tries again for the whole time limit if a name is unknown, and does not report the reason.
+// The thread may outlive the limit: a name server that does not answer cannot be interrupted.
+void RequireKnownName(const std::string& host, double limit_s) {
+  std::packaged_task<int()> task([host] {
+    addrinfo hints{};
+    hints.ai_socktype = SOCK_STREAM;
+    addrinfo* found = nullptr;
+    const int code = getaddrinfo(host.c_str(), nullptr, &hints, &found);
+    if (code == 0) freeaddrinfo(found);
+    return code;
+  });
+  std::future<int> answer = task.get_future();
+  std::thread(std::move(task)).detach();
+  std::string reason = "the name server does not answer";
+  if (answer.wait_for(Milliseconds(limit_s)) == std::future_status::ready) {
+    const int code = answer.get();
+    if (code == 0) return;
+    reason = gai_strerror(code);
+  }
+  throw InputError("MASTER_ADDR: got '" + host + "', which this host cannot resolve (" + reason +
+                   "); expected the address or name of the host of rank 0, as all ranks know it");
+}
+
 template <typename T>
 at::Tensor Bytes(T* data, std::size_t size) {
   return at::from_blob(const_cast<char*>(reinterpret_cast<const char*>(data)),
@@ -125,6 +149,7 @@ GlooGroup::GlooGroup(const RankVariables& variables, const GroupTimes& times)
   }
   SilenceLog();
   const auto start = Clock::now();
+  RequireKnownName(variables.master_addr, times.start_s);
   OpenStore(variables, times);
   const auto used = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
   const auto left = Milliseconds(times.start_s) - used;

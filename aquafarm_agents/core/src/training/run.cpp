@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "aquafarm/agents/base/options.h"
+#include "aquafarm/agents/base/text.h"
 #include "aquafarm/agents/learning/random_policy.h"
 #include "aquafarm/agents/learning/warm_start.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
@@ -32,19 +33,6 @@ std::string LearnerOptionsOf(const RunOptions& options) {
 std::string Count(std::uint64_t value) {
   std::string text = std::to_string(value);
   for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, ",");
-  return text;
-}
-
-std::string Duration(double seconds) {
-  char text[32];
-  const auto whole = static_cast<long>(seconds + 0.5);
-  if (whole >= 3600) {
-    std::snprintf(text, sizeof(text), "%ld h %02ld min", whole / 3600, whole / 60 % 60);
-  } else if (whole >= 60) {
-    std::snprintf(text, sizeof(text), "%ld min %02ld s", whole / 60, whole % 60);
-  } else {
-    std::snprintf(text, sizeof(text), "%.1f s", seconds);
-  }
   return text;
 }
 
@@ -390,7 +378,7 @@ void Run::Summarise() {
   std::string& text = report_.summary;
   if (progress.steps > 0) {
     text += "trained    " + options_.algorithm + ", " + Count(progress.steps) + " steps, " +
-            Count(progress.episodes) + " episodes in " + Duration(progress.elapsed_s) + "\n";
+            Count(progress.episodes) + " episodes in " + FormatDuration(progress.elapsed_s) + "\n";
   }
   if (progress.episodes > 0) {
     char line[120];
@@ -418,7 +406,12 @@ void Run::Summarise() {
 }
 
 RunReport Run::End() {
-  Summarise();
+  if (group() == nullptr || group()->rank() == 0) {
+    Summarise();
+  } else if (report_.code != ExitCode::kOk && report_.code != ExitCode::kInterrupted) {
+    report_.summary =
+        "rank " + std::to_string(group()->rank()) + ": " + report_.status.message + "\n";
+  }
   report_.status.phase = RunPhase::kEnded;
   if (on_status_) on_status_(report_.status);
   return report_;
@@ -492,7 +485,7 @@ std::string DescribeProgress(const TrainingProgress& progress) {
                 static_cast<double>(progress.learner.exploration),
                 Count(static_cast<std::uint64_t>(progress.steps_per_second)).c_str());
   text += rest;
-  if (progress.time_left_s >= 0.0) text += "  left " + Duration(progress.time_left_s);
+  if (progress.time_left_s >= 0.0) text += "  left " + FormatDuration(progress.time_left_s);
   return text;
 }
 

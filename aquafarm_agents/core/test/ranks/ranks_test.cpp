@@ -182,6 +182,27 @@ TEST_F(Ranks, AMissingRankIsNamed) {
   EXPECT_FALSE(std::filesystem::exists(folder_ + "/run"));
 }
 
+TEST_F(Ranks, AHostThatIsUnknownOrUnreachableIsNamed) {
+  // 192.0.2.0/24 is reserved for documentation (RFC 5737), .invalid for names that do not exist.
+  const Words command = Train("run", {"--rank-start", "2"});
+  for (const std::string host : {"no-such-host.invalid", "192.0.2.7"}) {
+    for (const int rank : {0, 1}) {
+      const int port = Port();
+      Words words = AsRank(rank, 2, port, command);
+      words.insert(words.begin() + 1, "MASTER_ADDR=" + host);
+      const std::string name = host + std::to_string(rank);
+      Process one(words, OutputPath(name));
+      const bool is_unknown = host.back() == 'd';
+      EXPECT_EQ(one.Wait(kStopped), is_unknown ? 2 : kRankLost);
+      const std::string output = Output(name);
+      EXPECT_CONTAINS(output, host);
+      EXPECT_CONTAINS(output,
+                      is_unknown ? "which this host cannot resolve" : "(MASTER_ADDR, MASTER_PORT)");
+      EXPECT_EQ(std::count(output.begin(), output.end(), '\n'), 1) << output;
+    }
+  }
+}
+
 TEST_F(Ranks, OtherArgumentsThanThoseOfRank0AreRefused) {
   const int port = Port();
   Process first(AsRank(0, 2, port, Train("run", {})), OutputPath("first"));

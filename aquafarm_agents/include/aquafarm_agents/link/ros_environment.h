@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "aquafarm/agents/environment/environment.h"
+#include "aquafarm/agents/environment/local_environment.h"
 #include "aquafarm/observation/farm_batch.h"
 #include "aquafarm_agents/link/call_limit.h"
 
@@ -23,6 +24,9 @@ namespace aquafarm_agents {
 
 struct RosEnvironmentOptions {
   std::int32_t farms{};  ///< 0: all farms of the sim node
+  /// The farms play the same episodes as in an environment with all farms of the share, and Load
+  /// takes their part of what all farms have saved. Its total 0: this environment has all farms.
+  aquafarm::agents::FarmShare share;
   std::uint8_t encodings{aquafarm::agents::kIndexBit};
   bool hashes{};
   double wait_limit_s{20.0};        ///< max wait for the sim node to start or to return
@@ -60,6 +64,7 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   void Notice(const std::string& text) const;
   void Sleep() const;
   void Restart(const std::string& why);
+  std::uint64_t NextRound() const;
   void WaitForReturn(ros::WallTime& lost_since);
   void WaitToGoOn(const std::string& why, double& waited_s);
   void Take(aquafarm_msgs::StepResult& result);
@@ -78,6 +83,7 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   ros::ServiceClient load_client_;
 
   aquafarm::agents::EnvironmentSpec spec_;
+  aquafarm::agents::FarmShare share_;
   aquafarm::agents::StepResults results_;
   std::unique_ptr<aquafarm::FarmBatch> copies_;  // of the farms; null unless requested
   aquafarm_msgs::Step step_;                     // reused buffer
@@ -88,6 +94,7 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   std::uint64_t turn_{};  // of the last result; a different one means that the farms have changed
   std::uint64_t seed_{};
   std::uint64_t next_episode_{};  // above all started episodes
+  std::uint64_t offset_{};        // farm i of all plays episodes offset_ + i + k * share_.total
 };
 
 }  // namespace aquafarm_agents

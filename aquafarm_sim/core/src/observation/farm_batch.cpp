@@ -75,10 +75,11 @@ StepShape FarmBatch::shape() const {
           static_cast<std::size_t>(encoder_.feature_count()), encoder_.planes_size()};
 }
 
-void FarmBatch::Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output) {
+void FarmBatch::Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output,
+                      std::uint64_t stride) {
+  if (stride == 0) stride = static_cast<std::uint64_t>(farms());
   for (std::int32_t i = 0; i < farms(); ++i) {
-    Start(i, seed, first_episode + static_cast<std::uint64_t>(i),
-          static_cast<std::uint64_t>(farms()), output);
+    Start(i, seed, first_episode + static_cast<std::uint64_t>(i), stride, output);
   }
 }
 

@@ -95,6 +95,31 @@ TEST(FarmBatch, EveryFarmIsThatFarmAlone) {
   }
 }
 
+TEST(FarmBatch, TwoBatchesShareTheEpisodesOfOne) {
+  const auto scenario = Shared(CrowdedScenario(2));
+  FarmBatch all(scenario, 5);
+  FarmBatch first(scenario, 3);
+  FarmBatch last(scenario, 2);
+  Buffers whole(all);
+  Buffers a(first);
+  Buffers b(last);
+  all.Reset(3, 7, whole.View());
+  first.Reset(3, 7, a.View(), 5);
+  last.Reset(3, 10, b.View(), 5);
+  int started = 0;
+  for (std::uint64_t step = 0; step < 700; ++step) {
+    const auto actions = Actions(all, step);
+    all.Step(actions.data(), whole.View());
+    first.Step(actions.data(), a.View());
+    last.Step(actions.data() + std::ptrdiff_t{3} * all.agents(), b.View());
+    std::vector<std::uint64_t> hashes = a.hashes;
+    hashes.insert(hashes.end(), b.hashes.begin(), b.hashes.end());
+    ASSERT_EQ(hashes, whole.hashes) << "step " << step;
+    for (const std::uint8_t one : whole.started) started += one;
+  }
+  EXPECT_GT(started, 5);  // also later episodes than the first ones
+}
+
 TEST(FarmBatch, ThreadsChangeNothing) {
   const auto scenario = Shared(CrowdedScenario(2));
   FarmBatch one(scenario, 16, 1);

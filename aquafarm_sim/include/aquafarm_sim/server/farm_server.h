@@ -213,8 +213,8 @@ class FarmServer {
       AQUAFARM_REQUIRES(mutex_);
   void RecordStarts() AQUAFARM_REQUIRES(mutex_);
   std::uint64_t NextEpisode() const AQUAFARM_REQUIRES(mutex_);
-  void StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first)
-      AQUAFARM_REQUIRES(mutex_);
+  void StartEpisodes(std::int32_t farms, std::uint64_t seed, std::uint64_t first,
+                     std::uint32_t stride) AQUAFARM_REQUIRES(mutex_);
   void IssueForecast(const aquafarm_msgs::SetDisaster::Request& request, std::int32_t first,
                      std::int32_t end, aquafarm_msgs::SetDisaster::Response& response)
       AQUAFARM_REQUIRES(mutex_);

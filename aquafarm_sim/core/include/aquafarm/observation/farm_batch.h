@@ -52,8 +52,11 @@ class FarmBatch {
 
   /// Starts the sequence `seed` in all farms, with farm i at episode first_episode + i, and writes
   /// the first observations.
+  /// @param stride episodes between two of a farm; 0: farms(). More if other batches play the
+  ///        episodes in between
   /// @throws InputError when an episode's layout cannot be drawn; call Reset with another episode
-  void Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output);
+  void Reset(std::uint64_t seed, std::uint64_t first_episode, const BatchOutput& output,
+             std::uint64_t stride = 0);
 
   /// Steps every farm. @param actions [N, S], each in [0, kActionCount] (kHold allowed)
   /// @throws InputError when an episode's layout cannot be drawn; the other farms are then stepped
@@ -87,7 +90,7 @@ class FarmBatch {
   /// @throws InputError when its layout cannot be drawn
   void Start(std::int32_t i, std::uint64_t seed, std::uint64_t episode, std::uint64_t stride,
              const BatchOutput& output);
-  /// Episodes between two of farm i; farms() unless Start has set another number.
+  /// Episodes between two of farm i; farms() unless Reset or Start has set another number.
   std::uint64_t stride(std::int32_t i) const { return strides_[static_cast<std::size_t>(i)]; }
   /// Sets the number of episodes between two of farm i. @param stride at least 1
   void set_stride(std::int32_t i, std::uint64_t stride);

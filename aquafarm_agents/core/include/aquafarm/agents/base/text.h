@@ -16,6 +16,9 @@ double ParseNumber(const std::string& text, const std::string& what);
 /// Shortest decimal text that parses back to the same number.
 std::string FormatNumber(double value);
 
+/// Time for readers: "3.4 s", "2 min 05 s", "1 h 02 min".
+std::string FormatDuration(double seconds);
+
 /// Names separated by commas: "a, b, c".
 std::string Join(const std::vector<std::string>& names);
 

@@ -58,6 +58,10 @@ inline FarmShare WholeOr(const FarmShare& share, std::int32_t farms) {
   return share.total == 0 ? FarmShare{0, farms} : share;
 }
 
+/// Returns the share of a rank of all farms. @param ranks number of processes that train together
+/// @throws InputError if the ranks cannot have equally many farms
+FarmShare ShareOfRank(std::int32_t farms, int rank, int ranks);
+
 /// Returns the part of `count` farms of what all farms have saved.
 /// @throws InputError if the bytes are damaged or have fewer farms
 std::string TakeSavedFarms(const std::string& bytes, const FarmShare& share, std::int32_t count);

@@ -59,7 +59,8 @@ struct GroupTimes {
 
 /// Connects this process with the other ranks.
 /// @throws RankLost naming the ranks that are missing after start_s, or the address that does not
-///         answer; InputError if the number of ranks is not a power of two
+///         answer; InputError if the number of ranks is not a power of two, or the name of the
+///         host of rank 0 is unknown
 std::unique_ptr<ProcessGroup> JoinProcessGroup(const RankVariables& variables,
                                                const GroupTimes& times);
 

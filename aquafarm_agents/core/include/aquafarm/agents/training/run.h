@@ -57,7 +57,7 @@ struct RunReport {
   RunStatus status;
   Evaluation random;
   std::int32_t farms{};     ///< number of farms; 0 if no environment was made
-  std::string summary;      ///< a few readable lines
+  std::string summary;      ///< a few readable lines; of a rank other than 0 only its failure
   std::string policy_path;  ///< empty if no policy was written
   std::int32_t ranks{1};
   double exchange_fraction{};  ///< of the training time, in exchanges between ranks [0, 1]

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""roslaunch starts a ship's agent on another host by <machine>, as in docs/several_agents.md.
+"""roslaunch starts a ship's agent, or a rank of a training with its sim node, on another host by
+<machine>, as in docs/several_agents.md and docs/scale.md.
 
 The other host is a network namespace with its own ssh server; skipped if either is unavailable."""
 import os
@@ -15,7 +16,7 @@ import xmlrpc.client
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "aquafarm_agents" / "test"))
-from processes import DATA, Program, SecondHost, free_port  # noqa: E402
+from processes import DATA, Program, SecondHost, free_port, program  # noqa: E402
 
 SSHD = "/usr/sbin/sshd"
 LAUNCH = """<launch>
@@ -32,11 +33,26 @@ LAUNCH = """<launch>
   </include>
 </launch>
 """
+RANKS = """<launch>
+  <machine name="node2" address="{there}" user="{user}" ssh-port="2222" env-loader="{loader}"/>
+  <include file="$(find aquafarm_bringup)/launch/ranks.launch">
+    <arg name="count" value="1"/>
+    <arg name="run_dir" value="{run}"/>
+{arguments}
+  </include>
+  <include file="$(find aquafarm_bringup)/launch/ranks.launch">
+    <arg name="first_rank" value="1"/>
+    <arg name="machine" value="node2"/>
+{arguments}
+  </include>
+</launch>
+"""
 LOADER = """#!/bin/bash
 export PATH='{path}' PYTHONPATH='{python}' LD_LIBRARY_PATH='{libraries}'
 export ROS_PACKAGE_PATH='{packages}' ROS_ROOT='{root}' ROS_ETC_DIR='{etc}' ROS_DISTRO='{distro}'
 export CMAKE_PREFIX_PATH='{prefix}' ROS_HOME='{home}' ROS_LOG_DIR='{home}/log' ROS_IP={there}
 unset ROS_HOSTNAME
+{blas}
 exec "$@"
 """
 SSHD_CONFIG = """Port 2222
@@ -72,25 +88,54 @@ class SecondHostTest(unittest.TestCase):
         """An env-loader as on a ship's computer."""
         value = os.environ.get
         path = self.folder / "env.sh"
+        # The variables of OpenBLAS select its kernels, and thus the bits of a training.
+        blas = [f"export {name}='{text}'" for name, text in os.environ.items()
+                if name.startswith("OPENBLAS_")]
         path.write_text(LOADER.format(
             path=value("PATH"), python=value("PYTHONPATH", ""), there=self.host.there,
             libraries=value("LD_LIBRARY_PATH", ""), packages=value("ROS_PACKAGE_PATH", ""),
             root=value("ROS_ROOT", ""), etc=value("ROS_ETC_DIR", ""),
             distro=value("ROS_DISTRO", ""), prefix=value("CMAKE_PREFIX_PATH", ""),
-            home=self.folder / "boat"))
+            home=self.folder / "boat", blas="\n".join(blas)))
         path.chmod(0o755)
         return path
 
-    def test_roslaunch_starts_an_agent_there(self):
-        port = free_port()
-        launch = self.folder / "fleet.launch"
-        launch.write_text(LAUNCH.format(there=self.host.there, user=os.environ.get("USER", "root"),
-                                        loader=self.loader(), scenario=DATA / "wide.yaml"))
+    def start(self, port, text, **values):
+        """Starts a launch file, which may use the other host."""
+        launch = self.folder / "two_hosts.launch"
+        launch.write_text(text.format(there=self.host.there, user=os.environ.get("USER", "root"),
+                                      loader=self.loader(), **values))
         run = Program(self, *self.host.environment(port, inside=False),
                       f"HOME={self.folder / 'home'}", "ROSLAUNCH_SSH_UNKNOWN=1",
                       f"ROS_HOME={self.folder / 'ros'}", f"ROS_LOG_DIR={self.folder / 'log'}",
                       "roslaunch", "-p", str(port), launch)
         self.addCleanup(run.interrupt)  # roslaunch must end its nodes also if a check fails
+        return run
+
+    def test_a_rank_trains_there_with_its_sim_node(self):
+        ppo = {"hidden_size": 16, "rollout_size": 512, "batch_size": 128}
+        values = {"scenario": DATA / "tiny.yaml", "farms": 16, "steps": 20000, "seed": 3,
+                  "options": " ".join(f"{name}={value}" for name, value in ppo.items()),
+                  "evaluation_episodes": 0, "master_addr": self.host.here,
+                  "master_port": free_port(), "rank_start_s": 120}
+        arguments = "\n".join(f'    <arg name="{name}" value="{value}"/>'
+                              for name, value in values.items())
+        run = self.start(free_port(), RANKS, run=self.folder / "run", arguments=arguments)
+        self.assertEqual(0, run.code(limit_s=240), run.words())
+        self.assertRegex(run.words(), "ranks      2, ")
+        self.assertIn(f"[{self.host.there}", run.words(), "started there")
+        local = Program(self, program("aquafarm_agents", "aquafarm_train"), values["scenario"],
+                        "--algorithm", "ppo", "--farms", "16", "--steps", "20000", "--seed", "3",
+                        "--ranks", "1", "--evaluate", "0", "--run-dir", self.folder / "local",
+                        *[word for name, value in ppo.items() for word in ("--set", f"{name}={value}")])
+        self.assertEqual(0, local.code(), local.words())
+        for name in ("policy.ckpt", "metrics.csv"):
+            self.assertEqual((self.folder / "local" / name).read_bytes(),
+                             (self.folder / "run" / name).read_bytes(), name)
+
+    def test_roslaunch_starts_an_agent_there(self):
+        port = free_port()
+        run = self.start(port, LAUNCH, scenario=DATA / "wide.yaml")
         master = xmlrpc.client.ServerProxy(f"http://{self.host.here}:{port}")
 
         def address():

@@ -148,7 +148,7 @@ def test_a_job_that_slurm_refuses_is_reported_in_one_line(slurm, tmp_path):
                           env={**slurm.environment, "DASK_JOBQUEUE__SLURM__QUEUE": "nowhere"},
                           timeout=LIMIT_S, check=False, capture_output=True, text=True)
     assert done.returncode == 2, done.stdout + done.stderr
-    assert done.stderr.startswith("scheduler: got 'slurm', which does not accept a job: ")
+    assert "scheduler: got 'slurm', which does not accept a job: " in done.stderr, done.stderr
     assert "invalid partition" in done.stderr and done.stderr.count("\n") == 1, done.stderr
 
 

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <future>
+#include <numeric>
 #include <thread>
 #include <torch/csrc/distributed/c10d/ProcessGroupGloo.hpp>
 #include <torch/csrc/distributed/c10d/TCPStore.hpp>
@@ -27,6 +28,7 @@ using Tensors = std::vector<at::Tensor>;
 // Rank 0 holds the store. It keeps it open for this time after a failure, so that the other ranks
 // can read which rank was lost.
 constexpr std::chrono::seconds kStoreKept{2};
+constexpr std::chrono::seconds kReportLimit{3};  // if the host of rank 0 does not answer
 constexpr const char* kLost = "lost";  // key of the store: the first rank that was found lost
 
 std::chrono::milliseconds Milliseconds(double seconds) {
@@ -241,9 +243,9 @@ void GlooGroup::WithPeer(int peer, const Exchange& exchange) {
 
 // A rank that ends because of a lost one is itself lost to others. The first report counts.
 void GlooGroup::Lose(int peer, const std::string& reason) {
-  gloo_.reset();  // the peers of this rank notice it at once
   int lost = peer;
   try {
+    store_->setTimeout(kReportLimit);
     const std::string text = std::to_string(peer);
     const std::vector<std::uint8_t> first =
         store_->compareSet(kLost, {}, std::vector<std::uint8_t>(text.begin(), text.end()));
@@ -251,6 +253,7 @@ void GlooGroup::Lose(int peer, const std::string& reason) {
   } catch (const std::exception&) {
     lost = 0;  // the store ended with rank 0
   }
+  gloo_.reset();  // the peers of this rank notice it at once, and find its report
   if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);
   throw RankLost("ranks: " + RankOf(lost, size_) +
                  " has ended or does not answer; see its output, then resume the run with any "
@@ -293,24 +296,39 @@ void GlooGroup::Sum(std::vector<float>& values, std::vector<double>& numbers) {
   }
 }
 
+// Up the binary tree of ranks, so that rank 0 receives log2 R messages: at 4 ranks 1 → 0 and 3 → 2,
+// then 2 → 0. After round k a receiver has the bytes of 2^k ranks from its own on.
 std::vector<std::string> GlooGroup::Gather(const std::string& bytes) {
-  std::uint64_t size = bytes.size();
-  if (rank_ != 0) {
-    WithPeer(0, [&] {
-      Send(0, &size, sizeof(size));
-      if (size > 0) Send(0, bytes.data(), bytes.size());
-    });
-    return {};
-  }
-  std::vector<std::string> all{bytes};
-  for (int peer = 1; peer < size_; ++peer) {
+  std::vector<std::string> block{bytes};
+  for (int step = 1; step < size_; step *= 2) {
+    std::vector<std::uint64_t> sizes(static_cast<std::size_t>(step));
+    const std::size_t header = sizes.size() * sizeof(sizes[0]);
+    std::string all;
+    if ((rank_ & step) != 0) {
+      for (std::size_t i = 0; i < sizes.size(); ++i) {
+        sizes[i] = block[i].size();
+        all += block[i];
+      }
+      const int peer = rank_ - step;
+      WithPeer(peer, [&] {
+        Send(peer, sizes.data(), header);
+        if (!all.empty()) Send(peer, all.data(), all.size());
+      });
+      return {};
+    }
+    const int peer = rank_ + step;
     WithPeer(peer, [&] {
-      Receive(peer, &size, sizeof(size));
-      all.emplace_back(size, '\0');
-      if (size > 0) Receive(peer, all.back().data(), all.back().size());
+      Receive(peer, sizes.data(), header);
+      all.resize(std::accumulate(sizes.begin(), sizes.end(), std::size_t{0}));
+      if (!all.empty()) Receive(peer, all.data(), all.size());
     });
+    std::size_t begin = 0;
+    for (const std::uint64_t size : sizes) {
+      block.push_back(all.substr(begin, size));
+      begin += size;
+    }
   }
-  return all;
+  return block;
 }
 
 // Down the binary tree of ranks, from the farthest: at 8 ranks 0 → 4, then 0 → 2 and 4 → 6, ….

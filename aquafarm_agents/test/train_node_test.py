@@ -20,6 +20,7 @@ from processes import (DATA, Program, free_port, newest_checkpoint, program,  # 
                        start_agent, start_sim)
 
 TINY = DATA / "tiny.yaml"
+RANKS_S = 240.0  # limit of two trainers and two sim nodes on a busy machine
 PPO = "hidden_size=16 rollout_size=512 batch_size=128"
 CONSTANT = "learning_rate=0.001 clip_range=0.2 teacher=0"  # no schedule: the limit of steps changes nothing
 
@@ -82,15 +83,15 @@ class TrainNodeTest(unittest.TestCase):
     def test_ranks_with_sim_nodes_of_their_own_train_as_in_process(self):
         self.start_sims()
         first, second = self.ranks("ros", "_steps:=20000", "_seed:=3", f"_options:={PPO}")
-        self.assertEqual(0, first.code(), first.words() + second.words())
-        self.assertEqual(0, second.code(), second.words())
+        self.assertEqual(0, first.code(RANKS_S), first.words() + second.words())
+        self.assertEqual(0, second.code(RANKS_S), second.words())
         self.assertIn("ranks      2, ", first.words())
         self.assertNotIn("trained", second.words())
         for ranks in ("1", "2"):
             local = self.in_process(f"local_{ranks}", "--algorithm", "ppo", "--steps", "20000",
                                     "--farms", "16", "--seed", "3", "--ranks", ranks,
                                     *[word for one in PPO.split() for word in ("--set", one)])
-            self.assertEqual(0, local.code(), local.words())
+            self.assertEqual(0, local.code(RANKS_S), local.words())
             newest = newest_checkpoint(self.folder / "ros")
             self.assert_same_files(
                 "ros", f"local_{ranks}",
@@ -101,21 +102,22 @@ class TrainNodeTest(unittest.TestCase):
         self.start_sims()
         options = f"_options:={PPO} {CONSTANT}"
         first, second = self.ranks("parts", "_steps:=1e12", "_checkpoint_period_s:=0", options)
-        first.wait_for(lambda: newest_checkpoint(self.folder / "parts"), "a checkpoint")
+        first.wait_for(lambda: newest_checkpoint(self.folder / "parts"), "a checkpoint",
+                       RANKS_S)
         second.send(signal.SIGKILL)
-        self.assertEqual(6, first.code(), first.words())
+        self.assertEqual(6, first.code(RANKS_S), first.words())
         self.assertIn("ranks: rank 1 of 2 has ended or does not answer", first.words())
         self.assertRegex(first.words(), "go on      roslaunch aquafarm_bringup ranks.launch .*"
                                         f" resume:=true run_dir:={self.folder / 'parts'} ranks:=2")
         limit = 10000 + int(newest_checkpoint(self.folder / "parts")[len("step_"):-len(".ckpt")])
         first, second = self.ranks("parts", f"_steps:={limit}", "_resume:=true", options)
-        self.assertEqual(0, first.code(), first.words() + second.words())
+        self.assertEqual(0, first.code(RANKS_S), first.words() + second.words())
         self.assertIn("resuming from", first.words())
         whole = self.in_process("whole", "--algorithm", "ppo", "--steps", str(limit), "--farms",
                                 "16", "--ranks", "1",
                                 *[word for one in f"{PPO} {CONSTANT}".split()
                                   for word in ("--set", one)])
-        self.assertEqual(0, whole.code(), whole.words())
+        self.assertEqual(0, whole.code(RANKS_S), whole.words())
         newest = newest_checkpoint(self.folder / "whole")
         self.assert_same_files("whole", "parts",
                                ["policy.ckpt", "metrics.csv", f"checkpoints/{newest}"])

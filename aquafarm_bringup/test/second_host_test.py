@@ -128,7 +128,7 @@ class SecondHostTest(unittest.TestCase):
                         "--algorithm", "ppo", "--farms", "16", "--steps", "20000", "--seed", "3",
                         "--ranks", "1", "--evaluate", "0", "--run-dir", self.folder / "local",
                         *[word for name, value in ppo.items() for word in ("--set", f"{name}={value}")])
-        self.assertEqual(0, local.code(), local.words())
+        self.assertEqual(0, local.code(limit_s=240), local.words())
         for name in ("policy.ckpt", "metrics.csv"):
             self.assertEqual((self.folder / "local" / name).read_bytes(),
                              (self.folder / "run" / name).read_bytes(), name)

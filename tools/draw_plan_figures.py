@@ -60,7 +60,7 @@ def draw_back_test(data, path):
     axes.set_xlabel("units of value")
     axes.set_ylim(0.3, len(storms) + 0.7)
     axes.grid(alpha=0.3, axis="x")
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, ncol=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))  # above the bars
     figure.savefig(path, dpi=DPI, bbox_inches="tight")
     plt.close(figure)
 

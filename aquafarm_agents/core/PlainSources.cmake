@@ -30,6 +30,7 @@ set(AQUAFARM_PLAIN_SOURCES
   src/rescue/csv.cpp
   src/rescue/deadlines.cpp
   src/rescue/ensemble.cpp
+  src/rescue/fine_track.cpp
   src/rescue/fleet_state.cpp
   src/rescue/follow_trips.cpp
   src/rescue/forecast_errors.cpp
@@ -38,6 +39,7 @@ set(AQUAFARM_PLAIN_SOURCES
   src/rescue/plan_report.cpp
   src/rescue/plan_trials.cpp
   src/rescue/plan_values.cpp
+  src/rescue/reacting_trial.cpp
   src/rescue/rescue_case.cpp
   src/rescue/rescue_order.cpp
   src/rescue/rescue_plan.cpp

@@ -80,6 +80,8 @@ class DocCommandsTest(unittest.TestCase):
         cls.place = script.parent
         (cls.place / "aquafarm_sim").symlink_to(REPOSITORY / "aquafarm_sim")
         (cls.place / "coast.json").write_text(COAST)
+        (cls.place / "devices.csv").write_text("name,latitude,longitude,kind,value\n"
+                                               "F1,30.16,122.66,monitoring,45000\n")
         storms = json.loads((DATA / "bulletin.json").read_text(encoding="utf-8-sig"))
         (cls.place / "bulletin.json").write_text(json.dumps(storms[:1]), encoding="utf-8")
         shutil.copy(DATA / "cma.txt", cls.place / "CH2021BST.txt")

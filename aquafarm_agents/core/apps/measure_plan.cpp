@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Compares rescue plans with simulated and recorded storms: are the promised chances kept, what do
 // the plans save? docs/plan.md states the results. No ROS.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -86,6 +88,9 @@ Json Value(const std::vector<TrialResult>& trials) {
   std::printf("value saved; share of the clairvoyant; plan minus this one (95 %% intervals)\n");
   for (std::size_t policy = 0; policy < kTrialPolicyCount; ++policy) {
     const std::vector<double> saved = of(policy);
+    if (std::any_of(saved.begin(), saved.end(), [](double one) { return std::isnan(one); })) {
+      continue;  // not for these ships and devices
+    }
     std::vector<double> ahead;
     for (std::size_t i = 0; i < plan.size(); ++i) ahead.push_back(plan[i] - saved[i]);
     const Estimate mean = MeanOf(saved);
@@ -126,7 +131,7 @@ PlanTrials MakeTrials(Arguments& arguments, const std::vector<StormTrack>& track
   errors.size_factor *= arguments.size_errors;
   errors.size_report_error *= arguments.size_errors;
   arguments.trial.errors = errors;
-  return {Load(arguments), request};
+  return {Load(arguments), request, BulletinPeriod(arguments.trial)};
 }
 
 Json RunStorms(Arguments& arguments) {
@@ -185,8 +190,9 @@ Json BackTest(const Arguments& arguments, const PlanTrials& trials, const StormT
   std::vector<double> saved;
   TrialResult last;
   for (std::int32_t i = 0; i < arguments.bulletins; ++i) {
-    last = trials.Run(RecordedTrial(track, trials.place(), arguments.trial, arguments.lead_h,
-                                    static_cast<std::uint64_t>(i)));
+    const TrialStorm storm = RecordedTrial(track, trials.place(), arguments.trial, arguments.lead_h,
+                                           static_cast<std::uint64_t>(i));
+    last = trials.Run(storm, false);
     promised.push_back(last.promised);
     saved.push_back(last.saved[0]);
   }
@@ -250,6 +256,8 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", arguments.trial.seed, "of the simulated storms");
   app.add_option("--min-lead", arguments.trial.min_lead_h, "hours before the closest approach");
   app.add_option("--max-lead", arguments.trial.max_lead_h, "hours before the closest approach");
+  app.add_option("--every", arguments.trial.bulletin_h, "hours between two bulletins of a storm")
+      ->check(CLI::Range(0.5, 120.0));
   app.add_option("--lead", arguments.lead_h, "back_test: hours before the closest approach");
   app.add_option("--bulletins", arguments.bulletins, "back_test: drawn for each storm")
       ->check(CLI::Range(1, 10000));

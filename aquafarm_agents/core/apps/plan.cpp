@@ -75,6 +75,11 @@ std::shared_ptr<const Scenario> LoadRanch(Arguments& arguments) {
     arguments.warnings.push_back(
         {"ranch_changed", "warning", warning, "Check the places of the ranch."});
   }
+  if (arguments.ports.empty()) {
+    arguments.warnings.push_back({"ports_chosen", "note",
+                                  "No port was given: the ports are chosen on the shore.",
+                                  "Give your own with --ports LATITUDE,LONGITUDE."});
+  }
   return std::make_shared<const Scenario>(built.scenario);
 }
 

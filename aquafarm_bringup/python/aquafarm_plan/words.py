@@ -198,13 +198,14 @@ def _sure(plan):
         answer = (
             f"Each fetched device comes home in {percent(worst['odds']['home'])} ({worst['name']}) to "
             f"{percent(best['odds']['home'])} ({best['name']}) of the futures.")
-    error = 100 * sampling_error(worst["odds"]["home"], members)
+    points = f"{max(100 * sampling_error(worst['odds']['home'], members), 1):.0f}"
     base = plan["what_if"][0]["all_home"] if plan["what_if"] else None
     every = (f"All {len(devices)} devices: {percent(base)}. "
              if base is not None and len(planned) == len(devices) else "")
     return (
         "How sure is it?", answer,
-        f"{every}{members:,} possible storms, sampling error at most {max(error, 1):.0f} points.")
+        f"{every}{members:,} possible storms, sampling error at most {points} "
+        f"point{'' if points == '1' else 's'}.")
 
 
 def _one_more(plan):

@@ -10,6 +10,7 @@
 #include "aquafarm/tracks/reader.h"
 #include "aquafarm/tracks/wind_radii.h"
 #include "rescue/case_parts.h"
+#include "rescue/fine_track.h"
 #include "rescue/storm_member.h"
 
 namespace aquafarm::agents {
@@ -188,10 +189,13 @@ double CarrySize(const ForecastErrors& errors, std::int64_t issued, const StormT
                  StormRings& storm) {
   AQUAFARM_CHECK_EQ(track.fixes.size(), storm.waypoints.size());
   const StormWaypoint* report = nullptr;
-  for (StormWaypoint& at : storm.waypoints) {
-    if (at.forecast || !at.is_reported) continue;
-    at.keeps_radii = true;
-    report = &at;
+  for (std::size_t i = 0; i < storm.waypoints.size(); ++i) {
+    StormWaypoint& at = storm.waypoints[i];
+    if (at.forecast) continue;
+    for (const std::int32_t wind_kt : storm.wind_kt) {
+      at.keeps_radii.push_back(IsReported(track.fixes[i], at, wind_kt));
+    }
+    if (at.is_reported) report = &at;
   }
   if (report == nullptr) return -std::numeric_limits<double>::infinity();
   const StormWaypoint last = *report;
@@ -273,6 +277,9 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
   storm.name = NameOf(track);
   storm.rings = ToRings(track, RingReduction::kQuadrants);
   rescue.forecast.size_report_h = CarrySize(request.errors, *storm.issued, track, storm.rings);
+  const StormTrack fine = FineTrack(track, rescue.start);
+  StormRings fine_rings = ToRings(fine, RingReduction::kQuadrants, storm.rings.wind_kt);
+  CarrySize(request.errors, *storm.issued, fine, fine_rings);
   if (*storm.known_until <= rescue.start) {
     throw InputError(storm.file + ": got a storm known until " + FormatUtc(*storm.known_until) +
                      ", expected one that is known after " + FormatUtc(rescue.start) +
@@ -295,7 +302,7 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
   options.errors = request.errors;
   CentralForecast& forecast = rescue.forecast;
   forecast.path =
-      ToPath(storm.rings, rescue.frame, scenario.cell_size_m, options.step_s, rescue.start);
+      ToPath(fine_rings, rescue.frame, scenario.cell_size_m, options.step_s, rescue.start);
   forecast.lead_h.clear();
   for (const StormPoint& point : forecast.path.points) {
     const double time_s = point.step * options.step_s + static_cast<double>(rescue.start);

@@ -215,10 +215,18 @@ class JsonReport {
             {"closest_approach", closest}};
   }
 
+  // The ensemble also has points between those of the forecast (fine_track.h).
+  bool IsPointOfForecast(const EnsembleSpread& at) const {
+    const std::int64_t time = case_.start + std::llround(at.time_s);
+    const auto& points = case_.storm.rings.waypoints;
+    return std::any_of(points.begin(), points.end(),
+                       [time](const StormWaypoint& point) { return point.time == time; });
+  }
+
   Json Members() const {
     Json errors = Json::array();
     for (const EnsembleSpread& at : ensemble_.spread()) {
-      if (at.lead_h < 0.0) continue;
+      if (at.lead_h < 0.0 || !IsPointOfForecast(at)) continue;
       errors.push_back({{"lead_h", Rounded(at.lead_h, 0.01)},
                         {"time", Time(at.time_s)},
                         {"centre", {Rounded(at.center[0], 0.01), Rounded(at.center[1], 0.01)}},

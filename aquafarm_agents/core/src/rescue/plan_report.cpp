@@ -214,7 +214,8 @@ void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
 
 std::optional<double> NoDepartureAfter(const RescueProblem& problem, const PlanReport& report) {
   std::optional<double> latest;
-  if (report.result == PlanResult::kStormUnknown) return latest;
+  const bool no_winds = report.result == PlanResult::kStormStaysAway;
+  if (report.result == PlanResult::kStormUnknown || no_winds) return latest;
   for (std::size_t d = 0; d < report.deadlines.size(); ++d) {
     if (problem.CarrierOf(d) != kNone) continue;
     const std::optional<double>& leave_s = report.deadlines[d].back().leave_s;

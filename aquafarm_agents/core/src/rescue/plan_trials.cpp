@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "aquafarm/base/check.h"
@@ -38,30 +39,47 @@ double SavedOf(const RescuePlan& plan) {
 
 std::string_view ToString(TrialPolicy value) {
   constexpr std::array<std::string_view, kTrialPolicyCount> kNames{
-      "plan", "central", "fetch_by_value", "fetch_nearest", "clairvoyant"};
+      "plan", "central", "plan_again", "planner", "fetch_by_value", "fetch_nearest", "clairvoyant"};
   return kNames[static_cast<std::size_t>(value)];
 }
 
-PlanTrials::PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request)
-    : request_(std::move(request)), base_(MakeRescueCase(std::move(scenario), request_)) {
+PlanTrials::PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request,
+                       std::int64_t bulletin_s)
+    : request_(std::move(request)),
+      base_(MakeRescueCase(std::move(scenario), request_)),
+      bulletin_s_(bulletin_s) {
   place_ = base_.frame.ToGeo((base_.scenario->width - 1) / 2.0, (base_.scenario->height - 1) / 2.0);
 }
 
-RescueCase PlanTrials::CaseOf(const TrialStorm& storm) const {
+RescueCase PlanTrials::CaseOf(const StormTrack& known, std::int64_t start,
+                              std::uint64_t seed) const {
   RescueCase rescue = base_;
-  rescue.start = storm.start;
-  const StormTrack whole = WithForecast(storm.known, NoForecast::kPersist);
-  rescue.storm.recorded_until = storm.start;
-  rescue.storm.issued = storm.start;
+  rescue.start = start;
+  const StormTrack whole = WithForecast(known, NoForecast::kPersist);
+  rescue.storm.recorded_until = start;
+  rescue.storm.issued = start;
   rescue.storm.known_until = whole.fixes.back().time;
   UseStorm(whole, request_, rescue);
-  rescue.ensemble.seed = storm.seed;
+  rescue.ensemble.seed = seed;
   rescue.problem.exposure_damage = ExposureDamage(rescue);
   return rescue;
 }
 
-TrialResult PlanTrials::Run(const TrialStorm& storm) const {
-  const RescueCase rescue = CaseOf(storm);
+double PlanTrials::PlayBulletins(const TrialStorm& storm, const TripModel& model,
+                                 Skipper& skipper) const {
+  std::vector<TrialBulletin> bulletins;
+  for (std::size_t i = 0; i <= storm.later.size(); ++i) {
+    const StormTrack& known = i == 0 ? storm.known : storm.later[i - 1];
+    const std::int64_t after_s = static_cast<std::int64_t>(i) * bulletin_s_;
+    bulletins.push_back({static_cast<double>(after_s), [this, &known, &storm, after_s, i] {
+                           return CaseOf(known, storm.start + after_s, storm.seed + i);
+                         }});
+  }
+  return PlayReacting(model, bulletins, skipper);
+}
+
+TrialResult PlanTrials::Run(const TrialStorm& storm, bool reacts) const {
+  const RescueCase rescue = CaseOf(storm.known, storm.start, storm.seed);
   const RescueProblem& problem = rescue.problem;
   const Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
   const Ensemble truth = TruthOf(rescue, storm.truth);
@@ -84,7 +102,21 @@ TrialResult PlanTrials::Run(const TrialStorm& storm) const {
     result.home.push_back({plan.devices[d].home, real.devices[d].home > 0.5});
   }
   const RescuePlan central = PlanRescue(problem, Certain(rescue, rescue.forecast));
-  result.saved = {SavedOf(real), SavedOf(PlayRescue(problem, truth, central)),
+  double again = std::numeric_limits<double>::quiet_NaN();
+  double planner = again;
+  if (reacts && problem.ships.size() == 1) {
+    const TripModel model(problem, truth);
+    PlanAgain skipper;
+    again = PlayBulletins(storm, model, skipper);
+    if (request_.devices.empty()) {
+      PlannerSkipper farm(rescue);
+      planner = PlayBulletins(storm, model, farm);
+    }
+  }
+  result.saved = {SavedOf(real),
+                  SavedOf(PlayRescue(problem, truth, central)),
+                  again,
+                  planner,
                   SavedOf(FetchInOrder(problem, truth, FetchRule::kValue)),
                   SavedOf(FetchInOrder(problem, truth, FetchRule::kNearest)),
                   SavedOf(PlanRescue(problem, truth))};
@@ -92,7 +124,7 @@ TrialResult PlanTrials::Run(const TrialStorm& storm) const {
 }
 
 AverseResult PlanTrials::CompareAverse(const TrialStorm& storm, std::int32_t members) const {
-  RescueCase rescue = CaseOf(storm);
+  RescueCase rescue = CaseOf(storm.known, storm.start, storm.seed);
   const Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
   EnsembleOptions others = rescue.ensemble;
   others.members = members;

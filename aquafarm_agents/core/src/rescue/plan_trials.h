@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "aquafarm/agents/rescue/rescue_case.h"
+#include "rescue/reacting_trial.h"
 #include "rescue/trial_storm.h"
 
 namespace aquafarm::agents {
@@ -17,13 +18,15 @@ namespace aquafarm::agents {
 /// Who gives the orders.
 enum class TrialPolicy : std::uint8_t {
   kPlan,
-  kCentral,      ///< the same search for the forecast alone, without its errors
-  kValue,        ///< FetchRule::kValue
-  kNearest,      ///< FetchRule::kNearest
+  kCentral,    ///< the same search for the forecast alone, without its errors
+  kPlanAgain,  ///< the plan, made again at each bulletin; one ship
+  kPlanner,    ///< the policy `planner`, which plans again at each bulletin; one ship of the ranch
+  kValue,      ///< FetchRule::kValue
+  kNearest,    ///< FetchRule::kNearest
   kClairvoyant,  ///< the same search for the true storm
 };
-inline constexpr std::size_t kTrialPolicyCount = 5;
-/// "plan", "central", "fetch_by_value", "fetch_nearest", "clairvoyant".
+inline constexpr std::size_t kTrialPolicyCount = 7;
+/// "plan", "central", "plan_again", "planner", "fetch_by_value", "fetch_nearest", "clairvoyant".
 std::string_view ToString(TrialPolicy value);
 
 /// A promised probability and what happened.
@@ -40,7 +43,8 @@ struct TrialResult {
   std::vector<Promise> gales;  ///< of each device: the weakest ring reached its site
   double promised{};           ///< value that the plan saves on average over its members
   double at_risk{};            ///< value that is lost if no ship leaves
-  std::array<double, kTrialPolicyCount> saved{};  ///< by TrialPolicy, in the true storm
+  /// By TrialPolicy, in the true storm; NaN if the policy is not for these ships and devices.
+  std::array<double, kTrialPolicyCount> saved{};
 };
 
 /// Mean of the worst 5 % of the losses of two plans, over other members than those of the plans.
@@ -53,18 +57,23 @@ struct AverseResult {
 class PlanTrials {
  public:
   /// @param request with its storm: any one of the archive
-  PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request);
+  /// @param bulletin_s time between the bulletins of a trial
+  PlanTrials(std::shared_ptr<const Scenario> scenario, RescueRequest request,
+             std::int64_t bulletin_s = BulletinPeriod({}));
 
   GeoPoint place() const { return place_; }
-  TrialResult Run(const TrialStorm& storm) const;
+  /// @param reacts also play the policies that react to later bulletins
+  TrialResult Run(const TrialStorm& storm, bool reacts = true) const;
   /// @param members of the ensemble that compares the plans
   AverseResult CompareAverse(const TrialStorm& storm, std::int32_t members) const;
 
  private:
-  RescueCase CaseOf(const TrialStorm& storm) const;
+  RescueCase CaseOf(const StormTrack& known, std::int64_t start, std::uint64_t seed) const;
+  double PlayBulletins(const TrialStorm& storm, const TripModel& model, Skipper& skipper) const;
 
   RescueRequest request_;
   RescueCase base_;
+  std::int64_t bulletin_s_;
   GeoPoint place_;
 };
 

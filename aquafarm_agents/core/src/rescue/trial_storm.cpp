@@ -10,6 +10,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
 #include "aquafarm/tracks/wind_radii.h"
+#include "rescue/fine_track.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -80,8 +81,6 @@ void AddRadii(const TrialOptions& options, RandomStream& rng, StormTrack& track)
       const double kept = std::exp(-hours / options.errors.size_memory_h);
       unit = kept * unit + std::sqrt(1.0 - kept * kept) * Normal(rng);
     }
-    fix.wind_mps = WindOf(fix);
-    fix.wind_below_mps.reset();
     fix.grade = GradeOfWind(*fix.wind_mps);
     fix.rings.clear();
     const double spread =
@@ -167,21 +166,36 @@ StormTrack KnownOf(const StormTrack& truth, std::int64_t start, const TrialOptio
 TrialStorm MakeTrial(StormTrack truth, std::int64_t at, const TrialOptions& options, GeoPoint place,
                      RandomStream& rng) {
   TrialStorm trial;
-  AddRadii(options, rng, truth);
   trial.start = truth.fixes.front().time;  // of the last fix until `at`, not among the last ones
   for (std::size_t i = 0; i + 2 < truth.fixes.size(); ++i) {
     if (truth.fixes[i].time <= at) trial.start = truth.fixes[i].time;
   }
+  for (StormFix& fix : truth.fixes) {
+    fix.wind_mps = WindOf(fix);
+    fix.wind_below_mps.reset();
+  }
+  truth = FineTrack(truth, truth.fixes.front().time);
+  AddRadii(options, rng, truth);
   trial.known = KnownOf(truth, trial.start, options, rng);
   const auto [nearest, km] = NearestTime(truth, place);
   trial.lead_h = HoursBetween(trial.start, nearest);
   trial.nearest_km = km;
-  trial.truth = std::move(truth);
   trial.seed = std::uint64_t{rng.Below(1U << 31)} << 31 | rng.Below(1U << 31);
+  TrialOptions again = options;
+  again.report_share = trial.known.fixes.back().rings.empty() ? 0.0 : 1.0;
+  for (std::int64_t time = trial.start + BulletinPeriod(options); time < truth.fixes.back().time;
+       time += BulletinPeriod(options)) {
+    trial.later.push_back(KnownOf(truth, time, again, rng));
+  }
+  trial.truth = std::move(truth);
   return trial;
 }
 
 }  // namespace
+
+std::int64_t BulletinPeriod(const TrialOptions& options) {
+  return std::max(std::int64_t{1}, static_cast<std::int64_t>(options.bulletin_h * double{kHour_s}));
+}
 
 std::pair<std::int64_t, double> NearestTime(const StormTrack& track, GeoPoint place) {
   std::pair<std::int64_t, double> nearest{track.fixes.front().time, 1e9};

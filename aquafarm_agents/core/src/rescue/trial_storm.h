@@ -27,13 +27,20 @@ struct TrialOptions {
   double report_share{0.5};  ///< share of the bulletins that report radii
   /// Radii are drawn about EstimateRadius with its spread times errors.scale; else they are exact.
   bool draws_size{true};
+  double bulletin_h{6.0};  ///< time between two bulletins
 };
+
+/// Returns the time between two bulletins [s].
+std::int64_t BulletinPeriod(const TrialOptions& options);
 
 /// A true storm, and what is known of it at a time.
 struct TrialStorm {
   StormTrack truth;
   StormTrack known;  ///< recorded until `start`, with one forecast that is issued then
   std::int64_t start{};
+  /// Bulletins that follow, TrialOptions::bulletin_h apart, until the storm ends. Their errors are
+  /// drawn again; they report radii if `known` does.
+  std::vector<StormTrack> later;
   double lead_h{};      ///< from start to the closest approach of `truth`
   double nearest_km{};  ///< of `truth`
   /// Of the plan's ensemble. With one seed for all trials, all of them would share the sampling

@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm/tracks/reader.h"
 #include "aquafarm/tracks/wind_radii.h"
 #include "rescue/case_parts.h"
+#include "rescue/fine_track.h"
 #include "rescue/storm_member.h"
 
 namespace aquafarm::agents {
@@ -45,9 +48,16 @@ class Storm : public ::testing::Test {
     track_.fixes.push_back(fix);
   }
 
-  // Radii [km] of a ring at a point in 4,000 members.
-  std::vector<double> Gales(std::size_t point, std::size_t ring = kGale) {
+  // Radii [km] of a ring at a time in 4,000 members. @param hours after the start
+  std::vector<double> Gales(int hours, std::size_t ring = kGale) {
     UseStorm(track_, request_, case_);
+    const auto& points = case_.forecast.path.points;
+    const double step = hours * static_cast<double>(kHour_s) / case_.ensemble.step_s;
+    const auto found = std::find_if(points.begin(), points.end(), [step](const StormPoint& point) {
+      return std::abs(point.step - step) < 1e-9;
+    });
+    if (found == points.end()) throw std::out_of_range("no point at this hour");
+    const auto point = static_cast<std::size_t>(found - points.begin());
     MemberSampler sampler(case_.forecast, case_.ensemble);
     std::vector<StormState> states;
     std::vector<double> radii;
@@ -72,7 +82,7 @@ TEST_F(Storm, AReportedSizeHoldsWhereTheForecastIsBelowAGale) {
   Add(-6, 25.0, 3.0 * Median(25.0, 29.88), false);
   Add(0, 25.0, 3.0 * Median(25.0, 30.0), false);
   Add(12, 16.0, 0.0, true);  // below 17.2 m/s: no ring, but in many members it has gales
-  const std::vector<double> radii = Gales(2);
+  const std::vector<double> radii = Gales(12);
   const auto first = std::upper_bound(radii.begin(), radii.end(), 0.0);
   const auto count = static_cast<double>(radii.end() - first);
   EXPECT_GT(count, 1000.0);
@@ -87,11 +97,11 @@ TEST_F(Storm, AnErrorOfTheWindDoesNotChangeReportedRadii) {
   Add(-6, 17.5, 200.0, false);
   Add(0, 17.5, 200.0, false);  // just a gale: half of the errors of the wind are below it
   Add(12, 17.5, 0.0, true);
-  const std::vector<double> radii = Gales(1);
+  const std::vector<double> radii = Gales(0);
   EXPECT_GT(radii.front(), 200.0 * std::exp(-4.5 * 0.1)) << "10 % are the error of a report";
   EXPECT_NEAR(radii[2000], 200.0, 2.0);
   EXPECT_NEAR(std::log(radii[3365] / radii[2000]), 0.1, 0.01);  // one standard deviation
-  EXPECT_EQ(Gales(2).front(), 0.0) << "the forecast has no measured radii";
+  EXPECT_EQ(Gales(12).front(), 0.0) << "the forecast has no measured radii";
 }
 
 // The report has no 50 kt winds, but its wind may be too low by a little.
@@ -99,11 +109,67 @@ TEST_F(Storm, AWindThatIsReachedByTheErrorOfTheReportHasItsRing) {
   Add(-6, 24.5, 200.0, false);
   Add(0, 24.5, 200.0, false);
   Add(12, 24.5, 0.0, true);
-  const std::vector<double> radii = Gales(1, 1);
+  const std::vector<double> radii = Gales(0, 1);
   EXPECT_EQ(radii.front(), 0.0);
   EXPECT_GT(radii.back(), 20.0) << "50 kt are 25.7 m/s";
-  EXPECT_LT(radii.back(), Gales(1).back());
-  EXPECT_GT(Gales(1).front(), 200.0 * std::exp(-4.5 * 0.1)) << "the reported gales stay";
+  EXPECT_LT(radii.back(), Gales(0).back());
+  EXPECT_GT(Gales(0).front(), 200.0 * std::exp(-4.5 * 0.1)) << "the reported gales stay";
+}
+
+// The report has a radius of gales; that of 50 kt is estimated from the wind.
+TEST_F(Storm, AnErrorOfTheWindChangesTheRingsThatAreNotReported) {
+  Add(-6, 33.0, 200.0, false);
+  Add(0, 33.0, 200.0, false);
+  Add(12, 33.0, 0.0, true);
+  UseStorm(track_, request_, case_);
+  const auto reported = case_.forecast.path.points[1];
+  EXPECT_EQ(reported.keeps_radii, (std::array<bool, kMaxStormRings>{false, false, true}));
+  request_.errors.size_report_error = 0.0;  // the errors of the wind alone
+  const std::vector<double> gales = Gales(0);
+  EXPECT_NEAR(gales.front(), gales.back(), 1e-3);
+  const std::vector<double> storm = Gales(0, 1);
+  EXPECT_GT(storm.back(), 1.05 * storm.front());
+}
+
+// The winds fall below a gale after 9 of 12 hours. Linear radii are too small until then.
+TEST_F(Storm, RadiiBetweenTwoPointsFollowFromTheWind) {
+  Add(-6, 32.0, 0.0, false);
+  Add(0, 32.0, 0.0, false);
+  Add(12, 12.8, 0.0, true);
+  request_.errors.scale = 0.0;
+  EXPECT_NEAR(Gales(6).front(), Median(22.4, 30.12), 0.5);
+  EXPECT_NEAR(Gales(9).front(), Median(17.6, 30.18), 0.5);
+  EXPECT_GT(Gales(6).front(), 1.3 * Median(32.0, 30.0) / 2.0);
+  EXPECT_EQ(Gales(12).front(), 0.0);
+}
+
+TEST_F(Storm, APointWithoutAKnownWindIsNotInterpolated) {
+  Add(-6, 32.0, 0.0, false);
+  Add(0, 32.0, 0.0, false);
+  Add(12, 32.0, 0.0, true);
+  track_.fixes.back().wind_mps.reset();
+  EXPECT_EQ(FineTrack(track_, case_.start).fixes.size(), 3U);
+  track_.fixes.back().wind_mps = 20.0;
+  EXPECT_EQ(FineTrack(track_, case_.start).fixes.size(), 6U);
+  EXPECT_EQ(FineTrack(track_, case_.start + 12 * kHour_s).fixes.size(), 3U) << "it is past";
+}
+
+TEST_F(Storm, PointsBetweenCrossTheDateLineAndKeepCommonRings) {
+  Add(0, 30.0, 200.0, false);
+  Add(6, 20.0, 100.0, true);
+  AddRing({50, {80.0, 80.0, 80.0, 80.0}, false}, track_.fixes.front().rings);
+  track_.fixes[0].position.longitude = 179.0;
+  track_.fixes[1].position.longitude = -179.0;
+  const StormTrack fine = FineTrack(track_, case_.start);
+  ASSERT_EQ(fine.fixes.size(), 3U);
+  const StormFix& middle = fine.fixes[1];
+  EXPECT_EQ(middle.time, case_.start + 3 * kHour_s);
+  EXPECT_NEAR(std::abs(middle.position.longitude), 180.0, 1e-9);
+  EXPECT_EQ(middle.wind_mps, 25.0);
+  EXPECT_EQ(middle.grade, StormGrade::kSevereTropicalStorm);
+  ASSERT_EQ(middle.rings.size(), 1U) << "50 kt are estimated from the wind";
+  EXPECT_EQ(middle.rings[0].radius_km[0], 150.0);
+  EXPECT_TRUE(middle.forecast);
 }
 
 TEST_F(Storm, AReportOfGalesAloneIsAReport) {

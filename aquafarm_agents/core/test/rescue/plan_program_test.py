@@ -174,6 +174,8 @@ class PlanProgram(unittest.TestCase):
         self.assertEqual("storm_stays_away", plan["outcome"]["kind"])
         self.check_warned(plan, words, "storm_stays_away", "warning")
         self.assertIn("What follows is unknown: plan again with the next bulletin.", words)
+        self.assertNotIn("no ship should leave", words)
+        self.assertIsNone(plan["deadlines"]["no_departure_after"])
 
     def test_twelve_if_the_winds_are_unknown(self):
         code, words, plan = self.plan_of(bulletin(30.0, 0.2, strong=""), "--ships", 2)
@@ -271,6 +273,8 @@ class PlanProgram(unittest.TestCase):
                                        ranch=())
         self.assertRegex(words, r"\nwarning: port: got 31.5000,122.6500, expected a place in the "
                                 r"ranch at .*; it is put on the nearest shore of the ranch Check ")
+        _, words, plan = self.run_plan(*given, "--devices", devices, ranch=())
+        self.check_warned(plan, words, "ports_chosen", "note")
         inland = self.write("inland.csv", head + "F2,30.15,122.65,monitoring,5\n")
         said = self.refused(*given, *ports, "--devices", inland, ranch=())
         self.assertIn(f"{inland}:2: F2: got 30.1500 N 122.6500 E, which is land or rock", said)

@@ -35,7 +35,7 @@ class RingScale {
       : path_(path), point_(point), wind_(wind), size_(size) {}
 
   PlacedRing Ring(std::size_t k) const {
-    if (!wind_.changed || (point_.keeps_radii && point_.radius[k] > 0.0)) return {size_, 0.0};
+    if (!wind_.changed || (point_.keeps_radii[k] && point_.radius[k] > 0.0)) return {size_, 0.0};
     const double median_km = MedianOf(k);
     if (point_.radius[k] > 0.0 && point_.median_km[k] > 0.0) {
       return {size_ * median_km / point_.median_km[k], 0.0};

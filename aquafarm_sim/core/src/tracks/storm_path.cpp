@@ -41,7 +41,7 @@ StormPoint ToPoint(const StormWaypoint& from, const StormPath& path, const GeoFr
   point.wind_mps = from.wind_mps.value_or(LowestWindOf(from.grade));
   point.averaging_min = from.averaging_min;
   point.grade = from.grade;
-  point.keeps_radii = from.keeps_radii;
+  std::copy(from.keeps_radii.begin(), from.keeps_radii.end(), point.keeps_radii.begin());
   point.size = from.size;
   for (std::size_t k = 0; k < path.rings; ++k) {
     point.radius[k] = from.radii_km[k] * 1000.0 / cell_size_m;

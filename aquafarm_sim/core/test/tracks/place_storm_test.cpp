@@ -142,10 +142,21 @@ TEST(PlacedStorm, KeepsMeasuredRadiiOfAnotherWind) {
   StormErrors weaker;
   weaker.wind_add_mps = -20.0;
   EXPECT_EQ(Place(path, {weaker})[0].radii[2], 0.0F);
-  path.points[0].keeps_radii = true;
+  path.points[0].keeps_radii.fill(true);
   weaker.size_factor = 0.5;
   EXPECT_EQ(Place(path, {weaker})[0].radii, (std::vector<float>{20.0F, 50.0F, 150.0F}));
   EXPECT_EQ(Place(path, {weaker})[0].grade, 1);  // the risk is that of the wind
+}
+
+TEST(PlacedStorm, ChangesTheRadiiThatAreNotMeasured) {
+  StormPath path = PathOf(WestGoing(1));
+  StormErrors weaker;
+  weaker.wind_add_mps = -7.0;  // 28 m/s: no wind of 64 kt
+  const std::vector<float> changed = Place(path, {weaker})[0].radii;
+  path.points[0].keeps_radii[2] = true;  // that of gales
+  const std::vector<float> radii = Place(path, {weaker})[0].radii;
+  EXPECT_EQ(radii, (std::vector<float>{changed[0], changed[1], 300.0F}));
+  EXPECT_NE(changed[2], 300.0F);
 }
 
 TEST(PlacedStorm, AddsARingThatIsNewlyReachedNextToMeasuredOnes) {
@@ -153,7 +164,7 @@ TEST(PlacedStorm, AddsARingThatIsNewlyReachedNextToMeasuredOnes) {
   track.fixes[0].wind_mps = 25.0;  // 50 kt are 25.7 m/s
   track.fixes[0].rings.erase(track.fixes[0].rings.begin() + 1, track.fixes[0].rings.end());
   StormPath path = PathOf(track);
-  path.points[0].keeps_radii = true;
+  path.points[0].keeps_radii.fill(true);
   StormErrors stronger;
   stronger.wind_add_mps = 3.0;
   ASSERT_EQ(Place(path, {})[0].radii[1], 0.0F);

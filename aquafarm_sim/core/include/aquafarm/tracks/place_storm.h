@@ -31,9 +31,9 @@ class StormPlacer {
   /// A changed wind scales each radius by the ratio of EstimateRadius for the new and the old wind,
   /// removes rings of winds that the storm no longer reaches, and adds an estimated ring for a wind
   /// that it newly reaches, scaled as the next weaker one, or by StormPoint::size without one. The
-  /// grade is then that of the new wind. A fix without known wind keeps its rings, as does one with
-  /// StormPoint::keeps_radii. Times stay in order: a shift never moves a fix before the previous
-  /// one.
+  /// grade is then that of the new wind. A fix without known wind keeps its rings; so does one with
+  /// StormPoint::keeps_radii, ring by ring. Times stay in order: a shift never moves a fix before
+  /// the previous one.
   /// @param errors empty (none), one for all fixes, or one per fix of the path
   /// @param risks of grades 1 to 4, worst first. A row with fewer columns than rings repeats its
   ///   first risk for the inner rings; a row with more columns uses its last ones

@@ -32,7 +32,8 @@ struct StormPoint {
   std::array<double, kMaxStormRings> radius{};     ///< [cells], the strongest wind first
   std::array<double, kMaxStormRings> median_km{};  ///< of EstimateRadius for the wind
   std::array<std::array<double, kQuadrantCount>, kMaxStormRings> quadrants{};  ///< [cells]
-  bool keeps_radii{};  ///< the radii are measured: a changed wind does not change them
+  /// By ring: its radii are measured, so that a changed wind does not change them.
+  std::array<bool, kMaxStormRings> keeps_radii{};
   /// Ratio of the storm's radii to EstimateRadius, for rings of winds that it does not reach here.
   double size{1.0};
 };

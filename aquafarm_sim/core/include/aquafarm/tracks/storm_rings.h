@@ -42,8 +42,9 @@ struct StormWaypoint {
   bool silent{};       ///< radii and wind are unknown and radii_km are 0; between two waypoints: at
                        ///< least one of them is silent
   bool is_reported{};  ///< the radius of the weakest wind is recorded, or derived from one
-  bool keeps_radii{};  ///< see StormPoint; ToRings leaves this and `size` as they are
-  double size{1.0};    ///< see StormPoint
+  /// By ring, see StormPoint; empty: none. ToRings leaves this and `size` as they are.
+  std::vector<bool> keeps_radii;
+  double size{1.0};  ///< see StormPoint
 };
 
 /// A storm as rings of wind.

@@ -46,7 +46,7 @@ PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble);
 /// Returns the time after which no ship should leave to fetch a device: the latest deadline of all
 /// devices at their sites with a chance of at least 50 %. Devices aboard do not count: their ships
 /// come home, they do not leave.
-/// @returns nullopt if there is no such deadline, or if the winds are unknown
+/// @returns nullopt if there is no such deadline, if no winds come, or if the winds are unknown
 std::optional<double> NoDepartureAfter(const RescueProblem& problem, const PlanReport& report);
 
 /// Returns the plan as text of about a page, in local time and UTC.

@@ -5,7 +5,14 @@
 #include <utility>
 #include <vector>
 
+#include "networks/adam_step.h"
+
 namespace aquafarm::agents {
+namespace {
+
+constexpr float kEpsilon = 1e-8F;  // as in libtorch
+
+}  // namespace
 
 FlatAdam::FlatAdam(torch::nn::Module& module, torch::Device device)
     : parameters_(module, device), adam_({parameters_.values()}, torch::optim::AdamOptions(1e-3)) {
@@ -16,8 +23,20 @@ bool FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double max_
   torch::Tensor gradient = parameters_.values().grad();
   gradient.zero_();
   loss.backward();
-  const double norm = gradient.norm().item<double>();
+  const auto size = static_cast<std::size_t>(parameters_.size());
+  const bool is_plain = gradient.is_cpu() && gradient.scalar_type() == torch::kFloat;
+  const double norm =
+      is_plain ? GradientNorm(gradient.data_ptr<float>(), size) : gradient.norm().item<double>();
   if (!std::isfinite(norm)) return false;
+  if (is_plain) {
+    auto& state = State();
+    state.step(state.step() + 1);
+    const double scale = max_grad_norm > 0.0 && norm > max_grad_norm ? max_grad_norm / norm : 1.0;
+    AdamStep(size, gradient.data_ptr<float>(), scale, learning_rate,
+             static_cast<std::uint64_t>(state.step()), kEpsilon, state.exp_avg().data_ptr<float>(),
+             state.exp_avg_sq().data_ptr<float>(), parameters_.values().data_ptr<float>());
+    return true;
+  }
   if (max_grad_norm > 0.0 && norm > max_grad_norm) gradient.mul_(max_grad_norm / norm);
   static_cast<torch::optim::AdamOptions&>(adam_.param_groups()[0].options()).lr(learning_rate);
   adam_.step();

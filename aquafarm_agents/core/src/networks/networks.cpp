@@ -6,6 +6,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
+#include "networks/fused.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -19,7 +20,12 @@ class MlpNetwork final : public QNetwork {
         second_(register_module("second", nn::Linear(hidden, hidden))),
         head_(register_module("head", Head(hidden, dueling))) {}
   torch::Tensor Forward(const torch::Tensor& input) override {
-    return head_(second_(first_(input).relu_()).relu_());
+    if (!CanFuse(input, first_->weight)) return head_(second_(first_(input).relu_()).relu_());
+    const nn::Linear& advantage = head_->advantage();
+    const nn::Linear& value = head_->value();
+    return FusedMlp(input, first_->weight, first_->bias, second_->weight, second_->bias,
+                    advantage->weight, advantage->bias, value ? value->weight : torch::Tensor(),
+                    value ? value->bias : torch::Tensor());
   }
 
  private:
@@ -93,24 +99,36 @@ RecurrentNetwork::RecurrentNetwork(std::int64_t features, std::int64_t hidden, b
                                    bool skip_connection)
     : skip_connection_(skip_connection),
       input_(register_module("input", nn::Linear(features, hidden))),
-      lstm_(register_module("lstm", nn::LSTM(hidden, hidden))) {
+      lstm_(register_module("lstm", nn::LSTM(hidden, hidden))),
+      lstm_weights_(lstm_->parameters()) {
   const std::int64_t width = skip_connection ? 2 * hidden : hidden;
   second_ = register_module("second", nn::Linear(width, width));
   head_ = register_module("head", Head(width, dueling));
 }
 
+// Advances the state over all steps of [T, B, hidden] and returns h after each.
+torch::Tensor RecurrentNetwork::Step(const torch::Tensor& seen, State& state) {
+  if (!CanFuse(seen, lstm_weights_[0])) {
+    auto [output, after] = lstm_(seen, std::make_tuple(state.first, state.second));
+    std::tie(state.first, state.second) = after;
+    return output;
+  }
+  torch::Tensor output;
+  std::tie(output, state.first, state.second) =
+      FusedLstm(seen, state.first, state.second, lstm_weights_[0], lstm_weights_[1],
+                lstm_weights_[2], lstm_weights_[3]);
+  return output;
+}
+
 torch::Tensor RecurrentNetwork::Forward(const torch::Tensor& input, State& state) {
   const torch::Tensor seen = input_(input).relu_();
-  auto [output, after] = lstm_(seen, std::make_tuple(state.first, state.second));
-  std::tie(state.first, state.second) = after;
+  const torch::Tensor output = Step(seen, state);
   const torch::Tensor joined = skip_connection_ ? torch::cat({output, seen}, -1) : output;
   return head_(second_(joined).relu_());
 }
 
 void RecurrentNetwork::WarmUp(const torch::Tensor& input, State& state) {
-  const auto after =
-      std::get<1>(lstm_(input_(input).relu_(), std::make_tuple(state.first, state.second)));
-  std::tie(state.first, state.second) = after;
+  Step(input_(input).relu_(), state);
 }
 
 FlatParameters::FlatParameters(nn::Module& module, torch::Device device) {

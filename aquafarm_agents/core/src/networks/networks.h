@@ -26,6 +26,8 @@ class HeadImpl : public torch::nn::Module {
  public:
   HeadImpl(std::int64_t inputs, bool dueling);
   torch::Tensor forward(const torch::Tensor& input);  ///< [..., inputs] → [..., kActionCount]
+  const torch::nn::Linear& advantage() const { return advantage_; }
+  const torch::nn::Linear& value() const { return value_; }  ///< empty unless dueling
 
  private:
   torch::nn::Linear advantage_{nullptr};
@@ -63,9 +65,12 @@ class RecurrentNetwork : public torch::nn::Module {
   void WarmUp(const torch::Tensor& input, State& state);
 
  private:
+  torch::Tensor Step(const torch::Tensor& seen, State& state);
+
   bool skip_connection_;
   torch::nn::Linear input_{nullptr};
   torch::nn::LSTM lstm_{nullptr};
+  std::vector<torch::Tensor> lstm_weights_;
   torch::nn::Linear second_{nullptr};
   Head head_{nullptr};
 };

@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "ppo/gemm.h"
+#include "networks/fused_parts.h"  // BackwardRelu
+#include "networks/gemm.h"
 
 namespace aquafarm::agents {
 
@@ -57,10 +58,5 @@ struct Linear {
     MultiplyByTransposed(rows, inputs, outputs, slopes, weights.data() + begin, 0.0F, in_slopes);
   }
 };
-
-/// Sets slopes to 0 where the output of the ReLU is 0.
-inline void BackwardRelu(std::size_t size, const float* out, float* slopes) {
-  for (std::size_t i = 0; i < size; ++i) slopes[i] = out[i] > 0.0F ? slopes[i] : 0.0F;
-}
 
 }  // namespace aquafarm::agents

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ppo/lstm_actor_critic.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 
+#include "networks/lstm_cell.h"
 #include "ppo/ppo_loss.h"
 
 namespace aquafarm::agents {
@@ -13,14 +13,8 @@ constexpr std::size_t kGates = 4;  // in the order i, f, g, o
 constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
 constexpr float kForgetBias = 1.0F;  // of the initial weights: the cell state persists at first
 
-using Row = Eigen::Map<Eigen::ArrayXf>;
-using ConstRow = Eigen::Map<const Eigen::ArrayXf>;
-
-Row At(std::vector<float>& values, std::size_t begin, std::size_t size) {
-  return {values.data() + begin, static_cast<Eigen::Index>(size)};
-}
-ConstRow At(const float* values, std::size_t size) {
-  return {values, static_cast<Eigen::Index>(size)};
+LstmRow At(std::vector<float>& values, std::size_t begin, std::size_t size) {
+  return AsRow(values.data() + begin, size);
 }
 
 }  // namespace
@@ -79,20 +73,9 @@ void LstmActorCritic::StepForward(const SequenceRows& rows, std::size_t step) {
            weights_.data() + recurrent_.begin, 1.0F, gates);
   for (std::size_t s = 0; s < rows.sequences; ++s) {
     const std::size_t row = first + s;
-    const std::size_t begin = row * kGates * hidden_;
-    auto input = At(gate_values_, begin, hidden_);
-    auto forget = At(gate_values_, begin + hidden_, hidden_);
-    auto added = At(gate_values_, begin + 2 * hidden_, hidden_);
-    auto output = At(gate_values_, begin + 3 * hidden_, hidden_);
-    input = input.logistic();
-    forget = forget.logistic();
-    added = added.tanh();
-    output = output.logistic();
-    auto cell = At(cell_now_, s * hidden_, hidden_);
-    auto cell_tanh = At(cell_tanh_, row * hidden_, hidden_);
-    cell = forget * cell + input * added;
-    cell_tanh = cell.tanh();
-    At(hidden_now_, s * hidden_, hidden_) = output * cell_tanh;
+    float* const cell = cell_now_.data() + s * hidden_;
+    LstmCellForward(hidden_, gate_values_.data() + row * kGates * hidden_, cell, cell,
+                    cell_tanh_.data() + row * hidden_, hidden_now_.data() + s * hidden_);
     std::copy_n(hidden_now_.data() + s * hidden_, hidden_, joined_.data() + row * 2 * hidden_);
     std::copy_n(seen_.data() + row * hidden_, hidden_,
                 joined_.data() + row * 2 * hidden_ + hidden_);
@@ -119,23 +102,11 @@ void LstmActorCritic::StepBackward(const SequenceRows& rows, std::size_t step) {
   const std::size_t first = step * rows.sequences;
   for (std::size_t s = 0; s < rows.sequences; ++s) {
     const std::size_t row = first + s;
-    const std::size_t begin = row * kGates * hidden_;
-    const auto input = At(gate_values_, begin, hidden_);
-    const auto forget = At(gate_values_, begin + hidden_, hidden_);
-    const auto added = At(gate_values_, begin + 2 * hidden_, hidden_);
-    const auto output = At(gate_values_, begin + 3 * hidden_, hidden_);
-    const auto cell_tanh = At(cell_tanh_, row * hidden_, hidden_);
-    auto hidden_slope = At(hidden_slopes_, s * hidden_, hidden_);
-    auto cell_slope = At(cell_slopes_, s * hidden_, hidden_);
-    hidden_slope += At(joined_slopes_.data() + row * 2 * hidden_, hidden_);
-    cell_slope += hidden_slope * output * (1.0F - cell_tanh.square());
-    At(gate_slopes_, begin, hidden_) = cell_slope * added * input * (1.0F - input);
-    At(gate_slopes_, begin + hidden_, hidden_) =
-        cell_slope * At(cell_before_, row * hidden_, hidden_) * forget * (1.0F - forget);
-    At(gate_slopes_, begin + 2 * hidden_, hidden_) = cell_slope * input * (1.0F - added.square());
-    At(gate_slopes_, begin + 3 * hidden_, hidden_) =
-        hidden_slope * cell_tanh * output * (1.0F - output);
-    cell_slope *= forget;
+    At(hidden_slopes_, s * hidden_, hidden_) += At(joined_slopes_, row * 2 * hidden_, hidden_);
+    LstmCellBackward(hidden_, gate_values_.data() + row * kGates * hidden_,
+                     cell_before_.data() + row * hidden_, cell_tanh_.data() + row * hidden_,
+                     hidden_slopes_.data() + s * hidden_, cell_slopes_.data() + s * hidden_,
+                     gate_slopes_.data() + row * kGates * hidden_);
   }
   MultiplyByTransposed(rows.sequences, hidden_, kGates * hidden_,
                        gate_slopes_.data() + first * kGates * hidden_,
@@ -160,7 +131,7 @@ void LstmActorCritic::Backward(const SequenceRows& rows, const float* slopes) {
   gates_.BackwardInput(weights_, count, gate_slopes_.data(), seen_slopes_.data());
   for (std::size_t row = 0; row < count; ++row) {
     At(seen_slopes_, row * hidden_, hidden_) +=
-        At(joined_slopes_.data() + row * 2 * hidden_ + hidden_, hidden_);
+        At(joined_slopes_, row * 2 * hidden_ + hidden_, hidden_);
   }
   BackwardRelu(count * hidden_, seen_.data(), seen_slopes_.data());
   first_.AddGradient(count, rows.features, seen_slopes_.data(), gradient_);

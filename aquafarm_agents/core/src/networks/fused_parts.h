@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Fully connected layers on raw memory, with the layout of torch::nn::Linear.
+
+#include <algorithm>
+#include <cstddef>
+
+#include "networks/gemm.h"
+
+namespace aquafarm::agents {
+
+/// out [rows, outputs] = in [rows, inputs] · Wᵀ + b with W [outputs, inputs]
+inline void LinearForward(std::size_t rows, std::size_t inputs, std::size_t outputs,
+                          const float* in, const float* weight, const float* bias, float* out) {
+  for (std::size_t row = 0; row < rows; ++row) std::copy_n(bias, outputs, out + row * outputs);
+  MultiplyByTransposed(rows, outputs, inputs, in, weight, 1.0F, out);
+}
+
+inline void Rectify(std::size_t size, float* values) {
+  for (std::size_t i = 0; i < size; ++i) values[i] = std::max(values[i], 0.0F);
+}
+
+/// Receives d loss / d (W, b) from slopes [rows, outputs], which are d loss / d out.
+inline void LinearGradient(std::size_t rows, std::size_t inputs, std::size_t outputs,
+                           const float* in, const float* slopes, float* weight, float* bias) {
+  MultiplyTransposed(outputs, inputs, rows, slopes, in, 0.0F, weight);
+  std::fill_n(bias, outputs, 0.0F);
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t i = 0; i < outputs; ++i) bias[i] += slopes[row * outputs + i];
+  }
+}
+
+/// in_slopes [rows, inputs] = slopes · W + beta · in_slopes
+inline void LinearInputSlopes(std::size_t rows, std::size_t inputs, std::size_t outputs,
+                              const float* slopes, const float* weight, float beta,
+                              float* in_slopes) {
+  Multiply(rows, inputs, outputs, slopes, weight, beta, in_slopes);
+}
+
+/// Sets slopes to 0 where the output of the ReLU is 0.
+inline void BackwardRelu(std::size_t size, const float* out, float* slopes) {
+  for (std::size_t i = 0; i < size; ++i) slopes[i] = out[i] > 0.0F ? slopes[i] : 0.0F;
+}
+
+}  // namespace aquafarm::agents

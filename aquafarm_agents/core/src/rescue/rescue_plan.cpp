@@ -7,11 +7,11 @@
 #include <map>
 #include <numeric>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "aquafarm/base/check.h"
 #include "rescue/follow_trips.h"
+#include "rescue/trip_cache.h"
 #include "rescue/trip_search.h"
 
 namespace aquafarm::agents {
@@ -82,15 +82,13 @@ bool Narrow(std::vector<Team>& teams, std::size_t alternatives) {
 // The best teams by the mean over weighted members.
 class TeamSearch {
  public:
-  TeamSearch(const TripModel& model, std::size_t alternatives, const MemberWeights& weights = {})
+  /// @param cache must outlive the search
+  TeamSearch(const TripModel& model, std::size_t alternatives, TripCache& cache,
+             const MemberWeights& weights = {})
       : teams_(1) {
     const RescueProblem& problem = model.problem();
     for (std::size_t ship = 0; ship < problem.ships.size(); ++ship) {
-      const RescueShip& one = problem.ships[ship];
-      const auto cell = static_cast<std::size_t>(one.cell.y * problem.water.cols() + one.cell.x);
-      const Kind kind{cell, one.speed_kn, one.ready_s, one.capacity, one.aboard};
-      if (tables_.count(kind) == 0) tables_[kind] = SearchTrips(model, ship, alternatives, weights);
-      AddShip(one, tables_[kind]);
+      AddShip(problem.ships[ship], cache.Of(model, ship, alternatives, weights));
       if (Narrow(teams_, alternatives)) is_exhaustive_ = false;
     }
   }
@@ -99,9 +97,6 @@ class TeamSearch {
   bool is_exhaustive() const { return is_exhaustive_; }
 
  private:
-  // Ships of one kind in one place have the same trips.
-  using Kind = std::tuple<std::size_t, double, double, std::int32_t, std::vector<std::int32_t>>;
-
   void AddShip(const RescueShip& ship, const TripTable& table) {
     is_exhaustive_ = is_exhaustive_ && table.is_exhaustive;
     std::vector<Team> next;
@@ -121,7 +116,6 @@ class TeamSearch {
     teams_ = std::move(next);
   }
 
-  std::map<Kind, TripTable> tables_;
   std::vector<Team> teams_;
   bool is_exhaustive_{true};
 };
@@ -148,7 +142,8 @@ class AverseSearch {
       for (const double one : sum) {
         weights.push_back(static_cast<float>((1.0 - kOthers) * one / round + others));
       }
-      const TeamSearch search(model, kAlternatives, weights);
+      TripCache weighted;
+      const TeamSearch search(model, kAlternatives, weighted, weights);
       last_ = PlanOf(model, search.teams().front());
       double loss = last_.cost;
       for (std::size_t m = 0; m < weights.size(); ++m) {
@@ -246,10 +241,16 @@ LossSummary Summarize(std::vector<float> losses) {
 }
 
 RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble, int averse_rounds) {
+  TripCache cache;
+  return PlanRescue(problem, ensemble, averse_rounds, cache);
+}
+
+RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble, int averse_rounds,
+                      TripCache& cache) {
   RequireValid(problem);
   const TripModel model(problem, ensemble);
   const bool is_averse = problem.risk_averse > 0.0;
-  const TeamSearch search(model, is_averse ? kAlternatives : 1);
+  const TeamSearch search(model, is_averse ? kAlternatives : 1, cache);
   RescuePlan best = PlanOf(model, search.teams().front());  // the best mean
   if (is_averse) best = AverseSearch(model, search, std::move(best), averse_rounds).Take();
   for (std::size_t d = 0; d < problem.devices.size(); ++d) best.bound += model.BoundOf(d);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "rescue/trip_cache.h"
+
 namespace aquafarm::agents {
 namespace {
 
@@ -43,8 +45,8 @@ class Changes {
     RescueProblem larger = problem;
     for (RescueShip& ship : larger.ships) ++ship.capacity;
     if (!larger.ships.empty()) {
-      rows_.push_back(
-          Compare("capacity+1", "every ship carries one more device", plan, PlanMore(larger)));
+      rows_.push_back(Compare("capacity+1", "every ship carries one more device", plan,
+                              PlanMore(larger, Plan(larger))));
     }
     std::stable_sort(rows_.begin(), rows_.end(), [](const WhatIf& a, const WhatIf& b) {
       if (a.is_possible != b.is_possible) return a.is_possible;
@@ -58,10 +60,13 @@ class Changes {
   RescuePlan Plan(const RescueProblem& changed) const {
     return PlanRescue(changed, ensemble_, kAverseRoundsToCompare);
   }
+  // As Plan, for changes of the number of ships alone.
+  RescuePlan PlanShips(const RescueProblem& changed) {
+    return PlanRescue(changed, ensemble_, kAverseRoundsToCompare, cache_);
+  }
   // Plans a change that keeps the trips of the plan possible. The short risk-averse search may miss
   // them; the plan is then kept.
-  RescuePlan PlanMore(const RescueProblem& changed) const {
-    RescuePlan found = Plan(changed);
+  RescuePlan PlanMore(const RescueProblem& changed, RescuePlan found) const {
     const double share = changed.risk_averse;
     if (share <= 0.0) return found;
     RescuePlan kept = PlayRescue(changed, ensemble_, plan_);
@@ -100,7 +105,8 @@ class Changes {
       RescueProblem changed = problem_;
       changed.ships.push_back(OneMore());
       changed.ships.back().cell = port.cell;
-      WhatIf row = Compare("ships+1", "one ship more, at " + port.name, plan_, PlanMore(changed));
+      WhatIf row = Compare("ships+1", "one ship more, at " + port.name, plan_,
+                           PlanMore(changed, PlanShips(changed)));
       if (!best || row.loss.mean < best->loss.mean) best = std::move(row);
     }
     if (best) rows_.push_back(std::move(*best));
@@ -117,7 +123,7 @@ class Changes {
       RescueProblem changed = problem_;
       changed.ships.erase(changed.ships.begin() + static_cast<std::ptrdiff_t>(ship));
       WhatIf row = Compare("ships-1", "one ship fewer, without " + problem_.ships[ship].name, plan_,
-                           Plan(changed));
+                           PlanShips(changed));
       if (!best || row.loss.mean < best->loss.mean) best = std::move(row);
     }
     if (best) return rows_.push_back(std::move(*best));
@@ -150,6 +156,7 @@ class Changes {
   const RescueProblem& problem_;
   const Ensemble& ensemble_;
   const RescuePlan& plan_;
+  TripCache cache_;  // of all ships, with and without one of them
   std::vector<WhatIf> rows_;
 };
 

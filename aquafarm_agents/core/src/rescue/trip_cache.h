@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Trips that several searches have in common.
+
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "aquafarm/agents/rescue/rescue_outcome.h"
+#include "aquafarm/agents/rescue/rescue_problem.h"
+#include "rescue/trip_search.h"
+
+namespace aquafarm::agents {
+
+/// Keeps the trips of ships, for searches that differ in their ships without devices aboard alone.
+/// Ships of one kind in one place have the same trips.
+class TripCache {
+ public:
+  /// Returns the trips of a ship; the reference is valid as long as the cache.
+  /// @param weights the same in all calls
+  const TripTable& Of(const TripModel& model, std::size_t ship, std::size_t alternatives,
+                      const MemberWeights& weights) {
+    const RescueProblem& problem = model.problem();
+    const RescueShip& one = problem.ships[ship];
+    const auto cell = static_cast<std::size_t>(one.cell.y * problem.water.cols() + one.cell.x);
+    const Kind kind{cell, one.speed_kn, one.ready_s, one.capacity, one.aboard, alternatives};
+    const auto found = tables_.find(kind);
+    if (found != tables_.end()) return found->second;
+    return tables_[kind] = SearchTrips(model, ship, alternatives, weights);
+  }
+
+ private:
+  using Kind =
+      std::tuple<std::size_t, double, double, std::int32_t, std::vector<std::int32_t>, std::size_t>;
+  std::map<Kind, TripTable> tables_;
+};
+
+/// As PlanRescue without a cache. @param cache of problems with the same devices, ports and members
+RescuePlan PlanRescue(const RescueProblem& problem, const Ensemble& ensemble, int averse_rounds,
+                      TripCache& cache);
+
+}  // namespace aquafarm::agents

@@ -21,7 +21,7 @@ import roslib.packages
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from aquafarm_report import report  # noqa: E402
+from aquafarm_report import outcomes, report  # noqa: E402
 from aquafarm_report.page import page as make_page, tiles  # noqa: E402
 from ranch import Ranch  # noqa: E402
 
@@ -209,8 +209,21 @@ class ReportTest(unittest.TestCase):
 
     def test_it_lists_what_became_of_each_device(self):
         found = re.findall(r"<td>F0 \w+( \w+)?</td>(.*?)</tr>", self.page.text)
-        self.assertEqual(1, len(found), "the cove has one device")
-        self.assertRegex(found[0][1], r"home at step \d+, health \d+%|left at sea, health \d+%")
+        self.assertEqual(2, len(found), "the cove has one device: all episodes, and the films")
+        shares = [int(share) for share in re.findall(r"<td>(\d+)% \[\d+%, \d+%\]</td>", found[0][1])]
+        self.assertEqual(3, len(shares), found[0])  # home, aboard, left
+        self.assertAlmostEqual(100, sum(shares), delta=1)
+        self.assertRegex(found[1][1], r"home at step \d+, health \d+%|left at sea, health \d+%")
+
+    def test_shares_of_a_device_count_distinct_starts(self):
+        device = {"id": 2, "kind": "deep_water_breeding", "episodes": 100, "delivered": 90,
+                  "aboard": 0, "left": 10, "delivered_health": 0.953}
+        table = outcomes.summary_table({"devices": [device], "distinct_episodes": 100})
+        self.assertIn("<td>F2 deep water</td><td>90% [83%, 94%]</td><td>0% [0%, 4%]</td>"
+                      "<td>10% [6%, 17%]</td><td>95%</td>", table)
+        self.assertIn("90% [60%, 98%]", outcomes.summary_table(
+            {"devices": [device], "distinct_episodes": 10}))
+        self.assertEqual("", outcomes.summary_table({}), "an evaluation of version 0.1.0")
 
     def test_the_interval_of_the_return_is_of_distinct_starts(self):
         rows = [{"return": value} for value in ("90", "110", "90", "110")]

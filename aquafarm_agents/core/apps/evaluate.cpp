@@ -3,6 +3,8 @@
 
 #include <cstdio>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "app.h"
 #include "aquafarm/agents/base/exit_code.h"
@@ -125,8 +127,12 @@ ExitCode Run(Arguments arguments) {
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
   AccountsOf accounts;
+  std::vector<DeviceOutcome> devices;
   if (local != nullptr) {
-    accounts = [local](std::int32_t farm) { return local->batch().farm(farm).record().accounts; };
+    accounts = [local, &devices](std::int32_t farm) {
+      AddDevices(local->batch().farm(farm).devices(), devices);
+      return local->batch().farm(farm).record().accounts;
+    };
   }
   Evaluation evaluation = Evaluate(
       environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
@@ -135,6 +141,7 @@ ExitCode Run(Arguments arguments) {
         std::fflush(stdout);
       },
       arguments.policy_seed, accounts);
+  evaluation.devices = std::move(devices);
   std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
               environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
   const std::string losses = DescribeLosses(evaluation);

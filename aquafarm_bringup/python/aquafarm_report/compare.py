@@ -28,7 +28,7 @@ class Run:
         self.settings = json.loads((folder / "run.json").read_text(encoding="utf-8"))
         self.columns = read_metrics(folder / "metrics.csv")
         work.mkdir()
-        films.evaluate(folder, work, episodes)
+        self.summary, _ = films.evaluate(folder, work, episodes)
         self.player = references.read_player(folder.name, work / "evaluation", is_run=True)
 
     @property
@@ -137,6 +137,9 @@ def report(folders, work, episodes, read_metrics):
     sections.append(curves.show([run.player.label for run in runs],
                                 [run.columns for run in runs]))
     sections.append(page.section("Greedy play, 95 % intervals", measure_table([run.player for run in runs])))
+    devices = [(run.player.label, outcomes.summary_table(run.summary)) for run in runs]
+    sections.append(page.section("What became of each device, all episodes", *(
+        f"<h3>{page.escape(label)}</h3>{table}" for label, table in devices if table)))
     sections.append(page.section("Settings that differ", differences(runs)))
     if len(by_scenario) == 1:
         for reason, episode in choose_episodes(runs):

@@ -3,7 +3,10 @@
 import dataclasses
 
 import rosbag
+from aquafarm_benchmark.measures import wilson_interval
 from aquafarm_msgs.msg import DeviceState
+
+from aquafarm_report import page
 
 KINDS = {DeviceState.TEMPORARY_BREEDING: "temporary", DeviceState.MONITORING: "monitoring",
          DeviceState.BREEDING_RELEASE: "release", DeviceState.DEEP_WATER_BREEDING: "deep water"}
@@ -45,3 +48,28 @@ def read_outcomes(bag):
                 if device.status == DeviceState.DELIVERED and one.home is None:
                     one.home = state.step
     return [found[key] for key in sorted(found)]
+
+
+NAMES = {"temporary_breeding": "temporary", "monitoring": "monitoring",
+         "breeding_release": "release", "deep_water_breeding": "deep water"}
+
+
+def _share(count, episodes, distinct):
+    """Returns "98% [94%, 99%]"; the interval counts each distinct start once."""
+    rate = count / episodes
+    evidence = max(1, min(distinct or episodes, episodes))
+    low, high = wilson_interval(round(rate * evidence), evidence)
+    return f"{rate:.0%} [{low:.0%}, {high:.0%}]"
+
+
+def summary_table(summary):
+    """Outcomes of each device over all episodes of an evaluation; "" if it does not have them."""
+    rows = []
+    for one in summary.get("devices", ()):
+        health = one.get("delivered_health")
+        rows.append([f"F{one['id']} {NAMES.get(one['kind'], one['kind'])}",
+                     *(_share(one[name], one["episodes"], summary.get("distinct_episodes"))
+                       for name in ("delivered", "aboard", "left")),
+                     "–" if health is None else f"{health:.0%}"])
+    return page.table(["device", "home", "aboard at the end", "left at sea",
+                       "health of those at home"], rows) if rows else ""

@@ -86,6 +86,9 @@ def show_episodes(run, folder, episodes):
         losses = [money.show((summary["algorithm"], folder / "evaluation.csv"),
                              run / "scenario.yaml", folder, episodes,
                              summary["money"]["currency"])]
+    devices = outcomes.summary_table(summary)
+    if devices:
+        losses.insert(0, page.section("What became of each device, all episodes", devices))
     return summary, rows, [
         page.section(f"Greedy play, {count_text(summary, len(rows))}", table), *losses,
         page.section("The ranch", page.picture(chart, "at the start of an episode")),

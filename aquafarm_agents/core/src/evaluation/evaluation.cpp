@@ -84,6 +84,22 @@ nlohmann::json ToJson(const Losses& losses) {
   return json;
 }
 
+nlohmann::json ToJson(const std::vector<DeviceOutcome>& devices) {
+  nlohmann::json json = nlohmann::json::array();
+  for (std::size_t id = 0; id < devices.size(); ++id) {
+    const DeviceOutcome& one = devices[id];
+    json.push_back({{"id", id},
+                    {"kind", ToString(one.kind)},
+                    {"episodes", one.episodes},
+                    {"delivered", one.delivered},
+                    {"aboard", one.aboard},
+                    {"left", one.Left()}});
+    if (one.delivered == 0) continue;
+    json.back()["delivered_health"] = one.delivered_health / static_cast<double>(one.delivered);
+  }
+  return json;
+}
+
 // Returns half the width of the 95 % interval of the mean return: 1.96 standard errors, where
 // repetitions of a start do not count as evidence. NaN with fewer than two distinct starts.
 double ReturnMargin(const Evaluation& evaluation) {
@@ -123,6 +139,7 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
   if (const double margin = ReturnMargin(evaluation); std::isfinite(margin)) {
     json["return_interval_95"] = {evaluation.mean_return - margin, evaluation.mean_return + margin};
   }
+  if (!evaluation.devices.empty()) json["devices"] = ToJson(evaluation.devices);
   if (evaluation.losses) json["money"] = ToJson(*evaluation.losses);
   if (evaluation.mean_bound) json["upper_bound_per_episode"] = *evaluation.mean_bound;
   return json;

@@ -56,6 +56,36 @@ TEST(Evaluate, MeasuresWhatHappened) {
   EXPECT_EQ(evaluation.mean_delivered_health, 1.0);
 }
 
+TEST(Evaluate, CountsTheOutcomesOfEachDevice) {
+  LocalEnvironment environment(TinyFarm(), {3, 0, false, 1});
+  Scripted policy;
+  std::vector<DeviceOutcome> devices;
+  const AccountsOf look = [&](std::int32_t farm) -> std::optional<Accounts> {
+    AddDevices(environment.batch().farm(farm).devices(), devices);
+    return std::nullopt;
+  };
+  Evaluate(environment, policy, 1, 10, nullptr, {}, std::nullopt, look);
+  ASSERT_EQ(devices.size(), 1U);
+  EXPECT_EQ(devices[0].episodes, 10);
+  EXPECT_EQ(devices[0].delivered, 10);
+  EXPECT_EQ(devices[0].delivered_health, 10.0);
+  EXPECT_EQ(devices[0].Left(), 0);
+}
+
+TEST(DeviceOutcomes, DistinguishAboardAndLeft) {
+  std::vector<DeviceOutcome> outcomes;
+  std::vector<Device> devices(2);
+  devices[0].status = DeviceStatus::kAboard;
+  AddDevices(devices, outcomes);
+  devices[0].status = DeviceStatus::kDelivered;
+  devices[0].health = 0.25F;
+  AddDevices(devices, outcomes);
+  EXPECT_EQ(outcomes[0].aboard, 1);
+  EXPECT_EQ(outcomes[0].delivered, 1);
+  EXPECT_EQ(outcomes[0].delivered_health, 0.25);
+  EXPECT_EQ(outcomes[1].Left(), 2);
+}
+
 TEST(Evaluate, CountsEpisodesThatStartDifferently) {
   Scripted policy;
   LocalEnvironment same(TinyFarm(), {3, 0, false, 1});

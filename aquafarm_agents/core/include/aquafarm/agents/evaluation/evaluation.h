@@ -13,6 +13,7 @@
 
 #include "aquafarm/agents/environment/environment.h"
 #include "aquafarm/agents/environment/policy.h"
+#include "aquafarm/agents/evaluation/device_outcomes.h"
 #include "aquafarm/agents/evaluation/losses.h"
 #include "aquafarm/base/rng.h"
 
@@ -43,7 +44,8 @@ struct Evaluation {
   std::size_t distinct{};
   /// Accounts of the episodes; unset if the scenario has no money, or if they are unknown.
   std::optional<Losses> losses;
-  std::optional<double> mean_bound;  ///< of these episodes (team_bound.h), if requested
+  std::optional<double> mean_bound;    ///< of these episodes (team_bound.h), if requested
+  std::vector<DeviceOutcome> devices;  ///< by id; empty if they are unknown
 };
 
 /// Returns the accounts of a farm whose episode has just ended; nullopt if it has no money.

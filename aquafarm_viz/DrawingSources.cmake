@@ -16,7 +16,6 @@ set(AQUAFARM_DRAWING_SOURCES
   src/draw/image.cpp
   src/draw/layout.cpp
   src/draw/map_labels.cpp
-  src/draw/nautical.cpp
   src/draw/panel_text.cpp
   src/draw/policy_layers.cpp
   src/draw/region.cpp
@@ -25,6 +24,7 @@ set(AQUAFARM_DRAWING_SOURCES
   src/scene/directions.cpp
   src/scene/labels.cpp
   src/scene/layers.cpp
+  src/scene/nautical.cpp
   src/scene/outlook.cpp
   src/scene/storm_track.cpp
   src/scene/trail.cpp)

@@ -77,7 +77,7 @@ TEST(Outlook, OfADeviceInARingIsNow) {
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
   EXPECT_TRUE(outlook.devices[0].arrivals.empty());
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F3 in the -20 ring now");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon over F3: risk -20 now");
   EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-20 now");
 }
 
@@ -103,7 +103,7 @@ TEST(Outlook, ListsADeviceInARingBeforeOneThatIsReachedLater) {
   EXPECT_EQ(outlook.devices[0].risk_now, -20.0);
   EXPECT_EQ(outlook.devices[1].id, 6) << "on the edge of the inner ring";
   EXPECT_EQ(outlook.devices[2].id, 3) << "reached in 2 steps";
-  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "F2 in the -20 ring now");
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon over F2: risk -20 now");
   EXPECT_EQ(ShortOutlookText(scene.spec, outlook), "F2: -20 now");
 }
 
@@ -112,7 +112,7 @@ TEST(Outlook, OfADeviceInARingNamesTheWorseRingToCome) {
   scene.state.disasters[0].x = 18.0F;
   const Outlook outlook = scene.outlook();
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook),
-            "F3 in the -5 ring now, -20 in about 3 steps");
+            "typhoon over F3: risk -5 now, risk -20 in about 3 steps");
   EXPECT_EQ(DangerText(scene.spec, outlook.devices[0]), "-5 now, -20 in 3 steps");
 }
 

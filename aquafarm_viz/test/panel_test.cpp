@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "aquafarm_sim/plan_words.h"
+#include "fit_screen.h"
 #include "fixture.h"
 #include "ranch_widget.h"
 
@@ -41,6 +42,15 @@ RanchModel Filled() {
   state.ships[0].capacity = 1;
   EXPECT_EQ(model.Take(boost::make_shared<aquafarm_msgs::FarmState>(state)), "");
   return model;
+}
+
+TEST(FitScreen, ShrinksAWindowThatIsLargerThanTheScreen) {
+  const WindowFit now{{1600, 900}, 560};
+  EXPECT_TRUE(FitToScreen(now, {0, 0}, {1920, 1080}) == now);
+  const WindowFit small = FitToScreen(now, {2, 30}, {1280, 720});
+  EXPECT_EQ(small.window, QSize(1278, 690));
+  EXPECT_EQ(small.dock_width, 434) << "so that the farm keeps two thirds";
+  EXPECT_EQ(FitToScreen({{1600, 900}, 300}, {0, 0}, {1280, 720}).dock_width, 300);
 }
 
 TEST(RanchModel, SaysWhatTheStateIs) {

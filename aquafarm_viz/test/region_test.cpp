@@ -10,9 +10,9 @@
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/draw/image.h"
 #include "draw/course.h"
-#include "draw/nautical.h"
 #include "draw/symbols.h"
 #include "fixture.h"
+#include "scene/nautical.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -194,6 +194,20 @@ TEST(RegionWords, GiveTheWindAtTheClosestApproach) {
   const Track track = ReadStormTracks(storms.spec.scenario_yaml, 1000.0).tracks[0];
   EXPECT_EQ(WindText(TrackAt(track, 6.0)), "33 m/s") << "interpolated";
   EXPECT_EQ(WindText(ReadStormTracks(kTrack, 1000.0).tracks[1][0]), "") << "the track has no wind";
+}
+
+TEST(RegionWords, GiveTheTimeOfTheClosestApproachInsideARing) {
+  Storms storms;
+  storms.Add(
+      "{step: 0, x: 20, y: 12, radii: [10], wind_mps: 30}, "
+      "{step: 20, x: 12, y: 12, radii: [10], wind_mps: 40}",
+      20.0F, 12.0F);
+  storms.spec.has_start_time = true;
+  storms.spec.step_duration_s = 3600.0;
+  storms.state.world_time.sec = 1627095600;  // 24 July 2021, 03:00 UTC
+  EXPECT_EQ(storms.words().heading, "RING OVER THE FARM");
+  EXPECT_EQ(storms.words().lines[0].substr(0, 8), "closest ");
+  EXPECT_EQ(storms.words().lines[1], "24 Jul 23:00 UTC, 40 m/s");
 }
 
 TEST(Region, MarksHaveTheWindAhead) {

@@ -232,7 +232,7 @@ void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, cons
   const int bottom = layout.panel.y + layout.panel.height;
   const int middle = left + layout.Px(7);
   const int words = left + layout.Px(22);
-  int y = bottom - layout.Px(42) - 5 * row_px;
+  int y = bottom - layout.Px(26) - 5 * row_px;
 
   DrawRock(image, cv::Point2d(middle, y), 5.5 * layout.unit);
   fonts.small.Draw(image, "rock", {words, y + fonts.small.cap_height() / 2},

@@ -6,8 +6,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "draw/free_space.h"
-#include "draw/nautical.h"
 #include "draw/symbols.h"
+#include "scene/nautical.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -136,7 +136,7 @@ void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace&
     for (const std::string& text : {mark.longer, mark.text}) {
       if (text.empty()) continue;
       const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
-      const auto place = space.Take(size, mark.at, 24.0 * layout.unit + size.width / 2.0);
+      const auto place = space.Take(size, mark.at, 36.0 * layout.unit + size.width / 2.0);
       if (!place) continue;
       DrawLabel(image, fonts.small, text, place->tl(), layout);
       break;

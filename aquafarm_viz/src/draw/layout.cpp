@@ -13,6 +13,7 @@ constexpr double kDesignSide = 640.0;
 constexpr double kTop = 46.0;
 constexpr double kBottom = 44.0;
 constexpr double kPanelWidth = 184.0;
+constexpr double kMaxPanelWidth = 276.0;  // if the map leaves space
 constexpr double kAxisLeft = 52.0;
 constexpr double kAxisBottom = 18.0;
 constexpr double kGap = 10.0;
@@ -55,6 +56,13 @@ Layout MakeLayout(int width, int height, ImageSize size, const Style& style) {
   if (cell_px >= kWholePixels) cell_px = std::floor(cell_px);
   const cv::Size map(std::clamp(cvRound(cell_px * width), 1, room.width),
                      std::clamp(cvRound(cell_px * height), 1, room.height));
+  if (!layout.panel.empty()) {  // the panel takes the width that the map leaves
+    const int spare =
+        std::min(room.width - map.width, layout.Px(kMaxPanelWidth) - layout.panel.width);
+    layout.panel.x -= spare;
+    layout.panel.width += spare;
+    room.width -= spare;
+  }
   layout.map = {room.x + (room.width - map.width) / 2, room.y + (room.height - map.height) / 2,
                 map.width, map.height};
   layout.view = MapView(width, height, cell_px);

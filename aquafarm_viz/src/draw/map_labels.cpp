@@ -11,8 +11,8 @@
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "aquafarm_viz/scene/rings.h"
-#include "draw/nautical.h"
 #include "draw/symbols.h"
+#include "scene/nautical.h"
 
 namespace aquafarm_viz {
 namespace {

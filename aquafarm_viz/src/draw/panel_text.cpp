@@ -9,12 +9,14 @@
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
-#include "draw/nautical.h"
 #include "draw/region.h"
 #include "draw/symbols.h"
+#include "scene/nautical.h"
 
 namespace aquafarm_viz {
 namespace {
+
+constexpr double kLegendHeight = 124.0;  // [design units]
 
 using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
@@ -143,7 +145,7 @@ class Panel {
         left_(layout.panel.x + layout.Px(10)),
         right_(layout.panel.x + layout.panel.width - layout.Px(8)),
         y_(layout.panel.y + layout.Px(8)),
-        end_(layout.panel.y + layout.panel.height - layout.Px(140)) {}
+        end_(layout.panel.y + layout.panel.height - layout.Px(kLegendHeight)) {}
 
   int RowsLeft() const { return std::max(0, (end_ - y_) / RowPx()); }
   int RowPx() const { return layout_.Px(17); }
@@ -159,6 +161,13 @@ class Panel {
 
   void Item(const std::string& text, const std::string& right_text, Rgb right_color) {
     Row(left_ + layout_.Px(21), text, fonts_.small, layout_.style->words, right_text, right_color);
+  }
+
+  /// Returns whether two texts fit next to each other in a row of Item or Detail.
+  bool Fits(const std::string& text, const std::string& right_text) const {
+    const int gap = layout_.Px(6);
+    return fonts_.small.Width(text) + gap + fonts_.small.Width(right_text) <=
+           right_ - left_ - layout_.Px(21);
   }
 
   void Detail(const std::string& text, const std::string& right_text, Rgb right_color) {
@@ -193,13 +202,17 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state,
                      done ? 0.5 : 0.0);
     std::string status = done ? "safe" : StatusName(device.status);
     Rgb color = done ? layout.style->good : layout.style->faint;
+    const std::string label = DeviceLabel(device.id);
+    std::string name = label + " " + DeviceName(device.kind);
     for (const DeviceOutlook& one : outlook.devices) {
       if (one.id != device.id) continue;
-      const std::string danger = DangerText(spec, one, ", ");
-      status = danger.empty() ? "" : danger;
       color = layout.style->alarm;
+      status = DangerText(spec, one);
+      // The symbol shows the kind too.
+      if (!panel.Fits(name, status)) name = label;
+      if (!panel.Fits(name, status)) status = DangerText(spec, one, ", ");
     }
-    panel.Item(DeviceLabel(device.id) + " " + DeviceName(device.kind), status, color);
+    panel.Item(name, status, color);
   }
 }
 
@@ -255,9 +268,11 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
         over                  ? ""
         : spec.has_start_time ? "ends in " + HoursText(disaster.steps_left * spec.step_duration_s)
                               : Count(std::uint64_t(disaster.steps_left)) + " steps left";
-    const std::string wind = over ? "" : WindText(courses[i].ahead.front());
-    panel.Detail(disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago",
-                 wind.empty() ? "" : "wind " + wind, layout.style->words);
+    const std::string known =
+        disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago";
+    std::string wind = over ? "" : WindText(courses[i].ahead.front());
+    if (!wind.empty() && panel.Fits(known, "wind " + wind)) wind = "wind " + wind;
+    panel.Detail(known, wind, layout.style->words);
   }
   if (shown == 0) panel.Detail("none known", "", layout.style->faint);
 }
@@ -290,7 +305,7 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
     const std::string fault = OutcomeName(ship.outcome);
     const std::string load = ship.own_device >= 0 ? ""
                                                   : std::to_string(ship.aboard.size()) + "/" +
-                                                        std::to_string(ship.capacity);
+                                                        std::to_string(ship.capacity) + " aboard";
     panel.Detail(ActionName(ship.action) + (fault.empty() ? "" : ": " + fault), load,
                  layout.style->faint);
   }

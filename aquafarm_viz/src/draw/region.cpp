@@ -10,8 +10,8 @@
 #include "aquafarm_viz/scene/rings.h"
 #include "draw/course.h"
 #include "draw/free_space.h"
-#include "draw/nautical.h"
 #include "draw/symbols.h"
+#include "scene/nautical.h"
 #include "scene/outlook.h"
 
 namespace aquafarm_viz {
@@ -127,13 +127,10 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
   if (ahead_s > 0.0) {
     const std::string nearest = PlaceText(spec, subject.nearest.x, subject.nearest.y);
     const std::string when = "in " + HoursText(ahead_s);
-    if (is_over) return {kOver, {"closest " + nearest + " " + when, ""}};
-    RegionWords words{"CLOSEST " + nearest, {when, ""}};
-    if (spec.has_start_time) {
-      const auto time = static_cast<std::time_t>(state.world_time.sec + ahead_s);
-      words.lines[0] += ", " + TimeText(time, "%d %b %H:%M UTC");
-    }
-    return words;
+    const auto then = static_cast<std::time_t>(state.world_time.sec + ahead_s);
+    const std::string time = spec.has_start_time ? TimeText(then, "%d %b %H:%M UTC") : "";
+    if (is_over) return {kOver, {"closest " + nearest + " " + when, time}};
+    return {"CLOSEST " + nearest, {when + (time.empty() ? "" : ", " + time), ""}};
   }
   if (is_over) return {kOver, {centre, ""}};
   if (std::isfinite(subject.danger)) {
@@ -156,11 +153,13 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
   RegionWords words;
   if (course.kind != Course::Kind::kExtrapolated) {
     words = CourseWords(spec, state, *subject, course);
-    words.lines[1] = SourceText(spec, disaster, course);
+    std::string& last = words.lines[1];
     const std::string wind = WindText(subject->nearest);
     const bool is_later = subject->nearest.step > course.ahead.front().step;
     if (is_later && !wind.empty() && course.known_until >= subject->nearest.step) {
-      words.lines[1] = "wind " + wind + " then";
+      last = last.empty() ? "wind " + wind + " then" : last + ", " + wind;
+    } else if (last.empty()) {
+      last = SourceText(spec, disaster, course);
     }
     return words;
   }
@@ -199,6 +198,17 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
   space.Block(farm);
 }
 
+// Blocks squares along a line inside the inset.
+void BlockLine(FreeSpace& space, cv::Point2d from, cv::Point2d to, int side) {
+  constexpr int kMostSquares = 500;
+  const int count = std::clamp(static_cast<int>(cv::norm(to - from) / side), 1, kMostSquares);
+  for (int i = 0; i <= count; ++i) {
+    const cv::Point2d at = from + (to - from) * (double(i) / count);
+    if (std::abs(at.x) > 1e5 || std::abs(at.y) > 1e5) continue;
+    space.Block({cvRound(at.x) - side / 2, cvRound(at.y) - side / 2, side, side});
+  }
+}
+
 void DrawInset(cv::Mat image, double reach_m, const FarmSpec& spec, const FarmState& state,
                const std::vector<Course>& courses, const Layout& layout, const Fonts& fonts) {
   const Style& style = *layout.style;
@@ -218,6 +228,11 @@ void DrawInset(cv::Mat image, double reach_m, const FarmSpec& spec, const FarmSt
     const cv::Point2d at = inset.At(disaster.x, disaster.y);
     FillCircle(inset.image, at, 5.0 * layout.unit, Bgr(style.halo));
     FillCircle(inset.image, at, 4.0 * layout.unit, Bgr(GradeColor(disaster.grade)));
+    for (std::size_t j = 1; j < courses[i].ahead.size(); ++j) {
+      const TrackPoint& from = courses[i].ahead[j - 1];
+      const TrackPoint& to = courses[i].ahead[j];
+      BlockLine(space, inset.At(from.x, from.y), inset.At(to.x, to.y), layout.Px(4));
+    }
     space.Block(
         {cvRound(at.x) - layout.Px(6), cvRound(at.y) - layout.Px(6), layout.Px(12), layout.Px(12)});
   }

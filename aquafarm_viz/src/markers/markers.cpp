@@ -16,6 +16,7 @@
 #include "aquafarm_viz/scene/labels.h"
 #include "aquafarm_viz/scene/rings.h"
 #include "markers/legend.h"
+#include "markers/maker.h"
 #include "scene/arrow.h"
 
 namespace aquafarm_viz {
@@ -29,125 +30,6 @@ using aquafarm_msgs::ShipState;
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr int kCircleCorners = 72;
-
-// Layers from bottom to top, in units of height.
-enum Layer {
-  kSeaLayer = -1,  // below the grids, which rviz draws at height 0
-  kLandLayer = 1,
-  kRingLayer,
-  kRockLayer,
-  kPortLayer,
-  kDeviceLayer,
-  kShipLayer,
-  kDeckLayer,
-  kCargoLayer,
-  kBarLayer,
-  kSignLayer,
-  kWordLayer
-};
-
-std_msgs::ColorRGBA Color(Rgb color, double alpha = 1.0) {
-  std_msgs::ColorRGBA result;
-  result.r = static_cast<float>(color.r) / 255.0F;
-  result.g = static_cast<float>(color.g) / 255.0F;
-  result.b = static_cast<float>(color.b) / 255.0F;
-  result.a = static_cast<float>(alpha);
-  return result;
-}
-
-geometry_msgs::Point Point(double x, double y, double z = 0.0) {
-  geometry_msgs::Point point;
-  point.x = x;
-  point.y = y;
-  point.z = z;
-  return point;
-}
-
-// Creates the markers of one farm with positions [m], layers and sizes according to its spec.
-class Maker {
- public:
-  Maker(const FarmSpec& spec, const std_msgs::Header& header)
-      : cell_m_(spec.cell_size_m),
-        // On large farms objects are drawn larger than a cell to stay visible.
-        thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
-        // With the whole farm in a view of 600 pixels, capitals have 11 pixels or more.
-        word_m_(
-            std::max(0.6 * thing_m_, 0.022 * std::max(spec.width, spec.height) * spec.cell_size_m)),
-        layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
-        header_(header) {
-    header_.frame_id = names::kMapFrame;
-  }
-
-  double cell_m() const { return cell_m_; }
-  double thing_m() const { return thing_m_; }
-  double word_m() const { return word_m_; }
-  double layer_m() const { return layer_m_; }
-
-  Marker Make(const char* space, int id, int type, Layer layer, double x, double y) const {
-    Marker marker;
-    marker.header = header_;
-    marker.ns = space;
-    marker.id = id;
-    marker.type = type;
-    marker.action = Marker::ADD;
-    marker.pose.position = Point(x * cell_m_, y * cell_m_, layer * layer_m_);
-    marker.pose.orientation.w = 1.0;
-    marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
-    return marker;
-  }
-
-  Marker Delete(const char* space, int id) const {
-    Marker marker;
-    marker.header = header_;
-    marker.ns = space;
-    marker.id = id;
-    marker.action = Marker::DELETE;
-    marker.pose.orientation.w = 1.0;
-    return marker;
-  }
-
-  Marker Text(const char* space, int id, double x, double y, const std::string& text, double size_m,
-              Rgb color) const {
-    Marker marker = Make(space, id, Marker::TEXT_VIEW_FACING, kWordLayer, x, y);
-    marker.text = text;
-    marker.scale.z = size_m;
-    marker.color = Color(color);
-    return marker;
-  }
-
-  // Returns a flat convex shape as a triangle fan.
-  Marker Shape(const char* space, int id, Layer layer, double x, double y,
-               const std::vector<cv::Point2f>& outline, double size_m, Rgb color) const {
-    Marker marker = Make(space, id, Marker::TRIANGLE_LIST, layer, x, y);
-    marker.color = Color(color);
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      const cv::Point2f a = outline[i];
-      const cv::Point2f b = outline[(i + 1) % outline.size()];
-      marker.points.push_back(Point(0.0, 0.0));
-      marker.points.push_back(Point(a.x * size_m, a.y * size_m));
-      marker.points.push_back(Point(b.x * size_m, b.y * size_m));
-    }
-    return marker;
-  }
-
- private:
-  double cell_m_;
-  double thing_m_;
-  double word_m_;
-  double layer_m_;
-  std_msgs::Header header_;
-};
-
-// A bearing is clockwise from north, a yaw is counter-clockwise. `rest_deg` is the yaw at which the
-// shape points north.
-geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
-  const double yaw = (rest_deg - bearing_deg) * CV_PI / 180.0;
-  geometry_msgs::Quaternion turned;
-  turned.z = std::sin(yaw / 2.0);
-  turned.w = std::cos(yaw / 2.0);
-  return turned;
-}
 constexpr double kShapeNorthDeg = 0.0;   // outlines have their bow at north
 constexpr double kArrowNorthDeg = 90.0;  // rviz arrows point along x
 
@@ -340,37 +222,10 @@ void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, cons
   }
 }
 
-geometry_msgs::Point OnCircle(double radius_m, int corner) {
-  const double angle = 2.0 * CV_PI * corner / kCircleCorners;
-  return Point(radius_m * std::cos(angle), radius_m * std::sin(angle));
-}
-
-using QuadrantRadii = std::array<double, 4>;  // NE, SE, SW, NW [m]
-
 QuadrantRadii RingMetres(const Maker& maker, const DisasterState& disaster, std::size_t ring) {
   QuadrantRadii radii = RingQuadrants(disaster, ring);
   for (double& radius : radii) radius *= maker.cell_m();
   return radii;
-}
-
-// Adds the flat band between two rings around the marker's pose.
-void AddBand(Marker& marker, const QuadrantRadii& inner, const QuadrantRadii& outer) {
-  static_assert(kCircleCorners % 4 == 0, "quadrants begin at a corner");
-  constexpr std::array<std::size_t, 4> kAnticlockwiseFromEast{0, 3, 2, 1};
-  marker.points.reserve(6 * kCircleCorners);
-  for (int corner = 0; corner < kCircleCorners; ++corner) {
-    const std::size_t quadrant =
-        kAnticlockwiseFromEast[static_cast<std::size_t>(4 * corner / kCircleCorners)];
-    const double inner_m = inner[quadrant];
-    const double outer_m = outer[quadrant];
-    if (outer_m <= inner_m) continue;
-    const auto a = OnCircle(inner_m, corner);
-    const auto b = OnCircle(outer_m, corner);
-    const auto c = OnCircle(outer_m, corner + 1);
-    const auto d = OnCircle(inner_m, corner + 1);
-    marker.points.insert(marker.points.end(), {a, b, c});
-    if (inner_m > 0.0) marker.points.insert(marker.points.end(), {a, c, d});
-  }
 }
 
 // Returns the band between the next smaller ring and this one, so that shades do not overlap.
@@ -449,9 +304,8 @@ Marker Status(const Maker& maker, const FarmSpec& spec, const FarmState& state) 
   const std::string text = ClockText(spec, state) + "   episode " + Count(state.episode) +
                            "   step " + Count(state.step) + "   return " +
                            Number(state.joint_return, 1);
-  const double size_m = 0.035 * std::max(spec.width, spec.height) * maker.cell_m();
-  return maker.Text("status", 0, (spec.width - 1) / 2.0,
-                    spec.height - 0.5 + 0.75 * size_m / maker.cell_m(), text, size_m, kPaper);
+  return maker.Text("status", 0, (spec.width - 1) / 2.0, maker.LineAbove(1), text, maker.line_m(),
+                    kPaper);
 }
 
 }  // namespace

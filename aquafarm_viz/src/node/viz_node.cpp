@@ -107,8 +107,12 @@ void VizNode::OnTraining(const aquafarm_msgs::TrainingStatusConstPtr& training) 
 void VizNode::OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscriber) {
   const Shown& shown = pairing_.shown();
   if (shown.spec == nullptr) return;
-  subscriber.publish(Joined(SpecMarkers(*shown.spec, false, layers_),
-                            StateMarkers(*shown.spec, *shown.state, &trail_, layers_)));
+  subscriber.publish(Joined(SpecMarkers(*shown.spec, false, layers_), MarkersOf(shown)));
+}
+
+visualization_msgs::MarkerArray VizNode::MarkersOf(const Shown& shown) {
+  const auto array = StateMarkers(*shown.spec, *shown.state, &trail_, layers_);
+  return layers_.risk ? Joined(array, danger_.Of(*shown.spec, *shown.state)) : array;
 }
 
 void VizNode::FollowValues() {
@@ -159,7 +163,7 @@ void VizNode::Draw() {
 
 void VizNode::PublishMarkers(const Shown& shown) {
   if (markers_.getNumSubscribers() == 0) return;
-  auto array = StateMarkers(*shown.spec, *shown.state, &trail_, layers_);
+  auto array = MarkersOf(shown);
   if (marked_episode_.spec != shown.spec)
     array = Joined(SpecMarkers(*shown.spec, true, layers_), array);
   if (choice_ != nullptr) {

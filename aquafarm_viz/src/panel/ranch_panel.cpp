@@ -18,6 +18,7 @@
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "fit_screen.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -67,6 +68,7 @@ RanchPanel::RanchPanel(QWidget* parent)
   plan_heartbeat_ = node_.subscribe<std_msgs::Time>(
       names::kPlanHeartbeat, 2,
       [this](const std_msgs::TimeConstPtr&) { model_.HearPlanNode(ros::SteadyTime::now()); });
+  QTimer::singleShot(kRefresh_ms, this, [this] { FitWindow(*this); });  // the window is shown then
   connect(&timer_, &QTimer::timeout, this, [this] {
     // Also without new messages, because the window size may have changed.
     if (rviz_ != nullptr && model_.shown().spec) {

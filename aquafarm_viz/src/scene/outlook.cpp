@@ -57,7 +57,10 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
       DeviceOutlook& device = outlook.devices[d];
       const double risk = RiskAt(storm, devices[d]->x, devices[d]->y);
       if (step == 0) {
-        device.risk_now = std::min(device.risk_now, risk);
+        if (risk < device.risk_now) {
+          device.risk_now = risk;
+          device.disaster_now = i;
+        }
         continue;
       }
       const double worst = device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
@@ -144,7 +147,7 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
   for (const DeviceState& device : state.devices) {
     if (device.status == DeviceState::DEPLOYED && InGrid(spec, device.x, device.y)) {
       devices.push_back(&device);
-      outlook.devices.push_back({device.id, 0.0, {}});
+      outlook.devices.push_back({device.id, 0.0, 0U, {}});
     }
   }
   outlook.is_known = devices.size() <= kMostDevices;
@@ -192,13 +195,15 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   if (outlook.devices.empty()) return "";
   const DeviceOutlook& first = outlook.devices.front();
   const bool is_now = first.risk_now < 0.0;
-  const std::string now =
-      is_now ? DeviceLabel(first.id) + " in the " + Number(first.risk_now, 0) + " ring now" : "";
+  const std::string now = is_now ? DisasterName(state.disasters[first.disaster_now].kind) +
+                                       " over " + DeviceLabel(first.id) + ": risk " +
+                                       Number(first.risk_now, 0) + " now"
+                                 : "";
   if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
   const RingArrival& next = first.arrivals.front();
   const std::string when =
       std::string(" in ") + (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
-  if (is_now) return now + ", " + Number(next.risk, 0) + when;
+  if (is_now) return now + ", risk " + Number(next.risk, 0) + when;
   return DisasterName(state.disasters[next.disaster].kind) + ", risk " + Number(next.risk, 0) +
          ", reaches " + DeviceLabel(first.id) + when;
 }

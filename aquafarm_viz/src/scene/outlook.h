@@ -26,6 +26,7 @@ struct RingArrival {
 struct DeviceOutlook {
   std::int32_t id{};
   double risk_now{};                  ///< risk at its cell; 0 outside all rings
+  std::size_t disaster_now{};         ///< index of the disaster with this risk; 0 outside all rings
   std::vector<RingArrival> arrivals;  ///< each worse than the one before and than risk_now
 };
 
@@ -54,7 +55,7 @@ double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
 /// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
-/// "F2 in the -5 ring now, -20 in 6.5 h"; without such a danger "disasters
+/// "typhoon over F2: risk -5 now, risk -20 in 6.5 h"; without such a danger "disasters
 /// known until +12 h" if a course ends before its disaster; else empty, also if the outlook is not
 /// known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,

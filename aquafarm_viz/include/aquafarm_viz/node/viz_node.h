@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "aquafarm_viz/draw/image.h"
+#include "aquafarm_viz/markers/danger.h"
 #include "aquafarm_viz/scene/pairing.h"
 
 namespace aquafarm_viz {
@@ -43,6 +44,7 @@ class VizNode {
   void OnState(const aquafarm_msgs::FarmStateConstPtr& state);
   void OnTraining(const aquafarm_msgs::TrainingStatusConstPtr& training);
   void OnMarkerSubscriber(const ros::SingleSubscriberPublisher& subscriber);
+  visualization_msgs::MarkerArray MarkersOf(const Shown& shown);
   void Draw();
   void PublishMarkers(const Shown& shown);
   void PublishImages(const Shown& shown);
@@ -57,6 +59,7 @@ class VizNode {
   Trail route_{Trail::kWhole};
   const Layers layers_;
   FarmPainter painter_;
+  DangerMarkers danger_;
   aquafarm_msgs::TrainingStatusConstPtr training_;
   bool marked_{};                           // true: `markers` are up to date
   bool pictured_{};                         // true: the images are up to date

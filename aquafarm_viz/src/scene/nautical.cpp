@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "draw/nautical.h"
+#include "scene/nautical.h"
 
 #include <algorithm>
 #include <array>

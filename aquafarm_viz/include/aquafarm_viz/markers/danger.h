@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Markers of the danger to devices, with the same words as in pictures.
+///
+///     | namespace              | id       | content                                          |
+///     | alarm                  | 0        | the next danger, a line above the farm           |
+///     | danger                 | device   | circle around a device that a ring reaches       |
+///     | danger_label (1)       | device   | risk and time of arrival                         |
+///     | pointer, pointer_label | disaster | where a centre outside the farm lies             |
+///
+/// (1) of the devices that are reached first.
+
+#include <aquafarm_msgs/FarmSpec.h>
+#include <aquafarm_msgs/FarmState.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <memory>
+
+namespace aquafarm_viz {
+
+/// Makes the markers of one farm. Keeps the storm tracks of the last scenario.
+class DangerMarkers {
+ public:
+  DangerMarkers();
+  ~DangerMarkers();
+
+  /// Returns a marker for each id of the table; a marker without content deletes its predecessor.
+  /// The spec must pass CheckSpec and the state CheckState.
+  visualization_msgs::MarkerArray Of(const aquafarm_msgs::FarmSpec& spec,
+                                     const aquafarm_msgs::FarmState& state);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "markers/maker.h"
+
+#include <cmath>
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr int kCircleCorners = 72;
+
+geometry_msgs::Point OnCircle(double radius_m, int corner) {
+  const double angle = 2.0 * CV_PI * corner / kCircleCorners;
+  return Point(radius_m * std::cos(angle), radius_m * std::sin(angle));
+}
+
+}  // namespace
+
+void AddBand(visualization_msgs::Marker& marker, const QuadrantRadii& inner,
+             const QuadrantRadii& outer) {
+  static_assert(kCircleCorners % 4 == 0, "quadrants begin at a corner");
+  constexpr std::array<std::size_t, 4> kAnticlockwiseFromEast{0, 3, 2, 1};
+  marker.points.reserve(6 * kCircleCorners);
+  for (int corner = 0; corner < kCircleCorners; ++corner) {
+    const std::size_t quadrant =
+        kAnticlockwiseFromEast[static_cast<std::size_t>(4 * corner / kCircleCorners)];
+    const double inner_m = inner[quadrant];
+    const double outer_m = outer[quadrant];
+    if (outer_m <= inner_m) continue;
+    const auto a = OnCircle(inner_m, corner);
+    const auto b = OnCircle(outer_m, corner);
+    const auto c = OnCircle(outer_m, corner + 1);
+    const auto d = OnCircle(inner_m, corner + 1);
+    marker.points.insert(marker.points.end(), {a, b, c});
+    if (inner_m > 0.0) marker.points.insert(marker.points.end(), {a, c, d});
+  }
+}
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Makes markers of one farm at their positions and layers; private to this package.
+
+#include <aquafarm_msgs/FarmSpec.h>
+#include <visualization_msgs/Marker.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "aquafarm_viz/base/palette.h"
+#include "aquafarm_viz/names.h"
+
+namespace aquafarm_viz {
+
+/// Layers from bottom to top, in units of height.
+enum Layer {
+  kSeaLayer = -1,  // below the grids, which rviz draws at height 0
+  kLandLayer = 1,
+  kRingLayer,
+  kRockLayer,
+  kPortLayer,
+  kDeviceLayer,
+  kShipLayer,
+  kDeckLayer,
+  kCargoLayer,
+  kBarLayer,
+  kSignLayer,
+  kWordLayer
+};
+
+inline std_msgs::ColorRGBA Color(Rgb color, double alpha = 1.0) {
+  std_msgs::ColorRGBA result;
+  result.r = static_cast<float>(color.r) / 255.0F;
+  result.g = static_cast<float>(color.g) / 255.0F;
+  result.b = static_cast<float>(color.b) / 255.0F;
+  result.a = static_cast<float>(alpha);
+  return result;
+}
+
+inline geometry_msgs::Point Point(double x, double y, double z = 0.0) {
+  geometry_msgs::Point point;
+  point.x = x;
+  point.y = y;
+  point.z = z;
+  return point;
+}
+
+/// Creates the markers of one farm with positions [m], layers and sizes according to its spec.
+class Maker {
+ public:
+  Maker(const aquafarm_msgs::FarmSpec& spec, const std_msgs::Header& header)
+      : cell_m_(spec.cell_size_m),
+        // On large farms objects are drawn larger than a cell to stay visible.
+        thing_m_(spec.cell_size_m * std::max(1.0, std::max(spec.width, spec.height) / 40.0)),
+        // With the whole farm in a view of 600 pixels, capitals have 11 pixels or more.
+        word_m_(
+            std::max(0.6 * thing_m_, 0.022 * std::max(spec.width, spec.height) * spec.cell_size_m)),
+        layer_m_(std::min(0.03 * spec.cell_size_m, 8.0)),
+        line_m_(0.032 * std::max(spec.width, spec.height) * spec.cell_size_m),
+        height_(spec.height),
+        header_(header) {
+    header_.frame_id = names::kMapFrame;
+  }
+
+  double cell_m() const { return cell_m_; }
+  double thing_m() const { return thing_m_; }
+  double word_m() const { return word_m_; }
+  double layer_m() const { return layer_m_; }
+  /// Height of the lines of text above the farm [m].
+  double line_m() const { return line_m_; }
+  /// The y of the middle of line 0, 1, … above the farm [cells].
+  double LineAbove(int line) const {
+    return height_ - 0.5 + (0.75 + 1.25 * line) * line_m_ / cell_m_;
+  }
+
+  visualization_msgs::Marker Make(const char* space, int id, int type, Layer layer, double x,
+                                  double y) const {
+    visualization_msgs::Marker marker;
+    marker.header = header_;
+    marker.ns = space;
+    marker.id = id;
+    marker.type = type;
+    marker.action = visualization_msgs::Marker::ADD;
+    marker.pose.position = Point(x * cell_m_, y * cell_m_, layer * layer_m_);
+    marker.pose.orientation.w = 1.0;
+    marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+    return marker;
+  }
+
+  visualization_msgs::Marker Delete(const char* space, int id) const {
+    visualization_msgs::Marker marker;
+    marker.header = header_;
+    marker.ns = space;
+    marker.id = id;
+    marker.action = visualization_msgs::Marker::DELETE;
+    marker.pose.orientation.w = 1.0;
+    return marker;
+  }
+
+  visualization_msgs::Marker Text(const char* space, int id, double x, double y,
+                                  const std::string& text, double size_m, Rgb color) const {
+    visualization_msgs::Marker marker =
+        Make(space, id, visualization_msgs::Marker::TEXT_VIEW_FACING, kWordLayer, x, y);
+    marker.text = text;
+    marker.scale.z = size_m;
+    marker.color = Color(color);
+    return marker;
+  }
+
+  // Returns a flat convex shape as a triangle fan.
+  visualization_msgs::Marker Shape(const char* space, int id, Layer layer, double x, double y,
+                                   const std::vector<cv::Point2f>& outline, double size_m,
+                                   Rgb color) const {
+    visualization_msgs::Marker marker =
+        Make(space, id, visualization_msgs::Marker::TRIANGLE_LIST, layer, x, y);
+    marker.color = Color(color);
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const cv::Point2f a = outline[i];
+      const cv::Point2f b = outline[(i + 1) % outline.size()];
+      marker.points.push_back(Point(0.0, 0.0));
+      marker.points.push_back(Point(a.x * size_m, a.y * size_m));
+      marker.points.push_back(Point(b.x * size_m, b.y * size_m));
+    }
+    return marker;
+  }
+
+ private:
+  double cell_m_;
+  double thing_m_;
+  double word_m_;
+  double layer_m_;
+  double line_m_;
+  int height_;
+  std_msgs::Header header_;
+};
+
+/// A bearing is clockwise from north, a yaw is counter-clockwise. `rest_deg` is the yaw at which
+/// the shape points north.
+inline geometry_msgs::Quaternion Turned(double bearing_deg, double rest_deg) {
+  const double yaw = (rest_deg - bearing_deg) * CV_PI / 180.0;
+  geometry_msgs::Quaternion turned;
+  turned.z = std::sin(yaw / 2.0);
+  turned.w = std::cos(yaw / 2.0);
+  return turned;
+}
+
+/// Radii to the NE, SE, SW and NW [m].
+using QuadrantRadii = std::array<double, 4>;
+
+/// Adds the flat band between two rings around the marker's pose.
+void AddBand(visualization_msgs::Marker& marker, const QuadrantRadii& inner,
+             const QuadrantRadii& outer);
+
+}  // namespace aquafarm_viz

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/markers/danger.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "aquafarm_viz/base/palette.h"
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using visualization_msgs::Marker;
+using Key = std::pair<std::string, int>;
+
+// A farm of 25 x 25 cells of 1 km with a device in the outer ring and one far away.
+struct Scene {
+  aquafarm_msgs::FarmSpec spec = test::MakeSpec();
+  aquafarm_msgs::FarmState state = test::MakeState();
+  DangerMarkers danger;
+
+  Scene() {
+    state.devices = {test::MakeDevice(0, 0, 4, 12, 1.0F), test::MakeDevice(1, 1, 22, 22, 1.0F)};
+    state.disasters = {test::MakeDisaster(0, -8.0F, 12.0F)};
+    state.disasters[0].speed = 0.0F;
+    state.disasters[0].radii = {2.0F, 14.0F};
+    state.disasters[0].risks = {-20.0F, -5.0F};
+  }
+
+  std::map<Key, Marker> Draw() {
+    std::map<Key, Marker> result;
+    for (const auto& marker : danger.Of(spec, state).markers) {
+      EXPECT_TRUE(result.emplace(Key(marker.ns, marker.id), marker).second) << marker.ns;
+    }
+    return result;
+  }
+};
+
+TEST(DangerMarkers, NameTheDeviceTheRiskAndTheCentreOutsideTheFarm) {
+  Scene scene;
+  const auto markers = scene.Draw();
+  EXPECT_EQ(markers.at({"alarm", 0}).text, "typhoon over F0: risk -5 now");
+  EXPECT_EQ(markers.at({"danger_label", 0}).text, "F0: -5 now");
+  EXPECT_EQ(markers.at({"danger_label", 1}).action, Marker::DELETE);
+  EXPECT_EQ(markers.at({"danger", 1}).action, Marker::DELETE);
+  EXPECT_EQ(markers.at({"pointer_label", 0}).text, "typhoon, centre 20 km W");
+  const Marker& circle = markers.at({"danger", 0});
+  EXPECT_EQ(circle.action, Marker::ADD);
+  EXPECT_EQ(circle.pose.position.x, 4000.0);
+  EXPECT_FLOAT_EQ(circle.color.r, SeverityColor(Severity(-5)).r / 255.0F);
+  EXPECT_LT(markers.at({"pointer", 0}).pose.position.x, 1000.0) << "at the western edge";
+  EXPECT_EQ(markers.at({"pointer", 0}).pose.position.y, 12000.0);
+}
+
+TEST(DangerMarkers, AreDeletedWhenTheDangerIsOver) {
+  Scene scene;
+  const auto before = scene.Draw();
+  scene.state.disasters[0].steps_left = 0;
+  const auto after = scene.Draw();
+  ASSERT_EQ(before.size(), after.size());
+  for (const auto& [key, marker] : after) {
+    EXPECT_TRUE(before.count(key)) << key.first;
+    EXPECT_EQ(marker.action, Marker::DELETE) << key.first << " " << key.second;
+  }
+}
+
+TEST(DangerMarkers, HaveNoPointerToACentreInTheFarm) {
+  Scene scene;
+  scene.state.disasters[0].x = 2.0F;
+  EXPECT_EQ(scene.Draw().at({"pointer", 0}).action, Marker::DELETE);
+}
+
+TEST(DangerMarkers, HaveLabelsInTheFarmThatCoverNeitherEachOtherNorDevices) {
+  Scene scene;
+  scene.state.devices.clear();
+  for (int i = 0; i < 4; ++i) {
+    scene.state.devices.push_back(test::MakeDevice(i, 0, 0, 11 + i, 1.0F));
+  }
+  const auto markers = scene.Draw();
+  const auto half = [](const Marker& label) { return 0.25 * label.scale.z * label.text.size(); };
+  for (int i = 0; i < 4; ++i) {
+    const Marker& label = markers.at({"danger_label", i});
+    EXPECT_GE(label.pose.position.x - half(label), -501.0);
+    for (int j = 0; j < i; ++j) {
+      const Marker& other = markers.at({"danger_label", j});
+      EXPECT_TRUE(std::abs(label.pose.position.y - other.pose.position.y) >= label.scale.z ||
+                  std::abs(label.pose.position.x - other.pose.position.x) >= half(label))
+          << i << " over " << j;
+    }
+  }
+}
+
+TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
+  Scene scene;
+  scene.state.step = 0;
+  scene.spec.scenario_yaml = R"(
+disasters:
+  - risks: [-20, -5]
+    track:
+      - {step: 0, x: -8, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
+      - {step: 10, x: 2, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
+)";
+  EXPECT_EQ(scene.Draw().at({"alarm", 0}).text,
+            "typhoon over F0: risk -5 now, risk -20 in 10 steps");
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""tools/draw_docs_images knows every picture of docs/images, and pages show each of them."""
+import importlib.machinery
+import importlib.util
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+TOOL = ROOT / "tools" / "draw_docs_images"
+
+
+def load():
+    loader = importlib.machinery.SourceFileLoader("draw_docs_images", str(TOOL))
+    module = importlib.util.module_from_spec(
+        importlib.util.spec_from_loader(loader.name, loader))
+    sys.dont_write_bytecode = True
+    loader.exec_module(module)
+    return module
+
+
+def test_every_picture_of_the_docs_can_be_drawn_again():
+    tool = load()
+    drawn = {*tool.names(), *tool.BENCHMARK, *tool.ELSEWHERE}
+    there = {path.stem for path in (ROOT / "docs" / "images").glob("*.png")}
+    assert there == drawn
+
+
+def test_every_picture_is_on_a_page():
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
+    text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+    unused = [path.name for path in (ROOT / "docs" / "images").glob("*.png")
+              if f"images/{path.name}" not in text]
+    assert not unused
+
+
+def test_an_unknown_name_is_refused_with_the_known_ones():
+    done = subprocess.run([TOOL, "valuess"], capture_output=True, text=True, timeout=60,
+                          check=False)
+    assert done.returncode == 2
+    assert "got 'valuess', expected some of: zhoushan_infa_2021" in done.stderr

@@ -51,6 +51,15 @@ class CheckLanguageTest(unittest.TestCase):
         self.assertEqual(1, done.returncode)
         self.assertIn("contains 2 such words, allowed are 1", done.stderr)
 
+    def test_a_page_has_100_columns_but_tables_and_programs_may_have_more(self):
+        wide = "word " * 21
+        self.write("docs/page.md", f"{wide[:100]}\n| {wide} |\n```\n{wide}\n```\n[a]: {wide}\n")
+        self.assertEqual(0, self.check().returncode)
+        self.write("docs/page.md", f"One.\n{wide[:101]}\n")
+        done = self.check()
+        self.assertEqual(1, done.returncode)
+        self.assertIn("docs/page.md:2: got 101 columns, expected at most 100", done.stderr)
+
     def test_a_number_that_is_too_high_must_be_lowered(self):
         self.write("tools/words_allowed.txt", "3 farm.h\n")
         self.write("farm.h", "/// Begins anew.\n")

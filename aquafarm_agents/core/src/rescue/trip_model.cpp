@@ -2,12 +2,14 @@
 #include "rescue/trip_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <string>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/base/widest.h"
 #include "aquafarm/grid/action.h"
 #include "aquafarm/tracks/track.h"
 
@@ -29,6 +31,30 @@ std::vector<Cell> PlacesOf(const RescueProblem& problem) {
   for (const RescuePort& port : problem.ports) add(port.name, port.cell);
   for (const RescueShip& ship : problem.ships) add(ship.name, ship.cell);
   return places;
+}
+
+// Clears the members in which the gales have arrived by step `now`.
+AQUAFARM_WIDEST
+void ClearFrom(const std::int16_t* arrival, std::int16_t now, std::size_t count,
+               std::int16_t* works) {
+  for (std::size_t member = 0; member < count; ++member) {
+    const auto calm = static_cast<std::int16_t>(arrival[member] > now ? 1 : 0);
+    works[member] = static_cast<std::int16_t>(works[member] & calm);
+  }
+}
+
+// Sums of every kLanes-th term: independent additions are computed together.
+constexpr std::size_t kLanes = 16;
+
+template <typename Term>
+double SumOf(std::size_t count, const Term& term) {
+  std::array<float, kLanes> sums{};
+  std::size_t first = 0;
+  for (; first + kLanes <= count; first += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) sums[lane] += term(first + lane);
+  }
+  for (; first < count; ++first) sums[0] += term(first);
+  return static_cast<double>(std::accumulate(sums.begin(), sums.end(), 0.0F));
 }
 
 }  // namespace
@@ -75,12 +101,7 @@ void TripModel::Stay(Cell cell, double until_s, Alive& alive) const {
   }
   const std::int16_t* arrival = ensemble_.Arrival(problem_.abort_ring, cell);
   const auto now = static_cast<std::int16_t>(step);
-  std::int16_t* works = alive.data();
-  const std::size_t count = alive.size();
-  for (std::size_t member = 0; member < count; ++member) {
-    const auto calm = static_cast<std::int16_t>(arrival[member] > now ? 1 : 0);
-    works[member] = static_cast<std::int16_t>(works[member] & calm);
-  }
+  ClearFrom(arrival, now, alive.size(), alive.data());
 }
 
 void TripModel::Move(std::size_t ship, std::size_t from, std::size_t to, double& time_s,
@@ -108,17 +129,13 @@ double TripModel::Saved(std::size_t device, double time_s, const Alive& alive,
                         const MemberWeights& weights) const {
   const float* idle = LossIdle(device);
   const float* until = LossUntil(device, time_s);
-  float saved = 0.0F;
-  if (!weights.empty()) {
-    for (std::size_t member = 0; member < alive.size(); ++member) {
-      saved += weights[member] * static_cast<float>(alive[member]) * (idle[member] - until[member]);
-    }
-    return static_cast<double>(saved);
-  }
-  for (std::size_t member = 0; member < alive.size(); ++member) {
-    saved += static_cast<float>(alive[member]) * (idle[member] - until[member]);
-  }
-  return static_cast<double>(saved) / static_cast<double>(alive.size());
+  const std::int16_t* works = alive.data();
+  const auto gain = [&](std::size_t member) {
+    return static_cast<float>(works[member]) * (idle[member] - until[member]);
+  };
+  if (weights.empty()) return SumOf(alive.size(), gain) / static_cast<double>(alive.size());
+  const auto* weight = weights.data();
+  return SumOf(alive.size(), [&](std::size_t member) { return weight[member] * gain(member); });
 }
 
 TripEffort TripModel::Effort(std::size_t ship, std::size_t from, std::size_t to,

@@ -4,16 +4,8 @@
 #include <cstring>
 #include <limits>
 
+#include "aquafarm/base/widest.h"
 #include "aquafarm/grid/action.h"
-
-// Functions with this attribute are also compiled for the widest registers. The variant is chosen
-// when the program starts, which is too early for ThreadSanitizer.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
-#define AQUAFARM_WIDEST \
-  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define AQUAFARM_WIDEST
-#endif
 
 namespace aquafarm {
 namespace {

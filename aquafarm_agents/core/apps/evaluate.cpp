@@ -127,7 +127,7 @@ ExitCode Run(Arguments arguments) {
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
   AccountsOf accounts;
-  std::vector<DeviceOutcome> devices;
+  std::vector<DeviceTally> devices;
   if (local != nullptr) {
     accounts = [local, &devices](std::int32_t farm) {
       AddDevices(local->batch().farm(farm).devices(), devices);

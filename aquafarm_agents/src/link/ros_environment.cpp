@@ -205,8 +205,8 @@ std::string RosEnvironment::Save() {
 }
 
 const StepResults& RosEnvironment::Load(const std::string& bytes) {
-  if (share_.total != spec_.farms) Reset(seed_);  // states hold no distance of episodes
   const std::string own = aquafarm::agents::TakeSavedFarms(bytes, share_, spec_.farms);
+  if (share_.total != spec_.farms) Reset(seed_);  // states hold no distance of episodes
   aquafarm_msgs::LoadState load;
   load.request.data.assign(own.begin(), own.end());
   load.request.encodings = encodings_;

@@ -69,6 +69,12 @@ TrainParams ReadTrainParams(const ros::NodeHandle& node) {
   reader.Number("rank_answer_s", 1.0, 86400.0, params.times.answer_s);
   reader.Number("values_period_s", 0.0, 86400.0, params.values_period_s);
   reader.RefuseOthers();
+  if (params.environment.wait_limit_s >= params.times.answer_s && std::getenv("RANK") != nullptr) {
+    ROS_WARN(
+        "~rank_answer_s: got %g s, expected more than ~sim_timeout_s, %g s, or a rank that "
+        "waits for its sim node is reported as lost",
+        params.times.answer_s, params.environment.wait_limit_s);
+  }
   params.run.episodes = static_cast<std::uint64_t>(episodes);
   params.run.steps = static_cast<std::uint64_t>(steps);
   params.run.seed = static_cast<std::uint64_t>(seed);

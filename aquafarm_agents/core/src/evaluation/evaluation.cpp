@@ -84,10 +84,10 @@ nlohmann::json ToJson(const Losses& losses) {
   return json;
 }
 
-nlohmann::json ToJson(const std::vector<DeviceOutcome>& devices) {
+nlohmann::json ToJson(const std::vector<DeviceTally>& devices) {
   nlohmann::json json = nlohmann::json::array();
   for (std::size_t id = 0; id < devices.size(); ++id) {
-    const DeviceOutcome& one = devices[id];
+    const DeviceTally& one = devices[id];
     json.push_back({{"id", id},
                     {"kind", ToString(one.kind)},
                     {"episodes", one.episodes},

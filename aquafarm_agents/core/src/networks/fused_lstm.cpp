@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "aquafarm/base/check.h"
 #include "networks/fused.h"
 #include "networks/fused_parts.h"
 #include "networks/lstm_cell.h"
@@ -175,6 +176,12 @@ std::tuple<Tensor, Tensor, Tensor> FusedLstm(const Tensor& input, const Tensor& 
                                              const Tensor& cell, const Tensor& input_weight,
                                              const Tensor& hidden_weight, const Tensor& input_bias,
                                              const Tensor& hidden_bias) {
+  AQUAFARM_CHECK_EQ(input.dim(), 3);
+  AQUAFARM_CHECK_EQ(input.size(2), input_weight.size(1));
+  for (const Tensor& state : {hidden, cell}) {
+    AQUAFARM_CHECK_EQ(state.numel(), input.size(1) * hidden_weight.size(1));
+    AQUAFARM_CHECK_EQ(CanFuse(state, hidden_weight), true);
+  }
   const Tensor values = input.contiguous();
   const Tensor hidden_values = hidden.contiguous();
   const Tensor cell_values = cell.contiguous();

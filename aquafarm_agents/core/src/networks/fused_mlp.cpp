@@ -2,6 +2,7 @@
 #include <numeric>
 #include <vector>
 
+#include "aquafarm/base/check.h"
 #include "networks/fused.h"
 #include "networks/fused_parts.h"
 
@@ -156,6 +157,7 @@ Tensor FusedMlp(const Tensor& input, const Tensor& first_weight, const Tensor& f
                 const Tensor& second_weight, const Tensor& second_bias,
                 const Tensor& advantage_weight, const Tensor& advantage_bias,
                 const Tensor& value_weight, const Tensor& value_bias) {
+  AQUAFARM_CHECK_EQ(input.size(-1), first_weight.size(1));
   const Tensor rows = input.reshape({-1, input.size(-1)}).contiguous();
   std::vector<std::int64_t> shape = input.sizes().vec();
   shape.back() = advantage_weight.size(0);

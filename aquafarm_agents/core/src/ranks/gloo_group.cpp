@@ -29,6 +29,8 @@ using Tensors = std::vector<at::Tensor>;
 // can read which rank was lost.
 constexpr std::chrono::seconds kStoreKept{2};
 constexpr std::chrono::seconds kReportLimit{3};  // if the host of rank 0 does not answer
+constexpr int kNameTries = 5;                    // if the name server has a temporary failure
+constexpr std::chrono::seconds kNamePause{1};
 constexpr const char* kLost = "lost";  // key of the store: the first rank that was found lost
 
 std::chrono::milliseconds Milliseconds(double seconds) {
@@ -91,7 +93,11 @@ void RequireKnownName(const std::string& host, double limit_s) {
     addrinfo hints{};
     hints.ai_socktype = SOCK_STREAM;
     addrinfo* found = nullptr;
-    const int code = getaddrinfo(host.c_str(), nullptr, &hints, &found);
+    int code = EAI_AGAIN;
+    for (int tries = 0; code == EAI_AGAIN && tries < kNameTries; ++tries) {
+      if (tries > 0) std::this_thread::sleep_for(kNamePause);
+      code = getaddrinfo(host.c_str(), nullptr, &hints, &found);
+    }
     if (code == 0) freeaddrinfo(found);
     return code;
   });
@@ -205,7 +211,8 @@ void GlooGroup::WaitForAll(const std::string& place, std::chrono::milliseconds l
   if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);
   throw RankLost("ranks: of " + std::to_string(size_) +
                  " ranks these have not started in time:" + missing +
-                 "; check their hosts and their output, or give more time by --rank-start");
+                 "; check their hosts and their output, or give more time by --rank-start "
+                 "(rank_start_s in ROS)");
 }
 
 void GlooGroup::Connect(const RankVariables& variables, const GroupTimes& times) {
@@ -241,17 +248,20 @@ void GlooGroup::WithPeer(int peer, const Exchange& exchange) {
   if (!failure.empty()) Lose(peer, failure);
 }
 
-// A rank that ends because of a lost one is itself lost to others. The first report counts.
+// A rank that ends because of a lost one is itself lost to others. The first report counts. The
+// thread may outlive the limit: a call of the store has none if the host of rank 0 does not answer.
 void GlooGroup::Lose(int peer, const std::string& reason) {
-  int lost = peer;
-  try {
-    store_->setTimeout(kReportLimit);
-    const std::string text = std::to_string(peer);
+  std::packaged_task<int()> report([store = store_, text = std::to_string(peer)] {
     const std::vector<std::uint8_t> first =
-        store_->compareSet(kLost, {}, std::vector<std::uint8_t>(text.begin(), text.end()));
-    lost = std::atoi(std::string(first.begin(), first.end()).c_str());
-  } catch (const std::exception&) {
-    lost = 0;  // the store ended with rank 0
+        store->compareSet(kLost, {}, std::vector<std::uint8_t>(text.begin(), text.end()));
+    return std::atoi(std::string(first.begin(), first.end()).c_str());
+  });
+  std::future<int> answer = report.get_future();
+  std::thread(std::move(report)).detach();
+  int lost = 0;  // unless its store answers
+  try {
+    if (answer.wait_for(kReportLimit) == std::future_status::ready) lost = answer.get();
+  } catch (const std::exception&) {  // the store ended with rank 0
   }
   gloo_.reset();  // the peers of this rank notice it at once, and find its report
   if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);

@@ -59,7 +59,7 @@ TEST(Evaluate, MeasuresWhatHappened) {
 TEST(Evaluate, CountsTheOutcomesOfEachDevice) {
   LocalEnvironment environment(TinyFarm(), {3, 0, false, 1});
   Scripted policy;
-  std::vector<DeviceOutcome> devices;
+  std::vector<DeviceTally> devices;
   const AccountsOf look = [&](std::int32_t farm) -> std::optional<Accounts> {
     AddDevices(environment.batch().farm(farm).devices(), devices);
     return std::nullopt;
@@ -73,7 +73,7 @@ TEST(Evaluate, CountsTheOutcomesOfEachDevice) {
 }
 
 TEST(DeviceOutcomes, DistinguishAboardAndLeft) {
-  std::vector<DeviceOutcome> outcomes;
+  std::vector<DeviceTally> outcomes;
   std::vector<Device> devices(2);
   devices[0].status = DeviceStatus::kAboard;
   AddDevices(devices, outcomes);

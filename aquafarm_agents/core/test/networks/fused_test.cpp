@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
 #include "networks/networks.h"
 
@@ -118,6 +119,14 @@ TEST(FusedLstm, WithoutAGradientItHasTheSameValues) {
   EXPECT_TRUE(torch::equal(network.Forward(input, twin), values));
   EXPECT_TRUE(torch::equal(twin.first, state.first));
   EXPECT_TRUE(torch::equal(twin.second, state.second));
+}
+
+TEST(FusedLstm, AStateOfOtherRowsIsRefused) {
+  RecurrentNetwork network(kFeatures, kHidden, true);
+  DrawWeights(network, 4, 0);
+  RecurrentNetwork::State state{torch::zeros({1, kRows - 1, kHidden}),
+                                torch::zeros({1, kRows, kHidden})};
+  EXPECT_THROW(network.Forward(Noise({6, kRows, kFeatures}, 1), state), LogicError);
 }
 
 // What later steps of a loss do not read has no slope.

@@ -11,7 +11,7 @@
 namespace aquafarm::agents {
 
 /// How the episodes ended for one device.
-struct DeviceOutcome {
+struct DeviceTally {
   DeviceKind kind{};          ///< of the last episode
   std::int64_t episodes{};    ///< episodes in which the farm has this device
   std::int64_t delivered{};   ///< episodes that ended with it in a port
@@ -23,10 +23,10 @@ struct DeviceOutcome {
 };
 
 /// Adds the devices of a farm at the end of an episode. Outcomes are by device id.
-inline void AddDevices(const std::vector<Device>& devices, std::vector<DeviceOutcome>& outcomes) {
+inline void AddDevices(const std::vector<Device>& devices, std::vector<DeviceTally>& outcomes) {
   if (outcomes.size() < devices.size()) outcomes.resize(devices.size());
   for (std::size_t id = 0; id < devices.size(); ++id) {
-    DeviceOutcome& one = outcomes[id];
+    DeviceTally& one = outcomes[id];
     one.kind = devices[id].kind;
     ++one.episodes;
     if (devices[id].status == DeviceStatus::kAboard) ++one.aboard;

@@ -28,17 +28,18 @@
 #include "ranch/ranch_storm.h"
 #include "ranch/ranch_text.h"
 #include "scenario/domains.h"
+#include "scenario/yaml_writer.h"
 
 namespace aquafarm {
 namespace {
 
-using internal::CellText;
 using internal::FileName;
 using internal::Format;
 using internal::FormatTime;
 using internal::OneLine;
 using internal::Short;
 using internal::Text;
+using internal::YamlWriter;
 
 // Collects the parts of the file's text.
 class Builder {
@@ -70,19 +71,27 @@ class Builder {
     SayNotices();
     plan_.step_limit = StepLimit();
     Write();
-    if (!request_.archive.files.empty()) SelectStorms();
-    if (IsForNetworks()) Write();
-    if (!request_.value.empty()) ValueDevices();
+    if (CompleteFromDraft()) Write();
     return std::move(ranch_);
   }
 
  private:
-  // Replaces the archives in the written text by the storms in reach, which its reader selected.
+  // Decides what depends on the scenario as written so far: the storms of an archive in reach, the
+  // view, and the values of devices. Returns whether the text changes.
+  bool CompleteFromDraft() {
+    const bool storms = !request_.archive.files.empty();
+    if (storms) SelectStorms();
+    plan_.waterways = IsForNetworks();
+    const bool values = !request_.value.empty();
+    if (values) ValueDevices();
+    return storms || plan_.waterways || values;
+  }
+
+  // Replaces the archives in the text by the storms in reach, which the reader selected.
   void SelectStorms() {
     const StormsSpec& storms = *ranch_.scenario.disasters.front().storms;
     plan_.archive = storms.tracks;
     Say(internal::ArchiveLine(request_.archive.files, storms));
-    Write();
   }
 
   void Write() {
@@ -103,7 +112,6 @@ class Builder {
     } catch (const InputError&) {
       return false;  // the farm is too large for distances by water
     }
-    plan_.waterways = true;
     const std::string many = states == 0 ? "more than 268435456" : std::to_string(states);
     Say("states: " + many + ", many for a table; features give networks the routes by water");
     return true;
@@ -451,11 +459,10 @@ class Builder {
       const float worth = value_(device.cell.y, device.cell.x);
       if (!(worth >= 0.0F && worth <= 10000.0F)) {
         throw InputError("value: got " + Format(worth) + " at the device at " +
-                         CellText(device.cell) + ", expected a number in [0, 10000]");
+                         YamlWriter::Value(device.cell) + ", expected a number in [0, 10000]");
       }
       plan_.sites.push_back({device.cell, device.kind, worth, false});
     }
-    Write();
   }
 
   const RanchRequest& request_;

@@ -9,16 +9,18 @@
 #include "aquafarm/scenario/damage_defaults.h"
 #include "base/text.h"
 #include "base/time.h"
+#include "scenario/yaml_writer.h"
 
 namespace aquafarm::internal {
 namespace {
 
-std::string InQuotes(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : OneLine(text))
-    quoted += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
-  return quoted + "\"";
+// Values are written as in the text of every scenario (ToYaml).
+template <typename T>
+std::string Value(const T& value) {
+  return YamlWriter::Value(value);
 }
+
+std::string InQuotes(const std::string& text) { return Value(OneLine(text)); }
 
 class Writer {
  public:
@@ -113,19 +115,12 @@ class Writer {
         const float factor =
             kRealDamage[static_cast<std::size_t>(device)][static_cast<std::size_t>(disaster)];
         if (factor == 1.0F) continue;
-        factors += (factors.empty() ? "{" : ", ") +
-                   std::string(ToString(static_cast<DisasterKind>(disaster))) + ": " +
-                   Format(factor);
+        factors += (factors.empty() ? "{" : ", ") + Value(static_cast<DisasterKind>(disaster)) +
+                   ": " + Format(factor);
       }
       if (factors.empty()) continue;
-      Line("    " + std::string(ToString(static_cast<DeviceKind>(device))) + ": " + factors + "}");
+      Line("    " + Value(static_cast<DeviceKind>(device)) + ": " + factors + "}");
     }
-  }
-
-  static std::string CellList(const std::vector<Cell>& cells) {
-    std::string text;
-    for (const Cell cell : cells) text += (text.empty() ? "[" : ", ") + CellText(cell);
-    return text + "]";
   }
 
   void WriteLayout() {
@@ -137,64 +132,53 @@ class Writer {
                 block.south_west.y, block.width, block.height));
     }
     Line(plan_.terrain.rocks.empty() ? "  rocks: {count: [0, 0]}"
-                                     : "  rocks: {cells: " + CellList(plan_.terrain.rocks) + "}");
+                                     : "  rocks: {cells: " + Value(plan_.terrain.rocks) + "}");
     Line(plan_.ports.empty() ? Text("  ports: {count: %d}", request_.ports)
-                             : "  ports: {cells: " + CellList(plan_.ports) + "}");
+                             : "  ports: {cells: " + Value(plan_.ports) + "}");
     WriteDevices();
   }
 
   void WriteDevices() {
     if (plan_.sites.empty()) {
-      Line("  devices: {placement: " + std::string(ToString(request_.placement)) +
+      Line("  devices: {placement: " + Value(request_.placement) +
            Text(", count: %d}", request_.devices));
       return;
     }
     Line("  devices:\n    placement: explicit\n    sites:");
     for (const DeviceSite& site : plan_.sites) {
-      Line("      - {cell: " + CellText(site.cell) + ", kind: " + std::string(ToString(site.kind)) +
+      Line("      - {cell: " + Value(site.cell) + ", kind: " + Value(site.kind) +
            (site.value ? ", value: " + Format(*site.value) : "") + "}");
     }
   }
 
-  static std::string Numbers(const std::vector<float>& values) {
-    std::string text;
-    for (const float value : values) text += (text.empty() ? "[" : ", ") + Format(value);
-    return text + "]";
-  }
-
   void WritePreset(const DisasterSpec& disaster) {
-    Line("  - kind: " + std::string(ToString(disaster.kind)));
-    Line(Text("    grade: %d\n    radii: ", disaster.grade) + Numbers(disaster.radii) +
-         "\n    risks: " + Numbers(disaster.risks));
+    Line("  - kind: " + Value(disaster.kind));
+    Line(Text("    grade: %d\n    radii: ", disaster.grade) + Value(disaster.radii) +
+         "\n    risks: " + Value(disaster.risks));
     Line("    speed: " + Format(disaster.speed) +
          Text("\n    heading_deg: %d", disaster.heading_deg.value_or(0)) +
          "\n    turn_probability: 0\n    radius_growth: " + Format(disaster.radius_growth));
-    Line("    border: " + std::string(ToString(disaster.border)) +
-         Text("\n    duration: %d", disaster.duration));
+    Line("    border: " + Value(disaster.border) + Text("\n    duration: %d", disaster.duration));
   }
 
   // Risks of the rings for grades 1 to 4; with fewer rings, those of the outer ones.
   static std::string RiskTable(std::size_t rings) {
-    std::string rows;
+    std::vector<std::vector<float>> rows;
     for (const std::vector<float>& row : DefaultGradeRisks()) {
-      rows += (rows.empty() ? "[" : ", ") +
-              Numbers({row.end() - static_cast<std::ptrdiff_t>(rings), row.end()});
+      rows.emplace_back(row.end() - static_cast<std::ptrdiff_t>(rings), row.end());
     }
-    return rows + "]";
+    return Value(rows);
   }
 
   // Written with the storms in reach, so that the scenario needs no other file.
   void WriteArchive() {
     const ArchiveRequest& archive = request_.archive;
-    const auto range = [](Range<std::int32_t> years) {
-      return Text("[%d, %d]", years.min, years.max);
-    };
     Line("  - kind: typhoon");
     Line("    grade_risks: " + RiskTable(kMaxStormRings) +
          "  # grades 1 to 4, rings of 64, 50, 34 kt");
     Line(Text("    duration: %d\n    storms:", plan_.archive_steps));
-    Line("      years: " + range(archive.years));
-    Line("      evaluation_years: " + range(archive.evaluation_years.value_or(
+    Line("      years: " + Value(archive.years));
+    Line("      evaluation_years: " + Value(archive.evaluation_years.value_or(
                                           Range<std::int32_t>{archive.years.max + 1, kLastYear})));
     Line("      within_km: " + Format(archive.within_km));
     Line("      approach_h: 24");
@@ -202,11 +186,11 @@ class Writer {
         "      perturbation: {along_km: 50, across_km: 50, start_h: 6, intensity: 0.1, size: "
         "0.35}");
     if (plan_.archive.empty()) {
-      std::string files;
+      std::vector<std::string> files;
       for (const std::string& file : archive.files) {
-        files += (files.empty() ? "" : ", ") + InQuotes(std::filesystem::absolute(file).string());
+        files.push_back(OneLine(std::filesystem::absolute(file).string()));
       }
-      return Line("      archive: [" + files + "]");
+      return Line("      archive: " + Value(files));
     }
     Line("      tracks: |");
     std::string_view rest = plan_.archive;
@@ -281,8 +265,6 @@ std::string WriteRanch(const RanchRequest& request, const RanchPlan& plan,
                        const std::vector<std::string>& decided) {
   return Writer(request, plan, decided).Write();
 }
-
-std::string CellText(Cell cell) { return Text("[%d, %d]", cell.x, cell.y); }
 
 std::string FileName(const std::string& path) {
   return std::filesystem::path(path).filename().string();

@@ -57,7 +57,5 @@ std::string FileName(const std::string& path);
 std::string OneLine(std::string text);
 /// Formats a number with at most `digits` decimals.
 std::string Short(double value, int digits);
-/// Returns "[2, 3]".
-std::string CellText(Cell cell);
 
 }  // namespace aquafarm::internal

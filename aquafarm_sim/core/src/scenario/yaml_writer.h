@@ -54,10 +54,7 @@ class YamlWriter {
     depth_ -= 4;
   }
 
- private:
-  void Line(const char* key, const std::string& value);
-  void Block(const char* key, const std::string& lines);
-
+  /// Returns the text of a value.
   static std::string Value(float value) { return std::isnan(value) ? ".nan" : Format(value); }
   static std::string Value(double value) { return Format(value); }
   static std::string Value(std::int32_t value) { return Format(value); }
@@ -87,6 +84,10 @@ class YamlWriter {
     for (const T& value : values) text += (text.empty() ? "[" : ", ") + Value(value);
     return text.empty() ? "[]" : text + "]";
   }
+
+ private:
+  void Line(const char* key, const std::string& value);
+  void Block(const char* key, const std::string& lines);
 
   std::string text_;
   std::size_t depth_{0};

@@ -8,14 +8,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "aquafarm/agents/learning/replay.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/base/check.h"
-#include "dqn/repetition_penalty.h"
-#include "networks/deep_policy.h"
-#include "networks/replay_sampler.h"
+#include "dqn/q_learner.h"
 #include "networks/row_network.h"
-#include "networks/value_optimizer.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -118,39 +114,40 @@ struct Batch {
 };
 
 template <typename Scalar>
-class DqnLearner final : public Learner {
+class DqnLearner final : public QLearner<Scalar, QNetwork> {
  public:
   DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
              std::string resolved);
 
   std::uint8_t encodings() const override { return EncodingOf(options_.network); }
-  std::string options() const override { return resolved_; }
-  void Step(const StepResults& results, double progress,
-            std::vector<std::uint8_t>& actions) override;
-  LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
   std::unique_ptr<Policy> GreedyPolicy() const override {
     return std::make_unique<GreedyDqnPolicy<Scalar>>(spec_, options_,
                                                      optimizer_.acting().ToVector());
   }
-  void SavePolicy(Checkpoint& checkpoint) const override {
-    checkpoint.SetArray("weights", optimizer_.acting().ToVector());
-  }
-  void Save(Checkpoint& checkpoint) const override;
-  void Load(const Checkpoint& checkpoint) override;
 
  private:
+  using Base = QLearner<Scalar, QNetwork>;
+  using Base::device_;
+  using Base::online_;
+  using Base::optimizer_;
+  using Base::options_;
+  using Base::progress_;
+  using Base::replay_;
+  using Base::rng_;
+  using Base::sampler_;
+  using Base::seed_;
+  using Base::spec_;
+  using Base::target_;
+  using Base::ToDevice;
+
   std::size_t size() const { return static_cast<std::size_t>(options_.batch_size); }
   std::size_t group() const { return options_.joint ? static_cast<std::size_t>(spec_.agents) : 1; }
   std::size_t rows() const { return size() * group(); }
   torch::Tensor ToInput(const Scalar* rows, std::size_t count) const {
     return ObservationTraits<Scalar>::ToInput(rows, WithCount(count, shape_), device_);
   }
-  template <typename T>
-  torch::Tensor ToDevice(std::vector<T>& values, std::vector<std::int64_t> shape) const {
-    return torch::from_blob(values.data(), shape, torch::CppTypeToScalarType<T>::value).to(device_);
-  }
-  void Choose(const StepResults& results, std::vector<std::uint8_t>& actions);
-  void Update();
+  torch::Tensor ActingValues(const StepResults& results) override;
+  void Update() override;
   void Draw();
   void DrawAlone(std::size_t i, const TransitionIndex& moment);
   void DrawJoint(std::size_t i, const TransitionIndex& moment);
@@ -159,23 +156,8 @@ class DqnLearner final : public Learner {
   torch::Tensor Targets(const torch::Tensor& from, const torch::Tensor& actions);
   void Reprioritise(const torch::Tensor& errors);
 
-  const EnvironmentSpec spec_;
-  const std::uint64_t seed_;
-  const DeepOptions options_;
-  const std::string resolved_;
-  const torch::Device device_;
   const std::vector<std::int64_t> shape_;
   const std::size_t observation_size_;
-  std::shared_ptr<QNetwork> online_;
-  std::shared_ptr<QNetwork> target_;
-  std::shared_ptr<QNetwork> acting_;  // online_, or a moving average of its weights
-  ValueOptimizer optimizer_;
-  Explorer explorer_;
-  RepetitionPenalty repetitions_;
-  RandomStream rng_;
-  Replay<Scalar> replay_;
-  ReplaySampler<Scalar> sampler_;
-  double progress_{};
   Batch<Scalar> batch_;
   std::vector<float> team_rewards_;  // scratch [agents]
 };
@@ -183,54 +165,22 @@ class DqnLearner final : public Learner {
 template <typename Scalar>
 DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
                                const DeepOptions& options, std::string resolved)
-    : spec_(spec),
-      seed_(seed),
-      options_(options),
-      resolved_(std::move(resolved)),
-      device_(FindDevice(options.device)),
+    : Base(spec, seed, options, std::move(resolved),
+           [&] { return MakeNetwork(spec, options, seed); },
+           {ElementCount(ObservationTraits<Scalar>::Shape(spec)), 0,
+            static_cast<std::size_t>(options.n_step),
+            options.joint ? static_cast<std::size_t>(spec.agents) : 1}),
       shape_(ObservationTraits<Scalar>::Shape(spec)),
       observation_size_(ElementCount(shape_)),
-      online_(MakeNetwork(spec, options, seed)),
-      target_(MakeNetwork(spec, options, seed)),
-      acting_(options.ema_rate > 0.0 ? MakeNetwork(spec, options, seed) : online_),
-      optimizer_(options, *online_, *target_, *acting_, device_),
-      explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
-      repetitions_(spec, options.repetition_penalty * options.reward_scale),
-      rng_({seed, 0, RngStream::kLearner, 1}),
-      replay_({static_cast<std::size_t>(options.buffer_size), EntryCount(spec), spec.agents,
-               observation_size_, 0}),
-      sampler_(replay_, options, static_cast<std::size_t>(options.n_step), group()),
       batch_(size(), rows(), observation_size_),
       team_rewards_(static_cast<std::size_t>(spec.agents)) {}
 
 template <typename Scalar>
-void DqnLearner<Scalar>::Step(const StepResults& results, double progress,
-                              std::vector<std::uint8_t>& actions) {
-  progress_ = progress;
-  replay_.Add(results, ObservationTraits<Scalar>::Of(results));
-  sampler_.Add();
-  optimizer_.Count(FarmSteps(results), progress);
-  while (optimizer_.TakeDue()) Update();
-  Choose(results, actions);
-  replay_.SetActions(actions);
-}
-
-template <typename Scalar>
-void DqnLearner<Scalar>::Choose(const StepResults& results, std::vector<std::uint8_t>& actions) {
-  explorer_.SetProgress(progress_);
-  repetitions_.Begin(results);
-  actions.resize(results.legal.size());
+torch::Tensor DqnLearner<Scalar>::ActingValues(const StepResults& results) {
   const torch::InferenceMode inference;
-  const torch::Tensor values =
-      acting_->Forward(ToInput(ObservationTraits<Scalar>::Of(results), actions.size())).cpu();
-  const float* row = values.template data_ptr<float>();
-  const Scalar* seen = ObservationTraits<Scalar>::Of(results);
-  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += observation_size_) {
-    const ActionMask allowed = LegalMask(results.legal[i], seen, options_);
-    const float* const worth = repetitions_.Penalize(row, seen, i);
-    actions[i] = explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
-    repetitions_.Add(actions[i], i);
-  }
+  return this->acting_
+      ->Forward(ToInput(ObservationTraits<Scalar>::Of(results), results.legal.size()))
+      .cpu();
 }
 
 template <typename Scalar>
@@ -325,7 +275,6 @@ torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& from, const torch
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Update() {
-  if (!sampler_.IsReady()) return;
   const BatchOrigin origin{seed_, rng_.position()};
   Draw();
   const auto count = static_cast<std::int64_t>(rows());
@@ -344,28 +293,6 @@ void DqnLearner<Scalar>::Reprioritise(const torch::Tensor& errors) {
   const torch::Tensor values = errors.cpu();
   const float* error = values.template data_ptr<float>();
   for (std::size_t i = 0; i < size(); ++i) sampler_.UpdatePriority(batch_.drawn[i], error[i]);
-}
-
-template <typename Scalar>
-void DqnLearner<Scalar>::Save(Checkpoint& checkpoint) const {
-  optimizer_.Save(checkpoint);
-  replay_.Save(checkpoint);
-  explorer_.Save(checkpoint);
-  repetitions_.Save(checkpoint);
-  checkpoint.SetArray("chance", std::vector<std::uint64_t>{rng_.position()});
-  sampler_.Save(checkpoint);
-}
-
-template <typename Scalar>
-void DqnLearner<Scalar>::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> rng;
-  checkpoint.GetArray("chance", 1, rng);
-  optimizer_.Load(checkpoint);
-  replay_.Load(checkpoint);
-  sampler_.Load(checkpoint);
-  explorer_.Load(checkpoint);
-  repetitions_.Load(checkpoint);
-  rng_.Seek(rng[0]);
 }
 
 DeepOptions Parse(const std::string& text, std::string& resolved) {

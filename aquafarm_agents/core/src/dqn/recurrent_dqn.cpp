@@ -4,14 +4,10 @@
 #include <utility>
 
 #include "aquafarm/agents/dqn/dqn.h"
-#include "aquafarm/agents/learning/replay.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/base/check.h"
-#include "dqn/repetition_penalty.h"
-#include "networks/deep_policy.h"
-#include "networks/replay_sampler.h"
+#include "dqn/q_learner.h"
 #include "networks/sequence_batch.h"
-#include "networks/value_optimizer.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -121,32 +117,24 @@ class RecurrentPolicy final : public Policy {
   Carry carry_;
 };
 
-class RecurrentDqnLearner final : public Learner {
+class RecurrentDqnLearner final : public QLearner<float, RecurrentNetwork> {
  public:
   RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
                       std::string resolved);
 
   std::uint8_t encodings() const override { return kFeaturesBit; }
-  std::string options() const override { return resolved_; }
-  void Step(const StepResults& results, double progress,
-            std::vector<std::uint8_t>& actions) override;
-  LearnerStatus status() const override { return optimizer_.status(explorer_.level()); }
   std::unique_ptr<Policy> GreedyPolicy() const override {
     return std::make_unique<RecurrentPolicy>(spec_, options_, optimizer_.acting().ToVector());
   }
-  void SavePolicy(Checkpoint& checkpoint) const override {
-    checkpoint.SetArray("weights", optimizer_.acting().ToVector());
-  }
-  void Save(Checkpoint& checkpoint) const override;
-  void Load(const Checkpoint& checkpoint) override;
 
  private:
   std::size_t features() const { return static_cast<std::size_t>(spec_.feature_count); }
-  template <typename T>
-  torch::Tensor ToDevice(std::vector<T>& values, std::vector<std::int64_t> shape) const {
-    return torch::from_blob(values.data(), shape, torch::CppTypeToScalarType<T>::value).to(device_);
-  }
-  void Update();
+  const float* RecurrentStates(const StepResults& results) override;
+  bool CanSample() const override;
+  torch::Tensor ActingValues(const StepResults& results) override;
+  void SaveOwn(Checkpoint& checkpoint) const override;
+  void LoadOwn(const Checkpoint& checkpoint) override;
+  void Update() override;
   void Draw();
   RecurrentNetwork::State WarmState(RecurrentNetwork& network);
   torch::Tensor ValuesAlong(RecurrentNetwork& network, const torch::Tensor& observations);
@@ -154,68 +142,32 @@ class RecurrentDqnLearner final : public Learner {
                         const torch::Tensor& values);
   void Reprioritise(const torch::Tensor& errors);
 
-  const EnvironmentSpec spec_;
-  const std::uint64_t seed_;
-  const DeepOptions options_;
-  const std::string resolved_;
-  const torch::Device device_;
-  std::shared_ptr<RecurrentNetwork> online_;
-  std::shared_ptr<RecurrentNetwork> target_;
-  std::shared_ptr<RecurrentNetwork> acting_;  // online_, or a moving average of its weights
-  ValueOptimizer optimizer_;
-  Explorer explorer_;
-  RepetitionPenalty repetitions_;
-  RandomStream rng_;
   Carry carry_;
-  Replay<float> replay_;
-  ReplaySampler<float> sampler_;
-  double progress_{};
   SequenceBatch batch_;
 };
 
 RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
                                          const DeepOptions& options, std::string resolved)
-    : spec_(spec),
-      seed_(seed),
-      options_(options),
-      resolved_(std::move(resolved)),
-      device_(FindDevice(options.device)),
-      online_(MakeRecurrent(spec, options, seed)),
-      target_(MakeRecurrent(spec, options, seed)),
-      acting_(options.ema_rate > 0.0 ? MakeRecurrent(spec, options, seed) : online_),
-      optimizer_(options, *online_, *target_, *acting_, device_),
-      explorer_(options.exploration, seed, EntryCount(spec), options.reward_scale),
-      repetitions_(spec, options.repetition_penalty * options.reward_scale),
-      rng_({seed, 0, RngStream::kLearner, 1}),
+    : QLearner(spec, seed, options, std::move(resolved),
+               [&] { return MakeRecurrent(spec, options, seed); },
+               {static_cast<std::size_t>(spec.feature_count),
+                2 * static_cast<std::size_t>(options.hidden_size), 1, 1}),
       carry_(EntryCount(spec), options.hidden_size),
-      replay_({static_cast<std::size_t>(options.buffer_size), EntryCount(spec), spec.agents,
-               features(), carry_.size_of_one()}),
-      sampler_(replay_, options, 1),
       batch_(options, features(), carry_.size_of_one()) {}
 
-void RecurrentDqnLearner::Step(const StepResults& results, double progress,
-                               std::vector<std::uint8_t>& actions) {
+const float* RecurrentDqnLearner::RecurrentStates(const StepResults& results) {
   carry_.ClearStarted(results, spec_.agents);
-  progress_ = progress;
-  replay_.Add(results, results.features.data(), carry_.values().data());
-  sampler_.Add();
-  optimizer_.Count(FarmSteps(results), progress);
-  while (optimizer_.TakeDue()) Update();
+  return carry_.values().data();
+}
 
-  explorer_.SetProgress(progress);
-  repetitions_.Begin(results);
-  actions.resize(results.legal.size());
+torch::Tensor RecurrentDqnLearner::ActingValues(const StepResults& results) {
   const torch::NoGradGuard no_grad;
-  const torch::Tensor values = StepNetwork(*acting_, results, spec_.feature_count, carry_, device_);
-  const float* row = values.data_ptr<float>();
-  const float* seen = results.features.data();
-  for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features()) {
-    const ActionMask allowed = LegalMask(results.legal[i], seen, options_);
-    const float* const worth = repetitions_.Penalize(row, seen, i);
-    actions[i] = explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
-    repetitions_.Add(actions[i], i);
-  }
-  replay_.SetActions(actions);
+  return StepNetwork(*acting_, results, spec_.feature_count, carry_, device_);
+}
+
+bool RecurrentDqnLearner::CanSample() const {
+  return replay_.size() >=
+         2 + static_cast<std::size_t>(options_.burn_in + options_.sequence_length);
 }
 
 void RecurrentDqnLearner::Draw() {
@@ -281,8 +233,6 @@ torch::Tensor RecurrentDqnLearner::Targets(const torch::Tensor& observations,
 }
 
 void RecurrentDqnLearner::Update() {
-  const auto longest = static_cast<std::size_t>(options_.burn_in + options_.sequence_length);
-  if (replay_.size() < 2 + longest || !sampler_.IsReady()) return;
   const BatchOrigin origin{seed_, rng_.position()};
   Draw();
   const auto count = static_cast<std::int64_t>(batch_.size());
@@ -306,27 +256,15 @@ void RecurrentDqnLearner::Reprioritise(const torch::Tensor& errors) {
   }
 }
 
-void RecurrentDqnLearner::Save(Checkpoint& checkpoint) const {
-  optimizer_.Save(checkpoint);
-  replay_.Save(checkpoint);
-  sampler_.Save(checkpoint);
-  explorer_.Save(checkpoint);
-  repetitions_.Save(checkpoint);
-  checkpoint.SetArray("chance", std::vector<std::uint64_t>{rng_.position()});
+void RecurrentDqnLearner::SaveOwn(Checkpoint& checkpoint) const {
+  QLearner::SaveOwn(checkpoint);
   checkpoint.SetArray("carry", carry_.values());
 }
 
-void RecurrentDqnLearner::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> rng;
+void RecurrentDqnLearner::LoadOwn(const Checkpoint& checkpoint) {
   std::vector<float> carry;
-  checkpoint.GetArray("chance", 1, rng);
   checkpoint.GetArray("carry", carry_.values().size(), carry);
-  optimizer_.Load(checkpoint);
-  replay_.Load(checkpoint);
-  sampler_.Load(checkpoint);
-  explorer_.Load(checkpoint);
-  repetitions_.Load(checkpoint);
-  rng_.Seek(rng[0]);
+  QLearner::LoadOwn(checkpoint);
   carry_.values() = std::move(carry);
 }
 

@@ -2,7 +2,8 @@
 #pragma once
 
 // Numbers of a learner as a checkpoint's section of named numbers. One list of fields serves to
-// save and to load them: fields(visit) calls visit(name, number) for each.
+// save and to load them: fields(visit) calls visit(name, number) for each. A random stream is saved
+// as the number of its draws.
 
 #include <cstdint>
 #include <map>
@@ -13,17 +14,30 @@
 
 #include "aquafarm/agents/learning/checkpoint.h"
 #include "aquafarm/base/check.h"
+#include "aquafarm/base/rng.h"
 
 namespace aquafarm::agents {
+
+template <typename Value>
+Checkpoint::Number SavedNumber(const Value& value) {
+  using Saved = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
+  return static_cast<Saved>(value);
+}
+inline Checkpoint::Number SavedNumber(const RandomStream& stream) { return stream.position(); }
+
+template <typename Number, typename Value>
+void LoadNumber(Number number, Value& value) {
+  value = static_cast<Value>(number);
+}
+template <typename Number>
+void LoadNumber(Number number, RandomStream& stream) {
+  stream.Seek(static_cast<std::uint64_t>(number));
+}
 
 template <typename Fields>
 void SaveNumbers(Checkpoint& checkpoint, const std::string& section, const Fields& fields) {
   std::map<std::string, Checkpoint::Number> numbers;
-  fields([&numbers](const char* name, const auto& value) {
-    using Value = std::decay_t<decltype(value)>;
-    using Saved = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
-    numbers[name] = static_cast<Saved>(value);
-  });
+  fields([&numbers](const char* name, const auto& value) { numbers[name] = SavedNumber(value); });
   checkpoint.SetNumbers(section, numbers);
 }
 
@@ -38,9 +52,7 @@ void LoadNumbers(const Checkpoint& checkpoint, const std::string& section,
     std::vector<Positional> values;
     checkpoint.GetArray(positional, count, values);
     auto next = values.begin();
-    fields([&next](const char*, auto& value) {
-      value = static_cast<std::decay_t<decltype(value)>>(*next++);
-    });
+    fields([&next](const char*, auto& value) { LoadNumber(*next++, value); });
     return;
   }
   const std::map<std::string, Checkpoint::Number> numbers = checkpoint.GetNumbers(section);
@@ -50,8 +62,7 @@ void LoadNumbers(const Checkpoint& checkpoint, const std::string& section,
       throw InputError("checkpoint: section '" + section + "': has no number '" + name +
                        "'; use another checkpoint");
     }
-    std::visit([&](auto number) { value = static_cast<std::decay_t<decltype(value)>>(number); },
-               found->second);
+    std::visit([&](auto number) { LoadNumber(number, value); }, found->second);
   });
 }
 

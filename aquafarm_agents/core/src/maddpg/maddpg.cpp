@@ -6,21 +6,19 @@
 #include <numeric>
 #include <utility>
 
-#include "aquafarm/agents/learning/replay.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
 #include "aquafarm/base/check.h"
+#include "learning/saved_numbers.h"
 #include "maddpg/maddpg_networks.h"
 #include "maddpg/maddpg_policy.h"
-#include "networks/deep_policy.h"
 #include "networks/flat_adam.h"
-#include "networks/replay_sampler.h"
+#include "networks/replay_learner.h"
 
 namespace aquafarm::agents {
 namespace {
 
 constexpr float kErrorShare = 0.01F;  // weight of a new mean squared error in the moving average
 constexpr std::uint32_t kActorStream = 0;
-constexpr std::uint32_t kBatchStream = 1;
 constexpr std::uint32_t kCriticStream = 2;
 constexpr std::uint32_t kActingStream = 3;
 
@@ -48,15 +46,26 @@ struct Window {
   std::vector<float> present;       // [B, S] 1 if in play at the last step
 };
 
-class MaddpgLearner final : public Learner {
+ReplayLearnerOptions SharedOptions(const EnvironmentSpec& spec, const MaddpgOptions& options) {
+  ReplayLearnerOptions shared;
+  shared.exploration = options.exploration;
+  shared.replay = {static_cast<std::size_t>(options.buffer_size), EntryCount(spec), spec.agents,
+                   static_cast<std::size_t>(spec.feature_count),
+                   options.recurrent ? 2 * static_cast<std::size_t>(options.hidden_size) : 0};
+  shared.sampling.priority_exponent = options.priority_exponent;
+  shared.sampling.importance_exponent = options.importance_exponent;
+  shared.sampling.batch_size = options.batch_size;
+  shared.steps = static_cast<std::size_t>(options.n_step);
+  shared.group = static_cast<std::size_t>(spec.agents);
+  return shared;
+}
+
+class MaddpgLearner final : public ReplayLearner<float> {
  public:
   MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed, const MaddpgOptions& options,
                 std::string resolved);
 
   std::uint8_t encodings() const override { return kFeaturesBit; }
-  std::string options() const override { return resolved_; }
-  void Step(const StepResults& results, double progress,
-            std::vector<std::uint8_t>& actions) override;
   LearnerStatus status() const override {
     return {loss_, static_cast<float>(explorer_.level()),
             static_cast<float>(options_.actor_rate.At(progress_))};
@@ -67,8 +76,6 @@ class MaddpgLearner final : public Learner {
   void SavePolicy(Checkpoint& checkpoint) const override {
     checkpoint.SetArray("weights", actor_.parameters().ToVector());
   }
-  void Save(Checkpoint& checkpoint) const override;
-  void Load(const Checkpoint& checkpoint) override;
 
  private:
   std::size_t batch() const { return static_cast<std::size_t>(options_.batch_size); }
@@ -76,12 +83,19 @@ class MaddpgLearner final : public Learner {
   std::size_t features() const { return static_cast<std::size_t>(spec_.feature_count); }
   std::size_t window() const { return static_cast<std::size_t>(options_.window); }
   std::size_t carry_size() const { return static_cast<std::size_t>(actors_.carry_size()); }
-  torch::Tensor ToDevice(std::vector<float>& numbers, std::vector<std::int64_t> shape) const {
-    return torch::from_blob(numbers.data(), shape, torch::kFloat).to(device_);
-  }
+  template <typename Self, typename Visit>
+  static void VisitCounters(Self& self, const Visit& visit);  // saved as integers
+  template <typename Self, typename Visit>
+  static void VisitNumbers(Self& self, const Visit& visit);  // saved as floating-point numbers
   Window MakeWindow() const;
-  void Choose(const StepResults& results, std::vector<std::uint8_t>& actions);
-  void Update();
+  const float* RecurrentStates(const StepResults& results) override;
+  void CountSteps(std::uint64_t farm_steps) override;
+  bool TakeDue() override;
+  bool CanSample() const override;
+  void Choose(const StepResults& results, std::vector<std::uint8_t>& actions) override;
+  void Update() override;
+  void SaveOwn(Checkpoint& checkpoint) const override;
+  void LoadOwn(const Checkpoint& checkpoint) override;
   TransitionIndex DrawMoment(std::size_t i);
   void Draw();
   void Reprioritise(const torch::Tensor& errors);
@@ -94,11 +108,7 @@ class MaddpgLearner final : public Learner {
   void Check(bool is_finite, const char* what, std::uint64_t position) const;
   static void Follow(FlatParameters& target, const FlatParameters& online, double rate);
 
-  const EnvironmentSpec spec_;
-  const std::uint64_t seed_;
   const MaddpgOptions options_;
-  const std::string resolved_;
-  const torch::Device device_;
   ActorTeam actors_;
   ActorTeam target_actors_;
   JointCritic critic_;
@@ -107,13 +117,8 @@ class MaddpgLearner final : public Learner {
   FlatAdam judge_;
   FlatParameters actor_target_;
   FlatParameters judge_target_;
-  Explorer explorer_;
-  RandomStream rng_;     // for batches and their noise
   RandomStream acting_;  // for exploration
   std::vector<float> carry_;
-  Replay<float> replay_;
-  ReplaySampler<float> sampler_;
-  double progress_{};
   double due_{};
   std::uint64_t steps_{};
   std::uint64_t updates_{};
@@ -132,21 +137,11 @@ class MaddpgLearner final : public Learner {
   std::vector<float> agent_rewards_;  // scratch, [S]
 };
 
-DeepOptions SamplingOf(const MaddpgOptions& options) {
-  DeepOptions sampling;
-  sampling.priority_exponent = options.priority_exponent;
-  sampling.importance_exponent = options.importance_exponent;
-  sampling.batch_size = options.batch_size;
-  return sampling;
-}
-
 MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
                              const MaddpgOptions& options, std::string resolved)
-    : spec_(spec),
-      seed_(seed),
+    : ReplayLearner(spec, seed, std::move(resolved), FindDevice(options.device),
+                    SharedOptions(spec, options)),
       options_(options),
-      resolved_(std::move(resolved)),
-      device_(FindDevice(options.device)),
       actors_(spec, options),
       target_actors_(spec, options),
       critic_(spec, options.hidden_size),
@@ -155,13 +150,8 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       judge_((DrawWeights(critic_, seed, kCriticStream), critic_), device_),
       actor_target_(target_actors_, device_),
       judge_target_(target_critic_, device_),
-      explorer_(options.exploration, seed, EntryCount(spec)),
-      rng_({seed, 0, RngStream::kLearner, kBatchStream}),
       acting_({seed, 0, RngStream::kLearner, kActingStream}),
       carry_(EntryCount(spec) * carry_size()),
-      replay_({static_cast<std::size_t>(options.buffer_size), EntryCount(spec), spec.agents,
-               features(), carry_size()}),
-      sampler_(replay_, SamplingOf(options), static_cast<std::size_t>(options.n_step), agents()),
       loss_(std::nanf("")),
       from_(MakeWindow()),
       to_(MakeWindow()),
@@ -188,26 +178,30 @@ Window MaddpgLearner::MakeWindow() const {
   return made;
 }
 
-void MaddpgLearner::Step(const StepResults& results, double progress,
-                         std::vector<std::uint8_t>& actions) {
-  progress_ = progress;
+const float* MaddpgLearner::RecurrentStates(const StepResults& results) {
   ClearStarted(results, agents() * carry_size(), carry_);
-  replay_.Add(results, results.features.data(), carry_.data());
-  sampler_.Add();
-  const std::uint64_t steps = FarmSteps(results);
-  steps_ += steps;
+  return carry_.data();
+}
+
+void MaddpgLearner::CountSteps(std::uint64_t farm_steps) {
+  steps_ += farm_steps;
   if (steps_ > options_.learning_starts)
-    due_ += static_cast<double>(steps) / options_.train_interval;
-  for (; due_ >= 1.0; due_ -= 1.0) Update();
-  Choose(results, actions);
-  replay_.SetActions(actions);
+    due_ += static_cast<double>(farm_steps) / options_.train_interval;
+}
+
+bool MaddpgLearner::TakeDue() {
+  if (due_ < 1.0) return false;
+  due_ -= 1.0;
+  return true;
+}
+
+bool MaddpgLearner::CanSample() const {
+  return replay_.size() >= window() + static_cast<std::size_t>(options_.n_step) + 2;
 }
 
 // The argmax of logits with Gumbel noise is a sample of their softmax.
 void MaddpgLearner::Choose(const StepResults& results, std::vector<std::uint8_t>& actions) {
   const torch::NoGradGuard no_grad;
-  explorer_.SetProgress(progress_);
-  actions.resize(results.legal.size());
   const torch::Tensor logits = StepActors(actors_, results, spec_, carry_, device_);
   float* row = logits.data_ptr<float>();
   const float* seen = results.features.data();
@@ -331,10 +325,6 @@ torch::Tensor MaddpgLearner::GumbelNoise() {
 }
 
 void MaddpgLearner::Update() {
-  if (replay_.size() < window() + static_cast<std::size_t>(options_.n_step) + 2 ||
-      !sampler_.IsReady()) {
-    return;
-  }
   const std::uint64_t position = rng_.position();
   Draw();
   const torch::Tensor observations = Observations(from_)[options_.window - 1];
@@ -416,45 +406,48 @@ void MaddpgLearner::Follow(FlatParameters& target, const FlatParameters& online,
   target.values().lerp_(online.values(), rate);
 }
 
-void MaddpgLearner::Save(Checkpoint& checkpoint) const {
+template <typename Self, typename Visit>
+void MaddpgLearner::VisitCounters(Self& self, const Visit& visit) {
+  visit("rng", self.rng_);
+  visit("acting_rng", self.acting_);
+  visit("steps", self.steps_);
+  visit("updates", self.updates_);
+}
+
+template <typename Self, typename Visit>
+void MaddpgLearner::VisitNumbers(Self& self, const Visit& visit) {
+  visit("due", self.due_);
+  visit("loss", self.loss_);
+}
+
+void MaddpgLearner::SaveOwn(Checkpoint& checkpoint) const {
   actor_.Save(checkpoint);
   judge_.Save(checkpoint, "critic.");
   checkpoint.SetArray("target.actors", actor_target_.ToVector());
   checkpoint.SetArray("target.critic", judge_target_.ToVector());
-  replay_.Save(checkpoint);
-  sampler_.Save(checkpoint);
   checkpoint.SetArray("carry", carry_);
-  explorer_.Save(checkpoint);
-  checkpoint.SetArray(
-      "chance", std::vector<std::uint64_t>{rng_.position(), acting_.position(), steps_, updates_});
-  checkpoint.SetArray("numbers", std::vector<double>{due_, static_cast<double>(loss_)});
+  SaveNumbers(checkpoint, "maddpg.counters",
+              [this](const auto& visit) { VisitCounters(*this, visit); });
+  SaveNumbers(checkpoint, "maddpg.learning",
+              [this](const auto& visit) { VisitNumbers(*this, visit); });
 }
 
-void MaddpgLearner::Load(const Checkpoint& checkpoint) {
+void MaddpgLearner::LoadOwn(const Checkpoint& checkpoint) {
   std::vector<float> actors;
   std::vector<float> critic;
   std::vector<float> carry;
-  std::vector<std::uint64_t> rng;
-  std::vector<double> numbers;
   checkpoint.GetArray("target.actors", static_cast<std::size_t>(actor_target_.size()), actors);
   checkpoint.GetArray("target.critic", static_cast<std::size_t>(judge_target_.size()), critic);
   checkpoint.GetArray("carry", carry_.size(), carry);
-  checkpoint.GetArray("chance", 4, rng);
-  checkpoint.GetArray("numbers", 2, numbers);
-  explorer_.Load(checkpoint);
+  LoadNumbers<std::uint64_t>(checkpoint, "maddpg.counters", "chance",
+                             [this](const auto& visit) { VisitCounters(*this, visit); });
+  LoadNumbers<double>(checkpoint, "maddpg.learning", "numbers",
+                      [this](const auto& visit) { VisitNumbers(*this, visit); });
   actor_.Load(checkpoint);
   judge_.Load(checkpoint, "critic.");
-  replay_.Load(checkpoint);
-  sampler_.Load(checkpoint);
   actor_target_.FromVector(actors);
   judge_target_.FromVector(critic);
   carry_ = std::move(carry);
-  rng_.Seek(rng[0]);
-  acting_.Seek(rng[1]);
-  steps_ = rng[2];
-  updates_ = rng[3];
-  due_ = numbers[0];
-  loss_ = static_cast<float>(numbers[1]);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "aquafarm/base/check.h"
+#include "learning/saved_numbers.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -93,33 +94,34 @@ LearnerStatus ValueOptimizer::status(double exploration) const {
   return {loss_, static_cast<float>(exploration), static_cast<float>(learning_rate_)};
 }
 
+template <typename Self, typename Visit>
+void ValueOptimizer::VisitNumbers(Self& self, const Visit& visit) {
+  visit("due", self.due_);
+  visit("steps", self.steps_);
+  visit("updates", self.updates_);
+  visit("learning_rate", self.learning_rate_);
+  visit("loss", self.loss_);
+}
+
 void ValueOptimizer::Save(Checkpoint& checkpoint) const {
   online_.Save(checkpoint);
   checkpoint.SetArray("target_weights", target_.ToVector());
   if (average_) checkpoint.SetArray(kAverage, average_->ToVector());
-  checkpoint.SetArray(
-      "optimizer.numbers",
-      std::vector<double>{due_, static_cast<double>(steps_), static_cast<double>(updates_),
-                          learning_rate_, static_cast<double>(loss_)});
+  SaveNumbers(checkpoint, "optimizer", [this](const auto& visit) { VisitNumbers(*this, visit); });
 }
 
 void ValueOptimizer::Load(const Checkpoint& checkpoint) {
   std::vector<float> target;
   std::vector<float> average;
-  std::vector<double> numbers;
   checkpoint.GetArray("target_weights", static_cast<std::size_t>(target_.size()), target);
   if (average_) {
     checkpoint.GetArray(kAverage, static_cast<std::size_t>(target_.size()), average);
   }
-  checkpoint.GetArray("optimizer.numbers", 5, numbers);
+  LoadNumbers<double>(checkpoint, "optimizer", "optimizer.numbers",
+                      [this](const auto& visit) { VisitNumbers(*this, visit); });
   online_.Load(checkpoint);
   target_.FromVector(target);
   if (average_) average_->FromVector(average);
-  due_ = numbers[0];
-  steps_ = static_cast<std::uint64_t>(numbers[1]);
-  updates_ = static_cast<std::uint64_t>(numbers[2]);
-  learning_rate_ = numbers[3];
-  loss_ = static_cast<float>(numbers[4]);
 }
 
 }  // namespace aquafarm::agents

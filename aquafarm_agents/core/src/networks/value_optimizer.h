@@ -60,6 +60,8 @@ class ValueOptimizer {
 
  private:
   const FlatParameters& online() const { return online_.parameters(); }
+  template <typename Self, typename Visit>
+  static void VisitNumbers(Self& self, const Visit& visit);  // the saved numbers, by name
   [[noreturn]] void Fail(const std::string& what, const BatchOrigin& origin) const;
   void Measure(const torch::Tensor& predicted, const torch::Tensor& targets,
                const torch::Tensor& weights);

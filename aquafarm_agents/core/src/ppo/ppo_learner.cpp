@@ -7,6 +7,7 @@
 #include "aquafarm/agents/ppo/ppo.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/grid/step_fields.h"
+#include "learning/saved_numbers.h"
 #include "networks/farm_rows.h"
 #include "ppo/actor.h"
 #include "ppo/make_actor_critic.h"
@@ -111,6 +112,8 @@ struct Shard {
   void Finish(ActorCritic& network, const StepResults& results, const PpoOptions& options);
   void Save(Checkpoint& checkpoint) const;
   void Load(const Checkpoint& checkpoint);
+  template <typename Self, typename Visit>
+  static void VisitNumbers(Self& self, const Visit& visit);  // the saved numbers, by name
 
   Actor actor;
   Rollout rollout;
@@ -143,28 +146,29 @@ void Shard::Finish(ActorCritic& network, const StepResults& seen, const PpoOptio
                  static_cast<float>(options.gae_lambda));
 }
 
+template <typename Self, typename Visit>
+void Shard::VisitNumbers(Self& self, const Visit& visit) {
+  visit("order", self.order);
+  visit("farm_steps", self.farm_steps);
+}
+
 void Shard::Save(Checkpoint& checkpoint) const {
   Checkpoint own;
   rollout.Save(own);
   exploration.Save(own);
-  own.SetArray("ppo.rng", std::vector<std::uint64_t>{order.position(), farm_steps});
+  SaveNumbers(own, "ppo.progress", [this](const auto& visit) { VisitNumbers(*this, visit); });
   own.SetArray("ppo.state", actor.state());
-  for (auto& [name, bytes] : own.sections) checkpoint.sections[prefix + name] = std::move(bytes);
+  checkpoint.AddPart(prefix, std::move(own));
 }
 
 void Shard::Load(const Checkpoint& checkpoint) {
-  Checkpoint own;
-  for (const auto& [name, bytes] : checkpoint.sections) {
-    if (name.rfind(prefix, 0) == 0) own.sections[name.substr(prefix.size())] = bytes;
-  }
-  std::vector<std::uint64_t> rng;
+  const Checkpoint own = checkpoint.Part(prefix);
   std::vector<float> state;
-  own.GetArray("ppo.rng", 2, rng);
+  LoadNumbers<std::uint64_t>(own, "ppo.progress", "ppo.rng",
+                             [this](const auto& visit) { VisitNumbers(*this, visit); });
   own.GetArray("ppo.state", actor.state().size(), state);
   rollout.Load(own);
   exploration.Load(own);
-  order.Seek(rng[0]);
-  farm_steps = rng[1];
   actor.state() = std::move(state);
 }
 

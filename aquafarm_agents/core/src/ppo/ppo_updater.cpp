@@ -8,6 +8,7 @@
 
 #include "aquafarm/agents/learning/learner.h"
 #include "aquafarm/base/check.h"
+#include "learning/saved_numbers.h"
 #include "ppo/central_actor_critic.h"
 
 namespace aquafarm::agents {
@@ -248,22 +249,25 @@ void PpoUpdater::Gather(const Rollout& rollout, const std::uint32_t* sequences, 
   }
 }
 
+template <typename Self, typename Visit>
+void PpoUpdater::VisitNumbers(Self& self, const Visit& visit) {
+  visit("learning_rate", self.learning_rate_);
+  visit("value_error", self.value_error_);
+}
+
 void PpoUpdater::Save(Checkpoint& checkpoint) const {
   checkpoint.SetArray("weights", network_.weights());
   adam_.Save(checkpoint);
-  checkpoint.SetArray("ppo.numbers",
-                      std::vector<double>{learning_rate_, static_cast<double>(value_error_)});
+  SaveNumbers(checkpoint, "ppo.updater", [this](const auto& visit) { VisitNumbers(*this, visit); });
 }
 
 void PpoUpdater::Load(const Checkpoint& checkpoint) {
   std::vector<float> weights;
-  std::vector<double> numbers;
   checkpoint.GetArray("weights", network_.weights().size(), weights);
-  checkpoint.GetArray("ppo.numbers", 2, numbers);
+  LoadNumbers<double>(checkpoint, "ppo.updater", "ppo.numbers",
+                      [this](const auto& visit) { VisitNumbers(*this, visit); });
   adam_.Load(checkpoint);
   network_.weights() = std::move(weights);
-  learning_rate_ = numbers[0];
-  value_error_ = static_cast<float>(numbers[1]);
 }
 
 }  // namespace aquafarm::agents

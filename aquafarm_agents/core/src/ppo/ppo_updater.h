@@ -67,6 +67,8 @@ class PpoUpdater {
     std::size_t first{};
     std::size_t count{};
   };
+  template <typename Self, typename Visit>
+  static void VisitNumbers(Self& self, const Visit& visit);  // the saved numbers, by name
   void Collect(const Rollout& rollout, std::size_t shard);
   void Shuffle(std::size_t shard, RandomStream& rng);
   std::size_t CountSequences();

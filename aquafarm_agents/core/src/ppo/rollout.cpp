@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "aquafarm/base/check.h"
+#include "learning/saved_numbers.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -100,6 +101,12 @@ const float* Rollout::state(std::size_t slot) const {
   return states_.data() + block * shape_.state_size;
 }
 
+template <typename Self, typename Visit>
+void Rollout::VisitNumbers(Self& self, const Visit& visit) {
+  visit("steps", self.steps_);
+  visit("is_open", self.is_open_);
+}
+
 void Rollout::Save(Checkpoint& checkpoint) const {
   const std::size_t used = steps_ * shape_.entries;
   const auto save = [&](const char* name, const auto& values, std::size_t each) {
@@ -107,7 +114,8 @@ void Rollout::Save(Checkpoint& checkpoint) const {
     checkpoint.SetArray(std::string("rollout.") + name,
                         std::vector(values.begin(), values.begin() + count));
   };
-  checkpoint.SetArray("rollout", std::vector<std::uint64_t>{steps_, is_open_ ? 1U : 0U});
+  SaveNumbers(checkpoint, "rollout.progress",
+              [this](const auto& visit) { VisitNumbers(*this, visit); });
   save("features", features_, shape_.features);
   save("masks", masks_, 1);
   save("actions", actions_, 1);
@@ -120,14 +128,14 @@ void Rollout::Save(Checkpoint& checkpoint) const {
 }
 
 void Rollout::Load(const Checkpoint& checkpoint) {
-  std::vector<std::uint64_t> numbers;
-  checkpoint.GetArray("rollout", 2, numbers);
-  if (numbers[0] > shape_.steps) {
-    throw InputError("rollout: got " + std::to_string(numbers[0]) + " steps, expected at most " +
+  Rollout loaded(shape_);
+  LoadNumbers<std::uint64_t>(checkpoint, "rollout.progress", "rollout",
+                             [&loaded](const auto& visit) { VisitNumbers(loaded, visit); });
+  if (loaded.steps_ > shape_.steps) {
+    throw InputError("rollout: got " + std::to_string(loaded.steps_) + " steps, expected at most " +
                      std::to_string(shape_.steps) + ": damaged, resume from another checkpoint");
   }
-  Rollout loaded(shape_);
-  const std::size_t used = static_cast<std::size_t>(numbers[0]) * shape_.entries;
+  const std::size_t used = loaded.steps_ * shape_.entries;
   const auto load = [&](const char* name, auto& values, std::size_t each) {
     std::remove_reference_t<decltype(values)> got;
     checkpoint.GetArray(std::string("rollout.") + name, used * each, got);
@@ -142,8 +150,6 @@ void Rollout::Load(const Checkpoint& checkpoint) {
   load("rewards", loaded.rewards_, 1);
   load("ends", loaded.ends_, 1);
   checkpoint.GetArray("rollout.states", loaded.states_.size(), loaded.states_);
-  loaded.steps_ = static_cast<std::size_t>(numbers[0]);
-  loaded.is_open_ = numbers[1] != 0;
   *this = std::move(loaded);
 }
 

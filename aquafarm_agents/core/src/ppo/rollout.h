@@ -67,6 +67,9 @@ class Rollout {
   void Load(const Checkpoint& checkpoint);
 
  private:
+  template <typename Self, typename Visit>
+  static void VisitNumbers(Self& self, const Visit& visit);  // the saved numbers, by name
+
   Shape shape_;
   std::size_t steps_{};  // number of recorded steps
   bool is_open_{};       // the results of the last step are not recorded yet

@@ -86,10 +86,9 @@ void Disturb(Checkpoint& checkpoint) {
   checkpoint.SetArray("adam.mean", mean);
   checkpoint.SetArray("adam.square", square);
   checkpoint.SetArray("adam", std::vector<std::int64_t>{kAdamStep});
-  std::vector<double> numbers;
-  checkpoint.GetArray("optimizer.numbers", 5, numbers);
-  numbers[0] = 1.0;  // one update is due
-  checkpoint.SetArray("optimizer.numbers", numbers);
+  auto numbers = checkpoint.GetNumbers("optimizer");
+  numbers.at("due") = 1.0;  // one update is due
+  checkpoint.SetNumbers("optimizer", numbers);
 }
 
 Update MakeUpdate(const std::string& algorithm, const std::string& options,
@@ -213,10 +212,9 @@ void ExpectUpdate(const Update& update, const std::vector<Term>& terms,
     square += terms[i].weight * std::pow(predicted[i] - terms[i].target, 2);
     weights += terms[i].weight;
   }
-  std::vector<double> numbers;
-  update.after.GetArray("optimizer.numbers", 5, numbers);
+  const auto measured = std::get<double>(update.after.GetNumbers("optimizer").at("loss"));
   const double scale = update.options.reward_scale * update.options.reward_scale;
-  EXPECT_NEAR(numbers[4], square / weights / scale, 1e-4 * square / weights / scale) << "the loss";
+  EXPECT_NEAR(measured, square / weights / scale, 1e-4 * square / weights / scale) << "the loss";
 
   Values gradient = Differences(online, loss);
   double norm = 0.0;

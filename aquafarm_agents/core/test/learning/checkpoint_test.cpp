@@ -180,6 +180,19 @@ TEST(SavedNumbers, AreReadByNameOrInTheOrderOfOlderVersions) {
   EXPECT_CONTAINS(MessageOf<InputError>(load), "section 'learnt': is damaged");
 }
 
+TEST(SavedNumbers, OfARandomStreamAreItsDraws) {
+  RandomStream saved({7, 0, RngStream::kLearner, 1});
+  for (int i = 0; i < 5; ++i) saved.Next();
+  Checkpoint checkpoint = Example();
+  SaveNumbers(checkpoint, "learnt", [&](const auto& visit) { visit("rng", saved); });
+  EXPECT_EQ(std::get<std::uint64_t>(checkpoint.GetNumbers("learnt").at("rng")), 5U);
+  RandomStream loaded(saved.key());
+  LoadNumbers<std::uint64_t>(checkpoint, "learnt", "",
+                             [&](const auto& visit) { visit("rng", loaded); });
+  EXPECT_EQ(loaded.position(), 5U);
+  EXPECT_EQ(loaded.Next(), saved.Next());
+}
+
 TEST_F(CheckpointFile, AnUnwritablePlaceIsSaid) {
   EXPECT_CONTAINS(
       MessageOf<StorageError>([&] { WriteCheckpoint(folder_ + "/no/a.ckpt", Example()); }),

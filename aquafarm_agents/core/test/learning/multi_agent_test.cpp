@@ -150,19 +150,19 @@ TEST(Maddpg, AnActorsLossThatIsNoNumberNamesTheBatchItWasDrawnFor) {
   std::fill_n(checkpoint.sections["weights"].begin() + 40, 4, '\xff');  // a NaN
   learner->Load(checkpoint);
   std::vector<std::uint8_t> actions;
-  std::vector<std::uint64_t> rng;
+  std::uint64_t position = 0;
   const StepResults* results = &environment.Reset(1);
   std::string message;
   for (int i = 0; i < 100 && message.empty(); ++i) {
     Checkpoint before;
     learner->Save(before);
-    before.GetArray("chance", 4, rng);
+    position = std::get<std::uint64_t>(before.GetNumbers("maddpg.counters").at("rng"));
     message = MessageOf<LearnerFailed>([&] { learner->Step(*results, 0.1, actions); });
     results = &environment.Step(actions);
   }
   EXPECT_CONTAINS(message, "loss of the actors: is not finite at update 1, after ");
   EXPECT_CONTAINS(message, "farm steps, on the batch drawn from seed 1 at position " +
-                               std::to_string(rng[0]) + ";");
+                               std::to_string(position) + ";");
 }
 
 TEST(SmartDevices, DriveThemselvesHomeBesideAShip) {

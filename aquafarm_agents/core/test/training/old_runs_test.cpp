@@ -82,7 +82,7 @@ TEST_P(OldRunTest, RunResumesFromItsCheckpoint) {
 INSTANTIATE_TEST_SUITE_P(Version010, OldRunTest,
                          ::testing::Values("q_learning", "sarsa", "dqn", "icm_dqn", "lstm_dqn",
                                            "independent_dqn", "independent_lstm_dqn", "vdn",
-                                           "maddpg"),
+                                           "maddpg", "mappo"),
                          [](const auto& run) { return std::string(run.param); });
 
 class OldTableTest : public OldRunTest {};

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// What DQN and LSTM-DQN share: networks of action values, exploration around their greedy actions,
+/// and the optimizer.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "aquafarm/agents/networks/torch_runtime.h"
+#include "dqn/repetition_penalty.h"
+#include "networks/replay_learner.h"
+#include "networks/value_optimizer.h"
+
+namespace aquafarm::agents {
+
+template <typename Scalar, typename Network>
+class QLearner : public ReplayLearner<Scalar> {
+ public:
+  LearnerStatus status() const final { return optimizer_.status(this->explorer_.level()); }
+  void SavePolicy(Checkpoint& checkpoint) const final {
+    checkpoint.SetArray("weights", optimizer_.acting().ToVector());
+  }
+
+ protected:
+  /// Sizes of a sample in the replay.
+  struct Sample {
+    std::size_t observation_size{};
+    std::size_t carry_size{};  ///< of the recurrent state
+    std::size_t steps{};       ///< number of later time steps that it needs
+    std::size_t group{};       ///< number of agents; see ReplaySampler
+  };
+
+  /// @param make makes a network with the weights of the seed
+  QLearner(const EnvironmentSpec& spec, std::uint64_t seed, const DeepOptions& options,
+           std::string resolved, const std::function<std::shared_ptr<Network>()>& make,
+           const Sample& sample)
+      : ReplayLearner<Scalar>(spec, seed, std::move(resolved), FindDevice(options.device),
+                              {options.exploration,
+                               options.reward_scale,
+                               {static_cast<std::size_t>(options.buffer_size), EntryCount(spec),
+                                spec.agents, sample.observation_size, sample.carry_size},
+                               options,
+                               sample.steps,
+                               sample.group}),
+        options_(options),
+        online_(make()),
+        target_(make()),
+        acting_(options.ema_rate > 0.0 ? make() : online_),
+        optimizer_(options, *online_, *target_, *acting_, this->device_),
+        repetitions_(spec, options.repetition_penalty * options.reward_scale) {}
+
+  /// Values by which the agents act: [entries, kActionCount] on the CPU.
+  virtual torch::Tensor ActingValues(const StepResults& results) = 0;
+
+  void CountSteps(std::uint64_t farm_steps) final { optimizer_.Count(farm_steps, this->progress_); }
+  bool TakeDue() final { return optimizer_.TakeDue(); }
+  void Choose(const StepResults& results, std::vector<std::uint8_t>& actions) final {
+    repetitions_.Begin(results);
+    const torch::Tensor values = ActingValues(results);
+    const float* row = values.template data_ptr<float>();
+    const Scalar* seen = ObservationTraits<Scalar>::Of(results);
+    const std::size_t size = ElementCount(ObservationTraits<Scalar>::Shape(this->spec_));
+    for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += size) {
+      const ActionMask allowed = LegalMask(results.legal[i], seen, options_);
+      const float* const worth = repetitions_.Penalize(row, seen, i);
+      actions[i] = this->explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
+      repetitions_.Add(actions[i], i);
+    }
+  }
+  void SaveOwn(Checkpoint& checkpoint) const override {
+    optimizer_.Save(checkpoint);
+    repetitions_.Save(checkpoint);
+    checkpoint.SetArray("chance", std::vector<std::uint64_t>{this->rng_.position()});
+  }
+  void LoadOwn(const Checkpoint& checkpoint) override {
+    std::vector<std::uint64_t> position;
+    checkpoint.GetArray("chance", 1, position);
+    optimizer_.Load(checkpoint);
+    repetitions_.Load(checkpoint);
+    this->rng_.Seek(position[0]);
+  }
+
+  const DeepOptions options_;
+  std::shared_ptr<Network> online_;
+  std::shared_ptr<Network> target_;
+  std::shared_ptr<Network> acting_;  // online_, or a moving average of its weights
+  ValueOptimizer optimizer_;
+  RepetitionPenalty repetitions_;
+};
+
+}  // namespace aquafarm::agents

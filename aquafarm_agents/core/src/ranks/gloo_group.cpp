@@ -191,6 +191,7 @@ void GlooGroup::OpenStore(const RankVariables& variables, const GroupTimes& time
 
 void GlooGroup::WaitForAll(const std::string& place, std::chrono::milliseconds left) {
   std::vector<std::string> keys;
+  keys.reserve(static_cast<std::size_t>(size_));
   for (int rank = 0; rank < size_; ++rank) keys.push_back(Here(rank));
   try {
     store_->wait(keys, left);

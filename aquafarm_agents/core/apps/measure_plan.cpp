@@ -77,12 +77,14 @@ Json Calibration(const char* title, const std::vector<std::vector<Promise>>& pro
 Json Value(const std::vector<TrialResult>& trials) {
   const auto of = [&](std::size_t policy) {
     std::vector<double> saved;
+    saved.reserve(trials.size());
     for (const TrialResult& trial : trials) saved.push_back(trial.saved[policy]);
     return saved;
   };
   const std::vector<double> plan = of(0);
   const std::vector<double> best = of(static_cast<std::size_t>(TrialPolicy::kClairvoyant));
   std::vector<double> promised;
+  promised.reserve(trials.size());
   for (const TrialResult& trial : trials) promised.push_back(trial.promised);
   Json rows = Json::array();
   std::printf("value saved; share of the clairvoyant; plan minus this one (95 %% intervals)\n");

@@ -54,7 +54,7 @@ struct ObservationTraits<float> {
     return {spec.feature_count};
   }
   static const float* Of(const StepResults& results) { return results.features.data(); }
-  static torch::Tensor ToInput(const float* rows, std::vector<std::int64_t> shape,
+  static torch::Tensor ToInput(const float* rows, const std::vector<std::int64_t>& shape,
                                torch::Device device) {
     return torch::from_blob(const_cast<float*>(rows), shape, torch::kFloat).to(device);
   }
@@ -66,7 +66,7 @@ struct ObservationTraits<std::uint8_t> {
     return {spec.plane_count, spec.height, spec.width};
   }
   static const std::uint8_t* Of(const StepResults& results) { return results.planes.data(); }
-  static torch::Tensor ToInput(const std::uint8_t* rows, std::vector<std::int64_t> shape,
+  static torch::Tensor ToInput(const std::uint8_t* rows, const std::vector<std::int64_t>& shape,
                                torch::Device device) {
     return torch::from_blob(const_cast<std::uint8_t*>(rows), shape, torch::kByte)
         .to(device)

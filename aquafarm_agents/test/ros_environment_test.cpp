@@ -53,11 +53,9 @@ void ExpectSameFinished(const StepResults& a, const StepResults& b) {
   }
 }
 
-/// Plays the same random actions on both. @returns the number of episodes that ended
-std::size_t ExpectSameTransitions(Environment& ros, Environment& local, int steps) {
+/// Continues both with the same random actions. @returns the number of episodes that ended
+std::size_t ExpectSameSteps(Environment& ros, Environment& local, RandomActions random, int steps) {
   std::size_t ended = 0;
-  RandomActions random(17);
-  ExpectSame(ros.Reset(23, 4), local.Reset(23, 4));
   for (int step = 0; step < steps && !::testing::Test::HasFailure(); ++step) {
     const auto actions = random.Next(Entries(local.spec()));
     const StepResults& got = ros.Step(actions);
@@ -67,6 +65,12 @@ std::size_t ExpectSameTransitions(Environment& ros, Environment& local, int step
     ended += expected.finished.size();
   }
   return ended;
+}
+
+/// Plays the same episodes on both. @returns the number of episodes that ended
+std::size_t ExpectSameTransitions(Environment& ros, Environment& local, int steps) {
+  ExpectSame(ros.Reset(23, 4), local.Reset(23, 4));
+  return ExpectSameSteps(ros, local, RandomActions(17), steps);
 }
 
 TEST(RosEnvironment, TenThousandStepsAreThoseOfThisProcess) {
@@ -227,17 +231,7 @@ TEST(RosEnvironment, AShareOfTheFarmsIsThatOfThisProcess) {
   LocalEnvironment all(scenario, {8, kFeaturesBit, true, 1});
   all.Reset(9);
   ExpectSame(ros.Load(all.Save()), local.Load(all.Save()));
-  std::size_t ended = 0;
-  RandomActions random(3);
-  for (int step = 0; step < 200; ++step) {
-    const auto actions = random.Next(Entries(local.spec()));
-    const StepResults& got = ros.Step(actions);
-    const StepResults& expected = local.Step(actions);
-    ExpectSame(got, expected);
-    ExpectSameFinished(got, expected);
-    ended += expected.finished.size();
-  }
-  EXPECT_GT(ended, 5U);
+  EXPECT_GT(ExpectSameSteps(ros, local, RandomActions(3), 200), 5U);
 }
 
 TEST(RosEnvironment, AShareKeepsToItsEpisodesAfterALossOfTheFarms) {

@@ -115,17 +115,23 @@ class LaunchFilesTest(unittest.TestCase):
         self.assertEqual([f"agent_{ship}" for ship in range(4)],
                          sorted(node.name for node in nodes if node.name.startswith("agent_")))
 
-    def test_an_agent_can_be_placed_on_another_host(self):
+    def load_on_machine(self, machine, launch, **arguments):
+        """Returns the configuration of a launch file whose nodes run on another host."""
+        given = "".join(f'<arg name="{name}" value="{value}"/>' for name, value in arguments.items())
         with tempfile.NamedTemporaryFile("w", suffix=".launch") as file:
             file.write(f"""<launch>
-              <machine name="boat" address="10.0.0.11" env-loader="/opt/ranch/env.sh" user="crew"/>
-              <include file="{LAUNCH / 'agent.launch'}">
-                <arg name="ship" value="1"/> <arg name="machine" value="boat"/>
+              <machine name="{machine}" address="10.0.0.11" env-loader="/opt/ranch/env.sh" user="crew"/>
+              <include file="{LAUNCH / launch}">
+                {given} <arg name="machine" value="{machine}"/>
               </include>
             </launch>""")
             file.flush()
             config = load(file.name, [])
         self.assertEqual([], config.config_errors)
+        return config
+
+    def test_an_agent_can_be_placed_on_another_host(self):
+        config = self.load_on_machine("boat", "agent.launch", ship=1)
         self.assertEqual(["boat"], [node.machine_name for node in config.nodes])
 
     def test_every_rank_gets_a_trainer_and_a_sim_node(self):
@@ -146,17 +152,7 @@ class LaunchFilesTest(unittest.TestCase):
                                     values["/aquafarm/rank_3/train/farms"]))
 
     def test_ranks_can_be_placed_on_another_host(self):
-        with tempfile.NamedTemporaryFile("w", suffix=".launch") as file:
-            file.write(f"""<launch>
-              <machine name="node2" address="10.0.0.2" env-loader="/opt/ranch/env.sh" user="crew"/>
-              <include file="{LAUNCH / 'ranks.launch'}">
-                <arg name="ranks" value="4"/> <arg name="first_rank" value="1"/>
-                <arg name="count" value="2"/> <arg name="machine" value="node2"/>
-              </include>
-            </launch>""")
-            file.flush()
-            config = load(file.name, [])
-        self.assertEqual([], config.config_errors)
+        config = self.load_on_machine("node2", "ranks.launch", ranks=4, first_rank=1, count=2)
         self.assertEqual({"/aquafarm/rank_1/", "/aquafarm/rank_2/"},
                          {node.namespace for node in config.nodes})
         for node in config.nodes:

@@ -4,6 +4,7 @@
 // Starts the ranks of a training as processes of this host.
 
 #include <netinet/in.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -21,6 +22,7 @@
 
 #include "app.h"
 #include "aquafarm/agents/base/exit_code.h"
+#include "aquafarm/agents/ranks/processors.h"
 #include "aquafarm/base/check.h"
 
 namespace aquafarm::agents {
@@ -46,6 +48,11 @@ inline pid_t StartRank(int rank, int ranks, int port, char** argv) {
   if (child != 0) return child;
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(static_cast<int>(ExitCode::kRankLost));
+  cpu_set_t processors;
+  if (sched_getaffinity(0, sizeof(processors), &processors) == 0) {
+    processors = ProcessorsOf(processors, rank, ranks);
+    sched_setaffinity(0, sizeof(processors), &processors);
+  }
   setpgid(0, 0);  // Ctrl-C reaches it through the parent, once
   setenv("RANK", std::to_string(rank).c_str(), 1);
   setenv("WORLD_SIZE", std::to_string(ranks).c_str(), 1);

@@ -10,6 +10,7 @@
 
 #include "agents_fixture.h"
 #include "aquafarm/agents/ranks/process_group.h"
+#include "aquafarm/agents/ranks/processors.h"
 
 namespace aquafarm::agents::test {
 namespace {
@@ -100,6 +101,26 @@ TEST(RankVariables, RefusesWrongValuesInOneLine) {
             "RANK: not set, but WORLD_SIZE=2 is; set both, or neither");
   EXPECT_EQ(Refusal({{"RANK", "0"}, {"WORLD_SIZE", "2"}, {"MASTER_PORT", "99999"}}),
             "MASTER_PORT: got '99999', expected a whole number from 1 to 65535");
+}
+
+std::vector<int> Listed(const cpu_set_t& set) {
+  std::vector<int> found;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(cpu, &set)) found.push_back(cpu);
+  }
+  return found;
+}
+
+TEST(ProcessorsOf, DividesTheAllowedProcessors) {
+  cpu_set_t all;
+  CPU_ZERO(&all);
+  for (const int cpu : {1, 4, 5, 7, 9}) CPU_SET(cpu, &all);
+  using Numbers = std::vector<int>;
+  EXPECT_EQ(Listed(ProcessorsOf(all, 0, 2)), (Numbers{1, 4}));
+  EXPECT_EQ(Listed(ProcessorsOf(all, 1, 2)), (Numbers{5, 7}));
+  EXPECT_EQ(Listed(ProcessorsOf(all, 3, 4)), (Numbers{7}));
+  EXPECT_EQ(Listed(ProcessorsOf(all, 0, 1)), (Numbers{1, 4, 5, 7, 9}));
+  EXPECT_EQ(Listed(ProcessorsOf(all, 5, 8)), (Numbers{1, 4, 5, 7, 9})) << "too few for a share";
 }
 
 TEST(AddAsTree, AddsPairsOfPairs) {

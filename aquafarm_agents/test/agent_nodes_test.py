@@ -138,7 +138,7 @@ class AgentNodesTest(unittest.TestCase):
         self.wait_until(lambda state: state.ships[1].action == HOLD, "the ship to hold")
         died = self.state()
         self.wait_until(lambda state: state.step > died.step + 20 and state.ships[0].action != HOLD,
-                        "the farm to go on and the other ship with it")
+                        "the farm to continue, and the other ship with it")
         on = self.state()
         self.assertEqual(HOLD, on.ships[1].action)
         self.assertEqual(died.ships[1].x, on.ships[1].x)
@@ -174,7 +174,7 @@ class AgentNodesTest(unittest.TestCase):
         self.wait_until(lambda state: state.ships[1].action == HOLD, "the ship to hold")
         step = self.state().step
         self.wait_until(lambda state: state.step > step + 20 and state.ships[0].action != HOLD,
-                        "the farm to go on and the other ship with it")
+                        "the farm to continue, and the other ship with it")
         self.assertEqual(HOLD, self.state().ships[1].action)
         late.send(signal.SIGCONT)
         self.wait_until(lambda state: state.ships[1].action != HOLD, "the ship to move again")

@@ -37,9 +37,8 @@ TRACK = [(-18, 25.2, 125.4, 38, (40, 95, 241)), (-12, 25.6, 125.1, 38, (40, 95, 
          (18, 28.6, 123.7, 35, (40, 95, 241)), (24, 29.7, 123.0, 35, (40, 95, 241)),
          (30, 30.0, 122.2, 33, (40, 95, 241)), (42, 30.4, 121.5, 28, (0, 80, 229)),
          (54, 30.8, 120.9, 25, (0, 0, 180))]
-RINGS = [{"id": "64kt", "name": "hurricane (64 kt)", "wind_kt": 64,
-          "risk": -20}, {"id": "50kt", "name": "storm (50 kt)", "wind_kt": 50, "risk": -10},
-         {"id": "34kt", "name": "gale (34 kt)", "wind_kt": 34, "risk": -5}]
+RINGS = [{"id": f"{knots}kt", "name": f"{name} ({knots} kt)", "wind_kt": knots, "risk": risk}
+         for knots, name, risk in ((64, "hurricane", -20), (50, "storm", -10), (34, "gale", -5))]
 
 
 def stamp(hours):
@@ -73,8 +72,7 @@ def route(start, goal, closed):
             return path[::-1]
         for dx, dy in ((0, 1), (0, -1), (-1, 0), (1, 0), (-1, 1), (1, 1), (-1, -1), (1, -1)):
             step = (cell[0] + dx, cell[1] + dy)
-            if 0 <= step[0] < SIZE and 0 <= step[
-                    1] < SIZE and step not in closed and step not in back:
+            if set(step) <= set(range(SIZE)) and step not in closed and step not in back:
                 back[step] = cell
                 queue.append(step)
     raise ValueError(f"no way from {start} to {goal}")
@@ -186,80 +184,69 @@ def quantile_time(first, q):
     return stamp(value) if np.isfinite(value) else None
 
 
-def sample(members=1000, seed=1):
-    """The sample plan file as a dictionary."""
-    futures = Futures(members, seed)
-    closed = set(land_cells()) | set(ROCKS)
-    routes = [
-        make_route(0, 0, 6, [1, 0], closed, futures),
-        make_route(1, 3, 6, [2, 3, 4], closed, futures)
-    ]
-    rng = np.random.default_rng(seed + 1)
-    by_device, mean_loss, idle_loss = {}, np.zeros(members), np.zeros(members)
+def order_of(i, routes):
+    """The ship of a device with its stops to fetch and deliver it; None without one."""
     for one in routes:
         for fetch, deliver in zip(one["orders"][1::2], one["orders"][2::2]):
-            by_device[fetch["device"]] = (one["ship"], fetch, deliver)
-    devices, home_count = [], np.zeros(members)
-    for i, (name, kind, cell, value) in enumerate(DEVICES):
-        arrival = futures.arrival(cell)
-        if i in by_device:
-            ship, fetch, deliver = by_device[i]
-            home = rng.random(members) < deliver["probability"]
-            hour = (datetime.datetime.fromisoformat(deliver["time"].replace("Z", "+00:00")) -
-                    START).total_seconds() / 3600
-            order = {
-                "ship": ship, "fetch": fetch["time"], "deliver": deliver["time"],
-                "port": deliver["port"]
-            }
-        else:
-            home, hour, order = np.zeros(members, bool), np.inf, None
-        lost, idle = damage(futures, i, home), damage(futures, i, np.zeros(members, bool))
-        mean_loss += lost
-        idle_loss += idle
-        home_count += home
-        nearest = min(len(route(cell, port, closed)) for port in PORTS)
-        trip_h = nearest * CELL_M / 1000 * 2.2 / (SPEED_KN * 1.852)
-        latest = [float(np.quantile(arrival[:, 2], 1 - p)) - trip_h for p in (0.95, 0.8, 0.5)]
-        devices.append({
-            "id": i, "name": name, "kind": kind, "cell": list(cell), "position": position(*cell),
-            "value": value, "damage_before": 0.15 if i == 5 else 0.0, "order": order, "odds": {
-                "home": round(float(home.mean()), 3), "home_before": [
-                    round(float((home & (hour <= arrival[:, r])).mean()), 3) for r in range(3)
-                ]
-            }, "arrival": [{
-                "probability": round(
-                    float(np.isfinite(arrival[:,
-                                              r]).mean()), 3), **{
-                                                  f"q{int(q * 100):02}": quantile_time(
-                                                      arrival[:, r], q) for q in (0.05, 0.5, 0.95)
-                                              }
-            } for r in range(3)], "expected_damage": round(float(lost.mean()) / value, 4),
-            "expected_loss": round(float(lost.mean()), 2),
-            "expected_loss_idle": round(float(idle.mean()), 2), "deadlines": [{
-                "probability": p, "leave": stamp(h) if 0 <= h < HOURS else None, "ship": 0,
-                "open": False
-            } for p, h in zip((0.95, 0.8, 0.5), latest)]
-        })
-    mean = float(mean_loss.mean())
+            if fetch["device"] == i:
+                return one["ship"], fetch, deliver
+    return None
 
-    def change(name, text, extra, possible=True):
-        if not possible:
-            return {
-                "change": name, "text": text, "possible": False, "mean_loss": None, "q95": None,
-                "devices_home": None, "all_home": None, "difference": None
-            }
-        other = mean + extra
-        half = abs(extra) * 0.08
-        return {
-            "change": name, "text": text, "possible": True, "mean_loss": round(other, 2),
-            "q95": round(float(np.quantile(mean_loss, 0.95)) + extra,
-                         2), "devices_home": round(float(home_count.mean()) - extra / 6e5, 2),
-            "all_home": 0.0 if extra >= 0 else 0.81, "difference": {
-                "mean": round(extra, 2), "low": round(extra - half, 2),
-                "high": round(extra + half, 2)
-            }
-        }
 
+def sample_device(i, routes, closed, futures, rng):
+    """Device i, with its loss, its loss without a plan and whether it comes home, by member."""
+    name, kind, cell, value = DEVICES[i]
+    arrival, members = futures.arrival(cell), futures.size.shape[0]
+    home, hour, order = np.zeros(members, bool), np.inf, None
+    if stops := order_of(i, routes):
+        ship, fetch, deliver = stops
+        home = rng.random(members) < deliver["probability"]
+        hour = (datetime.datetime.fromisoformat(deliver["time"].replace("Z", "+00:00")) -
+                START).total_seconds() / 3600
+        order = {"ship": ship, "port": deliver["port"], "fetch": fetch["time"],
+                 "deliver": deliver["time"]}
+    lost, idle = damage(futures, i, home), damage(futures, i, np.zeros(members, bool))
+    nearest = min(len(route(cell, port, closed)) for port in PORTS)
+    trip_h = nearest * CELL_M / 1000 * 2.2 / (SPEED_KN * 1.852)
+    chances = (0.95, 0.8, 0.5)
+    latest = [float(np.quantile(arrival[:, 2], 1 - p)) - trip_h for p in chances]
+    device = {
+        "id": i, "name": name, "kind": kind, "cell": list(cell), "position": position(*cell),
+        "value": value, "damage_before": 0.15 if i == 5 else 0.0, "order": order,
+        "odds": {
+            "home": round(float(home.mean()), 3),
+            "home_before": [round(float((home & (hour <= arrival[:, r])).mean()), 3)
+                            for r in range(3)]},
+        "arrival": [{
+            "probability": round(float(np.isfinite(arrival[:, r]).mean()), 3),
+            **{f"q{int(q * 100):02}": quantile_time(arrival[:, r], q) for q in (0.05, 0.5, 0.95)}
+        } for r in range(3)],
+        "expected_damage": round(float(lost.mean()) / value, 4),
+        "expected_loss": round(float(lost.mean()), 2),
+        "expected_loss_idle": round(float(idle.mean()), 2),
+        "deadlines": [{"probability": p, "leave": stamp(h) if 0 <= h < HOURS else None, "ship": 0,
+                       "open": False} for p, h in zip(chances, latest)]}
+    return device, lost, idle, home
+
+
+def sample_change(name, text, extra, mean_loss, home_count):
+    """An entry of what_if. @param extra loss; None: impossible"""
+    entry = {"change": name, "text": text, "possible": extra is not None, "mean_loss": None,
+             "q95": None, "devices_home": None, "all_home": None, "difference": None}
+    if extra is None:
+        return entry
+    half = abs(extra) * 0.08
+    return {
+        **entry, "mean_loss": round(float(mean_loss.mean()) + extra, 2),
+        "q95": round(float(np.quantile(mean_loss, 0.95)) + extra, 2),
+        "devices_home": round(float(home_count.mean()) - extra / 6e5, 2),
+        "all_home": 0.0 if extra >= 0 else 0.81,
+        "difference": {"mean": round(extra, 2), "low": round(extra - half, 2),
+                       "high": round(extra + half, 2)}}
+
+
+def sample_hazard(futures):
+    """How many members cover a cell: in the ranch by hour, and by cell every second hour."""
     grid = np.stack(np.meshgrid(np.arange(SIZE), np.arange(SIZE)), -1).reshape(-1, 2)
 
     def percent(hour):
@@ -269,11 +256,56 @@ def sample(members=1000, seed=1):
         return [[] if one.max() < 0.005 else np.rint(one * 100).astype(int).tolist()
                 for one in covered]
 
-    any_cell = [
-        futures.reach([corner] * len(futures.hours))
-        for corner in ((0, 0), (24, 0), (0, 24), (24, 24), (12, 12))
-    ]
+    any_cell = [futures.reach([corner] * len(futures.hours))
+                for corner in ((0, 0), (24, 0), (0, 24), (24, 24), (12, 12))]
     over = np.logical_or.reduce(any_cell).mean(0)
+    return {
+        "timeline": [{"time": stamp(h),
+                      "probability": [round(float(v), 3) for v in over[int(h * 6)]]}
+                     for h in np.arange(0, HOURS + .1, 1)],
+        "frames": [{"time": stamp(h), "percent": percent(h)} for h in range(0, HOURS + 1, 2)]}
+
+
+def sample_storm():
+    return {
+        "kind": "typhoon", "name": "In-Fa (2106)", "agency": "CMA", "file": "202106.json",
+        "issued": stamp(0), "age_h": 0.5, "hindcast": False, "recorded_until": stamp(0),
+        "forecast_until": stamp(54), "points": [{
+            "time": stamp(h), "source": "recorded" if h <= 0 else "forecast",
+            "position": {"latitude": lat, "longitude": lon}, "at": centre_of(lat, lon),
+            "wind_mps": wind, "wind_minutes": 2, "pressure_hpa": None, "grade": 3,
+            "radii_km": list(radii), "radii_source": "recorded" if h <= 0 else "estimated"
+        } for h, lat, lon, wind, radii in TRACK],
+        "closest_approach": {"time": stamp(27), "distance_km": 31.0, "bearing_deg": 211.0}}
+
+
+def sample_errors(futures):
+    return [{
+        "lead_h": h, "time": stamp(h), "centre": [round(float(v), 2) for v in futures.track[h * 6]],
+        "along_km": 15 + 2.5 * h, "across_km": 15 + 2.5 * h,
+        "radius70_km": round(1.552 * (15 + 2.5 * h), 1), "wind_mps": 1 + 0.2 * h, "size_log": 0.2
+    } for h in range(0, HOURS + 1, 6)]
+
+
+def sample_place():
+    """Ranch, rings, ports and ships."""
+    return {
+        "ranch": {
+            "name": "dongji", "description": "Ranch off the Dongji islands (test fixture).",
+            "width": SIZE, "height": SIZE, "cell_size_m": CELL_M, "origin": position(0, 0),
+            "corners": [position(x, y)
+                        for x, y in ((-.5, -.5), (24.5, -.5), (24.5, 24.5), (-.5, 24.5))],
+            "land": [list(c) for c in land_cells()], "rocks": [list(c) for c in ROCKS]},
+        "rings": RINGS,
+        "ports": [{"id": i, "name": f"port {'ABCD'[i]}", "cell": list(c), "position": position(*c)}
+                  for i, c in enumerate(PORTS)],
+        "ships": [{"id": i, "name": f"Puhai {i + 1}", "cell": list(PORTS[p]),
+                   "position": position(*PORTS[p]), "port": p, "speed_kn": SPEED_KN,
+                   "capacity": 1, "ready": stamp(6)} for i, p in enumerate((0, 3))]}
+
+
+def sample_head(seed):
+    """What the page begins with."""
     return {
         "format": "aquafarm_plan", "version": 1, "provenance": {
             "program_version": "0.2.0", "seed": seed, "computed_at": stamp(0.05), "compute_s": 4.2,
@@ -293,77 +325,52 @@ def sample(members=1000, seed=1):
             "advice": "Plan again when the next bulletin arrives."
         }], "clock": {
             "start": stamp(0), "end": stamp(HOURS), "step_s": STEP_S, "utc_offset_min": 480,
-            "zone": "UTC+8"
-        }, "ranch": {
-            "name": "dongji", "description": "Ranch off the Dongji islands (test fixture).",
-            "width": SIZE, "height": SIZE, "cell_size_m": CELL_M, "origin": position(0, 0),
-            "corners": [
-                position(x, y) for x, y in ((-.5, -.5), (24.5, -.5), (24.5, 24.5), (-.5, 24.5))
-            ], "land": [list(c) for c in land_cells()], "rocks": [list(c) for c in ROCKS]
-        }, "rings": RINGS, "storm": {
-            "kind": "typhoon", "name": "In-Fa (2106)", "agency": "CMA", "file": "202106.json",
-            "issued": stamp(0), "age_h": 0.5, "hindcast": False, "recorded_until": stamp(0),
-            "forecast_until": stamp(54), "points": [{
-                "time": stamp(h), "source": "recorded" if h <= 0 else "forecast",
-                "position": {"latitude": lat, "longitude": lon}, "at": centre_of(lat, lon),
-                "wind_mps": wind, "wind_minutes": 2, "pressure_hpa": None, "grade": 3,
-                "radii_km": list(radii), "radii_source": "recorded" if h <= 0 else "estimated"
-            } for h, lat, lon, wind, radii in TRACK],
-            "closest_approach": {"time": stamp(27), "distance_km": 31.0, "bearing_deg": 211.0}
-        }, "ensemble": {
-            "members": members, "seed": seed, "errors": [{
-                "lead_h": h, "time": stamp(h),
-                "centre": [round(float(v), 2)
-                           for v in futures.track[h * 6]], "along_km": 15 + 2.5 * h,
-                "across_km": 15 + 2.5 * h, "radius70_km": round(1.552 * (15 + 2.5 * h), 1),
-                "wind_mps": 1 + 0.2 * h, "size_log": 0.2
-            } for h in range(0, HOURS + 1, 6)]
-        }, "hazard": {
-            "timeline": [{
-                "time": stamp(h), "probability": [round(float(v), 3) for v in over[int(h * 6)]]
-            } for h in np.arange(0, HOURS + .1, 1)],
-            "frames": [{"time": stamp(h), "percent": percent(h)} for h in range(0, HOURS + 1, 2)]
-        },
-        "ports": [{"id": i, "name": f"port {'ABCD'[i]}", "cell": list(c), "position": position(*c)}
-                  for i, c in enumerate(PORTS)], "ships": [{
-                      "id": i, "name": f"Puhai {i + 1}", "cell": list(PORTS[p]),
-                      "position": position(*PORTS[p]), "port": p, "speed_kn": SPEED_KN,
-                      "capacity": 1, "ready": stamp(6)
-                  } for i, p in enumerate((0, 3))], "devices": devices,
+            "zone": "UTC+8"}}
+
+
+CHANGES = [("none", "this plan", 0.0), ("ships+1", "one ship more", -92000.0),
+           ("capacity+1", "capacity 2 instead of 1", -61000.0),
+           ("depart+3h", "leave 3 hours later", 118000.0),
+           ("port_closed:0", "port A closed", 143000.0),
+           ("ships-1", "one ship fewer", 402000.0),
+           ("depart+12h", "leave 12 hours later", 950000.0),
+           ("port_closed:3", "port D closed", None)]
+ASSUMPTIONS = [("position error of the forecast", "15 km + 2.5 km per hour of lead", "assumed",
+                "test fixture"),
+               ("radii of the forecast winds", "spread 20 %", "estimated", "test fixture"),
+               ("a ship stops work", "wind of 34 kt at its cell", "given", "--abort-wind 34"),
+               ("positions until 2021-07-24 00:00 UTC", "4 fixes", "recorded",
+                "CMA bulletin 202106.json")]
+
+
+def sample(members=1000, seed=1):
+    """The sample plan file as a dictionary."""
+    futures = Futures(members, seed)
+    closed = set(land_cells()) | set(ROCKS)
+    routes = [make_route(0, 0, 6, [1, 0], closed, futures),
+              make_route(1, 3, 6, [2, 3, 4], closed, futures)]
+    rng = np.random.default_rng(seed + 1)
+    parts = [sample_device(i, routes, closed, futures, rng) for i in range(len(DEVICES))]
+    devices = [part[0] for part in parts]
+    mean_loss, idle_loss, home_count = (sum(part[k] for part in parts) for k in (1, 2, 3))
+    return {
+        **sample_head(seed), **sample_place(), "storm": sample_storm(),
+        "ensemble": {"members": members, "seed": seed, "errors": sample_errors(futures)},
+        "hazard": sample_hazard(futures), "devices": devices,
         "plan": {
             "objective": "most value saved on average", "method": "team search on the mean risk",
             "expected_value": 512.3, "bound": 520.1, "routes": routes, "left_behind": [{
-                "device": 5, "reason": "too_late", "text": "F6: no ship is free before the gale"
-            }]
-        }, "loss": {
+                "device": 5, "reason": "too_late", "text": "F6: no ship is free before the gale"}]},
+        "loss": {
             "currency": "CNY", "insured": sum(d[3] for d in DEVICES), "operating_cost": 5200.0,
-            "with_plan": loss_of(mean_loss), "idle": loss_of(idle_loss)
-        }, "deadlines": {
+            "with_plan": loss_of(mean_loss), "idle": loss_of(idle_loss)},
+        "deadlines": {
             "first_departure": stamp(6), "no_departure_after": stamp(13.5),
             "rule": "From then on, leaving has a lower expected value than staying in port for every device."
-        }, "what_if": [
-            change("none", "this plan", 0.0),
-            change("ships+1", "one ship more", -92000.0),
-            change("capacity+1", "capacity 2 instead of 1", -61000.0),
-            change("depart+3h", "leave 3 hours later", 118000.0),
-            change("port_closed:0", "port A closed", 143000.0),
-            change("ships-1", "one ship fewer", 402000.0),
-            change("depart+12h", "leave 12 hours later", 950000.0),
-            change("port_closed:3", "port D closed", 0, possible=False)
-        ], "assumptions": [{
-            "what": "position error of the forecast", "value": "15 km + 2.5 km per hour of lead",
-            "basis": "assumed", "source": "test fixture"
-        }, {
-            "what": "radii of the forecast winds", "value": "spread 20 %", "basis": "estimated",
-            "source": "test fixture"
-        }, {
-            "what": "a ship stops work", "value": "wind of 34 kt at its cell", "basis": "given",
-            "source": "--abort-wind 34"
-        }, {
-            "what": "positions until 2021-07-24 00:00 UTC", "value": "4 fixes", "basis": "recorded",
-            "source": "CMA bulletin 202106.json"
-        }]
-    }
+        },
+        "what_if": [sample_change(*one, mean_loss, home_count) for one in CHANGES],
+        "assumptions": [dict(zip(("what", "value", "basis", "source"), one))
+                        for one in ASSUMPTIONS]}
 
 
 def nothing_to_save():

@@ -36,8 +36,8 @@ class _Parser(argparse.ArgumentParser):
         raise BadInput(message)
 
 
-def parse(arguments):
-    """Parses the arguments; unset numbers are those of the profile."""
+def _parser():
+    """Returns the parser of the command line."""
     parser = _Parser(
         prog="aquafarm_benchmark", epilog=_EPILOG,
         description="Trains every learner several times, measures them as the paper's §4.2 does, "
@@ -78,7 +78,12 @@ def parse(arguments):
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of aquafarm_train and aquafarm_evaluate (default: the "
                         "workspace's, or those on PATH)")
-    options = parser.parse_args(arguments)
+    return parser
+
+
+def parse(arguments):
+    """Parses the arguments; unset numbers are those of the profile."""
+    options = _parser().parse_args(arguments)
     if options.profile not in PROFILES:
         raise BadInput(f"profile: got '{options.profile}', expected one of: "
                        + ", ".join(PROFILES))

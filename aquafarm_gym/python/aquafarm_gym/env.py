@@ -11,9 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from aquafarm_gym import rendering, spaces
-from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, check_seed, summary_of
+from aquafarm_gym.episodes import Episodes, check_options, check_seed
 from aquafarm_gym.farms import ENCODINGS, LocalFarms
 from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
+from aquafarm_gym.single_farm import info_at, observation_at
 
 
 def one_agent(farms: Any) -> Any:
@@ -128,15 +129,10 @@ class FarmEnv(gymnasium.Env[Any, Any]):
         self.farms.close()
 
     def _observe(self) -> Any:
-        entry = self._observation[0, 0]
-        return np.int64(entry) if self.observation == "index" else entry.copy()
+        return observation_at(self.observation, self._observation, 0)
 
     def _info(self) -> dict[str, Any]:
-        over = self._buffers["reasons"][0] != 0
-        summary = summary_of(self.farms.finished()[0]) if over else NO_SUMMARY.copy()
-        return {"action_mask": spaces.action_mask(self._buffers["legal"][0, 0]),
-                "outcome": int(self._buffers["outcomes"][0, 0]), "reason": summary["reason"],
-                "is_success": summary["success"], "summary": summary}
+        return info_at(self.farms, 0)
 
     def _repr_html_(self) -> str:
         return html_of(self.farms, self._pictures, [0])

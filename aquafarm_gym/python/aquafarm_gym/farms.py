@@ -48,11 +48,9 @@ def check_encoding(encoding: str, state_count: int, name: str) -> None:
                          "expected features or planes")
 
 
-class LocalFarms:
-    """Farms in this process. Copies and pickles continue bit-identically."""
+class Farms:
+    """Attributes of every backend, in addition to `buffers` and `yaml`."""
 
-    scenario: core.Scenario
-    batch: core.FarmBatch
     name: str
     farms: int
     agents: int
@@ -62,6 +60,13 @@ class LocalFarms:
     plane_count: int
     height: int
     width: int
+
+
+class LocalFarms(Farms):
+    """Farms in this process. Copies and pickles continue bit-identically."""
+
+    scenario: core.Scenario
+    batch: core.FarmBatch
 
     def __init__(self, scenario: core.Scenario | str | pathlib.Path = "paper", farms: int = 1,
                  observation: str = "features", hashes: bool = False, threads: int = 1) -> None:

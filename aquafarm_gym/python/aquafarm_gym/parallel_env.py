@@ -16,9 +16,10 @@ from pettingzoo import ParallelEnv
 
 from aquafarm_gym import rendering, spaces
 from aquafarm_gym.env import observation_of
-from aquafarm_gym.episodes import NO_SUMMARY, Episodes, check_options, summary_of
+from aquafarm_gym.episodes import Episodes, check_options
 from aquafarm_gym.farms import LocalFarms
 from aquafarm_gym.rendering import Pictures, Window, check_render_mode, html_of
+from aquafarm_gym.single_farm import info_at, observation_at
 
 
 class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-ignore]
@@ -140,15 +141,10 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
         return {agent: value(self._number[agent]) for agent in self.agents}
 
     def _observe(self, i: int) -> Any:
-        entry = self._observation[0, i]
-        return np.int64(entry) if self.observation == "index" else entry.copy()
+        return observation_at(self.observation, self._observation, i)
 
     def _info(self, i: int) -> dict[str, Any]:
-        over = self._buffers["reasons"][0] != 0
-        summary = summary_of(self.farms.finished()[0]) if over else NO_SUMMARY.copy()
-        return {"action_mask": spaces.action_mask(self._buffers["legal"][0, i]),
-                "outcome": int(self._buffers["outcomes"][0, i]), "reason": summary["reason"],
-                "is_success": summary["success"], "summary": summary}
+        return info_at(self.farms, i)
 
     def _repr_html_(self) -> str:
         return html_of(self.farms, self._pictures, [0])

@@ -18,7 +18,7 @@ from aquafarm_msgs.msg import Outcome, StepResult
 from aquafarm_msgs.srv import GetState, Reset, Step
 from rospy.impl.tcpros_base import TCPROSTransport
 
-from aquafarm_gym.farms import check_encoding
+from aquafarm_gym.farms import Farms, check_encoding
 
 RETRY_PERIOD_S: float = 0.1
 MASTER_LIMIT_S: float = 5.0
@@ -71,7 +71,7 @@ class Service(rospy.ServiceProxy):  # type: ignore[misc]
         self.transport = transport
 
 
-class RosFarms:
+class RosFarms(Farms):
     """Farms behind the sim node of a namespace.
 
     A lost call is sent again with the same sequence number, so no farm steps twice. Raises
@@ -79,16 +79,7 @@ class RosFarms:
     the node does not respond for wait_limit_s.
     """
 
-    name: str
     yaml: str
-    farms: int
-    agents: int
-    state_count: int
-    feature_names: list[str]
-    feature_count: int
-    plane_count: int
-    height: int
-    width: int
 
     def __init__(self, namespace: str = "/aquafarm", farms: int = 1,
                  observation: str = "features", hashes: bool = False, wait_limit_s: float = 20.0,

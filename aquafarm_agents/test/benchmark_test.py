@@ -14,12 +14,13 @@ import sys
 import tempfile
 import time
 import unittest
+from unittest import mock
 
 import numpy as np
 import rosbag
 import rostest
 
-from aquafarm_benchmark import cluster, figures, human, protocol, runs
+from aquafarm_benchmark import cli, cluster, figures, human, protocol, runs
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from processes import DATA, Program, program  # noqa: E402
@@ -366,6 +367,16 @@ class BenchmarkTest(unittest.TestCase):
         absent = self.start("out", "--learner", "mine=/none/mine.so")
         self.assertEqual(2, absent.code(), absent.words())
         self.assertIn("there is no file /none/mine.so", absent.words())
+
+    def test_a_virtual_environment_with_the_package_does_not_see_that_of_the_workspace(self):
+        home = self.folder / "venv"
+        (home / "lib/python3.12/site-packages/aquafarm_core").mkdir(parents=True)
+        (home / "bin").mkdir()
+        with mock.patch.dict(os.environ, PYTHONPATH="/ws/lib/python3/dist-packages:/mine"):
+            self.assertEqual([], cli._own_packages(str(home / "bin/python")))
+            (home / "pyvenv.cfg").touch()
+            self.assertEqual(["env", "PYTHONPATH=/mine"], cli._own_packages(str(home / "bin/python")))
+            self.assertEqual([], cli._own_packages("python3"))
 
     def test_interrupted_it_says_how_to_go_on(self):
         one = self.start("out", "--algorithms", "q_learning", episodes=10000000)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The planners and policies of aquafarm_agents that need no libtorch.
-set(agents_dir ${CMAKE_CURRENT_SOURCE_DIR}/../../aquafarm_agents/core)
+set(agents_dir ${AQUAFARM_CHECKOUT}/aquafarm_agents/core)
 find_package(nlohmann_json 3.2 REQUIRED)
 option(AQUAFARM_GYM_BLAS "Play policies of PPO by BLAS, if it is installed; OFF: by Eigen" ON)
 find_library(AQUAFARM_BLAS blas)  # of libblas-dev; libblas.so.3 selects the real one
@@ -26,7 +26,7 @@ else()
   endif()
   add_library(aquafarm_policies STATIC EXCLUDE_FROM_ALL ${policy_sources})
   set_target_properties(aquafarm_policies PROPERTIES
-    POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden)
+    POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
   aquafarm_set_warnings(aquafarm_policies)
 endif()
 target_include_directories(aquafarm_policies PUBLIC ${agents_dir}/include ${agents_dir}/src)

@@ -92,6 +92,12 @@ class ExamplesTest(unittest.TestCase):
         self.assertLess(first, 0)
         self.assertGreater(last, 80)
 
+    @needs("ray", "torch")
+    def test_rllib_learns(self):
+        mean, success = importlib.import_module("rllib_ppo").main(small(), 40_000, episodes=10)
+        self.assertGreater(mean, 90)
+        self.assertEqual(success, 1)
+
 
 if __name__ == "__main__":
     run_tests("examples", ExamplesTest, WHY_NOT)

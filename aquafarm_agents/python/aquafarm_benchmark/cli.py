@@ -146,9 +146,21 @@ def _load_in_programs(contestants):
         os.environ["AQUAFARM_LEARNERS"] = ":".join([*libraries, *filter(None, [there])])
 
 
+def _own_packages(program):
+    """Returns words before a command. The PYTHONPATH of a workspace would hide the packages of a
+    virtual environment; one that contains this suite's Python package does not need it."""
+    home = pathlib.Path(shutil.which(program) or program).parent.parent
+    if not (home / "pyvenv.cfg").is_file() or not any(
+            home.glob("lib/python*/site-packages/aquafarm_core")):
+        return []
+    kept = [one for one in os.environ.get("PYTHONPATH", "").split(":")
+            if one and not one.endswith("/dist-packages")]
+    return ["env", f"PYTHONPATH={':'.join(kept)}"]
+
+
 def _external_command(one, options, seed, run):
     """Returns the command that trains and evaluates a learner of another package."""
-    return [*one.command, one.scenario or options.scenario, "--name", one.name,
+    return [*_own_packages(one.command[0]), *one.command, one.scenario or options.scenario, "--name", one.name,
             "--max-steps", str(options.max_steps), "--episodes", str(options.episodes),
             "--seed", str(seed), "--evaluation-episodes", str(options.evaluation_episodes),
             "--evaluation-seed", str(options.evaluation_seed), "--run-dir", str(run)]

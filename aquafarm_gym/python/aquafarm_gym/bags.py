@@ -13,6 +13,7 @@ import argparse
 import dataclasses
 import pathlib
 import sys
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -213,6 +214,7 @@ def main() -> int:
     parser.add_argument("--observation", default="features", help="features, planes or index")
     parser.add_argument("--algorithm", default="unknown", help="policy that played, for the description")
     given = parser.parse_args()
+    warnings.filterwarnings("ignore", module="minari")  # of an author and a link, which bags lack
     try:
         dataset = make_dataset(given.dataset_id, given.bags, given.observation,
                                algorithm_name=given.algorithm, description="From bags of aquafarm")

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Trains PPO of RLlib with an action mask, on farms in this process or in several processes.
+
+    python3 rllib_ppo.py [--scenario paper] [--steps 1000000] [--workers 0] [--seed 1]
+
+after: pip install ./aquafarm_gym 'ray[rllib]' torch. The wrapper ActionMaskInObservation puts the mask
+into the observation; the module below excludes the actions that it forbids.
+"""
+import argparse
+import time
+
+import aquafarm_gym
+import gymnasium
+import numpy as np
+import torch
+from ray.rllib.algorithms.ppo import PPOConfig
+from ray.rllib.core.columns import Columns
+from ray.rllib.core.rl_module.apis.value_function_api import ValueFunctionAPI
+from ray.rllib.core.rl_module.rl_module import RLModuleSpec
+from ray.rllib.core.rl_module.torch import TorchRLModule
+from ray.tune.registry import register_env
+from torch import nn
+
+EVALUATION_SEED = 2**62  # no training sequence has this seed
+REWARD_SCALE = 0.05  # rewards are in the tens
+GAMMA, HIDDEN, BATCH = 0.98, 128, 4096
+
+
+def make_env(config):
+    """Returns a farm whose observations contain the mask."""
+    env = aquafarm_gym.ActionMaskInObservation(aquafarm_gym.FarmEnv(config["scenario"]))
+    return gymnasium.wrappers.TransformReward(env, lambda reward: REWARD_SCALE * reward)
+
+
+class MaskedModule(TorchRLModule, ValueFunctionAPI):
+    """An actor and a critic with two hidden layers each; illegal actions have probability 0."""
+
+    def setup(self):
+        inputs = self.observation_space["observation"].shape[0]
+
+        def layers(outputs):
+            return nn.Sequential(nn.Linear(inputs, HIDDEN), nn.Tanh(), nn.Linear(HIDDEN, HIDDEN),
+                                 nn.Tanh(), nn.Linear(HIDDEN, outputs))
+
+        self.actor, self.critic = layers(int(self.action_space.n)), layers(1)
+
+    def _forward(self, batch, **_):
+        seen = batch[Columns.OBS]
+        logits = self.actor(seen["observation"])
+        return {Columns.ACTION_DIST_INPUTS: logits.masked_fill(seen["action_mask"] == 0, -1e9)}
+
+    def compute_values(self, batch, embeddings=None):
+        return self.critic(batch[Columns.OBS]["observation"]).squeeze(-1)
+
+
+@torch.no_grad()
+def evaluate(module, scenario, episodes):
+    """Returns (mean return, success rate) of greedy play in episodes not used for training."""
+    env = aquafarm_gym.ActionMaskInObservation(aquafarm_gym.FarmEnv(scenario))
+    summaries = []
+    for episode in range(episodes):
+        seen, info = env.reset(seed=EVALUATION_SEED, options={"episode": episode})
+        while not info["reason"]:
+            row = {name: torch.as_tensor(value)[None] for name, value in seen.items()}
+            logits = module.forward_inference({Columns.OBS: row})[Columns.ACTION_DIST_INPUTS]
+            seen, _, _, _, info = env.step(int(logits.argmax()))
+        summaries.append(info["summary"])
+    return (np.mean([one["episode_return"] for one in summaries]),
+            np.mean([one["success"] for one in summaries]))
+
+
+def main(scenario="paper", steps=1_000_000, seed=1, workers=0, farms=16, episodes=50):
+    """Trains and evaluates; returns (mean return, success rate). workers: processes with farms of
+    their own; 0: the farms step in this process."""
+    register_env("farm", make_env)
+    config = (PPOConfig().environment("farm", env_config={"scenario": scenario})
+              .env_runners(num_env_runners=workers, num_envs_per_env_runner=farms)
+              .rl_module(rl_module_spec=RLModuleSpec(module_class=MaskedModule))
+              .training(gamma=GAMMA, lambda_=0.95, lr=[[0, 1e-3], [steps, 0.0]],
+                        entropy_coeff=[[0, 0.02], [steps, 0.0]], train_batch_size=BATCH,
+                        minibatch_size=512, num_epochs=2, vf_clip_param=1e6)
+              .debugging(seed=seed))
+    algorithm, began, played = config.build_algo(), time.monotonic(), 0
+    while played < steps:
+        result = algorithm.train()["env_runners"]
+        played = int(result["num_env_steps_sampled_lifetime"])
+        print(f"{played:>9,} steps  {played / (time.monotonic() - began):>6,.0f} steps/s  return "
+              f"{result.get('episode_return_mean', np.nan) / REWARD_SCALE:8.1f}", flush=True)
+    mean, success = evaluate(algorithm.get_module(), scenario, episodes)
+    algorithm.stop()
+    print(f"{scenario}: mean return {mean:.1f}, success {100 * success:.0f} % in {episodes} greedy "
+          "episodes")
+    return mean, success
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--scenario", default="paper")
+    parser.add_argument("--steps", type=int, default=1_000_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--workers", type=int, default=0)
+    given = parser.parse_args()
+    main(given.scenario, given.steps, given.seed, given.workers)

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measures how fast the environments of aquafarm_gym step, and prints 'metric value unit' lines.
+
+usage: bench_python.py [REPETITIONS]      (the Python of an environment that contains the package)
+
+Each figure is the median of the repetitions, per second of processor time of one thread; the spread
+is the min and max. Actions are drawn before. Stable-Baselines3's part needs that package.
+"""
+import importlib.util
+import sys
+import time
+
+import aquafarm_core as core
+import aquafarm_gym
+import numpy as np
+
+STEPS = 200
+
+
+def measure(name, unit, count, repetitions, call):
+    """Prints the rate of `call`, which makes `count` steps."""
+    call()
+    rates = []
+    for _ in range(repetitions):
+        start = time.process_time()
+        call()
+        rates.append(count / (time.process_time() - start))
+    print(f"{name} {np.median(rates):.3g} {unit} ({min(rates):.3g} to {max(rates):.3g}, "
+          f"n = {repetitions})", flush=True)
+
+
+def play(envs, actions):
+    """Returns a call that steps a vector environment with each row of actions."""
+    envs.reset(seed=1)
+
+    def call():
+        for row in actions:
+            envs.step(row)
+    return call
+
+
+def main(repetitions):
+    """Measures every interface."""
+    chance = np.random.default_rng(1)
+    single = chance.integers(0, 10, (STEPS, 1024))
+    batch = core.FarmBatch(aquafarm_gym.find_scenario("paper"), 1024, ["rewards", "reasons", "started",
+                                                                       "index"])
+    batch.reset(1)
+    rows = single.astype(np.uint8)[:, :, None]
+    measure("python_batch_index", "steps/s", single.size, repetitions,
+            lambda: [batch.step(row) for row in rows])
+    for observation in ("index", "features", "planes"):
+        envs = aquafarm_gym.FarmVectorEnv(1024, "paper", observation, copy=False)
+        measure(f"python_vector_{observation}", "steps/s", single.size, repetitions,
+                play(envs, single))
+    joint = chance.integers(0, 10, (STEPS, 1024, 2))
+    for observation in ("features", "planes"):
+        envs = aquafarm_gym.TeamVectorEnv(1024, "two_squads", observation, copy=False)
+        measure(f"python_teams_{observation}", "joint_steps/s", STEPS * 1024, repetitions,
+                play(envs, joint))
+    env = aquafarm_gym.FarmParallelEnv("two_squads") if importlib.util.find_spec("pettingzoo") else None
+    if env:
+        env.reset(seed=1)
+        measure("python_state", "states/s", STEPS, repetitions,
+                lambda: [env.state() for _ in range(STEPS)])
+    if importlib.util.find_spec("stable_baselines3"):
+        for observation in ("index", "features"):
+            envs = aquafarm_gym.FarmVecEnv(64, "paper", observation)
+            envs.reset()
+            measure(f"python_sb3_64_{observation}", "steps/s", STEPS * 64, repetitions,
+                    lambda: [envs.step(row) for row in single[:, :64]])
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 7)

@@ -11,8 +11,9 @@ DANGEROUS = re.compile(
     r"|shell=True|os\.system\(|os\.popen\(|std::system\(|[^\w:.]popen\(|dlopen\("
     r"|(?<![\w.])eval\(|(?<![\w.])exec\(")
 
-# Sources that execute a program because their user named it as one.
-ALLOWED = {"aquafarm_agents/core/src/training/register_learner.cpp": "dlopen("}
+# Sources that execute a program because their user named it as one, or read what they have written.
+ALLOWED = {"aquafarm_agents/core/src/training/register_learner.cpp": "dlopen(",
+           "tools/python_checks/gymnasium_envs.py": "pickle.loads(pickle.dumps(env))"}
 
 
 def sources():

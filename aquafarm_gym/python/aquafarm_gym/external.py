@@ -64,6 +64,9 @@ def cells_of(record: dict[str, Any]) -> dict[str, Any]:
 class TrainingEnv(FarmEnv):
     """A FarmEnv that writes metrics.csv and ends the training after `episodes` episodes."""
 
+    episodes_taken: int
+    steps_taken: int
+
     def __init__(self, scenario: core.Scenario, episodes: int, path: pathlib.Path,
                  **options: Any) -> None:
         super().__init__(scenario, **options)

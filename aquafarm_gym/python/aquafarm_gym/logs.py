@@ -187,6 +187,8 @@ class Metrics:
 class Curves:
     """Sends the means of the rows of one run to a sink."""
 
+    points: int
+
     def __init__(self, run: pathlib.Path, kind: str, window: int) -> None:
         self._run, self._kind, self._window = run, kind, window
         self._begin()

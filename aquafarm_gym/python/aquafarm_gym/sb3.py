@@ -28,6 +28,9 @@ class FarmVecEnv(VecEnv):  # type: ignore[misc, unused-ignore]
     in Monitor) and `is_success`. action_masks() is for MaskablePPO of sb3_contrib.
     """
 
+    farms: LocalFarms
+    render_mode: str | None
+
     def __init__(self, num_envs: int = 1, scenario: core.Scenario | str | pathlib.Path = "paper",
                  observation: str = "features", threads: int = 1,
                  render_mode: str | None = None) -> None:

@@ -30,7 +30,6 @@ set(AQUAFARM_PLAIN_SOURCES
   src/rescue/csv.cpp
   src/rescue/deadlines.cpp
   src/rescue/ensemble.cpp
-  src/rescue/fine_track.cpp
   src/rescue/fleet_state.cpp
   src/rescue/follow_trips.cpp
   src/rescue/forecast_errors.cpp

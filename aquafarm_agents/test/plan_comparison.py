@@ -128,7 +128,7 @@ class Comparison:
         self.same("ranch.origin.longitude", ranch["origin"]["longitude"],
                   message.origin_longitude_deg)
         self.fields("deadlines", plan["deadlines"], message, first_departure=None,
-                    no_departure_after=None, rule="no_departure_rule")
+                    no_departure_after=None, not_known_beyond=None, rule="no_departure_rule")
 
     def storm(self, plan, message):
         storm = plan["storm"]

@@ -341,8 +341,10 @@ TEST_F(PlanMessages, LossesAndChanges) {
   EXPECT_NEAR(plan().insured, insured, 0.01);
   ExpectLoss(report_->plan.loss, plan().loss);
   ExpectLoss(report_->plan.loss_idle, plan().loss_idle);
-  const std::optional<double> last = agents::NoDepartureAfter(case_->problem, *report_);
-  EXPECT_EQ(plan().no_departure_after, last ? At(*last) : ros::Time());
+  const agents::LastDeparture last = agents::LastDepartureOf(case_->problem, *report_);
+  const auto time_of = [&](std::optional<double> at_s) { return at_s ? At(*at_s) : ros::Time(); };
+  EXPECT_EQ(plan().no_departure_after, time_of(last.none_after_s));
+  EXPECT_EQ(plan().not_known_beyond, time_of(last.not_known_beyond_s));
   EXPECT_FALSE(plan().no_departure_rule.empty());
   ASSERT_EQ(plan().what_if.size(), report_->what_if.size());
   for (std::size_t i = 0; i < plan().what_if.size(); ++i) {

@@ -307,7 +307,7 @@ class PageTest(unittest.TestCase):
     def test_a_deadline_that_the_known_time_ends_is_no_limit(self):
         plan = copy.deepcopy(self.plan)
         plan["devices"][1]["deadlines"][2].update(open=True, leave="2021-07-25T18:00:00Z")
-        self.assertIn("no limit before Mon 26 Jul 02:00", words_of(plan))
+        self.assertIn("not known beyond Mon 26 Jul 02:00", words_of(plan))
 
     def test_plans_without_energy_prices_rings_or_forecast_are_shown(self):
         plan = copy.deepcopy(self.plan)

@@ -12,6 +12,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/storms/to_disaster.h"
+#include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/reader.h"
 #include "aquafarm_sim/convert/conversions.h"
 #include "aquafarm_sim/names.h"
@@ -130,8 +131,18 @@ class BulletinNode {
   // Reports the new state of the ranch: how much of the storm is recorded and how much is forecast.
   void Report(const std::string& path, const std::string& name,
               const aquafarm::StormTrack& storm) const {
-    const aquafarm::StormKnowledge known =
-        aquafarm::KnowledgeOf(storm, aquafarm::WithForecast(storm, aquafarm::NoForecast::kPersist));
+    const aquafarm::StormTrack whole =
+        aquafarm::WithForecast(storm, aquafarm::NoForecast::kPersist);
+    const aquafarm::StormKnowledge known = aquafarm::KnowledgeOf(storm, whole);
+    const std::int32_t held =
+        aquafarm::ToFineRings(whole, aquafarm::RingReduction::kQuadrants, known.recorded_until)
+            .held;
+    if (held > 0) {
+      ROS_WARN(
+          "%s: stretches of the storm's track without a known wind at both ends: %d; the larger "
+          "radii of both ends hold there; send a bulletin with a wind at each point",
+          path.c_str(), held);
+    }
     const std::string id = std::to_string(params_.id);
     const std::string text =
         path + ": " + name +

@@ -179,8 +179,8 @@ TEST(PlanText, DevicesHaveTheirOddsAndDeadlines) {
   const auto plan = Plan();
   const auto rows = PlanDevices(*plan);
   ASSERT_EQ(rows.size(), 3U);
-  EXPECT_EQ(rows[0], (PlanRow{"D1", "left behind", "none", "09:00", "no limit"}));
-  EXPECT_EQ(rows[1], (PlanRow{"D2", "87 %", "none", "09:00", "no limit"}));
+  EXPECT_EQ(rows[0], (PlanRow{"D1", "left behind", "none", "09:00", "not known beyond 09:00"}));
+  EXPECT_EQ(rows[1], (PlanRow{"D2", "87 %", "none", "09:00", "not known beyond 09:00"}));
   EXPECT_EQ(rows[2][1], "stays");
   EXPECT_EQ(rows[0].size(), PlanDeviceColumns().size());
   plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
@@ -216,6 +216,16 @@ TEST(PlanText, TheHeadlineNamesWhatIsOutdated) {
   EXPECT_EQ(PlanHeadline(*plan, 0.0),
             "plan: 1 of 2 ships leave. No ship should leave after 13:30. The bulletin is 14 hours "
             "old. OUTDATED: b.json: bad; this plan is of a.json");
+}
+
+TEST(PlanText, AnEndOfTheKnownTimeIsNoEndOfTheDepartures) {
+  const auto plan = Plan();
+  plan->not_known_beyond = plan->no_departure_after;
+  plan->no_departure_after = ros::Time();
+  EXPECT_EQ(PlanHeadline(*plan, 0.0),
+            "plan: 1 of 2 ships leave. Until when ships may leave is not known beyond 13:30.");
+  plan->result = aquafarm_msgs::RescuePlan::STORM_UNKNOWN;
+  EXPECT_EQ(PlanHeadline(*plan, 0.0), "plan: 1 of 2 ships leave.");
 }
 
 TEST(PlanWords, SharesAreNeverCertainAndOtherDaysAreNamed) {

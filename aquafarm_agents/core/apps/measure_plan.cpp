@@ -57,24 +57,27 @@ void Print(const char* name, const PromiseBin& bin) {
 }
 
 // Prints the bars of issue 22 and returns them with the diagram.
-Json Calibration(const char* title, const std::vector<std::vector<Promise>>& promises) {
+Json Calibration(const char* title, const std::vector<std::vector<Promise>>& promises,
+                 const Groups& tracks) {
   std::printf("%s\n", title);
+  const PromiseBin lower = BinOf(promises, 0.05, 0.55, tracks);
+  Print("5-55 %", lower);
   constexpr std::array<std::array<double, 3>, 4> kBars{
       {{0.2, 0.15, 0.25}, {0.5, 0.45, 0.55}, {0.8, 0.75, 0.85}, {0.95, 0.925, 0.975}}};
   Json bars = Json::array();
   for (const auto& [wanted, low, high] : kBars) {
-    const PromiseBin bin = BinOf(promises, low, high);
+    const PromiseBin bin = BinOf(promises, low, high, tracks);
     Print((std::to_string(static_cast<int>(100.0 * wanted + 0.5)) + " %").c_str(), bin);
     bars.push_back(Of(bin));
   }
   Json diagram = Json::array();
   for (int i = 0; i < 20; ++i) {
-    diagram.push_back(Of(BinOf(promises, i / 20.0, i == 19 ? 1.01 : (i + 1) / 20.0)));
+    diagram.push_back(Of(BinOf(promises, i / 20.0, i == 19 ? 1.01 : (i + 1) / 20.0, tracks)));
   }
-  return {{"bars", bars}, {"diagram", diagram}};
+  return {{"bars", bars}, {"from_5_to_55", Of(lower)}, {"diagram", diagram}};
 }
 
-Json Value(const std::vector<TrialResult>& trials) {
+Json Value(const std::vector<TrialResult>& trials, const Groups& tracks) {
   const auto of = [&](std::size_t policy) {
     std::vector<double> saved;
     saved.reserve(trials.size());
@@ -95,18 +98,20 @@ Json Value(const std::vector<TrialResult>& trials) {
     }
     std::vector<double> ahead;
     for (std::size_t i = 0; i < plan.size(); ++i) ahead.push_back(plan[i] - saved[i]);
-    const Estimate mean = MeanOf(saved);
-    const Estimate share = RatioOf(saved, best);
-    const Estimate by = MeanOf(ahead);
+    const Estimate mean = MeanOf(saved, tracks);
+    const Estimate share = RatioOf(saved, best, tracks);
+    const Estimate by = MeanOf(ahead, tracks);
     const std::string name(ToString(static_cast<TrialPolicy>(policy)));
     std::printf("  %-15s %8.3f +- %.3f   %.4f +- %.4f   %+8.4f +- %.4f\n", name.c_str(), mean.mean,
                 mean.half, share.mean, share.half, by.mean, by.half);
     rows.push_back(
         {{"policy", name}, {"saved", Of(mean)}, {"share", Of(share)}, {"plan_ahead", Of(by)}});
   }
-  const Estimate claim = MeanOf(promised);
-  std::printf("  %-15s %8.3f +- %.3f\n", "plan promised", claim.mean, claim.half);
-  return {{"policies", rows}, {"promised", Of(claim)}};
+  const Estimate claim = MeanOf(promised, tracks);
+  const Estimate kept = RatioOf(plan, promised, tracks);
+  std::printf("  %-15s %8.3f +- %.3f; saved by promised %.4f +- %.4f\n", "plan promised",
+              claim.mean, claim.half, kept.mean, kept.half);
+  return {{"policies", rows}, {"promised", Of(claim)}, {"saved_by_promised", Of(kept)}};
 }
 
 std::shared_ptr<const Scenario> Load(const Arguments& arguments) {
@@ -142,22 +147,26 @@ Json RunStorms(Arguments& arguments) {
   std::vector<TrialResult> results;
   std::vector<std::vector<Promise>> home;
   std::vector<std::vector<Promise>> gales;
+  Groups groups;
   for (std::int32_t i = 0; i < arguments.storms; ++i) {
     const TrialStorm storm =
         DrawTrial(tracks, trials.place(), arguments.trial, static_cast<std::uint64_t>(i));
     results.push_back(trials.Run(storm));
     home.push_back(results.back().home);
     gales.push_back(results.back().gales);
+    groups.push_back(results.back().track);
   }
   std::printf("%d storms, errors x %g, %d members\n", arguments.storms, arguments.error_scale,
               arguments.request.members);
   Json data{{"storms", arguments.storms},
             {"error_scale", arguments.error_scale},
             {"members", arguments.request.members},
-            {"seed", arguments.trial.seed}};
-  data["home"] = Calibration("the device comes home", home);
-  data["gales"] = Calibration("gales reach the device", gales);
-  data["value"] = Value(results);
+            {"seed", arguments.trial.seed},
+            {"tracks", tracks.size()},
+            {"intervals", "95 %, between tracks"}};
+  data["home"] = Calibration("the device comes home", home, groups);
+  data["gales"] = Calibration("gales reach the device", gales, groups);
+  data["value"] = Value(results, groups);
   return data;
 }
 
@@ -166,24 +175,30 @@ Json RunAverse(Arguments& arguments) {
   const PlanTrials trials = MakeTrials(arguments, tracks);
   std::vector<double> gain;
   std::vector<double> mean;
+  Groups groups;
   std::int32_t changed = 0;
   for (std::int32_t i = 0; i < arguments.storms; ++i) {
     const TrialStorm storm =
         DrawTrial(tracks, trials.place(), arguments.trial, static_cast<std::uint64_t>(i));
     const AverseResult result = trials.CompareAverse(storm, arguments.judges);
+    groups.push_back(result.track);
     mean.push_back(result.mean);
     gain.push_back(result.mean - result.averse);
     changed += result.mean != result.averse ? 1 : 0;
   }
-  const Estimate by = MeanOf(gain);
+  const Estimate by = MeanOf(gain, groups);
   std::printf(
       "mean of the worst 5 %% of the losses, %d storms, %d judging members\n"
       "  without --risk-averse %.3f; with it less by %.4f +- %.4f; other plan in %d storms\n",
       arguments.storms, arguments.judges, MeanOf(mean).mean, by.mean, by.half, changed);
   return {{"storms", arguments.storms},
           {"judges", arguments.judges},
+          {"members", arguments.request.members},
+          {"seed", arguments.trial.seed},
+          {"tracks", tracks.size()},
+          {"intervals", "95 %, between tracks"},
           {"changed", changed},
-          {"without", Of(MeanOf(mean))},
+          {"without", Of(MeanOf(mean, groups))},
           {"gain", Of(by)}};
 }
 

@@ -316,6 +316,7 @@ void SetWords(const Json& document, RescuePlan& plan) {
   const Json& deadlines = document.at("deadlines");
   plan.first_departure = Time(deadlines.value("first_departure", Json()));
   plan.no_departure_after = Time(deadlines.at("no_departure_after"));
+  plan.not_known_beyond = Time(deadlines.value("not_known_beyond", Json()));
   plan.no_departure_rule = deadlines.at("rule").get<std::string>();
 }
 

@@ -56,6 +56,8 @@ def render(plan):
         left_reason=lambda left: words.left_reason(plan, left),
         deadline_text=lambda one: words.deadline_text(plan, one),
         no_rings=words.no_rings(plan),
+        last_known=(words.last_known(plan)
+                    if plan["deadlines"].get("not_known_beyond") else None),
         unknown=words.is_unknown(plan),
         device_name=lambda i: plan["devices"][i]["name"],
         departures=departures,

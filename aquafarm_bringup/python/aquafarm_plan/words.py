@@ -62,7 +62,14 @@ def deadline_text(plan, deadline):
     if not deadline["leave"]:
         return "no departure has it"
     day_time = Clock(plan["clock"]).day_time(deadline["leave"])
-    return f"no limit before {day_time}" if deadline.get("open") else day_time
+    return f"not known beyond {day_time}" if deadline.get("open") else day_time
+
+
+def last_known(plan):
+    """Sentence on the time from which no ship should leave, where it is not known."""
+    beyond = Clock(plan["clock"]).day_time(plan["deadlines"]["not_known_beyond"])
+    return (f"Until when ships may leave is not known beyond {beyond}: plan again at the next "
+            "bulletin.")
 
 
 def device_names(plan, ids):
@@ -143,6 +150,8 @@ def _leave(plan):
     last = deadlines["no_departure_after"]
     if last:
         remark = f"{_latest(plan, clock)}From {clock.day_time(last)} on, no ship should leave."
+    elif deadlines.get("not_known_beyond"):
+        remark = f"{_latest(plan, clock)}{last_known(plan)}"
     elif away:
         remark = f"{_horizon(plan, clock)} Plan again at the next bulletin."
     else:

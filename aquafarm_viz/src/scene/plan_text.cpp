@@ -52,16 +52,25 @@ std::string ChanceText(const RescuePlan& plan, float chance) {
 std::string DeadlineText(const RescuePlan& plan, const RescueDeadline& deadline) {
   if (plan.result == RescuePlan::STORM_UNKNOWN) return "unknown";
   if (!deadline.possible) return "none";
-  return deadline.open ? "no limit" : LocalText(plan, deadline.leave);
+  return (deadline.open ? "not known beyond " : "") + LocalText(plan, deadline.leave);
+}
+
+// Returns a sentence on the end of the departures; empty if there is none.
+std::string LastDepartureText(const RescuePlan& plan) {
+  if (plan.result == RescuePlan::STORM_UNKNOWN) return "";
+  if (!plan.no_departure_after.isZero()) {
+    return " No ship should leave after " + LocalText(plan, plan.no_departure_after) + ".";
+  }
+  if (plan.not_known_beyond.isZero()) return "";
+  return " Until when ships may leave is not known beyond " +
+         LocalText(plan, plan.not_known_beyond) + ".";
 }
 
 }  // namespace
 
 std::string PlanHeadline(const RescuePlan& plan, double silent_s) {
   std::string text = "plan: " + plan.text;
-  if (!plan.no_departure_after.isZero() && plan.result != RescuePlan::STORM_UNKNOWN) {
-    text += " No ship should leave after " + LocalText(plan, plan.no_departure_after) + ".";
-  }
+  text += LastDepartureText(plan);
   for (const auto& warning : plan.warnings) {
     if (warning.severity == "stop" && warning.text != plan.text) text += " " + warning.text;
   }

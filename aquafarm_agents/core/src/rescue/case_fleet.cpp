@@ -36,7 +36,8 @@ Cell WaterCell(const CsvRow& row, const std::string& name, const RescueCase& res
   if (!on_map) {
     fail("expected a place on the chart of the ranch, " + Where(rescue.frame.ToGeo(0, 0)) + " to " +
          Where(rescue.frame.ToGeo(static_cast<double>(water.cols() - 1),
-                                  static_cast<double>(water.rows() - 1))));
+                                  static_cast<double>(water.rows() - 1))) +
+         "; correct the place, or move the chart: --place is its middle");
   }
   if (water(cell.y, cell.x) == 0) {
     fail("which is land or rock in cell (" + std::to_string(cell.x) + ", " +

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "aquafarm/agents/base/text.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/storms/to_disaster.h"
+#include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/reader.h"
-#include "aquafarm/tracks/wind_radii.h"
 #include "rescue/case_parts.h"
-#include "rescue/fine_track.h"
-#include "rescue/storm_member.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -119,99 +117,6 @@ StormTrack FromRecord(const RescueRequest& request, RescueCase& rescue) {
   return track;
 }
 
-// Returns the wind, or the lowest one of the grade; 0 if both are unknown.
-double WindOf(const StormWaypoint& at) { return at.wind_mps.value_or(LowestWindOf(at.grade)); }
-
-// Returns the estimate of a ring from the wind; 0 if the storm does not reach its wind.
-double MedianOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
-  return EstimateRadius(storm.wind_kt[ring], WindOf(at), at.position.latitude, at.averaging_min)
-      .median_km;
-}
-
-// Returns the ratio of a ring to its estimate from the wind; 0 if one of them is unknown.
-double SizeOf(const StormRings& storm, const StormWaypoint& at, std::size_t ring) {
-  const double median_km = MedianOf(storm, at, ring);
-  if (at.radii_km[ring] <= 0.0 || median_km <= 0.0) return 0.0;
-  double squares = 0.0;
-  for (const double radius_km : at.quadrants_km[ring]) squares += radius_km * radius_km;
-  return std::sqrt(squares / kQuadrantCount) / median_km;
-}
-
-// Returns whether the radii of a ring are reported at a fix, or derived from reported ones.
-bool IsReported(const StormFix& fix, const StormWaypoint& at, std::int32_t wind_kt) {
-  const WindRing* ring = fix.Ring(wind_kt);
-  if (ring == nullptr && wind_kt == 34 && at.is_reported) ring = fix.Ring(30);
-  return ring != nullptr && !ring->estimated;
-}
-
-// Sets the estimated rings of a fix to their estimates times the size of the last report, to the
-// power of what is left of it. The size also holds for winds that the storm does not reach there.
-// Reported rings are kept: an estimated one never ends within a stronger one that is reported.
-void Resize(const StormWaypoint& report, double kept, const StormFix& fix, StormRings& storm,
-            StormWaypoint& at) {
-  using Edge = std::array<double, kQuadrantCount>;
-  const std::size_t rings = storm.wind_kt.size();
-  const bool has_own = IsReported(fix, at, storm.wind_kt.back());
-  const double outermost = SizeOf(storm, has_own ? at : report, rings - 1);
-  at.size = outermost > 0.0 ? std::pow(outermost, has_own ? 1.0 : kept) : 1.0;
-  std::vector<Edge> reported(rings, Edge{});  // the largest of this ring and stronger ones
-  for (std::size_t ring = 0; ring < rings; ++ring) {
-    if (ring > 0) reported[ring] = reported[ring - 1];
-    if (!IsReported(fix, at, storm.wind_kt[ring])) continue;
-    for (std::size_t q = 0; q < kQuadrantCount; ++q) {
-      reported[ring][q] = std::max(reported[ring][q], at.quadrants_km[ring][q]);
-    }
-  }
-  Edge outer{};
-  outer.fill(std::numeric_limits<double>::infinity());
-  for (std::size_t ring = rings; ring-- > 0;) {
-    const double own = SizeOf(storm, report, ring);
-    const double radius_km =
-        MedianOf(storm, at, ring) * (own > 0.0 ? std::pow(own, kept) : at.size);
-    if (IsReported(fix, at, storm.wind_kt[ring])) {
-      outer = at.quadrants_km[ring];
-    } else {
-      for (std::size_t q = 0; q < kQuadrantCount; ++q) {
-        outer[q] = std::min(outer[q], std::max(radius_km, reported[ring][q]));
-      }
-    }
-    at.quadrants_km[ring] = outer;
-    at.radii_km[ring] = *std::max_element(outer.begin(), outer.end());
-  }
-}
-
-// Keeps the size of the last report with radii after it: estimated radii become the
-// estimate times a factor that returns to 1 with the memory of a storm's size. What is remembered
-// is the logarithm of the factor in units of its spread at the storm's strength (SizeSigma).
-// @param track of the rings, with the same fixes
-// @returns the lead time of that report; minus infinity if there is none
-double CarrySize(const ForecastErrors& errors, std::int64_t issued, const StormTrack& track,
-                 StormRings& storm) {
-  AQUAFARM_CHECK_EQ(track.fixes.size(), storm.waypoints.size());
-  const StormWaypoint* report = nullptr;
-  for (std::size_t i = 0; i < storm.waypoints.size(); ++i) {
-    StormWaypoint& at = storm.waypoints[i];
-    if (at.forecast) continue;
-    for (const std::int32_t wind_kt : storm.wind_kt) {
-      at.keeps_radii.push_back(IsReported(track.fixes[i], at, wind_kt));
-    }
-    if (at.is_reported) report = &at;
-  }
-  if (report == nullptr) return -std::numeric_limits<double>::infinity();
-  const StormWaypoint last = *report;
-  const auto sigma = [&storm](const StormWaypoint& at) {
-    return SizeSigma(storm.wind_kt.back(), WindOf(at), at.position.latitude, at.averaging_min);
-  };
-  for (std::size_t i = 0; i < storm.waypoints.size(); ++i) {
-    StormWaypoint& at = storm.waypoints[i];
-    if (!at.estimated || WindOf(at) <= 0.0 || at.time <= last.time) continue;
-    const double since_h = static_cast<double>(at.time - last.time) / kHour_s;
-    const double kept = std::exp(-since_h / errors.size_memory_h) * sigma(at) / sigma(last);
-    Resize(last, kept, track.fixes[i], storm, at);
-  }
-  return static_cast<double>(last.time - issued) / kHour_s;
-}
-
 void WarnOfStorm(RescueCase& rescue) {
   const StormRecord& storm = rescue.storm;
   auto& warnings = rescue.warnings;
@@ -249,6 +154,13 @@ void WarnOfStorm(RescueCase& rescue) {
                             std::to_string(storm.rings.estimated) + " points of the storm.",
                         ""});
   }
+  if (storm.held > 0) {
+    warnings.push_back({"wind_unknown_between", "warning",
+                        "Stretches of the storm's track without a known wind at both ends: " +
+                            std::to_string(storm.held) +
+                            ". There the plan takes the larger radii of both ends.",
+                        "Give a bulletin with a wind at each point."});
+  }
   if (storm.passage.over_at_end) {
     warnings.push_back({"known_until", "warning",
                         "The storm is still over the ranch at " + FormatUtc(*storm.known_until) +
@@ -276,10 +188,13 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
   StormRecord& storm = rescue.storm;
   storm.name = NameOf(track);
   storm.rings = ToRings(track, RingReduction::kQuadrants);
-  rescue.forecast.size_report_h = CarrySize(request.errors, *storm.issued, track, storm.rings);
-  const StormTrack fine = FineTrack(track, rescue.start);
-  StormRings fine_rings = ToRings(fine, RingReduction::kQuadrants, storm.rings.wind_kt);
-  CarrySize(request.errors, *storm.issued, fine, fine_rings);
+  const double memory_h = request.errors.size_memory_h;
+  const std::optional<std::int64_t> report = CarrySize(track, memory_h, storm.rings);
+  rescue.forecast.size_report_h = report ? static_cast<double>(*report - *storm.issued) / kHour_s
+                                         : -std::numeric_limits<double>::infinity();
+  auto [fine, held] =
+      ToFineRings(track, RingReduction::kQuadrants, rescue.start, storm.rings.wind_kt, memory_h);
+  storm.held = held;
   if (*storm.known_until <= rescue.start) {
     throw InputError(storm.file + ": got a storm known until " + FormatUtc(*storm.known_until) +
                      ", expected one that is known after " + FormatUtc(rescue.start) +
@@ -301,8 +216,7 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
   options.seed = request.seed;
   options.errors = request.errors;
   CentralForecast& forecast = rescue.forecast;
-  forecast.path =
-      ToPath(fine_rings, rescue.frame, scenario.cell_size_m, options.step_s, rescue.start);
+  forecast.path = ToPath(fine, rescue.frame, scenario.cell_size_m, options.step_s, rescue.start);
   forecast.lead_h.clear();
   for (const StormPoint& point : forecast.path.points) {
     const double time_s = point.step * options.step_s + static_cast<double>(rescue.start);
@@ -312,9 +226,8 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
   for (const DisasterSpec& disaster : scenario.disasters) {
     if (!disaster.grade_risks.empty()) forecast.risks = disaster.grade_risks;
   }
-  StormRings ahead = storm.rings;
-  auto& points = ahead.waypoints;
-  const std::optional<StormWaypoint> now = ahead.At(rescue.start);
+  auto& points = fine.waypoints;
+  const std::optional<StormWaypoint> now = fine.At(rescue.start);
   points.erase(std::remove_if(points.begin(), points.end(),
                               [&](const StormWaypoint& at) { return at.time <= rescue.start; }),
                points.end());
@@ -323,7 +236,7 @@ void UseStorm(const StormTrack& track, const RescueRequest& request, RescueCase&
       std::hypot(scenario.width, scenario.height) / 2.0 * scenario.cell_size_m / 1000.0;
   const GeoPoint middle =
       rescue.frame.ToGeo((scenario.width - 1) / 2.0, (scenario.height - 1) / 2.0);
-  storm.passage = ClosestApproach(ahead, middle, half_km);
+  storm.passage = ClosestApproach(fine, middle, half_km);
 }
 
 }  // namespace aquafarm::agents

@@ -45,6 +45,10 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
             "2015 "
             "to 2021 (docs/plan.md); 10 % is assumed"
           : "Spread of recorded radii about the estimate by wind and latitude (docs/data.md)");
+  if (rescue.storm.held > 0) {
+    add("Radii between points of the track without a known wind", "the larger ones of both points",
+        "assumed", "On the safe side: radii can be estimated from a wind alone");
+  }
   add("Position errors along and across the track", "normal, equal, correlated by exp(-dt / 48 h)",
       "assumed", "The published statistics give mean distances alone");
   add("Damage of a device at its site",

@@ -215,7 +215,7 @@ class JsonReport {
             {"closest_approach", closest}};
   }
 
-  // The ensemble also has points between those of the forecast (fine_track.h).
+  // The ensemble also has points between those of the forecast (aquafarm/tracks/fine_rings.h).
   bool IsPointOfForecast(const EnsembleSpread& at) const {
     const std::int64_t time = case_.start + std::llround(at.time_s);
     const auto& points = case_.storm.rings.waypoints;
@@ -426,7 +426,8 @@ class JsonReport {
     for (const RescueDevice& device : case_.problem.devices) insured += device.value;
     return {{"currency", case_.currency.empty() ? Json(nullptr) : Json(case_.currency)},
             {"insured", Money(insured)},
-            {"operating_cost", IsPriced(case_.problem) ? Json(Money(report_.plan.cost)) : nullptr},
+            {"operating_cost",
+             IsPriced(case_.problem) ? Known(Money(report_.plan.cost)) : Json(nullptr)},
             {"with_plan", AreWindsUnknown() ? UnknownLoss() : LossOf(report_.plan.loss)},
             {"idle", AreWindsUnknown() ? UnknownLoss() : LossOf(report_.plan.loss_idle)}};
   }
@@ -437,8 +438,10 @@ class JsonReport {
       const double leave_s = route.orders.front().time_s;
       if (!first || leave_s < *first) first = leave_s;
     }
+    const LastDeparture last = LastDepartureOf(case_.problem, report_);
     return {{"first_departure", TimeOrNull(first)},
-            {"no_departure_after", TimeOrNull(NoDepartureAfter(case_.problem, report_))},
+            {"no_departure_after", TimeOrNull(last.none_after_s)},
+            {"not_known_beyond", TimeOrNull(last.not_known_beyond_s)},
             {"rule",
              "the latest departure with which any device at its place has a chance of at least "
              "50 %"}};

@@ -9,7 +9,11 @@
 namespace aquafarm::agents {
 namespace {
 
-std::string Percent(double share) { return Short(100.0 * share, 0) + " %"; }
+// A share of a sample is never called certain.
+std::string Percent(double share) {
+  if (share >= 0.995) return "> 99 %";
+  return share < 0.005 ? "< 1 %" : Short(100.0 * share, 0) + " %";
+}
 
 std::string Money(const RescueCase& rescue, double value) {
   return Short(value, std::abs(value) < 1000.0 ? 1 : 0) +
@@ -158,7 +162,7 @@ void AddDevices(const RescueCase& rescue, const PlanReport& report, std::string&
     for (const Deadline& deadline : report.deadlines[d]) {
       text += " " +
               (!deadline.leave_s  ? std::string("none")
-               : deadline.is_open ? std::string("open")
+               : deadline.is_open ? "not known beyond " + Clock(rescue, *deadline.leave_s)
                                   : Clock(rescue, *deadline.leave_s)) +
               (deadline.probability == kDeadlineShares.back() ? ";" : ",");
     }
@@ -212,16 +216,20 @@ void WarnOfWaysHome(RescueCase& rescue, const PlanReport& report) {
 
 }  // namespace
 
-std::optional<double> NoDepartureAfter(const RescueProblem& problem, const PlanReport& report) {
-  std::optional<double> latest;
+LastDeparture LastDepartureOf(const RescueProblem& problem, const PlanReport& report) {
   const bool no_winds = report.result == PlanResult::kStormStaysAway;
-  if (report.result == PlanResult::kStormUnknown || no_winds) return latest;
+  if (report.result == PlanResult::kStormUnknown || no_winds) return {};
+  std::optional<double> latest;
+  bool is_open = false;
   for (std::size_t d = 0; d < report.deadlines.size(); ++d) {
     if (problem.CarrierOf(d) != kNone) continue;
-    const std::optional<double>& leave_s = report.deadlines[d].back().leave_s;
-    if (leave_s && (!latest || *leave_s > *latest)) latest = leave_s;
+    const Deadline& deadline = report.deadlines[d].back();
+    if (!deadline.leave_s) continue;
+    latest = std::max(latest.value_or(*deadline.leave_s), *deadline.leave_s);
+    is_open = is_open || deadline.is_open;
   }
-  return latest;
+  if (is_open) return {std::nullopt, latest};
+  return {latest, std::nullopt};
 }
 
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble) {
@@ -259,8 +267,13 @@ std::string ToText(const RescueCase& rescue, const PlanReport& report) {
   text += "\nloss: mean " + Money(rescue, loss.mean) + ", 5 to 95 %: " + Money(rescue, loss.q05) +
           " to " + Money(rescue, loss.q95) +
           "; mean of the worst 5 %: " + Money(rescue, loss.cvar05) + "\n";
-  if (const std::optional<double> last = NoDepartureAfter(rescue.problem, report)) {
-    text += "no ship should leave after " + Clock(rescue, *last) + "\n";
+  const LastDeparture last = LastDepartureOf(rescue.problem, report);
+  if (last.none_after_s) {
+    text += "no ship should leave after " + Clock(rescue, *last.none_after_s) + "\n";
+  }
+  if (last.not_known_beyond_s) {
+    text += "until when ships may leave is not known beyond " +
+            Clock(rescue, *last.not_known_beyond_s) + ": plan again with the next bulletin\n";
   }
   text += "\nwhat if: mean loss, change\n";
   for (const WhatIf& row : report.what_if) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <utility>
 
 #include "aquafarm/base/check.h"
@@ -86,6 +88,7 @@ TrialResult PlanTrials::Run(const TrialStorm& storm, bool reacts) const {
   const RescuePlan plan = PlanRescue(problem, ensemble);
   const RescuePlan real = PlayRescue(problem, truth, plan);
   TrialResult result;
+  result.track = storm.track;
   result.lead_h = storm.lead_h;
   result.nearest_km = storm.nearest_km;
   result.promised = plan.saved;
@@ -136,33 +139,33 @@ AverseResult PlanTrials::CompareAverse(const TrialStorm& storm, std::int32_t mem
     const RescuePlan plan = PlanRescue(rescue.problem, ensemble);
     return MeanOfWorst(PlayRescue(rescue.problem, judge, plan).loss, kShare);
   };
-  return {worst(0.0), worst(kShare)};
+  return {storm.track, worst(0.0), worst(kShare)};
 }
 
-Estimate MeanOf(const std::vector<double>& values) {
-  const auto count = static_cast<double>(values.size());
-  Estimate estimate;
-  if (values.empty()) return estimate;
-  for (const double value : values) estimate.mean += value / count;
-  double squares = 0.0;
-  for (const double value : values) {
-    squares += (value - estimate.mean) * (value - estimate.mean);
-  }
-  if (values.size() > 1) estimate.half = kNormal95 * std::sqrt(squares / (count - 1.0) / count);
-  return estimate;
+Estimate MeanOf(const std::vector<double>& values, const Groups& groups) {
+  return RatioOf(values, std::vector<double>(values.size(), 1.0), groups);
 }
 
-Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& below) {
+Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& below,
+                 const Groups& groups) {
   AQUAFARM_CHECK_EQ(above.size(), below.size());
-  const double base = MeanOf(below).mean;
+  if (!groups.empty()) AQUAFARM_CHECK_EQ(groups.size(), above.size());
+  const double base = std::accumulate(below.begin(), below.end(), 0.0);
   if (base == 0.0) return {};
-  const double ratio = MeanOf(above).mean / base;
-  std::vector<double> rest;
-  for (std::size_t i = 0; i < above.size(); ++i) rest.push_back(above[i] - ratio * below[i]);
-  return {ratio, MeanOf(rest).half / base};
+  const double ratio = std::accumulate(above.begin(), above.end(), 0.0) / base;
+  std::map<std::size_t, double> rest;  // by group
+  for (std::size_t i = 0; i < above.size(); ++i) {
+    rest[groups.empty() ? i : groups[i]] += above[i] - ratio * below[i];
+  }
+  if (rest.size() < 2) return {ratio, std::numeric_limits<double>::infinity()};
+  double squares = 0.0;
+  for (const auto& [group, sum] : rest) squares += sum * sum;
+  const auto count = static_cast<double>(rest.size());
+  return {ratio, kNormal95 * std::sqrt(squares * count / (count - 1.0)) / std::abs(base)};
 }
 
-PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, double high) {
+PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, double high,
+                 const Groups& groups) {
   PromiseBin bin;
   bin.low = low;
   bin.high = high;
@@ -183,7 +186,7 @@ PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, 
   }
   if (bin.count == 0) return bin;
   bin.promised /= static_cast<double>(bin.count);
-  bin.kept = RatioOf(kept, number);
+  bin.kept = RatioOf(kept, number, groups);
   return bin;
 }
 

@@ -37,6 +37,7 @@ struct Promise {
 
 /// One trial.
 struct TrialResult {
+  std::size_t track{};  ///< TrialStorm::track
   double lead_h{};
   double nearest_km{};
   std::vector<Promise> home;   ///< of each device that the plan fetches: it came home
@@ -49,8 +50,9 @@ struct TrialResult {
 
 /// Mean of the worst 5 % of the losses of two plans, over other members than those of the plans.
 struct AverseResult {
-  double mean{};    ///< of the plan with the least mean loss
-  double averse{};  ///< of the plan with the least mean of the worst 5 %
+  std::size_t track{};  ///< TrialStorm::track
+  double mean{};        ///< of the plan with the least mean loss
+  double averse{};      ///< of the plan with the least mean of the worst 5 %
 };
 
 /// Plans a ranch for many storms.
@@ -77,16 +79,23 @@ class PlanTrials {
   GeoPoint place_;
 };
 
-/// Mean with the half width of its 95 % interval, from independent values.
+/// Group of each value. Values of one group may depend on each other, groups are independent.
+/// Empty: each value is a group of its own.
+using Groups = std::vector<std::size_t>;
+
+/// Mean with the half width of its 95 % interval, from the variance between groups
+/// (cluster-robust; Liang and Zeger 1986, Biometrika 73(1), 13-22).
 struct Estimate {
   double mean{};
-  double half{};
+  double half{};  ///< infinite for a single group
 };
-Estimate MeanOf(const std::vector<double>& values);
+Estimate MeanOf(const std::vector<double>& values, const Groups& groups = {});
 /// Ratio of the means of paired values, with the interval of the delta method.
-Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& below);
+Estimate RatioOf(const std::vector<double>& above, const std::vector<double>& below,
+                 const Groups& groups = {});
 
-/// Promises of about one probability. Trials are independent, the devices of one trial are not.
+/// Promises of about one probability. Groups of trials are independent, the devices of one trial
+/// are not.
 struct PromiseBin {
   double low{};
   double high{};
@@ -94,7 +103,8 @@ struct PromiseBin {
   double promised{};  ///< mean
   Estimate kept;      ///< share
 };
-/// @param by_trial promises of each trial
-PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, double high);
+/// @param by_trial promises of each trial @param groups of the trials
+PromiseBin BinOf(const std::vector<std::vector<Promise>>& by_trial, double low, double high,
+                 const Groups& groups = {});
 
 }  // namespace aquafarm::agents

@@ -29,15 +29,6 @@ class Normals {
 
 }  // namespace
 
-double SizeSigma(std::int32_t wind_kt, double wind_mps, double latitude,
-                 std::int32_t averaging_min) {
-  // The bound comes first: std::max(bound, NaN) is the bound, std::max(NaN, bound) is NaN.
-  const double at_least_mps = std::max(wind_kt * kMpsPerKnot, wind_mps);
-  const double sigma = EstimateRadius(wind_kt, at_least_mps, latitude, averaging_min).log_sigma;
-  AQUAFARM_CHECK_LT(0.0, sigma);  // it is divided by; radii of NaN would never arrive
-  return sigma;
-}
-
 MemberSampler::MemberSampler(const CentralForecast& forecast, const EnsembleOptions& options)
     : forecast_(forecast), options_(options), errors_(forecast.path.points.size()) {
   AQUAFARM_CHECK_EQ(forecast.lead_h.size(), errors_.size());

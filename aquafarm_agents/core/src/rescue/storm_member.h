@@ -20,11 +20,6 @@ struct StormState {
   std::array<float, kMaxStormRings> risk{};
 };
 
-/// Returns the log-standard deviation of recorded radii of a wind about EstimateRadius, by the
-/// storm's greatest wind; that of the weakest storms if it does not reach `wind_kt` or is unknown.
-double SizeSigma(std::int32_t wind_kt, double wind_mps, double latitude,
-                 std::int32_t averaging_min);
-
 /// Draws members of a central forecast.
 class MemberSampler {
  public:

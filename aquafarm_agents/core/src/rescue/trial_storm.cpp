@@ -9,8 +9,8 @@
 #include "aquafarm/base/angle.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
+#include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/wind_radii.h"
-#include "rescue/fine_track.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -210,7 +210,8 @@ TrialStorm DrawTrial(const std::vector<StormTrack>& tracks, GeoPoint place,
                      const TrialOptions& options, std::uint64_t index) {
   AQUAFARM_CHECK_LT(std::size_t{0}, tracks.size());
   RandomStream rng({options.seed, index, RngStream::kStorm, 7});
-  StormTrack truth = tracks[rng.Below(static_cast<std::uint32_t>(tracks.size()))];
+  const std::size_t index_of_track = rng.Below(static_cast<std::uint32_t>(tracks.size()));
+  StormTrack truth = tracks[index_of_track];
   const auto [nearest, km] = NearestTime(truth, place);
   const auto uniform = [&rng](double low, double high) {
     return low + (high - low) * static_cast<double>(rng.Unit());
@@ -220,7 +221,9 @@ TrialStorm DrawTrial(const std::vector<StormTrack>& tracks, GeoPoint place,
   const double north_km = uniform(-options.moved_km, options.moved_km);
   for (StormFix& fix : truth.fixes) Move(fix.position, east_km, north_km);
   const auto at = nearest - static_cast<std::int64_t>(lead_h * static_cast<double>(kHour_s));
-  return MakeTrial(std::move(truth), at, options, place, rng);
+  TrialStorm trial = MakeTrial(std::move(truth), at, options, place, rng);
+  trial.track = index_of_track;
+  return trial;
 }
 
 TrialStorm RecordedTrial(const StormTrack& track, GeoPoint place, const TrialOptions& options,

@@ -38,6 +38,7 @@ struct TrialStorm {
   StormTrack truth;
   StormTrack known;  ///< recorded until `start`, with one forecast that is issued then
   std::int64_t start{};
+  std::size_t track{};  ///< index of the recorded track; storms of one track resemble each other
   /// Bulletins that follow, TrialOptions::bulletin_h apart, until the storm ends. Their errors are
   /// drawn again; they report radii if `known` does.
   std::vector<StormTrack> later;

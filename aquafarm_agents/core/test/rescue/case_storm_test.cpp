@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/farm/farm.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm/storms/to_disaster.h"
 #include "aquafarm/tracks/reader.h"
 #include "aquafarm/tracks/wind_radii.h"
 #include "rescue/case_parts.h"
-#include "rescue/fine_track.h"
 #include "rescue/storm_member.h"
 
 namespace aquafarm::agents {
@@ -143,33 +145,59 @@ TEST_F(Storm, RadiiBetweenTwoPointsFollowFromTheWind) {
   EXPECT_EQ(Gales(12).front(), 0.0);
 }
 
-TEST_F(Storm, APointWithoutAKnownWindIsNotInterpolated) {
-  Add(-6, 32.0, 0.0, false);
-  Add(0, 32.0, 0.0, false);
-  Add(12, 32.0, 0.0, true);
-  track_.fixes.back().wind_mps.reset();
-  EXPECT_EQ(FineTrack(track_, case_.start).fixes.size(), 3U);
-  track_.fixes.back().wind_mps = 20.0;
-  EXPECT_EQ(FineTrack(track_, case_.start).fixes.size(), 6U);
-  EXPECT_EQ(FineTrack(track_, case_.start + 12 * kHour_s).fixes.size(), 3U) << "it is past";
+// A bulletin that weakens below a gale, as a plan and as a disaster of the farm: both have gales at
+// a device until the same time.
+TEST_F(Storm, TheFarmHasGalesAsLongAsThePlan) {
+  auto scenario = std::make_shared<Scenario>(*case_.scenario);
+  scenario->start_time = case_.start;
+  const Cell device = case_.problem.devices[0].cell;
+  for (const double gale_km : {0.0, 1.4 * Median(32.0, 30.0)}) {
+    track_ = {};
+    Add(-6, 32.0, gale_km, false);
+    Add(0, 32.0, gale_km, false);
+    Add(12, 12.8, 0.0, true);
+    for (StormFix& fix : track_.fixes) fix.position.longitude = 124.25;  // 150 km off the ranch
+    StormTrack bulletin = track_;
+    bulletin.fixes.pop_back();
+    bulletin.forecasts = {{"", case_.start, {track_.fixes.back()}}};
+    UseStorm(WithForecast(bulletin, NoForecast::kPersist), request_, case_);
+    EnsembleOptions exact = case_.ensemble;
+    exact.members = 1;
+    exact.errors.scale = 0.0;
+    const Ensemble plan(case_.forecast, exact, {device});
+    double plan_end_h = 0.0;
+    for (std::int32_t step = 0; step < plan.steps(); ++step) {
+      const auto cell = static_cast<std::size_t>(device.y * exact.width + device.x);
+      if (plan.Covered(kGale, step)[cell] > 0) plan_end_h = step * exact.step_s / kHour_s;
+    }
+    Farm farm(scenario);
+    farm.SetDisaster(0, ToDisaster(bulletin, *scenario, 0, 0));
+    const std::vector<std::uint8_t> hold(farm.ships().size(),
+                                         static_cast<std::uint8_t>(Action::kHold));
+    double farm_end_h = 0.0;
+    while (farm.step() * scenario->step_duration_s < 12.0 * kHour_s) {
+      if (farm.RiskAt(device) < 0.0F) {
+        farm_end_h = farm.step() * scenario->step_duration_s / kHour_s;
+      }
+      farm.Step(hold.data());
+    }
+    EXPECT_GT(plan_end_h, 8.0) << "linear radii end after six hours";
+    EXPECT_LT(plan_end_h, 12.0);
+    EXPECT_NEAR(farm_end_h, plan_end_h, (scenario->step_duration_s + exact.step_s) / kHour_s);
+  }
 }
 
-TEST_F(Storm, PointsBetweenCrossTheDateLineAndKeepCommonRings) {
-  Add(0, 30.0, 200.0, false);
-  Add(6, 20.0, 100.0, true);
-  AddRing({50, {80.0, 80.0, 80.0, 80.0}, false}, track_.fixes.front().rings);
-  track_.fixes[0].position.longitude = 179.0;
-  track_.fixes[1].position.longitude = -179.0;
-  const StormTrack fine = FineTrack(track_, case_.start);
-  ASSERT_EQ(fine.fixes.size(), 3U);
-  const StormFix& middle = fine.fixes[1];
-  EXPECT_EQ(middle.time, case_.start + 3 * kHour_s);
-  EXPECT_NEAR(std::abs(middle.position.longitude), 180.0, 1e-9);
-  EXPECT_EQ(middle.wind_mps, 25.0);
-  EXPECT_EQ(middle.grade, StormGrade::kSevereTropicalStorm);
-  ASSERT_EQ(middle.rings.size(), 1U) << "50 kt are estimated from the wind";
-  EXPECT_EQ(middle.rings[0].radius_km[0], 150.0);
-  EXPECT_TRUE(middle.forecast);
+TEST_F(Storm, StretchesWithoutAKnownWindHaveTheLargerRadiiAndAWarning) {
+  Add(-6, 32.0, 0.0, false);
+  Add(0, 32.0, 0.0, false);
+  Add(12, 12.0, 0.0, true);
+  track_.fixes.back().wind_mps.reset();
+  track_.fixes.back().grade = StormGrade::kTropicalDepression;
+  request_.errors.scale = 0.0;
+  EXPECT_NEAR(Gales(9).front(), Median(32.0, 30.0), 1e-3);
+  EXPECT_EQ(Gales(12).front(), 0.0);
+  EXPECT_EQ(case_.storm.held, 1);
+  EXPECT_EQ(case_.storm.rings.waypoints.size(), 3U) << "the page shows the bulletin's points";
 }
 
 TEST_F(Storm, AReportOfGalesAloneIsAReport) {

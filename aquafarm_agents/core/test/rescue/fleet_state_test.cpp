@@ -115,6 +115,18 @@ TEST_F(Fleet, AShipWithADeviceAboardIsOrderedToDeliverIt) {
   EXPECT_LT(report.plan.devices[2].mean_loss, report.plan.devices[2].mean_loss_idle);
 }
 
+// The known time is too short for one of the deadlines: its end is not the end of the danger.
+TEST_F(Fleet, AnOpenDeadlineLeavesTheLastDepartureUnknown) {
+  RescueProblem problem;
+  problem.devices.resize(2);
+  PlanReport report;
+  report.deadlines = {{{0.95, 3600.0}, {0.5, 7200.0, true}}, {{0.95, 3600.0}, {0.5, 9000.0}}};
+  EXPECT_EQ(LastDepartureOf(problem, report).none_after_s, std::nullopt);
+  EXPECT_EQ(LastDepartureOf(problem, report).not_known_beyond_s, 9000.0);
+  report.result = PlanResult::kStormStaysAway;
+  EXPECT_EQ(LastDepartureOf(problem, report).not_known_beyond_s, std::nullopt);
+}
+
 // Ships with devices aboard come home, also after the last departure of those that fetch.
 TEST_F(Fleet, DeadlinesOfDevicesAboardDoNotLetShipsLeaveLate) {
   RescueProblem problem;
@@ -125,9 +137,10 @@ TEST_F(Fleet, DeadlinesOfDevicesAboardDoNotLetShipsLeaveLate) {
   for (const double hour : {9.0, 15.0, 8.0}) {
     report.deadlines.push_back({{0.95, 3600.0}, {0.5, 3600.0 * hour}});
   }
-  EXPECT_EQ(NoDepartureAfter(problem, report), 9.0 * 3600.0);
+  EXPECT_EQ(LastDepartureOf(problem, report).none_after_s, 9.0 * 3600.0);
+  EXPECT_EQ(LastDepartureOf(problem, report).not_known_beyond_s, std::nullopt);
   report.result = PlanResult::kStormUnknown;
-  EXPECT_EQ(NoDepartureAfter(problem, report), std::nullopt);
+  EXPECT_EQ(LastDepartureOf(problem, report).none_after_s, std::nullopt);
 }
 
 // 2 km at 0.05 knots take 22 hours, and In-Fa comes before.

@@ -115,16 +115,19 @@ class PlanProgram(unittest.TestCase):
                 what = {"leave": "leave ", "fetch": "fetch ", "deliver": "deliver at "}
                 share = order["probability"] * 100
                 line = rf"  {re.escape(local_clock(plan, order['time']))}  " + \
-                    rf"{what[order['action']]}{name}  \[(\d+) %\]\n"
+                    rf"{what[order['action']]}{name}  \[([<>]? ?)(\d+) %\]\n"
                 found = re.search(line, words)
                 self.assertTrue(found, (line, words))
-                self.assertLessEqual(abs(int(found[1]) - share), 0.51)
+                self.assertLessEqual(abs(int(found[2]) - share), 1 if found[1] else 0.51)
+                self.assertLess(int(found[2]), 100, "a share of a sample is not certain")
         for device in plan["devices"]:
             self.assertIn(f"\n  {device['name']}: ", words)
         last = plan["deadlines"]["no_departure_after"]
         self.assertEqual(last is not None, "no ship should leave after" in words)
         if last:
             self.assertIn(f"no ship should leave after {local_clock(plan, last)}\n", words)
+        beyond = plan["deadlines"]["not_known_beyond"]
+        self.assertEqual(beyond is not None, "until when ships may leave is not known" in words)
         for row in plan["what_if"]:
             self.assertIn(f"  {row['text']}", words)
         self.assertIn("shares of 60 possible storms\n", words)
@@ -177,6 +180,19 @@ class PlanProgram(unittest.TestCase):
         self.assertNotIn("no ship should leave", words)
         self.assertIsNone(plan["deadlines"]["no_departure_after"])
 
+    def test_an_end_of_the_known_time_is_no_end_of_the_departures(self):
+        code, words, plan = self.plan_of(bulletin(26.0, 0.5), "--ships", 2, "--speed", 12)
+        self.assertEqual(0, code, words)
+        opens = [one for device in plan["devices"] for one in device["deadlines"]
+                 if one["probability"] == 0.5 and one["open"]]
+        self.assertTrue(opens, words)
+        last = plan["deadlines"]
+        self.assertIsNone(last["no_departure_after"])
+        self.assertEqual(max(one["leave"] for one in opens), last["not_known_beyond"])
+        self.assertIn("until when ships may leave is not known beyond "
+                      f"{local_clock(plan, last['not_known_beyond'])}: plan again", words)
+        self.assertNotIn("no ship should leave after", words)
+
     def test_twelve_if_the_winds_are_unknown(self):
         code, words, plan = self.plan_of(bulletin(30.0, 0.2, strong=""), "--ships", 2)
         self.assertEqual(12, code, words)
@@ -214,6 +230,8 @@ class PlanProgram(unittest.TestCase):
         self.assertEqual({"winds_unknown"}, {one["reason"] for one in plan["plan"]["left_behind"]})
         self.assertEqual((None, None), (plan["plan"]["expected_value"], plan["plan"]["bound"]))
         self.assertIsNone(plan["deadlines"]["no_departure_after"])
+        self.assertIsNone(plan["deadlines"]["not_known_beyond"])
+        self.assertIsNone(plan["loss"]["operating_cost"])
 
     def test_thirteen_if_the_bulletin_is_older_than_twelve_hours(self):
         code, words, plan = self.plan_of(bulletin(), "--ships", 2, "--speed", 12, at=None)

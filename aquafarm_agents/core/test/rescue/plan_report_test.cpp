@@ -84,7 +84,8 @@ TEST_F(Report, WindsThatAreUnknownAtFirstAreNotCalm) {
             "2021-07-23T18:00:00Z.");
   EXPECT_EQ(SeverityOf("storm_unknown"), "stop");
   EXPECT_TRUE(report.plan.routes.empty()) << "no trip can be judged";
-  EXPECT_FALSE(NoDepartureAfter(case_.problem, report));
+  EXPECT_FALSE(LastDepartureOf(case_.problem, report).none_after_s);
+  EXPECT_FALSE(LastDepartureOf(case_.problem, report).not_known_beyond_s);
   EXPECT_NE(ToText(case_, report).find(": unknown\n"), std::string::npos);
 }
 

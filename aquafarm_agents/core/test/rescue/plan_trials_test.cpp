@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "aquafarm/base/rng.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm/tracks/reader.h"
 
@@ -180,6 +181,51 @@ TEST_F(Trials, ARecordedStormIsNotMoved) {
   EXPECT_EQ(storm.truth.fixes.front().position.latitude, track.fixes.front().position.latitude);
   EXPECT_NEAR(storm.lead_h, 24.0, 6.0);
   EXPECT_LT(storm.nearest_km, 60.0);
+}
+
+// The same 40 values as 40 groups, and repeated five times in 40 groups of five: repetitions add no
+// information, so the interval stays as wide. Taken as 200 values it would be too narrow.
+TEST(Statistics, RepeatedValuesDoNotNarrowAnInterval) {
+  std::vector<double> once;
+  std::vector<double> often;
+  Groups groups;
+  for (std::size_t i = 0; i < 40; ++i) {
+    once.push_back(static_cast<double>((i * 7) % 11));
+    for (int repetition = 0; repetition < 5; ++repetition) {
+      often.push_back(once.back());
+      groups.push_back(i);
+    }
+  }
+  EXPECT_NEAR(MeanOf(often, groups).mean, MeanOf(once).mean, 1e-12);
+  EXPECT_NEAR(MeanOf(often, groups).half, MeanOf(once).half, 1e-12);
+  EXPECT_LT(MeanOf(often).half, 0.5 * MeanOf(once).half);
+  const std::vector<double> ones(often.size(), 1.0);
+  EXPECT_NEAR(RatioOf(often, ones, groups).half, MeanOf(once).half, 1e-12);
+  EXPECT_TRUE(std::isinf(MeanOf({1.0, 3.0}, {4, 4}).half)) << "one group shows no variance";
+}
+
+// Intervals that contain the true mean in 95 % of 2,000 experiments with 60 groups of 10 values.
+TEST(Statistics, IntervalsBetweenGroupsHoldTheirPromise) {
+  RandomStream rng({17, 0, RngStream::kStorm, 9});
+  int by_group = 0;
+  int by_value = 0;
+  for (int experiment = 0; experiment < 2000; ++experiment) {
+    std::vector<double> values;
+    Groups groups;
+    for (std::size_t group = 0; group < 60; ++group) {
+      const double common = static_cast<double>(rng.Unit()) - 0.5;
+      for (int i = 0; i < 10; ++i) {
+        values.push_back(common + static_cast<double>(rng.Unit()) - 0.5);
+        groups.push_back(group);
+      }
+    }
+    const Estimate grouped = MeanOf(values, groups);
+    const Estimate single = MeanOf(values);
+    by_group += std::abs(grouped.mean) <= grouped.half ? 1 : 0;
+    by_value += std::abs(single.mean) <= single.half ? 1 : 0;
+  }
+  EXPECT_NEAR(by_group / 2000.0, 0.95, 0.02);
+  EXPECT_LT(by_value / 2000.0, 0.75);
 }
 
 TEST(Statistics, OfAFewNumbers) {

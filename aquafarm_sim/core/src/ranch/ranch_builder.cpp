@@ -19,6 +19,7 @@
 #include "aquafarm/sea/sea_field.h"
 #include "aquafarm/storms/notices.h"
 #include "aquafarm/storms/presets.h"
+#include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/reader.h"
 #include "base/files.h"
 #include "base/text.h"
@@ -241,13 +242,14 @@ class Builder {
   // The scenario's reader applies the same check to the line that is written here.
   void CheckReach(const StormTrack& track) {
     const GeoFrame frame = Frame();
-    for (const StormFix& fix : track.fixes) {
-      const bool kept = fix.time >= plan_.storm.waypoints.front().time &&
-                        fix.time <= plan_.storm.waypoints.back().time;
-      if (!kept || frame.Faces(fix.position)) continue;
-      Fail(fix, Text("got latitude %g, longitude %g, expected a place within 60 degrees of the "
-                     "ranch",
-                     fix.position.latitude, fix.position.longitude));
+    const std::vector<StormFix>& all = track.fixes;
+    for (std::size_t i = 0; i < all.size(); ++i) {  // waypoints may lie between two fixes
+      const bool past = i + 1 < all.size() && all[i + 1].time <= plan_.storm.waypoints[0].time;
+      const bool later = i > 0 && all[i - 1].time >= plan_.storm.waypoints.back().time;
+      if (past || later || frame.Faces(all[i].position)) continue;
+      Fail(all[i], Text("got latitude %g, longitude %g, expected a place within 60 degrees of the "
+                        "ranch",
+                        all[i].position.latitude, all[i].position.longitude));
     }
   }
 
@@ -268,12 +270,9 @@ class Builder {
   }
 
   StormTrack ReadTrack() {
-    const auto only = [](const StormFile& file, const std::string& storm) {
-      return storm.empty() && file.tracks.size() == 1 ? file.tracks[0] : FindTrack(file, storm);
-    };
     const StormFile file = LoadStormFile(request_.track);
     Keep(file.warnings);
-    StormTrack track = only(file, request_.storm);
+    StormTrack track = internal::StormOf(file, request_.storm);
     const auto recorded = static_cast<int>(track.fixes.size());
     std::string radii;
     if (!request_.radii.empty()) {
@@ -288,13 +287,14 @@ class Builder {
       Fail(track.fixes[0], "got the only point of " + (track.name.empty() ? track.id : track.name) +
                                ", expected at least two, which define its motion");
     }
-    plan_.storm = ToRings(track, request_.reduction);
+    const FineRings fine = ToFineRings(track, request_.reduction, track.fixes[0].time);
+    plan_.storm = fine.storm;
+    KeepOne(internal::CheckWinds(fine.held));
     const bool blank = file.format == TrackFormat::kIbtracs && plan_.storm.estimated > 0;
-    const std::int32_t averaging = track.fixes.front().averaging_min;
     plan_.storm_text = (track.name.empty() ? track.id : track.name + " (" + track.id + ")") + ", " +
                        std::string(ToString(file.format)) + " " + FileName(request_.track);
     Say("storm: " + plan_.storm_text +
-        Text(", %d fixes, winds of %d minutes", recorded, averaging) + radii +
+        Text(", %d fixes, winds of %d minutes", recorded, track.fixes[0].averaging_min) + radii +
         Text("; radii estimated at %d%s, unknown at %d", plan_.storm.estimated,
              blank ? ", where quadrants are blank" : "", plan_.storm.silent));
     return track;

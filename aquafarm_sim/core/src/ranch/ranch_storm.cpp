@@ -88,6 +88,10 @@ const StormTrack& SameStorm(const std::string& option, const StormFile& file,
                    Span({track.fixes.front().time, track.fixes.back().time}));
 }
 
+StormTrack StormOf(const StormFile& file, const std::string& storm) {
+  return storm.empty() && file.tracks.size() == 1 ? file.tracks[0] : FindTrack(file, storm);
+}
+
 PassageReport Report(const StormRings& storm, const Passage& passage,
                      const StormKnowledge& knowledge) {
   PassageReport report;
@@ -117,6 +121,12 @@ PassageReport Report(const StormRings& storm, const Passage& passage,
         " km; check --center, --track and --storm, or give a newer bulletin");
   }
   return report;
+}
+
+std::string CheckWinds(std::int32_t held) {
+  if (held == 0) return "";
+  return Text("storm: stretches of the track without a known wind at both ends: %d", held) +
+         "; the larger radii of both ends hold there; give a track with a wind at each point";
 }
 
 std::vector<StormForecast> ForecastsDuring(const std::vector<StormForecast>& forecasts,

@@ -17,6 +17,10 @@ namespace aquafarm::internal {
 const StormTrack& SameStorm(const std::string& option, const StormFile& file,
                             const StormTrack& track);
 
+/// Returns the only storm of a file, or the one of a name or id.
+/// @throws InputError if there is no such storm, or if several fit
+StormTrack StormOf(const StormFile& file, const std::string& storm);
+
 /// Report of `aquafarm scenario` on a storm's passage, one line each.
 struct PassageReport {
   std::vector<std::string> lines;
@@ -28,6 +32,9 @@ struct PassageReport {
 /// @param storm with at least one waypoint
 PassageReport Report(const StormRings& storm, const Passage& passage,
                      const StormKnowledge& knowledge);
+
+/// Returns a warning if the radii of some stretches are those of FineRings::held; else nothing.
+std::string CheckWinds(std::int32_t held);
 
 /// Returns the forecasts of an episode from the newest one issued by its start, each with the
 /// points after its issue, of the agency that each bulletin lists first.

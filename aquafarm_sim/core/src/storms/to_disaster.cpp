@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "aquafarm/base/check.h"
+#include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/place_storm.h"
 #include "base/text.h"
 #include "base/time.h"
@@ -56,15 +57,17 @@ DisasterSpec ToDisaster(const StormTrack& bulletin, const Scenario& scenario, st
   const bool by_quadrant = model != all.end() && !model->quadrants.empty();
   if (model == all.end() || !graded(*model)) model = std::find_if(all.begin(), all.end(), graded);
   const StormTrack whole = WithForecast(bulletin, NoForecast::kPersist);
+  const auto now_s = static_cast<std::int64_t>(step_now * scenario.step_duration_s);
   const StormRings storm =
-      ToRings(whole, by_quadrant ? RingReduction::kQuadrants : RingReduction::kEqualArea);
+      ToFineRings(whole, by_quadrant ? RingReduction::kQuadrants : RingReduction::kEqualArea,
+                  *scenario.start_time + now_s)
+          .storm;
   DisasterSpec disaster =
       ToDisaster(storm, model == all.end() ? DefaultGradeRisks() : RisksByGrade(*model),
                  GeoFrame(*scenario.origin, scenario.cell_size_m), scenario.cell_size_m,
                  scenario.step_duration_s, *scenario.start_time);
   const double left = std::ceil(static_cast<double>(disaster.track.back().step)) - step_now;
   if (left <= 0.0) {
-    const auto now_s = static_cast<std::int64_t>(step_now * scenario.step_duration_s);
     throw InputError("bulletin: got a storm " + Describe(KnowledgeOf(bulletin, whole)) +
                      ", expected one that is known after step " + std::to_string(step_now) + " (" +
                      internal::FormatTime(*scenario.start_time + now_s) +

@@ -59,6 +59,15 @@ RadiusEstimate EstimateRadius(std::int32_t wind_kt, double storm_wind_mps, doubl
           relation.log_sigma[strength]};
 }
 
+double SizeSigma(std::int32_t wind_kt, double storm_wind_mps, double latitude,
+                 std::int32_t averaging_min) {
+  // The bound comes first: std::max(bound, NaN) is the bound, std::max(NaN, bound) is NaN.
+  const double at_least_mps = std::max(wind_kt * kMpsPerKnot, storm_wind_mps);
+  const double sigma = EstimateRadius(wind_kt, at_least_mps, latitude, averaging_min).log_sigma;
+  AQUAFARM_CHECK_LT(0.0, sigma);  // it is divided by; radii of NaN would never arrive
+  return sigma;
+}
+
 bool EstimateRing(StormFix& fix, std::int32_t wind_kt) {
   if (fix.Ring(wind_kt) != nullptr || !fix.wind_mps || *fix.wind_mps <= 0.0) return false;
   WindRing ring;

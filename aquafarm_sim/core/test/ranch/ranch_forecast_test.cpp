@@ -125,7 +125,20 @@ TEST_F(ForecastRanch, KeepsTheLastWindWhereAForecastHasNone) {
   const BuiltRanch ranch = Make(
       R"(, "forecast": [{"points": [{"time": "2021-07-25T20:00:00", "lat": 30.2, "lng": 122.0}]}])");
   EXPECT_TRUE(Says(ranch.decided, "34 kt over the ranch for "));
-  EXPECT_EQ(ranch.scenario.disasters.at(0).track.back().radii.back(), 600.0F) << "300 km";
+  // 300 km in cells of 500 m. The storm keeps its size relative to the estimate, farther north.
+  EXPECT_NEAR(ranch.scenario.disasters.at(0).track.back().radii.back(), 623.0F, 1.0F);
+}
+
+TEST_F(ForecastRanch, HoldsTheLargerRadiiWhereTheWindIsUnknownBetweenTwoPoints) {
+  const BuiltRanch ranch = Make(
+      R"(, "forecast": [{"points": [{"time": "2021-07-25T20:00:00", "lat": 30.2, "lng": 122.0,
+          "radius7": 100}]}])");
+  EXPECT_TRUE(Says(ranch.warnings,
+                   "storm: stretches of the track without a known wind at both ends: 1; the larger "
+                   "radii of both ends hold there; give a track with a wind at each point"));
+  const std::vector<Waypoint>& track = ranch.scenario.disasters.at(0).track;
+  EXPECT_EQ(track.back().radii.back(), 200.0F) << "100 km";
+  EXPECT_EQ(track[track.size() - 2].radii.back(), 600.0F) << "300 km";
 }
 
 TEST_F(ForecastRanch, EstimatesFromTheGradeWhereTheWindIsUnknown) {

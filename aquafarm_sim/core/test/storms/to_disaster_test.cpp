@@ -183,10 +183,11 @@ TEST(Bulletins, AreToldWithTheirForecast) {
   EXPECT_NO_THROW(ValidateDisaster(disaster));
   ASSERT_EQ(disaster.forecasts.size(), 1U);
   EXPECT_EQ(disaster.forecasts[0].step, 20.0F) << "the last recorded position";
-  ASSERT_EQ(disaster.forecasts[0].points.size(), 2U);
-  EXPECT_EQ(disaster.forecasts[0].points[1].step, 44.0F);
-  EXPECT_EQ(disaster.forecasts[0].points[1].x, disaster.track.back().x);
-  EXPECT_EQ(disaster.forecasts[0].points[1].radii, disaster.track.back().radii);
+  ASSERT_EQ(disaster.forecasts[0].points.size(), 8U) << "at most 3 hours apart";
+  const Waypoint& last = disaster.forecasts[0].points.back();
+  EXPECT_EQ(last.step, 44.0F);
+  EXPECT_EQ(last.x, disaster.track.back().x);
+  EXPECT_EQ(last.radii, disaster.track.back().radii);
   track.forecasts.clear();
   EXPECT_TRUE(ToDisaster(track, scenario, 0, 5).forecasts.empty()) << "an assumed motion";
 }

@@ -33,7 +33,8 @@ DisasterSpec ToDisaster(const StormRings& storm, const GradeRisks& risks, const 
 /// Returns the disaster that a bulletin announces to a running episode. The grade_risks are those
 /// of the disaster that it replaces, else those of the first disaster of the scenario with
 /// grade_risks, else the defaults. It has quadrants if the replaced disaster has quadrants.
-/// It follows the recorded positions and then the newest forecast. Agents receive the forecast
+/// It follows the recorded positions and then the newest forecast; its rings between their points
+/// are those of ToFineRings, as in a rescue plan. Agents receive the forecast
 /// as one of DisasterSpec::forecasts, issued at the last recorded position. FitArrival
 /// (farm/forecast.h) then sets the truth apart from it.
 /// @param id of the disaster that is replaced or added

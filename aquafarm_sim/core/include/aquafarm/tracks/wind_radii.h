@@ -34,6 +34,11 @@ struct RadiusEstimate {
 RadiusEstimate EstimateRadius(std::int32_t wind_kt, double storm_wind_mps, double latitude,
                               std::int32_t averaging_min);
 
+/// Returns the log-standard deviation of recorded radii of a wind about EstimateRadius, by the
+/// storm's greatest wind; that of the weakest storms if it does not reach `wind_kt` or is unknown.
+double SizeSigma(std::int32_t wind_kt, double storm_wind_mps, double latitude,
+                 std::int32_t averaging_min);
+
 /// Adds the ring of a wind, marked as estimated, to a fix that has no ring of this wind: a circle
 /// with the median radius of EstimateRadius.
 /// @param wind_kt 30, 34, 50 or 64

@@ -30,6 +30,8 @@
 
 #include <vector>
 
+#include "aquafarm/tracks/fine_rings.h"
+
 namespace aquafarm::agents {
 
 /// Statistics of forecast errors; the defaults are those of the table above.
@@ -38,11 +40,11 @@ struct ForecastErrors {
   std::vector<double> position_km{14.1, 66.2, 119.5, 176.3, 244.3, 328.5};  ///< mean distance
   std::vector<double> wind_lead_h{0.0, 24.0, 48.0, 72.0};
   std::vector<double> wind_mps{1.4, 4.37, 6.5, 7.78};  ///< mean absolute error
-  double correlation_h{48.0};     ///< e-folding difference of lead times [assumed]
-  double size_factor{1.0};        ///< factor of the spread of radii [assumed]
-  double size_memory_h{165.0};    ///< e-folding time of a storm's size, see above
-  double size_report_error{0.1};  ///< log-standard deviation of a reported radius [assumed]
-  double scale{1.0};              ///< factor of all errors: 0.5 halves them, 0 removes them
+  double correlation_h{48.0};           ///< e-folding difference of lead times [assumed]
+  double size_factor{1.0};              ///< factor of the spread of radii [assumed]
+  double size_memory_h{kSizeMemory_h};  ///< e-folding time of a storm's size, see above
+  double size_report_error{0.1};        ///< log-standard deviation of a reported radius [assumed]
+  double scale{1.0};                    ///< factor of all errors: 0.5 halves them, 0 removes them
 };
 
 /// Standard deviations at one lead time.

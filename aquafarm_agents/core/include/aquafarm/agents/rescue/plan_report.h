@@ -43,11 +43,18 @@ inline constexpr std::array<double, 3> kDeadlineShares{0.95, 0.8, 0.5};
 /// Plans a case. May add warnings to it.
 PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble);
 
-/// Returns the time after which no ship should leave to fetch a device: the latest deadline of all
-/// devices at their sites with a chance of at least 50 %. Devices aboard do not count: their ships
-/// come home, they do not leave.
-/// @returns nullopt if there is no such deadline, if no winds come, or if the winds are unknown
-std::optional<double> NoDepartureAfter(const RescueProblem& problem, const PlanReport& report);
+/// End of the departures that are worth a try. At most one of the two times is set.
+struct LastDeparture {
+  std::optional<double> none_after_s;        ///< after it no ship should leave
+  std::optional<double> not_known_beyond_s;  ///< ships may leave until then; after it the known
+                                             ///< time is too short for a trip
+};
+/// Returns the latest deadline of all devices at their sites with a chance of at least 50 %; if one
+/// of these deadlines is open, it is not known after which time no ship should leave. Devices
+/// aboard do not count: their ships come home, they do not leave.
+/// @returns neither time if there is no such deadline, if no winds come, or if the winds are
+/// unknown
+LastDeparture LastDepartureOf(const RescueProblem& problem, const PlanReport& report);
 
 /// Returns the plan as text of about a page, in local time and UTC.
 std::string ToText(const RescueCase& rescue, const PlanReport& report);

@@ -61,7 +61,8 @@ struct StormRecord {
   std::string name;
   std::string agency;
   std::string file;
-  StormRings rings;
+  StormRings rings;     ///< at the points of the track
+  std::int32_t held{};  ///< see FineRings
   std::int64_t recorded_until{};
   std::optional<std::int64_t> issued;       ///< of the forecast
   std::optional<std::int64_t> known_until;  ///< end of the forecast

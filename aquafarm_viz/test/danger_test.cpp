@@ -47,7 +47,7 @@ TEST(DangerMarkers, NameTheDeviceTheRiskAndTheCentreOutsideTheFarm) {
   EXPECT_EQ(markers.at({"danger_label", 0}).text, "F0: -5 now");
   EXPECT_EQ(markers.at({"danger_label", 1}).action, Marker::DELETE);
   EXPECT_EQ(markers.at({"danger", 1}).action, Marker::DELETE);
-  EXPECT_EQ(markers.at({"pointer_label", 0}).text, "typhoon, centre 20 km W");
+  EXPECT_EQ(markers.at({"pointer_label", 0}).text, "typhoon, centre 20 km W\nstands still");
   const Marker& circle = markers.at({"danger", 0});
   EXPECT_EQ(circle.action, Marker::ADD);
   EXPECT_EQ(circle.pose.position.x, 4000.0);
@@ -85,6 +85,10 @@ TEST(DangerMarkers, HaveLabelsInTheFarmThatCoverNeitherEachOtherNorDevices) {
   for (int i = 0; i < 4; ++i) {
     const Marker& label = markers.at({"danger_label", i});
     EXPECT_GE(label.pose.position.x - half(label), -501.0);
+    const Marker& plate = markers.at({"danger_label_plate", i});
+    EXPECT_EQ(plate.pose.position.x, label.pose.position.x);
+    EXPECT_LT(plate.pose.position.z, label.pose.position.z);
+    EXPECT_GE(plate.scale.x, 2.0 * half(label) - 1.0);
     for (int j = 0; j < i; ++j) {
       const Marker& other = markers.at({"danger_label", j});
       EXPECT_TRUE(std::abs(label.pose.position.y - other.pose.position.y) >= label.scale.z ||
@@ -92,6 +96,72 @@ TEST(DangerMarkers, HaveLabelsInTheFarmThatCoverNeitherEachOtherNorDevices) {
           << i << " over " << j;
     }
   }
+}
+
+TEST(DangerMarkers, LabelEveryDeviceInDangerThatHasAFreePlaceAndTheFirstInAnyCase) {
+  Scene scene;
+  scene.state.disasters[0].radii = {30.0F, 60.0F};
+  scene.state.devices.clear();
+  for (int i = 0; i < 9; ++i) {
+    scene.state.devices.push_back(test::MakeDevice(i, 0, 3 + 8 * (i % 3), 3 + 8 * (i / 3), 1.0F));
+  }
+  const auto count = [&scene] {
+    int labels = 0;
+    for (const auto& [key, marker] : scene.Draw()) {
+      labels += key.first == "danger_label" && marker.action == Marker::ADD ? 1 : 0;
+    }
+    return labels;
+  };
+  EXPECT_EQ(count(), 9);
+  scene.state.devices.clear();
+  for (int i = 0; i < 625; ++i) {  // no place is free
+    scene.state.devices.push_back(test::MakeDevice(i, 0, i % 25, i / 25, 1.0F));
+  }
+  EXPECT_EQ(count(), 1);
+}
+
+TEST(DangerMarkers, PutTheLabelOfAPointerOnNoShip) {
+  Scene scene;
+  scene.spec.width = 20;
+  scene.spec.height = 14;
+  scene.state.devices = {test::MakeDevice(0, 0, 7, 4, 1.0F), test::MakeDevice(1, 1, 12, 1, 1.0F),
+                         test::MakeDevice(2, 2, 18, 11, 1.0F)};
+  scene.state.disasters[0].x = 110.0F;
+  scene.state.disasters[0].y = -110.0F;
+  scene.state.disasters[0].radii = {2.0F, 400.0F};
+  for (int x = 0; x < 20; ++x) {
+    scene.state.ships[0].x = x;
+    scene.state.ships[0].y = 7;
+    const Marker plate = scene.Draw().at({"pointer_label_plate", 0});
+    EXPECT_FALSE(std::abs(plate.pose.position.x - 1000.0 * x) < 0.5 * plate.scale.x &&
+                 std::abs(plate.pose.position.y - 7000.0) < 0.5 * plate.scale.y)
+        << "ship at " << x;
+  }
+}
+
+TEST(DangerMarkers, PutNoLabelOnARockWhereAnotherPlaceIsFree) {
+  Scene scene;
+  scene.spec.rocks.clear();
+  const double first = scene.Draw().at({"danger_label", 0}).pose.position.y;
+  aquafarm_msgs::RockInfo rock;
+  rock.cell = test::MakeCell(4, static_cast<int>(std::lround(first / 1000.0)));
+  scene.spec.rocks.push_back(rock);
+  EXPECT_GT(std::abs(scene.Draw().at({"danger_label", 0}).pose.position.y - first), 500.0);
+}
+
+TEST(DangerMarkers, SayWhenAStormOutsideIsClosest) {
+  Scene scene;
+  scene.state.step = 0;
+  scene.spec.scenario_yaml = R"(
+disasters:
+  - risks: [-20, -5]
+    track:
+      - {step: 0, x: -8, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
+      - {step: 10, x: -3, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
+)";
+  scene.state.disasters[0].speed = 0.5F;
+  EXPECT_EQ(scene.Draw().at({"pointer_label", 0}).text,
+            "typhoon, centre 20 km W\nE, 0.50 cells a step, closest 15 km W in 10 steps");
 }
 
 TEST(DangerMarkers, FollowTheTrackOfTheScenario) {

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "aquafarm_viz/draw/image.h"
 #include "draw/free_space.h"
+#include "draw/map_labels.h"
+#include "draw/symbols.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {
@@ -261,6 +264,50 @@ TEST(Course, HasAConeWhereForecastsHaveAnError) {
     return DrawFarm(scene.spec, scene.state, {640, 640});
   };
   EXPECT_GT(cv::norm(draw(""), draw("view: {forecast_error_km: [48, 96]}\n")), 1000.0);
+}
+
+// The number of separate parts of a map that a drawing changes.
+template <typename Draw>
+int CountParts(const Layout& layout, Draw draw) {
+  cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(0));
+  draw(map);
+  cv::Mat changed;
+  cv::inRange(map, cv::Scalar::all(0), cv::Scalar::all(0), changed);
+  cv::bitwise_not(changed, changed);
+  cv::Mat labels;
+  return cv::connectedComponents(changed, labels) - 1;
+}
+
+TEST(LabelDanger, NamesEveryDeviceThatHasAFreePlaceNearby) {
+  Scene scene;
+  scene.state.disasters[0].x = 12.0F;
+  scene.state.disasters[0].speed = 0.0F;
+  scene.state.disasters[0].radii = {1.0F, 100.0F};
+  scene.state.devices.clear();
+  for (int i = 0; i < 9; ++i) {
+    scene.state.devices.push_back(test::MakeDevice(i, 0, 3 + 8 * (i % 3), 3 + 8 * (i / 3), 1.0F));
+  }
+  const Layout layout = MakeLayout(25, 25, {960, 960});
+  const Fonts fonts(layout.unit);
+  const auto count = [&](FreeSpace space) {
+    return CountParts(layout, [&](cv::Mat& map) {
+      LabelDanger(map, scene.spec, scene.state, scene.outlook(), space, layout, fonts);
+    });
+  };
+  EXPECT_EQ(count(FreeSpace(layout.map.size())), 9);
+  FreeSpace full(layout.map.size());
+  full.Block(cv::Rect({0, 0}, layout.map.size()));
+  EXPECT_EQ(count(full), 0) << "a label covers nothing";
+}
+
+TEST(Outlook, GivesTheMotionAndTheClosestApproach) {
+  Scene scene;
+  EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()),
+            "W, 1.00 cells a step")
+      << "the present motion does not say when a storm is closest";
+  scene.storms = ReadStormTracks(kRecorded, 1000.0);
+  EXPECT_EQ(ApproachText(scene.spec, scene.state.disasters[0], scene.course()),
+            "W, 1.00 cells a step, closest 8.0 km E in 10 steps");
 }
 
 TEST(FreeSpace, TakesTheNearestPlaceThatCoversNothing) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "aquafarm_sim/plan_words.h"
+#include "aquafarm_viz/base/palette.h"
 #include "fit_screen.h"
 #include "fixture.h"
 #include "ranch_widget.h"
@@ -58,10 +59,10 @@ TEST(RanchModel, SaysWhatTheStateIs) {
   EXPECT_EQ(model.Headline(), "paper   episode 12   step 17 / 5,000   return -42.5   seed 7");
   EXPECT_EQ(model.RewardLine(), "reward -5.0:   disaster -5.0");
   ASSERT_EQ(model.Ships().size(), 1U);
-  EXPECT_EQ(model.Ships()[0], (RanchModel::Row{"0", "(12, 8)", "NE", "0", "-5.0", "0.0"}));
+  EXPECT_EQ(model.Ships()[0], (RanchModel::Row{"0", "(12, 8)", "NE", "F0", "-5.0", "0.0"}));
   ASSERT_EQ(model.Devices().size(), 4U);
   EXPECT_EQ(model.Devices()[1],
-            (RanchModel::Row{"1", "monitoring", "(6, 0)", "delivered", "70 %", "75"}));
+            (RanchModel::Row{"F1", "monitoring", "(6, 0)", "delivered", "70 %", "75"}));
   EXPECT_EQ(model.Ships()[0].size(), RanchModel::ShipColumns().size());
   EXPECT_EQ(model.Devices()[0].size(), RanchModel::DeviceColumns().size());
   EXPECT_EQ(RanchModel().Headline(), "no ranch yet");
@@ -394,6 +395,46 @@ TEST(RanchWidget, ShowsTablesAndTheCurve) {
     told = told || (line->text() == "<b>paused</b>" && line->textFormat() == Qt::PlainText);
   }
   EXPECT_TRUE(told);
+}
+
+TEST(CurveWidget, HasRoundTicksInsideTheRange) {
+  EXPECT_EQ(RoundTicks({-233.0, 150.0}, 4), (std::vector<double>{-200.0, -100.0, 0.0, 100.0}));
+  EXPECT_EQ(RoundTicks({0.3, 3.2}, 3), (std::vector<double>{1.0, 2.0, 3.0}));
+  EXPECT_EQ(RoundTicks({1.0, 2000.0}, 5), (std::vector<double>{500.0, 1000.0, 1500.0, 2000.0}));
+  for (const double span : {1e-6, 0.7, 42.0, 1e9}) {
+    const auto ticks = RoundTicks({5.0, 5.0 + span}, 4);
+    EXPECT_LE(ticks.size(), 5U) << span;
+    EXPECT_GE(ticks.size(), 1U) << span;
+  }
+}
+
+TEST(CurveWidget, LeavesOutTheLowestTenthOfTheReturns) {
+  std::vector<CurvePoint> curve;
+  for (int i = 0; i < 100; ++i) {
+    curve.push_back({double(i), i < 10 ? -5000.0 : double(i), 0.5});
+  }
+  const CurveRange range = RangeOfReturns(curve);
+  EXPECT_GT(range.low, -5000.0);
+  EXPECT_LT(range.low, 10.0);
+  EXPECT_GT(range.high, 99.0);
+}
+
+TEST(RanchWidget, ShowsTheSymbolOfEachDeviceNextToItsKind) {
+  const RanchModel model = Filled();
+  Asked asked;
+  RanchWidget widget(model, asked.Buttons());
+  int symbols = 0;
+  for (const auto* table : widget.findChildren<QTableWidget*>()) {
+    for (int row = 0; row < table->rowCount(); ++row) {
+      const QTableWidgetItem* item = table->item(row, 1);
+      if (item->icon().isNull()) continue;
+      const QImage icon = item->icon().pixmap(32, 32).toImage();
+      const Rgb color = DeviceColor(model.shown().state->devices[std::size_t(row)].kind);
+      EXPECT_EQ(icon.pixel(16, 16), qRgb(color.r, color.g, color.b)) << row;
+      ++symbols;
+    }
+  }
+  EXPECT_EQ(symbols, 4);
 }
 
 TEST(RanchWidget, FitsAWindowOf1280x720WithTextOfElevenPixels) {

@@ -148,12 +148,12 @@ TEST(RegionWords, OfAStormOverTheFarmThatLeaves) {
   Storms storms;
   storms.Add("{step: 0, x: 30, y: 12, radii: [10]}, {step: 30, x: 212, y: 12, radii: [10]}", 30.0F,
              12.0F);
-  EXPECT_EQ(storms.words().heading, "RING OVER THE FARM");
+  EXPECT_EQ(storms.words().heading, "OVER THE RANCH NOW");
   EXPECT_EQ(storms.words().lines[0], "centre 18 km E");
   storms = Storms();
   storms.Add("{step: 0, x: 30, y: 12, radii: [10]}, {step: 20, x: 12, y: 12, radii: [10]}", 30.0F,
              12.0F);
-  EXPECT_EQ(storms.words().heading, "RING OVER THE FARM");
+  EXPECT_EQ(storms.words().heading, "OVER THE RANCH NOW");
   EXPECT_EQ(storms.words().lines[0].substr(0, 7), "closest");
 }
 
@@ -161,7 +161,7 @@ TEST(RegionWords, OfAStormWithGrowingRings) {
   Storms storms;
   storms.Add("{step: 0, x: 112, y: 12, radii: [10]}, {step: 20, x: 122, y: 12, radii: [210]}",
              112.0F, 12.0F);
-  EXPECT_EQ(storms.words().heading, "REACHES THE FARM");
+  EXPECT_EQ(storms.words().heading, "REACHES THE RANCH");
   EXPECT_EQ(storms.words().lines[0], "in 9 steps, centre 100 km E");
 }
 
@@ -205,7 +205,7 @@ TEST(RegionWords, GiveTheTimeOfTheClosestApproachInsideARing) {
   storms.spec.has_start_time = true;
   storms.spec.step_duration_s = 3600.0;
   storms.state.world_time.sec = 1627095600;  // 24 July 2021, 03:00 UTC
-  EXPECT_EQ(storms.words().heading, "RING OVER THE FARM");
+  EXPECT_EQ(storms.words().heading, "OVER THE RANCH NOW");
   EXPECT_EQ(storms.words().lines[0].substr(0, 8), "closest ");
   EXPECT_EQ(storms.words().lines[1], "24 Jul 23:00 UTC, 40 m/s");
 }

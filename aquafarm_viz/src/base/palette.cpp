@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 namespace aquafarm_viz {
 namespace {
@@ -109,6 +110,19 @@ Rgb GradeColor(std::uint8_t grade) {
   static constexpr std::array<Rgb, 4> kGrades{
       {{0x33, 0x8d, 0xf0}, {0xfc, 0xd5, 0x2b}, {0xfd, 0x7e, 0x14}, {0xe0, 0x31, 0x31}}};
   return grade >= 1 && grade <= kGrades.size() ? kGrades[grade - 1U] : kUnknown;
+}
+
+Rgb ValueColor(double share) {
+  static const cv::Mat3b kColors = [] {
+    cv::Mat1b ramp(1, 256);
+    for (int i = 0; i < ramp.cols; ++i) ramp(0, i) = static_cast<std::uint8_t>(i);
+    cv::Mat3b colors;
+    cv::applyColorMap(ramp, colors, cv::COLORMAP_VIRIDIS);
+    return colors;
+  }();
+  const auto i = static_cast<int>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+  const cv::Vec3b bgr = kColors(0, i);
+  return {bgr[2], bgr[1], bgr[0]};
 }
 
 int MoveBearingDeg(std::uint8_t action) {

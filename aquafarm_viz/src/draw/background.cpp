@@ -262,8 +262,9 @@ void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, cons
                   Bgr(layout.style->Risk(double(i) / scale.width)), cv::FILLED);
   }
   y += layout.Px(9) + fonts.small.cap_height();
+  const std::string worst = "-20 worst";
   fonts.small.Draw(image, "risk -5", {left, y}, Bgr(layout.style->faint));
-  fonts.small.Draw(image, "-20", {scale.x + scale.width - fonts.small.Width("-20"), y},
+  fonts.small.Draw(image, worst, {scale.x + scale.width - fonts.small.Width(worst), y},
                    Bgr(layout.style->faint));
 
   const int foot = bottom - layout.Px(18);

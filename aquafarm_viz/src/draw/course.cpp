@@ -13,7 +13,7 @@ namespace aquafarm_viz {
 namespace {
 
 constexpr double kFar_px = 1.0e5;    // points farther away are clipped
-constexpr double kLeastMark = 15.0;  // distance of two marks [design units]
+constexpr double kLeastMark = 22.0;  // distance of two marks [design units]
 
 bool IsNear(cv::Point2d at) { return std::abs(at.x) < kFar_px && std::abs(at.y) < kFar_px; }
 

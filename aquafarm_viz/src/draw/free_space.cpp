@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "draw/free_space.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 namespace aquafarm_viz {
 
@@ -27,8 +29,17 @@ std::optional<cv::Rect> FreeSpace::Take(cv::Size size, cv::Point2d near, double 
   cv::integral(used_, sums, CV_32S);
   double least = farthest;
   std::optional<cv::Point> best;
-  for (int row = 0; row + blocks.height <= used_.rows; ++row) {
-    for (int column = 0; column + blocks.width <= used_.cols; ++column) {
+  // The first and the last position along an axis whose middle is within reach.
+  const auto range = [farthest](double middle, int length, int all) {
+    const auto low = std::floor((middle - farthest) / kBlock - length / 2.0);
+    const auto high = std::ceil((middle + farthest) / kBlock - length / 2.0);
+    return std::pair(static_cast<int>(std::clamp(low, 0.0, double(all - length) + 1.0)),
+                     static_cast<int>(std::clamp(high, -1.0, double(all - length))));
+  };
+  const auto [top, bottom_most] = range(near.y, blocks.height, used_.rows);
+  const auto [left, right_most] = range(near.x, blocks.width, used_.cols);
+  for (int row = top; row <= bottom_most; ++row) {
+    for (int column = left; column <= right_most; ++column) {
       const double away = std::hypot((column + blocks.width / 2.0) * kBlock - near.x,
                                      (row + blocks.height / 2.0) * kBlock - near.y);
       if (away >= least) continue;

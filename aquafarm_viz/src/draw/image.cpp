@@ -107,6 +107,18 @@ struct FarmPainter::Parts {
     return marks;
   }
 
+  /// Draws the scale of values and a compared policy's choice on the map, where the panel has no
+  /// space for them.
+  void DrawPolicyKey(cv::Mat& map, const FarmState& state, const Overlays& overlays,
+                     const Values* now, FreeSpace& space) {
+    if (overlays.choice != nullptr) {
+      DrawChoiceWords(map, state, *overlays.choice, space, layout, fonts);
+    }
+    if (overlays.layers.values && now != nullptr) {
+      DrawValueScale(map, *now, space, layout, fonts);
+    }
+  }
+
   /// Writes the labels of the map, the most important first.
   void Label(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layers& layers,
              const Outlook& outlook, const std::vector<CourseMark>& marks, FreeSpace& space) {
@@ -166,14 +178,12 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   DrawPorts(map, spec, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
   DrawShips(map, spec, state, overlays.trail, p.layout);
-  if (overlays.choice != nullptr) {
-    DrawChoice(map, state, *overlays.choice, space, p.layout, p.fonts);
-  }
-  if (layers.values && values != nullptr) {
-    DrawValueScale(map, *values, space, p.layout, p.fonts);
+  if (overlays.choice != nullptr) DrawChoice(map, state, *overlays.choice, p.layout);
+  if (!DrawPanel(p.image, spec, state, overlays, values, forecasts, p.layout, p.fonts)) {
+    p.DrawPolicyKey(map, state, overlays, values, space);
   }
   p.Label(map, spec, state, layers, forecasts.outlook, marks, space);
-  DrawWords(p.image, spec, state, overlays, forecasts, p.layout, p.fonts);
+  DrawWords(p.image, spec, state, overlays, forecasts.outlook, p.layout, p.fonts);
   return p.image;
 }
 

@@ -26,7 +26,8 @@ FreeSpace BlockSymbols(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs:
 void DrawDangerMarks(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Outlook& outlook,
                      const Layout& layout);
 
-/// Labels the devices that are reached first: "F3: -10 in 6.5 h".
+/// Labels the devices that have a free place nearby, up to 40 and those that are reached first
+/// before others: "F3: -10 in 6.5 h".
 void LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Outlook& outlook, FreeSpace& space,
                  const Layout& layout, const Fonts& fonts);

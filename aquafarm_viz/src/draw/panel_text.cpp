@@ -150,6 +150,7 @@ class Panel {
   int RowsLeft() const { return std::max(0, (end_ - y_) / RowPx()); }
   int RowPx() const { return layout_.Px(17); }
   cv::Point2d SymbolAt() const { return {double(left_ + layout_.Px(7)), y_ + RowPx() / 2.0}; }
+  cv::Point2d SecondSymbolAt() const { return {double(Middle() + layout_.Px(7)), SymbolAt().y}; }
   cv::Mat& image() { return image_; }
   /// The part between the lists and the legend.
   cv::Rect Room() const { return {left_, y_ + layout_.Px(8), right_ - left_, end_ - y_}; }
@@ -170,11 +171,37 @@ class Panel {
            right_ - left_ - layout_.Px(21);
   }
 
+  /// Two texts, each with a symbol.
+  void Pair(const std::string& first, const std::string& second) {
+    const int base = y_ + (RowPx() + fonts_.small.cap_height()) / 2;
+    fonts_.small.Draw(image_, first, {left_ + layout_.Px(21), base}, Bgr(layout_.style->words));
+    fonts_.small.Draw(image_, second, {Middle() + layout_.Px(21), base}, Bgr(layout_.style->words));
+    y_ += RowPx();
+  }
+
+  /// The colours of values, the lowest on the left.
+  void ValueBar() {
+    const int top = y_ + layout_.Px(3);
+    for (int x = left_; x < right_; ++x) {
+      cv::rectangle(image_, cv::Rect(x, top, 1, RowPx() - layout_.Px(5)),
+                    Bgr(ValueColor(double(x - left_) / std::max(1, right_ - left_ - 1))),
+                    cv::FILLED);
+    }
+    y_ += RowPx();
+  }
+
+  /// Two texts at the ends of a row.
+  void Ends(const std::string& left_text, const std::string& right_text) {
+    Row(left_, left_text, fonts_.small, layout_.style->words, right_text, layout_.style->words);
+  }
+
   void Detail(const std::string& text, const std::string& right_text, Rgb right_color) {
     Row(left_ + layout_.Px(21), text, fonts_.small, layout_.style->faint, right_text, right_color);
   }
 
  private:
+  int Middle() const { return (left_ + right_) / 2; }
+
   void Row(int left, const std::string& text, const Font& font, Rgb color,
            const std::string& right_text, Rgb right_color) {
     const int base = y_ + (RowPx() + fonts_.small.cap_height()) / 2;
@@ -314,6 +341,55 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
   }
 }
 
+std::string PolicyName(const Overlays& overlays) {
+  if (overlays.choice != nullptr) return overlays.choice->policy;
+  return overlays.training != nullptr ? overlays.training->algorithm : "";
+}
+
+// The words of a compared policy's choice, a line for each ship.
+std::vector<std::string> ChoiceLines(const FarmState& state, const Overlays& overlays) {
+  std::vector<std::string> lines;
+  if (overlays.choice == nullptr || !IsOf(*overlays.choice, state)) return lines;
+  for (const auto& ship : state.ships) {
+    const std::string words = ChoiceText(*overlays.choice, ship);
+    if (words.empty()) continue;
+    lines.push_back(state.ships.size() > 1 ? "ship " + std::to_string(ship.id) + ": " + words
+                                           : "would choose " + words);
+  }
+  return lines;
+}
+
+// Lists what the colours and symbols of a policy mean, if there is a policy and space for it.
+bool ListPolicy(Panel& panel, const FarmState& state, const Overlays& overlays,
+                const Values* values, const Layout& layout) {
+  const std::vector<std::string> choices = ChoiceLines(state, overlays);
+  const bool has_scale =
+      overlays.layers.values && values != nullptr && values->highest > values->lowest;
+  const bool has_moves = overlays.layers.moves && values != nullptr;
+  const int rows = (has_scale ? 3 : 0) + (has_moves ? 2 : 0) + int(choices.size());
+  if (rows == 0 || panel.RowsLeft() < rows + 2) return false;
+  const bool has_step = values != nullptr && values->step;
+  panel.Heading("POLICY " + PolicyName(overlays), has_step ? "step " + Count(*values->step) : "");
+  if (has_scale) {
+    panel.Ends("return expected from a cell", "");
+    panel.ValueBar();
+    panel.Ends(Number(double(values->lowest), 1), Number(double(values->highest), 1));
+  }
+  if (has_moves) {
+    DrawMove(panel.image(), panel.SymbolAt(), 3, 13.0 * layout.unit, layout);
+    panel.Item("best move", "", layout.style->words);
+    DrawMove(panel.image(), panel.SymbolAt(), 8, 15.0 * layout.unit, layout);
+    DrawMove(panel.image(), panel.SecondSymbolAt(), 9, 15.0 * layout.unit, layout);
+    panel.Pair("pickup", "drop-off");
+  }
+  for (const std::string& line : choices) {
+    DrawArrow(panel.image(), panel.SymbolAt(), 90, 15.0 * layout.unit, Bgr(kChoiceColor),
+              layout.Px(2.5));
+    panel.Item(line, "", layout.style->words);
+  }
+  return true;
+}
+
 void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const Fonts& fonts) {
   if (!state.terminated && !state.truncated) return;
   static constexpr std::array<const char*, 4> kReasons{"episode over", "all devices retrieved",
@@ -337,18 +413,26 @@ void DrawEnd(cv::Mat& image, const FarmState& state, const Layout& layout, const
 }  // namespace
 
 void DrawWords(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
-               const Overlays& overlays, const Forecasts& forecasts, const Layout& layout,
+               const Overlays& overlays, const Outlook& outlook, const Layout& layout,
                const Fonts& fonts) {
   if (layout.panel.empty()) return DrawEnd(image, state, layout, fonts);
-  DrawTop(image, spec, state, forecasts.outlook, layout, fonts);
+  DrawTop(image, spec, state, outlook, layout, fonts);
   DrawEnd(image, state, layout, fonts);
   DrawRewardLine(image, state, layout, fonts);
   if (overlays.training != nullptr) DrawTrainingLine(image, *overlays.training, layout, fonts);
+}
+
+bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
+               const Overlays& overlays, const Values* values, const Forecasts& forecasts,
+               const Layout& layout, const Fonts& fonts) {
+  if (layout.panel.empty()) return false;
   Panel panel(image, layout, fonts);
   ListDevices(panel, spec, state, forecasts.outlook, layout);
   ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
   ListShips(panel, state, layout);
+  const bool has_policy = ListPolicy(panel, state, overlays, values, layout);
   DrawRegion(image, panel.Room(), spec, state, forecasts.courses, layout, fonts);
+  return has_policy;
 }
 
 }  // namespace aquafarm_viz

@@ -55,7 +55,7 @@ void DrawValues(cv::Mat& map, const Values& values) {
 void DrawValueScale(cv::Mat& map, const Values& values, FreeSpace& space, const Layout& layout,
                     const Fonts& fonts) {
   if (!(values.highest > values.lowest)) return;
-  const std::string low = "V " + Number(values.lowest, 1);
+  const std::string low = "value " + Number(values.lowest, 1);
   const std::string high =
       Number(values.highest, 1) + (values.step ? ", step " + Count(*values.step) : "");
   const int gap = layout.Px(5);
@@ -145,18 +145,12 @@ void Overlay::LayOver(cv::Mat& map, cv::Point middle) const {
 }
 
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
-                const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space, const Layout& layout,
-                const Fonts& fonts) {
+                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout) {
   if (!IsOf(choice, state)) return;
-  std::string words = choice.policy + ":";
   for (const auto& ship : state.ships) {
     const auto id = static_cast<std::size_t>(ship.id);
     if (ship.id < 0 || id >= choice.actions.size() || !ship.active) continue;
-    const std::uint8_t action = choice.actions[id];
-    const int bearing = MoveBearingDeg(action);
-    words += ' ';
-    words += ActionName(action);
-    if (id < choice.values.size()) words += " (V " + Number(choice.values[id], 1) + ")";
+    const int bearing = MoveBearingDeg(choice.actions[id]);
     const cv::Point2d at = layout.view.ToPixel(ship.x, ship.y);
     const double radius = layout.ship_radius_px();
     if (bearing < 0) {
@@ -167,6 +161,17 @@ void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
     DrawArrow(map, Place({0.0, 2.0}, placing), bearing, 2.4 * radius, Bgr(kInk), layout.Px(5));
     DrawArrow(map, Place({0.0, 2.0}, placing), bearing, 2.4 * radius, Bgr(kChoiceColor),
               layout.Px(2.5));
+  }
+}
+
+void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
+                     const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space,
+                     const Layout& layout, const Fonts& fonts) {
+  if (!IsOf(choice, state)) return;
+  std::string words = choice.policy + ":";
+  for (const auto& ship : state.ships) {
+    const std::string one = ChoiceText(choice, ship);
+    if (!one.empty()) words += " " + one;
   }
   const int width = fonts.bold.Width(words) + layout.Px(12);
   const auto place = space.Take({width, layout.Px(20)}, cv::Point2d(map.cols, map.rows),

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
+#include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/scene/rings.h"
 #include "draw/course.h"
 #include "draw/free_space.h"
@@ -24,9 +25,7 @@ using aquafarm_msgs::FarmState;
 constexpr double kSmallestSide = 84.0;  // [design units]
 
 bool IsOutside(const FarmSpec& spec, const DisasterState& disaster) {
-  return IsDrawn(disaster) &&
-         (disaster.x < -0.5F || disaster.y < -0.5F || disaster.x > float(spec.width) - 0.5F ||
-          disaster.y > float(spec.height) - 0.5F);
+  return IsDrawn(disaster) && !IsCentreInFarm(spec, disaster);
 }
 
 // Distance from the farm's middle to the edge of the inset: a round number of metres.
@@ -119,7 +118,7 @@ std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, cons
 RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subject& subject,
                         const Course& course) {
   constexpr double kMoved_m = 1.0;
-  constexpr const char* kOver = "RING OVER THE FARM";
+  constexpr const char* kOver = "OVER THE RANCH NOW";
   const TrackPoint& now = course.ahead.front();
   const std::string centre = "centre " + PlaceText(spec, now.x, now.y);
   const double ahead_s = (subject.nearest.step - now.step) * spec.step_duration_s;
@@ -134,7 +133,7 @@ RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subj
   }
   if (is_over) return {kOver, {centre, ""}};
   if (std::isfinite(subject.danger)) {
-    return {"REACHES THE FARM", {"in " + AheadText(spec, subject.danger) + ", " + centre, ""}};
+    return {"REACHES THE RANCH", {"in " + AheadText(spec, subject.danger) + ", " + centre, ""}};
   }
   const TrackPoint& end = course.ahead.back();
   const bool leaves =
@@ -165,7 +164,7 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
   }
   // The present motion continued says when a ring comes, but not that none does.
   words.lines[0] = "centre " + PlaceText(spec, disaster.x, disaster.y);
-  words.lines[1] = subject->danger == 0.0 ? "ring over the farm"
+  words.lines[1] = subject->danger == 0.0 ? "over the ranch now"
                    : std::isfinite(subject->danger)
                        ? "reaches it in about " + AheadText(spec, subject->danger)
                        : SourceText(spec, disaster, course);

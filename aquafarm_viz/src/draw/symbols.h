@@ -178,8 +178,12 @@ class MoveSigns {
 
 /// Draws the actions that a compared policy chooses for each ship.
 void DrawChoice(cv::Mat& map, const aquafarm_msgs::FarmState& state,
-                const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space, const Layout& layout,
-                const Fonts& fonts);
+                const aquafarm_msgs::PolicyChoice& choice, const Layout& layout);
+
+/// Writes these actions into a corner of the map.
+void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
+                     const aquafarm_msgs::PolicyChoice& choice, FreeSpace& space,
+                     const Layout& layout, const Fonts& fonts);
 
 /// Draws the sensor range of each ship in partial view.
 void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
@@ -200,10 +204,17 @@ void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 /// Draws the symbol of a device with a dark rim.
 void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded);
 
-/// Draws the text above and below the map, the lists and the region of the panel, and the end of
-/// the episode.
+/// Draws the text above and below the map, and the end of the episode.
 void DrawWords(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Overlays& overlays,
-               const Forecasts& forecasts, const Layout& layout, const Fonts& fonts);
+               const Outlook& outlook, const Layout& layout, const Fonts& fonts);
+
+/// Draws the lists of the panel, the key of a policy and the region.
+/// @param values  of this farm; null without any
+/// @return whether the key of a policy is drawn: its values, best moves and choice
+bool DrawPanel(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec,
+               const aquafarm_msgs::FarmState& state, const Overlays& overlays,
+               const Values* values, const Forecasts& forecasts, const Layout& layout,
+               const Fonts& fonts);
 
 }  // namespace aquafarm_viz

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
@@ -19,12 +20,15 @@ using visualization_msgs::MarkerArray;
 // Places the parts of the legend in a row below the map [m].
 class Row {
  public:
-  Row(MarkerArray& array, const FarmSpec& spec)
+  // @param line  0 is next to the farm
+  // @param space  namespace of the bars; that of the texts ends with _text
+  Row(MarkerArray& array, const FarmSpec& spec, int line, std::string space)
       : array_(array),
         header_(spec.header),
+        space_(std::move(space)),
         size_m_(0.03 * std::max(spec.width, spec.height) * spec.cell_size_m),
         x_m_(-0.5 * spec.cell_size_m),
-        y_m_(-0.5 * spec.cell_size_m - 0.9 * size_m_) {
+        y_m_(-0.5 * spec.cell_size_m - (0.9 + 1.3 * line) * size_m_) {
     header_.frame_id = names::kMapFrame;
   }
 
@@ -32,7 +36,7 @@ class Row {
   void Skip(double width_m) { x_m_ += width_m; }
 
   void Bar(double width_m, Rgb color) {
-    Marker bar = Make("legend", Marker::CUBE, x_m_ + 0.5 * width_m);
+    Marker bar = Make(space_, Marker::CUBE, x_m_ + 0.5 * width_m);
     bar.scale.x = width_m;
     bar.scale.y = 0.35 * size_m_;
     bar.scale.z = 0.01 * size_m_;
@@ -41,9 +45,43 @@ class Row {
     x_m_ += width_m + 0.4 * size_m_;
   }
 
+  // A bar with the colours of values, the lowest on the left.
+  void ValueBar(double width_m) {
+    constexpr int kParts = 32;
+    Marker bar = Make(space_, Marker::TRIANGLE_LIST, x_m_);
+    bar.scale.x = bar.scale.y = bar.scale.z = 1.0;
+    bar.color = Opaque(kPaper);
+    const double half_m = 0.25 * size_m_;
+    for (int i = 0; i < kParts; ++i) {
+      const double left = width_m * i / kParts;
+      const double right = width_m * (i + 1) / kParts;
+      for (const auto& [x, y] : {std::pair(left, -half_m),
+                                 {right, -half_m},
+                                 {right, half_m},
+                                 {left, -half_m},
+                                 {right, half_m},
+                                 {left, half_m}}) {
+        geometry_msgs::Point corner;
+        corner.x = x;
+        corner.y = y;
+        bar.points.push_back(corner);
+        bar.colors.push_back(Opaque(ValueColor((i + 0.5) / kParts)));
+      }
+    }
+    array_.markers.push_back(bar);
+    x_m_ += width_m + 0.4 * size_m_;
+  }
+
+  // Deletes the marker that would be next.
+  void Remove(const std::string& space) {
+    Marker marker = Make(space, Marker::CUBE, x_m_);
+    marker.action = Marker::DELETE;
+    array_.markers.push_back(marker);
+  }
+
   void Text(const std::string& text) {
     const double width_m = 0.55 * size_m_ * double(text.size());
-    Marker words = Make("legend_text", Marker::TEXT_VIEW_FACING, x_m_ + 0.5 * width_m);
+    Marker words = Make(space_ + "_text", Marker::TEXT_VIEW_FACING, x_m_ + 0.5 * width_m);
     words.scale.z = size_m_;
     words.text = text;
     words.color = Opaque(kPaper);
@@ -61,7 +99,7 @@ class Row {
     return opaque;
   }
 
-  Marker Make(const char* space, int type, double x_m) {
+  Marker Make(const std::string& space, int type, double x_m) {
     Marker marker;
     marker.header = header_;
     marker.ns = space;
@@ -76,6 +114,7 @@ class Row {
 
   MarkerArray& array_;
   std_msgs::Header header_;
+  std::string space_;
   double size_m_;
   double x_m_;
   double y_m_;
@@ -94,7 +133,7 @@ double RoundLength(double most_m) {
 }  // namespace
 
 void AddLegend(MarkerArray& array, const FarmSpec& spec) {
-  Row row(array, spec);
+  Row row(array, spec, 0, "legend");
   const double length_m = RoundLength(0.2 * spec.width * spec.cell_size_m);
   row.Bar(length_m, kPaper);
   row.Text(length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
@@ -106,6 +145,25 @@ void AddLegend(MarkerArray& array, const FarmSpec& spec) {
     row.Text(std::to_string(risk));
   }
   row.Text("north is up");
+}
+
+void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& values) {
+  Row row(array, spec, 1, "value_legend");
+  if (values.highest > values.lowest) {
+    row.Text("value " + Number(double(values.lowest), 1));
+    row.ValueBar(3.0 * row.size_m());
+    row.Text(Number(double(values.highest), 1));
+    row.Skip(0.6 * row.size_m());
+  } else {  // such as a policy without values
+    row.Remove("value_legend_text");
+    row.Remove("value_legend");
+    row.Remove("value_legend_text");
+  }
+  row.Text("best move: arrow");
+  row.Bar(0.6 * row.size_m(), kPickupColor);
+  row.Text("pickup");
+  row.Bar(0.6 * row.size_m(), kDropOffColor);
+  row.Text("drop-off");
 }
 
 }  // namespace aquafarm_viz

@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The legend below the map in rviz; private to this package.
+/// The legend below the map in rviz; for the nodes of this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <visualization_msgs/MarkerArray.h>
+
+#include "aquafarm_viz/scene/values.h"
 
 namespace aquafarm_viz {
 
 /// Adds a scale bar, the colours of risks and north, in the namespaces `legend` and `legend_text`.
 void AddLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
+
+/// Adds the range and colours of values and the symbols of best moves, a line below the legend, in
+/// the namespaces `value_legend` and `value_legend_text`.
+void AddValueLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec,
+                    const Values& values);
 
 }  // namespace aquafarm_viz

@@ -14,9 +14,9 @@
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/scene/directions.h"
 #include "aquafarm_viz/scene/labels.h"
-#include "aquafarm_viz/scene/rings.h"
 #include "markers/legend.h"
 #include "markers/maker.h"
+#include "markers/rings.h"
 #include "scene/arrow.h"
 
 namespace aquafarm_viz {
@@ -222,37 +222,6 @@ void AddShips(MarkerArray& array, const Maker& maker, const FarmSpec& spec, cons
   }
 }
 
-QuadrantRadii RingMetres(const Maker& maker, const DisasterState& disaster, std::size_t ring) {
-  QuadrantRadii radii = RingQuadrants(disaster, ring);
-  for (double& radius : radii) radius *= maker.cell_m();
-  return radii;
-}
-
-// Returns the band between the next smaller ring and this one, so that shades do not overlap.
-Marker RingBand(const Maker& maker, const DisasterState& disaster, int ring) {
-  const auto i = static_cast<std::size_t>(ring);
-  Marker band = maker.Make("ring", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
-                           kRingLayer, disaster.x, disaster.y);
-  const double severity = Severity(disaster.risks[i]);
-  band.color = Color(SeverityColor(severity), 0.14 + 0.20 * severity);
-  AddBand(band, ring == 0 ? QuadrantRadii{} : RingMetres(maker, disaster, i - 1),
-          RingMetres(maker, disaster, i));
-  return band;
-}
-
-// Returns a band instead of a line: rviz lines face the viewer and partly vanish in top-down view.
-Marker RingEdge(const Maker& maker, const DisasterState& disaster, int ring) {
-  const auto i = static_cast<std::size_t>(ring);
-  Marker edge = maker.Make("ring_edge", disaster.id * kMaxRings + ring, Marker::TRIANGLE_LIST,
-                           kRockLayer, disaster.x, disaster.y);
-  edge.color = Color(SeverityColor(Severity(disaster.risks[i])));
-  const QuadrantRadii outer = RingMetres(maker, disaster, i);
-  QuadrantRadii inner = outer;
-  for (double& radius : inner) radius = std::max(0.0, radius - 0.12 * maker.thing_m());
-  AddBand(edge, inner, outer);
-  return edge;
-}
-
 void AddDisasterSigns(MarkerArray& array, const Maker& maker, const DisasterState& disaster) {
   Marker eye =
       maker.Make("disaster", disaster.id, Marker::CYLINDER, kSignLayer, disaster.x, disaster.y);
@@ -277,20 +246,13 @@ void AddDisasterSigns(MarkerArray& array, const Maker& maker, const DisasterStat
   array.markers.push_back(heading);
 }
 
-void AddDisasters(MarkerArray& array, const Maker& maker, const FarmState& state) {
+void AddDisasters(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+                  const FarmState& state, bool has_pointers) {
   for (const auto& disaster : state.disasters) {
     const bool drawn = disaster.known && disaster.steps_left > 0;
-    for (int ring = 0; ring < kMaxRings; ++ring) {
-      const auto i = static_cast<std::size_t>(ring);
-      if (drawn && i < disaster.radii.size() && disaster.radii[i] > 0.0F) {
-        array.markers.push_back(RingBand(maker, disaster, ring));
-        array.markers.push_back(RingEdge(maker, disaster, ring));
-        continue;
-      }
-      array.markers.push_back(maker.Delete("ring", disaster.id * kMaxRings + ring));
-      array.markers.push_back(maker.Delete("ring_edge", disaster.id * kMaxRings + ring));
-    }
-    if (drawn) {
+    AddRings(array, maker, spec, disaster, drawn);
+    // A centre outside has a pointer at the edge (danger.h).
+    if (drawn && (!has_pointers || IsCentreInFarm(spec, disaster))) {
       AddDisasterSigns(array, maker, disaster);
       continue;
     }
@@ -333,7 +295,7 @@ MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Tra
                          const Layers& layers) {
   const Maker maker(spec, state.header);
   MarkerArray array;
-  AddDisasters(array, maker, state);
+  AddDisasters(array, maker, spec, state, layers.risk);
   AddDevices(array, maker, spec, state);
   AddShips(array, maker, spec, state, trail);
   if (layers.labels) AddLabels(array, maker, spec, state);

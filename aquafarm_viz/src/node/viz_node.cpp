@@ -15,6 +15,7 @@
 #include "aquafarm_viz/markers/markers.h"
 #include "aquafarm_viz/names.h"
 #include "aquafarm_viz/replay/replay.h"
+#include "markers/legend.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -175,7 +176,11 @@ void VizNode::PublishMarkers(const Shown& shown) {
 }
 
 void VizNode::PublishMoves(const Shown& shown) {
-  if (moves_.getNumSubscribers() > 0) moves_.publish(MoveMarkers(*values_, *shown.spec));
+  if (moves_.getNumSubscribers() > 0) {
+    auto array = MoveMarkers(*values_, *shown.spec);
+    AddValueLegend(array, *shown.spec, *values_);
+    moves_.publish(array);
+  }
   moved_ = true;
 }
 

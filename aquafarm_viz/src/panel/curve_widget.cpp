@@ -3,6 +3,7 @@
 
 #include <QPainter>
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "aquafarm_viz/base/text.h"
@@ -11,17 +12,66 @@ namespace aquafarm_viz {
 namespace {
 
 const QColor kBack(0x10, 0x1d, 0x2a);
-const QColor kFrame(0x2b, 0x3d, 0x4f);
+const QColor kGrid(0x2b, 0x3d, 0x4f);
 const QColor kReturn(0xff, 0xd4, 0x3b);
 const QColor kSuccess(0x5f, 0xe0, 0x8a);
 const QColor kWords(0xe6, 0xed, 0xf3);
 
 QString Text(const std::string& text) { return QString::fromStdString(text); }
 
+// Draws text around a point: -1 to its left, 0 below it, 1 to its right.
+void DrawTick(QPainter& painter, const QPointF& at, const QString& text, int side) {
+  const QSizeF size(80.0, painter.fontMetrics().height());
+  const QPointF corner = side < 0   ? at + QPointF(-size.width() - 4.0, -size.height() / 2.0)
+                         : side > 0 ? at + QPointF(4.0, -size.height() / 2.0)
+                                    : at + QPointF(-size.width() / 2.0, 2.0);
+  const int across = side < 0 ? Qt::AlignRight : side > 0 ? Qt::AlignLeft : Qt::AlignHCenter;
+  painter.drawText(QRectF(corner, size), across | Qt::AlignVCenter, text);
+}
+
+// Draws a line and its name, and returns the right end.
+double DrawName(QPainter& painter, const QPointF& at, const QColor& color, const QString& name) {
+  constexpr double kLine = 14.0;
+  painter.setPen(QPen(color, 2.0));
+  painter.drawLine(at, at + QPointF(kLine, 0.0));
+  const double width = painter.fontMetrics().horizontalAdvance(name);
+  const double height = painter.fontMetrics().height();
+  painter.setPen(color);
+  painter.drawText(QRectF(at.x() + kLine + 4.0, at.y() - height / 2.0, width + 2.0, height),
+                   Qt::AlignLeft | Qt::AlignVCenter, name);
+  return at.x() + kLine + 4.0 + width;
+}
+
 }  // namespace
 
+CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
+  std::vector<double> returns;
+  for (const CurvePoint& point : curve) returns.push_back(point.mean_return);
+  if (returns.empty()) return {0.0, 1.0};
+  std::sort(returns.begin(), returns.end());
+  const double low = returns[returns.size() / 10];
+  const double high = returns.back();
+  const double margin = 0.06 * std::max(high - low, 1e-6);
+  return {low - margin, high + margin};
+}
+
+std::vector<double> RoundTicks(const CurveRange& range, int most) {
+  const double span = range.high - range.low;
+  double step = std::pow(10.0, std::floor(std::log10(span / std::max(1, most))));
+  for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
+    if (span / (factor * step) > most) continue;
+    step *= factor;
+    break;
+  }
+  std::vector<double> ticks;
+  for (double i = std::ceil(range.low / step); i * step <= range.high; i += 1.0) {
+    ticks.push_back(i == 0.0 ? 0.0 : i * step);
+  }
+  return ticks;
+}
+
 CurveWidget::CurveWidget(QWidget* parent) : QWidget(parent) {
-  setMinimumHeight(90);
+  setMinimumHeight(100);
   setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
 }
 
@@ -34,42 +84,68 @@ void CurveWidget::paintEvent(QPaintEvent*) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.fillRect(rect(), kBack);
-  const QRectF room = QRectF(rect()).adjusted(8, 18, -8, -18);
-  painter.setPen(kFrame);
-  painter.drawRect(room);
   painter.setPen(kWords);
   if (curve_.size() < 2) {
     painter.drawText(rect(), Qt::AlignCenter, "the curve of a training comes here");
     return;
   }
-  const auto [low, high] = std::minmax_element(
-      curve_.begin(), curve_.end(),
-      [](const CurvePoint& a, const CurvePoint& b) { return a.mean_return < b.mean_return; });
-  const double range = std::max(high->mean_return - low->mean_return, 1e-6);
-  const double first = curve_.front().episode;
-  const double episodes = std::max(curve_.back().episode - first, 1.0);
+  const int row = painter.fontMetrics().height();
+  const QRectF room = QRectF(rect()).adjusted(58.0, row + 8.0, -52.0, -row - 6.0);
+  const CurveRange returns = RangeOfReturns(curve_);
+  const CurveRange episodes{curve_.front().episode,
+                            std::max(curve_.back().episode, curve_.front().episode + 1.0)};
+  const auto x_of = [&](double episode) {
+    return room.left() + (episode - episodes.low) / (episodes.high - episodes.low) * room.width();
+  };
+  const auto y_of = [&](double value) {
+    return room.bottom() - (value - returns.low) / (returns.high - returns.low) * room.height();
+  };
+  const int decimals = returns.high - returns.low < 4.0 ? 2 : 0;
+  for (const double tick : RoundTicks(returns, std::max(3, int(room.height()) / (2 * row)))) {
+    painter.setPen(kGrid);
+    painter.drawLine(QPointF(room.left(), y_of(tick)), QPointF(room.right(), y_of(tick)));
+    painter.setPen(kReturn);
+    DrawTick(painter, {room.left(), y_of(tick)}, Text(Number(tick, decimals)), -1);
+  }
+  painter.setPen(kSuccess);
+  for (const double share : {0.0, 0.5, 1.0}) {
+    DrawTick(painter, {room.right(), room.bottom() - share * room.height()},
+             Text(Number(100.0 * share, 0) + " %"), 1);
+  }
+  painter.setPen(kWords);
+  for (const double tick : RoundTicks(episodes, std::max(2, int(room.width()) / 90))) {
+    if (tick != std::floor(tick)) continue;
+    DrawTick(painter, {x_of(tick), room.bottom()}, Text(Count(std::uint64_t(tick))), 0);
+  }
+  DrawCurves(painter, room, x_of, y_of);
+  const CurvePoint& now = curve_.back();
+  const double right = DrawName(painter, {room.left(), 4.0 + row / 2.0}, kReturn,
+                                Text("mean return " + Number(now.mean_return, 1)));
+  const double end = DrawName(painter, {right + 16.0, 4.0 + row / 2.0}, kSuccess,
+                              Text("success " + Number(100.0 * now.success, 0) + " %"));
+  painter.setPen(kWords);
+  painter.drawText(QRectF(end, 4.0, width() - 8.0 - end, row), Qt::AlignRight, "by episode");
+}
+
+void CurveWidget::DrawCurves(QPainter& painter, const QRectF& room,
+                             const std::function<double(double)>& x_of,
+                             const std::function<double(double)>& y_of) const {
+  painter.setPen(kGrid);
+  painter.drawRect(room);
   QPolygonF returns;
   QPolygonF success;
   for (const CurvePoint& point : curve_) {
-    const double x = room.left() + (point.episode - first) / episodes * room.width();
-    returns << QPointF(
-        x, room.bottom() - (point.mean_return - low->mean_return) / range * room.height());
+    const double x = x_of(point.episode);
+    returns << QPointF(x, y_of(point.mean_return));
     success << QPointF(x, room.bottom() - point.success * room.height());
   }
-  painter.setPen(QPen(kSuccess, 1.2));
+  painter.save();
+  painter.setClipRect(room);
+  painter.setPen(QPen(kSuccess, 1.4, Qt::DashLine));
   painter.drawPolyline(success);
   painter.setPen(QPen(kReturn, 2.0));
   painter.drawPolyline(returns);
-  const QRectF top(8, 1, width() - 16, 16);
-  const QRectF bottom(8, height() - 17, width() - 16, 16);
-  painter.drawText(top, Qt::AlignLeft, Text("mean return " + Number(high->mean_return, 1)));
-  painter.drawText(bottom, Qt::AlignLeft, Text(Number(low->mean_return, 1)));
-  painter.setPen(kSuccess);
-  painter.drawText(top, Qt::AlignRight,
-                   Text("success " + Number(100.0 * curve_.back().success, 0) + " %"));
-  painter.setPen(kWords);
-  painter.drawText(bottom, Qt::AlignRight,
-                   Text("episode " + Count(std::uint64_t(curve_.back().episode))));
+  painter.restore();
 }
 
 }  // namespace aquafarm_viz

@@ -2,23 +2,42 @@
 #pragma once
 
 #include <QWidget>
+#include <functional>
 #include <vector>
 
 #include "aquafarm_viz/scene/ranch_model.h"
 
 namespace aquafarm_viz {
 
-/// Plots the mean return over episodes as a line and the success rate (0 … 100 %) as a fainter one.
+/// The part of an axis that is shown.
+struct CurveRange {
+  double low{};
+  double high{};
+};
+
+/// Returns the range of the mean returns without the lowest tenth, because returns at the start of
+/// a training are far below the rest.
+CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
+
+/// Returns the multiples of 1, 2 or 5 times a power of ten within a range: the smallest for which
+/// at most `most` intervals fit.
+std::vector<double> RoundTicks(const CurveRange& range, int most);
+
+/// Plots the mean return over episodes as a line and the success rate (0 … 100 %, on the right) as
+/// a dashed one.
 class CurveWidget : public QWidget {
  public:
   explicit CurveWidget(QWidget* parent = nullptr);
   void Show(const std::vector<CurvePoint>& curve);
-  QSize sizeHint() const override { return {360, 130}; }
+  QSize sizeHint() const override { return {360, 170}; }
 
  protected:
   void paintEvent(QPaintEvent* event) override;
 
  private:
+  void DrawCurves(QPainter& painter, const QRectF& room, const std::function<double(double)>& x_of,
+                  const std::function<double(double)>& y_of) const;
+
   std::vector<CurvePoint> curve_;
 };
 

@@ -4,6 +4,8 @@
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QHeaderView>
+#include <QIcon>
+#include <QPainter>
 #include <QVBoxLayout>
 #include <climits>
 #include <utility>
@@ -42,6 +44,25 @@ void Fill(QTableWidget* table, const std::vector<RanchModel::Row>& rows) {
   }
 }
 
+// The symbol of a device kind in the view.
+QIcon DeviceIcon(std::uint8_t kind) {
+  constexpr int kSide = 32;
+  QPixmap symbol(kSide, kSide);
+  symbol.fill(Qt::transparent);
+  QPainter painter(&symbol);
+  painter.setRenderHint(QPainter::Antialiasing);
+  QPolygonF outline;
+  for (const cv::Point2f& point : DeviceOutline(kind)) {
+    outline << QPointF(kSide / 2.0 + 13.0 * double(point.x), kSide / 2.0 - 13.0 * double(point.y));
+  }
+  const Rgb color = DeviceColor(kind);
+  painter.setPen(QPen(QColor(kInk.r, kInk.g, kInk.b), 2.0));
+  painter.setBrush(QColor(color.r, color.g, color.b));
+  painter.drawPolygon(outline);
+  painter.end();
+  return QIcon(symbol);
+}
+
 }  // namespace
 
 RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget* parent)
@@ -56,6 +77,7 @@ RanchWidget::RanchWidget(const RanchModel& model, RanchButtons buttons, QWidget*
   reward_ = AddLine(all);
   all->addWidget(ships_ = MakeTable(RanchModel::ShipColumns(), 2), 1);
   all->addWidget(devices_ = MakeTable(RanchModel::DeviceColumns(), 4), 2);
+  devices_->horizontalHeader()->setSectionResizeMode(1, QHeaderView::ResizeToContents);  // symbols
   plan_ = AddLine(all);
   plan_->setObjectName("plan");
   all->addWidget(plan_ships_ = MakeTable(PlanShipColumns(), 2), 1);
@@ -98,8 +120,10 @@ void RanchWidget::AddTime(QBoxLayout* layout) {
   AddButton(row, "resume", [this] { buttons_.pause(false, 0); });
   AddButton(row, "step", [this] { buttons_.pause(true, 1); });
   auto* pace = new QComboBox();
-  pace->addItems({"", "paced", "lockstep"});
-  pace->setToolTip("who advances time; empty: as it is");
+  pace->addItem("as is", "");
+  pace->addItem("paced", "paced");
+  pace->addItem("lockstep", "lockstep");
+  pace->setToolTip("paced: time advances by itself; lockstep: when every ship has a command");
   auto* rate = new QDoubleSpinBox();
   rate->setObjectName("rate");
   rate->setRange(0.1, 1000.0);
@@ -108,7 +132,7 @@ void RanchWidget::AddTime(QBoxLayout* layout) {
   row->addWidget(pace);
   row->addWidget(rate);
   AddButton(row, "pace", [this, pace, rate] {
-    buttons_.set_pace(pace->currentText().toStdString(), rate->value());
+    buttons_.set_pace(pace->currentData().toString().toStdString(), rate->value());
   });
 }
 
@@ -194,9 +218,20 @@ void RanchWidget::Refresh() {
   training_->setText(Text(model_.TrainingLine()));
   Fill(ships_, model_.Ships());
   Fill(devices_, model_.Devices());
+  AddSymbols();
   curve_->Show(model_.curve());
   curve_->setVisible(!model_.curve().empty());
   RefreshPlan();
+}
+
+void RanchWidget::AddSymbols() {
+  if (model_.shown().state == nullptr) return;
+  const auto& devices = model_.shown().state->devices;
+  for (int row = 0; row < devices_->rowCount(); ++row) {
+    const std::uint8_t kind = devices[static_cast<std::size_t>(row)].kind;
+    if (icons_.count(kind) == 0) icons_.emplace(kind, DeviceIcon(kind));
+    devices_->item(row, 1)->setIcon(icons_.at(kind));
+  }
 }
 
 void RanchWidget::RefreshPlanAge() {

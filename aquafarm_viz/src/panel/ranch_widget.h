@@ -2,6 +2,7 @@
 #pragma once
 
 #include <QComboBox>
+#include <QIcon>
 #include <QLabel>
 #include <QPushButton>
 #include <QSpinBox>
@@ -9,6 +10,7 @@
 #include <QWidget>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 
 #include "aquafarm_viz/scene/ranch_model.h"
@@ -46,6 +48,8 @@ class RanchWidget : public QWidget {
   QLabel* AddLine(QBoxLayout* layout);
   QPushButton* AddButton(QBoxLayout* layout, const QString& text, std::function<void()> act);
   void RefreshPlan();
+  /// Puts the symbol of the view next to the kind of each device.
+  void AddSymbols();
   void AddTime(QBoxLayout* layout);
   void AddPlaces(QBoxLayout* layout);
   void AddHelm(QBoxLayout* layout);
@@ -64,6 +68,7 @@ class RanchWidget : public QWidget {
   QTableWidget* plan_devices_;
   CurveWidget* curve_;
   QSpinBox* ship_{};
+  std::map<std::uint8_t, QIcon> icons_;  // by kind of device
 };
 
 }  // namespace aquafarm_viz

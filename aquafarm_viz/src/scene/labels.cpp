@@ -18,6 +18,15 @@ std::string ActionName(std::uint8_t action) {
   return action == 8 ? "pickup" : action == 9 ? "drop-off" : "hold";
 }
 
+std::string ChoiceText(const aquafarm_msgs::PolicyChoice& choice,
+                       const aquafarm_msgs::ShipState& ship) {
+  const auto id = static_cast<std::size_t>(ship.id);
+  if (ship.id < 0 || id >= choice.actions.size() || !ship.active) return "";
+  const std::string action = ActionName(choice.actions[id]);
+  return id < choice.values.size() ? action + " (value " + Number(choice.values[id], 1) + ")"
+                                   : action;
+}
+
 std::string OutcomeName(std::uint8_t outcome) {
   using aquafarm_msgs::Outcome;
   switch (outcome) {

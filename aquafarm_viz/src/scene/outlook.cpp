@@ -10,6 +10,7 @@
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "scene/nautical.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -221,6 +222,17 @@ std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device, const 
   const RingArrival& next = device.arrivals.front();
   return now + (now.empty() ? "" : ", ") + Number(next.risk, 0) + between +
          AheadText(spec, next.steps);
+}
+
+std::string ApproachText(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
+                         const Course& course) {
+  const std::string motion = MotionText(spec, disaster.heading_deg, double(disaster.speed));
+  const double now = course.ahead.front().step;
+  if (course.kind == Course::Kind::kExtrapolated) return motion;
+  const TrackPoint nearest = ClosestApproach(spec, course.ahead, now);
+  if (!(nearest.step > now)) return motion;
+  return motion + ", closest " + DistanceText(MetresFromFarm(spec, nearest.x, nearest.y)) + " " +
+         PointFromFarm(spec, nearest.x, nearest.y) + " in " + AheadText(spec, nearest.step - now);
 }
 
 }  // namespace aquafarm_viz

@@ -74,4 +74,9 @@ std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook&
 std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
                        const char* between = " in ");
 
+/// Returns the motion of a disaster and, where its course is given and comes nearer, its closest
+/// approach: "NW at 13 km/h, closest 29 km S in 11 h".
+std::string ApproachText(const aquafarm_msgs::FarmSpec& spec,
+                         const aquafarm_msgs::DisasterState& disaster, const Course& course);
+
 }  // namespace aquafarm_viz

@@ -103,7 +103,7 @@ std::vector<RanchModel::Row> RanchModel::Ships() const {
   for (const auto& ship : shown().state->ships) {
     std::string aboard;
     for (const int device : ship.aboard) {
-      aboard += (aboard.empty() ? "" : ", ") + std::to_string(device);
+      aboard += (aboard.empty() ? "" : ", ") + DeviceLabel(device);
     }
     const std::string fault = OutcomeName(ship.outcome);
     rows.push_back(
@@ -119,7 +119,7 @@ std::vector<RanchModel::Row> RanchModel::Devices() const {
   std::vector<Row> rows;
   if (shown().state == nullptr) return rows;
   for (const auto& device : shown().state->devices) {
-    rows.push_back({std::to_string(device.id), DeviceName(device.kind), Place(device.x, device.y),
+    rows.push_back({DeviceLabel(device.id), DeviceName(device.kind), Place(device.x, device.y),
                     StatusName(device.status),
                     device.health_known ? Percent(double(device.health)) : "?",
                     Number(double(device.value), 0)});

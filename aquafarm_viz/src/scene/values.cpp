@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <utility>
 
@@ -53,6 +52,15 @@ void Check(const PointCloud2& cloud) {
                               " points of " + std::to_string(cloud.point_step));
 }
 
+std_msgs::ColorRGBA Color(Rgb from) {
+  std_msgs::ColorRGBA color;
+  color.r = static_cast<float>(from.r) / 255.0F;
+  color.g = static_cast<float>(from.g) / 255.0F;
+  color.b = static_cast<float>(from.b) / 255.0F;
+  color.a = 0.9F;
+  return color;
+}
+
 Marker MakeMarker(const char* space, int id, int type, Rgb color) {
   Marker marker;
   marker.header.frame_id = names::kMapFrame;
@@ -62,10 +70,7 @@ Marker MakeMarker(const char* space, int id, int type, Rgb color) {
   marker.action = Marker::ADD;
   marker.pose.orientation.w = 1.0;
   marker.pose.position.z = kHeight_m;
-  marker.color.r = static_cast<float>(color.r) / 255.0F;
-  marker.color.g = static_cast<float>(color.g) / 255.0F;
-  marker.color.b = static_cast<float>(color.b) / 255.0F;
-  marker.color.a = 0.9F;
+  marker.color = Color(color);
   return marker;
 }
 
@@ -81,21 +86,13 @@ Marker ValueCells(const Values& values, double cell_m) {
   Marker cells = MakeMarker("values", 0, Marker::TRIANGLE_LIST, kPaper);
   cells.scale.x = cells.scale.y = cells.scale.z = 1.0;
   cells.pose.position.z = 0.0;  // between the sea and the land
-  cv::Mat1b ramp(1, 256);
-  for (int i = 0; i < ramp.cols; ++i) ramp(0, i) = static_cast<std::uint8_t>(i);
-  cv::Mat3b colors;
-  cv::applyColorMap(ramp, colors, cv::COLORMAP_VIRIDIS);
   const double span = double(values.highest) - double(values.lowest);
   for (int y = 0; y < values.height; ++y) {
     for (int x = 0; x < values.width; ++x) {
       const auto value = double(values.values[values.Index(x, y)]);
       if (!std::isfinite(value)) continue;
       const double share = span > 0.0 ? (value - double(values.lowest)) / span : 0.5;
-      const cv::Vec3b bgr = colors(0, static_cast<int>(std::lround(255.0 * share)));
-      std_msgs::ColorRGBA color;
-      color.r = static_cast<float>(bgr[2]) / 255.0F;
-      color.g = static_cast<float>(bgr[1]) / 255.0F;
-      color.b = static_cast<float>(bgr[0]) / 255.0F;
+      std_msgs::ColorRGBA color = Color(ValueColor(share));
       color.a = 0.62F;
       for (const auto& [dx, dy] : {std::pair(-0.5, -0.5),
                                    {0.5, -0.5},
@@ -114,9 +111,9 @@ Marker ValueCells(const Values& values, double cell_m) {
 }  // namespace
 
 void AddArrow(Marker& marker, double x, double y, int bearing_deg, double cell_m, double size) {
-  static constexpr double kOutline[9][2]{{-0.04, -0.34}, {0.04, -0.34}, {0.04, 0.05},
-                                         {-0.04, -0.34}, {0.04, 0.05},  {-0.04, 0.05},
-                                         {-0.17, 0.05},  {0.17, 0.05},  {0.0, 0.36}};
+  static constexpr double kOutline[9][2]{{-0.05, -0.34}, {0.05, -0.34}, {0.05, 0.02},
+                                         {-0.05, -0.34}, {0.05, 0.02},  {-0.05, 0.02},
+                                         {-0.2, 0.02},   {0.2, 0.02},   {0.0, 0.36}};
   const double turn = bearing_deg * CV_PI / 180.0;
   for (const auto& [right, ahead] : kOutline) {
     const double east = right * std::cos(turn) + ahead * std::sin(turn);
@@ -164,8 +161,8 @@ visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec) {
   Marker arrows = MakeMarker("moves", 0, Marker::TRIANGLE_LIST, kPaper);
   arrows.scale.x = arrows.scale.y = arrows.scale.z = 1.0;
-  Marker pickups = MakeMarker("moves", 1, Marker::POINTS, Rgb{0x5f, 0xe0, 0x8a});
-  Marker drop_offs = MakeMarker("moves", 2, Marker::POINTS, Rgb{0xff, 0x8c, 0x42});
+  Marker pickups = MakeMarker("moves", 1, Marker::POINTS, kPickupColor);
+  Marker drop_offs = MakeMarker("moves", 2, Marker::POINTS, kDropOffColor);
   for (Marker* dots : {&pickups, &drop_offs}) {
     dots->scale.x = dots->scale.y = 0.3 * spec.cell_size_m;
   }

@@ -29,6 +29,13 @@ inline bool InGrid(const aquafarm_msgs::FarmSpec& spec, int x, int y) {
   return x >= 0 && y >= 0 && x < spec.width && y < spec.height;
 }
 
+/// Returns true if the centre of a disaster lies on the farm.
+inline bool IsCentreInFarm(const aquafarm_msgs::FarmSpec& spec,
+                           const aquafarm_msgs::DisasterState& disaster) {
+  return disaster.x >= -0.5F && disaster.y >= -0.5F && disaster.x <= float(spec.width) - 0.5F &&
+         disaster.y <= float(spec.height) - 0.5F;
+}
+
 /// Returns true if the state belongs to the episode of the spec.
 inline bool SameEpisode(const aquafarm_msgs::FarmSpec& spec,
                         const aquafarm_msgs::FarmState& state) {

@@ -65,6 +65,12 @@ Rgb SeverityColor(double severity);
 /// The colour of a bulletin's grade: 1 blue, 2 yellow, 3 orange, 4 red.
 Rgb GradeColor(std::uint8_t grade);
 
+/// The colour of a value, by its share of the range of all values in [0, 1]: viridis.
+Rgb ValueColor(double share);
+
+inline constexpr Rgb kPickupColor{0x5f, 0xe0, 0x8a};   ///< best move "pickup" in rviz
+inline constexpr Rgb kDropOffColor{0xff, 0x8c, 0x42};  ///< best move "drop-off" in rviz
+
 /// The bearing of a move [degrees], clockwise from north; -1 if the action is not a move.
 int MoveBearingDeg(std::uint8_t action);
 

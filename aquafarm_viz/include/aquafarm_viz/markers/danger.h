@@ -7,9 +7,13 @@
 ///     | alarm                  | 0        | the next danger, a line above the farm           |
 ///     | danger                 | device   | circle around a device that a ring reaches       |
 ///     | danger_label (1)       | device   | risk and time of arrival                         |
-///     | pointer, pointer_label | disaster | where a centre outside the farm lies             |
+///     | pointer, pointer_label | disaster | where a centre outside the farm lies, its motion |
+///     |                        |          | and closest approach                             |
 ///
-/// (1) of the devices that are reached first.
+/// A label has a plate below it, in the namespace of the label with _plate.
+///
+/// (1) of as many devices as have a free place nearby, up to 40, those that are reached first
+/// before others.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>

@@ -13,13 +13,15 @@
 ///     | device, health, health_frame    | device                     |
 ///     | ship, ship_deck, ship_name      | ship                       |
 ///     | ring, ring_edge                 | disaster * kMaxRings + ring |
-///     | heading, disaster, disaster_name | disaster                  |
+///     | ring_pattern                    | disaster                   |
+///     | heading, disaster, disaster_name (3) | disaster              |
 ///     | status                          | 0                          |
 ///     | port_direction (1)              | port                       |
 ///     | device_label (2)                | device                     |
 ///
-/// (1) only with the layer `directions`, (2) only with the layer `labels`; other layers are
-/// ignored.
+/// (1) only with the layer `directions`, (2) only with the layer `labels`, (3) with the layer
+/// `risk` only if the centre lies on the farm, because DangerMarkers then point at a centre
+/// outside; other layers are ignored.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>

@@ -6,6 +6,7 @@
 #include <aquafarm_msgs/CommandResult.h>
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
+#include <aquafarm_msgs/PolicyChoice.h>
 
 #include <array>
 #include <cstdint>
@@ -16,6 +17,11 @@ namespace aquafarm_viz {
 
 /// Name of an action: "NE", "pickup", "drop-off" or "hold".
 std::string ActionName(std::uint8_t action);
+
+/// A compared policy's choice for a ship: "NW (value 87.5)", or "NW" without values; empty if it
+/// has none.
+std::string ChoiceText(const aquafarm_msgs::PolicyChoice& choice,
+                       const aquafarm_msgs::ShipState& ship);
 
 /// Name of an outcome: "crash", "edge", …; empty for OK.
 std::string OutcomeName(std::uint8_t outcome);

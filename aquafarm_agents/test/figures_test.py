@@ -78,6 +78,30 @@ class FiguresTest(unittest.TestCase):
             [np.mean(loss[place:place + WINDOW]) for place in range(121 - WINDOW)],
             self.lines()["LSTM-DQN"][1])
 
+    def test_fig_12c_shows_each_run_and_the_middle_half(self):
+        self.runs["sarsa"] = [make_run(seed, 120) for seed in range(1, 6)]
+        for factor, run in zip((1.0, 2.0, 3.0, 4.0, 500.0), self.runs["sarsa"]):
+            run["curve"]["loss"] = np.full(120, factor)
+        figures.plot_square_error(self.axes, [by_name("sarsa")], self.runs)
+        _, y = self.lines()["SARSA"]
+        np.testing.assert_allclose(3.0, y, err_msg="the median, whatever one run does")
+        thin = sorted(float(line.get_ydata()[0]) for line in self.axes.lines
+                      if line.get_label() == "_run")
+        np.testing.assert_allclose([1.0, 2.0, 3.0, 4.0, 500.0], thin)
+        edge = self.axes.collections[0].get_paths()[0].vertices[:, 1]
+        np.testing.assert_allclose([2.0, 4.0], [edge.min(), edge.max()])
+
+    def test_names_stand_at_the_ends_of_the_lines_and_apart_from_each_other(self):
+        self.runs["lstm_dqn"] = self.runs["sarsa"]  # both lines end at the same place
+        figures.plot_repeated(self.axes, self.contestants, self.runs, 90.0)
+        names = {text.get_text(): text.get_position()[1] for text in self.axes.texts}
+        self.assertEqual({"SARSA, 2 runs", "LSTM-DQN, 2 runs", "clairvoyant"}, set(names))
+        places = sorted(names.values())
+        for lower, upper in zip(places, places[1:]):
+            self.assertGreaterEqual(upper - lower, 0.06)
+        self.assertLessEqual(places[-1], 1.0001)
+        self.assertEqual(names["clairvoyant"], places[-1], "the highest line has the highest name")
+
     def test_fig_13_shows_the_return_per_step(self):
         figures.plot_mean_score(self.axes, self.contestants, self.runs)
         x, y = self.lines()["SARSA"]

@@ -127,11 +127,17 @@ ExitCode Run(Arguments arguments) {
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
   AccountsOf accounts;
-  std::vector<DeviceTally> devices;
+  DeviceOutcomes devices;
   if (local != nullptr) {
     accounts = [local, &devices](std::int32_t farm) {
-      AddDevices(local->batch().farm(farm).devices(), devices);
+      devices.Add(local->batch().farm(farm).devices());
       return local->batch().farm(farm).record().accounts;
+    };
+  } else if (const auto* const family = dynamic_cast<const FamilyEnvironment*>(farms.get())) {
+    devices.are_same = false;
+    accounts = [family, &devices](std::int32_t farm) {
+      devices.Add(family->farm(farm).devices());
+      return family->farm(farm).record().accounts;
     };
   }
   Evaluation evaluation = Evaluate(

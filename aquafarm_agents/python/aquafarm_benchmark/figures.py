@@ -64,7 +64,47 @@ def _show_returns(axes, curves, optimum=None):
     low = min(np.quantile(curve, 0.02) for curve in curves)
     axes.set_yscale("symlog", linthresh=100.0)
     axes.set_ylim(low - 0.2 * abs(low), top + 0.5 * abs(top))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
     axes.axhline(0.0, color="black", linewidth=0.5)
+
+
+_NAME_GAP = 0.062  # height of a name, as a share of the axes
+
+
+def _name_ends(axes, ends):
+    """Writes a name next to the end of each line, at the right edge and apart from each other.
+
+    ends: (x, y, colour, name) of each line
+    """
+    axes.margins(x=0.0)
+    axes.set_ylim(axes.get_ylim())  # stays as it is
+    to_axes = axes.transData + axes.transAxes.inverted()
+    ends = sorted(ends, key=lambda end: end[1])
+    places = []
+    for x, y, _, _ in ends:
+        place = float(to_axes.transform((x, y))[1])
+        places.append(max(place, places[-1] + _NAME_GAP) if places else place)
+    over = max(0.0, places[-1] - 1.0) if places else 0.0
+    for (x, y, colour, name), place in zip(ends, places):
+        axes.annotate(name, (x, y), xytext=(1.02, place - over), textcoords=axes.transAxes,
+                      color=colour, va="center", fontsize=9, annotation_clip=False,
+                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6})
+
+
+def _optimum_end(ends, optimum):
+    """The end of the line of the optimum, at the right edge of the others."""
+    if optimum is None:
+        return []
+    return [(max(end[0] for end in ends), optimum, "black", "clairvoyant")]
+
+
+def _name_beside(axes):
+    """A legend to the right of the axes, where it covers no line."""
+    axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), frameon=False, fontsize=9)
+
+
+def _runs_text(count):
+    return f"{count} {'run' if count == 1 else 'runs'}"
 
 
 def plot_rewards_by_steps(axes, contestants, runs, optimum):
@@ -78,63 +118,70 @@ def plot_rewards_by_steps(axes, contestants, runs, optimum):
         curves.append(means)
     axes.set_xscale("log")
     _show_returns(axes, curves, optimum)
-    axes.legend(loc="best")
+    _name_beside(axes)
 
 
 def plot_rewards_by_episodes(axes, contestants, runs, optimum):
     """Return of every episode of the first run, and its 50-episode mean."""
-    curves = []
+    curves, ends = [], []
     for one in contestants:
         curve = runs[one.name][0]["curve"]["return"]
         axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, alpha=0.15, linewidth=0.5)
-        axes.plot(*_smooth(curve), color=one.colour, label=one.label)
+        episodes, means = _smooth(curve)
+        axes.plot(episodes, means, color=one.colour, label=one.label)
         curves.append(curve)
+        ends.append((episodes[-1], means[-1], one.colour, one.label))
     _show_returns(axes, curves, optimum)
-    axes.legend(loc="best")
+    _name_ends(axes, ends + _optimum_end(ends, optimum))
 
 
 def draw_rewards(path, contestants, runs, optimum):
-    """Fig. 12a by time steps, next to the same data by episodes."""
-    figure, (left, right) = plt.subplots(1, 2, figsize=(13, 4.5), layout="constrained")
-    _label(left, "Rewards by time steps, first run (Fig. 12a)", "50-episode mean return",
+    """Fig. 12a by time steps, above the same data by episodes."""
+    figure, (upper, lower) = plt.subplots(2, 1, figsize=(9, 8), layout="constrained")
+    _label(upper, "Return by time steps, first run (Fig. 12a)", "50-episode mean return",
            "time steps so far")
-    plot_rewards_by_steps(left, contestants, runs, optimum)
-    _label(right, "Return by episode, first run", "return of an episode")
-    plot_rewards_by_episodes(right, contestants, runs, optimum)
+    plot_rewards_by_steps(upper, contestants, runs, optimum)
+    _label(lower, "Return by episode, first run: each (thin) and 50-episode mean",
+           "return of an episode")
+    plot_rewards_by_episodes(lower, contestants, runs, optimum)
     _save(figure, path)
 
 
 def draw_average_rewards(path, contestants, runs):
     """Fig. 12b: mean return of all episodes so far, over all runs."""
-    figure, axes = _axes("Average rewards, all runs (Fig. 12b)",
-                         "mean return of all episodes so far")
+    figure, axes = _axes("Mean return of all episodes so far, all runs (Fig. 12b)",
+                         "mean return so far")
     plot_average_rewards(axes, contestants, runs)
     _save(figure, path)
 
 
 def plot_average_rewards(axes, contestants, runs):
     """Mean over the runs of their mean returns of all episodes so far."""
-    curves = []
+    curves, ends = [], []
     for one in contestants:
         curve = _curves(runs[one.name], "return").mean(axis=0)
         curve = np.cumsum(curve) / np.arange(1, len(curve) + 1)
         axes.plot(np.arange(1, len(curve) + 1), curve, color=one.colour, label=one.label)
         curves.append(curve)
+        ends.append((len(curve), curve[-1], one.colour, one.label))
     _show_returns(axes, curves)
-    axes.legend(loc="best")
+    _name_ends(axes, ends)
 
 
 def draw_square_error(path, contestants, runs):
     """Fig. 12c: mean square error of the learners' value estimates, over all runs."""
     figure, axes = _axes("Mean square error of the value estimates (Fig. 12c)",
-                         f"{measures.WINDOW}-episode mean square error [reward²]")
+                         f"{measures.WINDOW}-episode mean [reward²]")
     plot_square_error(axes, contestants, runs)
+    axes.text(0.0, -0.17, "Lower: the value of a step agrees better with its reward and the next "
+              "value. Thick: median of the runs,\nshaded: their middle half, thin: each run.",
+              transform=axes.transAxes, fontsize=9, va="top")
     _save(figure, path)
 
 
 def plot_square_error(axes, contestants, runs):
-    """50-episode means of the squared TD error, without RANDOM: the geometric mean over the runs,
-    shaded by a standard deviation of the logarithm. Each line ends with its name."""
+    """50-episode means of the squared TD error, without RANDOM: the median of the runs, shaded
+    between their quartiles, and each run. Each line ends with its name."""
     ends = []
     for one in contestants:
         errors = _curves(runs[one.name], "loss")
@@ -146,54 +193,48 @@ def plot_square_error(axes, contestants, runs):
         if not len(smooth) or not known.any():
             continue
         logs = np.log(smooth[:, known])
-        mean, spread = logs.mean(axis=0), logs.std(axis=0)
-        axes.plot(episodes[known], np.exp(mean), color=one.colour, linewidth=1.8,
-                  label=one.label)
-        axes.fill_between(episodes[known], np.exp(mean - spread), np.exp(mean + spread),
-                          color=one.colour, alpha=0.2, linewidth=0)
-        ends.append((float(mean[-1]), episodes[known][-1], one, len(smooth)))
+        low, median, high = np.exp(np.quantile(logs, (0.25, 0.5, 0.75), axis=0))
+        axes.plot(episodes[known], median, color=one.colour, linewidth=2.2, label=one.label)
+        if len(smooth) > 1:
+            axes.plot(episodes[known], np.exp(logs).T, color=one.colour, linewidth=0.7, alpha=0.45,
+                      label="_run")
+            axes.fill_between(episodes[known], low, high, color=one.colour, alpha=0.18,
+                              linewidth=0)
+        ends.append((episodes[known][-1], float(median[-1]), one.colour,
+                     f"{one.label}, {_runs_text(len(smooth))}"))
     axes.set_yscale("log")
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.6g}")
     if ends:
-        axes.margins(x=0.0)
         _name_ends(axes, ends)
-
-
-def _name_ends(axes, ends):
-    """Writes names next to the ends of lines, apart from each other on a logarithmic axis."""
-    low, high = np.log(axes.get_ylim())
-    gap = 0.1 * (high - low)  # height of two rows of text
-    below = -np.inf
-    for height, episode, one, count in sorted(ends, key=lambda end: end[0]):
-        below = max(height, below + gap)
-        axes.annotate(f"{one.label}\n{count} {'run' if count == 1 else 'runs'}",
-                      (episode, np.exp(height)), xytext=(1.015, (below - low) / (high - low)),
-                      textcoords=axes.transAxes, color=one.colour, va="center", fontsize=9,
-                      arrowprops={"arrowstyle": "-", "color": one.colour, "linewidth": 0.6})
 
 
 def draw_mean_score(path, contestants, runs):
     """Fig. 13: mean return per step by episode: (a) LSTM-DQN, (b) SARSA, (c) all learners."""
-    panels = [[one for one in contestants if one.algorithm_name == name]
-              for name in ("lstm_dqn", "sarsa")] + [contestants]
-    titles = [(title, panel) for title, panel in zip("abc", panels) if panel]
-    figure, all_axes = plt.subplots(1, len(titles), figsize=(6.0 * len(titles), 4.5),
-                                    squeeze=False, layout="constrained")
-    for axes, (title, panel) in zip(all_axes[0], titles):
-        _label(axes, f"Mean score (Fig. 13{title})", "mean_score: return per step")
-        plot_mean_score(axes, panel, runs)
+    panels = [("a", [one for one in contestants if one.algorithm_name == "lstm_dqn"]),
+              ("b", [one for one in contestants if one.algorithm_name == "sarsa"])]
+    panels = [(letter, panel) for letter, panel in panels if panel]
+    figure = plt.figure(figsize=(9, 8 if panels else 4.5), layout="constrained")
+    places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
+    all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
+    for letter, panel in [*panels, ("c", contestants)]:
+        _label(all_axes[letter], f"Return per step (Fig. 13{letter})", "mean score")
+        plot_mean_score(all_axes[letter], panel, runs)
     _save(figure, path)
 
 
 def plot_mean_score(axes, contestants, runs):
     """50-episode mean return per step, mean over the runs, shaded by a standard deviation."""
+    ends = []
     for one in contestants:
         returns, steps = _curves(runs[one.name], "return"), _curves(runs[one.name], "steps")
         window = min(measures.WINDOW, returns.shape[1])
         scores = np.array([measures.return_per_step(*pair, window)
                            for pair in zip(returns, steps)])
-        _plot_shaded(axes, np.arange(window, returns.shape[1] + 1), scores, one, one.label)
+        episodes = np.arange(window, returns.shape[1] + 1)
+        _plot_shaded(axes, episodes, scores, one, one.label)
+        ends.append((episodes[-1], scores.mean(axis=0)[-1], one.colour, one.label))
     axes.axhline(0.0, color="black", linewidth=0.5)
-    axes.legend(loc="best")
+    _name_ends(axes, ends)
 
 
 def draw_evaluation(path, contestants, rows):
@@ -275,14 +316,16 @@ def draw_repeated(path, contestants, runs, optimum):
 
 def plot_repeated(axes, contestants, runs, optimum):
     """Mean over the runs of their 50-episode means, shaded by ± one standard deviation."""
-    curves = []
+    curves, ends = [], []
     for one in contestants:
         smooth = [_smooth(curve) for curve in _curves(runs[one.name], "return")]
         values = np.array([curve for _, curve in smooth])
-        _plot_shaded(axes, smooth[0][0], values, one, f"{one.label}, {len(values)} runs")
+        name = f"{one.label}, {_runs_text(len(values))}"
+        _plot_shaded(axes, smooth[0][0], values, one, name)
         curves.append(values.mean(axis=0))
+        ends.append((smooth[0][0][-1], curves[-1][-1], one.colour, name))
     _show_returns(axes, curves, optimum)
-    axes.legend(loc="best")
+    _name_ends(axes, ends + _optimum_end(ends, optimum))
 
 
 def _plot_shaded(axes, episodes, values, one, label):
@@ -300,14 +343,19 @@ def draw_route(path, label, route_file):
     panels = [("best_moves_at_start", "with nothing aboard"),
               ("best_moves_after_pickup", "with a device aboard")]
     panels = [panel for panel in panels if route[panel[0]]]
-    figure, all_axes = plt.subplots(1, len(panels) + 1, figsize=(6.2 * (len(panels) + 1), 6),
-                                    squeeze=False, layout="constrained")
-    for axes, (key, words) in zip(all_axes[0], panels):
+    rows = 2 if panels else 1
+    figure, all_axes = plt.subplots(rows, 2, figsize=(10.5, 5.4 * rows), squeeze=False,
+                                    layout="constrained")
+    all_axes = list(all_axes.flat)
+    for axes, (key, words) in zip(all_axes, panels):
         _chart(axes, route["chart"])
         _arrows(axes, route[key])
         axes.set_title(f"{label}: best move, {words}")
-    axes = all_axes[0][-1]
+    axes = all_axes[len(panels)]
+    for empty in all_axes[len(panels) + 1:]:
+        empty.axis("off")
     _chart(axes, route["chart"])
+    _explain_route(all_axes[-1], axes, bool(panels))
     _disasters(axes, route["steps"])
     cells = np.array([step["cell"] for step in route["steps"]])
     chance = np.random.Generator(np.random.PCG64(1))  # separates repeated visits of a cell
@@ -316,7 +364,7 @@ def draw_route(path, label, route_file):
     points = axes.scatter(shown[:, 0], shown[:, 1], c=np.arange(len(shown)), cmap="plasma", s=26,
                           zorder=5)
     figure.colorbar(points, ax=axes, label="step", shrink=0.75)
-    axes.set_title(f"route: {route['reason'].replace('_', ' ')}, return {route['return']:.1f}")
+    axes.set_title(f"its route: {route['reason'].replace('_', ' ')}, return {route['return']:.1f}")
     _save(figure, path)
 
 
@@ -340,7 +388,19 @@ def _chart(axes, chart):
             x, y = zip(*cells)
             axes.scatter(x, y, color=colour, marker=marker, label=label, zorder=3,
                          s=size * (1.0 if marker == "s" else 0.5))
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.05), ncol=4, frameon=False)
+
+
+def _explain_route(empty, chart, has_moves):
+    """Explains the symbols of the other axes on empty ones."""
+    empty.legend(*chart.get_legend_handles_labels(), loc="upper left", frameon=False, fontsize=11,
+                 bbox_to_anchor=(0.05, 0.95), labelspacing=0.9)
+    lines = ["axes: cells, east and north", "", "route: dots from violet (start) to yellow (end)",
+             "red ×: centre of a disaster at the start", "red circles: its rings in each step"]
+    if has_moves:
+        lines = ["arrow: the move that the policy prefers in a cell",
+                 "+ pickup, × drop-off", "", *lines]
+    empty.text(0.05, 0.55, "\n".join(lines), transform=empty.transAxes, va="top", fontsize=11,
+               linespacing=1.4)
 
 
 def _arrows(axes, moves):
@@ -360,6 +420,6 @@ def _disasters(axes, steps):
     for step in steps[::every]:
         for disaster in step["disasters"]:
             for ring in _rings(disaster):
-                axes.add_patch(Polygon(ring, fill=False, color="#b22222", alpha=0.06, zorder=2))
+                axes.add_patch(Polygon(ring, fill=False, color="#b22222", alpha=0.1, zorder=2))
     for disaster in steps[0]["disasters"]:
         axes.plot(disaster["x"], disaster["y"], marker="x", color="#b22222", zorder=4)

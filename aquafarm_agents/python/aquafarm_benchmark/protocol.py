@@ -85,21 +85,22 @@ _NETWORK = ("device=cpu", "mask_blocked=true", "target_update_interval=25", "ema
             f"learning_rate=harmonic:{_FIRST_RATE}:{{last_rate}}:1")
 _TABLE_EXPLORATION = "epsilon_greedy:linear:1:0.01:0.5"
 
+# Colours of Okabe and Ito (2008), Color universal design, as far as they go.
 _RANDOM = Contestant("random", "RANDOM", "#7f7f7f", cost=0.05, options=("actions=reachable",),
                      paper_row="random")
-_Q_LEARNING = Contestant("q_learning", "Q-learning", "#1f77b4", cost=0.02,
+_Q_LEARNING = Contestant("q_learning", "Q-learning", "#0072b2", cost=0.02,
                          exploration=_TABLE_EXPLORATION, options=("mask_illegal=true",),
                          paper_row="q_learning")
-_SARSA = Contestant("sarsa", "SARSA", "#17becf", cost=0.02, exploration=_TABLE_EXPLORATION,
+_SARSA = Contestant("sarsa", "SARSA", "#56b4e9", cost=0.02, exploration=_TABLE_EXPLORATION,
                     options=("mask_illegal=true",), paper_row="sarsa")
-_DQN = Contestant("dqn", "DQN", "#ff7f0e", cost=1.0, exploration=_COOLING,
+_DQN = Contestant("dqn", "DQN", "#e69f00", cost=1.0, exploration=_COOLING,
                   options=_NETWORK + ("train_interval=1",))
-_LSTM_DQN = Contestant("lstm_dqn", "LSTM-DQN", "#d62728", cost=2.5, exploration=_COOLING,
+_LSTM_DQN = Contestant("lstm_dqn", "LSTM-DQN", "#d55e00", cost=2.5, exploration=_COOLING,
                        options=_NETWORK + ("hidden_size=64", "batch_size=64"),
                        paper_row="lstm_dqn")
 
 # PPO learns from its newest steps only. One farm gives few of them, so each is used ten times.
-_PPO = Contestant("ppo", "PPO", "#bc5090", cost=0.15,
+_PPO = Contestant("ppo", "PPO", "#cc79a7", cost=0.15,
                   options=("rollout_size=2048", "batch_size=256", "epochs=10",
                            "learning_rate=linear:0.001:0:1"))
 
@@ -112,7 +113,7 @@ CONTESTANTS = (
     _DQN,
     _LSTM_DQN,
     _PPO,
-    Contestant("planner", "receding horizon", "#2ca02c", learns=False, cost=0.5, episodes=100,
+    Contestant("planner", "receding horizon", "#009e73", learns=False, cost=0.5, episodes=100,
                repeats=False),
 )
 # The references of losses, which take part if the scenario has money.

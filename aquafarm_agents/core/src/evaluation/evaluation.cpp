@@ -84,20 +84,33 @@ nlohmann::json ToJson(const Losses& losses) {
   return json;
 }
 
-nlohmann::json ToJson(const std::vector<DeviceTally>& devices) {
-  nlohmann::json json = nlohmann::json::array();
-  for (std::size_t id = 0; id < devices.size(); ++id) {
-    const DeviceTally& one = devices[id];
-    json.push_back({{"id", id},
-                    {"kind", ToString(one.kind)},
-                    {"episodes", one.episodes},
-                    {"delivered", one.delivered},
-                    {"aboard", one.aboard},
-                    {"left", one.Left()}});
-    if (one.delivered == 0) continue;
-    json.back()["delivered_health"] = one.delivered_health / static_cast<double>(one.delivered);
+nlohmann::json ToJson(const DeviceTally& one) {
+  nlohmann::json json = {{"kind", ToString(one.kind)},
+                         {"delivered", one.delivered},
+                         {"aboard", one.aboard},
+                         {"left", one.Left()}};
+  if (one.delivered > 0) {
+    json["delivered_health"] = one.delivered_health / static_cast<double>(one.delivered);
   }
   return json;
+}
+
+// Writes the outcomes by id, or by kind if an id is another device in another episode.
+void WriteDevices(const DeviceOutcomes& outcomes, nlohmann::json& json) {
+  if (outcomes.empty()) return;
+  if (!outcomes.are_same) {
+    for (const DeviceTally& one : outcomes.by_kind) {
+      if (one.devices == 0) continue;
+      json["devices_by_kind"].push_back(ToJson(one));
+      json["devices_by_kind"].back()["devices"] = one.devices;
+    }
+    return;
+  }
+  for (std::size_t id = 0; id < outcomes.by_id.size(); ++id) {
+    json["devices"].push_back(ToJson(outcomes.by_id[id]));
+    json["devices"].back()["id"] = id;
+    json["devices"].back()["episodes"] = outcomes.by_id[id].devices;
+  }
 }
 
 // Returns half the width of the 95 % interval of the mean return: 1.96 standard errors, where
@@ -139,7 +152,7 @@ nlohmann::json ToJson(const Evaluation& evaluation, const EvaluationContext& con
   if (const double margin = ReturnMargin(evaluation); std::isfinite(margin)) {
     json["return_interval_95"] = {evaluation.mean_return - margin, evaluation.mean_return + margin};
   }
-  if (!evaluation.devices.empty()) json["devices"] = ToJson(evaluation.devices);
+  WriteDevices(evaluation.devices, json);
   if (evaluation.losses) json["money"] = ToJson(*evaluation.losses);
   if (evaluation.mean_bound) json["upper_bound_per_episode"] = *evaluation.mean_bound;
   return json;

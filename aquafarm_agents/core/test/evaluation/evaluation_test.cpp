@@ -59,31 +59,52 @@ TEST(Evaluate, MeasuresWhatHappened) {
 TEST(Evaluate, CountsTheOutcomesOfEachDevice) {
   LocalEnvironment environment(TinyFarm(), {3, 0, false, 1});
   Scripted policy;
-  std::vector<DeviceTally> devices;
+  DeviceOutcomes outcomes;
   const AccountsOf look = [&](std::int32_t farm) -> std::optional<Accounts> {
-    AddDevices(environment.batch().farm(farm).devices(), devices);
+    outcomes.Add(environment.batch().farm(farm).devices());
     return std::nullopt;
   };
   Evaluate(environment, policy, 1, 10, nullptr, {}, std::nullopt, look);
-  ASSERT_EQ(devices.size(), 1U);
-  EXPECT_EQ(devices[0].episodes, 10);
-  EXPECT_EQ(devices[0].delivered, 10);
-  EXPECT_EQ(devices[0].delivered_health, 10.0);
-  EXPECT_EQ(devices[0].Left(), 0);
+  ASSERT_EQ(outcomes.by_id.size(), 1U);
+  EXPECT_TRUE(outcomes.are_same);
+  EXPECT_EQ(outcomes.by_id[0].devices, 10);
+  EXPECT_EQ(outcomes.by_id[0].delivered, 10);
+  EXPECT_EQ(outcomes.by_id[0].delivered_health, 10.0);
+  EXPECT_EQ(outcomes.by_id[0].Left(), 0);
 }
 
 TEST(DeviceOutcomes, DistinguishAboardAndLeft) {
-  std::vector<DeviceTally> outcomes;
+  DeviceOutcomes outcomes;
   std::vector<Device> devices(2);
   devices[0].status = DeviceStatus::kAboard;
-  AddDevices(devices, outcomes);
+  outcomes.Add(devices);
   devices[0].status = DeviceStatus::kDelivered;
   devices[0].health = 0.25F;
-  AddDevices(devices, outcomes);
-  EXPECT_EQ(outcomes[0].aboard, 1);
-  EXPECT_EQ(outcomes[0].delivered, 1);
-  EXPECT_EQ(outcomes[0].delivered_health, 0.25);
-  EXPECT_EQ(outcomes[1].Left(), 2);
+  outcomes.Add(devices);
+  EXPECT_EQ(outcomes.by_id[0].aboard, 1);
+  EXPECT_EQ(outcomes.by_id[0].delivered, 1);
+  EXPECT_EQ(outcomes.by_id[0].delivered_health, 0.25);
+  EXPECT_EQ(outcomes.by_id[1].Left(), 2);
+  EXPECT_TRUE(outcomes.are_same);
+}
+
+TEST(DeviceOutcomes, OfEpisodesWithOtherDevicesAreByKind) {
+  std::vector<Device> devices(2);
+  devices[0].kind = devices[1].kind = DeviceKind::kMonitoring;
+  DeviceOutcomes of_other_kinds;
+  of_other_kinds.Add(devices);
+  devices[1].kind = DeviceKind::kBreedingRelease;
+  devices[1].status = DeviceStatus::kDelivered;
+  of_other_kinds.Add(devices);
+  EXPECT_FALSE(of_other_kinds.are_same);
+  const auto& tally = of_other_kinds.by_kind[static_cast<std::size_t>(DeviceKind::kMonitoring)];
+  EXPECT_EQ(tally.devices, 3);
+  EXPECT_EQ(tally.Left(), 3);
+  DeviceOutcomes of_other_numbers;
+  of_other_numbers.Add(devices);
+  devices.pop_back();
+  of_other_numbers.Add(devices);
+  EXPECT_FALSE(of_other_numbers.are_same);
 }
 
 TEST(Evaluate, CountsEpisodesThatStartDifferently) {
@@ -151,6 +172,27 @@ TEST(Evaluate, DrawsActionsFromASeedOfTheirOwnIfGiven) {
 }
 
 using EvaluationFiles = FolderTest;
+
+TEST_F(EvaluationFiles, HaveDevicesByIdOrByKind) {
+  const auto written = [this](bool are_same) {
+    Evaluation evaluation;
+    evaluation.episodes.resize(1);
+    evaluation.devices.are_same = are_same;
+    evaluation.devices.Add(std::vector<Device>(2));
+    WriteEvaluation(folder_ + "/e", evaluation, {});
+    return nlohmann::json::parse(ReadFile(folder_ + "/e.json"));
+  };
+  const auto by_id = written(true);
+  ASSERT_EQ(by_id.at("devices").size(), 2U);
+  EXPECT_EQ(by_id.at("devices").at(1).at("id"), 1);
+  EXPECT_EQ(by_id.at("devices").at(1).at("episodes"), 1);
+  EXPECT_FALSE(by_id.contains("devices_by_kind"));
+  const auto by_kind = written(false);
+  ASSERT_EQ(by_kind.at("devices_by_kind").size(), 1U);
+  EXPECT_EQ(by_kind.at("devices_by_kind").at(0).at("devices"), 2);
+  EXPECT_EQ(by_kind.at("devices_by_kind").at(0).at("left"), 2);
+  EXPECT_FALSE(by_kind.contains("devices"));
+}
 
 TEST_F(EvaluationFiles, HoldWhatIsNeededToDoItAgain) {
   LocalEnvironment environment(TinyFarm(), {2, 0, false, 1});

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Outcomes of each device over the episodes of an evaluation.
+/// Outcomes of devices over the episodes of an evaluation: by id, or by kind if the episodes have
+/// different devices.
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -10,30 +12,46 @@
 
 namespace aquafarm::agents {
 
-/// How the episodes ended for one device.
+/// How the episodes ended for one device, or for all devices of a kind.
 struct DeviceTally {
-  DeviceKind kind{};          ///< of the last episode
-  std::int64_t episodes{};    ///< episodes in which the farm has this device
-  std::int64_t delivered{};   ///< episodes that ended with it in a port
-  std::int64_t aboard{};      ///< episodes that ended with it on a ship
-  double delivered_health{};  ///< sum of its health over the episodes that delivered it
+  DeviceKind kind{};
+  std::int64_t devices{};     ///< devices counted: one in each episode in which the farm has it
+  std::int64_t delivered{};   ///< of them in a port at the end of the episode
+  std::int64_t aboard{};      ///< of them on a ship
+  double delivered_health{};  ///< sum of the health of those in a port
 
-  /// Returns the number of episodes that ended with it at sea.
-  std::int64_t Left() const { return episodes - delivered - aboard; }
+  /// Returns the number of devices at sea at the end of the episode.
+  std::int64_t Left() const { return devices - delivered - aboard; }
+  void Add(const Device& device) {
+    kind = device.kind;
+    ++devices;
+    if (device.status == DeviceStatus::kAboard) ++aboard;
+    if (device.status != DeviceStatus::kDelivered) return;
+    ++delivered;
+    delivered_health += static_cast<double>(device.health);
+  }
 };
 
-/// Adds the devices of a farm at the end of an episode. Outcomes are by device id.
-inline void AddDevices(const std::vector<Device>& devices, std::vector<DeviceTally>& outcomes) {
-  if (outcomes.size() < devices.size()) outcomes.resize(devices.size());
-  for (std::size_t id = 0; id < devices.size(); ++id) {
-    DeviceTally& one = outcomes[id];
-    one.kind = devices[id].kind;
-    ++one.episodes;
-    if (devices[id].status == DeviceStatus::kAboard) ++one.aboard;
-    if (devices[id].status != DeviceStatus::kDelivered) continue;
-    ++one.delivered;
-    one.delivered_health += static_cast<double>(devices[id].health);
+/// The outcomes of an evaluation.
+struct DeviceOutcomes {
+  std::vector<DeviceTally> by_id;
+  std::array<DeviceTally, kDeviceKindCount> by_kind{};
+  /// Each id is the same device in every episode. Set it to false for a family of ranches; Add does
+  /// so where an episode has other kinds or numbers of devices.
+  bool are_same{true};
+
+  bool empty() const { return by_id.empty(); }
+  /// Adds the devices of a farm at the end of an episode.
+  void Add(const std::vector<Device>& ended) {
+    const bool is_first = by_id.empty();
+    if (!is_first && by_id.size() != ended.size()) are_same = false;
+    if (by_id.size() < ended.size()) by_id.resize(ended.size());
+    for (std::size_t id = 0; id < ended.size(); ++id) {
+      if (by_id[id].devices > 0 && by_id[id].kind != ended[id].kind) are_same = false;
+      by_id[id].Add(ended[id]);
+      by_kind[static_cast<std::size_t>(ended[id].kind)].Add(ended[id]);
+    }
   }
-}
+};
 
 }  // namespace aquafarm::agents

@@ -45,7 +45,7 @@ struct Evaluation {
   /// Accounts of the episodes; unset if the scenario has no money, or if they are unknown.
   std::optional<Losses> losses;
   std::optional<double> mean_bound;  ///< of these episodes (team_bound.h), if requested
-  std::vector<DeviceTally> devices;  ///< by id; empty if they are unknown
+  DeviceOutcomes devices;            ///< empty if they are unknown
 };
 
 /// Returns the accounts of a farm whose episode has just ended; nullopt if it has no money.

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page that compares runs in headless Chromium: charts, tables, films, network."""
+"""Pages of a run, of a benchmark and of several runs in headless Chromium: charts, tables, films,
+network."""
 import json
 import pathlib
 import shutil
@@ -12,7 +13,7 @@ import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from plan_browser_test import TOO_WIDE, open_browser, reason_to_skip  # noqa: E402
-from report_test import SCENARIO, run  # noqa: E402
+from report_test import SCENARIO, program, run  # noqa: E402
 
 try:
     from selenium.webdriver.common.action_chains import ActionChains
@@ -51,20 +52,38 @@ class CompareBrowserTest(unittest.TestCase):
                           *(cls.folder / name for name, _ in RUNS), "-o", cls.page,
                           "--episodes", EPISODES)
         assert code == 0, words
+        cls.pages = [cls.page, *cls.make_other_pages()]
         cls.browser = open_browser()
+
+    @classmethod
+    def make_other_pages(cls):
+        """Pages of a run and of a benchmark."""
+        benchmark = cls.folder / "benchmark"
+        code, words = run("aquafarm_agents", "aquafarm_benchmark", cls.scenario, "--output",
+                          benchmark, "--runs", 2, "--episodes", 60, "--evaluation-episodes", 10,
+                          "--algorithms", "random,q_learning", "--programs",
+                          pathlib.Path(program("aquafarm_agents", "aquafarm_train")).parent)
+        assert code == 0, words
+        pages = []
+        for source in (cls.folder / RUNS[0][0], benchmark):
+            pages.append(cls.folder / f"page_of_{source.name}.html")
+            code, words = run("aquafarm_bringup", "make_report", source, "-o", pages[-1],
+                              "--episodes", EPISODES)
+            assert code == 0, words
+        return pages
 
     @classmethod
     def tearDownClass(cls):
         cls.browser.quit()
         shutil.rmtree(cls.folder, ignore_errors=True)
 
-    def show(self, width=WIDTH):
+    def show(self, width=WIDTH, page=None):
         self.browser.execute_cdp_cmd(
             "Emulation.setDeviceMetricsOverride",
             {"width": width, "height": HEIGHT, "deviceScaleFactor": 1, "mobile": False})
         for kind in ("browser", "performance"):
             self.browser.get_log(kind)
-        self.browser.get(self.page.as_uri())
+        self.browser.get((page or self.page).as_uri())
 
     def chart(self, name):
         """The drawing of a chart, scrolled into the window."""
@@ -73,22 +92,34 @@ class CompareBrowserTest(unittest.TestCase):
         return place
 
     def test_no_errors_and_no_requests_but_the_page_itself(self):
-        self.show()
-        self.assertEqual([], self.browser.get_log("browser"))
-        addresses = set()
-        for entry in self.browser.get_log("performance"):
-            message = json.loads(entry["message"])["message"]
-            if message["method"] == "Network.requestWillBeSent":
-                addresses.add(message["params"]["request"]["url"])
-        self.assertEqual([self.page.as_uri()],
-                         [one for one in addresses if not one.startswith("data:")])
+        for page in self.pages:
+            self.show(page=page)
+            self.assertEqual([], self.browser.get_log("browser"), page.name)
+            addresses = set()
+            for entry in self.browser.get_log("performance"):
+                message = json.loads(entry["message"])["message"]
+                if message["method"] == "Network.requestWillBeSent":
+                    addresses.add(message["params"]["request"]["url"])
+            self.assertEqual([page.as_uri()],
+                             [one for one in addresses if not one.startswith("data:")])
 
-    def test_it_fits_at_1280_pixels_without_scrolling_and_on_a_phone(self):
-        self.show()
-        self.assertEqual([], self.browser.execute_script(TOO_WIDE))
-        self.assertEqual([], self.browser.execute_script(SCROLLING))
-        self.show(width=390)
-        self.assertEqual([], self.browser.execute_script(TOO_WIDE))
+    def test_they_fit_at_1280_pixels_without_scrolling_and_on_a_phone(self):
+        for page in self.pages:
+            self.show(page=page)
+            self.assertEqual([], self.browser.execute_script(TOO_WIDE), page.name)
+            self.assertEqual([], self.browser.execute_script(SCROLLING), page.name)
+            self.show(width=390, page=page)
+            self.assertEqual([], self.browser.execute_script(TOO_WIDE), page.name)
+
+    def test_the_return_and_its_interval_are_seen_without_scrolling(self):
+        for page, words in zip(self.pages[1:], ("of the optimum", "share of the optimum")):
+            self.show(page=page)
+            seen = self.browser.execute_script("""
+              return [...document.querySelectorAll("b, span, td, th")].filter(one =>
+                one.getBoundingClientRect().bottom < innerHeight).map(one => one.textContent)
+                .join(" | ");""")
+            self.assertIn(words, seen, page.name)
+            self.assertRegex(seen, r"-?[\d.]+ \[-?[\d.]+, -?[\d.]+\]", page.name)
 
     def test_tiles_show_both_runs_between_the_references(self):
         self.show()

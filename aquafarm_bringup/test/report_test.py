@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The report of a run and of a benchmark: required contents and error messages."""
 import base64
+import csv
 import html
 import html.parser
 import json
@@ -21,7 +22,7 @@ import roslib.packages
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from aquafarm_report import outcomes, report  # noqa: E402
+from aquafarm_report import films, intervals, outcomes, report  # noqa: E402
 from aquafarm_report.page import page as make_page, tiles  # noqa: E402
 from ranch import Ranch  # noqa: E402
 
@@ -152,7 +153,7 @@ class ReportTest(unittest.TestCase):
     def test_it_loads_nothing_from_anywhere(self):
         for address in self.page.addresses:
             self.assertTrue(address.startswith(("data:", "#")), address[:80])
-        self.assertNotIn("script", self.page.names)
+        self.assertNotIn("<script src", self.page.text)
         self.assertNotIn("@import", self.page.text)
         self.assertFalse([one for one in re.findall(r"url\(([^)]*)\)", self.page.text)
                           if not one.startswith(("#", "data:"))])
@@ -235,10 +236,55 @@ class ReportTest(unittest.TestCase):
         self.assertEqual("100.0", report.interval_text(summary, rows))
 
     def test_it_holds_curves_of_return_success_and_loss(self):
-        self.assertIn("svg", self.page.names)
-        curve = self.page.text[self.page.text.index("<svg"):self.page.text.index("</svg>")]
-        for name in ("return", "success", "loss", "episode"):
-            self.assertIn(f"<!-- {name}", curve)
+        data = re.search(r"const CURVES=(.*?);\n", self.page.text).group(1)
+        found = json.loads(data)
+        self.assertEqual(["episode", "q_learning"], found["labels"])
+        with open(self.trained / "metrics.csv", newline="") as file:
+            trained = list(csv.DictReader(file))
+        charts = {chart["id"]: chart["rows"] for chart in found["charts"]}
+        for name in ("return", "success", "loss"):
+            episode, mean = charts[f"curve_{name}"][-1]
+            self.assertEqual(len(trained), episode)
+            last = [float(row[name]) for row in trained[-50:]]
+            self.assertAlmostEqual(sum(last) / 50.0, mean, delta=1e-3 * abs(mean) + 1e-6)
+
+    def test_devices_of_episodes_with_other_devices_have_their_own_kinds(self):
+        first = [outcomes.Outcome("F0 monitoring", 3, 9, 1.0)]
+        second = [outcomes.Outcome("F0 release", None, None, 0.5),
+                  outcomes.Outcome("F1 release", 2, None, 0.75)]
+        table = outcomes.episodes_table(["best", "worst"], [first, second])
+        self.assertIn("<td>F0</td><td>monitoring: home at step 9, health 100%</td>"
+                      "<td>release: left at sea, health 50%</td>", table)
+        self.assertIn("<td>F1 release</td><td>–</td><td>aboard since step 2, health 75%</td>",
+                      table)
+
+    def test_the_chart_of_a_benchmark_has_the_scale_of_the_learners(self):
+        rows = [{"label": "RANDOM", "return_iqm": -1577.0, "return_interval": [-1583.0, -1569.0]},
+                {"label": "SARSA", "return_iqm": 230.0, "return_interval": [30.0, 240.0]},
+                {"label": "DQN", "return_iqm": 268.0, "return_interval": [266.0, 270.0]}]
+        text = intervals.chart(rows)
+        dots = [float(one) for one in re.findall(r'<circle cx="([\d.]+)"', text)]
+        self.assertEqual(2, len(dots))
+        self.assertGreater(dots[0] - dots[1], 80.0, "230 and 268 differ by a sixth of the range")
+        self.assertIn("← -1,577.0</text>", text)
+        self.assertLess(text.index("DQN"), text.index("SARSA"), "the best first")
+        for tick in ("50", "150", "250"):
+            self.assertRegex(text, rf">{tick}</text>")
+
+    def test_a_family_has_outcomes_by_kind_and_no_films(self):
+        kind = {"kind": "monitoring", "devices": 200, "delivered": 150, "aboard": 0, "left": 50,
+                "delivered_health": 0.9}
+        table = outcomes.summary_table({"devices_by_kind": [kind], "distinct_episodes": 100})
+        self.assertIn("<td>monitoring (200)</td><td>75% [66%, 82%]</td>", table)
+        family = self.folder / "family"
+        family.mkdir()
+        (family / "scenario.yaml").write_text("name: f\nfamily: {width: [6, 9]}\n")
+        rows = [{"episode": str(i), "return": str(10 * i), "steps": "5", "delivered": "1",
+                 "devices": "1", "reason": "all_retrieved"} for i in range(3)]
+        text = "".join(report.film_episodes(family, self.folder, rows))
+        self.assertIn("best: episode 2 of seed 1000", text)
+        self.assertIn("There are no films: the scenario is a family", text)
+        self.assertFalse(films.is_family(self.trained))
 
     def test_the_map_shows_the_ranch(self):
         pictures = [cv2.imdecode(np.frombuffer(one, np.uint8), cv2.IMREAD_COLOR)

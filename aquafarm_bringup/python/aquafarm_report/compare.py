@@ -37,14 +37,16 @@ class Run:
 
 
 def label_runs(runs):
-    """Gives each run a short label: its folder's name, with a number if two are alike."""
+    """Gives each run a short label: its folder's name, with a number if two are alike, and its
+    learner unless the folder is named after it."""
     names = collections.Counter(run.folder.name for run in runs)
     seen = collections.Counter()
     for run in runs:
         name = run.folder.name
         seen[name] += 1
         number = f" ({seen[name]})" if names[name] > 1 else ""
-        run.player.label = f"{name}{number}: {run.settings['algorithm']}"
+        algorithm = run.settings["algorithm"]
+        run.player.label = name + number + ("" if algorithm in name else f": {algorithm}")
 
 
 def measure_table(players):
@@ -106,15 +108,7 @@ def show_episode(runs, reason, episode):
         results.append(outcomes.read_outcomes(bag))
     title = f"Episode {episode} of seed {films.SEED}: {reason}"
     return page.section(title, f'<div class="films">{"".join(shown)}</div>',
-                        outcome_table([run.player.label for run in runs], results))
-
-
-def outcome_table(labels, results):
-    """One row for each device, a column for each episode."""
-    rows = []
-    for i, first in enumerate(results[0]):
-        rows.append([first.label] + [one[i].text() if i < len(one) else "–" for one in results])
-    return page.table(["device", *labels], rows)
+                        outcomes.episodes_table([run.player.label for run in runs], results))
 
 
 def report(folders, work, episodes, read_metrics):
@@ -141,7 +135,10 @@ def report(folders, work, episodes, read_metrics):
     sections.append(page.section("What became of each device, all episodes", *(
         f"<h3>{page.escape(label)}</h3>{table}" for label, table in devices if table)))
     sections.append(page.section("Settings that differ", differences(runs)))
-    if len(by_scenario) == 1:
+    if len(by_scenario) == 1 and films.is_family(runs[0].folder):
+        sections.append(page.section("Episodes", "<p>There are no films: the scenario is a family, "
+                                                 "and each episode has a ranch of its own.</p>"))
+    elif len(by_scenario) == 1:
         for reason, episode in choose_episodes(runs):
             sections.append(show_episode(runs[:MOST_FILMS], reason, episode))
     else:

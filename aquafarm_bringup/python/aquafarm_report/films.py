@@ -6,6 +6,7 @@ import pathlib
 import subprocess
 
 import roslib.packages
+import yaml
 
 LIMIT_S = 300
 FRAMES = 240  # approximate max number of frames of a video
@@ -61,6 +62,12 @@ def result_text(row):
     """Returns "return 269.6 in 63 steps, 3 of 3 home, all retrieved" for a row of evaluation.csv."""
     return (f"return {float(row['return']):.1f} in {row['steps']} steps, {row['delivered']} of "
             f"{row['devices']} home, {row['reason'].replace('_', ' ')}")
+
+
+def is_family(run):
+    """Whether the scenario of a run draws another ranch in every episode."""
+    scenario = yaml.load((run / "scenario.yaml").read_text(encoding="utf-8"), yaml.CSafeLoader)
+    return isinstance(scenario, dict) and bool(scenario.get("family"))
 
 
 def bag_of(run, folder, episode):

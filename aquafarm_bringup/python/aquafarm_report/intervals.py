@@ -48,31 +48,51 @@ def table(rows):
          for row in by_return(rows)])
 
 
+def _scale(rows):
+    """The range of the chart: that of the contestants with a return above 0, if there is one."""
+    shown = [row for row in rows if row["return_iqm"] > 0.0] or rows
+    ends = [end for row in shown for end in (_interval(row) or ()) + (row["return_iqm"],)]
+    margin = 0.04 * (max(ends) - min(ends)) or 1.0
+    return min(ends) - margin, max(ends) + margin
+
+
+def _ticks(low, high):
+    """Three to seven round numbers in a range."""
+    step = 10.0 ** math.floor(math.log10((high - low) / 3.0))
+    step *= next(factor for factor in (5.0, 2.0, 1.0) if (high - low) / (factor * step) >= 3.0)
+    return [i * step for i in range(math.ceil(low / step), math.floor(high / step) + 1)]
+
+
 def chart(rows):
-    """A dot for each return and a line for its interval, as SVG."""
+    """A dot for each return and a line for its interval, as SVG; the best first.
+
+    A return far below the others has an arrow to the left instead.
+    """
     rows = by_return(rows)
-    ends = [end for row in rows for end in (_interval(row) or ()) + (row["return_iqm"],)]
-    low, high = min(ends), max(ends)
-    span = (high - low) or 1.0
+    low, high = _scale(rows)
+    height = _ROW * len(rows)
 
     def x(value):
-        return _LEFT + 10 + (_WIDTH - 20) * (value - low) / span
+        return _LEFT + _WIDTH * (min(max(value, low), high) - low) / (high - low)
 
-    parts = []
+    parts = [f'<line x1="{x(tick):.1f}" x2="{x(tick):.1f}" y1="0" y2="{height}" '
+             f'stroke="currentColor" opacity=".18"/><text x="{x(tick):.1f}" y="{height + 17}" '
+             f'text-anchor="middle">{tick:,.6g}</text>' for tick in _ticks(low, high)]
     for i, row in enumerate(rows):
         y = _ROW * i + _ROW / 2
+        parts.append(f'<text x="{_LEFT - 10}" y="{y + 5}" text-anchor="end">'
+                     f'{page.escape(row["label"])}</text>')
+        if row["return_iqm"] < low:
+            parts.append(f'<text x="{_LEFT + 4}" y="{y + 5}">← {row["return_iqm"]:,.1f}</text>')
+            continue
         found = _interval(row)
         if found:
             parts.append(f'<line x1="{x(found[0]):.1f}" x2="{x(found[1]):.1f}" y1="{y}" y2="{y}" '
                          'stroke="currentColor" stroke-width="3" opacity=".5"/>')
-        parts.append(
-            f'<text x="{_LEFT - 10}" y="{y + 5}" text-anchor="end">{page.escape(row["label"])}'
-            f'</text><circle cx="{x(row["return_iqm"]):.1f}" cy="{y}" r="5" fill="currentColor">'
-            f"<title>{page.escape(row['label'])}: {text(row)}</title></circle>")
-    height = _ROW * len(rows) + 24
-    for value, anchor in ((low, "start"), (high, "end")):
-        parts.append(f'<text x="{x(value):.1f}" y="{height - 6}" text-anchor="{anchor}">'
-                     f"{value:.1f}</text>")
-    return (f'<svg viewBox="0 0 {_LEFT + _WIDTH} {height}" width="{_LEFT + _WIDTH}" role="img" '
+        parts.append(f'<circle cx="{x(row["return_iqm"]):.1f}" cy="{y}" r="5" fill="currentColor">'
+                     f"<title>{page.escape(row['label'])}: {text(row)}</title></circle>")
+    return (f'<svg viewBox="0 0 {_LEFT + _WIDTH + 30} {height + 40}" '
+            f'width="{_LEFT + _WIDTH + 30}" role="img" '
             'font-size="14" fill="currentColor" aria-label="return per episode with 95 % '
-            f'intervals">{"".join(parts)}</svg>')
+            f'intervals">{"".join(parts)}<text x="{_LEFT + _WIDTH / 2}" y="{height + 35}" '
+            'text-anchor="middle">return per episode; line: 95 % interval</text></svg>')

@@ -50,6 +50,22 @@ def read_outcomes(bag):
     return [found[key] for key in sorted(found)]
 
 
+def episodes_table(captions, results):
+    """What became of each device in some episodes: one row for each id, a column for each episode.
+
+    Where an id is another kind of device in another episode, each cell names its kind.
+    """
+    rows = []
+    for i in range(max(map(len, results), default=0)):
+        here = [one[i] if i < len(one) else None for one in results]
+        labels = {one.label for one in here if one is not None}
+        is_same = len(labels) == 1
+        rows.append([labels.pop() if is_same else f"F{i}"] + [
+            "–" if one is None else one.text() if is_same else
+            f"{one.label.partition(' ')[2]}: {one.text()}" for one in here])
+    return page.table(["device", *captions], rows)
+
+
 NAMES = {"temporary_breeding": "temporary", "monitoring": "monitoring",
          "breeding_release": "release", "deep_water_breeding": "deep water"}
 
@@ -63,13 +79,20 @@ def _share(count, episodes, distinct):
 
 
 def summary_table(summary):
-    """Outcomes of each device over all episodes of an evaluation; "" if it does not have them."""
+    """Outcomes of the devices over all episodes of an evaluation; "" if it does not have them.
+
+    By device, or by kind where the episodes have different devices.
+    """
+    by_kind = summary.get("devices_by_kind", ())
     rows = []
-    for one in summary.get("devices", ()):
+    for one in by_kind or summary.get("devices", ()):
+        kind = NAMES.get(one["kind"], one["kind"])
+        count = one["devices" if by_kind else "episodes"]
         health = one.get("delivered_health")
-        rows.append([f"F{one['id']} {NAMES.get(one['kind'], one['kind'])}",
-                     *(_share(one[name], one["episodes"], summary.get("distinct_episodes"))
+        rows.append([f"{kind} ({count:,})" if by_kind else f"F{one['id']} {kind}",
+                     *(_share(one[name], count, summary.get("distinct_episodes"))
                        for name in ("delivered", "aboard", "left")),
                      "–" if health is None else f"{health:.0%}"])
-    return page.table(["device", "home", "aboard at the end", "left at sea",
-                       "health of those at home"], rows) if rows else ""
+    return page.table(["kind of device (number)" if by_kind else "device", "home",
+                       "aboard at the end", "left at sea", "health of those at home"],
+                      rows) if rows else ""

@@ -1,23 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Contents of the report of a run or of a benchmark."""
 import csv
-import io
 import json
 import os
 import pathlib
 import tempfile
 
-import matplotlib
+import numpy as np
 
-matplotlib.use("svg")  # needs no display
-import numpy as np  # noqa: E402
-from matplotlib import pyplot as plt  # noqa: E402
+from aquafarm_report import compare, curves, films, intervals, outcomes, page, references
+from aquafarm_report.films import ReportError
 
-from aquafarm_report import compare, films, intervals, outcomes, page, references  # noqa: E402
-from aquafarm_report.films import ReportError  # noqa: E402
-
-WINDOW = 50  # episodes of the moving mean, as in the paper's measures
-POINTS = 800  # max points of a curve
 EPISODES = 1000  # as in aquafarm_evaluate
 
 
@@ -27,29 +20,6 @@ def read_metrics(path):
         rows = list(csv.DictReader(file))
     return {name: np.array([float(row[name] or "nan") for row in rows])
             for name in ("return", "success", "loss", "exploration")} if rows else {}
-
-
-def draw_curves(columns):
-    """Return, success and loss by episode, as SVG."""
-    figure, axes = plt.subplots(3, 1, figsize=(7, 7), sharex=True)
-    window = min(WINDOW, len(columns["return"]))
-    for axis, name in zip(axes, ("return", "success", "loss")):
-        values = columns[name]
-        mean = np.convolve(values, np.ones(window) / window, mode="valid")
-        episodes = np.arange(window, len(values) + 1)
-        keep = np.unique(np.linspace(0, len(mean) - 1, POINTS).astype(int))
-        axis.plot(episodes[keep], mean[keep], color="#1b4f78")
-        axis.set_ylabel(name)
-        axis.grid(alpha=0.3)
-    axes[0].set_yscale("symlog", linthresh=100.0)
-    axes[1].set_ylim(-0.03, 1.03)
-    axes[-1].set_xlabel(f"episode (means of {window})")
-    figure.tight_layout()
-    text = io.StringIO()
-    figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
-    plt.close(figure)
-    svg = text.getvalue()
-    return f'<div class="chart">{svg[svg.index("<svg"):]}</div>'
 
 
 def count_text(summary, episodes):
@@ -65,9 +35,14 @@ def interval_text(summary, rows):
                                                     summary.get("distinct_episodes") or 0))
 
 
-def show_episodes(run, folder, episodes):
-    """Summary of a run's policy, its episodes, and sections: table, map and videos."""
-    summary, rows = films.evaluate(run, folder, episodes)
+def film_episodes(run, folder, rows):
+    """Sections of the best, median and worst episode: map, videos and the fate of each device."""
+    if films.is_family(run):
+        return [page.section("Best, median and worst episode", page.table(
+            ["episode", "result"], [(f"{name}: episode {row['episode']} of seed {films.SEED}",
+                                     films.result_text(row)) for name, row in films.choose(rows)]),
+            "<p>There are no films: the scenario is a family, and each episode has a ranch of its "
+            "own. ./aquafarm evaluate plays the policy on one ranch file.</p>")]
     shown, captions, results, chart = [], [], [], None
     for name, row in films.choose(rows):
         bag = films.bag_of(run, folder, int(row["episode"]))
@@ -77,6 +52,15 @@ def show_episodes(run, folder, episodes):
         shown.append(page.film(films.draw_film(bag, int(row["steps"])), caption))
         captions.append(f"{name}, episode {row['episode']}")
         results.append(outcomes.read_outcomes(bag))
+    return [page.section("Best, median and worst episode",
+                         f'<div class="films">{"".join(shown)}</div>',
+                         outcomes.episodes_table(captions, results)),
+            page.section("The ranch", page.picture(chart, "at the start of an episode"))]
+
+
+def show_episodes(run, folder, episodes):
+    """Summary of a run's policy, its episodes, and sections: table, videos and map."""
+    summary, rows = films.evaluate(run, folder, episodes)
     table = compare.measure_table([references.read_player(
         summary["algorithm"], folder / "evaluation", is_run=True)])
     losses = []
@@ -91,10 +75,7 @@ def show_episodes(run, folder, episodes):
         losses.insert(0, page.section("What became of each device, all episodes", devices))
     return summary, rows, [
         page.section(f"Greedy play, {count_text(summary, len(rows))}", table), *losses,
-        page.section("The ranch", page.picture(chart, "at the start of an episode")),
-        page.section("Best, median and worst episode",
-                     f'<div class="films">{"".join(shown)}</div>',
-                     compare.outcome_table(captions, results))]
+        *film_episodes(run, folder, rows)]
 
 
 def report_run(run, folder, episodes):
@@ -102,11 +83,10 @@ def report_run(run, folder, episodes):
     settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
     columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
     summary, rows, sections = show_episodes(run, folder, episodes)
-    curves = [page.section("Training", draw_curves(columns))] if columns else []
+    training = curves.show([settings["algorithm"]], [columns])
     tiles = page.tiles([
-        (settings["algorithm"], "learner"), (settings["scenario"], "scenario"),
         (interval_text(summary, rows),
-         f"return per episode, 95 % interval, {count_text(summary, summary['episodes'])}"),
+         f"return, 95 % interval, {count_text(summary, summary['episodes'])}"),
         (f"{summary['success_rate']:.0%}", "success"),
         (f"{len(columns.get('return', [])):,}", "episodes trained"),
         (settings["seed"], "seed of the training"), (films.SEED, "seed of the episodes and films"),
@@ -115,9 +95,9 @@ def report_run(run, folder, episodes):
     players.insert(1, references.read_player(settings["algorithm"], folder / "evaluation",
                                              is_run=True))
     return page.page(
-        f"{settings['algorithm']} on {settings['scenario']}", tiles,
-        page.section("Next to the references", references.show_tiles(players)), *sections,
-        *curves,
+        f"{settings['algorithm']} on {settings['scenario']}",
+        page.section("Next to the references", references.show_tiles(players)), tiles, training,
+        *sections,
         page.section("Configuration",
                      page.details("run.json", json.dumps(settings, indent=2)),
                      page.details("scenario.yaml",
@@ -129,8 +109,8 @@ CAPTIONS = {
                "steps and by episodes (Fig. 12a of the paper); higher is better",
     "average_rewards": "Mean return of all episodes so far, over all runs (Fig. 12b); higher is "
                        "better",
-    "mean_square_error": "50-episode mean square error of the value estimates (Fig. 12c); shaded: "
-                         "one standard deviation over the runs",
+    "mean_square_error": "50-episode mean square error of the value estimates (Fig. 12c): median of "
+                         "the runs, shaded their middle half, thin each run",
     "repeated_trainings": "50-episode mean return over the runs of each learner (Fig. 14); shaded: "
                           "one standard deviation",
     "mean_score": "Return per step during the training (Fig. 13); shaded: one standard deviation "

@@ -14,6 +14,7 @@ from skimage.metrics import structural_similarity  # noqa: E402
 
 MOST_WINDOW = 7  # cells on a side, as in scikit-image
 FEWEST_CELLS = 10
+_COLUMN = 3.8  # width of a map in the figure [inch]
 
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
         "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
@@ -96,8 +97,9 @@ def draw_map(axis, field, km, colours, label):
     axis.set_xlabel("east [km]")
 
 
-def draw_relation(axis, values, field, units, result):
+def draw_relation(axis, values, layer, result):
     """Return against the sea's value, a dot for each cell, with medians of tenths of the cells."""
+    name, units, field = layer
     known = np.isfinite(values) & np.isfinite(field)
     x, y = field[known], values[known]
     axis.scatter(x, y, s=9, color="#0072b2", alpha=0.35, linewidth=0, label="a cell")
@@ -106,10 +108,11 @@ def draw_relation(axis, values, field, units, result):
         axis.plot([np.median(x[part]) for part in parts], [np.median(y[part]) for part in parts],
                   color="#d55e00", linewidth=2, marker="o", markersize=4,
                   label="medians of tenths of the cells")
-    axis.set_xlabel(f"value of the sea [{units}]")
+    axis.set_xlabel(f"{name.replace('_', ' ')} [{units}]")
     axis.set_title(f"{strength(result['spearman_rho'])}\nSpearman's rho "
-                   f"{said(result['spearman_rho'])}, SSIM {said(result['ssim'])}, turned over "
-                   f"{said(result['ssim_turned'])}, {result['cells']} cells", fontsize=10)
+                   f"{said(result['spearman_rho'])}, {result['cells']} cells\n"
+                   f"SSIM {said(result['ssim'])}, turned over {said(result['ssim_turned'])}",
+                   fontsize=10)
     axis.grid(alpha=0.3)
 
 
@@ -120,20 +123,21 @@ def draw(text, values, layers, results, path):
     tall = min(1.6, max(0.5, height / width))
     rows = 2 if layers else 1
     figure, axes = pyplot.subplots(rows, 1 + len(layers), squeeze=False, constrained_layout=True,
-                                   figsize=(5.0 * (1 + len(layers)),
-                                            4.2 * tall + (4.0 if layers else 1.2)),
-                                   height_ratios=[4.2 * tall, 3.2][:rows])
+                                   figsize=(_COLUMN * (1 + len(layers)),
+                                            0.84 * _COLUMN * tall + (3.8 if layers else 1.2)),
+                                   height_ratios=[0.84 * _COLUMN * tall, 2.6][:rows])
     draw_map(axes[0][0], values, km, "viridis", "return [points]")
     axes[0][0].set_title("return of a start in this cell")
     axes[0][0].set_ylabel("north [km]")
-    for column, ((name, units, field), result) in enumerate(zip(layers, results), start=1):
+    for column, (layer, result) in enumerate(zip(layers, results), start=1):
+        name, units, field = layer
         draw_map(axes[0][column], field, km, "cividis", f"[{units}]")
         axes[0][column].set_title(name.replace("_", " "))
-        draw_relation(axes[1][column], values, field, units, result)
+        draw_relation(axes[1][column], values, layer, result)
     if layers:
         axes[1][1].set_ylabel("return of a start in the cell")
-        axes[1][1].legend(fontsize=9)
         draw_key(axes[1][0], text)
+        axes[1][0].legend(*axes[1][1].get_legend_handles_labels(), loc="lower left", frameon=False)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
     figure.suptitle(f"{text['policy']} on {text['scenario']}: where a start pays, and the sea "
@@ -147,12 +151,12 @@ def draw(text, values, layers, results, path):
 def draw_key(axis, text):
     """What the figure shows, in words."""
     axis.axis("off")
-    axis.text(0.0, 0.95, "\n".join((
-        "Upper left: the return if the ship starts", f"in a cell and {text['policy']} steers it.",
-        "Next to it: the sea. Hatched: land, rocks", "or unknown.", "",
-        "Below each sea: the return of each cell", "against the sea's value there. Rho compares",
-        "ranks (1: same order, −1: opposite order);", "SSIM compares the shapes of the maps.",
-        "Neither says that one causes the other.")), va="top", fontsize=10)
+    axis.text(0.0, 1.0, "\n".join((
+        "Upper left: the return if the ship", f"starts in a cell and {text['policy']} steers.",
+        "Next to it: the sea. Hatched: land,", "rocks or unknown.", "",
+        "Below each sea: the return of each cell", "against the sea's value there. Rho",
+        "compares ranks (1: same order, −1:", "opposite); SSIM compares the shapes of",
+        "the maps. Neither says that one causes", "the other.")), va="top", fontsize=10)
 
 
 def make(values_file, output):

@@ -3,8 +3,10 @@
 import importlib.machinery
 import importlib.util
 import pathlib
+import signal
 import subprocess
 import sys
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TOOL = ROOT / "tools" / "draw_docs_images"
@@ -39,3 +41,35 @@ def test_an_unknown_name_is_refused_with_the_known_ones():
                           check=False)
     assert done.returncode == 2
     assert "got 'valuess', expected some of: zhoushan_infa_2021" in done.stderr
+
+
+def living(session):
+    """Returns the processes of a session that have not ended."""
+    listed = subprocess.run(["ps", "-eo", "sid=,stat=,pid="], capture_output=True, text=True,
+                            check=True).stdout
+    return [line for line in listed.splitlines()
+            if line.split()[0] == str(session) and not line.split()[1].startswith("Z")]
+
+
+def test_ctrl_c_leaves_no_process():
+    # A program that ignores Ctrl-C, with a child in a process group of its own.
+    code = f"""
+import importlib.machinery, signal, sys
+sys.dont_write_bytecode = True
+tool = importlib.machinery.SourceFileLoader("tool", {str(TOOL)!r}).load_module()
+tool.GRACE_S = 1
+shell = "set -m; trap '' INT; sleep 600 & wait"
+with tool.started(["bash", "-c", shell]) as process:
+    print(process.pid, flush=True)
+    signal.pause()
+"""
+    outer = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True,
+                             stderr=subprocess.DEVNULL)
+    session = int(outer.stdout.readline())
+    end = time.monotonic() + 30
+    while len(living(session)) < 2 and time.monotonic() < end:  # the shell and its child
+        time.sleep(0.05)
+    assert len(living(session)) == 2
+    outer.send_signal(signal.SIGINT)
+    assert outer.wait(60) != 0
+    assert not living(session)

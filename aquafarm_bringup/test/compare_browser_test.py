@@ -155,7 +155,10 @@ class CompareBrowserTest(unittest.TestCase):
         for now, before in zip(part, whole):
             self.assertEqual(part[0], now)
             self.assertLess(now[1] - now[0], 0.5 * (before[1] - before[0]))
-        ActionChains(self.browser).move_to_element(place).double_click().perform()
+        for _ in range(5):  # on a busy machine two clicks may be too far apart
+            ActionChains(self.browser).move_to_element(place).double_click().perform()
+            if self.browser.execute_script(RANGES) != part:
+                break
         for now, before in zip(self.browser.execute_script(RANGES), whole):
             self.assertAlmostEqual(before[1] - before[0], now[1] - now[0], delta=2)
 

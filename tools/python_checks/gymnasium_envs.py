@@ -31,7 +31,7 @@ def check_rollout(make):
 def check_pictures(name):
     """Tests that each render mode returns its kind of picture at the start and after a step."""
     modes = gymnasium.make(name).metadata["render_modes"]
-    assert {"rgb_array", "ansi", "human"} <= set(modes), modes
+    assert {"rgb_array", "ansi", "human"} == set(modes), modes
     for mode in ("rgb_array", "ansi"):
         env = gymnasium.make(name, render_mode=mode)
         env.reset(seed=1)
@@ -76,6 +76,7 @@ try:
     import aquafarm_core.pictures  # noqa: F401
 except ImportError as error:  # a wheel without OpenCV
     print(f"no pictures: {error}")
+    assert set(gymnasium.make(ids[0]).metadata["render_modes"]) == {"ansi", "human"}
 else:
     for name in ids:
         check_pictures(name)

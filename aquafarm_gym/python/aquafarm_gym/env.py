@@ -45,7 +45,7 @@ class FarmEnv(gymnasium.Env[Any, Any]):
     Copies and pickles of farms in this process continue bit-identically.
     """
 
-    metadata: dict[str, Any] = {"render_modes": list(rendering.MODES),
+    metadata: dict[str, Any] = {"render_modes": list(rendering.OFFERED),
                                 "render_fps": rendering.FPS}
     farms: Any
     observation: str

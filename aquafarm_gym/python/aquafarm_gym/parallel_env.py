@@ -30,7 +30,7 @@ class FarmParallelEnv(ParallelEnv[str, Any, Any]):  # type: ignore[misc, unused-
     all agents in one array (`state_space`), for centralized critics.
     """
 
-    metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": list(rendering.MODES),
+    metadata: dict[str, Any] = {"name": "aquafarm_v1", "render_modes": list(rendering.OFFERED),
                                 "render_fps": rendering.FPS,
                                 "is_parallelizable": True}
     farms: Any

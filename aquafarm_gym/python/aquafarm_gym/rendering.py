@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import html
+import importlib.util
 import os
 import struct
 import sys
@@ -17,6 +18,9 @@ SIZE: tuple[int, int] = (800, 640)
 LAYERS: str = "wake,risk"
 STYLE: str = "dark"
 MODES: tuple[str, ...] = ("ansi", "human", "rgb_array")
+# Those of this installation: a wheel without OpenCV draws no pictures.
+OFFERED: tuple[str, ...] = (MODES if importlib.util.find_spec("aquafarm_core._pictures")
+                            else ("ansi", "human"))
 FPS: int = 4
 Pixels = npt.NDArray[np.uint8]
 

@@ -40,7 +40,7 @@ def autoreset_name(mode: Any, farms: Any) -> str:
 class VectorBase(gymnasium.vector.VectorEnv[Any, Any, Any]):
     """Base class of the vector environments: N farms that step together."""
 
-    metadata: dict[str, Any] = {"render_modes": ["ansi", "rgb_array"],
+    metadata: dict[str, Any] = {"render_modes": [one for one in rendering.OFFERED if one != "human"],
                                 "render_fps": rendering.FPS}
     farms: Any
     num_envs: int

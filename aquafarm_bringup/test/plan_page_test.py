@@ -304,6 +304,21 @@ class PageTest(unittest.TestCase):
                     key = "probability" if one["layer"] == "order" else "probability_home"
                     self.assertIsNone(one[key], one)
 
+    def test_equal_chances_are_said_once(self):
+        plan = copy.deepcopy(self.plan)
+        for device in plan["devices"]:
+            device["odds"]["home"] = 1.0
+        self.assertIn("Each fetched device comes home in > 99 % of the futures.", words_of(plan))
+
+    def test_an_unknown_end_of_the_departures_is_said(self):
+        plan = copy.deepcopy(self.plan)
+        plan["deadlines"].update(no_departure_after=None, not_known_beyond="2021-07-25T18:00:00Z")
+        words = words_of(plan)
+        said = ("Until when ships may leave is not known beyond Mon 26 Jul 02:00: plan again at "
+                "the next bulletin.")
+        self.assertEqual(2, words.count(said), "in the answer and below the deadlines")
+        self.assertNotIn("no ship should leave", words.lower())
+
     def test_a_deadline_that_the_known_time_ends_is_no_limit(self):
         plan = copy.deepcopy(self.plan)
         plan["devices"][1]["deadlines"][2].update(open=True, leave="2021-07-25T18:00:00Z")

@@ -203,6 +203,9 @@ def _sure(plan):
     best = max(planned, key=lambda one: one["odds"]["home"])
     if len(planned) == 1:
         answer = f"{worst['name']} comes home in {percent(worst['odds']['home'])} of the futures."
+    elif percent(worst["odds"]["home"]) == percent(best["odds"]["home"]):
+        answer = (f"Each fetched device comes home in {percent(worst['odds']['home'])} of the "
+                  "futures.")
     else:
         answer = (
             f"Each fetched device comes home in {percent(worst['odds']['home'])} ({worst['name']}) to "

@@ -144,6 +144,14 @@ class CompareBrowserTest(unittest.TestCase):
         second = self.browser.find_element(By.ID, "curve_return_legend").text.partition(":")[0]
         self.assertGreater(float(second), float(first))
 
+    def test_runs_differ_by_their_dashes_for_a_print_without_colours(self):
+        self.show()
+        dashes = self.browser.execute_script("""
+          return charts.map(chart => chart.getLabels().slice(1).map(
+            label => chart.getOption("strokePattern", label)));""")
+        for of_runs in dashes:
+            self.assertEqual([None, [9, 4]], of_runs)
+
     def test_dragging_enlarges_a_part_of_all_curves_and_a_double_click_shows_all(self):
         self.show()
         whole = self.browser.execute_script(RANGES)

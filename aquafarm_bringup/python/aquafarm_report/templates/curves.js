@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws the charts of CURVES; an enlarged part applies to all of them.
 window.charts = [];
+// Runs differ by their dashes too, so that they can be told apart in a print without colours.
+const DASHES = [null, [9, 4], [2, 3], [12, 4, 2, 4], [5, 5], [1, 6], [14, 6]];
 let moving = false;
 for (const chart of CURVES.charts) {
   const returns = chart.id === "curve_return";
   window.charts.push(new Dygraph(document.getElementById(chart.id), chart.rows, {
     labels: CURVES.labels,
     colors: CURVES.colours,
+    series: Object.fromEntries(CURVES.labels.slice(1).map(
+      (label, i) => [label, {strokePattern: DASHES[i % DASHES.length]}])),
     labelsDiv: chart.id + "_legend",
     legend: "always",
     labelsSeparateLines: false,

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Trains MaskablePPO of sb3-contrib on a shipped farm, with 64 farms stepped together in C++.
 
-    python3 masked_ppo.py [--scenario paper] [--steps 2000000] [--seed 1] [--save model.zip]
+    python3 masked_ppo.py [--scenario paper] [--steps 3000000] [--seed 1] [--save model.zip]
 
 after: pip install './aquafarm_gym[sb3]'. The action mask excludes illegal pickups and drop-offs.
 Without it PPO, A2C and DQN with their default options learn to wait: most random pickups and
@@ -56,7 +56,7 @@ def evaluate(model, scenario, episodes):
     return tuple(np.mean([results[farm] for farm in range(episodes)], axis=0))
 
 
-def main(scenario="paper", steps=2_000_000, seed=1, save=None, farms=64, episodes=100, **options):
+def main(scenario="paper", steps=3_000_000, seed=1, save=None, farms=64, episodes=100, **options):
     """Trains and evaluates; returns (mean return, success rate, steps per second). options: of
     make_model."""
     torch.set_num_threads(1)
@@ -76,7 +76,7 @@ def main(scenario="paper", steps=2_000_000, seed=1, save=None, farms=64, episode
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("--scenario", default="paper")
-    parser.add_argument("--steps", type=int, default=2_000_000)
+    parser.add_argument("--steps", type=int, default=3_000_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--save", help="file for the trained model")
     given = parser.parse_args()

@@ -220,6 +220,20 @@ class CoreTest(unittest.TestCase):
                 self.assertAlmostEqual(one["episode_return"], returns[one["farm"]], delta=0.5)
         self.assertGreater(ended, 8)
 
+    def test_a_summary_has_the_entries_of_no_episode_and_each_has_a_column(self):
+        batch = core.FarmBatch(core.Scenario.load(str(DATA / "reef.yaml")), 8)
+        batch.reset(2)
+        finished = []
+        for joint in actions_of(3, batch, 200):
+            batch.step(joint)
+            finished += batch.finished()
+        self.assertTrue(finished)
+        types = {name: type(value) for name, value in core.NO_EPISODE.items()}
+        for one in finished:
+            self.assertEqual({name: type(value) for name, value in one.items()}, types)
+        self.assertEqual({*core.EPISODE_COLUMNS, *core.ADDED_COLUMNS}, {*types})
+        self.assertEqual(core.ADDED_COLUMNS, {"energy": "energy_kwh", "distance": "distance_km"})
+
     def test_calls_of_several_threads_at_once_are_refused(self):
         batch = core.FarmBatch(PAPER, 512, ["planes"])
         batch.reset(1)

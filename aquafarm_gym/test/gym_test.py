@@ -180,14 +180,14 @@ class GymTest(unittest.TestCase):
                                     " for 0.5 s"):
             RosFarms("/nowhere", wait_limit_s=0.5)
 
-    def test_farms_that_another_has_reset_are_not_gone_on_with(self):
+    def test_farms_that_another_client_reset_refuse_a_step(self):
         mine, other = RosFarms("/ranch"), RosFarms("/ranch")
         north = np.zeros((1, 1), np.uint8)
         mine.reset(1)
         mine.step(north)
         other.reset(2)
         with self.assertRaisesRegex(ConnectionError,
-                                    "^sim node: not as it was left .* reset to go"):
+                                    "^sim node: its farms changed .* reset to continue"):
             mine.step(north)
         with self.assertRaisesRegex(ValueError, "^step: got no reset before, expected one"):
             mine.step(north)

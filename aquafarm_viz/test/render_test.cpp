@@ -143,18 +143,18 @@ TEST_F(RenderTest, PutsSeveralStepsOfOneEpisodeSideBySide) {
 
 // Returns the pictures of a video, decoded as by a player.
 std::vector<cv::Mat> Pictures(const std::string& path) {
-  cv::VideoCapture film(path, cv::CAP_FFMPEG);
+  cv::VideoCapture video(path, cv::CAP_FFMPEG);
   std::vector<cv::Mat> pictures;
-  for (cv::Mat picture; film.read(picture);) pictures.push_back(picture.clone());
+  for (cv::Mat picture; video.read(picture);) pictures.push_back(picture.clone());
   return pictures;
 }
 
-TEST_F(RenderTest, MakesAFilmOfOneEpisode) {
+TEST_F(RenderTest, MakesAVideoOfOneEpisode) {
   const std::string bag = MakeBag({"/aquafarm/"});
   ASSERT_EQ(Render(bag + " --step 4 --width 320 --height 240 -o " + Path("four.png")).code, 0);
   const cv::Mat four = cv::imread(Path("four.png"));
   for (const char* ending : {".mp4", ".webm", ".gif"}) {
-    const std::string path = Path(std::string("film") + ending);
+    const std::string path = Path(std::string("video") + ending);
     const Result result = Render(bag + " --width 321 --height 241 --fps 5 -o " + path);
     ASSERT_EQ(result.code, 0) << result.output;
     const std::vector<cv::Mat> pictures = Pictures(path);
@@ -167,7 +167,7 @@ TEST_F(RenderTest, MakesAFilmOfOneEpisode) {
   }
 }
 
-TEST_F(RenderTest, AFilmThatTheDiskHasNoRoomForLeavesNothing) {
+TEST_F(RenderTest, AVideoThatTheDiskHasNoRoomForLeavesNothing) {
   const std::string bag = MakeBag({"/aquafarm/"});
   for (const char* ending : {".mp4", ".webm", ".gif"}) {
     const std::string path = Path(std::string("full") + ending);
@@ -180,7 +180,7 @@ TEST_F(RenderTest, AFilmThatTheDiskHasNoRoomForLeavesNothing) {
       << "the bag";
 }
 
-TEST_F(RenderTest, AFilmShowsAWholeEpisode) {
+TEST_F(RenderTest, AVideoShowsAWholeEpisode) {
   const std::string bag = MakeBag({"/aquafarm/"});
   EXPECT_NE(Render(bag + " --step 3 -o " + Path("x.gif"))
                 .output.find(
@@ -210,7 +210,7 @@ TEST_F(RenderTest, SaysWhatTheBagLacks) {
   write(true, aquafarm::kVersion);
   Result result = Render(bag + " --end -o " + Path("x.png"));
   EXPECT_EQ(result.code, 0) << result.output;
-  EXPECT_EQ(result.output, "render: " + bag + ": 2 steps are missing; 'verify' says which\n");
+  EXPECT_EQ(result.output, "render: " + bag + ": 2 steps are missing; 'verify' names the first\n");
   result = Render(bag + " --step 4 --step 2 -o " + Path("z.png"));
   EXPECT_EQ(WEXITSTATUS(result.code), 2);
   EXPECT_EQ(result.output, "render: " + bag +
@@ -221,7 +221,7 @@ TEST_F(RenderTest, SaysWhatTheBagLacks) {
       Render(bag + " -o " + Path("z.png")).output,
       "render: " + bag + ": no step 0; episode 12 begins with step 2; run 'verify' for details\n");
   EXPECT_EQ(Render(bag + " --end -o " + Path("x.png")).output,
-            "render: " + bag + ": 1 step is missing; 'verify' says which\n");
+            "render: " + bag + ": 1 step is missing; 'verify' names it\n");
   write(true, "9.9.9");
   result = Render(bag + " -o " + Path("x.png"));
   EXPECT_EQ(result.code, 0);
@@ -258,7 +258,7 @@ TEST_F(RenderTest, ASpecThatCannotBeDrawnHasItsLineWithTheBag) {
                 "aquafarm_msgs/FarmSpec; record spec and state, as record.launch does\n");
 }
 
-TEST_F(RenderTest, AFilmMayLeaveStepsOut) {
+TEST_F(RenderTest, AVideoMayLeaveStepsOut) {
   const std::string bag = MakeBag({"/aquafarm/"});
   ASSERT_EQ(
       Render(bag + " --episode 13 --every 4 --fps 1 --width 160 --height 160 -o " + Path("x.gif"))
@@ -278,7 +278,7 @@ TEST_F(RenderTest, WithoutACodecItSaysWhatElseThereIs) {
   EXPECT_FALSE(fs::exists(Path("x.mp4")));
   const Result layers = Render(bag + " --layers rain -o " + Path("y.png"));
   EXPECT_NE(layers.code, 0);
-  EXPECT_NE(layers.output.find("render: layers: got 'rain', expected some of: wake, risk, route, "
+  EXPECT_NE(layers.output.find("render: layers: got 'rain', expected some of: trail, risk, route, "
                                "sight, values, moves, directions, labels, sea:NAME; or none"),
             std::string::npos);
   const Result gif = Render(bag + " -o " + Path("no/such/folder/x.gif"));

@@ -70,7 +70,7 @@ TEST_F(Replay, FindsAStepOrTheNextLaterOneOrTheLast) {
 
 TEST_F(Replay, MissingStepsAndAnotherVersionAreSaid) {
   using Notes = std::vector<std::string>;
-  const std::string missing = "98 steps are missing; 'verify' says which";
+  const std::string missing = "98 steps are missing; 'verify' names the first";
   const ReplayTape tape(MakeBag());
   const std::string own = test::MakeSpec().version;
   EXPECT_EQ(tape.Notes(own), Notes({missing}));
@@ -88,7 +88,7 @@ TEST_F(Replay, MissingStepsAndAnotherVersionAreSaid) {
     }
   }
   EXPECT_EQ(ReplayTape(path_).Notes("9.9"),
-            Notes({"1 step is missing; 'verify' says which",
+            Notes({"1 step is missing; 'verify' names it",
                    "recorded by an unnamed version, this is 9.9; shown as it is"}));
 }
 
@@ -129,7 +129,7 @@ TEST_F(Replay, ABagOfVersion010IsShownWithTheMessagesOfThisOne) {
   EXPECT_GT(states, 5);
 }
 
-TEST_F(Replay, WakesAndRoutesAfterAJumpAreThoseOfPlayingThrough) {
+TEST_F(Replay, TrailsAndRoutesAfterAJumpAreThoseOfPlayingThrough) {
   const ReplayTape tape(MakeBag());
   const auto step = *tape.Find(tape.steps().front(), 14, 60);
   Trail played[2]{Trail(), Trail(Trail::kWhole)};

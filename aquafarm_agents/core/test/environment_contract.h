@@ -113,7 +113,7 @@ inline void ExpectStepsKeepTheRules(Environment& environment, std::uint64_t seed
       }
       if (now.reasons[farm] == 0) continue;
       ASSERT_LT(ended, now.finished.size());
-      const EpisodeResult& result = now.finished[ended++];
+      const EpisodeSummary& result = now.finished[ended++];
       EXPECT_EQ(result.farm, static_cast<std::int32_t>(farm)) << "finished in farm order";
       EXPECT_EQ(static_cast<std::uint8_t>(result.reason), now.reasons[farm]);
       EXPECT_EQ(result.seed, seed);

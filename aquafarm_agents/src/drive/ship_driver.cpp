@@ -24,6 +24,7 @@ namespace {
 
 namespace names = aquafarm_sim::names;
 using namespace aquafarm::agents;  // NOLINT: this file speaks of nothing else
+using aquafarm::EpisodeSummary;
 using aquafarm::InputError;
 using aquafarm_msgs::Outcome;
 
@@ -66,8 +67,8 @@ class ShipDriver::Impl {
 
   const EnvironmentSpec& spec() const { return mirror_->spec(); }
 
-  std::vector<EpisodeResult> Drive(Policy& policy, std::uint64_t seed, std::int32_t episodes) {
-    std::vector<EpisodeResult> ended;
+  std::vector<EpisodeSummary> Drive(Policy& policy, std::uint64_t seed, std::int32_t episodes) {
+    std::vector<EpisodeSummary> ended;
     if (options_.ship >= 0) {
       claim_.emplace(node_, options_.ship, options_.wait_limit_s, options_.stop);
     }
@@ -166,8 +167,8 @@ class ShipDriver::Impl {
     }
   }
 
-  static EpisodeResult Record(const aquafarm::Farm& farm) {
-    const EpisodeResult result = ToResult(farm.record(), 0);
+  static EpisodeSummary Record(const aquafarm::Farm& farm) {
+    const EpisodeSummary result = SummaryOf(farm.record(), 0);
     ROS_INFO("episode %llu: %s, return %.1f, %d of %d delivered in %d steps",
              static_cast<unsigned long long>(result.episode),
              std::string(ToString(result.reason)).c_str(),
@@ -200,8 +201,8 @@ ShipDriver::~ShipDriver() = default;
 
 const EnvironmentSpec& ShipDriver::spec() const { return impl_->spec(); }
 
-std::vector<EpisodeResult> ShipDriver::Drive(Policy& policy, std::uint64_t seed,
-                                             std::int32_t episodes) {
+std::vector<EpisodeSummary> ShipDriver::Drive(Policy& policy, std::uint64_t seed,
+                                              std::int32_t episodes) {
   return impl_->Drive(policy, seed, episodes);
 }
 

@@ -17,10 +17,10 @@ namespace aquafarm_agents {
 namespace {
 
 namespace names = aquafarm_sim::names;
+using aquafarm::EpisodeSummary;
 using aquafarm::InputError;
 using aquafarm::agents::EnvironmentLost;
 using aquafarm::agents::EnvironmentSpec;
-using aquafarm::agents::EpisodeResult;
 using aquafarm::agents::StepResults;
 using aquafarm_msgs::Outcome;
 using aquafarm_msgs::StepResult;
@@ -59,23 +59,11 @@ EnvironmentSpec FromMsg(const aquafarm_msgs::FarmSpec& message) {
   return spec;
 }
 
-EpisodeResult FromMsg(const aquafarm_msgs::EpisodeSummary& message, std::int32_t first_farm) {
-  EpisodeResult result;
-  result.farm = first_farm + message.farm;
-  result.seed = message.seed;
-  result.episode = message.episode;
-  result.steps = message.steps;
-  result.episode_return = message.episode_return;
-  result.delivered = message.delivered;
-  result.devices = message.devices;
-  result.delivered_health = message.delivered_health;
-  result.crashes = message.crashes;
-  result.collisions = message.collisions;
-  result.steps_in_disaster = message.steps_in_disaster;
-  result.energy = message.energy;
-  result.distance = message.distance;
-  result.reason = static_cast<aquafarm::EndReason>(message.reason);
-  return result;
+EpisodeSummary FromMsg(const aquafarm_msgs::EpisodeSummary& message, std::int32_t first_farm) {
+  EpisodeSummary summary;
+  aquafarm::CopyEpisodeFields(message, summary);
+  summary.farm = first_farm + message.farm;
+  return summary;
 }
 
 std::string Seconds(double seconds) {
@@ -165,14 +153,14 @@ const StepResults& RosEnvironment::Step(const std::vector<std::uint8_t>& actions
       WaitForReturn(lost_since);
     } else if (code == Outcome::PAUSED || code == Outcome::WRONG_PACE || code == Outcome::CLAIMED) {
       lost_since = {};
-      WaitToGoOn(step_.response.message, waited_s);
+      WaitToResume(step_.response.message, waited_s);
     } else {
       throw EnvironmentLost("sim node: step refused: " + step_.response.message);
     }
   }
   Take(step_.response.result);
   if (!results_.finished.empty()) restarts_ = 0;
-  for (const EpisodeResult& ended : results_.finished) {  // its farm continues N episodes later
+  for (const EpisodeSummary& ended : results_.finished) {  // its farm continues N episodes later
     next_episode_ =
         std::max(next_episode_, ended.episode + static_cast<std::uint64_t>(share_.total) + 1);
   }
@@ -271,7 +259,7 @@ void RosEnvironment::WaitForReturn(ros::WallTime& lost_since) {
   Sleep();
 }
 
-void RosEnvironment::WaitToGoOn(const std::string& why, double& waited_s) {
+void RosEnvironment::WaitToResume(const std::string& why, double& waited_s) {
   if (waited_s == 0.0) {
     Notice("waiting up to " + Seconds(options_.pause_limit_s) + " for the sim node: " + why);
   }

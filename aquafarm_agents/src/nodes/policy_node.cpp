@@ -141,7 +141,7 @@ ExitCode Act(const ros::NodeHandle& node, const PolicyParams& params,
   const auto ended =
       driver.Drive(*policy, static_cast<std::uint64_t>(params.seed), params.episodes);
   std::size_t successes = 0;
-  for (const agents::EpisodeResult& result : ended) successes += result.Success() ? 1 : 0;
+  for (const aquafarm::EpisodeSummary& result : ended) successes += result.Success() ? 1 : 0;
   TellEnded(successes, ended.size());
   return ExitCode::kOk;
 }

@@ -36,28 +36,24 @@ std::uint64_t CheckEpisode(py::handle episode) {
   return WholeNumber(episode, "FarmBatch: episode", 0, kAnyNumber, "number episodes from 0");
 }
 
-py::dict DictOf(const EpisodeRecord& record, std::int32_t farm) {
-  const float devices = record.delivered == 0 ? 1.0F : static_cast<float>(record.delivered);
-  py::dict one;
-  one["farm"] = farm;
-  one["seed"] = record.seed;
-  one["episode"] = record.episode;
-  one["steps"] = record.steps;
-  one["episode_return"] = record.episode_return;
-  one["devices"] = record.devices;
-  one["delivered"] = record.delivered;
-  one["delivered_health"] = record.delivered_health / devices;
-  one["crashes"] = record.crashes;
-  one["collisions"] = record.collisions;
-  one["steps_in_disaster"] = record.steps_in_disaster;
-  one["energy"] = record.energy;
-  one["distance"] = record.distance;
-  one["reason"] = ToString(record.reason);
-  one["success"] = record.Success();
-  return one;
+// Converts a statistic to what Python gets: a number, or the name of a reason.
+template <typename T>
+T ForPython(T value) {
+  return value;
 }
+std::string_view ForPython(EndReason reason) { return ToString(reason); }
 
 }  // namespace
+
+py::dict DictOf(const EpisodeSummary& summary) {
+  py::dict one;
+  one["farm"] = summary.farm;
+  VisitEpisodeFields(
+      [&one](const EpisodeField& field, auto value) { one[field.name] = ForPython(value); },
+      summary);
+  one["success"] = summary.Success();
+  return one;
+}
 
 Batch::Batch(std::shared_ptr<const Scenario> scenario, py::handle farms,
              const std::vector<std::string>& write, py::handle threads)
@@ -162,7 +158,7 @@ py::list Batch::Finished() const {
   const Turn turn(busy_);
   py::list finished;
   for (std::int32_t i = 0; i < batch_.farms(); ++i) {
-    if (batch_.farm(i).over()) finished.append(DictOf(batch_.farm(i).record(), i));
+    if (batch_.farm(i).over()) finished.append(DictOf(SummaryOf(batch_.farm(i).record(), i)));
   }
   return finished;
 }

@@ -16,6 +16,9 @@
 
 namespace aquafarm::python {
 
+/// Returns a summary as Python receives it.
+pybind11::dict DictOf(const EpisodeSummary& summary);
+
 /// A FarmBatch with the NumPy arrays that it writes. The batch writes directly into the arrays'
 /// memory, so nothing is copied for Python.
 class Batch {

@@ -39,7 +39,7 @@ void DefineProbes(py::module_& module) {
       [](const std::string& dtype, const std::vector<py::ssize_t>& shape) {
         return py::array(py::dtype(dtype), shape);
       },
-      py::arg("dtype"), py::arg("shape"), "An array made as buffers are made.");
+      py::arg("dtype"), py::arg("shape"), "An array that is allocated as the buffers are.");
   module.def(
       "_write_last",
       [](py::array array, std::uint8_t value) {
@@ -47,6 +47,17 @@ void DefineProbes(py::module_& module) {
         bytes[array.nbytes() - 1] = value;
       },
       py::arg("array"), py::arg("value"), "Writes the last byte of an array in place.");
+}
+
+// Returns the CSV column of each entry of a summary: those of version 0.1.0, or those added later.
+py::dict ColumnsOfEpisodes(bool added) {
+  py::dict columns;
+  if (!added) columns["farm"] = "farm";
+  VisitEpisodeFields([&](const EpisodeField& field) {
+    if (field.is_added == added) columns[field.name] = field.column;
+  });
+  if (!added) columns["success"] = "success";
+  return columns;
 }
 
 void DefineConstants(py::module_& module) {
@@ -68,15 +79,19 @@ void DefineConstants(py::module_& module) {
   module.attr("STEP_LIMIT") = static_cast<int>(EndReason::kStepLimit);
   module.attr("TERMS") = std::vector<std::string>(kRewardTermNames.begin(), kRewardTermNames.end());
   module.attr("PLANES") = Encoder::plane_names();
+  module.attr("NO_EPISODE") = DictOf(EpisodeSummary{});
+  module.attr("EPISODE_COLUMNS") = ColumnsOfEpisodes(false);
+  module.attr("ADDED_COLUMNS") = ColumnsOfEpisodes(true);
 }
 
 void DefineScenario(py::module_& module) {
   py::class_<Scenario, std::shared_ptr<Scenario>>(module, "Scenario",
-                                                  "A whole farm as its file describes it.")
+                                                  "A complete farm, as described by its file.")
       .def_static(
           "load",
           [](const std::string& path) { return std::make_shared<Scenario>(LoadScenario(path)); },
-          py::arg("path"), "Reads a scenario file; a fault is a ValueError that says where.")
+          py::arg("path"),
+          "Reads a scenario file. Raises ValueError with line and key if it is wrong.")
       .def_static(
           "parse",
           [](const std::string& text, const std::string& name) {
@@ -108,9 +123,9 @@ void DefineBatch(py::module_& module) {
   py::class_<Batch>(module, "FarmBatch", R"(Many farms of one scenario, stepped together.
 
 `buffers` holds the arrays named in `write`; reset and step write into them and copy nothing.
-N farms, S agents: rewards float32 [N, S], terms float32 [N, S, 8], energy float32 [N, S] (kWh),
-distance float32 [N, S] (km), outcomes uint8 [N, S], legal uint16 [N, S], in_play uint8 [N, S],
-reasons uint8 [N], started uint8 [N], hashes uint64 [N], index uint32 [N, S],
+N farms, S agents: rewards float32 [N, S], terms float32 [N, S, len(TERMS)], energy float32 [N, S]
+(kWh), distance float32 [N, S] (km), outcomes uint8 [N, S], legal uint16 [N, S], in_play uint8
+[N, S], reasons uint8 [N], started uint8 [N], hashes uint64 [N], index uint32 [N, S],
 features float32 [N, S, F], planes uint8 [N, S, P, H, W].
 A farm whose reason is not 0 ignores the action of the next step and starts its next episode.)")
       .def(py::init([](std::shared_ptr<Scenario> scenario, const py::object& farms,
@@ -132,7 +147,8 @@ A farm whose reason is not 0 ignores the action of the next step and starts its 
            "Starts the next episode in the farms that `mask` (bool [N]) selects.")
       .def("step", &Batch::Step, py::arg("actions"),
            "Takes one step in every farm; actions uint8 [N, S], each in [0, 10], 10 holds.")
-      .def("finished", &Batch::Finished, "Records of the episodes that are over, by farm.")
+      .def("finished", &Batch::Finished,
+           "Summaries of the episodes that ended in the last step, by farm.")
       .def("text", &Batch::Text, py::arg("farm") = 0, "The present state of one farm as text.")
       .def("save", &Batch::Save, "All farms as bytes, mid-episode.")
       .def("load", &Batch::Load, py::arg("data"), "Continues saved farms bit for bit.")

@@ -28,8 +28,9 @@ if _fault:
     raise ImportError(_fault)
 
 from aquafarm_core._native import (  # noqa: E402
-    ACTIONS, DEVICE_KINDS, DISASTER_KINDS, HOLD, OPTIMISED, OUTCOMES, PLANES, REASONS, STEP_LIMIT,
-    TERMS, VERSION, FarmBatch, Planner, Policy, Scenario, team_bound)
+    ACTIONS, ADDED_COLUMNS, DEVICE_KINDS, DISASTER_KINDS, EPISODE_COLUMNS, HOLD, NO_EPISODE,
+    OPTIMISED, OUTCOMES, PLANES, REASONS, STEP_LIMIT, TERMS, VERSION, FarmBatch, Planner, Policy,
+    Scenario, team_bound)
 
 __version__ = VERSION
 for _type in (FarmBatch, Planner, Policy, Scenario):
@@ -50,6 +51,7 @@ SCENARIO_FOLDER = _shipped("scenarios", "aquafarm_sim", _native.SOURCE_SCENARIO_
 _native._set_policy_folder(
     _shipped("policies", "aquafarm_agents", _native.SOURCE_POLICY_FOLDER))
 
-__all__ = ["ACTIONS", "DEVICE_KINDS", "DISASTER_KINDS", "HOLD", "OPTIMISED", "OUTCOMES", "PLANES",
-           "REASONS", "SCENARIO_FOLDER", "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Planner",
-           "Policy", "Scenario", "team_bound"]
+__all__ = ["ACTIONS", "ADDED_COLUMNS", "DEVICE_KINDS", "DISASTER_KINDS", "EPISODE_COLUMNS", "HOLD",
+           "NO_EPISODE", "OPTIMISED", "OUTCOMES", "PLANES", "REASONS", "SCENARIO_FOLDER",
+           "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Planner", "Policy", "Scenario",
+           "team_bound"]

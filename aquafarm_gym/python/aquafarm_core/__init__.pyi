@@ -6,9 +6,12 @@ import numpy as np
 import numpy.typing as npt
 
 ACTIONS: list[str]
+ADDED_COLUMNS: dict[str, str]
 DEVICE_KINDS: list[str]
 DISASTER_KINDS: list[str]
+EPISODE_COLUMNS: dict[str, str]
 HOLD: int
+NO_EPISODE: dict[str, Any]
 OPTIMISED: bool
 OUTCOMES: list[str]
 PLANES: list[str]
@@ -18,9 +21,10 @@ STEP_LIMIT: int
 TERMS: list[str]
 VERSION: str
 __version__: str
-__all__ = ["ACTIONS", "DEVICE_KINDS", "DISASTER_KINDS", "HOLD", "OPTIMISED", "OUTCOMES", "PLANES",
-           "REASONS", "SCENARIO_FOLDER", "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Planner",
-           "Policy", "Scenario", "team_bound"]
+__all__ = ["ACTIONS", "ADDED_COLUMNS", "DEVICE_KINDS", "DISASTER_KINDS", "EPISODE_COLUMNS", "HOLD",
+           "NO_EPISODE", "OPTIMISED", "OUTCOMES", "PLANES", "REASONS", "SCENARIO_FOLDER",
+           "STEP_LIMIT", "TERMS", "VERSION", "FarmBatch", "Planner", "Policy", "Scenario",
+           "team_bound"]
 
 class Scenario:
     """A complete farm, as described by its file."""

@@ -15,9 +15,7 @@ EPISODE_LIMIT: int = 1 << 62
 REASON_CODES: dict[str, int] = {name: code for code, name in enumerate(core.REASONS)}
 # Entries of info["summary"] during an episode; the types are those of a finished episode.
 NO_SUMMARY: dict[str, Any] = {
-    "seed": 0, "episode": 0, "steps": 0, "episode_return": 0.0, "devices": 0, "delivered": 0,
-    "delivered_health": 0.0, "crashes": 0, "collisions": 0, "steps_in_disaster": 0,
-    "energy": 0.0, "distance": 0.0, "reason": 0, "success": False}
+    **{name: value for name, value in core.NO_EPISODE.items() if name != "farm"}, "reason": 0}
 
 
 def whole_number(where: str, value: Any, limit: int, hint: str) -> int:

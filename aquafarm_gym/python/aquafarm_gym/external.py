@@ -34,10 +34,9 @@ from aquafarm_gym import spaces
 from aquafarm_gym.env import FarmEnv
 from aquafarm_gym.farms import LocalFarms, find_scenario
 
-METRICS = ("number", "total_steps", "farm", "seed", "episode", "steps", "return", "delivered",
-           "devices", "delivered_health", "crashes", "collisions", "steps_in_disaster", "reason",
-           "success", "exploration", "learning_rate", "loss", "energy_kwh", "distance_km")
-EVALUATION = (*METRICS[2:15], "energy_kwh", "distance_km")
+EVALUATION = (*core.EPISODE_COLUMNS.values(), *core.ADDED_COLUMNS.values())
+METRICS = ("number", "total_steps", *core.EPISODE_COLUMNS.values(), "exploration",
+           "learning_rate", "loss", *core.ADDED_COLUMNS.values())
 FIRST_EVALUATION_SEED = 2**63  # that of aquafarm_evaluate --seed 0
 
 
@@ -57,8 +56,9 @@ class Learner(Protocol):
 
 def cells_of(record: dict[str, Any]) -> dict[str, Any]:
     """Returns the cells of an episode in the files of a run."""
-    return {**record, "return": record["episode_return"], "success": int(record["success"]),
-            "energy_kwh": record["energy"], "distance_km": record["distance"]}
+    columns = {**core.EPISODE_COLUMNS, **core.ADDED_COLUMNS}
+    return {**{columns[name]: value for name, value in record.items()},
+            "success": int(record["success"])}
 
 
 class TrainingEnv(FarmEnv):

@@ -142,10 +142,7 @@ class RosFarms(Farms):
             array.reshape(-1)[:] = flat
         self._turn = result.turn
         self._finished = [
-            {**{key: getattr(one, key) for key in (
-                "farm", "seed", "episode", "steps", "episode_return", "devices", "delivered",
-                "delivered_health", "crashes", "collisions", "steps_in_disaster",
-                "energy", "distance")},
+            {**{key: getattr(one, key) for key in core.NO_EPISODE},
              "reason": core.REASONS[one.reason], "success": bool(one.success)}
             for one in result.finished]
 
@@ -160,7 +157,7 @@ class RosFarms(Farms):
                 why = answer.message
                 if answer.code == Outcome.STALE:
                     self._turn = None
-                    raise ConnectionError(f"sim node: not as it was left ({why}); reset to go on")
+                    raise ConnectionError(f"sim node: its farms changed ({why}); reset to continue")
                 if answer.code not in (Outcome.PAUSED, Outcome.CLAIMED, Outcome.SHUTTING_DOWN):
                     raise ValueError(f"sim node: {name} refused: {why}")
             except rospy.ServiceException as error:

@@ -150,12 +150,8 @@ void FillPlaces(const aquafarm::Farm& farm, aquafarm_msgs::FarmSpec& message) {
 // @param weight of energy
 void FillRewards(const aquafarm::RewardSpec& rewards, double weight,
                  aquafarm_msgs::RewardTable& message) {
-  message.island_crash = rewards.island_crash;
-  message.pickup = rewards.pickup;
-  message.drop_off = rewards.drop_off;
-  message.illegal = rewards.illegal;
-  message.collision = rewards.collision;
-  message.step = rewards.step;
+  aquafarm::VisitRewardWeights([](const aquafarm::RewardKey&, float from, float& to) { to = from; },
+                               rewards, message);
   message.energy = static_cast<float>(weight);
   message.team = rewards.sharing == aquafarm::RewardSharing::kTeam;
 }
@@ -222,14 +218,7 @@ aquafarm_msgs::Cell ToMsg(aquafarm::Cell cell) {
 
 aquafarm_msgs::RewardTerms ToMsg(const aquafarm::RewardTerms& terms) {
   aquafarm_msgs::RewardTerms message;
-  message.crash = terms.crash;
-  message.disaster = terms.disaster;
-  message.pickup = terms.pickup;
-  message.drop_off = terms.drop_off;
-  message.illegal = terms.illegal;
-  message.collision = terms.collision;
-  message.step = terms.step;
-  message.energy = terms.energy;
+  aquafarm::VisitRewardTerms([](const char*, float from, float& to) { to = from; }, terms, message);
   return message;
 }
 
@@ -382,20 +371,7 @@ aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record, std::
   aquafarm_msgs::EpisodeSummary message;
   FillHeader(context, message.header);
   message.farm = farm;
-  message.seed = record.seed;
-  message.episode = record.episode;
-  message.steps = record.steps;
-  message.episode_return = record.episode_return;
-  message.devices = record.devices;
-  message.delivered = record.delivered;
-  message.delivered_health =
-      record.delivered == 0 ? 0.0F : record.delivered_health / static_cast<float>(record.delivered);
-  message.crashes = record.crashes;
-  message.collisions = record.collisions;
-  message.steps_in_disaster = record.steps_in_disaster;
-  message.energy = record.energy;
-  message.distance = record.distance;
-  message.reason = static_cast<std::uint8_t>(record.reason);
+  aquafarm::CopyEpisodeFields(aquafarm::SummaryOf(record, farm), message);
   message.terminated = aquafarm::IsTerminated(record.reason);
   message.truncated = aquafarm::IsTruncated(record.reason);
   message.success = record.Success();

@@ -126,7 +126,7 @@ geometry_msgs::TransformStamped EarthToMsg(const aquafarm::GeoPoint& origin,
   return message;
 }
 
-std::int32_t BearingOf(aquafarm::Action action, std::int32_t otherwise) {
+std::int32_t BearingOf(aquafarm::Action action, std::int32_t fallback) {
   switch (action) {
     case aquafarm::Action::kNorth:
       return 0;
@@ -145,7 +145,7 @@ std::int32_t BearingOf(aquafarm::Action action, std::int32_t otherwise) {
     case aquafarm::Action::kNorthWest:
       return 315;
     default:
-      return otherwise;
+      return fallback;
   }
 }
 

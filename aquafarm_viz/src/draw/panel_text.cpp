@@ -103,7 +103,7 @@ void DrawRewardLine(cv::Mat& image, const FarmState& state, const Layout& layout
   line.Put(fonts.bold, "reward", layout.style->words, layout.Px(5));
   line.Put(fonts.bold, Signed(state.joint_reward), color(state.joint_reward), layout.Px(16));
   for (const auto& [name, value] : RewardTermsOf(state)) {
-    if (value == 0.0F && std::string(name) == "energy") continue;  // most scenarios have none
+    if (value == 0.0F && name == "energy") continue;  // most scenarios have none
     line.Put(fonts.small, name, value == 0.0F ? layout.style->faint : layout.style->words,
              layout.Px(4));
     if (value == 0.0F) {

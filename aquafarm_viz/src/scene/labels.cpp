@@ -3,10 +3,13 @@
 
 #include <aquafarm_msgs/Outcome.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <string_view>
 
+#include "aquafarm/grid/reward.h"
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
@@ -111,24 +114,21 @@ std::string PhaseName(std::uint8_t phase) {
 std::string Signed(double value) { return (value > 0.0 ? "+" : "") + Number(value, 1); }
 
 std::string MissingSteps(std::uint64_t count) {
-  return std::to_string(count) + (count == 1 ? " step is" : " steps are") +
-         " missing; 'verify' says which";
+  return std::to_string(count) + (count == 1 ? " step is missing; 'verify' names it"
+                                             : " steps are missing; 'verify' names the first");
 }
 
-std::array<std::pair<const char*, float>, 8> RewardTermsOf(const aquafarm_msgs::FarmState& state) {
-  std::array<std::pair<const char*, float>, 8> sums{{{"crash", 0.0F},
-                                                     {"disaster", 0.0F},
-                                                     {"pickup", 0.0F},
-                                                     {"drop-off", 0.0F},
-                                                     {"illegal", 0.0F},
-                                                     {"collision", 0.0F},
-                                                     {"step", 0.0F},
-                                                     {"energy", 0.0F}}};
+std::vector<std::pair<std::string, float>> RewardTermsOf(const aquafarm_msgs::FarmState& state) {
+  std::vector<std::pair<std::string, float>> sums;
+  for (const std::string_view name : aquafarm::kRewardTermNames) {
+    sums.emplace_back(name, 0.0F);
+    std::string& label = sums.back().first;
+    std::replace(label.begin(), label.end(), '_', '-');
+  }
   for (const auto& ship : state.ships) {
-    const auto& terms = ship.terms;
-    const std::array<float, 8> own{terms.crash,   terms.disaster,  terms.pickup, terms.drop_off,
-                                   terms.illegal, terms.collision, terms.step,   terms.energy};
-    for (std::size_t i = 0; i < own.size(); ++i) sums[i].second += own[i];
+    std::size_t next = 0;
+    aquafarm::VisitRewardTerms([&](const char*, float term) { sums[next++].second += term; },
+                               ship.terms);
   }
   return sums;
 }

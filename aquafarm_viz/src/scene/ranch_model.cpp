@@ -64,7 +64,7 @@ std::string RanchModel::RewardLine() const {
   const char* between = ":   ";
   for (const auto& [name, value] : RewardTermsOf(*shown().state)) {
     if (value == 0.0F) continue;
-    text += between + std::string(name) + " " + Signed(value);
+    text += between + name + " " + Signed(value);
     between = "   ";
   }
   return text;

@@ -105,7 +105,7 @@ const StepResults& FamilyEnvironment::Step(const std::vector<std::uint8_t>& acti
   Complete();
   for (std::int32_t i = 0; i < spec_.farms; ++i) {
     if (!farm(i).over()) continue;
-    results_.finished.push_back(ToResult(farm(i).record(), share_.first + i));
+    results_.finished.push_back(SummaryOf(farm(i).record(), share_.first + i));
   }
   return results_;
 }

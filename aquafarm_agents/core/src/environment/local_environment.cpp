@@ -56,27 +56,6 @@ std::string JoinSavedFarms(const std::vector<std::string>& parts) {
   return ToBytes(all);
 }
 
-EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm) {
-  EpisodeResult result;
-  result.farm = farm;
-  result.seed = record.seed;
-  result.episode = record.episode;
-  result.steps = record.steps;
-  result.episode_return = record.episode_return;
-  result.delivered = record.delivered;
-  result.devices = record.devices;
-  if (record.delivered > 0) {
-    result.delivered_health = record.delivered_health / static_cast<float>(record.delivered);
-  }
-  result.crashes = record.crashes;
-  result.collisions = record.collisions;
-  result.steps_in_disaster = record.steps_in_disaster;
-  result.energy = record.energy;
-  result.distance = record.distance;
-  result.reason = record.reason;
-  return result;
-}
-
 bool WantsOwnRewards(std::uint8_t encodings, EnvironmentSpec& spec) {
   if ((encodings & kOwnRewardsBit) == 0 || !spec.team_reward) return false;
   spec.team_reward = false;
@@ -160,7 +139,7 @@ void LocalEnvironment::Complete() {
 void LocalEnvironment::CollectFinished() {
   for (std::int32_t i = 0; i < spec_.farms; ++i) {
     if (results_.reasons[static_cast<std::size_t>(i)] == 0) continue;
-    results_.finished.push_back(ToResult(batch_.farm(i).record(), share_.first + i));
+    results_.finished.push_back(SummaryOf(batch_.farm(i).record(), share_.first + i));
   }
 }
 

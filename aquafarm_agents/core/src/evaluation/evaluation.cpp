@@ -26,7 +26,7 @@ void Summarise(Evaluation& evaluation) {
   double steps = 0.0;
   double returns = 0.0;
   double delivering = 0.0;
-  for (const EpisodeResult& result : evaluation.episodes) {
+  for (const EpisodeSummary& result : evaluation.episodes) {
     returns += static_cast<double>(result.episode_return);
     steps += result.steps;
     evaluation.success_rate += result.Success() ? 1.0 : 0.0;
@@ -119,7 +119,7 @@ double ReturnMargin(const Evaluation& evaluation) {
   const auto count = static_cast<double>(evaluation.episodes.size());
   if (evaluation.distinct < 2) return std::numeric_limits<double>::quiet_NaN();
   double squares = 0.0;
-  for (const EpisodeResult& episode : evaluation.episodes) {
+  for (const EpisodeSummary& episode : evaluation.episodes) {
     const double away = double(episode.episode_return) - evaluation.mean_return;
     squares += away * away;
   }
@@ -168,7 +168,7 @@ void CompareStarts(const EnvironmentSpec& spec, std::vector<Accounts> accounts,
   Farm farm(scenario);
   std::unordered_map<std::uint64_t, std::size_t> index;  // by the hash of a start
   std::vector<std::size_t> starts;
-  for (const EpisodeResult& result : evaluation.episodes) {
+  for (const EpisodeSummary& result : evaluation.episodes) {
     if (scenario->family) {
       farm = MakeRanch(*scenario, result.seed, result.episode);
     } else {
@@ -195,7 +195,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
   Evaluation evaluation;
   evaluation.seed = EvaluationSeed(seed);
   const std::uint64_t rng = policy_seed.value_or(evaluation.seed);
-  std::vector<EpisodeResult> results(count);
+  std::vector<EpisodeSummary> results(count);
   std::vector<std::uint8_t> is_over(count);
   std::vector<std::optional<Accounts>> accounts(count);
   std::size_t over = 0;
@@ -205,7 +205,7 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
   while (over < count && (stop == nullptr || !*stop)) {
     policy.Act(*now, actions);
     now = &environment.Step(actions);
-    for (const EpisodeResult& result : now->finished) {
+    for (const EpisodeSummary& result : now->finished) {
       if (result.episode >= count || is_over[result.episode] != 0) continue;
       results[result.episode] = result;
       is_over[result.episode] = 1;
@@ -238,12 +238,11 @@ Evaluation Evaluate(Environment& environment, Policy& policy, std::uint64_t seed
 
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context) {
-  std::string rows = std::string(kEpisodeColumns) + "," + kAddedEpisodeColumns;
+  std::string rows = EpisodeColumns() + AddedColumns();
   if (evaluation.losses) rows += AccountColumns();
   rows += '\n';
   for (std::size_t i = 0; i < evaluation.episodes.size(); ++i) {
     AppendEpisode(evaluation.episodes[i], rows);
-    rows += ',';
     AppendAdded(evaluation.episodes[i], rows);
     if (evaluation.losses) {
       AppendAccounts(evaluation.losses->starts[i], evaluation.losses->accounts[i], rows);

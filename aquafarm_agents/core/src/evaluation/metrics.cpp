@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <type_traits>
 #include <utility>
 
 #include "aquafarm/agents/base/storage.h"
@@ -24,47 +26,68 @@ void Put(T value, std::string& text) {
   text.append(digits, static_cast<std::size_t>(end - digits));
 }
 
-// Returns whether the first line of a file names the added columns.
-bool HasAdded(int file) {
-  std::string line(1024, '\0');
+void Put(EndReason reason, std::string& text) { text += ToString(reason); }
+
+constexpr const char* kLearnerColumns = ",exploration,learning_rate,loss";
+
+// Returns the number of columns of a file after those of the learner, by its first line.
+std::size_t CountAdded(int file) {
+  std::string line(4096, '\0');
   const ssize_t got = pread(file, line.data(), line.size(), 0);
   line.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
-  return line.substr(0, line.find('\n')).find(kAddedEpisodeColumns) != std::string::npos;
+  line.resize(std::min(line.size(), line.find('\n')));
+  const std::size_t learner = line.find(kLearnerColumns);
+  if (learner == std::string::npos) return 0;
+  const auto added = line.begin() + static_cast<std::ptrdiff_t>(
+                                        learner + std::string_view(kLearnerColumns).size());
+  return static_cast<std::size_t>(std::count(added, line.end(), ','));
 }
 
 }  // namespace
 
-void AppendEpisode(const EpisodeResult& result, std::string& text) {
-  const auto put = [&text](auto value) {
-    Put(value, text);
-    text += ',';
-  };
-  put(result.farm);
-  put(result.seed);
-  put(result.episode);
-  put(result.steps);
-  put(result.episode_return);
-  put(result.delivered);
-  put(result.devices);
-  put(result.delivered_health);
-  put(result.crashes);
-  put(result.collisions);
-  put(result.steps_in_disaster);
-  text += ToString(result.reason);
+std::string EpisodeColumns() {
+  std::string names = "farm,";
+  VisitEpisodeFields([&names](const EpisodeField& field) {
+    if (!field.is_added) names += std::string(field.column) + ',';
+  });
+  return names + "success";
+}
+
+std::string AddedColumns() {
+  std::string names;
+  VisitEpisodeFields([&names](const EpisodeField& field) {
+    if (field.is_added) names += std::string(",") + field.column;
+  });
+  return names;
+}
+
+void AppendEpisode(const EpisodeSummary& result, std::string& text) {
+  Put(result.farm, text);
+  VisitEpisodeFields(
+      [&text](const EpisodeField& field, auto value) {
+        if (field.is_added) return;
+        text += ',';
+        Put(value, text);
+      },
+      result);
   text += result.Success() ? ",1" : ",0";
 }
 
-void AppendAdded(const EpisodeResult& result, std::string& text) {
-  Put(result.energy, text);
-  text += ',';
-  Put(result.distance, text);
+void AppendAdded(const EpisodeSummary& result, std::string& text, std::size_t count) {
+  VisitEpisodeFields(
+      [&text, &count](const EpisodeField& field, auto value) {
+        if (!field.is_added || count == 0) return;
+        --count;
+        text += ',';
+        Put(value, text);
+      },
+      result);
 }
 
 MetricsFile::MetricsFile(std::string path) : path_(std::move(path)) {
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file_ < 0) throw StorageError(ErrnoText(path_, "cannot be written"));
-  buffer_ = std::string("number,total_steps,") + kEpisodeColumns +
-            ",exploration,learning_rate,loss," + kAddedEpisodeColumns + "\n";
+  buffer_ = "number,total_steps," + EpisodeColumns() + kLearnerColumns + AddedColumns() + "\n";
   buffer_.reserve(2 * kFlushBytes);
 }
 
@@ -83,7 +106,7 @@ MetricsFile::MetricsFile(std::string path, std::uint64_t size) : path_(std::move
                      " bytes, expected at least the " + std::to_string(size) +
                      " that the checkpoint records");
   }
-  has_added_ = HasAdded(file_);
+  added_columns_ = CountAdded(file_);
   flushed_ = size;
   buffer_.reserve(2 * kFlushBytes);
 }
@@ -93,7 +116,7 @@ MetricsFile::~MetricsFile() {
 }
 
 void MetricsFile::Append(std::uint64_t number, std::uint64_t total_steps,
-                         const EpisodeResult& result, const LearnerStatus& status) {
+                         const EpisodeSummary& result, const LearnerStatus& status) {
   Put(number, buffer_);
   buffer_ += ',';
   Put(total_steps, buffer_);
@@ -105,10 +128,7 @@ void MetricsFile::Append(std::uint64_t number, std::uint64_t total_steps,
   Put(status.learning_rate, buffer_);
   buffer_ += ',';
   Put(status.loss, buffer_);
-  if (has_added_) {
-    buffer_ += ',';
-    AppendAdded(result, buffer_);
-  }
+  AppendAdded(result, buffer_, added_columns_);
   buffer_ += '\n';
   if (buffer_.size() >= kFlushBytes) Flush();
 }

@@ -48,7 +48,7 @@ std::vector<double> PlayOut(LocalEnvironment& environment, const StepResults* re
       if (!over[farm]) returns[farm] += weight * RewardOf(*results, environment.spec(), farm);
     }
     weight *= discount;
-    for (const EpisodeResult& ended : results->finished) {
+    for (const EpisodeSummary& ended : results->finished) {
       const auto farm = static_cast<std::size_t>(ended.farm);
       if (over[farm]) continue;  // this is a later episode of the farm
       over[farm] = true;

@@ -101,7 +101,7 @@ Route TraceRoute(const std::shared_ptr<const Scenario>& scenario, std::uint8_t e
       route.after_pickup = GreedyActions(farm, encodings, *elsewhere, stop);
     }
   }
-  route.result = ToResult(farm.record(), 0);
+  route.result = SummaryOf(farm.record(), 0);
   return route;
 }
 

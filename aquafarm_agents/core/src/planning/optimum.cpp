@@ -78,12 +78,12 @@ void Bootstrap(const std::vector<Pair>& pairs, std::uint64_t seed, OptimumShare&
 }  // namespace
 
 OptimumShare CompareWithOptimum(
-    const std::vector<EpisodeResult>& episodes,
+    const std::vector<EpisodeSummary>& episodes,
     const std::function<Farm(std::uint64_t seed, std::uint64_t episode)>& make_farm,
     std::size_t max_states, std::uint64_t seed, const std::atomic<bool>* stop) {
   OptimumShare share;
   std::vector<Pair> pairs;
-  for (const EpisodeResult& result : episodes) {
+  for (const EpisodeSummary& result : episodes) {
     if (stop != nullptr && *stop) break;
     const std::optional<Farm> best = PlayBest(make_farm(result.seed, result.episode), max_states);
     if (!best) {

@@ -230,9 +230,9 @@ void PlannerSolver::ReachStart(const Farm& farm) {
         starts[i] = {With(set, d, kGone), held};
         continue;
       }
-      const double worth = static_cast<double>(device.value) * static_cast<double>(device.health);
+      const double value = static_cast<double>(device.value) * static_cast<double>(device.health);
       starts.emplace_back(With(set, d, kUnpaid), held);
-      starts[i] = {With(set, d, kPaid), held + worth};
+      starts[i] = {With(set, d, kPaid), held + value};
     }
   }
   for (const auto& [set, held] : starts) {

@@ -272,10 +272,10 @@ PlannerSolver::Gains PlannerSolver::GainsOf(std::size_t set) const {
     gains.actions += drop_off;
     gains.if_not += std::max(0.0, drop_off) + action;
     if (fate != kWaiting) continue;
-    const double worth = static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
-    gains.worth += worth;
+    const double value = static_cast<double>(value_[d]) * static_cast<double>(health_[d]);
+    gains.value += value;
     gains.actions += pickup;
-    gains.if_not += std::max(0.0, pickup + worth) + action;
+    gains.if_not += std::max(0.0, pickup + value) + action;
     ++gains.steps;
   }
   gains.steps += scenario_.ships.capacity == 1 ? carried : carried > 0 ? 1 : 0;
@@ -338,7 +338,7 @@ double PlannerSolver::Bound(std::uint32_t state, std::int32_t step) const {
   const std::size_t end = at + static_cast<std::size_t>(moves + gains.steps);
   if (end >= surcharges_.size()) return bound;  // also if unreachable
   const double rewards = rewards_.empty() ? gains.actions + moves * move_reward_ : rewards_[state];
-  return std::max(bound, rewards + gains.worth + surcharges_[end] - surcharges_[at]);
+  return std::max(bound, rewards + gains.value + surcharges_[end] - surcharges_[at]);
 }
 
 void PlannerSolver::EnterStep(const Farm& farm, std::int32_t step) {

@@ -55,7 +55,7 @@ class PlannerSolver {
   };
   // Upper bounds of the further rewards of a set of devices, without those of other steps.
   struct Gains {
-    double worth{};        // of the waiting devices at present
+    double value{};        // of the waiting devices at present
     double actions{};      // pickups and drop-offs, if all devices are delivered one by one
     double if_not{};       // if the plan lasts until the end of the episode
     std::int32_t steps{};  // min pickups and drop-offs until all devices are delivered

@@ -36,7 +36,7 @@ class Trip {
     shares_way_ = scenario_.ships.capacity > 1 && !device_.self_propelled;
     move_ = shares_way_ ? 0.0 : static_cast<double>(scenario_.rewards.step);
     if (device_.self_propelled) {
-      laden_[site_] = worth();
+      laden_[site_] = value();
       bare_[site_] = 0.0;
     }
     ListWaits(farm.ships().size() > 1);
@@ -76,7 +76,7 @@ class Trip {
     }
     if (!device_.self_propelled) {
       const double pickup = static_cast<double>(scenario_.rewards.pickup);
-      most = std::max(most, pickup + worth() + drop_off() + 2.0 * move * to_port_[site_]);
+      most = std::max(most, pickup + value() + drop_off() + 2.0 * move * to_port_[site_]);
     }
     return most <= best_;
   }
@@ -85,7 +85,7 @@ class Trip {
   std::size_t Index(Cell cell) const {
     return static_cast<std::size_t>(LinearIndex(cell, scenario_.width));
   }
-  double worth() const { return static_cast<double>(health_) * static_cast<double>(device_.value); }
+  double value() const { return static_cast<double>(health_) * static_cast<double>(device_.value); }
   double drop_off() const { return static_cast<double>(scenario_.rewards.drop_off); }
 
   // Lists, by cell, the max reward of one step of waiting in quiet water. A crash, a collision or
@@ -134,7 +134,7 @@ class Trip {
                         static_cast<double>(damaging.data()[site_]);
     picked_up_bare_ = empty_[site_] + static_cast<double>(scenario_.rewards.pickup) + Risk(here) -
                       EnergyCost(0.0, 0, 0.0F);
-    picked_up_for_value_ = picked_up_bare_ + worth() + wear;
+    picked_up_for_value_ = picked_up_bare_ + value() + wear;
     best_ = std::max(best_, picked_up_bare_);  // without a delivery
   }
 

@@ -10,7 +10,7 @@
 namespace aquafarm::agents {
 namespace {
 
-static_assert(std::is_trivially_copyable_v<EpisodeResult>);
+static_assert(std::is_trivially_copyable_v<EpisodeSummary>);
 
 template <typename T>
 void Append(const std::vector<T>& values, std::string& bytes) {
@@ -37,7 +37,7 @@ void Take(const std::string& bytes, std::size_t& at, std::vector<T>& values) {
 }  // namespace
 
 void PendingSteps::Add(const StepResults& results) {
-  for (const EpisodeResult& episode : results.finished) {
+  for (const EpisodeSummary& episode : results.finished) {
     calls_.push_back(steps_.size());
     finished_.push_back(episode);
   }

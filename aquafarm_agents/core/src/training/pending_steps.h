@@ -34,9 +34,9 @@ class PendingSteps {
   static PendingSteps FromBytes(const std::string& bytes);
 
  private:
-  std::vector<std::uint64_t> steps_;     // by call
-  std::vector<std::uint64_t> calls_;     // by finished episode
-  std::vector<EpisodeResult> finished_;  // by call, then by farm
+  std::vector<std::uint64_t> steps_;      // by call
+  std::vector<std::uint64_t> calls_;      // by finished episode
+  std::vector<EpisodeSummary> finished_;  // by call, then by farm
 };
 
 }  // namespace aquafarm::agents

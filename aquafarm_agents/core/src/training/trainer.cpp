@@ -183,7 +183,7 @@ void Trainer::Count(const StepResults& results) {
   std::uint32_t started = 0;
   for (const std::uint8_t flag : results.started) started += flag;
   progress_.steps += results.started.size() - started;
-  for (const EpisodeResult& result : results.finished) CountEpisode(result);
+  for (const EpisodeSummary& result : results.finished) CountEpisode(result);
   CountRestarts();
 }
 
@@ -197,7 +197,7 @@ void Trainer::CountRestarts() {
   notice_ = "the farms were lost and came back; training continues with new episodes";
 }
 
-void Trainer::CountEpisode(const EpisodeResult& result) {
+void Trainer::CountEpisode(const EpisodeSummary& result) {
   const std::size_t slot = progress_.episodes % returns_.size();
   returns_[slot] = result.episode_return;
   successes_[slot] = result.Success() ? 1 : 0;

@@ -52,7 +52,7 @@ void Trainer::CountPending(const std::vector<PendingSteps>& parts) {
   for (std::size_t call = 0; call < parts.front().calls(); ++call) {
     for (const PendingSteps& part : parts) progress_.steps += part.steps(call);
     for (const PendingSteps& part : parts) {
-      part.VisitFinished(call, [&](const EpisodeResult& episode) { CountEpisode(episode); });
+      part.VisitFinished(call, [&](const EpisodeSummary& episode) { CountEpisode(episode); });
     }
   }
 }

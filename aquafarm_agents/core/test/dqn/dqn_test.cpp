@@ -214,7 +214,7 @@ Crashes CrashesIn(const std::string& algorithm, const std::string& options, int 
     for (int step = 0; step < steps; ++step) {
       act(*results);
       results = &environment.Step(actions);
-      for (const EpisodeResult& ended : results->finished) crashes += ended.crashes;
+      for (const EpisodeSummary& ended : results->finished) crashes += ended.crashes;
     }
     return crashes;
   };

@@ -37,7 +37,7 @@ TEST(Evaluate, PlaysSeedsThatNoTrainingHas) {
   LocalEnvironment environment(TinyFarm(), {2, 0, false, 1});
   Scripted policy;
   const Evaluation evaluation = Evaluate(environment, policy, 5, 3);
-  for (const EpisodeResult& result : evaluation.episodes) {
+  for (const EpisodeSummary& result : evaluation.episodes) {
     EXPECT_EQ(result.seed, EvaluationSeed(5));
   }
 }
@@ -146,7 +146,7 @@ TEST(Evaluate, DoesNotDependOnTheNumberOfFarms) {
         actions.assign(results.rewards.size(), 5);
       }
     } policy;
-    for (const EpisodeResult& result : Evaluate(environment, policy, 1, 9).episodes) {
+    for (const EpisodeSummary& result : Evaluate(environment, policy, 1, 9).episodes) {
       returns[farms == 1 ? 0 : 1].push_back(result.episode_return);
     }
   }

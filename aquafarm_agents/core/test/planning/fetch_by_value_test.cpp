@@ -178,7 +178,7 @@ TEST(DoNothing, HoldsEveryShipToTheEnd) {
   const Evaluation evaluation = EvaluationOf("do_nothing", scenario, 4);
   EXPECT_EQ(evaluation.success_rate, 0.0);
   EXPECT_EQ(evaluation.mean_steps, 150.0);  // until the longer of the two disasters ends
-  for (const EpisodeResult& result : evaluation.episodes) {
+  for (const EpisodeSummary& result : evaluation.episodes) {
     EXPECT_EQ(result.delivered, 0);
     EXPECT_EQ(result.crashes + result.collisions, 0);
   }

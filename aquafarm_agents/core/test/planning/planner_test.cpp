@@ -416,14 +416,14 @@ Farm FarmWorth(float value, std::uint64_t episode) {
 TEST(CompareWithOptimum, RefusesAnOptimumThatIsNotPositive) {
   const auto poor = [](std::uint64_t, std::uint64_t episode) { return FarmWorth(10.0F, episode); };
   const std::string message = test::MessageOf<InputError>(
-      [&] { CompareWithOptimum({EpisodeResult{}}, poor, 1000000, 1, nullptr); });
+      [&] { CompareWithOptimum({EpisodeSummary{}}, poor, 1000000, 1, nullptr); });
   EXPECT_CONTAINS(message, "optimum: got a mean return of -");
 }
 
 TEST(CompareWithOptimum, SkipsResamplesWithoutAPositiveOptimum) {
-  std::vector<EpisodeResult> episodes(2);
+  std::vector<EpisodeSummary> episodes(2);
   episodes[1].episode = 1;
-  for (EpisodeResult& episode : episodes) episode.episode_return = -1.0F;
+  for (EpisodeSummary& episode : episodes) episode.episode_return = -1.0F;
   const auto mixed = [](std::uint64_t, std::uint64_t episode) {
     return FarmWorth(episode == 0 ? 10000.0F : 10.0F, episode);
   };
@@ -474,7 +474,7 @@ TEST_F(PlannerPolicies, EarnWhatTheClairvoyantPlanPromises) {
   const Evaluation evaluation = Evaluate("clairvoyant", 1);
   const auto scenario = test::Share(TinyScenario(40, 0.02F, 1));
   Planner planner(*scenario);
-  for (const EpisodeResult& result : evaluation.episodes) {
+  for (const EpisodeSummary& result : evaluation.episodes) {
     Farm farm(scenario);
     farm.Reset(result.seed, result.episode);
     EXPECT_NEAR(planner.Solve(farm, Foresight::kOracle).expected_return,

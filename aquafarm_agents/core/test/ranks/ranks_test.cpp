@@ -260,7 +260,7 @@ int ExpectSharesEqualTheWhole(const std::shared_ptr<const Scenario>& scenario, i
     seen = &whole->Step(std::vector<std::uint8_t>(6, action));
     a = &first->Step(std::vector<std::uint8_t>(3, action));
     b = &last->Step(std::vector<std::uint8_t>(3, action));
-    std::vector<EpisodeResult> episodes = a->finished;
+    std::vector<EpisodeSummary> episodes = a->finished;
     episodes.insert(episodes.end(), b->finished.begin(), b->finished.end());
     EXPECT_EQ(episodes.size(), seen->finished.size());
     for (std::size_t i = 0; i < std::min(episodes.size(), seen->finished.size()); ++i) {

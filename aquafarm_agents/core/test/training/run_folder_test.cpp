@@ -78,7 +78,7 @@ using MetricsFileTest = FolderTest;
 
 TEST_F(MetricsFileTest, ContinuesWhereTheCheckpointWas) {
   const std::string path = folder_ + "/metrics.csv";
-  EpisodeResult result;
+  EpisodeSummary result;
   result.reason = EndReason::kStepLimit;
   result.episode_return = 0.1F;
   result.energy = 2.5;
@@ -104,12 +104,19 @@ TEST_F(MetricsFileTest, ContinuesWhereTheCheckpointWas) {
                   "expected at least the 100000 that the checkpoint records");
 }
 
+TEST_F(MetricsFileTest, HasTheColumnsThatOtherProgramsRead) {
+  EXPECT_EQ(EpisodeColumns(),
+            "farm,seed,episode,steps,return,delivered,devices,delivered_health,crashes,"
+            "collisions,steps_in_disaster,reason,success");
+  EXPECT_EQ(AddedColumns(), ",energy_kwh,distance_km");
+}
+
 TEST_F(MetricsFileTest, OfVersion010ContinuesWithItsOwnColumns) {
   const std::string path = folder_ + "/metrics.csv";
   const std::string header =
-      std::string("number,total_steps,") + kEpisodeColumns + ",exploration,learning_rate,loss\n";
+      "number,total_steps," + EpisodeColumns() + ",exploration,learning_rate,loss\n";
   std::ofstream(path) << header;
-  EpisodeResult result;
+  EpisodeSummary result;
   result.energy = 2.5;
   {
     MetricsFile metrics(path, header.size());

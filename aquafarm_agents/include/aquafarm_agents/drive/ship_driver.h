@@ -36,8 +36,8 @@ class ShipDriver {
   /// A single ship is claimed until then.
   /// @throws InputError if another node has claimed the ship; EnvironmentLost if the sim node is
   ///         unreachable for longer than the limit
-  std::vector<aquafarm::agents::EpisodeResult> Drive(aquafarm::agents::Policy& policy,
-                                                     std::uint64_t seed, std::int32_t episodes);
+  std::vector<aquafarm::EpisodeSummary> Drive(aquafarm::agents::Policy& policy, std::uint64_t seed,
+                                              std::int32_t episodes);
 
  private:
   class Impl;

@@ -25,7 +25,8 @@ namespace aquafarm_agents {
 struct RosEnvironmentOptions {
   std::int32_t farms{};  ///< 0: all farms of the sim node
   /// The farms play the same episodes as in an environment with all farms of the share, and Load
-  /// takes their part of what all farms have saved. Its total 0: this environment has all farms.
+  /// reads their part of a state that all farms saved. If its total is 0, this environment has all
+  /// farms.
   aquafarm::agents::FarmShare share;
   std::uint8_t encodings{aquafarm::agents::kIndexBit};
   bool hashes{};
@@ -38,7 +39,7 @@ struct RosEnvironmentOptions {
 
 /// Farms behind a sim node's services. Connections are persistent. A lost call is repeated with the
 /// same number, so that no farm steps twice. The farms are reset to new episodes of the same seed
-/// if another client has stepped, reset or loaded them, or if the sim node came back without them;
+/// if another client has stepped, reset or loaded them, or if the sim node returned without them;
 /// ConsumeRestart() then returns true. Any call throws EnvironmentLost if the sim node is
 /// unreachable for longer than the limits.
 class RosEnvironment final : public aquafarm::agents::Environment {
@@ -66,7 +67,7 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   void Restart(const std::string& why);
   std::uint64_t NextRound() const;
   void WaitForReturn(ros::WallTime& lost_since);
-  void WaitToGoOn(const std::string& why, double& waited_s);
+  void WaitToResume(const std::string& why, double& waited_s);
   void Take(aquafarm_msgs::StepResult& result);
   aquafarm_msgs::GetState::Response GetState(std::int32_t farm, bool with_spec);
   void ReadProgress();

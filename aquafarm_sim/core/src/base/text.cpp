@@ -39,20 +39,25 @@ bool ParseReal(const std::string& text, T& value) {
   return std::isfinite(parsed);
 }
 
-bool IsWhole(const std::string& text, bool minus) {
-  const std::size_t first = minus && !text.empty() && text[0] == '-' ? 1 : 0;
-  return text.size() > first && text.size() < 22 &&
-         text.find_first_not_of("0123456789", first) == std::string::npos;
-}
-
 bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
+// Parses a complete text; `value` is unchanged if it is not a number of its type.
 template <typename T>
 bool ParseAll(std::string_view text, T& value) {
-  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+  T parsed{};
   const auto end = text.data() + text.size();
-  const auto result = std::from_chars(text.data(), end, value);
-  return result.ec == std::errc() && result.ptr == end;
+  const auto result = std::from_chars(text.data(), end, parsed);
+  if (result.ec != std::errc() || result.ptr != end) return false;
+  value = parsed;
+  return true;
+}
+
+// As ParseAll, also with a sign '+'.
+template <typename T>
+std::optional<T> ParseSigned(std::string_view text) {
+  if (!text.empty() && text[0] == '+') text.remove_prefix(1);
+  T value{};
+  return ParseAll(text, value) ? std::optional<T>(value) : std::nullopt;
 }
 
 }  // namespace
@@ -69,28 +74,9 @@ bool Parse(const std::string& text, float& value) { return ParseReal(text, value
 
 bool Parse(const std::string& text, double& value) { return ParseReal(text, value); }
 
-bool Parse(const std::string& text, std::int32_t& value) {
-  if (!IsWhole(text, true) || text.size() > 11) return false;
-  const long long parsed = std::stoll(text);
-  if (parsed < std::numeric_limits<std::int32_t>::min() ||
-      parsed > std::numeric_limits<std::int32_t>::max()) {
-    return false;
-  }
-  value = static_cast<std::int32_t>(parsed);
-  return true;
-}
+bool Parse(const std::string& text, std::int32_t& value) { return ParseAll(text, value); }
 
-bool Parse(const std::string& text, std::uint64_t& value) {
-  if (!IsWhole(text, false)) return false;
-  std::uint64_t parsed = 0;
-  for (const char c : text) {
-    const auto digit = static_cast<std::uint64_t>(c - '0');
-    if (parsed > (std::numeric_limits<std::uint64_t>::max() - digit) / 10) return false;
-    parsed = parsed * 10 + digit;
-  }
-  value = parsed;
-  return true;
-}
+bool Parse(const std::string& text, std::uint64_t& value) { return ParseAll(text, value); }
 
 std::string List(const std::vector<std::string>& names) {
   std::string text;
@@ -145,16 +131,10 @@ std::string Upper(std::string_view text) {
   return upper;
 }
 
-std::optional<double> ParseNumber(std::string_view text) {
-  double value = 0.0;
-  if (!ParseAll(Trim(text), value)) return std::nullopt;
-  return value;
-}
+std::optional<double> ParseNumber(std::string_view text) { return ParseSigned<double>(Trim(text)); }
 
 std::optional<std::int32_t> ParseWhole(std::string_view text) {
-  std::int32_t value = 0;
-  if (!ParseAll(text, value)) return std::nullopt;
-  return value;
+  return ParseSigned<std::int32_t>(text);
 }
 
 std::string_view TakeLine(std::string_view& text) {

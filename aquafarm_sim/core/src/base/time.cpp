@@ -45,9 +45,9 @@ bool Take(std::string_view& text, std::string_view any_of) {
   return true;
 }
 
-// Parses a zone such as "Z", "+08:00" or "+0800" to seconds; `otherwise` if the text is empty.
-std::optional<std::int64_t> TakeZone(std::string_view text, std::int64_t otherwise) {
-  if (text.empty()) return otherwise;
+// Parses a zone such as "Z", "+08:00" or "+0800" to seconds; `fallback` if the text is empty.
+std::optional<std::int64_t> TakeZone(std::string_view text, std::int64_t fallback) {
+  if (text.empty()) return fallback;
   if (text == "Z") return 0;
   const bool west = text[0] == '-';
   if (!Take(text, "+-")) return std::nullopt;

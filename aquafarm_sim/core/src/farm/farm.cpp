@@ -36,6 +36,14 @@ float CrashDamage(const Scenario& scenario, std::uint8_t bits, float crash_rewar
   return (bits & kIslandBit) != 0 ? scenario.damage.island_damage : -crash_reward / 100.0F;
 }
 
+EpisodeSummary SummaryOf(const EpisodeRecord& record, std::int32_t farm) {
+  EpisodeSummary summary;
+  static_cast<EpisodeStatistics&>(summary) = record;
+  if (record.delivered > 0) summary.delivered_health /= static_cast<float>(record.delivered);
+  summary.farm = farm;
+  return summary;
+}
+
 Farm::Farm(std::shared_ptr<const Scenario> scenario) : Farm(std::move(scenario), nullptr) {}
 
 Farm::Farm(std::shared_ptr<const Scenario> scenario, std::shared_ptr<const Layout> fixed_layout)
@@ -338,14 +346,14 @@ void Farm::DropOff(Ship& ship, std::int32_t id) {
     ship.terms.illegal = scenario_->rewards.illegal;
     return;
   }
-  float worth = 0.0F;
+  float value = 0.0F;
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     Device& device = devices_[i];
     if (device.carrier != id && static_cast<std::int32_t>(i) != ship.own_device) continue;
     device.status = DeviceStatus::kDelivered;
     device.carrier = kNone;
     device.cell = ship.cell;
-    worth += device.health * device.value;
+    value += device.health * device.value;
     record_.delivered_health += device.health;
     ++record_.delivered;
     --remaining_;
@@ -356,7 +364,7 @@ void Farm::DropOff(Ship& ship, std::int32_t id) {
     ship_index_[static_cast<std::size_t>(id)] = kNone;
   }
   ship.outcome = Outcome::kOk;
-  ship.terms.drop_off = scenario_->rewards.drop_off + worth;
+  ship.terms.drop_off = scenario_->rewards.drop_off + value;
 }
 
 // Devices are exposed to the risk at their current cell, aboard a ship or not.

@@ -100,6 +100,41 @@ void RequireSame(const char* what, const T& got, const T& expected) {
   throw InputError(text.str());
 }
 
+// Reads the ships of a state. @param ships those at the start of the episode
+void ReadShips(const json& list, std::vector<Ship>& ships) {
+  RequireSame("ships", list.size(), ships.size());
+  for (std::size_t i = 0; i < ships.size(); ++i) {
+    const std::int32_t own_device = ships[i].own_device;
+    ships[i] = Read<Ship>(list[i]);
+    RequireSame("own_device", ships[i].own_device, own_device);
+  }
+}
+
+// Reads the devices of a state. @param devices those at the start of the episode
+// @returns the number of devices not yet delivered
+std::int32_t ReadDevices(const json& list, std::vector<Device>& devices) {
+  RequireSame("devices", list.size(), devices.size());
+  std::int32_t remaining = 0;
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    const bool self_propelled = devices[i].self_propelled;
+    devices[i] = Read<Device>(list[i]);
+    RequireSame("self_propelled", devices[i].self_propelled, self_propelled);
+    remaining += devices[i].status == DeviceStatus::kDelivered ? 0 : 1;
+  }
+  return remaining;
+}
+
+std::vector<Disaster> ReadDisasters(const json& list, std::size_t least) {
+  if (list.size() < least || list.size() > static_cast<std::size_t>(kMaxDisasters)) {
+    throw InputError("state: disasters: got " + std::to_string(list.size()) + ", expected [" +
+                     std::to_string(least) + ", " + std::to_string(kMaxDisasters) + "]");
+  }
+  std::vector<Disaster> disasters;
+  disasters.reserve(list.size());
+  for (const json& disaster : list) disasters.push_back(DisasterFrom(disaster));
+  return disasters;
+}
+
 }  // namespace
 
 std::uint64_t Farm::Hash() const {
@@ -193,33 +228,10 @@ void Farm::Load(const std::string& bytes) {
     const EpisodeRecord record = Read<EpisodeRecord>(state.at("record"));
     loaded.Reset(record.seed, record.episode);
     loaded.record_ = record;
-    RequireSame("ships", state.at("ships").size(), loaded.ships_.size());
-    RequireSame("devices", state.at("devices").size(), loaded.devices_.size());
-    const std::size_t disasters = state.at("disasters").size();
-    if (disasters < scenario_->disasters.size() ||
-        disasters > static_cast<std::size_t>(kMaxDisasters)) {
-      throw InputError("state: disasters: got " + std::to_string(disasters) + ", expected [" +
-                       std::to_string(scenario_->disasters.size()) + ", " +
-                       std::to_string(kMaxDisasters) + "]");
-    }
-    for (std::size_t i = 0; i < loaded.ships_.size(); ++i) {
-      const std::int32_t own_device = loaded.ships_[i].own_device;
-      loaded.ships_[i] = Read<Ship>(state["ships"][i]);
-      RequireSame("own_device", loaded.ships_[i].own_device, own_device);
-    }
-    for (std::size_t i = 0; i < loaded.devices_.size(); ++i) {
-      const bool self_propelled = loaded.devices_[i].self_propelled;
-      loaded.devices_[i] = Read<Device>(state["devices"][i]);
-      RequireSame("self_propelled", loaded.devices_[i].self_propelled, self_propelled);
-    }
-    loaded.remaining_ = 0;
-    for (const Device& device : loaded.devices_) {
-      loaded.remaining_ += device.status == DeviceStatus::kDelivered ? 0 : 1;
-    }
-    loaded.disasters_.clear();
-    for (const json& disaster : state.at("disasters")) {
-      loaded.disasters_.push_back(DisasterFrom(disaster));
-    }
+    ReadShips(state.at("ships"), loaded.ships_);
+    loaded.remaining_ = ReadDevices(state.at("devices"), loaded.devices_);
+    loaded.disasters_ = ReadDisasters(state.at("disasters"), scenario_->disasters.size());
+    const std::size_t disasters = loaded.disasters_.size();
     if (state.contains("tracks")) {
       loaded.tracks_changed_ = true;
       loaded.tracks_.clear();

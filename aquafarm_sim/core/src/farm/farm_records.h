@@ -3,7 +3,6 @@
 
 // The records of a saved episode: the fields of each, listed once for writing and reading.
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -168,20 +167,13 @@ template <>
 struct FieldsOf<EpisodeRecord> {
   template <typename Archive, typename R>
   static void Visit(Archive& a, R& record) {
-    a.Field("seed", record.seed);
-    a.Field("episode", record.episode);
-    a.Field("steps", record.steps);
-    a.Field("return", record.episode_return);
-    a.Field("delivered", record.delivered);
-    a.Field("devices", record.devices);
-    a.Field("delivered_health", record.delivered_health);
-    a.Field("crashes", record.crashes);
-    a.Field("collisions", record.collisions);
-    a.Field("steps_in_disaster", record.steps_in_disaster);
-    a.Field("reason", record.reason);
+    VisitEpisodeFields(
+        [&a](const EpisodeField& field, auto& value) {
+          // The fields of version 0.1.0 are named like their columns.
+          field.is_added ? a.Added(field.name, value) : a.Field(field.column, value);
+        },
+        record);
     if (Archive::kReads || record.ship_steps != 0) a.Added("ship_steps", record.ship_steps);
-    a.Added("energy", record.energy);
-    a.Added("distance", record.distance);
   }
 };
 
@@ -218,91 +210,13 @@ struct FieldsOf<Disaster> {
   }
 };
 
-// Fills the rings by quadrant and those of the last bulletin.
-inline void ReadRings(Reader& a, Disaster& d) {
-  d.by_quadrant = a.state.contains("quadrants");
-  if (d.by_quadrant) {
-    decltype(d.quadrant) sides{};
-    a.Field("quadrants", sides);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(d.rings); ++k) {
-      SetRing(d, k, {sides[0][k], sides[1][k], sides[2][k], sides[3][k]});
-    }
-  }
-  d.SnapshotRings();
-  if (a.state.contains("bulletin_rings")) {
-    a.Fields("bulletin_rings", d.bulletin.radius, d.bulletin.quadrant);
-  } else if (TellsRings(d)) {
-    throw InputError(
-        "state: disaster: bulletin_rings: missing, expected the rings as the last bulletin told "
-        "them, which states saved by older versions lack");
-  }
-}
+// Reads a disaster. @throws InputError if a value is out of range
+Disaster DisasterFrom(const json& j);
 
-// Forged bytes must not cause out-of-bounds access or an endless search.
-inline void CheckDisaster(const Disaster& d) {
-  const auto is_heading = [](std::int32_t degrees) { return degrees >= 0 && degrees <= 359; };
-  if (!is_heading(d.heading_deg)) throw InputError("state: heading out of range");
-  if (!is_heading(d.bulletin.heading_deg)) throw InputError("state: bulletin heading out of range");
-  bool finite = true;
-  const auto check = [&finite](const auto& values) {
-    for (const float value : values) finite = finite && std::isfinite(value);
-  };
-  check(std::array<float, 10>{d.x, d.y, d.dx, d.dy, d.speed, d.radius_growth, d.margin,
-                              d.bulletin.x, d.bulletin.y, d.bulletin.speed});
-  for (const auto& values : {d.radius, d.radius_squared, d.risk, d.bulletin.radius}) check(values);
-  for (const auto& side : d.bulletin.quadrant) check(side);
-  for (const auto& side : d.quadrant) check(side);
-  if (!finite) throw InputError("state: a disaster's number is not finite");
-}
-
-inline Disaster DisasterFrom(const json& j) {
-  Disaster d;
-  Reader reader(j);
-  FieldsOf<Disaster>::Visit(reader, d);
-  if (d.rings < 0 || d.rings > kMaxRings) throw InputError("state: disaster rings out of range");
-  ReadRings(reader, d);
-  CheckDisaster(d);
-  return d;
-}
-
-inline json TrackToJson(const std::vector<Waypoint>& track) {
-  json points = json::array();
-  for (const Waypoint& point : track) {
-    points.push_back({point.step, point.x, point.y, point.grade, point.radii, point.risks});
-    if (!point.quadrants.empty()) points.back().push_back(point.quadrants);
-  }
-  return points;
-}
-
-inline std::vector<Waypoint> TrackFromJson(const json& points) {
-  std::vector<Waypoint> track;
-  for (const json& point : points) {
-    track.push_back({point.at(0).get<float>(), point.at(1).get<float>(), point.at(2).get<float>(),
-                     point.at(3).get<std::int32_t>(), point.at(4).get<std::vector<float>>(),
-                     point.at(5).get<std::vector<float>>(),
-                     point.size() > 6 ? point.at(6).get<std::vector<QuadrantRadii>>()
-                                      : std::vector<QuadrantRadii>()});
-  }
-  return track;
-}
-
-inline json ForecastsToJson(const Forecasts& forecasts) {
-  json list = json::array();
-  if (forecasts == nullptr) return list;
-  for (const IssuedForecast& forecast : *forecasts) {
-    list.push_back({forecast.step, TrackToJson(forecast.points)});
-  }
-  return list;
-}
-
-inline Forecasts ForecastsFromJson(const json& list) {
-  if (list.empty()) return nullptr;
-  std::vector<IssuedForecast> forecasts;
-  for (const json& forecast : list) {
-    forecasts.push_back({forecast.at(0).get<float>(), TrackFromJson(forecast.at(1))});
-  }
-  return std::make_shared<const std::vector<IssuedForecast>>(std::move(forecasts));
-}
+json TrackToJson(const std::vector<Waypoint>& track);
+std::vector<Waypoint> TrackFromJson(const json& points);
+json ForecastsToJson(const Forecasts& forecasts);
+Forecasts ForecastsFromJson(const json& list);
 
 template <typename Record>
 json Written(const Record& record) {

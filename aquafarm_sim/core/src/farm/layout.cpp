@@ -180,8 +180,8 @@ bool LayoutGenerator::DrawDevices(RandomStream& rng, Layout& layout) {
     device.value = rng.Uniform(spec.value.min, spec.value.max);
     if (scenario_.seas && !scenario_.seas->device_value.empty()) {
       const std::int32_t cell = LinearIndex(device.cell, scenario_.width);
-      const float worth = scenario_.seas->device_value[static_cast<std::size_t>(cell)];
-      if (!std::isnan(worth)) device.value = worth;
+      const float value = scenario_.seas->device_value[static_cast<std::size_t>(cell)];
+      if (!std::isnan(value)) device.value = value;
     }
     if (spec.placement == DevicePlacement::kExplicit) {
       const DeviceSite& site = spec.sites[i];

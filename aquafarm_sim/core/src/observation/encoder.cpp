@@ -114,9 +114,9 @@ void Encoder::Planes(const View& view, std::uint8_t* out) const {
   for (const Cell port : layout.ports) at(kPort, port) = 255;
   float cargo = 0.0F;
   for (const KnownDevice& device : view.devices) {
-    const float worth = device.health * device.value * kValueScale;
-    if (device.aboard_self) cargo += worth;
-    if (device.status == DeviceStatus::kDeployed) at(kDevice, device.cell) = ToByte(worth);
+    const float value = device.health * device.value * kValueScale;
+    if (device.aboard_self) cargo += value;
+    if (device.status == DeviceStatus::kDeployed) at(kDevice, device.cell) = ToByte(value);
   }
   if (view.in_play) at(kSelf, view.self) = 255;
   if (view.aboard > 0) at(kCargo, view.self) = ToByte(cargo / static_cast<float>(view.capacity));

@@ -456,12 +456,12 @@ class Builder {
     Layout layout;
     LayoutGenerator(ranch_.scenario).Generate(request_.seed, 0, layout);
     for (const PlacedDevice& device : layout.devices) {
-      const float worth = value_(device.cell.y, device.cell.x);
-      if (!(worth >= 0.0F && worth <= 10000.0F)) {
-        throw InputError("value: got " + Format(worth) + " at the device at " +
+      const float value = value_(device.cell.y, device.cell.x);
+      if (!(value >= 0.0F && value <= 10000.0F)) {
+        throw InputError("value: got " + Format(value) + " at the device at " +
                          YamlWriter::Value(device.cell) + ", expected a number in [0, 10000]");
       }
-      plan_.sites.push_back({device.cell, device.kind, worth, false});
+      plan_.sites.push_back({device.cell, device.kind, value, false});
     }
   }
 

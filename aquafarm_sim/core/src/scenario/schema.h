@@ -99,12 +99,11 @@ void VisitDevices(Archive& a, S& s) {
 template <typename Archive, typename S>
 void VisitRewardsAndDamage(Archive& a, S& s) {
   a.Struct("rewards", [&](auto& b) {
-    b.Field("island_crash", s.rewards.island_crash, kPenalty);
-    b.Field("pickup", s.rewards.pickup, kReward);
-    b.Field("drop_off", s.rewards.drop_off, kReward);
-    b.Field("illegal", s.rewards.illegal, kReward);
-    b.Field("collision", s.rewards.collision, kReward);
-    b.Field("step", s.rewards.step, kReward);
+    VisitRewardWeights(
+        [&b](const RewardKey& key, auto& weight) {
+          b.Field(key.name, weight, key.is_penalty ? kPenalty : kReward);
+        },
+        s.rewards);
     b.Field("sharing", s.rewards.sharing, OneOfNames{});
   });
   a.Struct("damage", [&](auto& b) {
@@ -273,7 +272,7 @@ class FieldChecker {
  public:
   static constexpr bool kReads = false;
   explicit FieldChecker(std::string path = "") : path_(std::move(path)) {}
-  static bool Has(const char*, bool otherwise) { return otherwise; }
+  static bool Has(const char*, bool fallback) { return fallback; }
   static void When(bool, const char*) {}
   static void Always() {}
   const std::string& path() const { return path_; }

@@ -9,7 +9,7 @@ namespace aquafarm::internal {
 class YamlWriter {
  public:
   static constexpr bool kReads = false;
-  static bool Has(const char*, bool otherwise) { return otherwise; }
+  static bool Has(const char*, bool fallback) { return fallback; }
   void When(bool used, const char*) { used_ = used; }
   void Always() { used_ = true; }
   const std::string& text() const { return text_; }

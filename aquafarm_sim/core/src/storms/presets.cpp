@@ -37,12 +37,12 @@ class Keys {
     }
   }
 
-  /// @param otherwise default value; nullopt if the key is required
+  /// @param fallback default value; nullopt if the key is required
   double Take(const std::string& key, const Interval<double>& domain,
-              std::optional<double> otherwise = std::nullopt) {
+              std::optional<double> fallback = std::nullopt) {
     known_.push_back(key);
     const auto found = given_.find(key);
-    if (found == given_.end() && otherwise) return *otherwise;
+    if (found == given_.end() && fallback) return *fallback;
     if (found == given_.end()) {
       throw InputError(where_ + key + ": missing, expected a number in " +
                        internal::Describe(domain));
@@ -56,8 +56,8 @@ class Keys {
   }
 
   std::int32_t TakeWhole(const std::string& key, const Interval<double>& domain,
-                         std::optional<double> otherwise = std::nullopt) {
-    const double number = Take(key, domain, otherwise);
+                         std::optional<double> fallback = std::nullopt) {
+    const double number = Take(key, domain, fallback);
     if (number == std::floor(number)) return static_cast<std::int32_t>(number);
     throw InputError(where_ + key + ": got " + internal::Format(number) +
                      ", expected a whole number in " + internal::Describe(domain));

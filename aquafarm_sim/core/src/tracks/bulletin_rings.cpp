@@ -15,18 +15,17 @@ using Json = nlohmann::json;
 
 std::array<double, kQuadrantCount> ReadQuadrants(
     const Json& value, const std::string& path, const std::array<const char*, kQuadrantCount>& keys,
-    std::int32_t wind_kt, const std::array<double, kQuadrantCount>& otherwise,
-    ParseContext& place) {
+    std::int32_t wind_kt, const std::array<double, kQuadrantCount>& fallback, ParseContext& place) {
   const JsonObject object(value, path, place);
-  std::array<double, kQuadrantCount> radius_km = otherwise;
+  std::array<double, kQuadrantCount> radius_km = fallback;
   std::size_t said = 0;
   for (std::size_t q = 0; q < keys.size(); ++q) {
     const std::string upper = Upper(keys[q]);
     const auto one = object.TryNumber({keys[q], upper.c_str()}, 0.0, kMostRadius_km);
-    radius_km[q] = one.value_or(otherwise[q]);
+    radius_km[q] = one.value_or(fallback[q]);
     said += one ? 1 : 0;
   }
-  const bool all = *std::max_element(otherwise.begin(), otherwise.end()) > 0.0;
+  const bool all = *std::max_element(fallback.begin(), fallback.end()) > 0.0;
   const std::string wind = std::to_string(wind_kt) + " kt: ";
   if (said == 0 && !IsBlank(value)) {
     place.WarnValue(path, wind + "has none of the quadrants " + keys[0] + ", " + keys[1] + ", " +

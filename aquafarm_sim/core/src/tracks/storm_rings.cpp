@@ -201,7 +201,7 @@ const StormForecast* NewestForecast(const StormTrack& track) {
   return newest;
 }
 
-StormTrack WithForecast(const StormTrack& track, NoForecast otherwise) {
+StormTrack WithForecast(const StormTrack& track, NoForecast fallback) {
   StormTrack whole = track;
   const StormForecast* const newest = NewestForecast(track);
   const StormFix& now = track.fixes.back();
@@ -220,7 +220,7 @@ StormTrack WithForecast(const StormTrack& track, NoForecast otherwise) {
     }
     return whole;
   }
-  if (otherwise == NoForecast::kEnd) return whole;
+  if (fallback == NoForecast::kEnd) return whole;
   constexpr std::int64_t kAhead_s = 24 * 3600;
   StormFix later = now;
   later.time += kAhead_s;

@@ -78,8 +78,8 @@ geometry_msgs::TransformStamped PoseToMsg(const std::string& frame, double x, do
 geometry_msgs::TransformStamped EarthToMsg(const aquafarm::GeoPoint& origin,
                                            const std::string& earth_frame,
                                            const MessageContext& context);
-/// Returns the compass bearing of a move [degrees]; `otherwise` if the action is not a move.
-std::int32_t BearingOf(aquafarm::Action action, std::int32_t otherwise);
+/// Returns the compass bearing of a move [degrees]; `fallback` if the action is not a move.
+std::int32_t BearingOf(aquafarm::Action action, std::int32_t fallback);
 
 /// Max number of waypoints of a track in a message.
 inline constexpr std::size_t kMaxWaypoints = 10000;

@@ -8,10 +8,10 @@
 #include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/PolicyChoice.h>
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace aquafarm_viz {
 
@@ -54,10 +54,10 @@ std::string Rate(double value);
 /// Formats a number with its sign and one decimal.
 std::string Signed(double value);
 
-/// Warning about missing steps: "2 steps are missing; 'verify' says which".
+/// Warning about missing steps: "2 steps are missing; 'verify' names the first".
 std::string MissingSteps(std::uint64_t count);
 
 /// Returns the reward terms of the last step with their names, each summed over ships.
-std::array<std::pair<const char*, float>, 8> RewardTermsOf(const aquafarm_msgs::FarmState& state);
+std::vector<std::pair<std::string, float>> RewardTermsOf(const aquafarm_msgs::FarmState& state);
 
 }  // namespace aquafarm_viz

@@ -16,6 +16,7 @@
 #include "aquafarm/farm/disaster.h"
 #include "aquafarm/farm/layout.h"
 #include "aquafarm/grid/action.h"
+#include "aquafarm/grid/episode_summary.h"
 #include "aquafarm/grid/reward.h"
 #include "aquafarm/scenario/scenario.h"
 #include "aquafarm/tracks/place_storm.h"
@@ -56,25 +57,13 @@ struct Device {
 };
 
 /// Statistics of an episode, updated every step.
-struct EpisodeRecord {
-  std::uint64_t seed{};
-  std::uint64_t episode{};
-  std::int32_t steps{};
-  float episode_return{};  ///< sum of the reward terms of all ships, before sharing
-  std::int32_t delivered{};
-  std::int32_t devices{};
-  float delivered_health{};  ///< sum of health over delivered devices
-  std::int32_t crashes{};
-  std::int32_t collisions{};
-  std::int32_t steps_in_disaster{};  ///< ship-steps spent at a risk
+struct EpisodeRecord : EpisodeStatistics {
   std::int32_t ship_steps{};  ///< steps of rescue ships not moored in a port; 0 without money
   std::optional<Accounts> accounts;  ///< set when an episode with money ends
-  double energy{};                   ///< consumed by all ships [kWh]
-  double distance{};                 ///< travelled by all ships [km]
-  EndReason reason{};
-  /// Returns whether every device was delivered.
-  bool Success() const { return reason == EndReason::kAllRetrieved; }
 };
+
+/// Returns the summary of an episode that the farm with index `farm` played.
+EpisodeSummary SummaryOf(const EpisodeRecord& record, std::int32_t farm);
 
 /// One farm. Calling Step after the end of an episode is a programming error.
 class Farm {

@@ -14,6 +14,7 @@
 
 #include "aquafarm/grid/cell.h"
 #include "aquafarm/grid/geo_frame.h"
+#include "aquafarm/grid/reward.h"
 #include "aquafarm/scenario/enums.h"
 #include "aquafarm/scenario/limits.h"
 #include "aquafarm/tracks/storm_library.h"
@@ -142,13 +143,7 @@ struct DisasterSpec {
 GradeRisks RisksByGrade(const DisasterSpec& disaster);
 
 /// The rewards of §2.5.
-struct RewardSpec {
-  float island_crash{-20.0F};
-  float pickup{20.0F};
-  float drop_off{20.0F};
-  float illegal{-10.0F};
-  float collision{-5.0F};  // [decided]
-  float step{-1.0F};
+struct RewardSpec : RewardWeights {
   RewardSharing sharing{RewardSharing::kIndividual};
 };
 

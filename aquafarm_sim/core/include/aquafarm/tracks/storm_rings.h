@@ -88,7 +88,7 @@ enum class NoForecast : std::uint8_t {
 
 /// Returns the recorded fixes of a track, followed by the fixes of the newest forecast, marked with
 /// StormFix::forecast. A forecast point without wind and radii keeps those of the previous point.
-StormTrack WithForecast(const StormTrack& track, NoForecast otherwise);
+StormTrack WithForecast(const StormTrack& track, NoForecast fallback);
 
 /// The period for which a storm is known.
 struct StormKnowledge {

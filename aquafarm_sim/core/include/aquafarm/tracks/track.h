@@ -7,7 +7,7 @@
 ///
 ///      NW | NE        A wind ring contains, for each quadrant, the distance from the centre to
 ///    -----+-----      which winds of at least `wind_kt` blow. If the source does not give a ring
-///      SW | SE        of a wind, the fix has none. If it states that this wind does not blow, the
+///      SW | SE        of a wind, the fix does not have it. If it states that this wind does not blow, the
 ///                     ring has four zeros.
 
 #include <array>
@@ -106,7 +106,7 @@ struct StormTrack {
   std::string name;        ///< as written; empty if not given
   std::string local_name;  ///< in the agency's language; empty if not given
   std::string agency;      ///< agency whose positions these are
-  std::vector<StormFix> fixes;  ///< sorted by time, no time twice
+  std::vector<StormFix> fixes;  ///< sorted by time, each time once
   std::vector<StormForecast> forecasts;
   std::vector<Landfall> landfalls;  ///< sorted by time
   std::int32_t line{};              ///< first line in the file; 0 in JSON

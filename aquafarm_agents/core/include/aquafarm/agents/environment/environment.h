@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "aquafarm/grid/action.h"
+#include "aquafarm/grid/episode_summary.h"
 #include "aquafarm/grid/step_fields.h"
 
 namespace aquafarm {
@@ -54,25 +55,6 @@ struct EnvironmentSpec {
   std::int32_t step_limit{};
 };
 
-/// Result of one episode.
-struct EpisodeResult {
-  std::int32_t farm{};
-  std::uint64_t seed{};
-  std::uint64_t episode{};
-  std::int32_t steps{};
-  float episode_return{};
-  std::int32_t delivered{};
-  std::int32_t devices{};
-  float delivered_health{};  ///< mean health of delivered devices; 0 if there are none
-  std::int32_t crashes{};
-  std::int32_t collisions{};
-  std::int32_t steps_in_disaster{};
-  double energy{};    ///< of all ships [kWh]
-  double distance{};  ///< of all ships [km]
-  EndReason reason{};
-  bool Success() const { return reason == EndReason::kAllRetrieved; }
-};
-
 /// Results of one Reset or Step. Owned by the environment and valid until its next call. Arrays are
 /// row-major; step_fields.h lists them.
 struct StepResults {
@@ -81,21 +63,21 @@ struct StepResults {
     return in_play[entry] == 0 || IsTerminated(static_cast<EndReason>(reasons[farm]));
   }
 
-  std::vector<float> rewards;           ///< [N, S]
-  std::vector<float> terms;             ///< [N, S, kRewardTermCount]; empty unless requested
-  std::vector<float> energy;            ///< [N, S] consumed in the step [kWh]
-  std::vector<float> distance;          ///< [N, S] travelled in the step [km]
-  std::vector<std::uint8_t> outcomes;   ///< [N, S] Outcome
-  std::vector<ActionMask> legal;        ///< [N, S] for the next step
-  std::vector<std::uint8_t> in_play;    ///< [N, S] 0 if this agent is done until the next episode
-  std::vector<std::uint8_t> reasons;    ///< [N] EndReason; kNone while the episode continues
-  std::vector<std::uint8_t> started;    ///< [N] 1 at an episode's first observation
-  std::vector<std::uint64_t> hashes;    ///< [N]; empty unless requested
-  std::vector<std::uint32_t> index;     ///< [N, S]; empty unless requested
-  std::vector<float> features;          ///< [N, S, F]; empty unless requested
-  std::vector<std::uint8_t> planes;     ///< [N, S, P, H, W]; empty unless requested
-  std::vector<const Farm*> states;      ///< [N] the farms themselves; empty unless requested
-  std::vector<EpisodeResult> finished;  ///< episodes that ended in this step, ordered by farm
+  std::vector<float> rewards;            ///< [N, S]
+  std::vector<float> terms;              ///< [N, S, kRewardTermCount]; empty unless requested
+  std::vector<float> energy;             ///< [N, S] consumed in the step [kWh]
+  std::vector<float> distance;           ///< [N, S] travelled in the step [km]
+  std::vector<std::uint8_t> outcomes;    ///< [N, S] Outcome
+  std::vector<ActionMask> legal;         ///< [N, S] for the next step
+  std::vector<std::uint8_t> in_play;     ///< [N, S] 0 if this agent is done until the next episode
+  std::vector<std::uint8_t> reasons;     ///< [N] EndReason; kNone while the episode continues
+  std::vector<std::uint8_t> started;     ///< [N] 1 at an episode's first observation
+  std::vector<std::uint64_t> hashes;     ///< [N]; empty unless requested
+  std::vector<std::uint32_t> index;      ///< [N, S]; empty unless requested
+  std::vector<float> features;           ///< [N, S, F]; empty unless requested
+  std::vector<std::uint8_t> planes;      ///< [N, S, P, H, W]; empty unless requested
+  std::vector<const Farm*> states;       ///< [N] the farms themselves; empty unless requested
+  std::vector<EpisodeSummary> finished;  ///< episodes that ended in this step, ordered by farm
 };
 
 /// Number of farms and the outputs that the environment must produce.

@@ -70,9 +70,6 @@ std::string TakeSavedFarms(const std::string& bytes, const FarmShare& share, std
 /// @throws InputError if the bytes are damaged
 std::string JoinSavedFarms(const std::vector<std::string>& parts);
 
-/// Result of a farm's episode from its record.
-EpisodeResult ToResult(const EpisodeRecord& record, std::int32_t farm);
-
 /// Spec of `farms` farms of a scenario.
 EnvironmentSpec MakeSpec(const Scenario& scenario, const Encoder& encoder, std::int32_t farms);
 

@@ -26,11 +26,11 @@ constexpr std::uint64_t EvaluationSeed(std::uint64_t seed) { return seed | kEval
 
 /// Aggregate results of evaluating one policy.
 struct Evaluation {
-  std::uint64_t seed{};                 ///< seed of the farms, with kEvaluationSeedBit
-  std::vector<EpisodeResult> episodes;  ///< episodes 0, 1, 2, … of the seed, in order
-  double mean_return{};                 ///< per episode
-  double return_per_step{};             ///< sum of returns / sum of steps (§4.2)
-  double success_rate{};                ///< fraction of episodes that delivered every device
+  std::uint64_t seed{};                  ///< seed of the farms, with kEvaluationSeedBit
+  std::vector<EpisodeSummary> episodes;  ///< episodes 0, 1, 2, … of the seed, in order
+  double mean_return{};                  ///< per episode
+  double return_per_step{};              ///< sum of returns / sum of steps (§4.2)
+  double success_rate{};                 ///< fraction of episodes that delivered every device
   double mean_steps{};
   double mean_delivered_health{};  ///< over episodes with a delivery; 0 if there are none
   double mean_crashes{};
@@ -76,7 +76,7 @@ struct EvaluationContext {
   std::int32_t farms{};
 };
 
-/// Writes `<prefix>.csv` (kEpisodeColumns, kAddedEpisodeColumns, with losses also AccountColumns)
+/// Writes `<prefix>.csv` (EpisodeColumns, AddedColumns, with losses also AccountColumns)
 /// and `<prefix>.json`. @throws StorageError
 void WriteEvaluation(const std::string& prefix, const Evaluation& evaluation,
                      const EvaluationContext& context);

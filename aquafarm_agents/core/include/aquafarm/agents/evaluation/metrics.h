@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 
@@ -10,22 +9,20 @@
 
 namespace aquafarm::agents {
 
-/// CSV column names of an EpisodeResult.
-inline constexpr const char* kEpisodeColumns =
-    "farm,seed,episode,steps,return,delivered,devices,delivered_health,crashes,collisions,"
-    "steps_in_disaster,reason,success";
+/// Returns the CSV column names of an EpisodeSummary that files of version 0.1.0 have, with commas
+/// between them.
+std::string EpisodeColumns();
+/// Returns the column names that were added later, each after a comma. They end each line.
+std::string AddedColumns();
 
-/// Columns that files of version 0.1.0 lack, at the end of each line.
-inline constexpr const char* kAddedEpisodeColumns = "energy_kwh,distance_km";
+/// Appends an episode in the order of EpisodeColumns. Numbers parse back to the same bits.
+void AppendEpisode(const EpisodeSummary& result, std::string& text);
+/// Appends the first `count` values of AddedColumns, each after a comma; by default all.
+void AppendAdded(const EpisodeSummary& result, std::string& text, std::size_t count = SIZE_MAX);
 
-/// Appends an episode in the order of kEpisodeColumns. Numbers parse back to the same bits.
-void AppendEpisode(const EpisodeResult& result, std::string& text);
-/// Appends the columns kAddedEpisodeColumns.
-void AppendAdded(const EpisodeResult& result, std::string& text);
-
-/// metrics.csv: one line per episode, `number,total_steps,<kEpisodeColumns>,exploration,
-/// learning_rate,loss,<kAddedEpisodeColumns>`. A file of version 0.1.0 continues without the last
-/// ones. It contains no wall time, so that a resumed run writes the same bytes.
+/// metrics.csv: one line per episode, `number,total_steps,<EpisodeColumns>,exploration,
+/// learning_rate,loss<AddedColumns>`. A file of an earlier version continues with the columns that
+/// it has. It contains no wall time, so that a resumed run writes the same bytes.
 class MetricsFile {
  public:
   /// Creates the file, or truncates an existing one. @throws StorageError
@@ -37,7 +34,7 @@ class MetricsFile {
   MetricsFile(const MetricsFile&) = delete;
   MetricsFile& operator=(const MetricsFile&) = delete;
 
-  void Append(std::uint64_t number, std::uint64_t total_steps, const EpisodeResult& result,
+  void Append(std::uint64_t number, std::uint64_t total_steps, const EpisodeSummary& result,
               const LearnerStatus& status);
   /// Writes all buffered lines to the operating system. @throws StorageError
   void Flush();
@@ -49,7 +46,7 @@ class MetricsFile {
  private:
   std::string path_;
   int file_{-1};
-  bool has_added_{true};  // the columns kAddedEpisodeColumns
+  std::size_t added_columns_{SIZE_MAX};  // max number of AddedColumns
   std::uint64_t flushed_{};
   std::string buffer_;
 };

@@ -35,7 +35,7 @@ struct Route {
   std::vector<RouteStep> steps;
   std::vector<std::uint8_t>
       actions;  ///< [steps, agents] of all agents: enough to replay the episode
-  EpisodeResult result;
+  EpisodeSummary result;
   /// Greedy action of ship 0 in every free cell, at the episode's start and right after the first
   /// pickup (empty if there is no pickup). A recurrent policy starts from an empty state.
   std::vector<GreedyAction> at_start;

@@ -29,7 +29,7 @@ class FetchByValue {
   void Act(const Farm& farm, std::uint8_t* actions);
 
  private:
-  /// What one ship does.
+  /// The task of one ship.
   struct Errand {
     std::int32_t device{kNone};       ///< that it fetches
     std::vector<std::int32_t> moves;  ///< by water to that device, [H, W]

@@ -34,7 +34,7 @@ struct OptimumShare {
 /// @param max_states of (cell, devices) of a plan; larger episodes are left out
 /// @param seed of the bootstrap @param stop ends early if set; may be null
 OptimumShare CompareWithOptimum(
-    const std::vector<EpisodeResult>& episodes,
+    const std::vector<EpisodeSummary>& episodes,
     const std::function<Farm(std::uint64_t seed, std::uint64_t episode)>& make_farm,
     std::size_t max_states, std::uint64_t seed, const std::atomic<bool>* stop);
 

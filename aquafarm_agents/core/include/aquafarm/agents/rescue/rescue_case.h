@@ -17,7 +17,7 @@
 
 namespace aquafarm::agents {
 
-/// What the operator gives. Unset fields get defaults, which the assumptions of the case list.
+/// Inputs of the operator. Unset fields get defaults, which the assumptions of the case list.
 struct RescueRequest {
   std::string bulletin;  ///< file of bulletins with forecasts
   std::string storm;     ///< file of a recorded track: the forecast is its later part (a hindcast)
@@ -45,7 +45,7 @@ struct RescueWarning {
   std::string severity;  ///< stop, warning or note
   std::string text;
   std::string advice;
-  std::int32_t ship{kNone};  ///< index in RescueProblem::ships; kNone: it is about all of them
+  std::int32_t ship{kNone};  ///< index in RescueProblem::ships; kNone: all ships
 };
 
 /// Basis of a number of the plan.

@@ -98,7 +98,7 @@ class Trainer {
   void Train(const std::atomic<bool>* stop, const OnProgress& on_progress);
   void Begin();
   void Count(const StepResults& results);
-  void CountEpisode(const EpisodeResult& result);
+  void CountEpisode(const EpisodeSummary& result);
   void CountRestarts();
   void SaveWithoutFarms();
   void Report(const OnProgress& on_progress);

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The statistics of an episode, listed once. The list serves saved states, messages, metrics.csv,
+/// evaluation.csv and Python.
+
+#include <cstdint>
+#include <type_traits>
+
+#include "aquafarm/grid/action.h"
+
+namespace aquafarm {
+
+/// One statistic of an episode.
+struct EpisodeField {
+  const char* name;    ///< of the member
+  const char* column;  ///< in metrics.csv and evaluation.csv
+  bool is_added{};     ///< files and saved states of version 0.1.0 lack it
+};
+
+/// Calls visit(field, member…) for every statistic, with its member of each of the given records:
+/// EpisodeStatistics or the message EpisodeSummary. Add a statistic at the end, with is_added.
+template <typename Visit, typename... Records>
+void VisitEpisodeFields(const Visit& visit, Records&... records) {
+  visit(EpisodeField{"seed", "seed"}, records.seed...);
+  visit(EpisodeField{"episode", "episode"}, records.episode...);
+  visit(EpisodeField{"steps", "steps"}, records.steps...);
+  visit(EpisodeField{"episode_return", "return"}, records.episode_return...);
+  visit(EpisodeField{"delivered", "delivered"}, records.delivered...);
+  visit(EpisodeField{"devices", "devices"}, records.devices...);
+  visit(EpisodeField{"delivered_health", "delivered_health"}, records.delivered_health...);
+  visit(EpisodeField{"crashes", "crashes"}, records.crashes...);
+  visit(EpisodeField{"collisions", "collisions"}, records.collisions...);
+  visit(EpisodeField{"steps_in_disaster", "steps_in_disaster"}, records.steps_in_disaster...);
+  visit(EpisodeField{"reason", "reason"}, records.reason...);
+  visit(EpisodeField{"energy", "energy_kwh", true}, records.energy...);
+  visit(EpisodeField{"distance", "distance_km", true}, records.distance...);
+}
+
+/// Copies every statistic from one record to another of another type.
+template <typename From, typename To>
+void CopyEpisodeFields(const From& from, To& to) {
+  VisitEpisodeFields([](const EpisodeField&, const auto& value,
+                        auto& copy) { copy = static_cast<std::decay_t<decltype(copy)>>(value); },
+                     from, to);
+}
+
+/// Statistics of an episode.
+struct EpisodeStatistics {
+  std::uint64_t seed{};
+  std::uint64_t episode{};
+  std::int32_t steps{};
+  float episode_return{};  ///< sum of the reward terms of all ships, before sharing
+  std::int32_t delivered{};
+  std::int32_t devices{};
+  /// Health of the delivered devices: their mean, 0 without a delivery; in an EpisodeRecord the
+  /// sum.
+  float delivered_health{};
+  std::int32_t crashes{};
+  std::int32_t collisions{};
+  std::int32_t steps_in_disaster{};  ///< ship-steps spent at a risk
+  double energy{};                   ///< consumed by all ships [kWh]
+  double distance{};                 ///< travelled by all ships [km]
+  EndReason reason{};
+  /// Returns whether every device was delivered.
+  bool Success() const { return reason == EndReason::kAllRetrieved; }
+};
+
+/// Statistics with which an episode of a farm ended.
+struct EpisodeSummary : EpisodeStatistics {
+  std::int32_t farm{};
+};
+
+}  // namespace aquafarm

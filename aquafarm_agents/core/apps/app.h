@@ -96,7 +96,7 @@ inline void AddScenarioOptions(CLI::App& app, ScenarioChoice& choice) {
 }
 
 /// Runs the body of a program, which parses the arguments and returns the exit code. An error is
-/// printed as one line and becomes the exit code of bad input or of storage.
+/// printed as one line and becomes the exit code of bad input, of storage or of an internal error.
 template <typename Body>
 int RunWithExitCodes(const CLI::App& app, Body body) {
   try {
@@ -109,6 +109,9 @@ int RunWithExitCodes(const CLI::App& app, Body body) {
   } catch (const StorageError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return static_cast<int>(ExitCode::kStorage);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "internal error: %s\n", error.what());
+    return static_cast<int>(ExitCode::kInternal);
   }
 }
 

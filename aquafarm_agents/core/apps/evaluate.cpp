@@ -109,6 +109,73 @@ void PrintOptimum(const std::shared_ptr<const Scenario>& scenario, const Evaluat
       share.too_large, share.solved, share.solvable);
 }
 
+// Plays the episodes and reports their progress.
+Evaluation Play(const Arguments& arguments, Environment& environment, Policy& policy) {
+  const auto* const local = dynamic_cast<const LocalEnvironment*>(&environment);
+  AccountsOf accounts;
+  DeviceOutcomes devices;
+  if (local != nullptr) {
+    accounts = [local, &devices](std::int32_t farm) {
+      devices.Add(local->batch().farm(farm).devices());
+      return local->batch().farm(farm).record().accounts;
+    };
+  } else if (const auto* const family = dynamic_cast<const FamilyEnvironment*>(&environment)) {
+    devices.are_same = false;
+    accounts = [family, &devices](std::int32_t farm) {
+      devices.Add(family->farm(farm).devices());
+      return family->farm(farm).record().accounts;
+    };
+  }
+  Evaluation evaluation = Evaluate(
+      environment, policy, arguments.seed, arguments.episodes, &stop_requested,
+      [&arguments](std::size_t over) {
+        std::printf("%zu of %d episodes played\n", over, arguments.episodes);
+        std::fflush(stdout);
+      },
+      arguments.policy_seed, accounts);
+  evaluation.devices = std::move(devices);
+  return evaluation;
+}
+
+// Computes and writes what the options request in addition to the evaluation.
+// @returns false if it was interrupted
+bool WriteRequested(const Arguments& arguments, const SavedPolicy& saved,
+                    const std::shared_ptr<const Scenario>& scenario, const EnvironmentSpec& spec,
+                    Evaluation& evaluation) {
+  const auto make_policy = [&saved](const EnvironmentSpec& of) { return MakePolicy(saved, of); };
+  if (arguments.bound) {
+    evaluation.mean_bound = MeanBound(scenario, evaluation);
+    if (stop_requested) return false;
+    std::printf("upper bound %.1f per episode", *evaluation.mean_bound);
+    if (*evaluation.mean_bound > 0.0) {
+      std::printf(", share of it %.3f", evaluation.mean_return / *evaluation.mean_bound);
+    }
+    std::printf("\n");
+  }
+  if (arguments.optimum > 0) {
+    PrintOptimum(scenario, evaluation, arguments.optimum);
+    if (stop_requested) return false;
+  }
+  if (!arguments.values.empty()) {
+    const RolloutValues values =
+        PlayValues(scenario, saved.encodings, make_policy, arguments.seed, arguments.route_episode,
+                   arguments.values_episodes, &stop_requested, arguments.values_discount);
+    if (stop_requested) return false;
+    WriteValues(arguments.values, values, saved.path, *scenario);
+  }
+  if (!arguments.matrices.empty()) {
+    WriteMatrices(arguments.matrices, *scenario, saved.checkpoint, arguments.matrix_policy,
+                  arguments.values_discount);
+  }
+  if (!arguments.route.empty()) {
+    const Route route = TraceRoute(scenario, saved.encodings, make_policy, arguments.seed,
+                                   arguments.route_episode, &stop_requested);
+    if (stop_requested) return false;
+    WriteRoute(arguments.route, route, spec);
+  }
+  return true;
+}
+
 ExitCode Run(Arguments arguments) {
   const SavedPolicy saved = FindPolicy(arguments.policy);
   arguments.environment.encodings = saved.encodings;
@@ -119,79 +186,23 @@ ExitCode Run(Arguments arguments) {
   }
   const auto scenario = arguments.scenario.Load();
   RefuseForFamily(arguments, *scenario);
-  const std::unique_ptr<Environment> farms = MakeLocalFarms(scenario, arguments.environment);
-  Environment& environment = *farms;
-  const auto* const local = dynamic_cast<const LocalEnvironment*>(farms.get());
-  const std::unique_ptr<Policy> policy = MakePolicy(saved, environment.spec());
+  const std::unique_ptr<Environment> environment = MakeLocalFarms(scenario, arguments.environment);
+  const EnvironmentSpec& spec = environment->spec();
+  const std::unique_ptr<Policy> policy = MakePolicy(saved, spec);
   if (arguments.bound) TeamBound(Farm(scenario));  // fails early if the scenario has no bound
   const std::string warning = TakeTorchWarning();
   if (!warning.empty()) std::fprintf(stderr, "%s\n", warning.c_str());
-  AccountsOf accounts;
-  DeviceOutcomes devices;
-  if (local != nullptr) {
-    accounts = [local, &devices](std::int32_t farm) {
-      devices.Add(local->batch().farm(farm).devices());
-      return local->batch().farm(farm).record().accounts;
-    };
-  } else if (const auto* const family = dynamic_cast<const FamilyEnvironment*>(farms.get())) {
-    devices.are_same = false;
-    accounts = [family, &devices](std::int32_t farm) {
-      devices.Add(family->farm(farm).devices());
-      return family->farm(farm).record().accounts;
-    };
-  }
-  Evaluation evaluation = Evaluate(
-      environment, *policy, arguments.seed, arguments.episodes, &stop_requested,
-      [&arguments](std::size_t over) {
-        std::printf("%zu of %d episodes played\n", over, arguments.episodes);
-        std::fflush(stdout);
-      },
-      arguments.policy_seed, accounts);
-  evaluation.devices = std::move(devices);
-  std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(),
-              environment.spec().scenario_name.c_str(), Describe(evaluation).c_str());
+  Evaluation evaluation = Play(arguments, *environment, *policy);
+  std::printf("%s on %s: %s\n", saved.checkpoint.algorithm.c_str(), spec.scenario_name.c_str(),
+              Describe(evaluation).c_str());
   const std::string losses = DescribeLosses(evaluation);
   if (!losses.empty()) std::printf("%s\n", losses.c_str());
   std::fflush(stdout);  // before steps that may still fail
-  if (arguments.bound && evaluation.complete) {
-    evaluation.mean_bound = MeanBound(scenario, evaluation);
-    if (stop_requested) return ExitCode::kInterrupted;
-    std::printf("upper bound %.1f per episode", *evaluation.mean_bound);
-    if (*evaluation.mean_bound > 0.0) {
-      std::printf(", share of it %.3f", evaluation.mean_return / *evaluation.mean_bound);
-    }
-    std::printf("\n");
-  }
-  if (arguments.optimum > 0 && evaluation.complete) {
-    PrintOptimum(scenario, evaluation, arguments.optimum);
-    if (stop_requested) return ExitCode::kInterrupted;
-  }
-  if (!arguments.values.empty() && evaluation.complete) {
-    const auto make_policy = [&saved](const EnvironmentSpec& spec) {
-      return MakePolicy(saved, spec);
-    };
-    const RolloutValues values =
-        PlayValues(scenario, saved.encodings, make_policy, arguments.seed, arguments.route_episode,
-                   arguments.values_episodes, &stop_requested, arguments.values_discount);
-    if (stop_requested) return ExitCode::kInterrupted;
-    WriteValues(arguments.values, values, saved.path, *scenario);
-  }
-  if (!arguments.matrices.empty() && evaluation.complete) {
-    WriteMatrices(arguments.matrices, *scenario, saved.checkpoint, arguments.matrix_policy,
-                  arguments.values_discount);
+  if (evaluation.complete && !WriteRequested(arguments, saved, scenario, spec, evaluation)) {
+    return ExitCode::kInterrupted;
   }
   // The evaluation is written last: if it exists, all files exist.
-  if (!arguments.route.empty() && evaluation.complete) {
-    const auto make_policy = [&saved](const EnvironmentSpec& spec) {
-      return MakePolicy(saved, spec);
-    };
-    const Route route = TraceRoute(scenario, saved.encodings, make_policy, arguments.seed,
-                                   arguments.route_episode, &stop_requested);
-    if (stop_requested) return ExitCode::kInterrupted;
-    WriteRoute(arguments.route, route, environment.spec());
-  }
   if (!arguments.output.empty()) {
-    const EnvironmentSpec& spec = environment.spec();
     WriteEvaluation(arguments.output, evaluation,
                     {saved.path, saved.checkpoint.algorithm, saved.checkpoint.steps,
                      spec.scenario_name, spec.scenario_hash, spec.version, spec.farms});
@@ -199,16 +210,10 @@ ExitCode Run(Arguments arguments) {
   return evaluation.complete ? ExitCode::kOk : ExitCode::kInterrupted;
 }
 
-int Main(int argc, char** argv) {
-  Arguments arguments;
-  arguments.scenario.name.clear();
-  CLI::App app("Plays a saved policy greedily on episodes of evaluation seeds, and reports.");
-  app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
-  app.option_defaults()->always_capture_default();
+void AddEpisodeOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("policy", arguments.policy,
                  "run folder, checkpoint file, FILE.py, FILE.zip (docs/python.md), generalist, "
-                 "random, planner, clairvoyant, do_nothing or "
-                 "fetch_by_value")
+                 "random, planner, clairvoyant, do_nothing or fetch_by_value")
       ->required();
   app.add_option("scenario", arguments.scenario.name,
                  "scenario file or name; empty: the one in the policy's run folder");
@@ -219,6 +224,9 @@ int Main(int argc, char** argv) {
                  "episodes");
   app.add_option("-f,--farms", arguments.environment.farms, "number of parallel farms")
       ->check(CLI::Range(1, kMaxFarms));
+}
+
+void AddOutputOptions(CLI::App& app, Arguments& arguments) {
   app.add_option("-w,--write", arguments.output,
                  "write <this>.csv and <this>.json; empty: nothing");
   app.add_option(
@@ -248,27 +256,22 @@ int Main(int argc, char** argv) {
       "--optimum", arguments.optimum,
       "print the share of the clairvoyant optimum over the episodes whose plans have at most "
       "this number of (cell, devices) states; 0: no share");
+}
+
+int Main(int argc, char** argv) {
+  Arguments arguments;
+  arguments.scenario.name.clear();
+  CLI::App app("Plays a saved policy greedily on episodes of evaluation seeds, and reports.");
+  app.footer("exit codes: 0 played, 2 bad argument or policy, 3 storage, 130 interrupted");
+  app.option_defaults()->always_capture_default();
+  AddEpisodeOptions(app, arguments);
+  AddOutputOptions(app, arguments);
   AddScenarioOptions(app, arguments.scenario);
-  try {
+  return RunWithExitCodes(app, [&] {
     app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : static_cast<int>(ExitCode::kBadInput);
-  }
-  StopOnSignals();
-  ExitCode code = ExitCode::kInternal;
-  try {
-    code = Run(arguments);
-  } catch (const InputError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    code = ExitCode::kBadInput;
-  } catch (const StorageError& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    code = ExitCode::kStorage;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "internal error: %s\n", error.what());
-  }
-  return static_cast<int>(code);
+    StopOnSignals();
+    return static_cast<int>(Run(arguments));
+  });
 }
 
 }  // namespace

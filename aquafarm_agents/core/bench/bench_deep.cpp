@@ -6,12 +6,10 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "aquafarm/agents/environment/local_environment.h"
-#include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "metric_reporter.h"
+#include "training_loop.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -30,44 +28,29 @@ std::shared_ptr<const Scenario> Paper(bool all_features) {
   return std::make_shared<const Scenario>(std::move(scenario));
 }
 
-// One learner for all repetitions, after its replay is filled and its updates have started.
-struct Training {
-  Training(const char* algorithm, const std::string& options, bool all_features)
-      : environment(Paper(all_features),
-                    {kFarms, FindAlgorithm(algorithm).encodings(options), false, 1}),
-        learner(FindAlgorithm(algorithm).make(environment.spec(), 1, options)),
-        results(&environment.Reset(1)) {
-    for (int i = 0; i < 1000; ++i) Step();
-  }
-  void Step() {
-    learner->Step(*results, 0.3, actions);
-    results = &environment.Step(actions);
-  }
-  LocalEnvironment environment;
-  std::unique_ptr<Learner> learner;
-  const StepResults* results;
-  std::vector<std::uint8_t> actions;
-};
+// Steps that fill the replay and start the updates.
+constexpr int kFirstSteps = 1000;
 
-void TrainSteps(benchmark::State& state, Training& training) {
-  for (auto _ : state) training.Step();
+void TrainSteps(benchmark::State& state, TrainingLoop& training) {
+  for (auto _ : state) training.Run(1);
   state.SetItemsProcessed(state.iterations() * kFarms);
 }
 
+// One learner for all repetitions.
 void Dqn(benchmark::State& state) {
-  static Training training("dqn", kDqnOptions, false);
+  static TrainingLoop training("dqn", kDqnOptions, Paper(false), kFarms, kFirstSteps);
   TrainSteps(state, training);
 }
 void DqnAllFeatures(benchmark::State& state) {
-  static Training training("dqn", kDqnOptions, true);
+  static TrainingLoop training("dqn", kDqnOptions, Paper(true), kFarms, kFirstSteps);
   TrainSteps(state, training);
 }
 void LstmDqn(benchmark::State& state) {
-  static Training training("lstm_dqn", kLstmOptions, false);
+  static TrainingLoop training("lstm_dqn", kLstmOptions, Paper(false), kFarms, kFirstSteps);
   TrainSteps(state, training);
 }
 void LstmDqnAllFeatures(benchmark::State& state) {
-  static Training training("lstm_dqn", kLstmOptions, true);
+  static TrainingLoop training("lstm_dqn", kLstmOptions, Paper(true), kFarms, kFirstSteps);
   TrainSteps(state, training);
 }
 

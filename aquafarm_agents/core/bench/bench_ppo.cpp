@@ -6,12 +6,10 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "aquafarm/agents/environment/local_environment.h"
-#include "aquafarm/agents/ppo/ppo.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "metric_reporter.h"
+#include "training_loop.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -19,39 +17,23 @@ namespace {
 constexpr std::int32_t kFarms = 256;
 constexpr int kStepsPerRollout = 64;
 
-// One learner for all repetitions, past its first update.
-struct Training {
-  explicit Training(const std::string& options)
-      : environment(
-            std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml")),
-            {kFarms, PpoEncodings(options), false, 1}),
-        learner(MakePpo(environment.spec(), 1, options)),
-        results(&environment.Reset(1)) {
-    Rollout();
-  }
-  void Rollout() {
-    for (int i = 0; i < kStepsPerRollout; ++i) {
-      learner->Step(*results, 0.3, actions);
-      results = &environment.Step(actions);
-    }
-  }
-  LocalEnvironment environment;
-  std::unique_ptr<Learner> learner;
-  const StepResults* results;
-  std::vector<std::uint8_t> actions;
-};
-
-void Train(benchmark::State& state, Training& training) {
-  for (auto _ : state) training.Rollout();
+void Train(benchmark::State& state, TrainingLoop& training) {
+  for (auto _ : state) training.Run(kStepsPerRollout);
   state.SetItemsProcessed(state.iterations() * kFarms * kStepsPerRollout);
 }
 
+std::shared_ptr<const Scenario> Paper() {
+  return std::make_shared<const Scenario>(LoadScenario(AQUAFARM_SCENARIO_DIR "/paper.yaml"));
+}
+
+// One learner for all repetitions, past its first update.
 void Ppo(benchmark::State& state) {
-  static Training training("batch_size=2048");
+  static TrainingLoop training("ppo", "batch_size=2048", Paper(), kFarms, kStepsPerRollout);
   Train(state, training);
 }
 void RecurrentPpo(benchmark::State& state) {
-  static Training training("batch_size=2048 recurrent=true");
+  static TrainingLoop training("ppo", "batch_size=2048 recurrent=true", Paper(), kFarms,
+                               kStepsPerRollout);
   Train(state, training);
 }
 

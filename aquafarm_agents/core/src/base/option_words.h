@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Helpers for reading learner options: words of a closed set and whole numbers.
+/// Helpers for reading options of learners. The value before is the default.
 
 #include <array>
 #include <string>
@@ -16,10 +16,9 @@ namespace aquafarm::agents {
 /// Reads one of `words`, which are in the order of Kind.
 /// @throws InputError "loss: got 'l1', expected one of: huber, mse"
 template <typename Kind, std::size_t size>
-Kind ReadWord(OptionReader& reader, const std::string& key, Kind otherwise,
+Kind ReadWord(OptionReader& reader, const std::string& key, Kind fallback,
               const std::array<std::string_view, size>& words) {
-  const std::string text =
-      reader.Text(key, std::string(words[static_cast<std::size_t>(otherwise)]));
+  const std::string text = reader.Text(key, std::string(words[static_cast<std::size_t>(fallback)]));
   std::vector<std::string> names;
   for (std::size_t i = 0; i < size; ++i) {
     if (text == words[i]) return static_cast<Kind>(i);
@@ -41,6 +40,15 @@ void ReadWhole(OptionReader& reader, const std::string& key, double min, double 
 inline void ReadNumber(OptionReader& reader, const std::string& key, double min, double max,
                        double& value) {
   value = reader.Number(key, value, min, max);
+}
+
+inline void ReadFlag(OptionReader& reader, const std::string& key, bool& value) {
+  value = reader.Flag(key, value);
+}
+
+inline void ReadSchedule(OptionReader& reader, const std::string& key, double min, double max,
+                         Schedule& value) {
+  value = reader.GetSchedule(key, value, min, max);
 }
 
 /// Reads the device: auto, cpu or cuda. @throws InputError

@@ -75,9 +75,9 @@ const std::string* OptionReader::Find(const std::string& key) {
   return found == given_.end() ? nullptr : &found->second;
 }
 
-double OptionReader::Number(const std::string& key, double otherwise, double min, double max) {
+double OptionReader::Number(const std::string& key, double fallback, double min, double max) {
   const std::string* text = Find(key);
-  const double value = text == nullptr ? otherwise : ParseNumber(*text, key);
+  const double value = text == nullptr ? fallback : ParseNumber(*text, key);
   if (value < min || value > max) {
     throw InputError(key + ": got " + FormatNumber(value) + ", expected [" + FormatNumber(min) +
                      ", " + FormatNumber(max) + "]");
@@ -86,27 +86,27 @@ double OptionReader::Number(const std::string& key, double otherwise, double min
   return value;
 }
 
-bool OptionReader::Flag(const std::string& key, bool otherwise) {
+bool OptionReader::Flag(const std::string& key, bool fallback) {
   const std::string* text = Find(key);
   if (text != nullptr && *text != "true" && *text != "false") {
     throw InputError(key + ": got '" + *text + "', expected true or false");
   }
-  const bool value = text == nullptr ? otherwise : *text == "true";
+  const bool value = text == nullptr ? fallback : *text == "true";
   resolved_[key] = value ? "true" : "false";
   return value;
 }
 
-Schedule OptionReader::GetSchedule(const std::string& key, const Schedule& otherwise, double min,
+Schedule OptionReader::GetSchedule(const std::string& key, const Schedule& fallback, double min,
                                    double max) {
   const std::string* text = Find(key);
-  const Schedule value = text == nullptr ? otherwise : ParseSchedule(*text, key, min, max);
+  const Schedule value = text == nullptr ? fallback : ParseSchedule(*text, key, min, max);
   resolved_[key] = ToString(value);
   return value;
 }
 
-std::string OptionReader::Text(const std::string& key, const std::string& otherwise) {
+std::string OptionReader::Text(const std::string& key, const std::string& fallback) {
   const std::string* text = Find(key);
-  resolved_[key] = text == nullptr ? otherwise : *text;
+  resolved_[key] = text == nullptr ? fallback : *text;
   return resolved_[key];
 }
 

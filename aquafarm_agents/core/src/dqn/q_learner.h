@@ -29,9 +29,9 @@ class QLearner : public ReplayLearner<Scalar> {
   /// Sizes of a sample in the replay.
   struct Sample {
     std::size_t observation_size{};
-    std::size_t carry_size{};  ///< of the recurrent state
-    std::size_t steps{};       ///< number of later time steps that it needs
-    std::size_t group{};       ///< number of agents; see ReplaySampler
+    std::size_t recurrent_size{};  ///< of the recurrent state
+    std::size_t steps{};           ///< number of later time steps that it needs
+    std::size_t group{};           ///< number of agents; see ReplaySampler
   };
 
   /// @param make makes a network with the weights of the seed
@@ -42,7 +42,7 @@ class QLearner : public ReplayLearner<Scalar> {
                               {options.exploration,
                                options.reward_scale,
                                {static_cast<std::size_t>(options.buffer_size), EntryCount(spec),
-                                spec.agents, sample.observation_size, sample.carry_size},
+                                spec.agents, sample.observation_size, sample.recurrent_size},
                                options,
                                sample.steps,
                                sample.group}),
@@ -66,8 +66,8 @@ class QLearner : public ReplayLearner<Scalar> {
     const std::size_t size = ElementCount(ObservationTraits<Scalar>::Shape(this->spec_));
     for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += size) {
       const ActionMask allowed = LegalMask(results.legal[i], seen, options_);
-      const float* const worth = repetitions_.Penalize(row, seen, i);
-      actions[i] = this->explorer_.Choose(worth, allowed, BestOf(worth, allowed), i);
+      const float* const penalized = repetitions_.Penalize(row, seen, i);
+      actions[i] = this->explorer_.Choose(penalized, allowed, BestOf(penalized, allowed), i);
       repetitions_.Add(actions[i], i);
     }
   }

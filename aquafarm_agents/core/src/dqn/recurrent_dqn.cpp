@@ -21,9 +21,9 @@ std::shared_ptr<RecurrentNetwork> MakeRecurrent(const EnvironmentSpec& spec,
 }
 
 /// Recurrent state of every agent: h and c, [slots, 2, hidden], zero at the start of an episode.
-class Carry {
+class RecurrentState {
  public:
-  Carry(std::size_t entries, std::int64_t hidden)
+  RecurrentState(std::size_t entries, std::int64_t hidden)
       : hidden_(hidden), values_(entries * 2 * static_cast<std::size_t>(hidden)) {}
 
   std::size_t size_of_one() const { return 2 * static_cast<std::size_t>(hidden_); }
@@ -64,13 +64,14 @@ class Carry {
 
 /// Steps all agents: returns values [slots, kActionCount] and updates the recurrent states.
 torch::Tensor StepNetwork(RecurrentNetwork& network, const StepResults& results,
-                          std::int64_t features, Carry& carry, torch::Device device) {
+                          std::int64_t features, RecurrentState& recurrent_state,
+                          torch::Device device) {
   const auto entries = static_cast<std::int64_t>(results.legal.size());
-  RecurrentNetwork::State state = carry.ToState(device);
+  RecurrentNetwork::State state = recurrent_state.ToState(device);
   const torch::Tensor values = network.Forward(
       ObservationTraits<float>::ToInput(results.features.data(), {1, entries, features}, device),
       state);
-  carry.Take(state);
+  recurrent_state.Take(state);
   return values.squeeze(0).cpu().contiguous();
 }
 
@@ -84,18 +85,19 @@ class RecurrentPolicy final : public Policy {
         options_(options),
         network_(MakeRecurrent(spec, options, 0)),
         parameters_(*network_, device_),
-        carry_(0, options.hidden_size) {
+        recurrent_state_(0, options.hidden_size) {
     parameters_.FromVector(weights);
   }
   std::uint8_t encodings() const override { return kFeaturesBit; }
   void Begin(std::uint64_t, std::int32_t farms) override {
-    carry_ = Carry(static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_),
-                   options_.hidden_size);
+    recurrent_state_ = RecurrentState(
+        static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_), options_.hidden_size);
   }
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     const torch::NoGradGuard no_grad;
-    carry_.ClearStarted(results, agents_);
-    const torch::Tensor values = StepNetwork(*network_, results, features_, carry_, device_);
+    recurrent_state_.ClearStarted(results, agents_);
+    const torch::Tensor values =
+        StepNetwork(*network_, results, features_, recurrent_state_, device_);
     actions.resize(results.legal.size());
     values_.resize(actions.size());
     const float* row = values.data_ptr<float>();
@@ -114,7 +116,7 @@ class RecurrentPolicy final : public Policy {
   DeepOptions options_;
   std::shared_ptr<RecurrentNetwork> network_;
   FlatParameters parameters_;
-  Carry carry_;
+  RecurrentState recurrent_state_;
 };
 
 class RecurrentDqnLearner final : public QLearner<float, RecurrentNetwork> {
@@ -142,7 +144,7 @@ class RecurrentDqnLearner final : public QLearner<float, RecurrentNetwork> {
                         const torch::Tensor& values);
   void Reprioritise(const torch::Tensor& errors);
 
-  Carry carry_;
+  RecurrentState recurrent_state_;
   SequenceBatch batch_;
 };
 
@@ -152,17 +154,17 @@ RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint6
                [&] { return MakeRecurrent(spec, options, seed); },
                {static_cast<std::size_t>(spec.feature_count),
                 2 * static_cast<std::size_t>(options.hidden_size), 1, 1}),
-      carry_(EntryCount(spec), options.hidden_size),
-      batch_(options, features(), carry_.size_of_one()) {}
+      recurrent_state_(EntryCount(spec), options.hidden_size),
+      batch_(options, features(), recurrent_state_.size_of_one()) {}
 
 const float* RecurrentDqnLearner::RecurrentStates(const StepResults& results) {
-  carry_.ClearStarted(results, spec_.agents);
-  return carry_.values().data();
+  recurrent_state_.ClearStarted(results, spec_.agents);
+  return recurrent_state_.values().data();
 }
 
 torch::Tensor RecurrentDqnLearner::ActingValues(const StepResults& results) {
   const torch::NoGradGuard no_grad;
-  return StepNetwork(*acting_, results, spec_.feature_count, carry_, device_);
+  return StepNetwork(*acting_, results, spec_.feature_count, recurrent_state_, device_);
 }
 
 bool RecurrentDqnLearner::CanSample() const {
@@ -187,7 +189,7 @@ RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network
   const torch::NoGradGuard no_grad;
   const auto count = static_cast<std::int64_t>(batch_.size());
   RecurrentNetwork::State state =
-      Carry::StateOf(batch_.carry.data(), count, options_.hidden_size, device_);
+      RecurrentState::StateOf(batch_.recurrent_state.data(), count, options_.hidden_size, device_);
   if (options_.burn_in == 0) return state;
   const RecurrentNetwork::State stored = state;
   network.WarmUp(ToDevice(batch_.warm_up, {options_.burn_in, count, spec_.feature_count}), state);
@@ -203,9 +205,9 @@ torch::Tensor RecurrentDqnLearner::ValuesAlong(RecurrentNetwork& network,
   RecurrentNetwork::State state = WarmState(network);
   if (!options_.paper_tuple) return network.Forward(observations, state);
   const torch::Tensor before = network.Forward(observations.narrow(0, 0, 1), state);
-  RecurrentNetwork::State after =
-      Carry::StateOf(batch_.carry_after.data(), static_cast<std::int64_t>(batch_.size()),
-                     options_.hidden_size, device_);
+  RecurrentNetwork::State after = RecurrentState::StateOf(batch_.recurrent_state_after.data(),
+                                                          static_cast<std::int64_t>(batch_.size()),
+                                                          options_.hidden_size, device_);
   return torch::cat({before, network.Forward(observations.narrow(0, 1, 1), after)});
 }
 
@@ -258,14 +260,14 @@ void RecurrentDqnLearner::Reprioritise(const torch::Tensor& errors) {
 
 void RecurrentDqnLearner::SaveOwn(Checkpoint& checkpoint) const {
   QLearner::SaveOwn(checkpoint);
-  checkpoint.SetArray("carry", carry_.values());
+  checkpoint.SetArray("carry", recurrent_state_.values());
 }
 
 void RecurrentDqnLearner::LoadOwn(const Checkpoint& checkpoint) {
-  std::vector<float> carry;
-  checkpoint.GetArray("carry", carry_.values().size(), carry);
+  std::vector<float> recurrent_state;
+  checkpoint.GetArray("carry", recurrent_state_.values().size(), recurrent_state);
   QLearner::LoadOwn(checkpoint);
-  carry_.values() = std::move(carry);
+  recurrent_state_.values() = std::move(recurrent_state);
 }
 
 DeepOptions Parse(const std::string& text, std::string& resolved) {

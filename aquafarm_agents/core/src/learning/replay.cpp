@@ -49,7 +49,7 @@ Replay<Scalar>::Replay(const ReplayOptions& options)
     : options_(options), moments_(std::max<std::size_t>(2, options.capacity / options.entries)) {
   const std::size_t all = rows();
   observations_.resize(all * options_.observation_size);
-  carry_.resize(all * options_.carry_size);
+  recurrent_state_.resize(all * options_.recurrent_size);
   rewards_.resize(all);
   legal_.resize(all);
   actions_.resize(all);
@@ -59,7 +59,7 @@ Replay<Scalar>::Replay(const ReplayOptions& options)
 
 template <typename Scalar>
 void Replay<Scalar>::Add(const StepResults& results, const Scalar* observations,
-                         const float* carry) {
+                         const float* recurrent_state) {
   if (size_ == moments_) {
     oldest_ = (oldest_ + 1) % moments_;
   } else {
@@ -69,8 +69,9 @@ void Replay<Scalar>::Add(const StepResults& results, const Scalar* observations,
   const std::size_t entries = options_.entries;
   std::copy_n(observations, entries * options_.observation_size,
               observations_.data() + row * options_.observation_size);
-  if (options_.carry_size > 0) {
-    std::copy_n(carry, entries * options_.carry_size, carry_.data() + row * options_.carry_size);
+  if (options_.recurrent_size > 0) {
+    std::copy_n(recurrent_state, entries * options_.recurrent_size,
+                recurrent_state_.data() + row * options_.recurrent_size);
   }
   std::copy_n(results.rewards.data(), entries, rewards_.data() + row);
   std::copy_n(results.legal.data(), entries, legal_.data() + row);
@@ -134,8 +135,8 @@ JointTransition Replay<Scalar>::JointAt(std::size_t age, std::size_t first, std:
 template <typename Scalar>
 std::size_t Replay<Scalar>::bytes() const {
   const auto of = [](const auto& values) { return values.size() * sizeof(values[0]); };
-  return of(observations_) + of(carry_) + of(rewards_) + of(legal_) + of(actions_) + of(reasons_) +
-         of(started_);
+  return of(observations_) + of(recurrent_state_) + of(rewards_) + of(legal_) + of(actions_) +
+         of(reasons_) + of(started_);
 }
 
 template <typename Scalar>
@@ -143,7 +144,7 @@ void Replay<Scalar>::Save(Checkpoint& checkpoint) const {
   const Place place{oldest_, size_};
   SaveNumbers(checkpoint, "replay", [&place](const auto& visit) { VisitPlace(place, visit); });
   checkpoint.LendArray("replay.observations", observations_);
-  checkpoint.LendArray("replay.carry", carry_);
+  checkpoint.LendArray("replay.carry", recurrent_state_);
   checkpoint.LendArray("replay.rewards", rewards_);
   checkpoint.LendArray("replay.legal", legal_);
   checkpoint.LendArray("replay.actions", actions_);
@@ -160,7 +161,7 @@ void Replay<Scalar>::Load(const Checkpoint& checkpoint) {
     throw InputError("checkpoint: section 'replay': out of range");
   }
   checkpoint.GetArray("replay.observations", observations_.size(), observations_);
-  checkpoint.GetArray("replay.carry", carry_.size(), carry_);
+  checkpoint.GetArray("replay.carry", recurrent_state_.size(), recurrent_state_);
   checkpoint.GetArray("replay.rewards", rewards_.size(), rewards_);
   checkpoint.GetArray("replay.legal", legal_.size(), legal_);
   checkpoint.GetArray("replay.actions", actions_.size(), actions_);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "aquafarm/agents/base/options.h"
 #include "aquafarm/base/check.h"
+#include "learning/common_options.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -36,12 +36,11 @@ QTable::QTable(const EnvironmentSpec& spec, float initial_value)
 TabularOptions TabularOptions::Parse(const std::string& text, std::string& resolved) {
   OptionReader reader(text);
   TabularOptions options;
-  options.learning_rate = reader.GetSchedule("learning_rate", options.learning_rate, 0.0, 1.0);
-  options.gamma = reader.Number("gamma", options.gamma, 0.0, 1.0);
-  options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)));
-  reader.Resolve("exploration", ToString(options.exploration));
-  options.initial_value = reader.Number("initial_value", options.initial_value, -1e6, 1e6);
-  options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
+  ReadSchedule(reader, "learning_rate", 0.0, 1.0, options.learning_rate);
+  ReadNumber(reader, "gamma", 0.0, 1.0, options.gamma);
+  ReadExploration(reader, options.exploration);
+  ReadNumber(reader, "initial_value", -1e6, 1e6, options.initial_value);
+  ReadFlag(reader, "mask_illegal", options.mask_illegal);
   reader.Finish();
   resolved = reader.Resolved();
   return options;

@@ -39,11 +39,11 @@ void MarkOne(std::uint8_t action, float mark, float* out) {
 
 /// Observations of the actors of B farms in a window of T steps; the last is the sampled time step.
 struct Window {
-  std::vector<float> observations;  // [T, B, S, F]
-  std::vector<float> keeps;         // [T, B, S]
-  std::vector<float> carry;         // [B, S, carry_size] before the first step
-  std::vector<float> forbidden;     // [B, S, kActionCount] by MaskLogits, at the last step
-  std::vector<float> present;       // [B, S] 1 if in play at the last step
+  std::vector<float> observations;     // [T, B, S, F]
+  std::vector<float> keeps;            // [T, B, S]
+  std::vector<float> recurrent_state;  // [B, S, recurrent_size] before the first step
+  std::vector<float> forbidden;        // [B, S, kActionCount] by MaskLogits, at the last step
+  std::vector<float> present;          // [B, S] 1 if in play at the last step
 };
 
 ReplayLearnerOptions SharedOptions(const EnvironmentSpec& spec, const MaddpgOptions& options) {
@@ -82,7 +82,7 @@ class MaddpgLearner final : public ReplayLearner<float> {
   std::size_t agents() const { return static_cast<std::size_t>(spec_.agents); }
   std::size_t features() const { return static_cast<std::size_t>(spec_.feature_count); }
   std::size_t window() const { return static_cast<std::size_t>(options_.window); }
-  std::size_t carry_size() const { return static_cast<std::size_t>(actors_.carry_size()); }
+  std::size_t recurrent_size() const { return static_cast<std::size_t>(actors_.recurrent_size()); }
   template <typename Self, typename Visit>
   static void VisitCounters(Self& self, const Visit& visit);  // saved as integers
   template <typename Self, typename Visit>
@@ -118,7 +118,7 @@ class MaddpgLearner final : public ReplayLearner<float> {
   FlatParameters actor_target_;
   FlatParameters judge_target_;
   RandomStream acting_;  // for exploration
-  std::vector<float> carry_;
+  std::vector<float> recurrent_state_;
   double due_{};
   std::uint64_t steps_{};
   std::uint64_t updates_{};
@@ -151,7 +151,7 @@ MaddpgLearner::MaddpgLearner(const EnvironmentSpec& spec, std::uint64_t seed,
       actor_target_(target_actors_, device_),
       judge_target_(target_critic_, device_),
       acting_({seed, 0, RngStream::kLearner, kActingStream}),
-      carry_(EntryCount(spec) * carry_size()),
+      recurrent_state_(EntryCount(spec) * recurrent_size()),
       loss_(std::nanf("")),
       from_(MakeWindow()),
       to_(MakeWindow()),
@@ -172,15 +172,15 @@ Window MaddpgLearner::MakeWindow() const {
   const std::size_t rows = batch() * agents();
   made.observations.resize(window() * rows * features());
   made.keeps.resize(window() * rows);
-  made.carry.resize(rows * carry_size());
+  made.recurrent_state.resize(rows * recurrent_size());
   made.forbidden.resize(rows * kActionCount);
   made.present.resize(rows);
   return made;
 }
 
 const float* MaddpgLearner::RecurrentStates(const StepResults& results) {
-  ClearStarted(results, agents() * carry_size(), carry_);
-  return carry_.data();
+  ClearStarted(results, agents() * recurrent_size(), recurrent_state_);
+  return recurrent_state_.data();
 }
 
 void MaddpgLearner::CountSteps(std::uint64_t farm_steps) {
@@ -202,7 +202,7 @@ bool MaddpgLearner::CanSample() const {
 // The argmax of logits with Gumbel noise is a sample of their softmax.
 void MaddpgLearner::Choose(const StepResults& results, std::vector<std::uint8_t>& actions) {
   const torch::NoGradGuard no_grad;
-  const torch::Tensor logits = StepActors(actors_, results, spec_, carry_, device_);
+  const torch::Tensor logits = StepActors(actors_, results, spec_, recurrent_state_, device_);
   float* row = logits.data_ptr<float>();
   const float* seen = results.features.data();
   for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount) {
@@ -293,8 +293,8 @@ void MaddpgLearner::Fill(std::size_t i, std::size_t age, std::size_t first, Wind
                 to.observations.data() + (t * rows + i * agents()) * features());
     std::fill_n(to.keeps.data() + t * rows + i * agents(), agents(), keeps ? 1.0F : 0.0F);
   }
-  std::copy_n(replay_.carry(replay_.Row(age - back, first)), agents() * carry_size(),
-              to.carry.data() + i * agents() * carry_size());
+  std::copy_n(replay_.recurrent_state(replay_.Row(age - back, first)), agents() * recurrent_size(),
+              to.recurrent_state.data() + i * agents() * recurrent_size());
   const std::size_t row = replay_.Row(age, first);
   for (std::size_t agent = 0; agent < agents(); ++agent) {
     const std::size_t k = i * agents() + agent;
@@ -310,13 +310,15 @@ torch::Tensor MaddpgLearner::Observations(Window& window_of) const {
 }
 
 torch::Tensor MaddpgLearner::Logits(ActorTeam& actors, Window& window_of) {
-  torch::Tensor carry;
-  if (carry_size() > 0) {
-    carry = ToDevice(window_of.carry, {options_.batch_size, spec_.agents, actors.carry_size()});
+  torch::Tensor recurrent_state;
+  if (recurrent_size() > 0) {
+    recurrent_state = ToDevice(window_of.recurrent_state,
+                               {options_.batch_size, spec_.agents, actors.recurrent_size()});
   }
   return actors.Forward(
       Observations(window_of),
-      ToDevice(window_of.keeps, {options_.window, options_.batch_size, spec_.agents}), carry);
+      ToDevice(window_of.keeps, {options_.window, options_.batch_size, spec_.agents}),
+      recurrent_state);
 }
 
 torch::Tensor MaddpgLearner::GumbelNoise() {
@@ -425,7 +427,7 @@ void MaddpgLearner::SaveOwn(Checkpoint& checkpoint) const {
   judge_.Save(checkpoint, "critic.");
   checkpoint.SetArray("target.actors", actor_target_.ToVector());
   checkpoint.SetArray("target.critic", judge_target_.ToVector());
-  checkpoint.SetArray("carry", carry_);
+  checkpoint.SetArray("carry", recurrent_state_);
   SaveNumbers(checkpoint, "maddpg.counters",
               [this](const auto& visit) { VisitCounters(*this, visit); });
   SaveNumbers(checkpoint, "maddpg.learning",
@@ -435,10 +437,10 @@ void MaddpgLearner::SaveOwn(Checkpoint& checkpoint) const {
 void MaddpgLearner::LoadOwn(const Checkpoint& checkpoint) {
   std::vector<float> actors;
   std::vector<float> critic;
-  std::vector<float> carry;
+  std::vector<float> recurrent_state;
   checkpoint.GetArray("target.actors", static_cast<std::size_t>(actor_target_.size()), actors);
   checkpoint.GetArray("target.critic", static_cast<std::size_t>(judge_target_.size()), critic);
-  checkpoint.GetArray("carry", carry_.size(), carry);
+  checkpoint.GetArray("carry", recurrent_state_.size(), recurrent_state);
   LoadNumbers<std::uint64_t>(checkpoint, "maddpg.counters", "chance",
                              [this](const auto& visit) { VisitCounters(*this, visit); });
   LoadNumbers<double>(checkpoint, "maddpg.learning", "numbers",
@@ -447,7 +449,7 @@ void MaddpgLearner::LoadOwn(const Checkpoint& checkpoint) {
   judge_.Load(checkpoint, "critic.");
   actor_target_.FromVector(actors);
   judge_target_.FromVector(critic);
-  carry_ = std::move(carry);
+  recurrent_state_ = std::move(recurrent_state);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace aquafarm::agents {
 namespace nn = torch::nn;
 
 ActorTeam::ActorTeam(const EnvironmentSpec& spec, const MaddpgOptions& options)
-    : carry_size_(options.recurrent ? 2 * options.hidden_size : 0) {
+    : recurrent_size_(options.recurrent ? 2 * options.hidden_size : 0) {
   DeepOptions layers;
   layers.hidden_size = options.hidden_size;
   const std::int32_t count = options.shared ? 1 : spec.agents;
@@ -25,24 +25,25 @@ ActorTeam::ActorTeam(const EnvironmentSpec& spec, const MaddpgOptions& options)
 }
 
 torch::Tensor ActorTeam::Forward(const torch::Tensor& observations, const torch::Tensor& keeps,
-                                 torch::Tensor& carry) {
+                                 torch::Tensor& recurrent_state) {
   const std::size_t networks = plain_.size() + recurrent_.size();
-  if (networks == 1) return ForwardOne(0, observations, keeps, carry);
+  if (networks == 1) return ForwardOne(0, observations, keeps, recurrent_state);
   std::vector<torch::Tensor> logits;
-  std::vector<torch::Tensor> carries;
+  std::vector<torch::Tensor> states;
   for (std::size_t i = 0; i < networks; ++i) {
     const auto agent = static_cast<std::int64_t>(i);
-    torch::Tensor own = carry.defined() ? carry.narrow(1, agent, 1) : carry;
+    torch::Tensor own =
+        recurrent_state.defined() ? recurrent_state.narrow(1, agent, 1) : recurrent_state;
     logits.push_back(
         ForwardOne(i, observations.narrow(2, agent, 1), keeps.narrow(2, agent, 1), own));
-    carries.push_back(own);
+    states.push_back(own);
   }
-  if (carry.defined()) carry = torch::cat(carries, 1);
+  if (recurrent_state.defined()) recurrent_state = torch::cat(states, 1);
   return torch::cat(logits, 1);
 }
 
 torch::Tensor ActorTeam::ForwardOne(std::size_t network, const torch::Tensor& observations,
-                                    const torch::Tensor& keeps, torch::Tensor& carry) {
+                                    const torch::Tensor& keeps, torch::Tensor& recurrent_state) {
   const std::int64_t steps = observations.size(0);
   const std::int64_t farms = observations.size(1);
   const std::int64_t agents = observations.size(2);
@@ -50,8 +51,8 @@ torch::Tensor ActorTeam::ForwardOne(std::size_t network, const torch::Tensor& ob
   if (recurrent_.empty()) {
     return plain_[network]->Forward(rows[steps - 1]).view({farms, agents, kActionCount});
   }
-  const std::int64_t hidden = carry_size_ / 2;
-  const torch::Tensor both = carry.reshape({1, farms * agents, 2, hidden});
+  const std::int64_t hidden = recurrent_size_ / 2;
+  const torch::Tensor both = recurrent_state.reshape({1, farms * agents, 2, hidden});
   RecurrentNetwork::State state{both.select(2, 0).contiguous(), both.select(2, 1).contiguous()};
   const torch::Tensor keep = keeps.reshape({steps, 1, farms * agents, 1});
   torch::Tensor logits;
@@ -63,7 +64,8 @@ torch::Tensor ActorTeam::ForwardOne(std::size_t network, const torch::Tensor& ob
       logits = recurrent_[network]->Forward(rows.narrow(0, t, 1), state);
     }
   }
-  carry = torch::stack({state.first, state.second}, 2).view({farms, agents, carry_size_});
+  recurrent_state =
+      torch::stack({state.first, state.second}, 2).view({farms, agents, recurrent_size_});
   return logits.view({farms, agents, kActionCount});
 }
 

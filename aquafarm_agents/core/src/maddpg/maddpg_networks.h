@@ -20,22 +20,23 @@ class ActorTeam final : public torch::nn::Module {
   ActorTeam(const EnvironmentSpec& spec, const MaddpgOptions& options);
 
   /// Number of values of an agent's recurrent state (h, c); 0 if the actors are not recurrent.
-  std::int64_t carry_size() const { return carry_size_; }
+  std::int64_t recurrent_size() const { return recurrent_size_; }
 
   /// Logits at the last step of a window. Advances the recurrent state through the window.
   /// @param observations [T, B, S, F]
   /// @param keeps [T, B, S] 0 resets the recurrent state before that step
-  /// @param carry [B, S, carry_size] recurrent state before the window; receives the state after
+  /// @param recurrent_state [B, S, recurrent_size] recurrent state before the window; receives the
+  /// state after
   ///        it. Undefined if the actors are not recurrent
   /// @returns [B, S, kActionCount]
   torch::Tensor Forward(const torch::Tensor& observations, const torch::Tensor& keeps,
-                        torch::Tensor& carry);
+                        torch::Tensor& recurrent_state);
 
  private:
   torch::Tensor ForwardOne(std::size_t network, const torch::Tensor& observations,
-                           const torch::Tensor& keeps, torch::Tensor& carry);
+                           const torch::Tensor& keeps, torch::Tensor& recurrent_state);
 
-  std::int64_t carry_size_;
+  std::int64_t recurrent_size_;
   std::vector<std::shared_ptr<QNetwork>> plain_;
   std::vector<std::shared_ptr<RecurrentNetwork>> recurrent_;
 };

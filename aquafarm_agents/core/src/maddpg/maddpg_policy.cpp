@@ -22,12 +22,14 @@ class MaddpgPolicy final : public Policy {
   }
   std::uint8_t encodings() const override { return kFeaturesBit; }
   void Begin(std::uint64_t, std::int32_t farms) override {
-    carry_.assign(static_cast<std::size_t>(farms * spec_.agents * actors_.carry_size()), 0.0F);
+    recurrent_state_.assign(
+        static_cast<std::size_t>(farms * spec_.agents * actors_.recurrent_size()), 0.0F);
   }
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
     const torch::NoGradGuard no_grad;
-    ClearStarted(results, static_cast<std::size_t>(spec_.agents * actors_.carry_size()), carry_);
-    const torch::Tensor logits = StepActors(actors_, results, spec_, carry_, device_);
+    ClearStarted(results, static_cast<std::size_t>(spec_.agents * actors_.recurrent_size()),
+                 recurrent_state_);
+    const torch::Tensor logits = StepActors(actors_, results, spec_, recurrent_state_, device_);
     actions.resize(results.legal.size());
     const float* row = logits.data_ptr<float>();
     const float* seen = results.features.data();
@@ -43,21 +45,22 @@ class MaddpgPolicy final : public Policy {
   torch::Device device_;
   ActorTeam actors_;
   FlatParameters parameters_;
-  std::vector<float> carry_;
+  std::vector<float> recurrent_state_;
 };
 
 }  // namespace
 
-void ClearStarted(const StepResults& results, std::size_t size_of_farm, std::vector<float>& carry) {
-  for (std::size_t farm = 0; farm < results.started.size() && !carry.empty(); ++farm) {
+void ClearStarted(const StepResults& results, std::size_t size_of_farm,
+                  std::vector<float>& recurrent_state) {
+  for (std::size_t farm = 0; farm < results.started.size() && !recurrent_state.empty(); ++farm) {
     if (results.started[farm] == 0) continue;
-    std::fill_n(carry.begin() + static_cast<std::ptrdiff_t>(farm * size_of_farm), size_of_farm,
-                0.0F);
+    std::fill_n(recurrent_state.begin() + static_cast<std::ptrdiff_t>(farm * size_of_farm),
+                size_of_farm, 0.0F);
   }
 }
 
 torch::Tensor StepActors(ActorTeam& actors, const StepResults& results, const EnvironmentSpec& spec,
-                         std::vector<float>& carry, torch::Device device) {
+                         std::vector<float>& recurrent_state, torch::Device device) {
   const auto entries = static_cast<std::int64_t>(results.legal.size());
   const std::int64_t farms = entries / spec.agents;
   const torch::Tensor observations =
@@ -65,15 +68,16 @@ torch::Tensor StepActors(ActorTeam& actors, const StepResults& results, const En
                        {1, farms, spec.agents, spec.feature_count}, torch::kFloat)
           .to(device);
   torch::Tensor held;
-  if (!carry.empty()) {
-    held = torch::from_blob(carry.data(), {farms, spec.agents, actors.carry_size()}, torch::kFloat)
+  if (!recurrent_state.empty()) {
+    held = torch::from_blob(recurrent_state.data(), {farms, spec.agents, actors.recurrent_size()},
+                            torch::kFloat)
                .to(device);
   }
   const torch::Tensor keeps = torch::ones({1, farms, spec.agents}, device);
   const torch::Tensor logits = actors.Forward(observations, keeps, held);
-  if (!carry.empty()) {
+  if (!recurrent_state.empty()) {
     const torch::Tensor after = held.cpu().contiguous();
-    std::copy_n(after.data_ptr<float>(), carry.size(), carry.data());
+    std::copy_n(after.data_ptr<float>(), recurrent_state.size(), recurrent_state.data());
   }
   return logits.reshape({entries, kActionCount}).cpu().contiguous();
 }

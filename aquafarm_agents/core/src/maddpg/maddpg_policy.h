@@ -17,14 +17,16 @@
 namespace aquafarm::agents {
 
 /// Resets the recurrent state of farms whose episodes begin.
-/// @param carry recurrent state of each agent between steps, on the host: [farms, size_of_farm];
+/// @param recurrent_state recurrent state of each agent between steps, on the host: [farms,
+/// size_of_farm];
 ///        empty if the actors are not recurrent
-void ClearStarted(const StepResults& results, std::size_t size_of_farm, std::vector<float>& carry);
+void ClearStarted(const StepResults& results, std::size_t size_of_farm,
+                  std::vector<float>& recurrent_state);
 
-/// Runs all actors for one step. @param carry as above; advanced by one step
+/// Runs all actors for one step. @param recurrent_state as above; advanced by one step
 /// @returns logits [entries, kActionCount], on the CPU
 torch::Tensor StepActors(ActorTeam& actors, const StepResults& results, const EnvironmentSpec& spec,
-                         std::vector<float>& carry, torch::Device device);
+                         std::vector<float>& recurrent_state, torch::Device device);
 
 /// Makes a policy that plays the most likely action of every actor.
 /// @throws InputError if the weights belong to another network

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "base/option_words.h"
+#include "learning/common_options.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -53,7 +53,7 @@ void ReadSequences(OptionReader& reader, bool is_paper, DeepOptions& options) {
       reader, "replayed", is_paper ? Replayed::kPaperTuple : Replayed::kSequences, kReplayed);
   const bool is_tuple = replayed == Replayed::kPaperTuple;
   options.paper_tuple = is_tuple;
-  options.skip_connection = reader.Flag("skip_connection", options.skip_connection);
+  ReadFlag(reader, "skip_connection", options.skip_connection);
   if (is_tuple) {
     options.sequence_length = 1;
     options.burn_in = 0;
@@ -91,28 +91,19 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
   const Preset preset = ReadWord(reader, "preset", Preset::kTuned, kPresets);
   DeepOptions options = preset == Preset::kPaper ? Paper(recurrent) : Tuned(recurrent);
   if (!recurrent) options.network = ReadWord(reader, "network", options.network, kNetworks);
-  ReadWhole(reader, "hidden_size", 1, 4096, options.hidden_size);
-  options.learning_rate = reader.GetSchedule("learning_rate", options.learning_rate, 0.0, 1.0);
-  ReadNumber(reader, "gamma", 0.0, 1.0, options.gamma);
-  options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)));
-  reader.Resolve("exploration", ToString(options.exploration));
-  ReadWhole(reader, "batch_size", 1, 65536, options.batch_size);
-  options.train_interval = reader.GetSchedule("train_interval", options.train_interval, 0.01, 1e6);
-  ReadWhole(reader, "learning_starts", 0, 1e9, options.learning_starts);
-  ReadWhole(reader, "buffer_size", 100, 1e9, options.buffer_size);
+  ReadNetworkOptions(reader, options);
+  ReadReplayOptions(reader, 2.0, options);
+  ReadExploration(reader, options.exploration);
+  ReadSchedule(reader, "learning_rate", 0.0, 1.0, options.learning_rate);
+  ReadSchedule(reader, "train_interval", 0.01, 1e6, options.train_interval);
   ReadWhole(reader, "target_update_interval", 1, 1e9, options.target_update_interval);
   ReadNumber(reader, "tau", 0.0, 1.0, options.tau);
   options.loss = ReadWord(reader, "loss", options.loss, kLosses);
-  ReadNumber(reader, "max_grad_norm", 0.0, 1e9, options.max_grad_norm);
-  options.double_dqn = reader.Flag("double_dqn", options.double_dqn);
-  options.dueling = reader.Flag("dueling", options.dueling);
-  ReadWhole(reader, "n_step", 1, 100, options.n_step);
-  ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
+  ReadFlag(reader, "double_dqn", options.double_dqn);
+  ReadFlag(reader, "dueling", options.dueling);
   ReadNumber(reader, "ema_rate", 0.0, 1.0, options.ema_rate);
   ReadNumber(reader, "action_gap", 0.0, 0.99, options.action_gap);
   ReadNumber(reader, "repetition_penalty", 0.0, 1e6, options.repetition_penalty);
-  options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
-  options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
   if (options.mask_blocked && options.network == NetworkKind::kCnn) {
     throw InputError(
         "mask_blocked: got true, expected false with network=cnn, which reads no features");
@@ -121,11 +112,7 @@ DeepOptions DeepOptions::Parse(const std::string& text, bool recurrent, std::str
     throw InputError("repetition_penalty: got " + FormatNumber(options.repetition_penalty) +
                      ", expected 0 with network=cnn, which reads no features");
   }
-  ReadNumber(reader, "priority_exponent", 0.0, 2.0, options.priority_exponent);
-  ReadNumber(reader, "importance_exponent", 0.0, 1.0, options.importance_exponent);
   if (recurrent) ReadSequences(reader, preset == Preset::kPaper, options);
-  options.device = ReadDevice(reader);
-  ReadWhole(reader, "threads", 1, 256, options.threads);
   reader.Finish();
   resolved = reader.Resolved();
   return options;

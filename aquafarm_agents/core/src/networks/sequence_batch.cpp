@@ -8,16 +8,16 @@
 namespace aquafarm::agents {
 
 SequenceBatch::SequenceBatch(const DeepOptions& options, std::size_t features,
-                             std::size_t carry_size)
+                             std::size_t recurrent_size)
     : burn_in_(static_cast<std::size_t>(options.burn_in)),
       steps_(static_cast<std::size_t>(options.sequence_length)),
       features_(features),
-      carry_size_(carry_size) {
+      recurrent_size_(recurrent_size) {
   const auto count = static_cast<std::size_t>(options.batch_size);
   warm_up.resize(burn_in_ * count * features);
   observations.resize((steps_ + 1) * count * features);
-  carry.resize(count * carry_size);
-  if (options.paper_tuple) carry_after.resize(count * carry_size);
+  recurrent_state.resize(count * recurrent_size);
+  if (options.paper_tuple) recurrent_state_after.resize(count * recurrent_size);
   warms_up.resize(count);
   actions.resize(steps_ * count);
   rewards.resize(steps_ * count);
@@ -41,7 +41,8 @@ void SequenceBatch::Fill(std::size_t b, const Replay<float>& replay, const Trans
     const std::size_t row = replay.Row(is_warmed ? from + t : first, entry);
     std::copy_n(replay.observation(row), features_, warm_up.data() + (t * size() + b) * features_);
   }
-  std::copy_n(replay.carry(replay.Row(from, entry)), carry_size_, carry.data() + b * carry_size_);
+  std::copy_n(replay.recurrent_state(replay.Row(from, entry)), recurrent_size_,
+              recurrent_state.data() + b * recurrent_size_);
   FillRun(b, replay, {first, entry}, options);
 }
 
@@ -52,7 +53,8 @@ void SequenceBatch::FillRun(std::size_t b, const Replay<float>& replay,
   while (last < steps_ && replay.Begins(age + last, entry, 1)) ++last;
   if (options.paper_tuple) {
     const std::size_t row = replay.Row(age + last, entry);
-    std::copy_n(replay.carry(row), carry_size_, carry_after.data() + b * carry_size_);
+    std::copy_n(replay.recurrent_state(row), recurrent_size_,
+                recurrent_state_after.data() + b * recurrent_size_);
   }
   for (std::size_t t = 0; t <= steps_; ++t) {
     const std::size_t row = replay.Row(age + std::min(t, last), entry);

@@ -16,11 +16,13 @@ namespace aquafarm::agents {
 /// state, followed by time steps 0 … T. The first T of these are trained on as far as their episode
 /// lasts.
 struct SequenceBatch {
-  std::vector<float> warm_up;         ///< [burn_in, B, F]
-  std::vector<float> observations;    ///< [T + 1, B, F]
-  std::vector<float> carry;           ///< [B, 2, hidden] before the first time step of warm_up
-  std::vector<float> carry_after;     ///< [B, 2, hidden] stored at time step 1; paper_tuple only
-  std::vector<float> warms_up;        ///< [B] 0 if carry is already the state before time step 0
+  std::vector<float> warm_up;          ///< [burn_in, B, F]
+  std::vector<float> observations;     ///< [T + 1, B, F]
+  std::vector<float> recurrent_state;  ///< [B, 2, hidden] before the first time step of warm_up
+  std::vector<float>
+      recurrent_state_after;  ///< [B, 2, hidden] stored at time step 1; paper_tuple only
+  std::vector<float>
+      warms_up;  ///< [B] 0 if recurrent_state is already the state before time step 0
   std::vector<std::int64_t> actions;  ///< [T, B]
   std::vector<float> rewards;         ///< [T, B] summed over the steps to `next`
   std::vector<float> discounts;       ///< [T, B] factor of the value at `next`
@@ -30,8 +32,8 @@ struct SequenceBatch {
   std::vector<std::size_t> rows;      ///< [T, B] rows of the replay
 
   /// @param features F
-  /// @param carry_size 2 · hidden
-  SequenceBatch(const DeepOptions& options, std::size_t features, std::size_t carry_size);
+  /// @param recurrent_size 2 · hidden
+  SequenceBatch(const DeepOptions& options, std::size_t features, std::size_t recurrent_size);
 
   std::size_t size() const { return warms_up.size(); }
 
@@ -48,7 +50,7 @@ struct SequenceBatch {
   std::size_t burn_in_;
   std::size_t steps_;
   std::size_t features_;
-  std::size_t carry_size_;
+  std::size_t recurrent_size_;
 };
 
 }  // namespace aquafarm::agents

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "aquafarm/base/check.h"
-#include "base/option_words.h"
+#include "learning/common_options.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -48,30 +48,22 @@ PpoOptions PpoOptions::Parse(const std::string& text, std::string& resolved, boo
   OptionReader reader(text);
   PpoOptions options = Defaults(ReadWord(reader, "preset", Preset::kTuned, kPresets));
   options.central = central;
-  ReadWhole(reader, "hidden_size", 1, 4096, options.hidden_size);
-  options.recurrent = reader.Flag("recurrent", options.recurrent);
+  ReadNetworkOptions(reader, options);
+  ReadExploration(reader, options.exploration, ExplorationOf::kPolicies);
+  ReadFlag(reader, "recurrent", options.recurrent);
   ReadWhole(reader, "sequence_length", 1, 1000, options.sequence_length);
-  options.learning_rate = reader.GetSchedule("learning_rate", options.learning_rate, 0.0, 1.0);
-  ReadNumber(reader, "gamma", 0.0, 1.0, options.gamma);
+  ReadSchedule(reader, "learning_rate", 0.0, 1.0, options.learning_rate);
   ReadNumber(reader, "gae_lambda", 0.0, 1.0, options.gae_lambda);
   ReadWhole(reader, "rollout_size", 1, 1e8, options.rollout_size);
   ReadWhole(reader, "batch_size", 1, 1e8, options.batch_size);
   ReadWhole(reader, "epochs", 1, 100, options.epochs);
-  options.clip_range = reader.GetSchedule("clip_range", options.clip_range, 1e-6, 1.0);
+  ReadSchedule(reader, "clip_range", 1e-6, 1.0, options.clip_range);
   ReadNumber(reader, "value_clip_range", 0.0, 1e9, options.value_clip_range);
   ReadNumber(reader, "value_coef", 0.0, 1e6, options.value_coef);
-  ReadNumber(reader, "max_grad_norm", 0.0, 1e9, options.max_grad_norm);
-  ReadNumber(reader, "reward_scale", 1e-9, 1e9, options.reward_scale);
-  options.normalize_advantages = reader.Flag("normalize_advantages", options.normalize_advantages);
-  options.mask_illegal = reader.Flag("mask_illegal", options.mask_illegal);
-  options.mask_blocked = reader.Flag("mask_blocked", options.mask_blocked);
-  options.exploration = ParseExploration(reader.Text("exploration", ToString(options.exploration)),
-                                         ExplorationOf::kPolicies);
-  reader.Resolve("exploration", ToString(options.exploration));
-  options.teacher = reader.GetSchedule("teacher", options.teacher, 0.0, 1000.0);
-  options.team_share = reader.GetSchedule("team_share", options.team_share, 0.0, 1.0);
+  ReadFlag(reader, "normalize_advantages", options.normalize_advantages);
+  ReadSchedule(reader, "teacher", 0.0, 1000.0, options.teacher);
+  ReadSchedule(reader, "team_share", 0.0, 1.0, options.team_share);
   options.policy = ReadWord(reader, "policy", options.policy, kPolicyModes);
-  ReadWhole(reader, "threads", 1, 256, options.threads);
   ReadWhole(reader, "shards", 1, kMaxShards, options.shards);
   if ((options.shards & (options.shards - 1)) != 0) {
     throw InputError("shards: got " + std::to_string(options.shards) +

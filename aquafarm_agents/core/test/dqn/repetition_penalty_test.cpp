@@ -96,9 +96,9 @@ TEST(RepetitionPenalty, EndGoingToAndFro) {
       values[is_there ? kAside : kBack] = 10.0F;
       if (is_there) values[kPickup] = 7.0F;
       const auto& features = is_there ? kHere : kNextToIt;
-      const float* const worth = repetitions.Penalize(values.data(), features.data(), 0);
-      const auto action =
-          static_cast<std::uint8_t>(std::max_element(worth, worth + kActionCount) - worth);
+      const float* const penalized = repetitions.Penalize(values.data(), features.data(), 0);
+      const auto action = static_cast<std::uint8_t>(
+          std::max_element(penalized, penalized + kActionCount) - penalized);
       if (action == kPickup) return step;
       repetitions.Add(action, 0);
       is_there = !is_there;

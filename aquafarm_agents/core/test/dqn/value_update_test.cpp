@@ -126,15 +126,15 @@ struct Batch {
 // Returns the transitions that the learner draws, from its random stream.
 Batch Draw(const Update& update, std::size_t steps, std::size_t group) {
   const auto& spec = update.spec;
-  const std::size_t carry = update.recurrent ? 2 * kHidden : 0;
+  const std::size_t recurrent_state = update.recurrent ? 2 * kHidden : 0;
   Replay<float> replay({static_cast<std::size_t>(update.options.buffer_size),
                         static_cast<std::size_t>(spec.farms) * update.agents(), spec.agents,
-                        static_cast<std::size_t>(spec.feature_count), carry});
+                        static_cast<std::size_t>(spec.feature_count), recurrent_state});
   ReplaySampler<float> sampler(replay, update.options, steps, group);
   replay.Load(update.before);
   sampler.Load(update.before);
-  const std::vector<float> no_carry(carry * replay.entries());
-  replay.Add(update.log.back(), update.log.back().features.data(), no_carry.data());
+  const std::vector<float> no_state(recurrent_state * replay.entries());
+  replay.Add(update.log.back(), update.log.back().features.data(), no_state.data());
   sampler.Add();
   std::vector<std::uint64_t> position;
   update.before.GetArray("chance", 1, position);

@@ -11,8 +11,8 @@ namespace {
 // Two farms with one agent each. The observation of farm f at time step t is {t, f}.
 class TwoFarms {
  public:
-  explicit TwoFarms(std::size_t moments, std::size_t carry = 0)
-      : replay_({moments * 2, 2, 1, 2, carry}) {}
+  explicit TwoFarms(std::size_t moments, std::size_t recurrent_state = 0)
+      : replay_({moments * 2, 2, 1, 2, recurrent_state}) {}
 
   /// @param first, second end reasons of the two farms at this time step
   void Add(EndReason first, EndReason second, bool started = false) {
@@ -24,8 +24,8 @@ class TwoFarms {
     results.reasons = {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(second)};
     results.started = {started ? std::uint8_t{1} : std::uint8_t{0}, 0};
     const std::vector<float> observations{t, 0, t, 1};
-    const std::vector<float> carry{t, -t};
-    replay_.Add(results, observations.data(), carry.data());
+    const std::vector<float> recurrent_state{t, -t};
+    replay_.Add(results, observations.data(), recurrent_state.data());
     replay_.SetActions({static_cast<std::uint8_t>(moment_ % 10), 7});
     ++moment_;
   }
@@ -47,7 +47,7 @@ TEST(Replay, HandsOutWhatItWasGivenOldestFirst) {
     const std::size_t row = replay.Row(age, 1);
     EXPECT_EQ(replay.observation(row)[0], static_cast<float>(age + 2));
     EXPECT_EQ(replay.observation(row)[1], 1.0F);
-    EXPECT_EQ(replay.carry(row)[0], -static_cast<float>(age + 2));
+    EXPECT_EQ(replay.recurrent_state(row)[0], -static_cast<float>(age + 2));
     EXPECT_EQ(replay.Age(row), age);
   }
 }

@@ -42,8 +42,8 @@ void FillReplay(Replay<float>& replay, int moments) {
           static_cast<std::uint8_t>(is_over ? EndReason::kAllRetrieved : EndReason::kNone)};
       results.rewards = {is_over ? kOver : 1.0F};
       const std::vector<float> seen{static_cast<float>(moment), static_cast<float>(episode)};
-      const std::vector<float> carry{step == 0 ? 0.0F : static_cast<float>(moment)};
-      replay.Add(results, seen.data(), carry.data());
+      const std::vector<float> recurrent_state{step == 0 ? 0.0F : static_cast<float>(moment)};
+      replay.Add(results, seen.data(), recurrent_state.data());
       replay.SetActions({static_cast<std::uint8_t>(moment % 10)});
     }
   }
@@ -84,7 +84,7 @@ TEST(SequenceBatch, NeverCrossesAnEpisode) {
       if (batch.warms_up[0] == 0.0F) {  // starts from the state stored with its first time step
         ++cold;
         const bool at_start = replay.started(batch.rows[0]);
-        EXPECT_EQ(batch.carry[0], at_start ? 0.0F : first);
+        EXPECT_EQ(batch.recurrent_state[0], at_start ? 0.0F : first);
         EXPECT_TRUE(at_start || batch.rows[0] == replay.Row(0, 0));
       } else {
         ++warm;
@@ -92,7 +92,7 @@ TEST(SequenceBatch, NeverCrossesAnEpisode) {
           EXPECT_EQ(batch.warm_up[2 * t], first - static_cast<float>(kBurnIn - t));
           EXPECT_EQ(batch.warm_up[2 * t + 1], episode);
         }
-        EXPECT_EQ(batch.carry[0], batch.warm_up[0]);
+        EXPECT_EQ(batch.recurrent_state[0], batch.warm_up[0]);
       }
     }
     EXPECT_GT(cold, 5);

@@ -21,12 +21,12 @@ class OptionReader {
   /// @throws InputError on any other syntax and on duplicate keys
   explicit OptionReader(const std::string& text);
 
-  /// Value of `key` in [min, max]; `otherwise` is the default.
-  double Number(const std::string& key, double otherwise, double min, double max);
-  /// Value of `key`, true or false; `otherwise` is the default.
-  bool Flag(const std::string& key, bool otherwise);
-  Schedule GetSchedule(const std::string& key, const Schedule& otherwise, double min, double max);
-  std::string Text(const std::string& key, const std::string& otherwise);
+  /// Value of `key` in [min, max]; `fallback` is the default.
+  double Number(const std::string& key, double fallback, double min, double max);
+  /// Value of `key`, true or false; `fallback` is the default.
+  bool Flag(const std::string& key, bool fallback);
+  Schedule GetSchedule(const std::string& key, const Schedule& fallback, double min, double max);
+  std::string Text(const std::string& key, const std::string& fallback);
 
   /// @throws InputError naming the first key that was never read, and all valid keys
   void Finish() const;

@@ -44,7 +44,7 @@ struct ReplayOptions {
   std::size_t entries{1};          ///< farms × agents
   std::int32_t agents{1};          ///< agents per farm
   std::size_t observation_size{};  ///< values per observation
-  std::size_t carry_size{};        ///< values of an agent's recurrent state; 0 if there is none
+  std::size_t recurrent_size{};    ///< values of an agent's recurrent state; 0 if there is none
 };
 
 /// A transition over n steps, or fewer if the episode ended or was lost.
@@ -70,8 +70,10 @@ class Replay {
 
   /// Adds a time step.
   /// @param observations [entries, observation_size]
-  /// @param carry [entries, carry_size] recurrent state of each agent before this time step
-  void Add(const StepResults& results, const Scalar* observations, const float* carry = nullptr);
+  /// @param recurrent_state [entries, recurrent_size] recurrent state of each agent before this
+  /// time step
+  void Add(const StepResults& results, const Scalar* observations,
+           const float* recurrent_state = nullptr);
   /// Adds the chosen actions to the newest time step. @param actions [entries]
   void SetActions(const std::vector<std::uint8_t>& actions);
 
@@ -116,7 +118,9 @@ class Replay {
   const Scalar* observation(std::size_t row) const {
     return observations_.data() + row * options_.observation_size;
   }
-  const float* carry(std::size_t row) const { return carry_.data() + row * options_.carry_size; }
+  const float* recurrent_state(std::size_t row) const {
+    return recurrent_state_.data() + row * options_.recurrent_size;
+  }
   ActionMask legal(std::size_t row) const { return legal_[row]; }
   std::uint8_t action(std::size_t row) const { return actions_[row]; }
   float reward(std::size_t row) const { return rewards_[row]; }
@@ -135,7 +139,7 @@ class Replay {
   std::size_t oldest_{};
   std::size_t size_{};
   std::vector<Scalar> observations_;
-  std::vector<float> carry_;
+  std::vector<float> recurrent_state_;
   std::vector<float> rewards_;
   std::vector<ActionMask> legal_;
   std::vector<std::uint8_t> actions_;

@@ -22,14 +22,14 @@ void Write(const std::string& scenario_path, const std::string& route_path,
       std::make_shared<const aquafarm::Scenario>(aquafarm::LoadScenario(scenario_path));
   std::ifstream file(route_path);
   if (!file) throw InputError(route_path + ": cannot be read");
-  aquafarm_sim::EpisodeLog tape;
+  aquafarm_sim::EpisodeLog log;
   std::uint64_t hash = 0;
   try {
     const nlohmann::json route = nlohmann::json::parse(file);
     hash = route.at("scenario_hash");
-    tape.seed = route.at("farm_seed");
-    tape.episode = route.at("episode");
-    tape.actions = route.at("actions").get<std::vector<std::uint8_t>>();
+    log.seed = route.at("farm_seed");
+    log.episode = route.at("episode");
+    log.actions = route.at("actions").get<std::vector<std::uint8_t>>();
   } catch (const nlohmann::json::exception& error) {
     throw InputError(route_path + ": no route: " + error.what());
   }
@@ -37,18 +37,18 @@ void Write(const std::string& scenario_path, const std::string& route_path,
     throw InputError(route_path + ": belongs to another scenario than " + scenario_path);
   }
   aquafarm::Farm farm(scenario);
-  farm.Reset(tape.seed, tape.episode);
+  farm.Reset(log.seed, log.episode);
   const std::size_t agents = farm.ships().size();
-  for (std::size_t i = 0; i + agents <= tape.actions.size() && !farm.over(); i += agents) {
+  for (std::size_t i = 0; i + agents <= log.actions.size() && !farm.over(); i += agents) {
     for (std::size_t k = i; k < i + agents; ++k) {
-      if (tape.actions[k] <= aquafarm::kActionCount) continue;
-      throw InputError(route_path + ": actions: got " + std::to_string(tape.actions[k]) +
+      if (log.actions[k] <= aquafarm::kActionCount) continue;
+      throw InputError(route_path + ": actions: got " + std::to_string(log.actions[k]) +
                        ", expected [0, 10]");
     }
-    farm.Step(tape.actions.data() + i);
+    farm.Step(log.actions.data() + i);
   }
-  tape.record = farm.record();
-  aquafarm_sim::EpisodeBagWriter(scenario, {"/aquafarm/", "map", 10.0, 1}).Write(tape, bag_path);
+  log.record = farm.record();
+  aquafarm_sim::EpisodeBagWriter(scenario, {"/aquafarm/", "map", 10.0, 1}).Write(log, bag_path);
 }
 
 }  // namespace

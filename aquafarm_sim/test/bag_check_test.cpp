@@ -134,7 +134,7 @@ TEST_F(EpisodeBag, ASecondSpecThatDiffersIsFound) {
   EXPECT_EQ("episode 0 of seed 5: two specs that differ", CheckBag(path, "").difference);
 }
 
-// The tape of an episode in which all ships hold.
+// The log of an episode in which all ships hold.
 TEST_F(EpisodeBag, AMissingStepIsNamed) {
   const std::string whole = OneBag();
   const std::string bag = Changed(whole, true, [](FarmSpec*, FarmState* state, auto*) {

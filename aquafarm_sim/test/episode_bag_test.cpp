@@ -144,32 +144,32 @@ TEST_F(EpisodeBag, AnEpisodeLoadedAtItsStartBeginsAsItWasSaved) {
   EXPECT_EQ(std::vector<std::uint64_t>{0}, check.changed_at);
 }
 
-EpisodeLog HeldTape(const std::shared_ptr<const aquafarm::Scenario>& scenario) {
+EpisodeLog HeldLog(const std::shared_ptr<const aquafarm::Scenario>& scenario) {
   aquafarm::Farm farm(scenario);
   farm.Reset(5, 0);
-  EpisodeLog tape;
-  tape.seed = 5;
+  EpisodeLog log;
+  log.seed = 5;
   const std::vector<std::uint8_t> hold(farm.ships().size(),
                                        static_cast<std::uint8_t>(aquafarm::Action::kHold));
   while (!farm.over()) {
     farm.Step(hold.data());
-    tape.actions.insert(tape.actions.end(), hold.begin(), hold.end());
+    log.actions.insert(log.actions.end(), hold.begin(), hold.end());
   }
-  tape.record = farm.record();
-  return tape;
+  log.record = farm.record();
+  return log;
 }
 
 TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
   const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
-  const EpisodeLog tape = HeldTape(scenario);
+  const EpisodeLog log = HeldLog(scenario);
   const BagFormat format{"/ranch/", "map", 10, 1};
   const std::string path = folder_ + "/x.bag";
   EpisodeBagWriter writer(scenario, format);
-  writer.Write(tape, path);
+  writer.Write(log, path);
   const auto size = static_cast<rlim_t>(fs::file_size(path));
   fs::remove(path);
   fs::create_symlink("/dev/full", path + ".partial");
-  EXPECT_THROW(writer.Write(tape, path), std::runtime_error);
+  EXPECT_THROW(writer.Write(log, path), std::runtime_error);
   EXPECT_TRUE(Bags().empty());
   const auto write_within = [&](rlim_t bytes) {
     std::signal(SIGXFSZ, SIG_IGN);
@@ -177,7 +177,7 @@ TEST_F(EpisodeBag, AFullDiskCostsTheBagAndNotTheProcess) {
     most.rlim_cur = most.rlim_max = bytes;
     setrlimit(RLIMIT_FSIZE, &most);
     try {
-      writer.Write(tape, path);
+      writer.Write(log, path);
     } catch (const std::runtime_error&) {
       _exit(Bags().empty() ? 0 : 1);
     }
@@ -211,11 +211,11 @@ TEST_F(EpisodeBag, PartialBagsOfKilledProcessesAreRemovedAndThoseBeingWrittenSta
   EXPECT_EQ(RemoveAbandonedBags("/nowhere"), 0);
 }
 
-TEST_F(EpisodeBag, ATapeThatDoesNotGiveItsResultLeavesNothing) {
+TEST_F(EpisodeBag, ALogThatDoesNotGiveItsResultLeavesNothing) {
   const auto scenario = std::make_shared<const aquafarm::Scenario>(ShortScenario());
-  EpisodeLog tape = HeldTape(scenario);
-  tape.record.episode_return += 1.0F;
-  EXPECT_THROW(EpisodeBagWriter(scenario, {}).Write(tape, folder_ + "/x.bag"), TapeError);
+  EpisodeLog log = HeldLog(scenario);
+  log.record.episode_return += 1.0F;
+  EXPECT_THROW(EpisodeBagWriter(scenario, {}).Write(log, folder_ + "/x.bag"), ReplayError);
   EXPECT_TRUE(Bags().empty());
 }
 

@@ -277,8 +277,8 @@ TEST(FarmServer, AStepThatCannotBeToldStandsForAllShips) {
   EXPECT_EQ(1U, first.step);
   EXPECT_EQ(last, ranch->Command({1, kHold, 0, 0, 1}));
   EXPECT_EQ(1U, StateOf(*ranch).step);
-  EXPECT_EQ(1U, ranch->counters().untold);
-  EXPECT_EQ("no memory", ranch->counters().untold_why);
+  EXPECT_EQ(1U, ranch->counters().dropped_notifications);
+  EXPECT_EQ("no memory", ranch->counters().dropped_reason);
   ranch->SetListener(nullptr);
 }
 

@@ -364,8 +364,10 @@ BagCheck CheckBag(const std::string& path, const std::string& ns) {
   return ReadingBag(path, [&] {
     rosbag::Bag bag;
     OpenBag<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path);
-    CheckMessages<FarmSpec, FarmState, SavedState, EpisodeSummary, OccupancyGrid>(bag, path,
-                                                                                  IsSameText);
+    CheckMessages(bag, path,
+                  {TypeOf<FarmSpec>(), TypeOf<FarmState>(), TypeOf<SavedState>(),
+                   TypeOf<EpisodeSummary>(), TypeOf<OccupancyGrid>()},
+                  IsSameText);
     const std::string ranch = FindRanch(bag, path, ns);
     BagCheck refused;
     auto specs = ReadSpecs(bag, ranch + names::kSpec, refused.difference);

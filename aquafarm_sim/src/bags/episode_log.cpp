@@ -59,11 +59,11 @@ bool IsPartialBag(const std::filesystem::directory_entry& entry) {
 /// Creates and writes the messages of one episode during its simulation.
 class Messages {
  public:
-  Messages(ChunkedBag& bag, const EpisodeLog& tape, const BagFormat& format)
+  Messages(ChunkedBag& bag, const EpisodeLog& log, const BagFormat& format)
       : bag_(bag), format_(format) {
     context_.map_frame = format.map_frame;
-    context_.paced = tape.paced;
-    context_.rate_hz = tape.rate_hz > 0.0 ? tape.rate_hz : format.rate_hz;
+    context_.paced = log.paced;
+    context_.rate_hz = log.rate_hz > 0.0 ? log.rate_hz : format.rate_hz;
   }
 
   void Start(const Farm& farm, const aquafarm::Encoder& encoder, const std::string& yaml) {
@@ -95,9 +95,7 @@ class Messages {
     Write(names::kRisk, risk_);
   }
 
-  void End(const EpisodeLog& tape) {
-    Write(names::kEpisode, ToMsg(tape.record, tape.farm, context_));
-  }
+  void End(const EpisodeLog& log) { Write(names::kEpisode, ToMsg(log.record, log.farm, context_)); }
 
  private:
   // A bag cannot contain time 0, so an episode starts one period after it.
@@ -122,43 +120,43 @@ class Messages {
   nav_msgs::OccupancyGrid risk_;
 };
 
-void Play(Farm& farm, const EpisodeLog& tape, Messages& messages) {
-  auto change = tape.changes.begin();
+void Play(Farm& farm, const EpisodeLog& log, Messages& messages) {
+  auto change = log.changes.begin();
   const auto take_changes = [&] {
-    for (; change != tape.changes.end() && change->step == farm.step(); ++change) {
+    for (; change != log.changes.end() && change->step == farm.step(); ++change) {
       farm.Load(change->state);
       messages.Change(farm, change->state);
       messages.State(farm);
     }
   };
-  if (tape.first_step == 0) {
+  if (log.first_step == 0) {
     messages.State(farm);
   } else {
-    farm.Load(tape.changes.front().state);  // the first change is then at the farm's step
+    farm.Load(log.changes.front().state);  // the first change is then at the farm's step
   }
   take_changes();
   const std::size_t agents = farm.ships().size();
-  for (std::size_t i = 0; i + agents <= tape.actions.size() && !farm.over(); i += agents) {
-    farm.Step(tape.actions.data() + i);
+  for (std::size_t i = 0; i + agents <= log.actions.size() && !farm.over(); i += agents) {
+    farm.Step(log.actions.data() + i);
     messages.State(farm);
     take_changes();
   }
-  if (farm.record().steps != tape.record.steps ||
-      farm.record().episode_return != tape.record.episode_return ||
-      farm.record().reason != tape.record.reason) {
-    throw TapeError("episode " + std::to_string(tape.episode) +
-                    ": its actions do not give its result again");
+  if (farm.record().steps != log.record.steps ||
+      farm.record().episode_return != log.record.episode_return ||
+      farm.record().reason != log.record.reason) {
+    throw ReplayError("episode " + std::to_string(log.episode) +
+                      ": its actions do not give its result again");
   }
 }
 
 }  // namespace
 
-std::string BagName(const EpisodeLog& tape) {
+std::string BagName(const EpisodeLog& log) {
   char name[120];
   std::snprintf(name, sizeof(name), "%s%08llu_seed_%llu_return_%+.1f.bag", kPrefix,
-                static_cast<unsigned long long>(tape.episode),
-                static_cast<unsigned long long>(tape.seed),
-                static_cast<double>(tape.record.episode_return));
+                static_cast<unsigned long long>(log.episode),
+                static_cast<unsigned long long>(log.seed),
+                static_cast<double>(log.record.episode_return));
   return name;
 }
 
@@ -184,17 +182,17 @@ EpisodeBagWriter::EpisodeBagWriter(std::shared_ptr<const aquafarm::Scenario> sce
       encoder_(farm_.scenario()),
       yaml_(aquafarm::ToYaml(farm_.scenario())) {}
 
-void EpisodeBagWriter::Write(const EpisodeLog& tape, const std::string& path) {
+void EpisodeBagWriter::Write(const EpisodeLog& log, const std::string& path) {
   const std::string active = path + kPartial;
   std::error_code error;
   const FileLock lock(active, O_RDWR | O_CREAT);  // if it fails, ChunkedBag reports why
   try {
     ChunkedBag bag(active);
-    Messages messages(bag, tape, format_);
-    farm_.Reset(tape.seed, tape.episode);
+    Messages messages(bag, log, format_);
+    farm_.Reset(log.seed, log.episode);
     messages.Start(farm_, encoder_, yaml_);
-    Play(farm_, tape, messages);
-    messages.End(tape);
+    Play(farm_, log, messages);
+    messages.End(log);
     bag.Close();
   } catch (const std::system_error& fault) {
     std::filesystem::remove(active, error);

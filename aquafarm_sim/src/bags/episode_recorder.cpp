@@ -92,42 +92,42 @@ EpisodeRecorder::~EpisodeRecorder() {
 void EpisodeRecorder::OnStart(const aquafarm::Farm& farm, std::int32_t number,
                               const MessageContext& context) {
   const auto i = static_cast<std::size_t>(number);
-  if (tapes_.size() <= i) tapes_.resize(i + 1);
-  EpisodeLog tape;
-  tape.farm = number;
-  tape.seed = farm.seed();
-  tape.episode = farm.episode();
-  tape.paced = context.paced && number == 0;  // the other farms only take joint steps
-  tape.rate_hz = context.rate_hz;
-  tape.first_step = farm.step();
-  if (farm.step() != 0) tape.changes.push_back({farm.step(), farm.Save()});
-  tapes_[i] = std::move(tape);
+  if (logs_.size() <= i) logs_.resize(i + 1);
+  EpisodeLog log;
+  log.farm = number;
+  log.seed = farm.seed();
+  log.episode = farm.episode();
+  log.paced = context.paced && number == 0;  // the other farms only take joint steps
+  log.rate_hz = context.rate_hz;
+  log.first_step = farm.step();
+  if (farm.step() != 0) log.changes.push_back({farm.step(), farm.Save()});
+  logs_[i] = std::move(log);
 }
 
 void EpisodeRecorder::OnStep(const aquafarm::Farm& farm, std::int32_t number,
                              const std::uint8_t* actions) {
-  EpisodeLog& tape = tapes_[static_cast<std::size_t>(number)];
-  tape.actions.insert(tape.actions.end(), actions, actions + farm.ships().size());
+  EpisodeLog& log = logs_[static_cast<std::size_t>(number)];
+  log.actions.insert(log.actions.end(), actions, actions + farm.ships().size());
   if (!farm.over()) return;
-  tape.record = farm.record();
-  if (Wants(tape)) Enqueue(std::move(tape));
+  log.record = farm.record();
+  if (Wants(log)) Enqueue(std::move(log));
 }
 
 void EpisodeRecorder::OnIntervention(const aquafarm::Farm& farm, std::int32_t number) {
-  auto& changes = tapes_[static_cast<std::size_t>(number)].changes;
+  auto& changes = logs_[static_cast<std::size_t>(number)].changes;
   if (changes.empty() || changes.back().step != farm.step()) changes.emplace_back();
   changes.back() = {farm.step(), farm.Save()};  // only the last change before a step counts
 }
 
-bool EpisodeRecorder::Wants(const EpisodeLog& tape) {
-  const float value = tape.record.episode_return;
+bool EpisodeRecorder::Wants(const EpisodeLog& log) {
+  const float value = log.record.episode_return;
   switch (keep_.which) {
     case Keep::Which::kAll:
       return true;
     case Keep::Which::kEvery:
-      return tape.episode % keep_.every == 0;
+      return log.episode % keep_.every == 0;
     case Keep::Which::kFailures:
-      return !tape.record.Success();
+      return !log.record.Success();
     case Keep::Which::kBest:
     case Keep::Which::kWorst:
       if (extreme_ && !(keep_.which == Keep::Which::kBest ? value > *extreme_ : value < *extreme_))
@@ -140,7 +140,7 @@ bool EpisodeRecorder::Wants(const EpisodeLog& tape) {
   return false;
 }
 
-void EpisodeRecorder::Enqueue(EpisodeLog tape) {
+void EpisodeRecorder::Enqueue(EpisodeLog log) {
   aquafarm::MutexLock lock(mutex_);
   if (!fault_.empty()) return;
   if (keep_.which == Keep::Which::kBest || keep_.which == Keep::Which::kWorst) {
@@ -158,8 +158,8 @@ void EpisodeRecorder::Enqueue(EpisodeLog tape) {
     ROS_ERROR("episode recording stopped: %s", fault_.c_str());
   }
   if (!fault_.empty()) return;
-  waiting_bytes_ += tape.actions.size();
-  queue_.push_back(std::move(tape));
+  waiting_bytes_ += log.actions.size();
+  queue_.push_back(std::move(log));
   changed_.notify_all();
 }
 
@@ -169,22 +169,22 @@ void EpisodeRecorder::Run() {
   while (true) {
     while (!ending_ && queue_.empty()) lock.Wait(changed_);
     if (queue_.empty()) return;
-    const EpisodeLog tape = std::move(queue_.front());
+    const EpisodeLog log = std::move(queue_.front());
     queue_.pop_front();
     lock.Unlock();
     std::string fault;
     bool written = false;
     try {
-      Write(tape);
+      Write(log);
       written = true;
-    } catch (const TapeError& error) {  // only this episode is lost
+    } catch (const ReplayError& error) {  // only this episode is lost
       ROS_ERROR("an episode was not recorded: %s", error.what());
     } catch (const std::exception& error) {
       fault = error.what();
       ROS_ERROR("episode recording stopped: %s", error.what());
     }
     lock.Lock();
-    waiting_bytes_ -= tape.actions.size();
+    waiting_bytes_ -= log.actions.size();
     kept_ += written ? 1 : 0;
     if (!fault.empty()) {
       fault_ = fault;
@@ -195,14 +195,14 @@ void EpisodeRecorder::Run() {
   }
 }
 
-void EpisodeRecorder::Write(const EpisodeLog& tape) {
-  const std::string name = BagName(tape);
+void EpisodeRecorder::Write(const EpisodeLog& log) {
+  const std::string name = BagName(log);
   std::string path = folder_ + "/" + name;
   // A file of the same name belongs to another farm, a load_state or an earlier run.
   for (int i = 2; std::filesystem::exists(path); ++i) {
     path = folder_ + "/" + name.substr(0, name.size() - 4) + "_" + std::to_string(i) + ".bag";
   }
-  writer_.Write(tape, path);
+  writer_.Write(log, path);
   if (keep_.which != Keep::Which::kBest && keep_.which != Keep::Which::kWorst) return;
   std::error_code ignored;
   if (!extreme_path_.empty()) std::filesystem::remove(extreme_path_, ignored);

@@ -9,18 +9,13 @@
 #include <aquafarm_msgs/Pickup.h>
 #include <ros/console.h>
 #include <ros/init.h>
-#include <ros/this_node.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
 #include "aquafarm/base/check.h"
-#include "aquafarm/base/version.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm_sim/names.h"
 #include "aquafarm_sim/node/reusing_service.h"
@@ -29,7 +24,6 @@ namespace aquafarm_sim {
 namespace {
 
 constexpr std::uint32_t kCommonThreads = 2;
-constexpr double kDiagnosticsPeriod_s = 1.0;
 constexpr double kLookPeriod_s = 0.05;
 constexpr double kAtWork_s = 2.0;     // max time since the last joint step of a running trainer
 constexpr double kSaveLimit_s = 8.0;  // roslaunch sends SIGTERM after 15 s
@@ -91,32 +85,6 @@ ros::NodeHandle OnQueue(const ros::NodeHandle& node, ros::CallbackQueue& queue) 
   return handle;
 }
 
-std::string Joined(const std::vector<std::int32_t>& ships) {
-  std::string text;
-  for (const std::int32_t ship : ships) text += (text.empty() ? "" : ", ") + std::to_string(ship);
-  return text;
-}
-
-double ResidentMebibytes() {
-  std::ifstream file("/proc/self/statm");
-  double pages = 0.0;
-  double resident = 0.0;
-  file >> pages >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
-}
-
-// Returns the ships that were absent between two diagnoses only.
-std::vector<std::int32_t> ReturnedShips(const ServerCounters& before, const ServerCounters& now) {
-  std::vector<std::int32_t> ships;
-  for (std::size_t i = 0; i < now.absences.size(); ++i) {
-    const auto ship = static_cast<std::int32_t>(i);
-    const bool is_absent = std::count(now.absent.begin(), now.absent.end(), ship) > 0;
-    const std::uint64_t earlier = i < before.absences.size() ? before.absences[i] : 0;
-    if (!is_absent && now.absences[i] > earlier) ships.push_back(ship);
-  }
-  return ships;
-}
-
 }  // namespace
 
 SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_node)
@@ -124,9 +92,7 @@ SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_nod
       node_(node),
       ranch_(Load(params_.scenario), params_.ranch),
       publisher_(node_, params_, ranch_),
-      ship_node_(OnQueue(node_, ship_queue_)),
-      diagnostics_(ros::NodeHandle(), private_node, ros::this_node::getName()),
-      diagnosed_at_(ros::WallTime::now()) {
+      ship_node_(OnQueue(node_, ship_queue_)) {
   const double wait_s = params_.recorder_wait_s;
   if (wait_s > 0.0 && !publisher_.WaitForRecorder(wait_s)) {
     ROS_WARN("no recorder subscribed within ~recorder_wait_s, %g s; continuing without one",
@@ -136,11 +102,8 @@ SimNode::SimNode(const ros::NodeHandle& node, const ros::NodeHandle& private_nod
   const std::int32_t agents = ranch_.agents();
   for (std::int32_t ship = 0; ship < agents; ++ship) AdvertiseShip(ship);
   AdvertiseFarm();
-  diagnostics_.setHardwareID("none");
-  diagnostics_.add("farm", this, &SimNode::Diagnose);
-  diagnostics_timer_ =
-      node_.createWallTimer(ros::WallDuration(kDiagnosticsPeriod_s),
-                            [this](const ros::WallTimerEvent&) { diagnostics_.force_update(); });
+  diagnostics_ =
+      std::make_unique<FarmDiagnostics>(node_, private_node, ranch_, publisher_, recorder_.get());
   // At most one command per ship waits, so one thread is always free.
   const std::int32_t threads = agents == 1 ? 1 : agents + 1;
   ship_spinner_ =
@@ -224,52 +187,6 @@ void SimNode::AdvertiseFarm() {
       node_, names::kSetPace, [this](const auto& q, auto& a) { ranch_.SetPace(q, a); }));
   services_.push_back(Serve<msgs::SetDisaster>(
       node_, names::kSetDisaster, [this](const auto& q, auto& a) { ranch_.SetDisaster(q, a); }));
-}
-
-void SimNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const ServerCounters now = ranch_.counters();
-  const ros::WallTime time = ros::WallTime::now();
-  const double elapsed_s = std::max((time - diagnosed_at_).toSec(), 1e-3);
-  const double steps_per_s =
-      static_cast<double>(now.farm_steps - diagnosed_.farm_steps) / elapsed_s;
-  status.summary(diagnostic_msgs::DiagnosticStatus::OK, "running");
-  if (now.barrier_timeouts > diagnosed_.barrier_timeouts) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "barrier timed out");
-  }
-  const std::vector<std::int32_t> returned = ReturnedShips(diagnosed_, now);
-  if (!returned.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
-                   "held without a command in time, and returned: ship " + Joined(returned));
-  }
-  if (!now.absent.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
-                   "not waiting until their next command: ship " + Joined(now.absent));
-  }
-  const std::string lost = recorder_ == nullptr ? "" : recorder_->fault();
-  if (!lost.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
-                   "recording of episodes stopped: " + lost);
-  }
-  if (now.untold > diagnosed_.untold) {
-    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
-                        "something was not published: " + now.untold_why);
-  }
-  if (!now.fault.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::ERROR, "paused itself: " + now.fault);
-  }
-  status.add("version", aquafarm::kVersion);
-  status.add("farm steps per second", steps_per_s);
-  status.add("farm steps", now.farm_steps);
-  status.add("late ships", now.late_ships);
-  status.add("barrier timeouts", now.barrier_timeouts);
-  status.add("superseded commands", now.superseded);
-  status.add("dropped clients", now.dropped_clients);
-  status.add("refused requests", now.refused);
-  status.add("dropped episode summaries", publisher_.dropped_summaries());
-  if (recorder_ != nullptr) status.add("kept episodes", recorder_->kept());
-  status.add("memory [MiB]", ResidentMebibytes());
-  diagnosed_ = now;
-  diagnosed_at_ = time;
 }
 
 // Ctrl-C in a launch reaches trainer and farm together. A running trainer gets time to save.

@@ -367,8 +367,8 @@ void FarmServer::Notify(const std::function<void(FarmListener&)>& notify) {
   try {
     notify(*listener_);
   } catch (const std::exception& error) {
-    ++counters_.untold;
-    counters_.untold_why = error.what();
+    ++counters_.dropped_notifications;
+    counters_.dropped_reason = error.what();
   }
 }
 

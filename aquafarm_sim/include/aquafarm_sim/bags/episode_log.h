@@ -15,8 +15,8 @@
 
 namespace aquafarm_sim {
 
-/// Thrown when the replay of a tape does not reproduce its record.
-struct TapeError : std::runtime_error {
+/// Thrown when the replay of a log does not reproduce its record.
+struct ReplayError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -32,7 +32,7 @@ struct EpisodeLog {
   std::uint64_t episode{};
   bool paced{};                       ///< pace at the start of the episode
   double rate_hz{};                   ///< rate at the start; 0: the rate of BagFormat
-  std::int32_t first_step{};          ///< steps before the tape starts; above 0 if it was loaded
+  std::int32_t first_step{};          ///< steps before the log starts; above 0 if it was loaded
   std::vector<std::uint8_t> actions;  ///< [steps, agents]
   std::vector<Change> changes;        ///< by step
   aquafarm::EpisodeRecord record;     ///< valid after the end of the episode
@@ -42,19 +42,19 @@ struct EpisodeLog {
 struct BagFormat {
   std::string ns;  ///< namespace of the ranch's topics, with a trailing slash
   std::string map_frame{"map"};
-  double rate_hz{10.0};  ///< steps per second of the bag's clock if the tape's rate_hz is 0
+  double rate_hz{10.0};  ///< steps per second of the bag's clock if the log's rate_hz is 0
   std::int32_t farms{1};
 };
 
 /// File name of the bag: "episode_00000012_seed_1_return_+102.4.bag".
-std::string BagName(const EpisodeLog& tape);
+std::string BagName(const EpisodeLog& log);
 
 /// Removes the partial bags (episode_….bag.partial) that killed processes left in a folder. A bag
 /// that a process is still writing stays, as do those of rosbag record (….bag.active). @returns the
 /// number of removed bags
 int RemoveAbandonedBags(const std::string& folder);
 
-/// Simulates tapes again and writes them as bags. Reuse one writer for many tapes: it creates its
+/// Simulates logs again and writes them as bags. Reuse one writer for many logs: it creates its
 /// farm only once.
 class EpisodeBagWriter {
  public:
@@ -62,9 +62,9 @@ class EpisodeBagWriter {
 
   /// Writes spec, chart, risk (every tenth step), every state, the external changes and the summary
   /// into an lz4 bag. The bag is written to path.partial and then renamed to `path`.
-  /// @throws TapeError if the simulation does not reproduce the tape's record
+  /// @throws ReplayError if the simulation does not reproduce the log's record
   /// @throws std::runtime_error if the bag cannot be written; a partial file is removed
-  void Write(const EpisodeLog& tape, const std::string& path);
+  void Write(const EpisodeLog& log, const std::string& path);
 
  private:
   const BagFormat format_;

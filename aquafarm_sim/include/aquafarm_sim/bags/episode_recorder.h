@@ -2,7 +2,7 @@
 #pragma once
 
 /// Writes complete episodes as bags while the ranch runs, without slowing it down. The ranch
-/// appends actions to a tape. A separate thread simulates the kept tapes again and writes the bags.
+/// appends actions to a log. A separate thread simulates the kept logs again and writes the bags.
 
 #include <chrono>
 #include <condition_variable>
@@ -57,18 +57,18 @@ class EpisodeRecorder final : public FarmRecorder {
   std::string fault() const;   ///< reason why recording stopped; empty if it has not
 
  private:
-  bool Wants(const EpisodeLog& tape);
-  void Enqueue(EpisodeLog tape);
+  bool Wants(const EpisodeLog& log);
+  void Enqueue(EpisodeLog log);
   void Run();
-  void Write(const EpisodeLog& tape);
+  void Write(const EpisodeLog& log);
 
   const Keep keep_;
   const std::string folder_;
   EpisodeBagWriter writer_;  // used only by the writing thread
   const RecorderLimits limits_;
-  std::vector<EpisodeLog> tapes_;  // by farm; used only by the ranch's thread
-  std::optional<float> extreme_;   // best or worst return so far
-  std::string extreme_path_;       // bag of that episode; used only by the writing thread
+  std::vector<EpisodeLog> logs_;  // by farm; used only by the ranch's thread
+  std::optional<float> extreme_;  // best or worst return so far
+  std::string extreme_path_;      // bag of that episode; used only by the writing thread
 
   mutable aquafarm::Mutex mutex_;
   std::condition_variable changed_;

@@ -1,61 +1,36 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Opens bags and reports the errors of unreadable ones. Header-only, because agents and viewers
-/// link only the core library of this package.
+/// Opens bags and reports the errors of unreadable ones.
 
-#include <aquafarm_msgs/FarmSpec.h>
 #include <ros/exception.h>
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <boost/make_shared.hpp>
 #include <boost/shared_ptr.hpp>
 #include <cstdint>
-#include <exception>
-#include <filesystem>
-#include <fstream>
-#include <map>
+#include <initializer_list>
 #include <new>
 #include <stdexcept>
 #include <string>
-#include <system_error>
-#include <utility>
 #include <vector>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm_sim/bags/bag_structure.h"
 #include "aquafarm_sim/bags/translate_message.h"
-#include "aquafarm_sim/names.h"
 
 namespace aquafarm_sim {
 
 /// Returns the error message for a bag without a spec, to append to its path: there is no such
 /// topic, or it has another type.
-inline std::string NoSpec(const rosbag::Bag& bag) {
-  const std::string type = ros::message_traits::datatype<aquafarm_msgs::FarmSpec>();
-  const std::string name = std::string("/") + names::kSpec;
-  const std::string way_out = "; record spec and state, as record.launch does";
-  rosbag::View view(bag);
-  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    const std::string topic = "/" + connection->topic;  // bags also hold names without a slash
-    if (connection->datatype == type || topic.size() < name.size()) continue;
-    if (topic.compare(topic.size() - name.size(), name.size(), name) != 0) continue;
-    return ": topic " + connection->topic + ": got type " + connection->datatype + ", expected " +
-           type + way_out;
-  }
-  return ": no topic spec, so nothing says what was played" + way_out;
-}
+std::string NoSpec(const rosbag::Bag& bag);
 
 /// Describes the version that recorded a bag. `version` is FarmSpec.version; it may be empty.
-inline std::string RecordedBy(const std::string& version) {
-  return version.empty() ? "recorded by an unnamed version" : "recorded by version " + version;
-}
+std::string RecordedBy(const std::string& version);
 
 /// Calls `work` and prepends the path of the bag to the message of an InputError.
 /// @throws aquafarm::InputError "PATH: " and the message that `work` threw
@@ -68,6 +43,19 @@ auto NamingBag(const std::string& path, const Work& work) -> decltype(work()) {
   }
 }
 
+/// A message type as this version defines it.
+struct MessageType {
+  const char* name;
+  const char* md5sum;
+  const char* definition;
+};
+
+template <typename Message>
+MessageType TypeOf() {
+  namespace traits = ros::message_traits;
+  return {traits::datatype<Message>(), traits::md5sum<Message>(), traits::definition<Message>()};
+}
+
 namespace internal {
 
 /// Limits the memory of this process during its lifetime, because a damaged array length can
@@ -75,19 +63,8 @@ namespace internal {
 class MemoryLimit {
  public:
   /// @param more max additional memory [bytes]
-  explicit MemoryLimit(std::uintmax_t more) {
-    std::ifstream file("/proc/self/statm");
-    rlim_t pages = 0;
-    for (int field = 0; field < 6; ++field) file >> pages;  // the sixth field is data + stack
-    if (!file || getrlimit(RLIMIT_DATA, &before_) != 0) return;
-    rlimit limit = before_;
-    limit.rlim_cur = std::min<rlim_t>(before_.rlim_cur,
-                                      pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + more);
-    is_set_ = setrlimit(RLIMIT_DATA, &limit) == 0;
-  }
-  ~MemoryLimit() {
-    if (is_set_) setrlimit(RLIMIT_DATA, &before_);
-  }
+  explicit MemoryLimit(std::uintmax_t more);
+  ~MemoryLimit();
   MemoryLimit(const MemoryLimit&) = delete;
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 
@@ -112,98 +89,14 @@ auto Bounded(std::uintmax_t size, const Work& work) -> decltype(work()) {
   }
 }
 
-}  // namespace internal
+/// Opens a bag after checking its lengths and offsets.
+void OpenChecked(rosbag::Bag& bag, const std::string& path);
 
-/// Compares the definition of a message type in a bag with that of this version.
-using SameText = bool(const std::string& type, const std::string& in_bag,
-                      const std::string& in_this_version);
-
-/// Checks that the bag's definitions of the given message types equal those of this version or of
-/// an earlier one that it can read (translate_message.h).
-/// @param is_same_text compares the text of a definition, comments included, with this version's;
-///        nullptr: only the md5 sums are compared
-/// @throws aquafarm::InputError if a topic of one of these types has another definition
-template <typename... Messages>
-void CheckMessages(const rosbag::Bag& bag, const std::string& path,
-                   SameText* is_same_text = nullptr) {
-  namespace traits = ros::message_traits;
-  rosbag::View view(bag);
-  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    const auto is_other = [&](const char* type, const char* md5sum, const char* definition) {
-      if (connection->datatype != type) return false;
-      return (connection->md5sum != md5sum && !IsOlderMessage(type, connection->md5sum)) ||
-             (is_same_text != nullptr && !is_same_text(type, connection->msg_def, definition));
-    };
-    if (!(is_other(traits::datatype<Messages>(), traits::md5sum<Messages>(),
-                   traits::definition<Messages>()) ||
-          ...)) {
-      continue;
-    }
-    throw aquafarm::InputError(path + ": topic " + connection->topic + " has another " +
-                               connection->datatype +
-                               " than this version; use the version that it was recorded by");
-  }
-}
-
-/// Opens a bag after checking its lengths and offsets, on which rosbag's reader would crash.
-/// @tparam Messages message types to read; their definitions must be those of this version or of
-///         an earlier one that it can read
-/// @throws aquafarm::InputError with a message of one line that contains the bag's path
-template <typename... Messages>
-void OpenBag(rosbag::Bag& bag, const std::string& path) {
-  std::error_code ignored;
-  const std::uintmax_t size = std::filesystem::file_size(path, ignored);
-  try {
-    internal::Bounded(ignored ? 0 : size, [&] {
-      internal::CheckStructure(path);
-      bag.open(path, rosbag::bagmode::Read);
-    });
-  } catch (const aquafarm::InputError&) {
-    throw;
-  } catch (const rosbag::BagUnindexedException&) {
-    throw aquafarm::InputError(path + ": its recorder was killed; run 'rosbag reindex' first");
-  } catch (const internal::Damage& damage) {
-    throw aquafarm::InputError(path + ": damaged: " + damage.what() +
-                               "; 'rosbag reindex' may repair its index");
-  } catch (const std::exception& error) {  // from rosbag, its plugins, times and the file mapping
-    throw aquafarm::InputError(path + ": damaged or not a bag: " + error.what());
-  }
-  CheckMessages<Messages...>(bag, path);
-}
-
-namespace internal {
-
-/// Returns the translator from a definition of an earlier version to that of this one, or back.
-/// @throws Damage if the definition is not one of an earlier version
-template <typename Message>
-const MessageTranslator& TranslatorOf(const std::string& definition, bool is_back) {
-  namespace traits = ros::message_traits;
-  thread_local std::map<std::pair<std::string, bool>, MessageTranslator> known;
-  const std::pair<std::string, bool> key{definition, is_back};
-  const auto found = known.find(key);
-  if (found != known.end()) return found->second;
-  const std::string now = traits::definition<Message>();
-  constexpr std::size_t kMaxKept = 16;
-  if (known.size() == kMaxKept) known.clear();
-  try {
-    return known
-        .try_emplace(key, traits::datatype<Message>(), is_back ? now : definition,
-                     is_back ? definition : now)
-        .first->second;
-  } catch (const TranslationError& error) {
-    throw Damage(std::string(traits::datatype<Message>()) + ": " + error.what());
-  }
-}
-
-/// Translates a serialized message. @throws Damage if the bytes do not fit its definition
-inline std::vector<std::uint8_t> Translated(const MessageTranslator& translator,
-                                            const std::vector<std::uint8_t>& bytes) {
-  try {
-    return translator.Translate(bytes);
-  } catch (const TranslationError& error) {
-    throw Damage(error.what());
-  }
-}
+/// Translates a serialized message from a definition of an earlier version to that of this one, or
+/// back. @throws Damage if the definition is not one of an earlier version, or if the bytes do not
+/// fit it
+std::vector<std::uint8_t> Translated(const MessageType& type, const std::string& definition,
+                                     bool is_back, const std::vector<std::uint8_t>& bytes);
 
 template <typename Message>
 std::vector<std::uint8_t> Serialized(const Message& message) {
@@ -221,28 +114,48 @@ void Deserialize(std::vector<std::uint8_t>& bytes, Message& message) {
 
 }  // namespace internal
 
+/// Compares the definition of a message type in a bag with that of this version.
+using SameText = bool(const std::string& type, const std::string& in_bag,
+                      const std::string& in_this_version);
+
+/// Checks that the bag's definitions of the given message types equal those of this version or of
+/// an earlier one that it can read (translate_message.h).
+/// @param is_same_text compares the text of a definition, comments included, with this version's;
+///        nullptr: only the md5 sums are compared
+/// @throws aquafarm::InputError if a topic of one of these types has another definition
+void CheckMessages(const rosbag::Bag& bag, const std::string& path,
+                   std::initializer_list<MessageType> types, SameText* is_same_text = nullptr);
+
+/// Opens a bag after checking its lengths and offsets, on which rosbag's reader would crash.
+/// @tparam Messages message types to read; their definitions must be those of this version or of
+///         an earlier one that it can read
+/// @throws aquafarm::InputError with a message of one line that contains the bag's path
+template <typename... Messages>
+void OpenBag(rosbag::Bag& bag, const std::string& path) {
+  internal::OpenChecked(bag, path);
+  CheckMessages(bag, path, {TypeOf<Messages>()...});
+}
+
 /// Returns a message of a bag, of this version's definition or of an earlier one; null if it has
 /// another type. Fields that the earlier definition lacks are zero.
 /// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
-  namespace traits = ros::message_traits;
-  if (message.getMD5Sum() == traits::md5sum<Message>()) {
+  const MessageType type = TypeOf<Message>();
+  if (message.getMD5Sum() == type.md5sum) {
     return internal::Bounded(0, [&] { return message.instantiate<Message>(); });
   }
-  if (message.getDataType() != traits::datatype<Message>() ||
+  if (message.getDataType() != type.name ||
       !IsOlderMessage(message.getDataType(), message.getMD5Sum())) {
     return nullptr;
   }
-  const MessageTranslator& translator =
-      internal::TranslatorOf<Message>(message.getMessageDefinition(), false);
   return internal::Bounded(0, [&] {
     std::vector<std::uint8_t> bytes(message.size());
     ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
     message.write(stream);
-    std::vector<std::uint8_t> translated = internal::Translated(translator, bytes);
+    bytes = internal::Translated(type, message.getMessageDefinition(), false, bytes);
     auto result = boost::make_shared<Message>();
-    internal::Deserialize(translated, *result);
+    internal::Deserialize(bytes, *result);
     return result;
   });
 }
@@ -252,10 +165,10 @@ boost::shared_ptr<Message> Instantiate(const rosbag::MessageInstance& message) {
 /// @throws an exception that ReadingBag converts to InputError
 template <typename Message>
 void DropAddedFields(const std::string& definition, Message& message) {
-  if (definition.empty() || definition == ros::message_traits::definition<Message>()) return;
-  const auto old = internal::Translated(internal::TranslatorOf<Message>(definition, true),
-                                        internal::Serialized(message));
-  auto bytes = internal::Translated(internal::TranslatorOf<Message>(definition, false), old);
+  const MessageType type = TypeOf<Message>();
+  if (definition.empty() || definition == type.definition) return;
+  const auto old = internal::Translated(type, definition, true, internal::Serialized(message));
+  auto bytes = internal::Translated(type, definition, false, old);
   internal::Deserialize(bytes, message);
 }
 

@@ -2,9 +2,8 @@
 #pragma once
 
 /// The ranch as a ROS node: services, topics and diagnostics. Callbacks convert the request, call
-/// the Ranch and convert the result. The Ranch decides which requests are allowed.
+/// the FarmServer and convert the result. The FarmServer decides which requests are allowed.
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/spinner.h>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "aquafarm_sim/bags/episode_recorder.h"
+#include "aquafarm_sim/node/farm_diagnostics.h"
 #include "aquafarm_sim/node/farm_publisher.h"
 #include "aquafarm_sim/node/sim_params.h"
 #include "aquafarm_sim/server/farm_server.h"
@@ -38,7 +38,6 @@ class SimNode {
   void KeepEpisodes();
   void AdvertiseFarm();
   void AdvertiseShip(std::int32_t ship);
-  void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const SimParams params_;
   ros::NodeHandle node_;
@@ -49,10 +48,7 @@ class SimNode {
   ros::CallbackQueue ship_queue_;
   ros::NodeHandle ship_node_;
   std::vector<ros::ServiceServer> services_;
-  diagnostic_updater::Updater diagnostics_;
-  ros::WallTimer diagnostics_timer_;
-  ros::WallTime diagnosed_at_;
-  ServerCounters diagnosed_;
+  std::unique_ptr<FarmDiagnostics> diagnostics_;
   std::unique_ptr<ros::AsyncSpinner> ship_spinner_;
   std::thread pacer_;
 };

@@ -74,9 +74,9 @@ struct ServerCounters {
   std::vector<std::int32_t> absent;     ///< ships that lockstep does not wait for
   std::vector<std::uint64_t> absences;  ///< by ship: number of times that it went absent
   double joint_step_age_s{1e9};         ///< time since the last joint step
-  std::string fault;       ///< error that paused the paced farm; empty if there is none
-  std::uint64_t untold{};  ///< number of failed notifications of the listener
-  std::string untold_why;  ///< reason of the last failure; empty if there is none
+  std::string fault;  ///< error that paused the paced farm; empty if there is none
+  std::uint64_t dropped_notifications{};  ///< number of failed notifications of the listener
+  std::string dropped_reason;             ///< reason of the last failure; empty if there is none
 };
 
 /// The current state of the farms. It is valid during the callback, while no farm steps.

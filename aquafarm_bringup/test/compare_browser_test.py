@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pages of a run, of a benchmark and of several runs in headless Chromium: charts, tables, films,
+"""Pages of a run, of a benchmark and of several runs in headless Chromium: charts, tables, videos,
 network."""
 import json
 import pathlib
@@ -170,10 +170,10 @@ class CompareBrowserTest(unittest.TestCase):
         for now, before in zip(self.browser.execute_script(RANGES), whole):
             self.assertAlmostEqual(before[1] - before[0], now[1] - now[0], delta=2)
 
-    def test_films_of_the_same_episode_stand_side_by_side_with_controls(self):
+    def test_videos_of_the_same_episode_stand_side_by_side_with_controls(self):
         self.show()
         boxes = self.browser.execute_script("""
-          return [...document.querySelectorAll(".films")].map(row =>
+          return [...document.querySelectorAll(".videos")].map(row =>
             [...row.querySelectorAll("video, img")].map(one => {
               const box = one.getBoundingClientRect();
               return [box.top, box.width, one.tagName === "IMG" || one.controls]; }));""")

@@ -22,7 +22,7 @@ import roslib.packages
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from aquafarm_report import films, intervals, outcomes, report  # noqa: E402
+from aquafarm_report import videos, intervals, outcomes, report  # noqa: E402
 from aquafarm_report.page import page as make_page, tiles  # noqa: E402
 from ranch import Ranch  # noqa: E402
 
@@ -210,7 +210,7 @@ class ReportTest(unittest.TestCase):
 
     def test_it_lists_what_became_of_each_device(self):
         found = re.findall(r"<td>F0 \w+( \w+)?</td>(.*?)</tr>", self.page.text)
-        self.assertEqual(2, len(found), "the cove has one device: all episodes, and the films")
+        self.assertEqual(2, len(found), "the cove has one device: all episodes, and the videos")
         shares = [int(share) for share in re.findall(r"<td>(\d+)% \[\d+%, \d+%\]</td>", found[0][1])]
         self.assertEqual(3, len(shares), found[0])  # home, aboard, left
         self.assertAlmostEqual(100, sum(shares), delta=1)
@@ -271,7 +271,7 @@ class ReportTest(unittest.TestCase):
         for tick in ("50", "150", "250"):
             self.assertRegex(text, rf">{tick}</text>")
 
-    def test_a_family_has_outcomes_by_kind_and_no_films(self):
+    def test_a_family_has_outcomes_by_kind_and_no_videos(self):
         kind = {"kind": "monitoring", "devices": 200, "delivered": 150, "aboard": 0, "left": 50,
                 "delivered_health": 0.9}
         table = outcomes.summary_table({"devices_by_kind": [kind], "distinct_episodes": 100})
@@ -281,10 +281,10 @@ class ReportTest(unittest.TestCase):
         (family / "scenario.yaml").write_text("name: f\nfamily: {width: [6, 9]}\n")
         rows = [{"episode": str(i), "return": str(10 * i), "steps": "5", "delivered": "1",
                  "devices": "1", "reason": "all_retrieved"} for i in range(3)]
-        text = "".join(report.film_episodes(family, self.folder, rows))
+        text = "".join(report.video_episodes(family, self.folder, rows))
         self.assertIn("best: episode 2 of seed 1000", text)
-        self.assertIn("There are no films: the scenario is a family", text)
-        self.assertFalse(films.is_family(self.trained))
+        self.assertIn("There are no videos: the scenario is a family", text)
+        self.assertFalse(videos.is_family(self.trained))
 
     def test_the_map_shows_the_ranch(self):
         pictures = [cv2.imdecode(np.frombuffer(one, np.uint8), cv2.IMREAD_COLOR)
@@ -293,22 +293,22 @@ class ReportTest(unittest.TestCase):
         self.assertEqual((640, 800, 3), pictures[0].shape)
         self.assertGreater(len(np.unique(pictures[0].reshape(-1, 3), axis=0)), 100)
 
-    def test_the_films_are_of_the_best_the_median_and_the_worst_episode(self):
-        films = self.page.embedded("video/mp4") + self.page.embedded("image/gif")
+    def test_the_videos_are_of_the_best_the_median_and_the_worst_episode(self):
+        videos = self.page.embedded("video/mp4") + self.page.embedded("image/gif")
         returns = [float(one) for one in re.findall(r"return (-?[0-9.]+) in", self.page.words)]
-        self.assertEqual(len(films), len(returns))
+        self.assertEqual(len(videos), len(returns))
         self.assertEqual(sorted(returns, reverse=True), returns)
         self.assertIn("best: episode ", self.page.words)
-        for film in films:
-            path = self.folder / "film"
-            path.write_bytes(film)
+        for video in videos:
+            path = self.folder / "video"
+            path.write_bytes(video)
             capture = cv2.VideoCapture(str(path))
             pictures = 0
             while capture.read()[0]:
                 pictures += 1
             self.assertGreater(pictures, 24)  # its steps, and two seconds at the end
 
-    def test_without_an_encoder_that_browsers_play_the_films_are_gifs(self):
+    def test_without_an_encoder_that_browsers_play_the_videos_are_gifs(self):
         output = self.folder / "gifs.html"
         code, words = run("aquafarm_bringup", "make_report", self.trained, "-o", output,
                           "--episodes", 1,
@@ -317,10 +317,10 @@ class ReportTest(unittest.TestCase):
         page = Page(output)
         self.assertEqual([], page.embedded("video/mp4"))
         self.assertEqual(1, len(page.embedded("image/gif")))
-        films = self.page.embedded("video/mp4")
-        self.assertTrue(films, "there is no encoder of H.264 here")
-        for film in films:
-            self.assertIn(b"avc1", film)
+        videos = self.page.embedded("video/mp4")
+        self.assertTrue(videos, "there is no encoder of H.264 here")
+        for video in videos:
+            self.assertIn(b"avc1", video)
 
     def test_a_benchmark_shows_its_table_figures_and_best_learner(self):
         output = self.folder / "benchmark"

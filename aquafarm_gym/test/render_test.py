@@ -108,7 +108,7 @@ class RenderTest(unittest.TestCase):
     @unittest.skipUnless(DRAWS, "built without OpenCV")
     def test_size_and_layers_are_the_users(self):
         seen = {}
-        for layers in ("none", "wake,risk", "labels"):
+        for layers in ("none", "trail,risk", "labels"):
             env = FarmEnv("paper", render_mode="rgb_array",
                           picture_size=(400, 320), picture_layers=layers)
             env.reset(seed=1)
@@ -173,8 +173,8 @@ class RenderTest(unittest.TestCase):
             for _ in range(5):
                 env.step(env.action_space.sample())
             env.close()
-            with open(f"{folder}/rl-video-episode-0.mp4", "rb") as film:
-                self.assertEqual(film.read(8)[4:], b"ftyp")
+            with open(f"{folder}/rl-video-episode-0.mp4", "rb") as video:
+                self.assertEqual(video.read(8)[4:], b"ftyp")
 
 
 if __name__ == "__main__":

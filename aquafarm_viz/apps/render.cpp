@@ -286,11 +286,11 @@ void RenderPicture(const Request& request) {
 }
 
 /// Writes a video of one episode. The last state is shown for two more seconds.
-void RenderFilm(Request request) {
+void RenderVideo(Request request) {
   request.size.width -= request.size.width % 2;  // codecs require even sizes
   request.size.height -= request.size.height % 2;
   aquafarm_viz::FarmPainter painter(request.size, aquafarm_viz::StyleByName(request.style));
-  std::unique_ptr<aquafarm_viz::Film> film;
+  std::unique_ptr<aquafarm_viz::Video> video;
   std::optional<std::uint64_t> episode;
   cv::Mat last;
   const Found found = ForEachScene(request, [&](const Scene& scene) {
@@ -299,27 +299,27 @@ void RenderFilm(Request request) {
     const bool over = scene.state.terminated || scene.state.truncated;
     if (scene.state.step % request.every != 0 && !over) return true;
     const cv::Mat& picture = painter.Draw(scene.spec, scene.state, scene.overlays);
-    if (film == nullptr)
-      film = aquafarm_viz::Film::Open(request.output, picture.size(), request.rate_hz);
-    film->Add(picture);
+    if (video == nullptr)
+      video = aquafarm_viz::Video::Open(request.output, picture.size(), request.rate_hz);
+    video->Add(picture);
     picture.copyTo(last);
     return true;
   });
-  if (film == nullptr) throw std::runtime_error(Missing(request, found));
+  if (video == nullptr) throw std::runtime_error(Missing(request, found));
   WarnOfMissing(request, found);
-  for (int i = 0; i < cvRound(2.0 * request.rate_hz); ++i) film->Add(last);
-  film->Close();
+  for (int i = 0; i < cvRound(2.0 * request.rate_hz); ++i) video->Add(last);
+  video->Close();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Request request;
-  std::string layers{"wake,risk"};
+  std::string layers{"trail,risk"};
   CLI::App app(
       "Draws a recorded ranch, with no ROS running: steps as a picture (png, jpg), side by side "
       "if\n"
-      "several, or an episode as a film (mp4, webm, gif).",
+      "several, or an episode as a video (mp4, webm, gif).",
       "render");
   app.add_option("--bag,bag", request.bag, "bag with spec and state")->required();
   app.add_option("-o,--output", request.output, "file to write; its ending says what it becomes")
@@ -332,10 +332,10 @@ int main(int argc, char** argv) {
   app.add_option("--style", request.style, "dark for screens, light for print")
       ->check(CLI::IsMember({"dark", "light"}))
       ->capture_default_str();
-  app.add_option("--fps", request.rate_hz, "film: pictures a second")
+  app.add_option("--fps", request.rate_hz, "video: pictures a second")
       ->check(CLI::Range(0.5, 60.0))
       ->capture_default_str();
-  app.add_option("--every", request.every, "film: a picture every so many steps")
+  app.add_option("--every", request.every, "video: a picture every so many steps")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
   app.add_option("--episode", request.episode, "episode (default: the first that has the step)");
@@ -353,13 +353,13 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kBadInput;
   }
   try {
-    if (aquafarm_viz::Film::Is(request.output) && (request.at_end || step->count() > 0)) {
+    if (aquafarm_viz::Video::Is(request.output) && (request.at_end || step->count() > 0)) {
       throw std::runtime_error(std::string(request.at_end ? "--end" : "--step") +
                                ": expected no value with a video, which shows a whole episode");
     }
     request.layers = aquafarm_viz::ParseLayers(layers);
     aquafarm_sim::ReadingBag(request.bag, [&] {
-      aquafarm_viz::Film::Is(request.output) ? RenderFilm(request) : RenderPicture(request);
+      aquafarm_viz::Video::Is(request.output) ? RenderVideo(request) : RenderPicture(request);
     });
   } catch (const aquafarm_viz::StorageError& fault) {
     std::fprintf(stderr, "render: %s\n", fault.what());

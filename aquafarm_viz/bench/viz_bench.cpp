@@ -70,11 +70,11 @@ void BM_FrameWith(benchmark::State& bench, const char* names, bool learns = fals
   bench.SetItemsProcessed(bench.iterations());
 }
 #define SIDES Arg(10)->Arg(25)->Arg(100)->Arg(500)->Unit(benchmark::kMicrosecond)
-BENCHMARK_CAPTURE(BM_FrameWith, values_and_moves, "wake,risk,values,moves")->SIDES;
-BENCHMARK_CAPTURE(BM_FrameWith, values_and_moves_new_each_time, "wake,risk,values,moves", true)
+BENCHMARK_CAPTURE(BM_FrameWith, values_and_moves, "trail,risk,values,moves")->SIDES;
+BENCHMARK_CAPTURE(BM_FrameWith, values_and_moves_new_each_time, "trail,risk,values,moves", true)
     ->SIDES;
-BENCHMARK_CAPTURE(BM_FrameWith, route, "wake,risk,route")->SIDES;
-BENCHMARK_CAPTURE(BM_FrameWith, all, "wake,risk,route,values,moves")->SIDES;
+BENCHMARK_CAPTURE(BM_FrameWith, route, "trail,risk,route")->SIDES;
+BENCHMARK_CAPTURE(BM_FrameWith, all, "trail,risk,route,values,moves")->SIDES;
 
 void BM_Jpeg(benchmark::State& bench) {
   cv::setNumThreads(1);

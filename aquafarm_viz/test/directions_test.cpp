@@ -76,7 +76,7 @@ TEST(LegalDirections, AreMarkersOnlyIfTheLayerIsOn) {
   spec.cell_size_m = 250.0;
   EXPECT_TRUE(In(SpecMarkers(spec, true), "port_direction").empty());
   EXPECT_TRUE(
-      In(SpecMarkers(spec, true, ParseLayers("wake,risk,labels")), "port_direction").empty());
+      In(SpecMarkers(spec, true, ParseLayers("trail,risk,labels")), "port_direction").empty());
   const auto markers = In(SpecMarkers(spec, true, ParseLayers("directions")), "port_direction");
   ASSERT_EQ(markers.size(), 4U);
   for (const auto& marker : markers) {

@@ -366,11 +366,11 @@ int Changed(const char* layers, const char* others) {
 
 TEST(Image, EachLayerShowsSomethingAndCanBeLeftOut) {
   for (const char* layer :
-       {"wake", "risk", "route", "sight", "values", "moves", "directions", "labels"}) {
+       {"trail", "risk", "route", "sight", "values", "moves", "directions", "labels"}) {
     EXPECT_GT(Changed(layer, "none"), 300) << layer;
   }
-  EXPECT_GT(Changed("wake", "route"), 300);
-  EXPECT_EQ(Changed("wake,risk,values,moves", "moves,values,risk,wake"), 0);
+  EXPECT_GT(Changed("trail", "route"), 300);
+  EXPECT_EQ(Changed("trail,risk,values,moves", "moves,values,risk,trail"), 0);
 }
 
 TEST(Image, ShowsTheChoiceOfAnotherPolicyInItsStateAlone) {
@@ -403,15 +403,21 @@ TEST(Image, ValuesOfAnotherFarmAreLeftOut) {
             0.0);
 }
 
+TEST(Image, TheFormerNameOfTheTrailIsAcceptedWithALine) {
+  testing::internal::CaptureStderr();
+  EXPECT_TRUE(ParseLayers("wake").trail);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "layers: wake is now called trail\n");
+}
+
 TEST(Image, LayersThatThereAreNotHaveTheirLine) {
-  for (const char* wrong : {"rain", "", "wake,", "wake,rain"}) {
+  for (const char* wrong : {"rain", "", "trail,", "trail,rain"}) {
     try {
       ParseLayers(wrong);
       FAIL() << wrong;
     } catch (const std::invalid_argument& fault) {
       const std::string name = std::string(wrong).find("rain") == std::string::npos ? "" : "rain";
       EXPECT_EQ("layers: got '" + name +
-                    "', expected some of: wake, risk, route, sight, "
+                    "', expected some of: trail, risk, route, sight, "
                     "values, moves, directions, labels, sea:NAME; or none",
                 fault.what());
     }

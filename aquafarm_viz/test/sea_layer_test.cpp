@@ -78,7 +78,7 @@ TEST(SeaLayer, ThatIsNotThereIsRefused) {
   EXPECT_EQ(Refused(test::MakeSpec(8), "sea:salt"),
             "layers: got 'sea:salt', expected one of the scenario's: it has none");
   EXPECT_EQ(Refused(Warm(), "sea:"),
-            "layers: got 'sea:', expected some of: wake, risk, route, sight, values, moves, "
+            "layers: got 'sea:', expected some of: trail, risk, route, sight, values, moves, "
             "directions, labels, sea:NAME; or none");
   aquafarm_msgs::FarmSpec small = Warm();
   small.width = 7;

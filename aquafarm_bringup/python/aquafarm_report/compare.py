@@ -3,8 +3,8 @@
 import collections
 import json
 
-from aquafarm_report import curves, films, outcomes, page, references
-from aquafarm_report.films import ReportError
+from aquafarm_report import curves, videos, outcomes, page, references
+from aquafarm_report.videos import ReportError
 
 MEASURES = (("return", "return", "{:.1f}"), ("steps", "steps", "{:.1f}"),
             ("delivered", "devices home", "{:.2f}"),
@@ -28,7 +28,7 @@ class Run:
         self.settings = json.loads((folder / "run.json").read_text(encoding="utf-8"))
         self.columns = read_metrics(folder / "metrics.csv")
         work.mkdir()
-        self.summary, _ = films.evaluate(folder, work, episodes)
+        self.summary, _ = videos.evaluate(folder, work, episodes)
         self.player = references.read_player(folder.name, work / "evaluation", is_run=True)
 
     @property
@@ -98,16 +98,16 @@ def choose_episodes(runs):
 
 
 def show_episode(runs, reason, episode):
-    """Films of one episode side by side, and what became of each device."""
+    """Videos of one episode side by side, and what became of each device."""
     shown, results = [], []
     for run in runs:
         row = next(one for one in run.player.rows if int(one["episode"]) == episode)
-        bag = films.bag_of(run.folder, run.work, episode)
-        caption = f"{run.player.label}: {films.result_text(row)}"
-        shown.append(page.film(films.draw_film(bag, int(row["steps"])), caption))
+        bag = videos.bag_of(run.folder, run.work, episode)
+        caption = f"{run.player.label}: {videos.result_text(row)}"
+        shown.append(page.video(videos.draw_video(bag, int(row["steps"])), caption))
         results.append(outcomes.read_outcomes(bag))
-    title = f"Episode {episode} of seed {films.SEED}: {reason}"
-    return page.section(title, f'<div class="films">{"".join(shown)}</div>',
+    title = f"Episode {episode} of seed {videos.SEED}: {reason}"
+    return page.section(title, f'<div class="videos">{"".join(shown)}</div>',
                         outcomes.episodes_table([run.player.label for run in runs], results))
 
 
@@ -135,8 +135,8 @@ def report(folders, work, episodes, read_metrics):
     sections.append(page.section("What became of each device, all episodes", *(
         f"<h3>{page.escape(label)}</h3>{table}" for label, table in devices if table)))
     sections.append(page.section("Settings that differ", differences(runs)))
-    if len(by_scenario) == 1 and films.is_family(runs[0].folder):
-        sections.append(page.section("Episodes", "<p>There are no films: the scenario is a family, "
+    if len(by_scenario) == 1 and videos.is_family(runs[0].folder):
+        sections.append(page.section("Episodes", "<p>There are no videos: the scenario is a family, "
                                                  "and each episode has a ranch of its own.</p>"))
     elif len(by_scenario) == 1:
         for reason, episode in choose_episodes(runs):

@@ -8,7 +8,7 @@ import numpy as np
 from aquafarm_benchmark.measures import WINDOW, known_moving_mean
 
 from aquafarm_report import page
-from aquafarm_report.films import ReportError
+from aquafarm_report.videos import ReportError
 
 LIBRARY = pathlib.Path("/usr/share/javascript/dygraphs")  # Debian's libjs-dygraphs
 POINTS = 1000  # max points of a curve

@@ -6,7 +6,7 @@ import pathlib
 from aquafarm_benchmark import figures, losses, results
 from aquafarm_benchmark.protocol import REFERENCES, Contestant
 
-from aquafarm_report import films, page
+from aquafarm_report import videos, page
 
 _COLOUR = "#1b4f78"  # of the run's own policy
 
@@ -21,8 +21,8 @@ def compare(own, scenario, folder, episodes, currency):
     paths = [path]
     for one in REFERENCES:
         prefix = pathlib.Path(folder) / one.name
-        films.call("aquafarm_agents", "aquafarm_evaluate", one.name, scenario, "--episodes",
-                   episodes, "--seed", films.SEED, "--write", prefix)
+        videos.call("aquafarm_agents", "aquafarm_evaluate", one.name, scenario, "--episodes",
+                    episodes, "--seed", videos.SEED, "--write", prefix)
         paths.append(prefix.with_suffix(".csv"))
     rows = [{"name": one.name, "label": one.label,
              "money": losses.summarise(losses.read(path), currency)}

@@ -68,7 +68,7 @@ def picture(path, caption, full=False):
     return _render("picture", embed(path), caption, full)
 
 
-def film(path, caption):
+def video(path, caption):
     """A video element, or a picture for an animated gif."""
     if path.suffix == ".gif":
         return picture(path, caption)

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from aquafarm_benchmark.measures import wilson_interval
 
-from aquafarm_report import films, page
+from aquafarm_report import videos, page
 
 REFERENCES = (("random", "RANDOM"), ("planner", "planner"), ("clairvoyant", "clairvoyant"))
 EPISODES = 100  # of each reference, the first of those of the runs
@@ -40,11 +40,11 @@ def play_references(scenario, folder, episodes):
     for name, label in REFERENCES:
         prefix = folder / f"reference_{name}"
         try:
-            films.call("aquafarm_agents", "aquafarm_evaluate", name, scenario, "--episodes",
-                       min(episodes, EPISODES), "--seed", films.SEED, "--write", prefix,
-                       limit_s=LIMIT_S)
+            videos.call("aquafarm_agents", "aquafarm_evaluate", name, scenario, "--episodes",
+                        min(episodes, EPISODES), "--seed", videos.SEED, "--write", prefix,
+                        limit_s=LIMIT_S)
             players.append(read_player(label, prefix))
-        except films.ReportError as error:
+        except videos.ReportError as error:
             players.append(Player(label, fault=str(error)))
     return players
 
@@ -117,6 +117,6 @@ def show_tiles(players):
                  f"n = {len(one.rows)}, {one.distinct} distinct"]
         shown.append((one.label, mean, [line for line in lines if line], one.is_run))
     note = ("<p>Return per episode, success and their 95 % intervals in evaluation episodes of "
-            f"seed {films.SEED}. RANDOM moves without a goal; the planner knows what ships know; "
+            f"seed {videos.SEED}. RANDOM moves without a goal; the planner knows what ships know; "
             "clairvoyant knows the storm's whole track.</p>")
     return page.players(shown) + note

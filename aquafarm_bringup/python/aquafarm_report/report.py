@@ -8,8 +8,8 @@ import tempfile
 
 import numpy as np
 
-from aquafarm_report import compare, curves, films, intervals, outcomes, page, references
-from aquafarm_report.films import ReportError
+from aquafarm_report import compare, curves, videos, intervals, outcomes, page, references
+from aquafarm_report.videos import ReportError
 
 EPISODES = 1000  # as in aquafarm_evaluate
 
@@ -35,32 +35,32 @@ def interval_text(summary, rows):
                                                     summary.get("distinct_episodes") or 0))
 
 
-def film_episodes(run, folder, rows):
+def video_episodes(run, folder, rows):
     """Sections of the best, median and worst episode: map, videos and the fate of each device."""
-    if films.is_family(run):
+    if videos.is_family(run):
         return [page.section("Best, median and worst episode", page.table(
-            ["episode", "result"], [(f"{name}: episode {row['episode']} of seed {films.SEED}",
-                                     films.result_text(row)) for name, row in films.choose(rows)]),
-            "<p>There are no films: the scenario is a family, and each episode has a ranch of its "
+            ["episode", "result"], [(f"{name}: episode {row['episode']} of seed {videos.SEED}",
+                                     videos.result_text(row)) for name, row in videos.choose(rows)]),
+            "<p>There are no videos: the scenario is a family, and each episode has a ranch of its "
             "own. ./aquafarm evaluate plays the policy on one ranch file.</p>")]
     shown, captions, results, chart = [], [], [], None
-    for name, row in films.choose(rows):
-        bag = films.bag_of(run, folder, int(row["episode"]))
-        chart = chart or films.draw_map(bag)
-        caption = (f"{name}: episode {row['episode']} of seed {films.SEED}, "
-                   f"{films.result_text(row)}")
-        shown.append(page.film(films.draw_film(bag, int(row["steps"])), caption))
+    for name, row in videos.choose(rows):
+        bag = videos.bag_of(run, folder, int(row["episode"]))
+        chart = chart or videos.draw_map(bag)
+        caption = (f"{name}: episode {row['episode']} of seed {videos.SEED}, "
+                   f"{videos.result_text(row)}")
+        shown.append(page.video(videos.draw_video(bag, int(row["steps"])), caption))
         captions.append(f"{name}, episode {row['episode']}")
         results.append(outcomes.read_outcomes(bag))
     return [page.section("Best, median and worst episode",
-                         f'<div class="films">{"".join(shown)}</div>',
+                         f'<div class="videos">{"".join(shown)}</div>',
                          outcomes.episodes_table(captions, results)),
             page.section("The ranch", page.picture(chart, "at the start of an episode"))]
 
 
 def show_episodes(run, folder, episodes):
     """Summary of a run's policy, its episodes, and sections: table, videos and map."""
-    summary, rows = films.evaluate(run, folder, episodes)
+    summary, rows = videos.evaluate(run, folder, episodes)
     table = compare.measure_table([references.read_player(
         summary["algorithm"], folder / "evaluation", is_run=True)])
     losses = []
@@ -75,7 +75,7 @@ def show_episodes(run, folder, episodes):
         losses.insert(0, page.section("What became of each device, all episodes", devices))
     return summary, rows, [
         page.section(f"Greedy play, {count_text(summary, len(rows))}", table), *losses,
-        *film_episodes(run, folder, rows)]
+        *video_episodes(run, folder, rows)]
 
 
 def report_run(run, folder, episodes):
@@ -89,7 +89,7 @@ def report_run(run, folder, episodes):
          f"return, 95 % interval, {count_text(summary, summary['episodes'])}"),
         (f"{summary['success_rate']:.0%}", "success"),
         (f"{len(columns.get('return', [])):,}", "episodes trained"),
-        (settings["seed"], "seed of the training"), (films.SEED, "seed of the episodes and films"),
+        (settings["seed"], "seed of the training"), (videos.SEED, "seed of the episodes and videos"),
         (settings["version"], "version")])
     players = references.play_references(run / "scenario.yaml", folder, episodes)
     players.insert(1, references.read_player(settings["algorithm"], folder / "evaluation",

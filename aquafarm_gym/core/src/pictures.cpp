@@ -87,7 +87,7 @@ PYBIND11_MODULE(_pictures, module) {
 width, height: pixels in [160, 4096]. layers: some of LAYERS with commas, or none. style: dark for
 screens, light for print. A Painter follows one farm: the trails of its ships begin at the first picture of an episode.)")
       .def(py::init<py::handle, py::handle, const std::string&, const std::string&>(),
-           py::arg("width") = 800, py::arg("height") = 640, py::arg("layers") = "wake,risk",
+           py::arg("width") = 800, py::arg("height") = 640, py::arg("layers") = "trail,risk",
            py::arg("style") = "dark")
       .def("draw", &Painter::Draw, py::arg("batch"), py::arg("farm") = 0,
            "The present state of one farm, uint8 [height, width, 3], RGB.");

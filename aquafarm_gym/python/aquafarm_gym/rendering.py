@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 SIZE: tuple[int, int] = (800, 640)
-LAYERS: str = "wake,risk"
+LAYERS: str = "trail,risk"
 STYLE: str = "dark"
 MODES: tuple[str, ...] = ("ansi", "human", "rgb_array")
 # Those of this installation: a wheel without OpenCV draws no pictures.

@@ -125,7 +125,7 @@ void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, d
 
 void DrawTrails(cv::Mat& map, const FarmState& state, const Trail& trail, const Layout& layout) {
   for (const auto& ship : state.ships) {
-    const ShipWake* way = ship.visible ? trail.Find(ship.id) : nullptr;
+    const ShipTrail* way = ship.visible ? trail.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       const double age = double(way->places.size() - 1 - i) / Trail::kLength;
@@ -145,7 +145,7 @@ void DrawRoutes(cv::Mat& map, const FarmState& state, const Trail& route, const 
   constexpr Rgb kMiddle{0xe6, 0x4a, 0x6b};
   constexpr Rgb kLast{0xff, 0xe0, 0x66};
   for (const auto& ship : state.ships) {
-    const ShipWake* way = ship.visible ? route.Find(ship.id) : nullptr;
+    const ShipTrail* way = ship.visible ? route.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       if (Trail::IsGap(way->places[i - 1], way->places[i])) continue;

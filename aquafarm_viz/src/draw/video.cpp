@@ -43,9 +43,9 @@ void RemoveUnfinished(const std::string& path) {
 }
 
 /// Writes videos with the codecs that OpenCV finds on this machine.
-class VideoFilm final : public Film {
+class EncodedVideo final : public Video {
  public:
-  VideoFilm(const std::string& path, cv::Size size, double rate_hz, bool is_mp4) : path_(path) {
+  EncodedVideo(const std::string& path, cv::Size size, double rate_hz, bool is_mp4) : path_(path) {
     setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
     setenv("OPENCV_LOG_LEVEL", "OFF", 0);
     // Only H.264: browsers do not play other mp4 codecs of OpenCV.
@@ -62,7 +62,7 @@ class VideoFilm final : public Film {
                              "), or the folder is not writable; use .gif, or install libavcodec");
   }
 
-  ~VideoFilm() override {
+  ~EncodedVideo() override {
     writer_.release();
     RemoveUnfinished(path_);
   }
@@ -83,9 +83,9 @@ class VideoFilm final : public Film {
 
  private:
   int Pictures() const {
-    cv::VideoCapture film(TempPath(path_), cv::CAP_FFMPEG);
+    cv::VideoCapture video(TempPath(path_), cv::CAP_FFMPEG);
     int pictures = 0;
-    while (film.grab()) ++pictures;
+    while (video.grab()) ++pictures;
     return pictures;
   }
 
@@ -124,9 +124,9 @@ class Quantizer {
 };
 
 /// Writes gifs. The first kFirst pictures are buffered to choose the palette.
-class GifFilm final : public Film {
+class GifVideo final : public Video {
  public:
-  GifFilm(const std::string& path, cv::Size size, double rate_hz)
+  GifVideo(const std::string& path, cv::Size size, double rate_hz)
       : path_(path), size_(size), pause_(std::max(2, cvRound(100.0 / rate_hz))) {
     int error = 0;
     // giflib's open function creates a file that other users cannot read.
@@ -135,7 +135,7 @@ class GifFilm final : public Film {
     if (file_ == nullptr) throw StorageError(path + ": could not be written");
     EGifSetGifVersion(file_, true);
   }
-  ~GifFilm() override {
+  ~GifVideo() override {
     if (file_ != nullptr) EGifCloseFile(file_, nullptr);
     RemoveUnfinished(path_);
   }
@@ -246,18 +246,18 @@ std::vector<cv::Vec3b> Palette(const std::vector<cv::Mat>& pictures) {
   return palette;
 }
 
-bool Film::Is(const std::string& path) {
+bool Video::Is(const std::string& path) {
   const std::string ending = Ending(path);
   return ending == ".mp4" || ending == ".webm" || ending == ".gif";
 }
 
-std::unique_ptr<Film> Film::Open(const std::string& path, cv::Size size, double rate_hz) {
+std::unique_ptr<Video> Video::Open(const std::string& path, cv::Size size, double rate_hz) {
   if (!Is(path)) {
     throw std::runtime_error(path + ": got the ending '" + Ending(path) +
                              "', expected .mp4, .webm or .gif");
   }
-  if (Ending(path) == ".gif") return std::make_unique<GifFilm>(path, size, rate_hz);
-  return std::make_unique<VideoFilm>(path, size, rate_hz, Ending(path) == ".mp4");
+  if (Ending(path) == ".gif") return std::make_unique<GifVideo>(path, size, rate_hz);
+  return std::make_unique<EncodedVideo>(path, size, rate_hz, Ending(path) == ".mp4");
 }
 
 }  // namespace aquafarm_viz

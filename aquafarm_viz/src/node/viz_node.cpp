@@ -186,7 +186,7 @@ void VizNode::PublishMoves(const Shown& shown) {
 
 void VizNode::PublishRoutes(const Shown& shown) {
   for (std::size_t ship = 0; ship < routes_.size(); ++ship) {
-    const ShipWake* way = route_.Find(static_cast<std::int32_t>(ship));
+    const ShipTrail* way = route_.Find(static_cast<std::int32_t>(ship));
     if (way == nullptr || routes_[ship].getNumSubscribers() == 0) continue;
     nav_msgs::Path path;
     path.header = shown.state->header;

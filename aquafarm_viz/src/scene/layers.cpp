@@ -2,6 +2,7 @@
 #include "aquafarm_viz/scene/layers.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
@@ -11,14 +12,10 @@ namespace aquafarm_viz {
 
 namespace {
 
-constexpr std::pair<const char*, bool Layers::*> kNames[]{{"wake", &Layers::trail},
-                                                          {"risk", &Layers::risk},
-                                                          {"route", &Layers::route},
-                                                          {"sight", &Layers::sight},
-                                                          {"values", &Layers::values},
-                                                          {"moves", &Layers::moves},
-                                                          {"directions", &Layers::directions},
-                                                          {"labels", &Layers::labels}};
+constexpr std::pair<const char*, bool Layers::*> kNames[]{
+    {"trail", &Layers::trail},           {"risk", &Layers::risk},     {"route", &Layers::route},
+    {"sight", &Layers::sight},           {"values", &Layers::values}, {"moves", &Layers::moves},
+    {"directions", &Layers::directions}, {"labels", &Layers::labels}};
 
 }  // namespace
 
@@ -39,6 +36,10 @@ Layers ParseLayers(const std::string& names) {
     if (name.rfind("sea:", 0) == 0 && name.size() > 4) {
       layers.sea = name.substr(4);
       continue;
+    }
+    if (name == "wake") {
+      std::fprintf(stderr, "layers: wake is now called trail\n");
+      name = "trail";
     }
     const auto found = std::find_if(std::begin(kNames), std::end(kNames),
                                     [&name](const auto& known) { return name == known.first; });

@@ -17,7 +17,7 @@ void Trail::Update(const aquafarm_msgs::FarmState& state) {
       ships_.erase(ship.id);
       continue;
     }
-    ShipWake& trail = ships_[ship.id];
+    ShipTrail& trail = ships_[ship.id];
     if (const int bearing = MoveBearingDeg(ship.action); bearing >= 0) trail.bearing_deg = bearing;
     const cv::Point place(ship.x, ship.y);
     if (!trail.places.empty()) {
@@ -34,20 +34,20 @@ bool Trail::IsGap(cv::Point from, cv::Point to) {
   return std::abs(double(from.x) - to.x) > kMaxJump || std::abs(double(from.y) - to.y) > kMaxJump;
 }
 
-std::size_t ShipWake::UnbrokenFrom() const {
+std::size_t ShipTrail::UnbrokenFrom() const {
   std::size_t first = places.empty() ? 0 : places.size() - 1;
   while (first > 0 && !Trail::IsGap(places[first - 1], places[first])) --first;
   return first;
 }
 
-const ShipWake* Trail::Find(std::int32_t ship) const {
+const ShipTrail* Trail::Find(std::int32_t ship) const {
   const auto found = ships_.find(ship);
   return found == ships_.end() ? nullptr : &found->second;
 }
 
 int ShipBearingDeg(const aquafarm_msgs::ShipState& ship, const Trail* trail) {
   if (const int bearing = MoveBearingDeg(ship.action); bearing >= 0) return bearing;
-  const ShipWake* known = trail == nullptr ? nullptr : trail->Find(ship.id);
+  const ShipTrail* known = trail == nullptr ? nullptr : trail->Find(ship.id);
   return known == nullptr ? 0 : known->bearing_deg;
 }
 

@@ -18,14 +18,14 @@ struct StorageError : std::runtime_error {
 
 /// A video of pictures of one size. It is written to a temporary file in the same folder, which is
 /// renamed when the video is complete.
-class Film {
+class Video {
  public:
   /// @param path its extension selects the format: .mp4, .webm or .gif
   /// @throws std::runtime_error for another extension, or if no codec is available
   /// @throws StorageError if the file cannot be written
-  static std::unique_ptr<Film> Open(const std::string& path, cv::Size size, double rate_hz);
+  static std::unique_ptr<Video> Open(const std::string& path, cv::Size size, double rate_hz);
 
-  virtual ~Film() = default;
+  virtual ~Video() = default;
   /// @param picture 8-bit BGR, of the size given to Open
   virtual void Add(const cv::Mat& picture) = 0;
   /// Completes the file. @throws StorageError if it could not be written

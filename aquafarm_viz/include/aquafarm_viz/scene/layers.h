@@ -20,10 +20,10 @@ struct Layers {
 };
 
 /// Parses names separated by commas, such as "risk,route,sea:warmth"; "none" for no layer.
-/// @throws std::invalid_argument "layers: got 'rain', expected some of: wake, risk, …"
+/// @throws std::invalid_argument "layers: got 'rain', expected some of: trail, risk, …"
 Layers ParseLayers(const std::string& names);
 
-/// Returns the names of all layers: "wake, risk, …".
+/// Returns the names of all layers: "trail, risk, …".
 std::string LayerNames();
 
 }  // namespace aquafarm_viz

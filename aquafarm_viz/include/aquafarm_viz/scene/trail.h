@@ -13,7 +13,7 @@
 namespace aquafarm_viz {
 
 /// The trail of a ship.
-struct ShipWake {
+struct ShipTrail {
   int bearing_deg{};             ///< bearing of its last move, [0, 359], clockwise from north
   std::deque<cv::Point> places;  ///< visited cells, oldest first, the current one last
 
@@ -38,14 +38,14 @@ class Trail {
   static bool IsGap(cv::Point from, cv::Point to);
 
   /// Returns the trail of a ship; nullptr for an unknown ship.
-  const ShipWake* Find(std::int32_t ship) const;
+  const ShipTrail* Find(std::int32_t ship) const;
 
  private:
   std::size_t length_;
   std::uint64_t seed_{};
   std::uint64_t episode_{};
   std::uint64_t step_{};
-  std::map<std::int32_t, ShipWake> ships_;
+  std::map<std::int32_t, ShipTrail> ships_;
 };
 
 /// Returns the bearing to draw a ship at: that of its move in this state, else of its trail, or 0.

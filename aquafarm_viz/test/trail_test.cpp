@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "aquafarm_viz/scene/trail.h"
+
 #include <gtest/gtest.h>
 
-#include "aquafarm_viz/scene/trail.h"
 #include "fixture.h"
 
 namespace aquafarm_viz {
@@ -18,7 +19,7 @@ aquafarm_msgs::FarmState At(std::uint64_t step, int x, std::uint8_t action) {
 TEST(Trail, RemembersPlacesOldestFirst) {
   Trail trail;
   for (int i = 0; i < 3; ++i) trail.Update(At(static_cast<std::uint64_t>(i), 5 + i, 3));
-  const ShipWake* way = trail.Find(0);
+  const ShipTrail* way = trail.Find(0);
   ASSERT_NE(way, nullptr);
   ASSERT_EQ(way->places.size(), 3U);
   EXPECT_EQ(way->places.front().x, 5);
@@ -77,7 +78,7 @@ TEST(Trail, ForgetsAShipOutOfSight) {
   EXPECT_EQ(trail.Find(0), nullptr);
 }
 
-TEST(Trail, ARouteGoesOnWhereStatesWereMissedAndAWakeBeginsAnew) {
+TEST(Trail, ARouteContinuesWhereStatesWereMissedAndATrailStartsAgain) {
   Trail trail;
   Trail route(Trail::kWhole);
   auto state = test::MakeState();

@@ -79,7 +79,7 @@ def bag_of(run, folder, episode):
     return bag
 
 
-def draw_film(bag, steps):
+def draw_video(bag, steps):
     """Renders a bag as a video: mp4, or gif if there is no codec."""
     every = max(1, -(-steps // FRAMES))
     for ending in (".mp4", ".gif"):

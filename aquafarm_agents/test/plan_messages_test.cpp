@@ -173,7 +173,7 @@ TEST_F(PlanMessages, RanchAndFleet) {
   }
 }
 
-TEST_F(PlanMessages, StormAndItsErrors) {
+TEST_F(PlanMessages, StormWithItsPoints) {
   const agents::StormRecord& storm = case_->storm;
   EXPECT_EQ(plan().storm_name, storm.name);
   EXPECT_EQ(plan().agency, storm.agency);
@@ -208,6 +208,9 @@ TEST_F(PlanMessages, StormAndItsErrors) {
       EXPECT_NEAR(message.radii_km[ring], points[i].radii_km[ring], 0.06);
     }
   }
+}
+
+TEST_F(PlanMessages, RingsErrorsAndHazardOfTheEnsemble) {
   ASSERT_EQ(static_cast<std::int32_t>(plan().rings.size()), ensemble_->rings());
   for (std::size_t ring = 0; ring < plan().rings.size(); ++ring) {
     EXPECT_EQ(plan().rings[ring].wind_kt, case_->forecast.path.wind_kt[ring]);

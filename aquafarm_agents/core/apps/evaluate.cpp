@@ -111,10 +111,9 @@ void PrintOptimum(const std::shared_ptr<const Scenario>& scenario, const Evaluat
 
 // Plays the episodes and reports their progress.
 Evaluation Play(const Arguments& arguments, Environment& environment, Policy& policy) {
-  const auto* const local = dynamic_cast<const LocalEnvironment*>(&environment);
   AccountsOf accounts;
   DeviceOutcomes devices;
-  if (local != nullptr) {
+  if (const auto* const local = dynamic_cast<const LocalEnvironment*>(&environment)) {
     accounts = [local, &devices](std::int32_t farm) {
       devices.Add(local->batch().farm(farm).devices());
       return local->batch().farm(farm).record().accounts;

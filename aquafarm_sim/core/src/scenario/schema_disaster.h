@@ -183,6 +183,23 @@ void VisitStorms(Archive& a, S& storms, std::vector<std::string>& files) {
   a.Always();
 }
 
+/// Visits the storms of an archive, one of which the disaster is in each episode.
+template <typename Archive, typename D>
+void VisitDrawnStorms(Archive& a, D& disaster, const WorldFrame* frame) {
+  if constexpr (Archive::kReads) {
+    if (a.Has("track", false)) {
+      throw FieldError(Join(a.path(), "track"), "is used only where there are no storms");
+    }
+  }
+  std::vector<std::string> files;
+  a.Optional("storms", disaster.storms,
+             [&files](auto& b, auto& storms) { VisitStorms(b, storms, files); });
+  if constexpr (Archive::kReads) {
+    Resolve(files, frame, Join(a.path(), "storms"), disaster);
+    SetFirst(disaster);
+  }
+}
+
 template <typename Archive, typename D>
 void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   const bool drawn = a.Has("storms", disaster.storms.has_value());
@@ -221,18 +238,7 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
   a.Always();
   if (!tracked) return;
   if (drawn) {
-    if constexpr (Archive::kReads) {
-      if (a.Has("track", false)) {
-        throw FieldError(Join(a.path(), "track"), "is used only where there are no storms");
-      }
-    }
-    std::vector<std::string> files;
-    a.Optional("storms", disaster.storms,
-               [&files](auto& b, auto& storms) { VisitStorms(b, storms, files); });
-    if constexpr (Archive::kReads) {
-      Resolve(files, frame, Join(a.path(), "storms"), disaster);
-      SetFirst(disaster);
-    }
+    VisitDrawnStorms(a, disaster, frame);
     return;
   }
   const GradeRisks by_grade = Archive::kReads ? RisksByGrade(disaster) : GradeRisks{};

@@ -298,6 +298,101 @@ void Unpack(const NcFile& file, int variable, std::vector<float>& values) {
   }
 }
 
+// Part of a variable that is read.
+struct Block {
+  std::vector<std::size_t> first;  // by dimension
+  std::vector<std::size_t> count;
+  std::size_t along_latitude{};  // index of the dimension
+  std::size_t along_longitude{};
+};
+
+Span ChooseTime(const NcFile& file, std::optional<std::int64_t> time, Dimension& d,
+                SeaField& field) {
+  const auto [unit_s, zero] = TimeUnits(file, d);
+  for (double& at : d.at) at = at * unit_s + zero;
+  Span span;
+  span.first = time ? Nearest(d.at, static_cast<double>(*time)) : 0;
+  field.time = static_cast<std::int64_t>(std::llround(d.at[span.first]));
+  return span;
+}
+
+Span ChooseDepth(const NcFile& file, double depth_m, Dimension& d, SeaField& field) {
+  const std::string units = file.Text(d.coordinate, "units");
+  const double metres = MetresPer(units);
+  if (metres == 0.0 && d.at.size() > 1) {
+    file.Fail(d.name + ": units: got " + internal::Quoted(units) +
+              ", expected metres, km, cm or dbar, to find a depth among " +
+              std::to_string(d.at.size()));
+  }
+  const double down = IsUpwards(file, d.coordinate) ? -metres : metres;
+  for (double& at : d.at) at *= down;
+  Span span;
+  span.first = Nearest(d.at, depth_m);
+  if (metres > 0.0) field.depth_m = d.at[span.first];
+  return span;
+}
+
+// Chooses time, depth and the cells of the ranch. Converts the coordinates of the dimensions and
+// fills time, depth and extent of the field.
+Block ChooseBlock(const NcFile& file, const SeaFieldChoice& choice, const Extent& extent,
+                  std::vector<Dimension>& dimensions, SeaField& field) {
+  Block block;
+  for (std::size_t i = 0; i < dimensions.size(); ++i) {
+    Dimension& d = dimensions[i];
+    Span span;
+    if (d.axis == Axis::kTime) {
+      span = ChooseTime(file, choice.time, d, field);
+    } else if (d.axis == Axis::kDepth) {
+      span = ChooseDepth(file, choice.depth_m, d, field);
+    } else if (d.axis == Axis::kLatitude) {
+      block.along_latitude = i;
+      span = Window(d.at, extent.south, extent.north);
+      const auto [south, north] = std::minmax_element(d.at.begin(), d.at.end());
+      field.extent[0] = *south;
+      field.extent[1] = *north;
+    } else if (d.axis == Axis::kLongitude) {
+      block.along_longitude = i;
+      const double turn = TurnOf(d.at, (extent.west + extent.east) / 2.0);
+      for (double& at : d.at) at += turn;
+      span = Window(d.at, extent.west, extent.east);
+      const auto [west, east] = std::minmax_element(d.at.begin(), d.at.end());
+      field.extent[2] = *west;
+      field.extent[3] = *east;
+    }
+    block.first.push_back(span.first);
+    block.count.push_back(span.count);
+  }
+  return block;
+}
+
+// Fills the field with values in the order of the file, so that it leads from south to north and
+// from west to east.
+void Arrange(const std::vector<Dimension>& dimensions, const Block& block,
+             const std::vector<float>& values, SeaField& field) {
+  const auto cut = [&](std::size_t i) {
+    const auto from = dimensions[i].at.begin() + static_cast<std::ptrdiff_t>(block.first[i]);
+    return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(block.count[i]));
+  };
+  field.latitude = cut(block.along_latitude);
+  field.longitude = cut(block.along_longitude);
+  const std::size_t rows = field.latitude.size();
+  const std::size_t columns = field.longitude.size();
+  const bool north_first = field.latitude.front() > field.latitude.back();
+  const bool east_first = field.longitude.front() > field.longitude.back();
+  const bool latitude_slow = block.along_latitude < block.along_longitude;
+  field.value.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const std::size_t r = north_first ? rows - 1 - row : row;
+      const std::size_t c = east_first ? columns - 1 - column : column;
+      field.value(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+          values[latitude_slow ? r * columns + c : c * rows + r];
+    }
+  }
+  if (north_first) std::reverse(field.latitude.begin(), field.latitude.end());
+  if (east_first) std::reverse(field.longitude.begin(), field.longitude.end());
+}
+
 }  // namespace
 
 SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, const GeoFrame& frame,
@@ -308,77 +403,17 @@ SeaField LoadSeaField(const std::string& path, const SeaFieldChoice& choice, con
   field.name = file.Name(variable);
   field.units = file.Text(variable, "units");
   std::vector<Dimension> dimensions = ReadDimensions(file, variable, field.name);
-  const Extent extent = ExtentOf(frame, width, height);
-  std::vector<std::size_t> first(dimensions.size());
-  std::vector<std::size_t> count(dimensions.size());
-  std::size_t along_latitude = 0;
-  std::size_t along_longitude = 0;
-  for (std::size_t i = 0; i < dimensions.size(); ++i) {
-    Dimension& d = dimensions[i];
-    Span span;
-    if (d.axis == Axis::kTime) {
-      const auto [unit_s, zero] = TimeUnits(file, d);
-      for (double& at : d.at) at = at * unit_s + zero;
-      span.first = choice.time ? Nearest(d.at, static_cast<double>(*choice.time)) : 0;
-      field.time = static_cast<std::int64_t>(std::llround(d.at[span.first]));
-    } else if (d.axis == Axis::kDepth) {
-      const std::string units = file.Text(d.coordinate, "units");
-      const double metres = MetresPer(units);
-      if (metres == 0.0 && d.at.size() > 1) {
-        file.Fail(d.name + ": units: got " + internal::Quoted(units) +
-                  ", expected metres, km, cm or dbar, to find a depth among " +
-                  std::to_string(d.at.size()));
-      }
-      const double down = IsUpwards(file, d.coordinate) ? -metres : metres;
-      for (double& at : d.at) at *= down;
-      span.first = Nearest(d.at, choice.depth_m);
-      if (metres > 0.0) field.depth_m = d.at[span.first];
-    } else if (d.axis == Axis::kLatitude) {
-      along_latitude = i;
-      span = Window(d.at, extent.south, extent.north);
-      const auto [south, north] = std::minmax_element(d.at.begin(), d.at.end());
-      field.extent[0] = *south;
-      field.extent[1] = *north;
-    } else if (d.axis == Axis::kLongitude) {
-      along_longitude = i;
-      const double turn = TurnOf(d.at, (extent.west + extent.east) / 2.0);
-      for (double& at : d.at) at += turn;
-      span = Window(d.at, extent.west, extent.east);
-      const auto [west, east] = std::minmax_element(d.at.begin(), d.at.end());
-      field.extent[2] = *west;
-      field.extent[3] = *east;
-    }
-    first[i] = span.first;
-    count[i] = span.count;
-  }
-  const std::size_t rows = count[along_latitude];
-  const std::size_t columns = count[along_longitude];
-  if (rows * columns > kMostValues)
+  const Block block = ChooseBlock(file, choice, ExtentOf(frame, width, height), dimensions, field);
+  const std::size_t size = block.count[block.along_latitude] * block.count[block.along_longitude];
+  if (size > kMostValues) {
     file.Fail(field.name + ": its resolution is too fine for this ranch");
-  std::vector<float> values(rows * columns);
-  file.Need(nc_get_vara_float(file.id(), variable, first.data(), count.data(), values.data()),
-            field.name);
-  Unpack(file, variable, values);
-  const auto cut = [&](std::size_t i) {
-    const auto from = dimensions[i].at.begin() + static_cast<std::ptrdiff_t>(first[i]);
-    return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(count[i]));
-  };
-  field.latitude = cut(along_latitude);
-  field.longitude = cut(along_longitude);
-  const bool north_first = field.latitude.front() > field.latitude.back();
-  const bool east_first = field.longitude.front() > field.longitude.back();
-  field.value.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
-  for (std::size_t row = 0; row < rows; ++row) {
-    for (std::size_t column = 0; column < columns; ++column) {
-      const std::size_t r = north_first ? rows - 1 - row : row;
-      const std::size_t c = east_first ? columns - 1 - column : column;
-      const bool latitude_slow = along_latitude < along_longitude;
-      field.value(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
-          values[latitude_slow ? r * columns + c : c * rows + r];
-    }
   }
-  if (north_first) std::reverse(field.latitude.begin(), field.latitude.end());
-  if (east_first) std::reverse(field.longitude.begin(), field.longitude.end());
+  std::vector<float> values(size);
+  file.Need(
+      nc_get_vara_float(file.id(), variable, block.first.data(), block.count.data(), values.data()),
+      field.name);
+  Unpack(file, variable, values);
+  Arrange(dimensions, block, values, field);
   return field;
 }
 

@@ -94,22 +94,28 @@ class SeaFields : public testing::Test {
     }
     ASSERT_EQ(nc_enddef(file), NC_NOERR);
     if (!shape.curvilinear) PutAxes(file, axes, shape);
+    std::vector<double> values = ValuesOf(shape);
+    for (std::size_t i = 0; shape.packed && i < values.size(); ++i) {
+      const bool land = i % std::size_t{kLatitudes * kLongitudes} == 0;
+      values[i] = std::round(land ? fill : (values[i] - offset) / scale);
+    }
+    ASSERT_EQ(nc_put_var_double(file, variable, values.data()), NC_NOERR);
+    nc_close(file);
+  }
+
+  static std::vector<double> ValuesOf(const Shape& shape) {
     std::vector<double> values;
     for (int time = 0; time < 2; ++time) {
       for (int depth = 0; depth < 3; ++depth) {
         for (int row = 0; row < kLatitudes; ++row) {
           for (int column = 0; column < kLongitudes; ++column) {
-            const double value = 10.0 + 100.0 * (Latitude(row, shape) - 30.0) +
-                                 10.0 * (0.1 * column) + 5.0 * depth + 0.5 * time;
-            const bool land = row == 0 && column == 0;
-            values.push_back(!shape.packed ? value : land ? fill : (value - offset) / scale);
+            values.push_back(10.0 + 100.0 * (Latitude(row, shape) - 30.0) + 10.0 * (0.1 * column) +
+                             5.0 * depth + 0.5 * time);
           }
         }
       }
     }
-    for (double& value : values) value = shape.packed ? std::round(value) : value;
-    ASSERT_EQ(nc_put_var_double(file, variable, values.data()), NC_NOERR);
-    nc_close(file);
+    return values;
   }
 
   std::string Refused(const SeaFieldChoice& choice = {"so", {}, 0.0}) const {

@@ -355,6 +355,27 @@ TEST(Conversions, SummaryGivesTheMeanHealthOfWhatWasDelivered) {
   EXPECT_TRUE(summary.truncated);
   EXPECT_FALSE(summary.terminated);
   EXPECT_FALSE(summary.success);
+  EXPECT_TRUE(summary.ledgers.empty()) << "a scenario without money has no accounts";
+}
+
+TEST(Conversions, SummaryGivesTheMoneyOfEachKindOfDevice) {
+  aquafarm::Accounts accounts;
+  accounts.by_kind[static_cast<std::size_t>(aquafarm::DeviceKind::kMonitoring)] = {450, 300, 100,
+                                                                                   50};
+  accounts.ship_cost = 1234;
+  accounts.energy_cost = 56;
+  aquafarm::EpisodeRecord record;
+  record.accounts = accounts;
+  const auto summary = ToMsg(record, 0, Context());
+  ASSERT_EQ(static_cast<std::size_t>(aquafarm::kDeviceKindCount), summary.ledgers.size());
+  const aquafarm_msgs::Ledger& buoys = summary.ledgers[aquafarm_msgs::DeviceState::MONITORING];
+  EXPECT_EQ(450, buoys.insured);
+  EXPECT_EQ(300, buoys.saved);
+  EXPECT_EQ(100, buoys.damaged);
+  EXPECT_EQ(50, buoys.lost);
+  EXPECT_EQ(0, summary.ledgers[aquafarm_msgs::DeviceState::DEEP_WATER_BREEDING].insured);
+  EXPECT_EQ(1234, summary.ship_cost);
+  EXPECT_EQ(56, summary.energy_cost);
 }
 
 }  // namespace

@@ -207,6 +207,18 @@ std::vector<aquafarm::Waypoint> WaypointsFrom(
   return track;
 }
 
+void FillAccounts(const aquafarm::Accounts& accounts, aquafarm_msgs::EpisodeSummary& message) {
+  for (const aquafarm::Ledger& ledger : accounts.by_kind) {
+    aquafarm_msgs::Ledger& one = message.ledgers.emplace_back();
+    one.insured = ledger.insured;
+    one.saved = ledger.saved;
+    one.damaged = ledger.damaged;
+    one.lost = ledger.lost;
+  }
+  message.ship_cost = accounts.ship_cost;
+  message.energy_cost = accounts.energy_cost;
+}
+
 }  // namespace
 
 aquafarm_msgs::Cell ToMsg(aquafarm::Cell cell) {
@@ -375,6 +387,7 @@ aquafarm_msgs::EpisodeSummary ToMsg(const aquafarm::EpisodeRecord& record, std::
   message.terminated = aquafarm::IsTerminated(record.reason);
   message.truncated = aquafarm::IsTruncated(record.reason);
   message.success = record.Success();
+  if (record.accounts) FillAccounts(*record.accounts, message);
   return message;
 }
 

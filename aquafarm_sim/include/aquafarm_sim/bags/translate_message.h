@@ -26,10 +26,11 @@ struct OlderMessage {
 };
 
 /// Definitions that this version can still read.
-inline constexpr std::array<OlderMessage, 3> kOlderMessages{{
+inline constexpr std::array<OlderMessage, 4> kOlderMessages{{
     {"aquafarm_msgs/FarmSpec", "dc645def7450ce7b7546018ebd6bd293"},        // 0.1.0
     {"aquafarm_msgs/FarmState", "7cc3a3ac59b389c71adbfc34a6052e14"},       // 0.1.0
     {"aquafarm_msgs/EpisodeSummary", "bc5de7d4c54257781f6cf02455e96c5b"},  // 0.1.0
+    {"aquafarm_msgs/EpisodeSummary", "ea008750c7b063b51da8fa41320c4c6b"},  // without money
 }};
 
 /// Returns whether a definition is one of kOlderMessages.

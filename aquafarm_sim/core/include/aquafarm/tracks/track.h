@@ -7,8 +7,8 @@
 ///
 ///      NW | NE        A wind ring contains, for each quadrant, the distance from the centre to
 ///    -----+-----      which winds of at least `wind_kt` blow. If the source does not give a ring
-///      SW | SE        of a wind, the fix does not have it. If it states that this wind does not blow, the
-///                     ring has four zeros.
+///      SW | SE        of a wind, the fix does not have it. If it states that this
+///                     wind does not blow, the ring has four zeros.
 
 #include <array>
 #include <cstdint>

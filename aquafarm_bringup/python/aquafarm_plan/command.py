@@ -104,7 +104,11 @@ def program():
     if os.environ.get("AQUAFARM_PLAN"):
         return os.environ["AQUAFARM_PLAN"]
     import roslib.packages  # only here: a page of an existing plan file needs no ROS
-    found = roslib.packages.find_node("aquafarm_agents", "aquafarm_plan")
+    import rospkg
+    try:
+        found = roslib.packages.find_node("aquafarm_agents", "aquafarm_plan")
+    except rospkg.ResourceNotFound:  # the environment has no such package
+        found = None
     if not found:
         raise PlanError("aquafarm_agents has no aquafarm_plan; build the workspace first")
     return found[0]

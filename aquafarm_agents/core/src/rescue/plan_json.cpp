@@ -182,7 +182,7 @@ class JsonReport {
            {"wind_mps", at.wind_mps ? Json(*at.wind_mps) : Json(nullptr)},
            {"wind_minutes", at.averaging_min > 0 ? Json(at.averaging_min) : Json(nullptr)},
            {"pressure_hpa", at.pressure_hpa ? Json(*at.pressure_hpa) : Json(nullptr)},
-           {"grade", DisasterGrade(at.grade)},
+           {"grade", at.silent ? Json(nullptr) : Json(DisasterGrade(at.grade))},
            {"radii_km", radii},
            {"radii_source", radii_source}});
     }
@@ -233,8 +233,8 @@ class JsonReport {
                         {"along_km", Rounded(at.along_km, 0.1)},
                         {"across_km", Rounded(at.across_km, 0.1)},
                         {"radius70_km", Rounded(at.radius70_km, 0.1)},
-                        {"wind_mps", Rounded(at.wind_mps, 0.01)},
-                        {"size_log", Rounded(at.size_log, 0.001)}});
+                        {"wind_mps", Known(Rounded(at.wind_mps, 0.01))},
+                        {"size_log", Known(Rounded(at.size_log, 0.001))}});
     }
     return {
         {"members", ensemble_.members()}, {"seed", ensemble_.options().seed}, {"errors", errors}};

@@ -232,6 +232,9 @@ class PlanProgram(unittest.TestCase):
         self.assertIsNone(plan["deadlines"]["no_departure_after"])
         self.assertIsNone(plan["deadlines"]["not_known_beyond"])
         self.assertIsNone(plan["loss"]["operating_cost"])
+        spreads = {one[key] for one in plan["ensemble"]["errors"] for key in ("wind_mps", "size_log")}
+        self.assertEqual({None}, spreads)
+        self.assertEqual({None}, {one["grade"] for one in plan["storm"]["points"]})
 
     def test_thirteen_if_the_bulletin_is_older_than_twelve_hours(self):
         code, words, plan = self.plan_of(bulletin(), "--ships", 2, "--speed", 12, at=None)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The plan file, its page, its GeoJSON and the command: contents and error messages."""
 import copy
-import html.parser
 import json
 import os
 import pathlib
@@ -20,39 +19,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import plan_sample  # noqa: E402
 from aquafarm_plan import document, geojson, page  # noqa: E402
 from aquafarm_plan.geodesy import LocalPlane  # noqa: E402
+from page_reader import Reader  # noqa: E402
 
-VOID = {"meta", "input", "br"}
 COMMAND = pathlib.Path(__file__).resolve().parent.parent / "scripts" / "make_plan"
-
-
-class Reader(html.parser.HTMLParser):
-    """Texts by element id, addresses and scripts of a page; its tags must match."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.open, self.words, self.addresses, self.ids, self.scripts = [], "", [], [], 0
-        self.feed(text)
-        assert not self.open, f"left open: {self.open}"
-
-    def handle_starttag(self, tag, attrs):
-        self.words += " "
-        self.addresses += [value for key, value in attrs if key in ("src", "href", "xlink:href")]
-        self.ids += [value for key, value in attrs if key == "id"]
-        self.scripts += tag == "script"
-        if tag not in VOID:
-            self.open.append(tag)
-
-    def handle_startendtag(self, tag, attrs):
-        self.handle_starttag(tag, attrs)
-        if tag not in VOID:
-            self.open.pop()
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag, tag
-
-    def handle_data(self, data):
-        if not self.open or self.open[-1] not in ("script", "style"):
-            self.words += data
 
 
 def bulletin():

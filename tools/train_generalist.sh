@@ -6,15 +6,17 @@
 set -euo pipefail
 
 run=${1:?usage: tools/train_generalist.sh RUN_FOLDER [STEPS]}
-steps=${2:-5650000}
+steps=${2:-36000000}
 resume=()
 [[ ! -e $run/run.json ]] || resume=(--resume)
 export OPENBLAS_NUM_THREADS=1  # one thread is faster for these sizes
 
+# symmetric, max_visits and repetition_penalty change how the policy plays, not its weights.
 nice -n 5 rosrun aquafarm_agents aquafarm_train ranch_family -a ppo -s 1 -f 256 -n "$steps" \
   -d "$run" --evaluate 0 "${resume[@]}" \
-  -o hidden_size=128 -o gamma=0.99 -o batch_size=1024 -o learning_rate=linear:7e-4:0:1 \
-  -o teacher=linear:1:0:0.18 -x entropy:linear:0.01:0:1
+  -o hidden_size=192 -o gamma=0.995 -o reward_scale=0.02 -o batch_size=1024 \
+  -o learning_rate=linear:7e-4:0:1 -o teacher=linear:1:0:0.05 -x entropy:linear:0.005:0:1 \
+  -o augment=true -o symmetric=true -o max_visits=3 -o repetition_penalty=0.3
 
 # Plans of more than 400,000 states take minutes each; those ranches are left out and counted.
 for scenario in paper procedural zhoushan_storms ranch_family; do

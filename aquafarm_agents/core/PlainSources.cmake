@@ -51,14 +51,18 @@ set(AQUAFARM_PLAIN_SOURCES
 
 # They need BLAS.
 set(AQUAFARM_PPO_POLICY_SOURCES
+  src/networks/repetition_penalty.cpp
   src/ppo/actor.cpp
   src/ppo/central_actor_critic.cpp
   src/ppo/feed_forward.cpp
+  src/ppo/loop_guard.cpp
   src/ppo/lstm_actor_critic.cpp
   src/ppo/make_actor_critic.cpp
   src/ppo/ppo_loss.cpp
   src/ppo/ppo_options.cpp
   src/ppo/ppo_policy.cpp
+  src/ppo/teacher.cpp
   src/ppo/token_actor_critic.cpp
   src/ppo/token_layout.cpp
+  src/ppo/token_symmetry.cpp
   src/training/token_policy.cpp)

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "aquafarm/agents/networks/torch_runtime.h"
-#include "dqn/repetition_penalty.h"
+#include "networks/repetition_penalty.h"
 #include "networks/replay_learner.h"
 #include "networks/value_optimizer.h"
 

@@ -42,11 +42,34 @@ void Actor::Observe(ActorCritic& network, const StepResults& results) {
   rows.started = started_.data();
   if (network.joint_agents() > 0) Join(network.joint_agents(), results.features);
   rows.joint = joint_.data();
-  const float* const outputs = network.Forward(rows, state_size_ == 0 ? nullptr : state_.data());
+  const float* const outputs =
+      symmetries_.empty() ? network.Forward(rows, state_size_ == 0 ? nullptr : state_.data())
+                          : MeanOutputs(network, rows);
   distribution_.Compute(outputs, masks_.data(), entries());
   for (std::size_t i = 0; i < entries(); ++i) {
     values_[i] = outputs[i * kActorCriticOutputs + kActionCount];
   }
+}
+
+const float* Actor::MeanOutputs(ActorCritic& network, SequenceRows rows) {
+  constexpr auto kWidth = static_cast<std::size_t>(kActorCriticOutputs);
+  constexpr float kShare = 1.0F / static_cast<float>(kSymmetries);
+  const float* const plain = rows.features;
+  turned_.resize(entries() * features_);
+  mean_outputs_.assign(entries() * kWidth, 0.0F);
+  rows.features = turned_.data();
+  for (const TokenSymmetry& symmetry : symmetries_) {
+    for (std::size_t i = 0; i < entries(); ++i) {
+      symmetry.Turn(plain + i * features_, turned_.data() + i * features_);
+    }
+    const float* outputs = network.Forward(rows, nullptr);
+    for (std::size_t i = 0; i < entries(); ++i, outputs += kWidth) {
+      float* const mean = mean_outputs_.data() + i * kWidth;
+      for (std::uint8_t a = 0; a < kActionCount; ++a) mean[a] += kShare * outputs[symmetry.Turn(a)];
+      mean[kActionCount] += kShare * outputs[kActionCount];
+    }
+  }
+  return mean_outputs_.data();
 }
 
 void Actor::Join(std::size_t joint_agents, const std::vector<float>& features) {

@@ -10,6 +10,7 @@
 #include "aquafarm/agents/ppo/ppo_options.h"
 #include "ppo/actor_critic.h"
 #include "ppo/ppo_loss.h"
+#include "ppo/token_symmetry.h"
 
 namespace aquafarm::agents {
 
@@ -18,6 +19,9 @@ class Actor {
  public:
   Actor(const EnvironmentSpec& spec, const PpoOptions& options, std::size_t state_size);
 
+  /// Averages the outputs of the network over all rotations and reflections of the observed
+  /// tokens from now on: a turned ranch then has the turned probabilities and the same value.
+  void AverageSymmetries(const TokenLayout& layout) { symmetries_ = AllSymmetries(layout); }
   /// Clears the recurrent states. @param farms N
   void Begin(std::size_t farms);
   /// Computes masks (only action 0 for an agent that is done), probabilities and values for the
@@ -40,6 +44,7 @@ class Actor {
 
  private:
   void Join(std::size_t joint_agents, const std::vector<float>& features);
+  const float* MeanOutputs(ActorCritic& network, SequenceRows rows);
 
   const PpoOptions options_;
   const std::size_t agents_;
@@ -47,7 +52,10 @@ class Actor {
   const std::size_t state_size_;
   std::vector<ActionMask> masks_;
   std::vector<float> values_;
-  std::vector<float> joint_;  // [N, S, joint_agents, F]
+  std::vector<float> joint_;               // [N, S, joint_agents, F]
+  std::vector<TokenSymmetry> symmetries_;  // to average over; empty: only the plain tokens
+  std::vector<float> turned_;              // [N, S, F]
+  std::vector<float> mean_outputs_;        // [N, S, kActorCriticOutputs]
   std::vector<std::uint8_t> started_;
   std::vector<float> state_;
   std::vector<float> state_before_;

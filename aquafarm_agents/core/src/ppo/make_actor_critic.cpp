@@ -21,6 +21,16 @@ std::unique_ptr<ActorCritic> MakeActorCritic(const EnvironmentSpec& spec, const 
                        ", expected 0 in a scenario without view.tokens, which the teacher reads; "
                        "set view.tokens, or teacher=0");
     }
+    if (options.augment || options.symmetric) {
+      throw InputError(std::string(options.augment ? "augment" : "symmetric") +
+                       ": got true, expected false in a scenario without view.tokens, which are "
+                       "turned; set view.tokens, or false");
+    }
+    if (options.max_visits > 0) {
+      throw InputError("max_visits: got " + std::to_string(options.max_visits) +
+                       ", expected 0 in a scenario without view.tokens, which contain the routes; "
+                       "set view.tokens, or max_visits=0");
+    }
     const auto features = static_cast<std::size_t>(spec.feature_count);
     if (!options.central) return MakeActorCritic(features, hidden, options.recurrent, {seed});
     return MakeCentralActorCritic(features, static_cast<std::size_t>(spec.agents), hidden,

@@ -106,10 +106,12 @@ struct Shard {
     if (options.shards > 1) prefix = "shard" + std::to_string(index) + ".";
   }
 
-  /// Chooses actions and records them. @param results of the farms of this shard
-  void Act(ActorCritic& network, const StepResults& results);
+  /// Sets what the next calls of Act and Finish observe. @param results of the farms of this shard
+  void Observe(const StepResults& results);
+  /// Chooses actions and records them.
+  void Act(ActorCritic& network);
   /// Completes a full rollout with the values of the observations that follow it.
-  void Finish(ActorCritic& network, const StepResults& results, const PpoOptions& options);
+  void Finish(ActorCritic& network, const PpoOptions& options);
   void Save(Checkpoint& checkpoint) const;
   void Load(const Checkpoint& checkpoint);
   template <typename Self, typename Visit>
@@ -120,27 +122,51 @@ struct Shard {
   AgentRng exploration;
   RandomStream order;  // of the samples
   std::uint64_t farm_steps{};
-  StepResults results;  // a copy, if the process has several shards
+  StepResults results;                    // a copy, if the process has several shards
+  const StepResults* seen{};              // since the last Observe
+  std::vector<TokenSymmetry> symmetries;  // that episodes are turned by; empty: none
+  std::vector<std::uint8_t> symmetry;     // of each entry's episode
+  StepResults turned;                     // the results with turned tokens
   std::vector<std::uint8_t> actions;
   std::vector<float> log_probs;
   std::string prefix;  // of its sections in a checkpoint; empty for the only shard
 };
 
-void Shard::Act(ActorCritic& network, const StepResults& seen) {
-  actor.Observe(network, seen);
+void Shard::Observe(const StepResults& observed) {
+  seen = &observed;
+  if (symmetries.empty()) return;
+  turned = observed;
+  const std::size_t agents = rollout.shape().agents;
+  const std::size_t features = rollout.shape().features;
+  for (std::size_t i = 0; i < symmetry.size(); ++i) {
+    if (observed.started[i / agents] != 0) {
+      symmetry[i] = static_cast<std::uint8_t>(exploration[i].Below(kSymmetries));
+    }
+    const TokenSymmetry& by = symmetries[symmetry[i]];
+    by.Turn(observed.features.data() + i * features, turned.features.data() + i * features);
+    turned.legal[i] = by.Turn(observed.legal[i]);
+  }
+  seen = &turned;
+}
+
+void Shard::Act(ActorCritic& network) {
+  actor.Observe(network, *seen);
   actor.Sample(exploration, actions);
   const ActionDistribution& distribution = actor.distribution();
   log_probs.resize(actions.size());
   for (std::size_t i = 0; i < actions.size(); ++i) {
     log_probs[i] = distribution.log_probs(static_cast<Eigen::Index>(i), actions[i]);
   }
-  rollout.Add(seen, actor.masks(), actions, log_probs, actor.values(), actor.state_before());
+  rollout.Add(*seen, actor.masks(), actions, log_probs, actor.values(), actor.state_before());
+  for (std::size_t i = 0; i < symmetry.size(); ++i) {
+    actions[i] = symmetries[symmetry[i]].TurnBack(actions[i]);
+  }
 }
 
-void Shard::Finish(ActorCritic& network, const StepResults& seen, const PpoOptions& options) {
+void Shard::Finish(ActorCritic& network, const PpoOptions& options) {
   // The step is taken again with the new weights, from the same recurrent states.
   const std::vector<float> state = actor.state();
-  actor.Observe(network, seen);
+  actor.Observe(network, *seen);
   actor.state() = state;
   rollout.Finish(actor.values(), static_cast<float>(options.gamma),
                  static_cast<float>(options.gae_lambda));
@@ -158,6 +184,7 @@ void Shard::Save(Checkpoint& checkpoint) const {
   exploration.Save(own);
   SaveNumbers(own, "ppo.progress", [this](const auto& visit) { VisitNumbers(*this, visit); });
   own.SetArray("ppo.state", actor.state());
+  if (!symmetry.empty()) own.SetArray("ppo.symmetry", symmetry);
   checkpoint.AddPart(prefix, std::move(own));
 }
 
@@ -167,9 +194,17 @@ void Shard::Load(const Checkpoint& checkpoint) {
   LoadNumbers<std::uint64_t>(own, "ppo.progress", "ppo.rng",
                              [this](const auto& visit) { VisitNumbers(*this, visit); });
   own.GetArray("ppo.state", actor.state().size(), state);
+  std::vector<std::uint8_t> turned_by;
+  if (!symmetry.empty()) own.GetArray("ppo.symmetry", symmetry.size(), turned_by);
+  for (const std::uint8_t one : turned_by) {
+    if (one < kSymmetries) continue;
+    throw InputError("ppo.symmetry: got " + std::to_string(one) + ", expected at most " +
+                     std::to_string(kSymmetries - 1) + ": damaged, resume from another checkpoint");
+  }
   rollout.Load(own);
   exploration.Load(own);
   actor.state() = std::move(state);
+  symmetry = std::move(turned_by);
 }
 
 class PpoLearner final : public ShardedLearner, public WarmStart {
@@ -193,6 +228,11 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
       shards_.emplace_back(one, seed, options, shape, local_.first + i);
     }
     if (!HasTokens(spec)) return;
+    for (Shard& shard : shards_) {
+      if (!options.augment) break;
+      shard.symmetries = AllSymmetries(LayoutOfTokens(spec.feature_names));
+      shard.symmetry.resize(shape.entries);
+    }
     updater_.SetTeacher(std::make_unique<const Teacher>(LayoutOfTokens(spec.feature_names)));
   }
 
@@ -222,7 +262,7 @@ class PpoLearner final : public ShardedLearner, public WarmStart {
 
  private:
   const StepResults& ResultsOf(std::size_t shard, const StepResults& results);
-  void Update(const StepResults& results, double progress);
+  void Update(double progress);
 
   const EnvironmentSpec spec_;
   const PpoOptions options_;
@@ -252,22 +292,23 @@ void PpoLearner::Step(const StepResults& results, double progress,
     const StepResults& own = ResultsOf(i, results);
     shards_[i].farm_steps += FarmSteps(own);
     shards_[i].rollout.Complete(own, rewards);
+    shards_[i].Observe(own);
   }
-  if (shards_.front().rollout.IsFull()) Update(results, progress);
+  if (shards_.front().rollout.IsFull()) Update(progress);
   actions.clear();
   for (Shard& shard : shards_) {
-    shard.Act(*network_, shards_.size() == 1 ? results : shard.results);
+    shard.Act(*network_);
     actions.insert(actions.end(), shard.actions.begin(), shard.actions.end());
   }
   entropy_ = options_.shards == 1 ? shards_.front().actor.distribution().entropies.mean()
                                   : updater_.entropy();
 }
 
-void PpoLearner::Update(const StepResults& results, double progress) {
+void PpoLearner::Update(double progress) {
   std::vector<PpoUpdater::Input> inputs;
   PpoUpdater::Context context{progress, 0};
   for (Shard& shard : shards_) {
-    shard.Finish(*network_, shards_.size() == 1 ? results : shard.results, options_);
+    shard.Finish(*network_, options_);
     inputs.push_back({&shard.rollout, &shard.order});
     context.farm_steps += shard.farm_steps;
   }

@@ -63,6 +63,10 @@ PpoOptions PpoOptions::Parse(const std::string& text, std::string& resolved, boo
   ReadFlag(reader, "normalize_advantages", options.normalize_advantages);
   ReadSchedule(reader, "teacher", 0.0, 1000.0, options.teacher);
   ReadSchedule(reader, "team_share", 0.0, 1.0, options.team_share);
+  ReadFlag(reader, "augment", options.augment);
+  ReadFlag(reader, "symmetric", options.symmetric);
+  ReadNumber(reader, "repetition_penalty", 0.0, 1e6, options.repetition_penalty);
+  ReadWhole(reader, "max_visits", 0, 1000000, options.max_visits);
   options.policy = ReadWord(reader, "policy", options.policy, kPolicyModes);
   ReadWhole(reader, "shards", 1, kMaxShards, options.shards);
   if ((options.shards & (options.shards - 1)) != 0) {

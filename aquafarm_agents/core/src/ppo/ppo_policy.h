@@ -2,13 +2,16 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "aquafarm/agents/environment/policy.h"
 #include "aquafarm/agents/learning/checkpoint.h"
 #include "aquafarm/agents/ppo/ppo_options.h"
+#include "networks/repetition_penalty.h"
 #include "ppo/actor.h"
 #include "ppo/actor_critic.h"
+#include "ppo/loop_guard.h"
 
 namespace aquafarm::agents {
 
@@ -26,9 +29,15 @@ class PpoPolicy final : public Policy {
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override;
 
  private:
+  void TakeBest(const StepResults& results, std::vector<std::uint8_t>& actions);
+  void LeaveLoops(const StepResults& results, std::vector<std::uint8_t>& actions);
+
+  const EnvironmentSpec spec_;
   const PpoOptions options_;
   std::unique_ptr<ActorCritic> network_;
   Actor actor_;
+  RepetitionPenalty repetitions_;
+  std::optional<LoopGuard> loops_;
   AgentRng rng_;
 };
 

@@ -68,10 +68,25 @@ std::uint8_t Teacher::MoveTo(const float* tokens, const Target& target, ActionMa
   return best;
 }
 
-std::uint8_t Teacher::ActionOf(const float* tokens, ActionMask allowed) const {
+Teacher::Target Teacher::NearestTarget(const float* tokens) const {
   Target target;
   Consider(tokens, TokenKind::kDevice, target);
   Consider(tokens, TokenKind::kPort, target);
+  return target;
+}
+
+std::uint8_t Teacher::ActionOf(const float* tokens, ActionMask allowed) const {
+  return ActionTo(tokens, NearestTarget(tokens), allowed);
+}
+
+std::optional<std::uint8_t> Teacher::SafeActionOf(const float* tokens, ActionMask allowed) const {
+  const Target target = NearestTarget(tokens);
+  if (target.token == nullptr || target.token[route_risk_] > 0.0F) return std::nullopt;
+  return ActionTo(tokens, target, allowed);
+}
+
+std::uint8_t Teacher::ActionTo(const float* tokens, const Target& target,
+                               ActionMask allowed) const {
   if (target.token != nullptr && target.token[here_] != 0.0F) {
     const Action action = target.is_port ? Action::kDropOff : Action::kPickup;
     if ((allowed & MaskOf(action)) != 0) return static_cast<std::uint8_t>(action);

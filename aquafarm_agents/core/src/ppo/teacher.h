@@ -11,6 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "aquafarm/grid/action.h"
 #include "ppo/ppo_loss.h"
@@ -25,6 +26,10 @@ class Teacher {
 
   /// Returns the teacher's action, one of `allowed`. @param tokens one row of features
   std::uint8_t ActionOf(const float* tokens, ActionMask allowed) const;
+
+  /// As ActionOf, if the forecast has no risk along the route to the target; nothing if it has, or
+  /// without a target.
+  std::optional<std::uint8_t> SafeActionOf(const float* tokens, ActionMask allowed) const;
 
   /// Adds the slopes of coefficient · weight · cross-entropy(teacher, policy) to those of the
   /// logits.
@@ -41,6 +46,8 @@ class Teacher {
     float cost{};
     bool is_port{};
   };
+  Target NearestTarget(const float* tokens) const;
+  std::uint8_t ActionTo(const float* tokens, const Target& target, ActionMask allowed) const;
   void Consider(const float* tokens, TokenKind kind, Target& best) const;
   std::uint8_t MoveTo(const float* tokens, const Target& target, ActionMask allowed) const;
 

@@ -18,6 +18,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
 #include "learning/parse_checkpoint.h"
+#include "training/network_size.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -97,6 +98,10 @@ void Run::All(const MakeEnvironment& make_environment) {
     folder.emplace(options_.run_dir, options_.resume);
     if (options_.resume) TakeOver(*folder);
   }
+  const bool has_checkpoint = options_.resume && folder && folder->NewestCheckpoint().has_value();
+  if (!options_.init.empty() && !has_checkpoint) {
+    options_.options = WithSizeOf(FindPolicy(options_.init).checkpoint.options, options_.options);
+  }
   const auto encodings =
       static_cast<std::uint8_t>(algorithm.encodings(LearnerOptionsOf(options_)) |
                                 (options_.credit == kCredits[0] ? int{kOwnRewardsBit} : 0));
@@ -106,7 +111,6 @@ void Run::All(const MakeEnvironment& make_environment) {
   report_.farms = whole.farms;
   SetDefaultLimit(algorithm, whole);
   const std::unique_ptr<Learner> learner = MakeLearner(algorithm, environment->spec());
-  const bool has_checkpoint = options_.resume && folder && folder->NewestCheckpoint().has_value();
   if (!options_.init.empty() && !has_checkpoint) Initialize(*learner);
   for (const std::string& line : RenamedOptions(options_.options)) {
     Notify(RunPhase::kStarting, line);
@@ -190,6 +194,9 @@ void Run::TakeOver(const RunFolder& folder) {
   try {
     const auto run = nlohmann::json::parse(ReadFile(path));
     options_.init = run.value("init", "");
+    if (!options_.init.empty()) {
+      options_.options = WithSizeOf(run.value("options", ""), options_.options);
+    }
     if (options_.episodes != 0 || options_.steps != 0) return;
     run.at("episodes").get_to(options_.episodes);
     run.at("steps").get_to(options_.steps);

@@ -105,6 +105,22 @@ TEST(Ppo, GreedyPoliciesRepeatAndSampledOnesFollowTheirSeed) {
   EXPECT_NE(actions_of("policy=sampled", 1), actions_of("policy=sampled", 2));
 }
 
+// Policies that have learned nothing move in circles.
+TEST(Ppo, ARepetitionPenaltyEndsCircles) {
+  LocalEnvironment environment(TinyFarm(400), {1, kFeaturesBit, false, 1});
+  int solved[2] = {};
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (const bool has_penalty : {false, true}) {
+      const std::string options = has_penalty ? "repetition_penalty=1" : "";
+      const auto policy = MakePpo(environment.spec(), seed, options)->GreedyPolicy();
+      const double success = Evaluate(environment, *policy, 1, 1).success_rate;
+      solved[has_penalty ? 1 : 0] += success > 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_LE(solved[0], 2);
+  EXPECT_GE(solved[1], 8);
+}
+
 // As a ship's node, which receives only its own share of the results.
 TEST(Ppo, PlaysAShipByItsOwnShareAsAmongAll) {
   Scenario scenario = aquafarm::test::TinyScenario();
@@ -195,7 +211,8 @@ TEST(Mappo, PoliciesAreThoseOfPpoWithoutValues) {
 
 TEST(Ppo, WrongOptionsAreAnsweredWithWhatIsAllowed) {
   for (const auto& [options, words] :
-       {std::pair{"clip=0.1", "options: got 'clip', expected one of: batch_size, clip_range"},
+       {std::pair{"clip=0.1",
+                  "options: got 'clip', expected one of: augment, batch_size, clip_range"},
         std::pair{"epochs=0", "epochs: got 0, expected [1, 100]"},
         std::pair{"batch_size=2.5", "batch_size: got 2.5, expected a whole number"},
         std::pair{"policy=best", "policy: got 'best', expected one of: greedy, sampled"},

@@ -8,6 +8,7 @@
 #include "aquafarm/farm/energy.h"
 #include "aquafarm/grid/action.h"
 #include "observation/token_risk.h"
+#include "observation/token_targets.h"
 
 namespace aquafarm {
 namespace {
@@ -19,8 +20,12 @@ constexpr float kCountScale = 1.0F / 4.0F;  // of devices aboard and capacity
 constexpr float kLong = 1.0F / 1000.0F;     // of steps
 constexpr float kShort = 1.0F / 100.0F;     // of steps
 constexpr std::int32_t kNear = 8;           // steps of "route_risk_near"
+constexpr float kTwoRoutes = 0.5F;          // of the length of two routes
 constexpr float kEnergyMoves = 100.0F;      // straight moves whose energy is 1
 constexpr std::int32_t kSide = 2 * kTokenWindow + 1;
+
+using TokenTargets =
+    TargetsOf<static_cast<std::size_t>(kTokenDevices), static_cast<std::size_t>(kTokenPorts)>;
 
 float Length(float cells) {
   return std::min(kFarthest, std::max(-kFarthest, cells / kTokenLength));
@@ -38,41 +43,6 @@ float* WritePlace(Cell from, Cell to, float* out) {
 float StepsLeft(const View& view) {
   return std::max(0.0F, HorizonOf(*view.scenario) - static_cast<float>(view.step));
 }
-
-const RouteEntry* WaysFrom(const View& view, Cell cell) {
-  const auto index = static_cast<std::size_t>(LinearIndex(cell, view.scenario->width));
-  return view.layout->ways.data() + index * view.layout->way_count();
-}
-
-// Ids in id order; of more than the slots, those with the smallest distance.
-template <std::size_t slots>
-class Kept {
- public:
-  void Add(std::int32_t id, float distance) {
-    if (count_ < slots) {
-      Put(count_++, id, distance);
-      return;
-    }
-    std::size_t farthest = 0;
-    for (std::size_t i = 1; i < slots; ++i) {
-      if (distance_[i] >= distance_[farthest]) farthest = i;
-    }
-    if (distance >= distance_[farthest]) return;
-    for (std::size_t i = farthest; i + 1 < slots; ++i) Put(i, id_[i + 1], distance_[i + 1]);
-    Put(slots - 1, id, distance);
-  }
-  std::size_t size() const { return count_; }
-  std::size_t operator[](std::size_t slot) const { return static_cast<std::size_t>(id_[slot]); }
-
- private:
-  void Put(std::size_t slot, std::int32_t id, float distance) {
-    id_[slot] = id;
-    distance_[slot] = distance;
-  }
-  std::array<std::int32_t, slots> id_{};
-  std::array<float, slots> distance_{};
-  std::size_t count_{};
-};
 
 // --- ship ----------------------------------------------------------------------------------------
 
@@ -224,10 +194,16 @@ float* WriteTarget(const View& view, const TokenRisk& risk, std::size_t way, Cel
   return out;
 }
 
+std::vector<std::string> PortNames() {
+  std::vector<std::string> names = TargetNames();
+  names.emplace_back("onward");
+  return names;
+}
+
 std::vector<std::string> DeviceNames() {
   std::vector<std::string> names = TargetNames();
   names.insert(names.end(), {"deployed", "aboard", "value", "health", "worth", "loss",
-                             "port_distance", "slack"});
+                             "port_distance", "slack", "onward_device", "onward_port"});
   for (int kind = 0; kind < kDeviceKindCount; ++kind) {
     names.emplace_back(ToString(static_cast<DeviceKind>(kind)));
   }
@@ -249,8 +225,10 @@ float LossOf(const View& view, const TokenRisk& risk, const KnownDevice& device)
   return -worst * damage.exposure_damage * device.value;
 }
 
-float* WriteDevice(const View& view, const TokenRisk& risk, const KnownDevice& device,
-                   std::size_t way, float* out) {
+float* WriteDevice(const View& view, const TokenRisk& risk, const TokenTargets& targets,
+                   std::size_t slot, float* out) {
+  const KnownDevice& device = view.devices[targets.device(slot)];
+  const std::size_t way = targets.way(slot);
   const bool is_deployed = device.status == DeviceStatus::kDeployed;
   const std::int32_t steps = is_deployed ? WaysFrom(view, view.self)[way].steps : 0;
   out = WriteTarget(view, risk, way, device.cell, steps, !is_deployed, out);
@@ -269,6 +247,8 @@ float* WriteDevice(const View& view, const TokenRisk& risk, const KnownDevice& d
   constexpr float kActions = 2.0F;  // pickup and drop-off
   *out++ = Unit(
       (StepsLeft(view) - static_cast<float>(steps) - static_cast<float>(home) - kActions) * kShort);
+  *out++ = Length(static_cast<float>(targets.ToNextDevice(slot)));
+  *out++ = Length(kTwoRoutes * static_cast<float>(targets.ToNextDeviceByPort(slot)));
   std::fill_n(out, kDeviceKindCount, 0.0F);
   out[static_cast<std::size_t>(device.kind)] = 1.0F;
   return out + kDeviceKindCount;
@@ -276,42 +256,23 @@ float* WriteDevice(const View& view, const TokenRisk& risk, const KnownDevice& d
 
 void WriteDeviceTokens(const FeatureScales&, const View& view, float* out) {
   const TokenRisk risk(view);
-  const RouteEntry* const ways = WaysFrom(view, view.self);
-  Kept<kTokenDevices> kept;
-  std::array<std::size_t, kTokenDevices> way_of{};
-  const auto way_at = [&view](std::size_t id) {
-    std::size_t way = view.layout->ports.size();
-    for (std::size_t i = 0; i < id; ++i) way += view.devices[i].self_propelled ? 0 : 1;
-    return way;
-  };
-  std::size_t way = view.layout->ports.size();
-  for (std::size_t id = 0; id < view.devices.size(); ++id) {
-    const KnownDevice& device = view.devices[id];
-    if (device.self_propelled) continue;
-    const std::size_t own_way = way++;
-    if (device.aboard_self) kept.Add(static_cast<std::int32_t>(id), -1.0F);
-    if (device.status != DeviceStatus::kDeployed) continue;
-    kept.Add(static_cast<std::int32_t>(id), static_cast<float>(ways[own_way].steps));
-  }
-  for (std::size_t slot = 0; slot < kept.size(); ++slot) way_of[slot] = way_at(kept[slot]);
+  const TokenTargets targets(view);
   float* const end = out + kTokenDevices * TokenGroups()[1].size;
-  for (std::size_t slot = 0; slot < kept.size(); ++slot) {
-    out = WriteDevice(view, risk, view.devices[kept[slot]], way_of[slot], out);
+  for (std::size_t slot = 0; slot < targets.devices(); ++slot) {
+    out = WriteDevice(view, risk, targets, slot, out);
   }
   std::fill(out, end, 0.0F);
 }
 
 void WritePortTokens(const FeatureScales&, const View& view, float* out) {
   const TokenRisk risk(view);
+  const TokenTargets targets(view);
   const RouteEntry* const ways = WaysFrom(view, view.self);
-  Kept<kTokenPorts> kept;
-  for (std::size_t id = 0; id < view.layout->ports.size(); ++id) {
-    kept.Add(static_cast<std::int32_t>(id), static_cast<float>(ways[id].steps));
-  }
   float* const end = out + kTokenPorts * TokenGroups()[2].size;
-  for (std::size_t slot = 0; slot < kept.size(); ++slot) {
-    const std::size_t id = kept[slot];
+  for (std::size_t slot = 0; slot < targets.ports(); ++slot) {
+    const std::size_t id = targets.port(slot);
     out = WriteTarget(view, risk, id, view.layout->ports[id], ways[id].steps, false, out);
+    *out++ = Length(static_cast<float>(targets.FromPort(slot)));
   }
   std::fill(out, end, 0.0F);
 }
@@ -414,7 +375,7 @@ std::vector<std::string> InSlots(const std::string& what, std::int32_t slots,
 std::vector<FeatureGroup> TokenFeatureGroups() {
   return {{"ship", InSlots("ship", 1, ShipNames()), WriteShip},
           {"devices", InSlots("device", kTokenDevices, DeviceNames()), WriteDeviceTokens},
-          {"ports", InSlots("port", kTokenPorts, TargetNames()), WritePortTokens},
+          {"ports", InSlots("port", kTokenPorts, PortNames()), WritePortTokens},
           {"disasters", InSlots("disaster", kTokenDisasters, DisasterNames()), WriteDisasterTokens},
           {"others", InSlots("other", kTokenOthers, {"valid", "east", "north", "aboard"}),
            WriteOtherTokens}};

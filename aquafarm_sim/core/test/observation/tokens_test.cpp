@@ -96,6 +96,11 @@ TEST(Tokens, DescribeARouteAndTheRisk) {
   EXPECT_FLOAT_EQ(tokens.at("device0.worth"), 0.8F);
   EXPECT_FLOAT_EQ(tokens.at("device0.port_distance"), 3.0F / kTokenLength);
   EXPECT_EQ(tokens.at("device0.monitoring"), 1.0F);
+  // From (13, 9) to (8, 13); and to the port (9, 15) and on, which is shorter than by (15, 12).
+  EXPECT_FLOAT_EQ(tokens.at("device0.onward_device"), 5.0F / kTokenLength);
+  EXPECT_FLOAT_EQ(tokens.at("device0.onward_port"), 0.5F * (6.0F + 2.0F) / kTokenLength);
+  EXPECT_FLOAT_EQ(tokens.at("port0.onward"), 3.0F / kTokenLength);
+  EXPECT_FLOAT_EQ(tokens.at("port1.onward"), 2.0F / kTokenLength);
   // The disaster's edge, 3.5 cells from (13, 11), is past (9, 15)'s row of ports: never there.
   EXPECT_EQ(tokens.at("port1.risk_now"), 0.0F);
   // The device at (13, 9) is inside the outer ring: risk 6 of 20, and loses 0.01 · 6 · 80.
@@ -108,6 +113,15 @@ TEST(Tokens, DescribeARouteAndTheRisk) {
   EXPECT_EQ(tokens.at("ship.near_blocked.-2.1"), 1.0F);  // the rock at (9, 11)
   EXPECT_EQ(tokens.at("device2.valid"), 0.0F);
   EXPECT_EQ(tokens.at("other0.valid"), 0.0F);
+}
+
+TEST(Tokens, NothingFollowsTheLastDevice) {
+  Scenario single = OpenScenario();
+  single.devices.sites.pop_back();
+  const Tokens tokens = TokensOf(single);
+  EXPECT_EQ(tokens.at("device0.onward_device"), 0.0F);
+  EXPECT_FLOAT_EQ(tokens.at("device0.onward_port"), 0.5F * tokens.at("device0.port_distance"));
+  EXPECT_FLOAT_EQ(tokens.at("port0.onward"), 3.0F / kTokenLength);
 }
 
 TEST(Tokens, ForecastRiskIsThatOfTheFarmSomeStepsLater) {

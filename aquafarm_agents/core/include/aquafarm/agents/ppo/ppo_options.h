@@ -48,8 +48,20 @@ struct PpoOptions {
   /// Weight of the cross-entropy with a simple teacher, which the policy imitates at first
   /// (kickstarting, src/ppo/teacher.h); needs entity tokens.
   Schedule teacher{ScheduleKind::kConstant, 0.0, 0.0, 1.0};
+  /// Each episode is seen turned or reflected by one of the eight symmetries of the grid, drawn at
+  /// its start; needs entity tokens.
+  bool augment{false};
   PolicyMode policy{PolicyMode::kGreedy};  ///< how the trained policy acts
-  std::int32_t threads{1};                 ///< of the matrix library
+  /// The trained policy averages its network over the eight symmetries, so that it plays a turned
+  /// ranch as it plays the ranch; needs entity tokens.
+  bool symmetric{false};
+  /// Reduces the logit of an action in the trained greedy policy, per earlier use in the same
+  /// situation (cell, load, remaining devices) of the episode; 0: no effect.
+  double repetition_penalty{0.0};
+  /// If a situation occurs for this many times, the trained greedy policy follows the route to the
+  /// nearest target while that has no risk (src/ppo/loop_guard.h); needs entity tokens; 0: never.
+  std::int32_t max_visits{0};
+  std::int32_t threads{1};  ///< of the matrix library
   /// Groups of farms, a power of two. Each has its own share of every minibatch; their gradients
   /// are added in a fixed order, so results depend on the number of shards, not of processes.
   std::int32_t shards{1};

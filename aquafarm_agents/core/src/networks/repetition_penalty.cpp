@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dqn/repetition_penalty.h"
+#include "networks/repetition_penalty.h"
 
 #include <algorithm>
 #include <string>
 
 #include "aquafarm/base/hash.h"
-#include "networks/deep_policy.h"
+#include "networks/farm_rows.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -17,10 +17,13 @@ bool EndsWith(const std::string& name, const std::string& end) {
   return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
 }
 
-// Names as in Encoder::feature_names.
-bool TellsSituations(const std::string& name) {
-  if (name == "self.x" || name == "self.y" || name == "free_capacity") return true;
-  return name.rfind("device", 0) == 0 && (EndsWith(name, ".deployed") || EndsWith(name, ".aboard"));
+// Names as in Encoder::feature_names. @param has_cell the features contain the ship's cell; if not,
+// the relative positions of the ports identify it
+bool TellsSituations(const std::string& name, bool has_cell) {
+  if (name == "self.x" || name == "self.y" || EndsWith(name, "free_capacity")) return true;
+  if (name.rfind("device", 0) == 0) return EndsWith(name, ".deployed") || EndsWith(name, ".aboard");
+  return !has_cell && name.rfind("port", 0) == 0 &&
+         (EndsWith(name, ".east") || EndsWith(name, ".north"));
 }
 
 }  // namespace
@@ -28,8 +31,10 @@ bool TellsSituations(const std::string& name) {
 RepetitionPenalty::RepetitionPenalty(const EnvironmentSpec& spec, double penalty)
     : agents_(static_cast<std::size_t>(spec.agents)), penalty_(static_cast<float>(penalty)) {
   if (penalty == 0.0) return;
-  for (std::size_t i = 0; i < spec.feature_names.size(); ++i) {
-    if (TellsSituations(spec.feature_names[i])) telling_.push_back(i);
+  const std::vector<std::string>& names = spec.feature_names;
+  const bool has_cell = std::find(names.begin(), names.end(), "self.x") != names.end();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (TellsSituations(names[i], has_cell)) telling_.push_back(i);
   }
   turn_.resize(EntryCount(spec));
   done_.resize(turn_.size() * kRemembered);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "dqn/repetition_penalty.h"
+#include "networks/repetition_penalty.h"
 
 #include <algorithm>
 
@@ -128,6 +128,24 @@ TEST(RepetitionPenalty, KnowASituationByFeaturesThatEveryFarmHas) {
   const std::vector<std::string>& names = environment.spec().feature_names;
   for (const std::string& name : kTwoFarmsOfTwo.feature_names) {
     EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+  }
+}
+
+// Entity tokens have no position of the ship, but those of the ports relative to it.
+TEST(RepetitionPenalty, KnowASituationOfTokensByThePorts) {
+  EnvironmentSpec spec = Spec(1, 1);
+  spec.feature_names = {"ship.time_left", "ship.free_capacity", "device0.east", "device0.deployed",
+                        "device0.aboard", "port0.east",         "port0.north"};
+  RepetitionPenalty repetitions(spec, 2.0);
+  const std::array<float, 7> here{0.5F, 1.0F, 0.3F, 1.0F, 0.0F, 0.25F, -0.5F};
+  const Values plain{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+  repetitions.Penalize(plain.data(), here.data(), 0);
+  repetitions.Add(3, 0);
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    std::array<float, 7> other = here;
+    other[i] += 0.0625F;
+    const bool is_same = i == 0 || i == 2;  // the time, and a device next to the ports
+    EXPECT_EQ(repetitions.Penalize(plain.data(), other.data(), 0)[3], is_same ? 1.0F : 3.0F) << i;
   }
 }
 

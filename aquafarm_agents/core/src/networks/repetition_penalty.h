@@ -12,10 +12,10 @@
 
 namespace aquafarm::agents {
 
-/// Discourages oscillation during exploration. The value of an action is reduced by a penalty for
-/// each time that it was taken in the same situation (cell, load, remaining devices) of this
-/// episode. If errors of the network make a ship move back and forth next to a device, the pickup
-/// is soon tried and learnt. (Episodic counts: Badia et al. 2020, there as a reward.)
+/// Discourages oscillation. The value (or logit) of an action is reduced by a penalty for each time
+/// that it was taken in the same situation (cell, load, remaining devices) of this episode. If
+/// errors of the network make a ship move back and forth next to a device, the pickup is soon
+/// tried. (Episodic counts: Badia et al. 2020, there as a reward.)
 class RepetitionPenalty {
  public:
   /// @param penalty per repetition, on the scale of the values; 0 disables it and stores nothing

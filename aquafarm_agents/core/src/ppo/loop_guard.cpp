@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ppo/loop_guard.h"
+
+#include <string>
+
+#include "aquafarm/base/hash.h"
+
+namespace aquafarm::agents {
+namespace {
+
+bool EndsWith(const std::string& name, const std::string& end) {
+  return name.size() >= end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
+}  // namespace
+
+LoopGuard::LoopGuard(const EnvironmentSpec& spec, std::size_t entries, std::int32_t max_visits)
+    : max_visits_(max_visits), teacher_(LayoutOfTokens(spec.feature_names)), episodes_(entries) {
+  for (std::size_t i = 0; i < spec.feature_names.size(); ++i) {
+    const std::string& name = spec.feature_names[i];
+    const bool is_device = name.rfind("device", 0) == 0;
+    const bool is_port = name.rfind("port", 0) == 0;
+    const bool is_state = EndsWith(name, ".deployed") || EndsWith(name, ".aboard");
+    if (name == "ship.free_capacity" || (is_device && is_state)) task_features_.push_back(i);
+    // Ports do not move: their relative positions identify the cell of the ship.
+    if (is_port && (EndsWith(name, ".east") || EndsWith(name, ".north"))) {
+      cell_features_.push_back(i);
+    }
+  }
+}
+
+std::optional<std::uint8_t> LoopGuard::ActionOf(std::size_t entry, const float* tokens,
+                                                bool started, ActionMask allowed) {
+  Episode& episode = episodes_[entry];
+  Hasher hasher;
+  for (const std::size_t i : task_features_) hasher.Add(tokens[i], 0.0F);
+  const std::uint64_t task = hasher.value();
+  for (const std::size_t i : cell_features_) hasher.Add(tokens[i], 0.0F);
+  if (started || task != episode.task) {
+    episode.visits.clear();
+    episode.task = task;
+    episode.is_loop = false;
+  }
+  if (++episode.visits[hasher.value()] >= max_visits_) episode.is_loop = true;
+  if (!episode.is_loop) return std::nullopt;
+  return teacher_.SafeActionOf(tokens, allowed);
+}
+
+}  // namespace aquafarm::agents

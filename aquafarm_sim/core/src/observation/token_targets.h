@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// The devices and ports that have a token, and the routes between them: what follows a visit.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "aquafarm/farm/route_table.h"
+#include "aquafarm/observation/view.h"
+
+namespace aquafarm {
+
+/// Ids in id order; of more than the slots, those with the smallest distance.
+template <std::size_t slots>
+class Kept {
+ public:
+  void Add(std::int32_t id, float distance) {
+    if (count_ < slots) {
+      Put(count_++, id, distance);
+      return;
+    }
+    std::size_t farthest = 0;
+    for (std::size_t i = 1; i < slots; ++i) {
+      if (distance_[i] >= distance_[farthest]) farthest = i;
+    }
+    if (distance >= distance_[farthest]) return;
+    for (std::size_t i = farthest; i + 1 < slots; ++i) Put(i, id_[i + 1], distance_[i + 1]);
+    Put(slots - 1, id, distance);
+  }
+  std::size_t size() const { return count_; }
+  std::size_t operator[](std::size_t slot) const { return static_cast<std::size_t>(id_[slot]); }
+
+ private:
+  void Put(std::size_t slot, std::int32_t id, float distance) {
+    id_[slot] = id;
+    distance_[slot] = distance;
+  }
+  std::array<std::int32_t, slots> id_{};
+  std::array<float, slots> distance_{};
+  std::size_t count_{};
+};
+
+/// Returns the routes from a cell to all ports and devices, as Layout::ways.
+inline const RouteEntry* WaysFrom(const View& view, Cell cell) {
+  const auto index = static_cast<std::size_t>(LinearIndex(cell, view.scenario->width));
+  return view.layout->ways.data() + index * view.layout->way_count();
+}
+
+/// @tparam kDevices slots for devices @tparam kPorts slots for ports
+template <std::size_t kDevices, std::size_t kPorts>
+class TargetsOf {
+ public:
+  explicit TargetsOf(const View& view) : view_(view) {
+    const RouteEntry* const ways = WaysFrom(view, view.self);
+    for (std::size_t id = 0; id < view.layout->ports.size(); ++id) {
+      ports_.Add(static_cast<std::int32_t>(id), static_cast<float>(ways[id].steps));
+    }
+    std::size_t way = view.layout->ports.size();
+    for (std::size_t id = 0; id < view.devices.size(); ++id) {
+      const KnownDevice& device = view.devices[id];
+      if (device.self_propelled) continue;
+      const std::size_t own_way = way++;
+      if (device.aboard_self) devices_.Add(static_cast<std::int32_t>(id), -1.0F);
+      if (device.status != DeviceStatus::kDeployed) continue;
+      devices_.Add(static_cast<std::int32_t>(id), static_cast<float>(ways[own_way].steps));
+    }
+    for (std::size_t slot = 0; slot < devices(); ++slot) ways_[slot] = WayOf(device(slot));
+  }
+
+  std::size_t devices() const { return devices_.size(); }
+  std::size_t ports() const { return ports_.size(); }
+  std::size_t device(std::size_t slot) const { return devices_[slot]; }  ///< id
+  std::size_t port(std::size_t slot) const { return ports_[slot]; }      ///< id
+  /// Index of the device of a slot in Layout::ways.
+  std::size_t way(std::size_t slot) const { return ways_[slot]; }
+
+  /// Returns the moves from the port of a slot to the nearest deployed device; 0 without one.
+  std::int32_t FromPort(std::size_t slot) const {
+    return ToDevice(view_.layout->ports[port(slot)], kNoDevice);
+  }
+  /// Returns the moves from the device of a slot to the nearest other deployed device; 0 without
+  /// one.
+  std::int32_t ToNextDevice(std::size_t slot) const {
+    return ToDevice(view_.devices[device(slot)].cell, slot);
+  }
+  /// Returns the moves from the device of a slot to a port and on to the nearest other deployed
+  /// device, by the best port.
+  std::int32_t ToNextDeviceByPort(std::size_t slot) const {
+    const RouteEntry* const ways = WaysFrom(view_, view_.devices[device(slot)].cell);
+    std::int32_t best = kUnreachable;
+    for (std::size_t i = 0; i < ports(); ++i) {
+      const std::int32_t steps = ways[port(i)].steps;
+      if (steps >= best) continue;
+      best = std::min(best, steps + ToDevice(view_.layout->ports[port(i)], slot));
+    }
+    return best;
+  }
+
+ private:
+  static constexpr std::size_t kNoDevice = kDevices;
+
+  std::size_t WayOf(std::size_t id) const {
+    std::size_t way = view_.layout->ports.size();
+    for (std::size_t i = 0; i < id; ++i) way += view_.devices[i].self_propelled ? 0 : 1;
+    return way;
+  }
+
+  // Moves to the nearest deployed device except that of a slot; 0 without one.
+  std::int32_t ToDevice(Cell from, std::size_t except) const {
+    const RouteEntry* const ways = WaysFrom(view_, from);
+    std::int32_t best = kUnreachable;
+    bool has_device = false;
+    for (std::size_t slot = 0; slot < devices(); ++slot) {
+      const bool is_deployed = view_.devices[device(slot)].status == DeviceStatus::kDeployed;
+      if (slot == except || !is_deployed) continue;
+      has_device = true;
+      best = std::min(best, ways[ways_[slot]].steps);
+    }
+    return has_device ? best : 0;
+  }
+
+  const View& view_;
+  Kept<kDevices> devices_;
+  Kept<kPorts> ports_;
+  std::array<std::size_t, kDevices> ways_{};
+};
+
+}  // namespace aquafarm

@@ -219,6 +219,11 @@ class LaunchFilesTest(unittest.TestCase):
         self.assertEqual("", values("scenario:=two_squads", "sim:=true")["scenario"])
         self.assertEqual("", values()["scenario"])
 
+    def test_curves_are_written_only_if_asked_for(self):
+        for arguments, expected in (([], False), (["log:=none"], False), (["log:=tensorboard"], True)):
+            nodes = load(LAUNCH / "train.launch", arguments).nodes
+            self.assertEqual(expected, "log_curves" in [node.type for node in nodes], arguments)
+
     def test_replay_runs_no_farm(self):
         nodes = load(LAUNCH / "replay.launch", ["bag:=/tmp/none.bag"]).nodes
         self.assertEqual({("aquafarm_viz", "viz_node"), ("rviz", "rviz"),

@@ -3,6 +3,7 @@
 """quiet_roslaunch prints what nodes print, and roslaunch's own messages only if something failed."""
 import os
 import pathlib
+import signal
 import socket
 import subprocess
 import sys
@@ -52,6 +53,18 @@ class QuietRoslaunchTest(unittest.TestCase):
         self.assertIn("exit code 1", words)
         self.assertNotIn("\x1b", words)
         self.assertNotIn("PARAMETERS", words)
+
+    def test_a_signal_while_the_launch_file_is_loaded_ends_it_without_a_word(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pathlib.Path(folder, "roslaunch.py").write_text(
+                "import os, sys, time\n"
+                "def main(words):\n    os.kill(os.getpid(), int(words[1]))\n    time.sleep(50)\n")
+            for number in (signal.SIGINT, signal.SIGTERM):
+                done = subprocess.run(
+                    ["env", "--default-signal=INT", PROGRAM, str(int(number))], text=True, timeout=40,
+                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False,
+                    env=dict(os.environ, PYTHONPATH=folder))
+                self.assertEqual((130, ""), (done.returncode, done.stdout), number)
 
     def test_what_roslaunch_refuses_is_shown(self):
         code, words = self.launch("echo hello", "other:=1", "--no-such-option")

@@ -68,7 +68,7 @@ def read_end(exit_file, code, launch):
     exit_file.unlink(missing_ok=True)
     if lines:
         return int(lines[0]), "".join(lines[1:2])
-    if code != 0:
+    if code != 0:  # among them an interruption before any node was started
         return code, ""
     reason = "its node was killed before it ended"
     if launch == "train":

@@ -66,7 +66,7 @@ def result_text(row):
 
 def is_family(run):
     """Whether the scenario of a run draws another ranch in every episode."""
-    scenario = yaml.load((run / "scenario.yaml").read_text(encoding="utf-8"), yaml.CSafeLoader)
+    scenario = yaml.safe_load((run / "scenario.yaml").read_text(encoding="utf-8"))
     return isinstance(scenario, dict) and bool(scenario.get("family"))
 
 

@@ -52,12 +52,13 @@ class SimNodeStartTest(unittest.TestCase):
                                 ("_pace:=fast", "pace: got 'fast', expected lockstep or paced")):
             self.assertIn(words, self.refusal("_scenario:=" + LONE, argument))
 
-    def test_interrupted_it_ends_with_zero(self):
-        process = start("_scenario:=" + LONE, "_pace:=paced")
-        rospy.wait_for_service("get_state", timeout=LIMIT_S)
-        process.send_signal(signal.SIGINT)
-        words = process.communicate(timeout=LIMIT_S)[0]
-        self.assertEqual(0, process.returncode, words)
+    def test_interrupted_or_terminated_it_ends_with_zero(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            process = start("_scenario:=" + LONE, "_pace:=paced")
+            rospy.wait_for_service("get_state", timeout=LIMIT_S)
+            process.send_signal(number)
+            words = process.communicate(timeout=LIMIT_S)[0]
+            self.assertEqual(0, process.returncode, words)
 
     def test_recording_publishes_every_step(self):
         process = start("_scenario:=" + LONE, "_record:=true", "_publish_hz:=1")

@@ -207,7 +207,9 @@ int RunSimNode() {
     SimNode node(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::AsyncSpinner spinner(kCommonThreads);
     spinner.start();
-    std::signal(SIGINT, [](int) { interrupted = true; });
+    for (const int number : {SIGINT, SIGTERM}) {
+      std::signal(number, [](int) { interrupted = true; });
+    }
     while (ros::ok() && !interrupted) ros::WallDuration(kLookPeriod_s).sleep();
     node.LetClientsSave();
     ros::shutdown();

@@ -6,7 +6,8 @@ proxy         a proxy delays, cuts and repeats service calls, at once or after l
               front of the real one hands out its address
 stop_sim      the sim node is stopped (SIGSTOP) for --stop-seconds, longer than a call may take
 stop_trainer  the trainer is stopped for as long
-master        the master is killed and started again at its port
+master        the master is killed and started again at its port. It does not know the services any
+              more, so that connections must stay open; calls may take as long as usual
 """
 import contextlib
 import pathlib
@@ -22,7 +23,7 @@ import xmlrpc.server
 
 from campaigns import ros
 
-STEPS = 32_000       # of a training; each call steps 16 farms
+STEPS = 96_000       # of a training; each call steps 16 farms
 LIMIT_S = 1200
 DELAY_S = 0.2
 # How often a call is treated so, one in:
@@ -127,30 +128,36 @@ def wait_until_training(ranch):
     ranch.wait_for(lambda: metrics.exists() and metrics.read_bytes().count(b"\n") > 1, "an episode")
 
 
+def stop(ranch, process, what):
+    """Stops a process; returns whether the training was still running."""
+    process.send_signal(signal.SIGSTOP)
+    return ranch.campaign.check(ranch.processes[-1].poll() is None,
+                                f"{what}: the training ended before; raise STEPS")
+
+
 def stop_a_process(name):
     """Returns a disturbance that stops a process of a ranch for a while."""
     def disturb(ranch):
         wait_until_training(ranch)
-        time.sleep(ranch.campaign.rng.uniform(0.0, 1.0))
         process = {"stop_sim": ranch.processes[1], "stop_trainer": ranch.processes[-1]}[name]
-        if process.poll() is not None:
-            return
-        process.send_signal(signal.SIGSTOP)
-        try:
+        if stop(ranch, process, name):
             time.sleep(ranch.campaign.stop_s)
-        finally:
-            process.send_signal(signal.SIGCONT)
-        ranch.campaign.attempt(f"stops of {ranch.campaign.stop_s:g} s: {name}")
+            ranch.campaign.attempt(f"stops of {ranch.campaign.stop_s:g} s: {name}")
+        process.send_signal(signal.SIGCONT)
     return disturb
 
 
 def restart_master(ranch):
+    """Restarts the master while the trainer is stopped, so that the training is not over before."""
     wait_until_training(ranch)
-    ranch.processes[0].kill()
-    ranch.processes[0].wait()
-    time.sleep(ranch.campaign.rng.uniform(0.0, 1.0))
-    ranch.processes[0] = ranch.start_master()
-    ranch.campaign.attempt("restarts of the master")
+    trainer = ranch.processes[-1]
+    if stop(ranch, trainer, "master"):
+        ranch.processes[0].kill()
+        ranch.processes[0].wait()
+        ranch.processes[0] = ranch.start_master()
+        ranch.processes.pop()  # start_master appends the master
+        ranch.campaign.attempt("restarts of the master")
+    trainer.send_signal(signal.SIGCONT)
 
 
 DISTURBANCES = {"proxy": undisturbed, "stop_sim": stop_a_process("stop_sim"),
@@ -164,8 +171,9 @@ def train(campaign, folder, kind):
     with ros.Ros(campaign, folder) as ranch:
         ranch.sim("aquafarm")
         master = Master(campaign, ranch.uri) if kind == "proxy" else None
+        call_limit_s = 30 if kind == "master" else max(2, stop_s / 4)
         process = ranch.train("aquafarm", "run", STEPS, f"_sim_timeout_s:={60 + 2 * stop_s:g}",
-                              f"_call_limit_s:={max(2, stop_s / 4):g}",
+                              f"_call_limit_s:={call_limit_s:g}",
                               uri=master.uri if master else None)
         DISTURBANCES.get(kind, undisturbed)(ranch)
         code = process.wait(timeout=LIMIT_S)

@@ -103,6 +103,10 @@ RosEnvironment::RosEnvironment(const ros::NodeHandle& node, RosEnvironmentOption
         spec_.farms);
     results_.states.resize(static_cast<std::size_t>(spec_.farms));
   }
+  Connect<aquafarm_msgs::Step>(step_client_, names::kStep);
+  Connect<aquafarm_msgs::Reset>(reset_client_, names::kReset);
+  Connect<aquafarm_msgs::SaveState>(save_client_, names::kSaveState);
+  Connect<aquafarm_msgs::LoadState>(load_client_, names::kLoadState);
   if (now.spec.farms != spec_.farms) Reset(now.state.seed);
 }
 
@@ -271,8 +275,13 @@ void RosEnvironment::WaitToResume(const std::string& why, double& waited_s) {
 }
 
 template <typename Service>
+void RosEnvironment::Connect(ros::ServiceClient& client, const std::string& name) {
+  client = node_.serviceClient<Service>(name, true);
+}
+
+template <typename Service>
 bool RosEnvironment::Try(ros::ServiceClient& client, const std::string& name, Service& service) {
-  if (!client.isValid()) client = node_.serviceClient<Service>(name, true);
+  if (!client.isValid()) Connect<Service>(client, name);
   return client.isValid() && limit_.Call(client, service);
 }
 

@@ -57,6 +57,10 @@ class RosEnvironment final : public aquafarm::agents::Environment {
   bool ConsumeRestart() override;
 
  private:
+  /// Opens a connection. All are opened at the start: a master that was restarted does not know the
+  /// sim node's services, but open connections remain.
+  template <typename Service>
+  void Connect(ros::ServiceClient& client, const std::string& name);
   template <typename Service>
   bool Try(ros::ServiceClient& client, const std::string& name, Service& service);
   template <typename Service>

@@ -25,13 +25,15 @@ class WrongKind(Exception):
 class Campaign:
     """One run of a campaign: its limits, its random numbers and its counts."""
 
-    def __init__(self, name, seconds, count, seed, workspace, only=(), stop_s=5.0):
+    def __init__(self, name, seconds, count, seed, workspace, only=(), stop_s=5.0,
+                 kills=0):
         self.name = name
         self.seconds = seconds
         self.count = count
         self.workspace = workspace
         self.only = list(only)
         self.stop_s = stop_s
+        self.kills = kills
         self.rng = random.Random(seed)
         self.seed = seed
         self.tried = collections.Counter()

@@ -3,7 +3,6 @@
 reads. The results must equal those of a training alone, and the sim node's memory must stay flat."""
 import contextlib
 import pathlib
-import re
 import select
 import socket
 import tempfile
@@ -55,12 +54,6 @@ class Subscribers:
             line.close()
 
 
-def memory(process):
-    """Resident memory of a process [bytes]."""
-    words = pathlib.Path(f"/proc/{process.pid}/status").read_text()
-    return int(re.search(r"VmRSS:\s+(\d+) kB", words).group(1)) << 10
-
-
 def alone(campaign, folder):
     """Results of a training with nothing else on its master."""
     folder.mkdir()
@@ -78,7 +71,7 @@ def together(campaign, folder, expected):
         sims = {name: ranch.sim(name, "_publish_hz:=50") for name in ("one", "two")}
         from aquafarm_msgs.msg import FarmState  # of the sourced workspace
         watchers = Subscribers(ranch, "one", FarmState._md5sum)
-        before = memory(sims["one"])
+        before = ros.memory(sims["one"])
         trainings = {name: ranch.train(name, f"run_{name}", STEPS) for name in sims}
         for name, process in trainings.items():
             code = process.wait(timeout=LIMIT_S)
@@ -87,7 +80,7 @@ def together(campaign, folder, expected):
                 campaign.attempt("trainings compared")
                 campaign.check(ranch.results(f"run_{name}") == expected,
                                f"{name}: differs from the training alone")
-        growth = memory(sims["one"]) - before
+        growth = ros.memory(sims["one"]) - before
         watchers.close()
         campaign.attempt("subscribers", len(watchers.lines))
         campaign.attempt("bytes read by subscribers", watchers.bytes_read)

@@ -12,10 +12,11 @@ from campaigns import common
 
 TARGETS = ("chart", "hazard_file", "map_yaml", "preset", "scenario", "sea", "checkpoint", "fleet",
            "bag", "request")
-ROUND_S = 20        # libFuzzer's time for each target in a round
+ROUND_S = 30        # libFuzzer's time for each target in a round
 CHANGES = 20_000    # mutations of a target in a round, without libFuzzer
-SLOW_CHANGES = 500  # of a target that needs milliseconds for each
-SLOW = ("checkpoint", "bag")
+SLOW = {"bag": 500, "checkpoint": 500, "request": 2_000}  # mutations of targets that are slow
+LENGTH = 2048       # longest input that libFuzzer makes; the longer, the fewer
+LENGTHS = {"preset": 256, "bag": 1 << 16, "checkpoint": 1 << 16}
 MOST_S = 20         # a program may read a file for so long [s of a processor]
 MOST_MEMORY = 1 << 30
 DATA = common.ROOT / "aquafarm_sim" / "core" / "test"
@@ -35,28 +36,32 @@ def corpus(name):
     return [DATA / f"fuzz_{name}"] if name in ("map_yaml", "preset", "sea") else [DATA / "data"]
 
 
-def run_target(campaign, name, seed):
-    """Runs a target for one round and counts the inputs."""
+def run_target(campaign, name, seed, place):
+    """Runs a target for one round and counts the inputs. Rounds share the folder `place`, in which
+    libFuzzer keeps inputs that reach further."""
     program = campaign.program(f"fuzz_{name}")
-    with tempfile.TemporaryDirectory(prefix="aquafarm_fuzz_") as place:
-        if b"LLVMFuzzerRunDriver" in program.read_bytes():
-            words = [f"-max_total_time={ROUND_S}", f"-seed={seed}", "-rss_limit_mb=1024",
-                     "-timeout=20", "-print_final_stats=1", "-max_len=65536", place]
-        else:
-            words = [f"--seed={seed}", SLOW_CHANGES if name in SLOW else CHANGES]
-        code, output = common.execute(program, *words, *corpus(name), seconds=ROUND_S * 30,
-                                      cwd=place)
-        inputs = re.search(r"stat::number_of_executed_units: (\d+)|inputs: (\d+)", output)
-        campaign.attempt(f"inputs of fuzz_{name}", int(inputs.group(1) or inputs.group(2))
-                         if inputs else 0)
-        if not campaign.check(code == 0, f"fuzz_{name}: seed {seed}: exit code {code}: "
-                              f"{output[-600:]}"):
-            # mutate.cpp leaves no file; targets that write their input to a file leave it there.
-            left = pathlib.Path("/dev/shm").glob(f"fuzz_{name}.*")
-            for found in [*pathlib.Path(place).glob("crash-*"), *left]:
-                kept = pathlib.Path.cwd() / f"fuzz_{name}_{found.name}"
-                kept.write_bytes(found.read_bytes())
-                print(f"kept {kept}")
+    grown = place / name
+    grown.mkdir(exist_ok=True)
+    if b"LLVMFuzzerRunDriver" in program.read_bytes():
+        words = [f"-max_total_time={ROUND_S}", f"-seed={seed}", f"-timeout={MOST_S}",
+                 f"-malloc_limit_mb={MOST_MEMORY >> 20}", f"-rss_limit_mb={2 * MOST_MEMORY >> 20}",
+                 f"-max_len={LENGTHS.get(name, LENGTH)}", "-print_final_stats=1", grown]
+    else:
+        words = [f"--seed={seed}", SLOW.get(name, CHANGES)]
+    code, output = common.execute(program, *words, *corpus(name), seconds=ROUND_S * 30, cwd=place)
+    inputs = re.search(r"stat::number_of_executed_units: (\d+)|inputs: (\d+)", output)
+    campaign.attempt(f"inputs of fuzz_{name}", int(inputs.group(1) or inputs.group(2))
+                     if inputs else 0)
+    if not campaign.check(code == 0, f"fuzz_{name}: seed {seed}: exit code {code}: "
+                          f"{output[-600:]}"):
+        # mutate.cpp leaves no file; targets that write their input to a file leave it there.
+        left = pathlib.Path("/dev/shm").glob(f"fuzz_{name}.*")
+        kinds = ("crash-*", "leak-*", "oom-*", "timeout-*")
+        for found in [*(path for kind in kinds for path in place.glob(kind)), *left]:
+            kept = pathlib.Path.cwd() / f"fuzz_{name}_{found.name}"
+            kept.write_bytes(found.read_bytes())
+            found.unlink()
+            print(f"kept {kept}")
 
 
 def bulletin(points):
@@ -110,10 +115,11 @@ def read_huge(campaign, name, arguments, content):
 
 def run(campaign):
     """Count is the number of rounds over the targets; huge files are read in the first."""
-    number = 0
-    while campaign.more(number):
-        for name in campaign.kinds(TARGETS):
-            run_target(campaign, name, campaign.seed + number)
-        number += 1
+    with tempfile.TemporaryDirectory(prefix="aquafarm_fuzz_") as place:
+        number = 0
+        while campaign.more(number):
+            for name in campaign.kinds(TARGETS):
+                run_target(campaign, name, campaign.seed + number, pathlib.Path(place))
+            number += 1
     for name, arguments, content in [] if campaign.only else huge_files():
         read_huge(campaign, name, arguments, content)

@@ -28,7 +28,7 @@ NETWORKS = {"dqn": ["paper", *REPLAY],
             "maddpg": ["two_squads", *REPLAY],
             "mappo": ["two_squads", "-n", "8000", *ROLLOUT],
             "ppo": ["paper", "-n", "8000", *ROLLOUT]}
-MOST_KILLS = 30      # in one run; the last attempt is left to end
+MOST_KILLS = 30      # in one run, unless --kills is given; the last attempt is left to end
 LIMIT_S = 300
 SIM_STEPS = 64_000   # of a training through a sim node; each call steps 16 farms
 SIM_LOST = 4         # exit code of a trainer whose sim node is gone
@@ -65,10 +65,11 @@ def compare(campaign, what, folder, expected, got):
 def interrupted_run(campaign, what, arguments_of, longest_s, whole_group=False):
     """Runs until the end with a kill at random moments. Returns whether it ended well.
     @param arguments_of function that returns the command of the next start"""
-    for kills in range(MOST_KILLS + 1):
+    most = campaign.kills or MOST_KILLS
+    for kills in range(most + 1):
         process = subprocess.Popen(arguments_of(), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, start_new_session=True)
-        wait_s = campaign.rng.uniform(0.0, longest_s) if kills < MOST_KILLS else LIMIT_S
+        wait_s = campaign.rng.uniform(0.0, longest_s) if kills < most else LIMIT_S
         try:
             words = process.communicate(timeout=wait_s)[0].decode(errors="replace")
             return campaign.check(process.returncode == 0, f"{what}: exit code {process.returncode} "
@@ -178,8 +179,9 @@ class SimNode:
         folder.mkdir()
         with ros.Ros(self.campaign, folder) as ranch:
             done = False
-            for kills in range(SIM_KILLS + 1):
-                done = self.attempt(ranch, alone, kills == SIM_KILLS)
+            most = self.campaign.kills or SIM_KILLS
+            for kills in range(most + 1):
+                done = self.attempt(ranch, alone, kills == most)
                 if done is not False:
                     break
             if done:
@@ -217,7 +219,7 @@ class Recorder:
         folder = self.place / f"recorder_{number}"
         folder.mkdir()
         with ros.Ros(self.campaign, folder) as ranch:
-            for kill in [True] * RECORDER_KILLS + [False]:
+            for kill in [True] * (self.campaign.kills or RECORDER_KILLS) + [False]:
                 self.session(ranch, kill)
         bags = sorted((folder / "episodes").glob("*.bag"))
         self.campaign.check(bags, "recorder: no bag was kept")

@@ -15,7 +15,7 @@ import time
 from campaigns import common, kill
 
 RANK_LOST = 6        # exit code
-KILLS = 5            # in one run; the last attempt is left to end
+KILLS = 5            # in one run, unless --kills is given; the last attempt is left to end
 STOP_S = 30.0        # issue 27: the others stop within this time on an idle machine
 BUSY_STOP_S = 180.0  # a busy one needs longer to start processes
 LIMIT_S = 600
@@ -87,8 +87,9 @@ class Ranks:
             self.reference()
         folder = self.place / f"ranks_{number}"
         done = False
-        for kills in range(KILLS + 1):
-            done = self.attempt(folder, kills == KILLS)
+        most = self.campaign.kills or KILLS
+        for kills in range(most + 1):
+            done = self.attempt(folder, kills == most)
             if done is not False:
                 break
         if done and self.expected:
@@ -119,7 +120,7 @@ class Workers(kill.Benchmark):
 
     def disturb(self, process):
         """Kills and replaces until the benchmark ends; returns its output."""
-        for _ in range(KILLS):
+        for _ in range(self.campaign.kills or KILLS):
             try:
                 return process.communicate(timeout=self.campaign.rng.uniform(1.0, self.seconds))[0]
             except subprocess.TimeoutExpired:

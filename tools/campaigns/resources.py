@@ -50,6 +50,41 @@ def small_disk(folder, kilobytes):
             subprocess.run(["umount", "-l", str(folder)], check=False)
 
 
+def of_memory_group():
+    """Folder of this process's memory control group, in version 1 or 2; None if it has none that
+    this process may divide."""
+    for line in pathlib.Path("/proc/self/cgroup").read_text().splitlines():
+        _, controllers, path = line.split(":", 2)
+        if controllers == "memory":
+            return pathlib.Path("/sys/fs/cgroup/memory")
+        folder = pathlib.Path("/sys/fs/cgroup" + path)
+        if not controllers and (folder / "memory.max").exists():
+            return folder
+    return None
+
+
+@contextlib.contextmanager
+def memory_group(megabytes):
+    """Makes a control group with so much memory; yields options of a process in it, or None."""
+    parent = of_memory_group()
+    group = parent / f"aquafarm_{os.getpid()}" if parent else None
+    try:
+        group.mkdir()
+        limit = group / "memory.max"
+        if not limit.exists():
+            limit = group / "memory.limit_in_bytes"
+        limit.write_text(str(megabytes << 20))
+    except (OSError, AttributeError):
+        if group and group.is_dir():
+            group.rmdir()
+        yield None
+        return
+    try:
+        yield {"preexec_fn": lambda: (group / "cgroup.procs").write_text(str(os.getpid()))}
+    finally:
+        group.rmdir()
+
+
 def judge(campaign, what, folder, code, words):
     """Records a failure unless a program under a limit behaved."""
     campaign.attempt("programs under a limit")
@@ -131,9 +166,30 @@ def memory(campaign, place):
                 place / "ranch.yaml", **limits(AS=megabytes << 20))
 
 
+def control_group(campaign, place):
+    """The kernel kills a program that needs more memory than its group has. What it has written must
+    then be readable, and the next start must remove what it left."""
+    megabytes = campaign.rng.choice([20, 40, 60, 80, 100, 130, 160])
+    folder, what = place / "run", f"training in a control group of {megabytes} MB"
+    trainer = campaign.program("aquafarm_train")
+    words = [trainer, "paper", *TRAINING, "-d", folder]
+    with memory_group(megabytes) as group:
+        if group is None:
+            campaign.attempt("control groups left out: no right to make one")
+            return
+        code, output = common.execute(*words, seconds=LIMIT_S, **group)
+    campaign.attempt("programs in a control group")
+    if code == -signal.SIGKILL:
+        campaign.attempt("programs that the kernel killed in their control group")
+        resume = ["--resume"] if (folder / "run.json").exists() else []
+        code, output = common.execute(*words, *resume, seconds=LIMIT_S)
+        campaign.check(code == 0, f"{what}: not to be started again: {output[-300:]}")
+    judge(campaign, what, folder, code, output)
+
+
 def run(campaign):
     """Count is the number of limits tried, each of one kind."""
-    kinds = [disk_full, read_only, descriptors, file_size, memory]
+    kinds = [disk_full, read_only, descriptors, file_size, memory, control_group]
     number = 0
     while campaign.more(number):
         with tempfile.TemporaryDirectory(prefix="aquafarm_resources_") as place:

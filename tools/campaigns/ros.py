@@ -2,6 +2,7 @@
 """A ROS master, sim nodes and trainings for a campaign, on free ports of the loopback address."""
 import os
 import pathlib
+import re
 import socket
 import struct
 import subprocess
@@ -12,6 +13,7 @@ import xmlrpc.client
 from campaigns import common
 
 START_LIMIT_S = 120
+FARMS = 16  # of a sim node; a call of a trainer steps all of them
 
 
 def free_port():
@@ -21,8 +23,13 @@ def free_port():
         return probe.getsockname()[1]
 
 
+# How sanitizers begin a report, if the programs were built with one.
+SANITIZER = re.compile(r"(?:WARNING|ERROR): \w+Sanitizer.*|.*: runtime error: .*")
+
+
 class Ros:
-    """A master in a folder; leaving the context ends all its processes."""
+    """A master in a folder; leaving the context ends all its processes, and records reports of
+    sanitizers in their logs as failures."""
 
     def __init__(self, campaign, folder):
         self.campaign = campaign
@@ -50,6 +57,10 @@ class Ros:
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
+        for log in sorted(self.folder.glob("*.log")):
+            words = log.read_text(errors="replace")
+            for found in SANITIZER.finditer(words):
+                self.campaign.fail(f"{log.name}: {words[found.start():found.start() + 2500]}")
 
     def master(self):
         return xmlrpc.client.ServerProxy(self.uri)
@@ -92,7 +103,7 @@ class Ros:
         """Starts a sim node and waits until it serves."""
         process = self.start(f"sim_{namespace}", self.campaign.program("sim_node"),
                              f"__ns:=/{namespace}", "__name:=sim",
-                             f"_scenario:={common.SCENARIOS / 'paper.yaml'}", "_farms:=16",
+                             f"_scenario:={common.SCENARIOS / 'paper.yaml'}", f"_farms:={FARMS}",
                              *arguments)
         self.wait_for(lambda: self.answers(f"/{namespace}/step"), "the sim node")
         return process
@@ -118,6 +129,13 @@ class Ros:
         """The files that must not depend on what happened to the connections."""
         return {name: (self.folder / run / name).read_bytes()
                 for name in ("policy.ckpt", "metrics.csv")}
+
+
+def memory(process):
+    """Resident memory of a process [bytes]; 0 if it has ended."""
+    words = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+    found = re.search(r"VmRSS:\s+(\d+) kB", words)
+    return int(found.group(1)) << 10 if found else 0
 
 
 def receive(connection, size):

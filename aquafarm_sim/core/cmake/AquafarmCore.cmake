@@ -1,7 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Shared by the ROS-free cores: warnings, the library, its tests, and the check for ROS includes.
+# Shared by the ROS-free cores: warnings, the library, its tests, fuzz targets, and the check for ROS
+# includes.
 
 set(AQUAFARM_CORE_CMAKE_DIR ${CMAKE_CURRENT_LIST_DIR})
+
+# Applies to all targets of the directory that includes this file.
+option(AQUAFARM_FUZZ "Build for libFuzzer with sanitizers; needs clang" OFF)
+if(AQUAFARM_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer
+                      -gline-tables-only)
+  add_link_options(-fsanitize=address,undefined)
+endif()
 
 function(aquafarm_set_warnings target)
   # Without contraction of a*b+c to a fused operation, results are bit-identical on every machine.
@@ -11,9 +20,10 @@ function(aquafarm_set_warnings target)
 endfunction()
 
 # Adds a shared library with C++17, all warnings and no undefined symbols; a static library with
-# AQUAFARM_STATIC_CORE, for a Python module that contains it.
+# AQUAFARM_STATIC_CORE, for a Python module that contains it, and for fuzz targets, which are faster
+# if they contain only what they use.
 function(aquafarm_add_core_library target)
-  if(AQUAFARM_STATIC_CORE)
+  if(AQUAFARM_STATIC_CORE OR AQUAFARM_FUZZ)
     add_library(${target} STATIC ${ARGN})
   else()
     add_library(${target} SHARED ${ARGN})
@@ -45,4 +55,17 @@ function(aquafarm_add_core_test path)
   add_test(NAME ${name} COMMAND ${name}
            --gtest_output=xml:${CMAKE_BINARY_DIR}/test_results/${PROJECT_NAME}/${name}.xml)
   set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+endfunction()
+
+# Adds fuzz/fuzz_<name>.cpp, which links ARGN. With AQUAFARM_FUZZ it uses libFuzzer; without it,
+# mutate.cpp mutates each sample in a fixed order.
+function(aquafarm_add_fuzz_target name)
+  add_executable(fuzz_${name} fuzz/fuzz_${name}.cpp)
+  target_link_libraries(fuzz_${name} PRIVATE ${ARGN})
+  if(AQUAFARM_FUZZ)
+    target_link_options(fuzz_${name} PRIVATE -fsanitize=fuzzer)
+  else()
+    target_sources(fuzz_${name} PRIVATE ${AQUAFARM_CORE_CMAKE_DIR}/../fuzz/mutate.cpp)
+  endif()
+  aquafarm_set_warnings(fuzz_${name})
 endfunction()

@@ -13,6 +13,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
+#include "aquafarm_sim/node/checked_stream.h"
 #include "aquafarm_sim/server/farm_server.h"
 
 namespace {
@@ -35,7 +36,7 @@ template <typename Request>
 Request Read(const std::vector<std::uint8_t>& bytes) {
   Request request;
   // The stream only reads; its interface takes a mutable pointer.
-  ros::serialization::IStream stream(const_cast<std::uint8_t*>(bytes.data()),
+  aquafarm_sim::CheckedStream stream(const_cast<std::uint8_t*>(bytes.data()),
                                      static_cast<std::uint32_t>(bytes.size()));
   ros::serialization::deserialize(stream, request);
   return request;

@@ -18,6 +18,7 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm/scenario/scenario_yaml.h"
 #include "aquafarm_sim/names.h"
+#include "aquafarm_sim/node/checked_service.h"
 #include "aquafarm_sim/node/reusing_service.h"
 
 namespace aquafarm_sim {
@@ -36,40 +37,32 @@ std::shared_ptr<const aquafarm::Scenario> Load(const std::string& scenario) {
       aquafarm::LoadScenario(ResolveScenario(scenario, ScenarioFolder())));
 }
 
-/// Advertises a service with the callback `handle`. Its exceptions are logged and fail the call.
-template <typename Service, typename Handle>
-ros::ServiceServer Serve(ros::NodeHandle& node, const std::string& name, Handle handle) {
-  using Request = typename Service::Request;
-  using Response = typename Service::Response;
-  const boost::function<bool(Request&, Response&)> callback = [name, handle](Request& request,
-                                                                             Response& response) {
-    try {
-      handle(request, response);
-      return true;
-    } catch (const std::exception& error) {
-      ROS_ERROR("%s: %s", name.c_str(), error.what());
-      return false;
-    }
-  };
-  return node.advertiseService(name, callback);
-}
-
-/// As Serve; `handle` also receives the name of the calling node.
+/// Advertises a service with the callback `handle`, which gets the request, the response and the
+/// name of the calling node. Its exceptions are logged and fail the call.
 template <typename Service, typename Handle>
 ros::ServiceServer ServeCaller(ros::NodeHandle& node, const std::string& name, Handle handle) {
-  using Event = ros::ServiceEvent<typename Service::Request, typename Service::Response>;
-  const boost::function<bool(Event&)> callback = [name, handle](Event& event) {
+  const auto callback = [name, handle](typename Service::Request& request,
+                                       typename Service::Response& response,
+                                       const std::string& caller) {
     try {
-      handle(event.getRequest(), event.getResponse(), event.getCallerName());
+      handle(request, response, caller);
       return true;
     } catch (const std::exception& error) {
       ROS_ERROR("%s: %s", name.c_str(), error.what());
       return false;
     }
   };
-  ros::AdvertiseServiceOptions options;
-  options.initBySpecType<Event>(name, callback);
-  return node.advertiseService(options);
+  return AdvertiseHelper<Service>(node, name,
+                                  boost::make_shared<CheckedService<Service>>(callback));
+}
+
+/// As ServeCaller, without the name of the calling node.
+template <typename Service, typename Handle>
+ros::ServiceServer Serve(ros::NodeHandle& node, const std::string& name, Handle handle) {
+  return ServeCaller<Service>(
+      node, name, [handle](auto& request, auto& response, const std::string& /*caller*/) {
+        handle(request, response);
+      });
 }
 
 /// Converts a ship's request to a command.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "aquafarm/base/mutex.h"
+#include "aquafarm_sim/node/checked_service.h"
 
 namespace aquafarm_sim {
 
@@ -28,7 +29,7 @@ class ReusingService : public ros::ServiceCallbackHelper {
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
     const aquafarm::MutexLock lock(mutex_);
     if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
-    ros::serialization::deserializeMessage(params.request, request_);
+    ReadRequest(params.request, request_);
     params.response = ros::serialization::serializeServiceResponse(
         true, handler_(request_, (*params.connection_header)["callerid"]));
     if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
@@ -37,14 +38,8 @@ class ReusingService : public ros::ServiceCallbackHelper {
 
   static ros::ServiceServer Advertise(ros::NodeHandle& node, const std::string& name,
                                       Handler handler) {
-    ros::AdvertiseServiceOptions options;
-    options.service = name;
-    options.md5sum = ros::service_traits::md5sum<Service>();
-    options.datatype = ros::service_traits::datatype<Service>();
-    options.req_datatype = ros::message_traits::datatype<Request>();
-    options.res_datatype = ros::message_traits::datatype<Response>();
-    options.helper = boost::make_shared<ReusingService>(std::move(handler));
-    return node.advertiseService(options);
+    return AdvertiseHelper<Service>(node, name,
+                                    boost::make_shared<ReusingService>(std::move(handler)));
   }
 
  private:

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/service_callback_helper.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "aquafarm_sim/node/checked_stream.h"
+
+namespace aquafarm_sim {
+
+/// Serves calls by a function, which gets the request, the response and the name of the calling
+/// node, and returns whether it succeeded.
+template <typename Service>
+class CheckedService : public ros::ServiceCallbackHelper {
+ public:
+  using Handler = std::function<bool(typename Service::Request&, typename Service::Response&,
+                                     const std::string&)>;
+
+  explicit CheckedService(Handler handler) : handler_(std::move(handler)) {}
+
+  bool call(ros::ServiceCallbackHelperCallParams& params) override {
+    typename Service::Request request;
+    typename Service::Response response;
+    ReadRequest(params.request, request);
+    const bool is_done = handler_(request, response, (*params.connection_header)["callerid"]);
+    params.response = ros::serialization::serializeServiceResponse(is_done, response);
+    return is_done;
+  }
+
+ private:
+  const Handler handler_;
+};
+
+/// Advertises a service that a helper serves.
+template <typename Service>
+ros::ServiceServer AdvertiseHelper(ros::NodeHandle& node, const std::string& name,
+                                   const ros::ServiceCallbackHelperPtr& helper) {
+  ros::AdvertiseServiceOptions options;
+  options.service = name;
+  options.md5sum = ros::service_traits::md5sum<Service>();
+  options.datatype = ros::service_traits::datatype<Service>();
+  options.req_datatype = ros::message_traits::datatype<typename Service::Request>();
+  options.res_datatype = ros::message_traits::datatype<typename Service::Response>();
+  options.helper = helper;
+  return node.advertiseService(options);
+}
+
+}  // namespace aquafarm_sim

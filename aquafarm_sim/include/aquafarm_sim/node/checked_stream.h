@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ros/serialization.h>
+#include <ros/serialized_message.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+namespace aquafarm_sim {
+
+/// Reads messages of clients. roscpp allocates as many entries as an array states before it looks
+/// for them, so that a request of a few bytes could take all memory. This stream first requires
+/// that so many bytes follow.
+struct CheckedStream : ros::serialization::IStream {
+  using IStream::IStream;
+
+  template <typename T>
+  void next(T& value) {
+    ros::serialization::deserialize(*this, value);
+  }
+
+  /// @throws ros::serialization::StreamOverrunException if the entries do not fit
+  template <typename T, typename Allocator>
+  void next(std::vector<T, Allocator>& values) {
+    std::uint32_t count = 0;
+    if (getLength() < sizeof(count)) ros::serialization::throwStreamOverrun();
+    std::memcpy(&count, getData(), sizeof(count));
+    const std::uint64_t smallest = ros::serialization::serializationLength(T());
+    if (count * smallest > getLength() - sizeof(count)) ros::serialization::throwStreamOverrun();
+    ros::serialization::deserialize(*this, values);
+  }
+};
+
+/// Reads a request. @throws ros::serialization::StreamOverrunException if it is cut off
+template <typename Request>
+void ReadRequest(const ros::SerializedMessage& message, Request& request) {
+  const auto header = static_cast<std::size_t>(message.message_start - message.buf.get());
+  CheckedStream stream(message.message_start,
+                       static_cast<std::uint32_t>(message.num_bytes - header));
+  ros::serialization::deserialize(stream, request);
+}
+
+}  // namespace aquafarm_sim

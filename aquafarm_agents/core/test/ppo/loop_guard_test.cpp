@@ -28,7 +28,9 @@ TEST(LoopGuard, ActsWhenASituationOccursForTheGivenTime) {
   for (int visit = 1; visit < 6; ++visit) {  // to and fro
     const auto action = ask();
     EXPECT_EQ(action.has_value(), visit == 5) << visit;  // for the third time where it began
-    if (action) EXPECT_EQ(*action, teacher.ActionOf(results->features.data(), kAllActions));
+    if (action) {
+      EXPECT_EQ(*action, teacher.ActionOf(results->features.data(), kAllActions));
+    }
     results = &environment.Step(actions);
     actions[0] = static_cast<std::uint8_t>(visit % 2 == 1 ? Action::kWest : Action::kEast);
   }

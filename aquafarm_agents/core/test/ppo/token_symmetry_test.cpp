@@ -73,7 +73,9 @@ TEST(TokenSymmetry, TurnedTokensAreThoseOfTheTurnedRanch) {
   const std::vector<float> plain = TokensOf(Turned(0), kShip);
   for (std::size_t number = 0; number < kSymmetries; ++number) {
     const std::vector<float> expected = TokensOf(Turned(number), Place(kShip, number));
-    if (number > 0) EXPECT_NE(plain, expected);
+    if (number > 0) {
+      EXPECT_NE(plain, expected);
+    }
     std::vector<float> turned(plain.size());
     TokenSymmetry(layout, number).Turn(plain.data(), turned.data());
     for (std::size_t i = 0; i < plain.size(); ++i) {

@@ -279,7 +279,11 @@ class BenchmarkTest(unittest.TestCase):
         rest = self.start("parts", *arguments, episodes=60000)
         self.assertEqual(0, rest.code(), rest.words())
         logs = [path.read_text() for path in trainings.glob("*.log")]
-        self.assertEqual(2, sum("resuming from" in text for text in logs), "\n".join(logs))
+        # On a fast machine a training may be killed before its first checkpoint.
+        resumed = sum("resuming from" in text for text in logs)
+        restarted = sum("contains no checkpoint yet" in text for text in logs)
+        self.assertEqual(2, resumed + restarted, "\n".join(logs))
+        self.assertGreaterEqual(resumed, 1, "\n".join(logs))
         for name in ("runs.csv", "table.csv", "table.md"):
             self.assertEqual((self.folder / "whole" / name).read_text(),
                              (self.folder / "parts" / name).read_text(), name)

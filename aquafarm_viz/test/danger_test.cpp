@@ -31,6 +31,20 @@ struct Scene {
     state.disasters[0].risks = {-20.0F, -5.0F};
   }
 
+  // The disaster's track in ten steps from x = -8 along y = 12.
+  void SetTrackTo(int x) {
+    state.step = 0;
+    spec.scenario_yaml = R"(
+disasters:
+  - risks: [-20, -5]
+    track:
+      - {step: 0, x: -8, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
+      - {step: 10, x: )" +
+                         std::to_string(x) +
+                         R"(, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
+)";
+  }
+
   std::map<Key, Marker> Draw() {
     std::map<Key, Marker> result;
     for (const auto& marker : danger.Of(spec, state).markers) {
@@ -151,14 +165,7 @@ TEST(DangerMarkers, PutNoLabelOnARockWhereAnotherPlaceIsFree) {
 
 TEST(DangerMarkers, SayWhenAStormOutsideIsClosest) {
   Scene scene;
-  scene.state.step = 0;
-  scene.spec.scenario_yaml = R"(
-disasters:
-  - risks: [-20, -5]
-    track:
-      - {step: 0, x: -8, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
-      - {step: 10, x: -3, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
-)";
+  scene.SetTrackTo(-3);
   scene.state.disasters[0].speed = 0.5F;
   EXPECT_EQ(scene.Draw().at({"pointer_label", 0}).text,
             "typhoon, centre 20 km W\nE, 0.50 cells a step, closest 15 km W in 10 steps");
@@ -166,14 +173,7 @@ disasters:
 
 TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
   Scene scene;
-  scene.state.step = 0;
-  scene.spec.scenario_yaml = R"(
-disasters:
-  - risks: [-20, -5]
-    track:
-      - {step: 0, x: -8, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
-      - {step: 10, x: 2, y: 12, radii: [2, 14], grade: 3, risks: [-20, -5]}
-)";
+  scene.SetTrackTo(2);
   EXPECT_EQ(scene.Draw().at({"alarm", 0}).text,
             "typhoon over F0: risk -5 now, risk -20 in 10 steps");
 }

@@ -6,6 +6,7 @@ import io
 import os
 import pathlib
 import signal
+import subprocess
 import sys
 import tempfile
 import threading
@@ -13,7 +14,8 @@ import unittest
 import unittest.mock
 from unittest import mock
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
 from verbs import bench, launch, tests, workspace  # noqa: E402
 
 
@@ -139,6 +141,26 @@ class TestChild(unittest.TestCase):
             finally:
                 self.assertEqual("a_rate 3 1/s\n",
                                  pathlib.Path(folder, "bench_all.txt").read_text(encoding="utf-8"))
+
+
+class CiRunTest(unittest.TestCase):
+    """.ci/run answers its arguments before it checks or builds anything."""
+
+    def run_with(self, *words):
+        done = subprocess.run([ROOT / ".ci/run", *words], capture_output=True, text=True,
+                              timeout=20, check=False)
+        return done.returncode, done.stdout, done.stderr
+
+    def test_help_describes_it(self):
+        for word in ("-h", "--help"):
+            code, out, err = self.run_with(word)
+            self.assertEqual((0, ""), (code, err))
+            self.assertEqual("usage: .ci/run", out.splitlines()[0])
+
+    def test_other_arguments_are_refused_in_one_line(self):
+        for word in ("--halp", "test", ""):
+            self.assertEqual((2, "", f"ci: got '{word}', expected no argument or --help\n"),
+                             self.run_with(word))
 
 
 if __name__ == "__main__":

@@ -5,9 +5,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -25,11 +28,27 @@ namespace aquafarm::agents {
 inline std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);  // set in a signal handler
 
-/// The first Ctrl-C requests saving and exit; the second one exits immediately.
+/// When SIGINT [0] and SIGTERM [1] arrived first; 0: not yet.
+inline std::array<std::atomic<std::int64_t>, 2> first_signal_ms{};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+
+/// The first Ctrl-C requests saving and exit; one more, at least half a second later, exits
+/// immediately. Sooner it counts as the first: if the benchmark is killed, the kernel signals its
+/// programs (PR_SET_PDEATHSIG) once for each thread that dies and hands them to the next.
 inline void StopOnSignals() {
   const auto handler = [](int signal) {
+    constexpr std::int64_t kSame_ms = 500;
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    const std::int64_t now_ms = std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
+    std::atomic<std::int64_t>& first_ms = first_signal_ms[signal == SIGTERM ? 1 : 0];
     stop_requested = true;
-    std::signal(signal, SIG_DFL);
+    if (first_ms == 0) {
+      first_ms = now_ms;
+    } else if (now_ms - first_ms >= kSame_ms) {
+      std::signal(signal, SIG_DFL);
+      std::raise(signal);  // delivered when this handler returns
+    }
   };
   std::signal(SIGINT, handler);
   std::signal(SIGTERM, handler);

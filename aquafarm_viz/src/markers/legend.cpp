@@ -9,6 +9,7 @@
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/names.h"
+#include "base/marker_color.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -40,7 +41,7 @@ class Row {
     bar.scale.x = width_m;
     bar.scale.y = 0.35 * size_m_;
     bar.scale.z = 0.01 * size_m_;
-    bar.color = Opaque(color);
+    bar.color = Color(color);
     array_.markers.push_back(bar);
     x_m_ += width_m + 0.4 * size_m_;
   }
@@ -50,7 +51,7 @@ class Row {
     constexpr int kParts = 32;
     Marker bar = Make(space_, Marker::TRIANGLE_LIST, x_m_);
     bar.scale.x = bar.scale.y = bar.scale.z = 1.0;
-    bar.color = Opaque(kPaper);
+    bar.color = Color(kPaper);
     const double half_m = 0.25 * size_m_;
     for (int i = 0; i < kParts; ++i) {
       const double left = width_m * i / kParts;
@@ -65,7 +66,7 @@ class Row {
         corner.x = x;
         corner.y = y;
         bar.points.push_back(corner);
-        bar.colors.push_back(Opaque(ValueColor((i + 0.5) / kParts)));
+        bar.colors.push_back(Color(ValueColor((i + 0.5) / kParts)));
       }
     }
     array_.markers.push_back(bar);
@@ -84,21 +85,12 @@ class Row {
     Marker words = Make(space_ + "_text", Marker::TEXT_VIEW_FACING, x_m_ + 0.5 * width_m);
     words.scale.z = size_m_;
     words.text = text;
-    words.color = Opaque(kPaper);
+    words.color = Color(kPaper);
     array_.markers.push_back(words);
     x_m_ += width_m + 0.6 * size_m_;
   }
 
  private:
-  static std_msgs::ColorRGBA Opaque(Rgb color) {
-    std_msgs::ColorRGBA opaque;
-    opaque.r = static_cast<float>(color.r) / 255.0F;
-    opaque.g = static_cast<float>(color.g) / 255.0F;
-    opaque.b = static_cast<float>(color.b) / 255.0F;
-    opaque.a = 1.0F;
-    return opaque;
-  }
-
   Marker Make(const std::string& space, int type, double x_m) {
     Marker marker;
     marker.header = header_;

@@ -15,6 +15,7 @@
 
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/names.h"
+#include "base/marker_color.h"
 
 namespace aquafarm_viz {
 
@@ -33,15 +34,6 @@ enum Layer {
   kSignLayer,
   kWordLayer
 };
-
-inline std_msgs::ColorRGBA Color(Rgb color, double alpha = 1.0) {
-  std_msgs::ColorRGBA result;
-  result.r = static_cast<float>(color.r) / 255.0F;
-  result.g = static_cast<float>(color.g) / 255.0F;
-  result.b = static_cast<float>(color.b) / 255.0F;
-  result.a = static_cast<float>(alpha);
-  return result;
-}
 
 inline geometry_msgs::Point Point(double x, double y, double z = 0.0) {
   geometry_msgs::Point point;

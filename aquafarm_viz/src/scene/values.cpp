@@ -12,6 +12,7 @@
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/names.h"
+#include "base/marker_color.h"
 #include "scene/arrow.h"
 
 namespace aquafarm_viz {
@@ -52,15 +53,6 @@ void Check(const PointCloud2& cloud) {
                               " points of " + std::to_string(cloud.point_step));
 }
 
-std_msgs::ColorRGBA Color(Rgb from) {
-  std_msgs::ColorRGBA color;
-  color.r = static_cast<float>(from.r) / 255.0F;
-  color.g = static_cast<float>(from.g) / 255.0F;
-  color.b = static_cast<float>(from.b) / 255.0F;
-  color.a = 0.9F;
-  return color;
-}
-
 Marker MakeMarker(const char* space, int id, int type, Rgb color) {
   Marker marker;
   marker.header.frame_id = names::kMapFrame;
@@ -70,7 +62,7 @@ Marker MakeMarker(const char* space, int id, int type, Rgb color) {
   marker.action = Marker::ADD;
   marker.pose.orientation.w = 1.0;
   marker.pose.position.z = kHeight_m;
-  marker.color = Color(color);
+  marker.color = Color(color, 0.9);
   return marker;
 }
 
@@ -92,8 +84,7 @@ Marker ValueCells(const Values& values, double cell_m) {
       const auto value = double(values.values[values.Index(x, y)]);
       if (!std::isfinite(value)) continue;
       const double share = span > 0.0 ? (value - double(values.lowest)) / span : 0.5;
-      std_msgs::ColorRGBA color = Color(ValueColor(share));
-      color.a = 0.62F;
+      const std_msgs::ColorRGBA color = Color(ValueColor(share), 0.62);
       for (const auto& [dx, dy] : {std::pair(-0.5, -0.5),
                                    {0.5, -0.5},
                                    {0.5, 0.5},

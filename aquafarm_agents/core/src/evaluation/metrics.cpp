@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <fstream>
 #include <type_traits>
 #include <utility>
 
@@ -28,19 +29,9 @@ void Put(T value, std::string& text) {
 
 void Put(EndReason reason, std::string& text) { text += ToString(reason); }
 
-constexpr const char* kLearnerColumns = ",exploration,learning_rate,loss";
-
-// Returns the number of columns of a file after those of the learner, by its first line.
-std::size_t CountAdded(int file) {
-  std::string line(4096, '\0');
-  const ssize_t got = pread(file, line.data(), line.size(), 0);
-  line.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
-  line.resize(std::min(line.size(), line.find('\n')));
-  const std::size_t learner = line.find(kLearnerColumns);
-  if (learner == std::string::npos) return 0;
-  const auto added = line.begin() + static_cast<std::ptrdiff_t>(
-                                        learner + std::string_view(kLearnerColumns).size());
-  return static_cast<std::size_t>(std::count(added, line.end(), ','));
+// Returns the columns that the file of every version has.
+std::string FirstColumns() {
+  return "number,total_steps," + EpisodeColumns() + ",exploration,learning_rate,loss";
 }
 
 }  // namespace
@@ -84,14 +75,38 @@ void AppendAdded(const EpisodeSummary& result, std::string& text, std::size_t co
       result);
 }
 
+namespace {
+
+// Returns how many of AddedColumns a file has after the first columns. @throws InputError if it has
+// others
+std::size_t CountAdded(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) return 0;  // reported where it is opened for writing
+  std::string columns;
+  std::getline(file, columns);
+  const std::string first = FirstColumns();
+  const std::string all = first + AddedColumns() + ',';
+  const bool has_first = columns.compare(0, first.size(), first) == 0;
+  if (!has_first || all.compare(0, columns.size() + 1, columns + ',') != 0) {
+    throw InputError(path + ":1: got the columns '" + columns + "', expected '" + first +
+                     "' and none, some or all of '" + AddedColumns() +
+                     "'; resume with the version that began this run, or train in another folder");
+  }
+  return static_cast<std::size_t>(
+      std::count(columns.begin() + static_cast<std::ptrdiff_t>(first.size()), columns.end(), ','));
+}
+
+}  // namespace
+
 MetricsFile::MetricsFile(std::string path) : path_(std::move(path)) {
   file_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file_ < 0) throw StorageError(ErrnoText(path_, "cannot be written"));
-  buffer_ = "number,total_steps," + EpisodeColumns() + kLearnerColumns + AddedColumns() + "\n";
+  buffer_ = FirstColumns() + AddedColumns() + "\n";
   buffer_.reserve(2 * kFlushBytes);
 }
 
-MetricsFile::MetricsFile(std::string path, std::uint64_t size) : path_(std::move(path)) {
+MetricsFile::MetricsFile(std::string path, std::uint64_t size)
+    : path_(std::move(path)), added_columns_(CountAdded(path_)) {
   file_ = open(path_.c_str(), O_RDWR | O_CLOEXEC);
   if (file_ < 0) throw StorageError(ErrnoText(path_, "cannot be continued"));
   struct stat status {};
@@ -106,7 +121,6 @@ MetricsFile::MetricsFile(std::string path, std::uint64_t size) : path_(std::move
                      " bytes, expected at least the " + std::to_string(size) +
                      " that the checkpoint records");
   }
-  added_columns_ = CountAdded(file_);
   flushed_ = size;
   buffer_.reserve(2 * kFlushBytes);
 }

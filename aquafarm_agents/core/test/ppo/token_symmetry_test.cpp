@@ -10,69 +10,35 @@
 #include "aquafarm/agents/learning/exploration.h"
 #include "aquafarm/agents/ppo/ppo.h"
 #include "aquafarm/agents/training/algorithms.h"
-#include "aquafarm/farm/farm.h"
-#include "aquafarm/observation/encoder.h"
+#include "token_ranch.h"
 
 namespace aquafarm::agents::test {
 namespace {
 
-constexpr std::int32_t kSide = 24;
-constexpr Cell kShip{11, 10};
+using aquafarm::test::kTokenShip;
+using aquafarm::test::kTokenSide;
+using aquafarm::test::TokensOf;
+using aquafarm::test::TurnedTokenScenario;
 
 /// Applies a symmetry of TokenSymmetry to the map, around its middle.
 Cell Place(Cell cell, std::size_t symmetry) {
   if ((symmetry & 4U) != 0) std::swap(cell.x, cell.y);
-  if ((symmetry & 2U) != 0) cell.y = kSide - 1 - cell.y;
-  if ((symmetry & 1U) != 0) cell.x = kSide - 1 - cell.x;
+  if ((symmetry & 2U) != 0) cell.y = kTokenSide - 1 - cell.y;
+  if ((symmetry & 1U) != 0) cell.x = kTokenSide - 1 - cell.x;
   return cell;
 }
 
-/// Entities of all kinds without a symmetry of their own; a disaster that moves west.
 Scenario Turned(std::size_t symmetry) {
-  const auto place = [symmetry](Cell cell) { return Place(cell, symmetry); };
-  Scenario scenario;
-  scenario.name = "turned";
-  scenario.hash = 1;
-  scenario.width = scenario.height = kSide;
-  scenario.islands = {{place({11, 14}), 1, 1}, {place({12, 14}), 1, 1}};
-  scenario.rocks.cells = {place({9, 11})};
-  scenario.ports.cells = {place({15, 12}), place({9, 15})};
-  scenario.devices.placement = DevicePlacement::kExplicit;
-  scenario.devices.sites = {{place({13, 9}), DeviceKind::kMonitoring, 80.0F, false},
-                            {place({8, 13}), DeviceKind::kBreedingRelease, 60.0F, false}};
-  scenario.damage.exposure_damage = 0.01F;
-  scenario.view.tokens = true;
-  const Cell centre = place({13, 11});
-  scenario.disasters = {aquafarm::test::StillDisaster(
-      static_cast<float>(centre.x), static_cast<float>(centre.y), {1.5F, 3.5F}, {-20.0F, -6.0F})};
-  const Cell west = place({12, 11});
-  scenario.disasters[0].speed = 0.25F;
-  scenario.disasters[0].heading_deg = west.x > centre.x   ? 90
-                                      : west.x < centre.x ? 270
-                                      : west.y > centre.y ? 0
-                                                          : 180;
-  return scenario;
-}
-
-std::vector<float> TokensOf(const Scenario& scenario, Cell ship) {
-  ValidateScenario(scenario);
-  Farm farm(std::make_shared<const Scenario>(scenario));
-  farm.PlaceShip(0, ship);
-  View view;
-  Observe(farm, 0, view);
-  const Encoder encoder(scenario);
-  std::vector<float> tokens(static_cast<std::size_t>(encoder.feature_count()));
-  encoder.Features(view, tokens.data());
-  return tokens;
+  return TurnedTokenScenario([symmetry](Cell cell) { return Place(cell, symmetry); });
 }
 
 TokenLayout Layout() { return LayoutOfTokens(Encoder(Turned(0)).feature_names()); }
 
 TEST(TokenSymmetry, TurnedTokensAreThoseOfTheTurnedRanch) {
   const TokenLayout layout = Layout();
-  const std::vector<float> plain = TokensOf(Turned(0), kShip);
+  const std::vector<float> plain = TokensOf(Turned(0), kTokenShip);
   for (std::size_t number = 0; number < kSymmetries; ++number) {
-    const std::vector<float> expected = TokensOf(Turned(number), Place(kShip, number));
+    const std::vector<float> expected = TokensOf(Turned(number), Place(kTokenShip, number));
     if (number > 0) {
       EXPECT_NE(plain, expected);
     }
@@ -130,7 +96,7 @@ TEST(TokenSymmetry, ASymmetricPolicyPlaysATurnedRanchAsTheRanch) {
       for (std::size_t number = 0; number < kSymmetries; ++number) {
         policy->Begin(1, 1);
         std::vector<std::uint8_t> actions;
-        policy->Act(ResultsOf(TokensOf(Turned(number), Place(kShip, number))), actions);
+        policy->Act(ResultsOf(TokensOf(Turned(number), Place(kTokenShip, number))), actions);
         const std::uint8_t action = TokenSymmetry(layout, number).TurnBack(actions[0]);
         if (number == 0) {
           plain = action;

@@ -78,8 +78,8 @@ class Resume : public FolderTest {
   }
   std::string Output(const std::string& run) const { return folder_ + "/" + run + ".txt"; }
 
-  /// Starts a run and sends it a signal shortly after its next checkpoint.
-  int StopAfterACheckpoint(const std::string& run, bool resume, int signal) {
+  /// Starts a run and sends it signals shortly after its next checkpoint.
+  int StopAfterACheckpoint(const std::string& run, bool resume, int signal, int count = 1) {
     const auto newest = [&] {
       return RunFolder::NewestCheckpoint(folder_ + "/" + run).value_or("none");
     };
@@ -87,7 +87,10 @@ class Resume : public FolderTest {
     Process process(Command(run, resume), Output(run));
     EXPECT_TRUE(WaitUntil([&] { return newest() != before; })) << ReadFile(Output(run));
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    process.Kill(signal);
+    for (int i = 0; i < count; ++i) {
+      process.Kill(signal);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     return process.Wait();
   }
 };
@@ -134,6 +137,15 @@ TEST_F(Resume, CtrlCSavesAndResumes) {
   EXPECT_CONTAINS(ReadFile(Output("again")), "already contains a run");
   Process rest(Command("q_learning.run", true), Output("rest"));
   EXPECT_EQ(rest.Wait(), 0) << ReadFile(Output("rest"));
+}
+
+// As the kernel sends to the programs of a benchmark that is killed, for each of its threads.
+TEST_F(Resume, SignalsInQuickSuccessionAreOne) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const std::string run = "q_learning." + std::to_string(signal);
+    EXPECT_EQ(StopAfterACheckpoint(run, false, signal, 5), 130);
+    EXPECT_CONTAINS(ReadFile(Output(run)), "interrupted; saved in");
+  }
 }
 
 TEST_F(Resume, ADamagedCheckpointIsRefused) {

@@ -126,5 +126,34 @@ TEST_F(MetricsFileTest, OfVersion010ContinuesWithItsOwnColumns) {
   EXPECT_EQ(ReadFile(path), header + "1,10,0,0,0,0,0,0,0,0,0,0,0,none,0,0.25,0.125,0.5\n");
 }
 
+TEST_F(MetricsFileTest, WithSomeOfTheAddedColumnsContinuesWithThese) {
+  const std::string path = folder_ + "/metrics.csv";
+  { MetricsFile(path).Flush(); }
+  std::string header = ReadFile(path);
+  header.replace(header.find(",distance_km"), std::string::npos, "\n");
+  std::ofstream(path) << header;
+  EpisodeSummary result;
+  result.energy = 2.5;
+  {
+    MetricsFile metrics(path, header.size());
+    metrics.Append(1, 10, result, {0.5F, 0.25F, 0.125F});
+    metrics.Sync();
+  }
+  EXPECT_EQ(ReadFile(path), header + "1,10,0,0,0,0,0,0,0,0,0,0,0,none,0,0.25,0.125,0.5,2.5\n");
+}
+
+TEST_F(MetricsFileTest, WithUnknownColumnsIsRefused) {
+  const std::string path = folder_ + "/metrics.csv";
+  { MetricsFile(path).Flush(); }
+  const std::string header = ReadFile(path);
+  for (const char* last : {"distance_nm\n", "distance\n", "distance_km,fuel\n"}) {
+    std::string other = header;
+    other.replace(other.find("distance_km"), std::string::npos, last);
+    std::ofstream(path) << other;
+    EXPECT_CONTAINS(MessageOf<InputError>([&] { MetricsFile(path, other.size()); }),
+                    path + ":1: got the columns 'number,");
+  }
+}
+
 }  // namespace
 }  // namespace aquafarm::agents::test

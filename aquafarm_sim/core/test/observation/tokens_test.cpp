@@ -7,47 +7,18 @@
 #include <map>
 #include <set>
 
-#include "aquafarm/observation/encoder.h"
 #include "count_allocations.h"
-#include "tiny_farms.h"
+#include "token_ranch.h"
 
 namespace aquafarm::test {
 namespace {
 
 using Tokens = std::map<std::string, float>;
 
-/// 24 × 24; everything is at least 8 cells from the border, so that it can be moved and turned.
-Scenario OpenScenario() {
-  Scenario scenario;
-  scenario.name = "open";
-  scenario.hash = 1;
-  scenario.width = scenario.height = 24;
-  scenario.islands = {{{11, 14}, 2, 1}};
-  scenario.rocks.cells = {{9, 11}};
-  scenario.ports.cells = {{15, 12}, {9, 15}};
-  scenario.devices.placement = DevicePlacement::kExplicit;
-  scenario.devices.sites = {{{13, 9}, DeviceKind::kMonitoring, 80.0F, false},
-                            {{8, 13}, DeviceKind::kBreedingRelease, 60.0F, false}};
-  scenario.damage.exposure_damage = 0.01F;
-  scenario.view.tokens = true;
-  scenario.disasters = {StillDisaster(13.0F, 11.0F, {1.5F, 3.5F}, {-20.0F, -6.0F})};
-  scenario.disasters[0].speed = 0.25F;
-  scenario.disasters[0].heading_deg = 270;
-  return scenario;
-}
-
-constexpr Cell kShip{11, 10};
-
-Tokens TokensOf(const Scenario& scenario, Cell ship = kShip) {
-  ValidateScenario(scenario);
-  Farm farm(std::make_shared<const Scenario>(scenario));
-  farm.PlaceShip(0, ship);
-  View view;
-  Observe(farm, 0, view);
-  const Encoder encoder(scenario);
-  std::vector<float> features(static_cast<std::size_t>(encoder.feature_count()), -99.0F);
-  encoder.Features(view, features.data());
-  const std::vector<std::string> names = encoder.feature_names();
+/// Returns the tokens by name.
+Tokens Named(const Scenario& scenario, Cell ship = kTokenShip) {
+  const std::vector<float> features = TokensOf(scenario, ship);
+  const std::vector<std::string> names = Encoder(scenario).feature_names();
   Tokens tokens;
   for (std::size_t i = 0; i < names.size(); ++i) tokens[names[i]] = features[i];
   return tokens;
@@ -83,11 +54,11 @@ TEST(Tokens, GroupsCoverTheNamesInOrder) {
     EXPECT_NE(names[static_cast<std::size_t>(groups[i].begin)].find("0.valid"), std::string::npos);
   }
   EXPECT_EQ(names[kFirstBlockedFeature], "ship.blocked.north");
-  EXPECT_EQ(Encoder(OpenScenario()).feature_names(), names);
+  EXPECT_EQ(Encoder(TokenScenario()).feature_names(), names);
 }
 
 TEST(Tokens, DescribeARouteAndTheRisk) {
-  const Tokens tokens = TokensOf(OpenScenario());
+  const Tokens tokens = Named(TokenScenario());
   EXPECT_FLOAT_EQ(tokens.at("device0.east"), 2.0F / kTokenLength);
   EXPECT_FLOAT_EQ(tokens.at("device0.north"), -1.0F / kTokenLength);
   EXPECT_FLOAT_EQ(tokens.at("device0.distance"), 2.0F / kTokenLength);
@@ -116,24 +87,24 @@ TEST(Tokens, DescribeARouteAndTheRisk) {
 }
 
 TEST(Tokens, NothingFollowsTheLastDevice) {
-  Scenario single = OpenScenario();
+  Scenario single = TokenScenario();
   single.devices.sites.pop_back();
-  const Tokens tokens = TokensOf(single);
+  const Tokens tokens = Named(single);
   EXPECT_EQ(tokens.at("device0.onward_device"), 0.0F);
   EXPECT_FLOAT_EQ(tokens.at("device0.onward_port"), 0.5F * tokens.at("device0.port_distance"));
   EXPECT_FLOAT_EQ(tokens.at("port0.onward"), 3.0F / kTokenLength);
 }
 
 TEST(Tokens, ForecastRiskIsThatOfTheFarmSomeStepsLater) {
-  const Scenario scenario = OpenScenario();
-  const Tokens tokens = TokensOf(scenario);
+  const Scenario scenario = TokenScenario();
+  const Tokens tokens = Named(scenario);
   Farm farm(std::make_shared<const Scenario>(scenario));
-  farm.PlaceShip(0, kShip);
+  farm.PlaceShip(0, kTokenShip);
   std::int32_t risky = 0;
   for (std::int32_t ahead = 0; ahead <= kTokenWindow; ++ahead) {
     for (std::int32_t y = -ahead; y <= ahead; ++y) {
       for (std::int32_t x = -ahead; x <= ahead; ++x) {
-        const Cell cell{kShip.x + x, kShip.y + y};
+        const Cell cell{kTokenShip.x + x, kTokenShip.y + y};
         if (std::max(std::abs(x), std::abs(y)) != ahead) continue;
         if ((farm.layout().bits(cell) & kBlockedBits) != 0) continue;
         const std::string name = "ship.near_risk." + std::to_string(x) + '.' + std::to_string(y);
@@ -148,12 +119,12 @@ TEST(Tokens, ForecastRiskIsThatOfTheFarmSomeStepsLater) {
 }
 
 TEST(Tokens, AFarEntityFillsItsOwnSlotAndChangesNoOther) {
-  Scenario more = OpenScenario();
+  Scenario more = TokenScenario();
   more.devices.sites.push_back({{23, 23}, DeviceKind::kTemporaryBreeding, 90.0F, false});
   more.ports.cells.push_back({0, 0});
   more.disasters.push_back(StillDisaster(22.0F, 1.0F, {1.0F}, {-9.0F}));
-  const Tokens before = TokensOf(OpenScenario());
-  const Tokens after = TokensOf(more);
+  const Tokens before = Named(TokenScenario());
+  const Tokens after = Named(more);
   const std::set<std::string> added{"device2", "port2", "disaster1"};
   for (const auto& [name, value] : after) {
     if (added.count(name.substr(0, name.find('.'))) != 0) continue;
@@ -163,19 +134,19 @@ TEST(Tokens, AFarEntityFillsItsOwnSlotAndChangesNoOther) {
 }
 
 TEST(Tokens, PermutedEntitiesPermuteTheTokens) {
-  Scenario swapped = OpenScenario();
+  Scenario swapped = TokenScenario();
   std::swap(swapped.devices.sites[0], swapped.devices.sites[1]);
   std::swap(swapped.ports.cells[0], swapped.ports.cells[1]);
-  ExpectEqual(TokensOf(swapped), Renamed(TokensOf(OpenScenario()), {{"device0", "device1"},
-                                                                    {"device1", "device0"},
-                                                                    {"port0", "port1"},
-                                                                    {"port1", "port0"}}));
+  ExpectEqual(Named(swapped), Renamed(Named(TokenScenario()), {{"device0", "device1"},
+                                                               {"device1", "device0"},
+                                                               {"port0", "port1"},
+                                                               {"port1", "port0"}}));
 }
 
 void Shift(Cell& cell, Cell by) { cell = {cell.x + by.x, cell.y + by.y}; }
 
 TEST(Tokens, ALargerMapWithTheSameRelativePlacesGivesTheSameTokens) {
-  Scenario large = OpenScenario();
+  Scenario large = TokenScenario();
   const Cell by{7, 20};
   large.width = 40;
   large.height = 60;
@@ -184,7 +155,7 @@ TEST(Tokens, ALargerMapWithTheSameRelativePlacesGivesTheSameTokens) {
   for (Cell& cell : large.ports.cells) Shift(cell, by);
   for (DeviceSite& site : large.devices.sites) Shift(site.cell, by);
   large.disasters[0].start = {{20.0F, 31.0F}};
-  ExpectEqual(TokensOf(large, {kShip.x + by.x, kShip.y + by.y}), TokensOf(OpenScenario()));
+  ExpectEqual(Named(large, {kTokenShip.x + by.x, kTokenShip.y + by.y}), Named(TokenScenario()));
 }
 
 /// A quarter turn to the left, then optionally a reflection of east and west.
@@ -201,24 +172,6 @@ struct Symmetry {
     return {(twice.x + side - 1) / 2, (twice.y + side - 1) / 2};
   }
 };
-
-Scenario Transformed(const Symmetry& symmetry) {
-  Scenario scenario = OpenScenario();
-  const Cell first = symmetry.Place({11, 14});
-  const Cell second = symmetry.Place({12, 14});
-  scenario.islands = {{first, 1, 1}, {second, 1, 1}};
-  for (Cell& cell : scenario.rocks.cells) cell = symmetry.Place(cell);
-  for (Cell& cell : scenario.ports.cells) cell = symmetry.Place(cell);
-  for (DeviceSite& site : scenario.devices.sites) site.cell = symmetry.Place(site.cell);
-  const Cell centre = symmetry.Place({13, 11});
-  scenario.disasters[0].start = {{static_cast<float>(centre.x), static_cast<float>(centre.y)}};
-  const Cell motion = symmetry.Vector({-1, 0});
-  scenario.disasters[0].heading_deg = motion.x > 0   ? 90
-                                      : motion.x < 0 ? 270
-                                      : motion.y > 0 ? 0
-                                                     : 180;
-  return scenario;
-}
 
 /// Returns the tokens as the symmetry transforms them: lengths by east and north, moves by name,
 /// cells of the window by offset.
@@ -261,31 +214,32 @@ Tokens Transformed(const Tokens& tokens, const Symmetry& symmetry) {
 }
 
 TEST(Tokens, TurnedAndReflectedRanchesGiveTurnedAndReflectedTokens) {
-  const Tokens plain = TokensOf(OpenScenario());
+  const Tokens plain = Named(TokenScenario());
   for (const bool turns : {false, true}) {
     for (const bool reflects : {false, true}) {
       const Symmetry symmetry{24, turns, reflects};
       SCOPED_TRACE(std::string(turns ? "turned " : "") + (reflects ? "reflected" : ""));
-      ExpectEqual(TokensOf(Transformed(symmetry), symmetry.Place(kShip)),
+      const auto place = [&symmetry](Cell cell) { return symmetry.Place(cell); };
+      ExpectEqual(Named(TurnedTokenScenario(place), symmetry.Place(kTokenShip)),
                   Transformed(plain, symmetry));
     }
   }
 }
 
 TEST(Tokens, MoreEntitiesThanSlotsKeepTheNearest) {
-  Scenario crowded = OpenScenario();
+  Scenario crowded = TokenScenario();
   crowded.devices.sites.clear();
   for (std::int32_t i = 0; i < kTokenDevices + 3; ++i) {
     crowded.devices.sites.push_back({{23, 23 - i}, DeviceKind::kMonitoring, 50.0F, false});
   }
-  const Tokens tokens = TokensOf(crowded, {20, 5});
+  const Tokens tokens = Named(crowded, {20, 5});
   // The devices of rows 23 to 11 are the farthest first: ids 0, 1 and 2 are left out.
   EXPECT_FLOAT_EQ(tokens.at("device0.north"), (20.0F - 5.0F) / kTokenLength);
   EXPECT_FLOAT_EQ(tokens.at("device9.north"), (11.0F - 5.0F) / kTokenLength);
 }
 
 TEST(Tokens, AStepDoesNotAllocate) {
-  const Scenario scenario = OpenScenario();
+  const Scenario scenario = TokenScenario();
   Farm farm(std::make_shared<const Scenario>(scenario));
   const Encoder encoder(scenario);
   View view;

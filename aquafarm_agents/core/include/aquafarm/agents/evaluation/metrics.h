@@ -28,7 +28,7 @@ class MetricsFile {
   /// Creates the file, or truncates an existing one. @throws StorageError
   explicit MetricsFile(std::string path);
   /// Truncates the file to `size` bytes and continues there.
-  /// @throws InputError if it is shorter; StorageError
+  /// @throws InputError if it is shorter or has other columns; StorageError
   MetricsFile(std::string path, std::uint64_t size);
   ~MetricsFile();
   MetricsFile(const MetricsFile&) = delete;

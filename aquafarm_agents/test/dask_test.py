@@ -246,6 +246,15 @@ class DaskTest(unittest.TestCase):
             one._recover()
         self.assertEqual(20, here.connections)
 
+    def test_a_run_has_one_thread_unless_the_user_asks_for_more(self):
+        commands = [["/bin/sh", "-c", "echo threads $OMP_NUM_THREADS"]]
+        kept = {name: value for name, value in os.environ.items() if name != "OMP_NUM_THREADS"}
+        with unittest.mock.patch.dict(os.environ, kept, clear=True), cluster.Cluster() as here:
+            for environment, words in (({}, "threads 1"), ({"OMP_NUM_THREADS": "3"}, "threads 3")):
+                outcome = here.client.submit(worker.perform, str(self.folder), commands, False,
+                                             str(self.folder), environment).result()
+                self.assertEqual(words, outcome["words"])
+
     def test_a_worker_without_the_clients_files_is_named(self):
         commands = [[str(self.folder / "train")]]
         for folder, words in ((self.folder / "none", "there is no folder .*/none; expected"),

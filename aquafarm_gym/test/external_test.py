@@ -12,6 +12,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+import unittest.mock
 
 from venv_tools import enter_venv, run_tests
 
@@ -65,6 +66,13 @@ class ExternalTest(unittest.TestCase):
         with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said):
             code = external.main(make)
         return code, said.getvalue()
+
+    def test_it_shows_progress_as_the_benchmark_reads_it(self):
+        with unittest.mock.patch.object(external, "PROGRESS_PERIOD_S", 0.0):
+            code, said = self.learn("paper", "--episodes", "2", "--max-steps", "5",
+                                    "--evaluation-episodes", "1")
+        self.assertEqual(code, 0, said)
+        self.assertEqual(said.splitlines()[:2], ["episodes 1 / 2", "episodes 2 / 2"])
 
     def test_a_run_has_the_files_of_the_benchmark(self):
         code, said = self.learn("paper", "--episodes", "3", "--max-steps", "50", "--seed", "4",

@@ -24,6 +24,9 @@ _POLL_S = 0.05
 # A worker that srun or mpirun has started is not a rank of the trainings that it executes.
 _OF_LAUNCHERS = re.compile(r"RANK|WORLD_SIZE|MASTER_\w+|OMPI_\w+|PMIX?_\w+|SLURM_PROCID|SLURM_STEP_\w+")
 _PR_SET_PDEATHSIG = 1  # <linux/prctl.h>
+# A run has one core. The threads of PyTorch's OpenMP wait actively for each other, so that a learner
+# of another package would be slower by orders of magnitude next to other runs.
+_ONE_CORE = {"OMP_NUM_THREADS": "1"}
 
 
 def has_begun(folder):
@@ -51,7 +54,7 @@ def _started(command, log, cwd, environment):
 
     return subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT,
                             stdin=subprocess.DEVNULL, start_new_session=True, cwd=cwd,
-                            env={**own, **environment}, preexec_fn=end_with_the_worker)
+                            env={**_ONE_CORE, **own, **environment}, preexec_fn=end_with_the_worker)
 
 
 def _end(process):

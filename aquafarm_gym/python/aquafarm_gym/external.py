@@ -37,6 +37,7 @@ from aquafarm_gym.farms import LocalFarms, find_scenario
 EVALUATION = (*core.EPISODE_COLUMNS.values(), *core.ADDED_COLUMNS.values())
 METRICS = ("number", "total_steps", *core.EPISODE_COLUMNS.values(), "exploration",
            "learning_rate", "loss", *core.ADDED_COLUMNS.values())
+PROGRESS_PERIOD_S: float = 5.0
 FIRST_EVALUATION_SEED = 2**63  # that of aquafarm_evaluate --seed 0
 
 
@@ -71,6 +72,7 @@ class TrainingEnv(FarmEnv):
                  **options: Any) -> None:
         super().__init__(scenario, **options)
         self._limit, self.episodes_taken, self.steps_taken = episodes, 0, 0
+        self._shown = time.monotonic()
         self._file = open(path, "w", newline="", encoding="utf-8")
         self._rows = csv.DictWriter(self._file, METRICS, restval="nan", extrasaction="ignore",
                                     lineterminator="\n")
@@ -88,7 +90,15 @@ class TrainingEnv(FarmEnv):
             self.episodes_taken += 1
             self._rows.writerow({"number": self.episodes_taken, "total_steps": self.steps_taken,
                                  **cells_of(self.farms.finished()[0])})
+            self._show_progress()
         return result
+
+    def _show_progress(self) -> None:
+        """Prints, now and then, the line that aquafarm_benchmark reads."""
+        now = time.monotonic()
+        if now - self._shown >= PROGRESS_PERIOD_S:
+            self._shown = now
+            print(f"episodes {self.episodes_taken:,} / {self._limit:,}", flush=True)
 
     def close(self) -> None:
         self._file.close()

@@ -61,6 +61,14 @@ class Farms:
     height: int
     width: int
 
+    def __init__(self, scenario: core.Scenario, farms: int, state_count: int,
+                 feature_names: list[str]) -> None:
+        self.name, self.agents = scenario.name, scenario.agents
+        self.height, self.width = scenario.height, scenario.width
+        self.farms, self.state_count = farms, state_count
+        self.feature_names, self.feature_count = feature_names, len(feature_names)
+        self.plane_count = len(core.PLANES)
+
 
 class LocalFarms(Farms):
     """Farms in this process. Copies and pickles continue bit-identically."""
@@ -75,13 +83,8 @@ class LocalFarms(Farms):
         write = [*ALWAYS, observation] + (["hashes"] if hashes else [])
         self.scenario = scenario
         self.batch = core.FarmBatch(scenario, farms, write, threads)
-        self.name = scenario.name
-        self.farms, self.agents = self.batch.farms, scenario.agents
-        self.state_count = self.batch.state_count
-        self.feature_names = self.batch.feature_names
-        self.feature_count = len(self.feature_names)
-        self.plane_count = len(core.PLANES)
-        self.height, self.width = scenario.height, scenario.width
+        super().__init__(scenario, self.batch.farms, self.batch.state_count,
+                         self.batch.feature_names)
 
     @property
     def yaml(self) -> str:

@@ -93,17 +93,15 @@ class RosFarms(Farms):
                                              ("get_state", GetState))}
         spec = self._call("get_state", farm=0, with_spec=True).spec
         check_encoding(observation, spec.state_count, spec.scenario_name)
-        self.name, self.yaml = spec.scenario_name, spec.scenario_yaml
-        self.farms, self.agents = farms, spec.agents
-        self.state_count, self.feature_count = spec.state_count, spec.feature_count
+        self.yaml = spec.scenario_yaml
+        scenario = core.Scenario.parse(self.yaml, spec.scenario_name)
         # The arrays of a batch in this process, which this object fills instead.
         arrays = core.FarmBatch(
-            core.Scenario.parse(self.yaml, self.name), farms,
+            scenario, farms,
             write=["rewards", "outcomes", "legal", "in_play", "reasons", "started", observation]
             + (["hashes"] if hashes else []))
-        self.feature_names = arrays.feature_names
+        super().__init__(scenario, farms, spec.state_count, arrays.feature_names)
         self.buffers: dict[str, npt.NDArray[Any]] = dict(arrays.buffers)
-        self.plane_count, self.height, self.width = spec.plane_count, spec.height, spec.width
         self._encodings = BITS[observation] | (StepResult.HASHES if hashes else 0)
         # Random start, so that the numbers differ from those of earlier clients of this node.
         self._sequence = itertools.count(int.from_bytes(os.urandom(7), "little") + 1)

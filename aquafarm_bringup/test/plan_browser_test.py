@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The plan's page in headless Chromium: script, layout, network and print."""
 import base64
+import copy
 import io
 import json
 import pathlib
@@ -17,7 +18,7 @@ import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import plan_sample  # noqa: E402
-from aquafarm_plan import page  # noqa: E402
+from aquafarm_plan import labels, page  # noqa: E402
 
 try:
     from selenium import webdriver
@@ -90,6 +91,20 @@ def open_browser():
     return webdriver.Chrome(service=Service(shutil.which("chromedriver")), options=options)
 
 
+def long_plan(plan):
+    """Six devices in port with one device aboard at a time, and two more notes."""
+    plan = copy.deepcopy(plan)
+    for route, count in zip(plan["plan"]["routes"], (12, 6)):
+        route["orders"] = (route["orders"] * 6)[:count]
+    plan["warnings"] += [{"code": "radii_estimated", "severity": "note", "advice": "",
+                          "text": "Radii are estimated from the wind at 63 points of the storm."},
+                         {"code": "ports_chosen", "severity": "note",
+                          "text": "No port was given: the ports are chosen on the shore, " +
+                                  "; ".join(f"port {one} at 30.7233,122.4367" for one in "ABCD"),
+                          "advice": "Give your own, each as --ports LATITUDE,LONGITUDE."}]
+    return plan
+
+
 @unittest.skipIf(reason_to_skip(), reason_to_skip())
 class BrowserTest(unittest.TestCase):
 
@@ -97,7 +112,8 @@ class BrowserTest(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = pathlib.Path(tempfile.mkdtemp(prefix="aquafarm_plan_browser_"))
         cls.plan = plan_sample.sample(members=400)
-        for name, plan in (("plan", cls.plan), ("late", plan_sample.nothing_to_save()),
+        for name, plan in (("plan", cls.plan), ("long", long_plan(cls.plan)),
+                           ("late", plan_sample.nothing_to_save()),
                            ("calm", plan_sample.storm_stays_away()),
                            ("unknown", plan_sample.storm_unknown())):
             (cls.folder / f"{name}.html").write_text(page.render(plan), encoding="utf-8")
@@ -245,8 +261,19 @@ class BrowserTest(unittest.TestCase):
             darkest = grey[max(y - 8, 0):y + 9, max(x - 8, 0):x + 9].min()
             self.assertLess(darkest, sea - 60, leg)
 
+    def test_labels_are_no_wider_than_the_room_that_they_get(self):
+        for name in ("plan", "late"):
+            self.show(name)
+            lines = self.browser.execute_script("""
+              return [...document.querySelectorAll("#chart .labels > text tspan")].map(line =>
+                [line.textContent, parseFloat(getComputedStyle(line).fontSize),
+                 line.getComputedTextLength()]); """)
+            self.assertGreater(len(lines), 6)
+            for text, size, width in lines:
+                self.assertLessEqual(width, labels.text_width(text, size) + 1, (name, text))
+
     def test_it_prints_on_two_pages(self):
-        for name in ("plan", "late", "calm", "unknown"):
+        for name in ("plan", "late", "calm", "unknown", "long"):
             self.show(name)
             printed = self.browser.execute_cdp_cmd(
                 "Page.printToPDF", {"preferCSSPageSize": True, "printBackground": True})

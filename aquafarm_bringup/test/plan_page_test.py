@@ -249,6 +249,22 @@ class PageTest(unittest.TestCase):
                     self.assertIn("unknown", one["unknown"])
                     self.assertEqual((None, None), (one["probability_home"], one["expected_loss"]))
 
+    def test_an_ended_forecast_is_unknown_and_an_old_one_is_no_all_clear(self):
+        plan = plan_sample.storm_unknown()
+        plan["warnings"][0]["code"], plan["storm"]["age_h"] = "forecast_ended", 46633.0
+        words = words_of(plan)
+        self.check_unknown(words)
+        self.assertIn("because the bulletin's forecast has ended", words)
+        plan = plan_sample.storm_stays_away()
+        plan["outcome"]["exit_code"] = 13
+        self.assertIn("When must the ships leave? Unknown: the bulletin is old.", words_of(plan))
+
+    def test_a_loss_that_is_rare_is_not_called_more_than_zero(self):
+        plan = copy.deepcopy(self.plan)
+        plan["loss"]["with_plan"].update(q95=0.0, cvar05=89000.0)
+        self.assertIn("In 19 of 20 futures nothing; CNY 89,000 on average in the worst twentieth",
+                      words_of(plan))
+
     def check_unknown(self, words):
         for part in ("Stop. It is unknown whether the storm reaches the devices",
                      "When must the ships leave? Unknown.", "What do I lose? Unknown.",

@@ -10,7 +10,7 @@ from .words import is_unknown, letter, order_text
 
 REGION = 430.0  # side of the region's drawing [px]
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
-HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 34.0
+HAZARD_HEIGHT, ROW, AXIS = 62.0, 27.0, 48.0
 CURVE = (520.0, 270.0, 58.0, 44.0)  # width, height, left and lower margin of the loss curve [px]
 
 
@@ -55,10 +55,19 @@ def region(plan):
         "h": max(ranch["height"] * scale, 5)
     }
     return {
-        "side": REGION, "points": drawn, "lines": lines, "rings": rings, "scale_bar": bar,
+        "side": REGION, "points": _apart(drawn, 10.0), "lines": lines, "rings": rings, "scale_bar": bar,
         "cone": _cone(errors, px, scale / cell_km), "ranch": box, "caption": caption,
         "labels": _region_labels(plan, drawn, rings, box)
     }
+
+
+def _apart(drawn, least):
+    """The points of a dense track that are at least a distance apart [px], and the last one."""
+    kept = []
+    for one in drawn:
+        if not kept or math.dist(one["xy"], kept[-1]["xy"]) >= least or one is drawn[-1]:
+            kept.append(one)
+    return kept
 
 
 def _region_labels(plan, drawn, rings, box):

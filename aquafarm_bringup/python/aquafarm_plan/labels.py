@@ -4,13 +4,16 @@ import dataclasses
 import math
 import unicodedata
 
-CHAR_WIDTH = 0.58  # of the font size, mean of a bold sans-serif face
+# Of the font size, in a wide bold sans-serif face (DejaVu).
+CHAR_WIDTH = 0.7
+WIDTHS = {" ": 0.36, "%": 1.0}
 WIDE = ("W", "F")  # East Asian characters as wide as the font size
 
 
 def text_width(text, size):
     """Approximate width of a text [px]."""
-    return size * sum(1.0 if unicodedata.east_asian_width(c) in WIDE else CHAR_WIDTH for c in text)
+    return size * sum(1.0 if unicodedata.east_asian_width(c) in WIDE else WIDTHS.get(c, CHAR_WIDTH)
+                      for c in text)
 
 
 def shorten(text, width, size):
@@ -100,7 +103,7 @@ def _cost(box, label, taken, points, width, height):
     for a0, b0, a1, b1 in taken:
         across, along = min(x1, a1) - max(x0, a0), min(y1, b1) - max(y0, b0)
         if across > -2 and along > -2:
-            cost += 200
+            cost += 2000
     margin = 2
     return cost + sum(weight for x, y, weight in points
                       if x0 - margin < x < x1 + margin and y0 - margin < y < y1 + margin)

@@ -59,6 +59,7 @@ def render(plan):
         last_known=(words.last_known(plan)
                     if plan["deadlines"].get("not_known_beyond") else None),
         unknown=words.is_unknown(plan),
+        unknown_cause=words.unknown_cause(plan),
         device_name=lambda i: plan["devices"][i]["name"],
         departures=departures,
         first_s=int(first),

@@ -7,6 +7,8 @@ KINDS = {
     "breeding_release": "release cage", "deep_water_breeding": "deep-water cage"
 }
 
+BULLETIN_OLD = 13  # exit code
+
 
 def kind_name(kind):
     """Name of a device kind; an unknown kind keeps its own, without underscores."""
@@ -25,6 +27,12 @@ def letter(number):
 def is_unknown(plan):
     """Whether the storm's winds are unknown, so that no number of the plan is an all-clear."""
     return plan["outcome"]["kind"] == "storm_unknown"
+
+
+def unknown_cause(plan):
+    """What makes the numbers of a plan unknown, in a few words."""
+    ended = any(warning["code"] == "forecast_ended" for warning in plan["warnings"])
+    return "the bulletin's forecast has ended" if ended else "the storm's winds are unknown"
 
 
 def unknown_reason(plan):
@@ -50,7 +58,7 @@ def left_word(plan, device):
 def left_reason(plan, left):
     """Why a device is left behind, without its name at the start."""
     if is_unknown(plan):
-        return "the storm's winds are unknown"
+        return unknown_cause(plan)
     name = plan["devices"][left["device"]]["name"]
     return left["text"].removeprefix(f"{name}: ")
 
@@ -101,7 +109,7 @@ def order_text(plan, order):
 def no_rings(plan):
     """Sentence in the place of the curves if no ring reaches the ranch."""
     if is_unknown(plan):
-        return "Unknown: the storm's winds are not known."
+        return f"Unknown: {unknown_cause(plan)}."
     end = Clock(plan["clock"]).day_time(plan["clock"]["end"])
     return f"No ring reaches the ranch before {end} in these futures."
 
@@ -137,9 +145,11 @@ def _leave(plan):
     away = plan["outcome"]["kind"] == "storm_stays_away"
     if is_unknown(plan):
         return ("When must the ships leave?", "Unknown.",
-                "The storm's winds are not known. Get a bulletin with winds or radii.")
+                f"Unknown, because {unknown_cause(plan)}. Get a newer bulletin with winds or radii.")
     if not leaves:
         answer = "No ship needs to leave now." if away else "No ship should leave."
+        if plan["outcome"]["exit_code"] == BULLETIN_OLD:
+            answer = "Unknown: the bulletin is old."
     elif len({time for time, _ in leaves}) == 1:
         who = ("Every ship" if len(leaves) == len(plan["ships"]) else some(
             [name for _, name in leaves], " and "))
@@ -185,8 +195,10 @@ def _lose(plan):
         return ("What do I lose?", f"Nothing in these {plan['ensemble']['members']:,} futures.",
                 _horizon(plan, Clock(plan["clock"])))
     answer = f"{amount(mine['mean'], currency)} of {amount(loss['insured'], currency)} on average."
-    remark = (f"One time in twenty more than {amount(mine['q95'], currency)}. "
-              f"If no ship leaves: {amount(idle['mean'], currency)} on average.")
+    remark = (f"One time in twenty more than {amount(mine['q95'], currency)}. " if mine["q95"] else
+              f"In 19 of 20 futures nothing; {amount(mine['cvar05'], currency)} on average in the "
+              "worst twentieth. ")
+    remark += f"If no ship leaves: {amount(idle['mean'], currency)} on average."
     if not currency:
         remark += " In the devices' units of value; the ranch names no currency."
     return "What do I lose?", answer, remark
@@ -212,7 +224,7 @@ def _sure(plan):
             f"{percent(best['odds']['home'])} ({best['name']}) of the futures.")
     points = f"{max(100 * sampling_error(worst['odds']['home'], members), 1):.0f}"
     base = plan["what_if"][0]["all_home"] if plan["what_if"] else None
-    every = (f"All {len(devices)} devices: {percent(base)}. "
+    every = (f"All {len(devices)} come home in {percent(base)}. "
              if base is not None and len(planned) == len(devices) else "")
     return (
         "How sure is it?", answer,
@@ -223,7 +235,7 @@ def _sure(plan):
 def _one_more(plan):
     question, currency = "What does one more ship bring?", plan["loss"]["currency"]
     if is_unknown(plan):
-        return question, "Unknown.", "The storm's winds are not known."
+        return question, "Unknown.", f"Unknown, because {unknown_cause(plan)}."
     row = next((one for one in plan["what_if"] if one["change"] == "ships+1"), None)
     if not row or not row["possible"] or not row["difference"]:
         return question, "Not computed.", row["text"] if row else "The plan has no such comparison."

@@ -14,6 +14,7 @@
 #include "aquafarm/storms/to_disaster.h"
 #include "aquafarm/tracks/fine_rings.h"
 #include "aquafarm/tracks/reader.h"
+#include "aquafarm_sim/checked_topics.h"
 #include "aquafarm_sim/convert/conversions.h"
 #include "aquafarm_sim/names.h"
 #include "aquafarm_sim/node/bulletin_folder.h"
@@ -114,7 +115,9 @@ class BulletinNode {
     // Only a persistent client has a connection that shutdown() can drop.
     call->client = node_.serviceClient<aquafarm_msgs::SetDisaster>(names::kSetDisaster, true);
     std::future<bool> answer = call->answered.get_future();
-    std::thread([call] { call->answered.set_value(call->client.call(call->message)); }).detach();
+    std::thread([call] {
+      call->answered.set_value(aquafarm_sim::Call(call->client, call->message));
+    }).detach();
     const std::chrono::duration<double> limit(params_.call_limit_s);
     if (answer.wait_for(limit) != std::future_status::ready) {
       call->client.shutdown();

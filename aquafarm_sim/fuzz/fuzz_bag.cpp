@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fuzz target for bags: reads an input as verify_bag does.
+#include <rosbag/bag.h>
 #include <unistd.h>
 
 #include <cstddef>
@@ -10,8 +11,17 @@
 #include "aquafarm/base/check.h"
 #include "aquafarm_sim/bags/bag_check.h"
 
+// An open bag keeps rosbag's plugin for encryption loaded; each input would load it again.
+const rosbag::Bag& KeepPlugin() {
+  static const std::string path = "/dev/shm/fuzz_bag_open." + std::to_string(getpid());
+  static const rosbag::Bag bag(path, rosbag::bagmode::Write);
+  unlink(path.c_str());
+  return bag;
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::string path = "/dev/shm/fuzz_bag." + std::to_string(getpid());
+  [[maybe_unused]] static const rosbag::Bag& open_bag = KeepPlugin();
   std::ofstream(path, std::ios::binary) << std::string(reinterpret_cast<const char*>(data), size);
   try {
     aquafarm_sim::CheckBag(path, "");

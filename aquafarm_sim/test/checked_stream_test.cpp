@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Requests whose arrays state more entries than follow are refused before memory is allocated.
-#include "aquafarm_sim/node/checked_stream.h"
+#include "aquafarm_sim/checked_stream.h"
 
+#include <aquafarm_msgs/FarmState.h>
 #include <aquafarm_msgs/LoadState.h>
 #include <aquafarm_msgs/SetDisaster.h>
 #include <aquafarm_msgs/Step.h>
@@ -9,6 +10,8 @@
 #include <sys/resource.h>
 
 #include <cstring>
+
+#include "aquafarm_sim/checked_topics.h"
 
 namespace aquafarm_sim {
 namespace {
@@ -28,7 +31,7 @@ aquafarm_msgs::SetDisaster::Request Sample() {
 TEST(CheckedStream, ReadsWhatWasWritten) {
   const auto message = ser::serializeMessage(Sample());
   aquafarm_msgs::SetDisaster::Request request;
-  ReadRequest(message, request);
+  ReadMessage(message, request);
   EXPECT_EQ(request, Sample());
 }
 
@@ -36,7 +39,7 @@ TEST(CheckedStream, RefusesEveryRequestThatIsCutOff) {
   auto message = ser::serializeMessage(Sample());
   while (--message.num_bytes >= 4) {
     aquafarm_msgs::SetDisaster::Request request;
-    EXPECT_THROW(ReadRequest(message, request), ser::StreamOverrunException);
+    EXPECT_THROW(ReadMessage(message, request), ser::StreamOverrunException);
   }
 }
 
@@ -50,7 +53,7 @@ int RefusedLengths(const Request& sample) {
     std::memset(changed.buf.get() + at, 0xf0, 4);
     Request request;
     try {
-      ReadRequest(changed, request);
+      ReadMessage(changed, request);
     } catch (const ser::StreamOverrunException&) {
       ++refused;
     }
@@ -74,6 +77,48 @@ TEST(CheckedStream, RefusesLengthsBeforeItAllocates) {
   EXPECT_GT(of_disaster, 20);
   EXPECT_GT(of_load, 0);
   EXPECT_GT(of_step, 0);
+}
+
+aquafarm_msgs::FarmState SampleOfTopic() {
+  aquafarm_msgs::FarmState state;
+  state.step = 7;
+  state.ships.resize(2);
+  state.devices.resize(3);
+  return state;
+}
+
+ros::VoidConstPtr Receive(ros::SerializedMessage message) {
+  const auto subscription = boost::make_shared<CheckedSubscription<aquafarm_msgs::FarmState>>(
+      [](const aquafarm_msgs::FarmStateConstPtr&) {});
+  ros::SubscriptionCallbackHelperDeserializeParams params;
+  params.buffer = message.message_start;
+  params.length = static_cast<std::uint32_t>(message.num_bytes - 4);
+  return subscription->deserialize(params);
+}
+
+TEST(CheckedSubscription, ReadsWhatWasWritten) {
+  const auto state = Receive(ser::serializeMessage(SampleOfTopic()));
+  EXPECT_EQ(*boost::static_pointer_cast<const aquafarm_msgs::FarmState>(state), SampleOfTopic());
+}
+
+TEST(CheckedSubscription, RefusesLengthsBeforeItAllocates) {
+  rlimit before{};
+  getrlimit(RLIMIT_AS, &before);
+  const rlimit small{rlim_t{1} << 30U, before.rlim_max};  // more throws std::bad_alloc
+  ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
+  const auto message = ser::serializeMessage(SampleOfTopic());
+  int refused = 0;
+  for (std::size_t at = 4; at + 4 <= message.num_bytes; ++at) {
+    auto changed = ser::serializeMessage(SampleOfTopic());
+    std::memset(changed.buf.get() + at, 0xf0, 4);
+    try {
+      Receive(changed);
+    } catch (const ser::StreamOverrunException&) {
+      ++refused;
+    }
+  }
+  setrlimit(RLIMIT_AS, &before);
+  EXPECT_GT(refused, 20);
 }
 
 }  // namespace

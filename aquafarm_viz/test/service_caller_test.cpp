@@ -2,12 +2,18 @@
 #include "service_caller.h"
 
 #include <aquafarm_msgs/Pause.h>
+#include <aquafarm_msgs/SaveState.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
+
+#include "aquafarm_sim/node/checked_service.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -32,6 +38,27 @@ bool AnswerSoon(Pause::Request&, Pause::Response& response) {
   return response.ok = true;
 }
 
+// Answers with an array that states a gibibyte and contains nothing.
+class Overstater : public ros::ServiceCallbackHelper {
+ public:
+  bool call(ros::ServiceCallbackHelperCallParams& params) override {
+    aquafarm_msgs::SaveState::Response response;
+    response.ok = true;
+    params.response = ros::serialization::serializeServiceResponse(true, response);
+    const std::uint32_t stated = 1U << 30U;  // the length of the array is in front of the hash
+    std::memcpy(params.response.buf.get() + params.response.num_bytes - sizeof(response.hash) -
+                    sizeof(stated),
+                &stated, sizeof(stated));
+    return true;
+  }
+};
+
+std::int64_t PeakKilobytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
+}
+
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
@@ -41,6 +68,7 @@ class ServiceCallerTest : public testing::Test {
   ServiceCallerTest() : spinner_(1) { spinner_.start(); }
 
   // Calls a service and waits for its line. The call itself must return immediately.
+  template <typename Service = Pause>
   std::string LineOf(const std::string& name) {
     std::mutex mutex;
     std::condition_variable came;
@@ -51,7 +79,7 @@ class ServiceCallerTest : public testing::Test {
       came.notify_all();
     });
     const auto start = Clock::now();
-    caller.Call<Pause>(name, Pause(), [](const Pause&) { return std::string("done"); });
+    caller.Call<Service>(name, Service(), [](const Service&) { return std::string("done"); });
     EXPECT_LT(SecondsSince(start), 0.4);
     std::unique_lock<std::mutex> lock(mutex);
     came.wait_for(lock, std::chrono::seconds(60), [&] { return !line.empty(); });
@@ -95,6 +123,14 @@ TEST_F(ServiceCallerTest, TellsTheAnswerOrWhatWasWrong) {
 
 TEST_F(ServiceCallerTest, SaysThatThereIsNoSuchService) {
   EXPECT_EQ(LineOf("nothing"), "/nothing: service not available; is a ranch running?");
+}
+
+TEST_F(ServiceCallerTest, AllocatesNoEntriesThatAResponseStatesAndDoesNotContain) {
+  const auto server = aquafarm_sim::AdvertiseHelper<aquafarm_msgs::SaveState>(
+      node_, "overstated", boost::make_shared<Overstater>());
+  const std::int64_t before = PeakKilobytes();
+  EXPECT_EQ(LineOf<aquafarm_msgs::SaveState>("overstated"), "/overstated: the call failed");
+  EXPECT_LT(PeakKilobytes() - before, 100 << 10);
 }
 
 TEST_F(ServiceCallerTest, CutsOffACallWithoutAnAnswer) {

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Fuzz target for checkpoints: repairs sizes and checksum of the header, so that the reader gets
 // past them, and makes the policy. Samples that are not changed provide the spec of their farms.
-#include <unistd.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <string>
 
@@ -14,6 +11,7 @@
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
+#include "learning/parse_checkpoint.h"
 
 namespace {
 
@@ -47,18 +45,15 @@ bool Repair(std::string& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace aquafarm::agents;
   static std::map<std::string, EnvironmentSpec> specs;
-  static const std::string path = "/dev/shm/fuzz_checkpoint." + std::to_string(getpid());
   if (size < kHeader) return 0;
   std::string bytes(reinterpret_cast<const char*>(data), size);
   const bool changed = Repair(bytes);
-  std::ofstream(path, std::ios::binary) << bytes;
   try {
-    const Checkpoint checkpoint = ReadCheckpoint(path);
+    const Checkpoint checkpoint = ParseCheckpoint(bytes, "fuzz");
     if (!changed) specs.emplace(checkpoint.algorithm, checkpoint.spec);
     const auto spec = specs.find(checkpoint.algorithm);
     if (spec != specs.end()) FindAlgorithm(spec->first).make_policy(checkpoint, spec->second);
   } catch (const aquafarm::InputError&) {  // expected for invalid input; any other failure is a bug
   }
-  unlink(path.c_str());
   return 0;
 }

@@ -21,6 +21,7 @@
 #include "aquafarm_agents/link/service_link.h"
 #include "aquafarm_agents/link/ship_claim.h"
 #include "aquafarm_agents/link/slow_warning.h"
+#include "aquafarm_sim/checked_topics.h"
 #include "aquafarm_sim/convert/observation.h"
 #include "aquafarm_sim/names.h"
 
@@ -123,9 +124,9 @@ class AgentDriver::Impl {
   void Board() {
     claim_.emplace(node_, options_.ship, options_.wait_limit_s, options_.stop);
     node_.setCallbackQueue(&queue_);
-    observation_ = node_.subscribe<FarmState>(
-        names::Observation(options_.ship), kQueue,
-        [this](const FarmState::ConstPtr& message) { Take(message); }, ros::VoidConstPtr(),
+    observation_ = aquafarm_sim::Subscribe<FarmState>(
+        node_, names::Observation(options_.ship), kQueue,
+        [this](const FarmState::ConstPtr& message) { Take(message); },
         ros::TransportHints().tcpNoDelay());
   }
 

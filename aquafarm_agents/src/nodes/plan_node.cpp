@@ -31,6 +31,7 @@
 #include "aquafarm_agents/plan/newest_work.h"
 #include "aquafarm_agents/plan/plan_keeper.h"
 #include "aquafarm_agents/plan/plan_markers.h"
+#include "aquafarm_sim/checked_topics.h"
 #include "aquafarm_sim/params.h"
 
 namespace aquafarm_agents {
@@ -160,8 +161,9 @@ class PlanNode {
     if (!params_.scenario.empty()) {
       scenario_ = std::make_shared<const aquafarm::Scenario>(LoadRanch(params_.scenario));
     } else {
-      spec_ = node_.subscribe("spec", 2, &PlanNode::OnSpec, this);
-      state_ = node_.subscribe("state", 1, &PlanNode::OnState, this);
+      spec_ = aquafarm_sim::Subscribe<aquafarm_msgs::FarmSpec>(
+          node_, "spec", 2, [this](const aquafarm_msgs::FarmSpecConstPtr& spec) { OnSpec(spec); });
+      FollowState();
     }
     work_ = std::make_unique<NewestWork<PlanInputs>>(
         [this](const PlanInputs& inputs) { Work(inputs); },
@@ -179,12 +181,18 @@ class PlanNode {
  private:
   bool follows() const { return params_.scenario.empty(); }
 
+  void FollowState() {
+    state_ = aquafarm_sim::Subscribe<aquafarm_msgs::FarmState>(
+        node_, "state", 1,
+        [this](const aquafarm_msgs::FarmStateConstPtr& state) { OnState(state); });
+  }
+
   void OnSpec(const aquafarm_msgs::FarmSpecConstPtr& spec) {
     if (scenario_ && scenario_->hash == spec->scenario_hash) return;
     // The last state is of another ranch. A new connection gets the state of this one.
     last_state_ = nullptr;
     state_.shutdown();
-    state_ = node_.subscribe("state", 1, &PlanNode::OnState, this);
+    FollowState();
     try {
       scenario_ = std::make_shared<const aquafarm::Scenario>(
           aquafarm::ParseScenario(spec->scenario_yaml, spec->scenario_name));

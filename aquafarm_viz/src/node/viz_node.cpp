@@ -11,6 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 
+#include "aquafarm_sim/checked_topics.h"
 #include "aquafarm_sim/params.h"
 #include "aquafarm_viz/markers/markers.h"
 #include "aquafarm_viz/names.h"
@@ -60,12 +61,18 @@ VizNode::VizNode(ros::NodeHandle node, const VizParams& params)
   const auto redraw = [this](const ros::SingleSubscriberPublisher&) { pictured_ = false; };
   image_ = node.advertise<sensor_msgs::Image>(names::kImage, 2, redraw);
   compressed_ = node.advertise<sensor_msgs::CompressedImage>(names::kCompressed, 2, redraw);
-  spec_ = node.subscribe(names::kSpec, Pairing::kSpecs, &VizNode::OnSpec, this);
-  state_ = node.subscribe(names::kState, ReplayTape::kQueueOfStates, &VizNode::OnState, this,
-                          ros::TransportHints().tcpNoDelay());
-  training_topic_ = node.subscribe(names::kTraining, 1, &VizNode::OnTraining, this);
-  choice_topic_ = node.subscribe<aquafarm_msgs::PolicyChoice>(
-      names::kChoice, 2, [this](const aquafarm_msgs::PolicyChoiceConstPtr& choice) {
+  spec_ = aquafarm_sim::Subscribe<aquafarm_msgs::FarmSpec>(
+      node, names::kSpec, Pairing::kSpecs,
+      [this](const aquafarm_msgs::FarmSpecConstPtr& spec) { OnSpec(spec); });
+  state_ = aquafarm_sim::Subscribe<aquafarm_msgs::FarmState>(
+      node, names::kState, ReplayTape::kQueueOfStates,
+      [this](const aquafarm_msgs::FarmStateConstPtr& state) { OnState(state); },
+      ros::TransportHints().tcpNoDelay());
+  training_topic_ = aquafarm_sim::Subscribe<aquafarm_msgs::TrainingStatus>(
+      node, names::kTraining, 1,
+      [this](const aquafarm_msgs::TrainingStatusConstPtr& training) { OnTraining(training); });
+  choice_topic_ = aquafarm_sim::Subscribe<aquafarm_msgs::PolicyChoice>(
+      node, names::kChoice, 2, [this](const aquafarm_msgs::PolicyChoiceConstPtr& choice) {
         choice_ = choice;
         marked_ = pictured_ = false;
       });
@@ -124,8 +131,8 @@ void VizNode::FollowValues() {
     values_topic_.shutdown();
     values_topic_ = ros::Subscriber();
   } else if (!values_topic_) {
-    values_topic_ = node_.subscribe<sensor_msgs::PointCloud2>(
-        names::kValuePoints, 1,
+    values_topic_ = aquafarm_sim::Subscribe<sensor_msgs::PointCloud2>(
+        node_, names::kValuePoints, 1,
         [this](const sensor_msgs::PointCloud2ConstPtr& cloud) { cloud_ = cloud; });
   }
 }

@@ -13,6 +13,7 @@
 #include <pluginlib/class_list_macros.hpp>
 #include <string>
 
+#include "aquafarm_sim/checked_topics.h"
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
@@ -45,28 +46,28 @@ RanchPanel::RanchPanel(QWidget* parent)
   layout->addWidget(widget_);
   caller_ = MakeCaller(kCallLimit_s);
   // rviz spins in its window thread, so these callbacks may use the model.
-  spec_ = node_.subscribe<aquafarm_msgs::FarmSpec>(
-      names::kSpec, Pairing::kSpecs, [this](const aquafarm_msgs::FarmSpecConstPtr& spec) {
+  spec_ = aquafarm_sim::Subscribe<aquafarm_msgs::FarmSpec>(
+      node_, names::kSpec, Pairing::kSpecs, [this](const aquafarm_msgs::FarmSpecConstPtr& spec) {
         model_.Take(spec);
         changed_ = true;
       });
-  state_ = node_.subscribe<aquafarm_msgs::FarmState>(
-      names::kState, 2, [this](const aquafarm_msgs::FarmStateConstPtr& state) {
+  state_ = aquafarm_sim::Subscribe<aquafarm_msgs::FarmState>(
+      node_, names::kState, 2, [this](const aquafarm_msgs::FarmStateConstPtr& state) {
         model_.Take(state);
         changed_ = true;
       });
-  training_ = node_.subscribe<aquafarm_msgs::TrainingStatus>(
-      names::kTraining, 10, [this](const aquafarm_msgs::TrainingStatusConstPtr& training) {
+  training_ = aquafarm_sim::Subscribe<aquafarm_msgs::TrainingStatus>(
+      node_, names::kTraining, 10, [this](const aquafarm_msgs::TrainingStatusConstPtr& training) {
         model_.Take(training);
         changed_ = true;
       });
-  plan_ = node_.subscribe<aquafarm_msgs::RescuePlan>(
-      names::kPlan, 2, [this](const aquafarm_msgs::RescuePlanConstPtr& plan) {
+  plan_ = aquafarm_sim::Subscribe<aquafarm_msgs::RescuePlan>(
+      node_, names::kPlan, 2, [this](const aquafarm_msgs::RescuePlanConstPtr& plan) {
         model_.Take(plan, ros::SteadyTime::now());
         changed_ = true;
       });
-  plan_heartbeat_ = node_.subscribe<std_msgs::Time>(
-      names::kPlanHeartbeat, 2,
+  plan_heartbeat_ = aquafarm_sim::Subscribe<std_msgs::Time>(
+      node_, names::kPlanHeartbeat, 2,
       [this](const std_msgs::TimeConstPtr&) { model_.HearPlanNode(ros::SteadyTime::now()); });
   QTimer::singleShot(kRefresh_ms, this, [this] { FitWindow(*this); });  // the window is shown then
   connect(&timer_, &QTimer::timeout, this, [this] {

@@ -14,6 +14,7 @@
 #include <type_traits>
 
 #include "aquafarm/base/mutex.h"
+#include "aquafarm_sim/checked_topics.h"
 
 namespace aquafarm_viz {
 
@@ -40,7 +41,7 @@ class ServiceCaller {
       ros::ServiceClient client = node_.serviceClient<Service>(name, true);
       if (!client.isValid()) return full + ": service not available; is a ranch running?";
       if (!Arm(&client)) return std::string();
-      const bool answered = client.call(service);
+      const bool answered = aquafarm_sim::Call(client, service);
       if (Disarm()) return full + ": no answer within " + LimitInWords();
       if (!answered) return full + ": the call failed";
       return Describe(name, service, describe);

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "aquafarm/base/mutex.h"
+#include "aquafarm_sim/checked_topics.h"
 
 namespace aquafarm_agents {
 
@@ -26,7 +27,7 @@ class CallLimit {
   template <typename Service>
   bool Call(ros::ServiceClient& client, Service& service) {
     Arm(client);
-    const bool answered = client.call(service);
+    const bool answered = aquafarm_sim::Call(client, service);
     Disarm();
     if (!answered) client.shutdown();
     return answered;

@@ -159,12 +159,15 @@ std::vector<Dimension> ReadDimensions(const NcFile& file, int variable, const st
     if (along && again != d.at.end()) {
       file.Fail(d.name + ": got " + internal::Format(*again) + " twice, expected it once");
     }
-    if (d.axis != Axis::kLatitude) continue;
-    constexpr double kPole = 90.0 + 1.0e-3;  // packed values have rounding errors
-    for (const double latitude : d.at) {
-      if (std::abs(latitude) <= kPole) continue;
-      file.Fail(d.name + ": got a latitude of " + internal::Format(latitude) +
-                ", expected [-90, 90]");
+    if (!along) continue;
+    const bool is_latitude = d.axis == Axis::kLatitude;
+    // Packed values have rounding errors, and grids may continue beyond the date line.
+    const double most = is_latitude ? 90.0 + 1.0e-3 : 720.0;
+    for (const double degrees : d.at) {
+      if (std::abs(degrees) <= most) continue;
+      file.Fail(d.name + ": got a " + (is_latitude ? "latitude" : "longitude") + " of " +
+                internal::Format(degrees) + ", expected " +
+                (is_latitude ? "[-90, 90]" : "[-180, 360]"));
     }
   }
   return dimensions;

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "aquafarm_sim/node/checked_stream.h"
+#include "aquafarm_sim/checked_stream.h"
 
 namespace aquafarm_sim {
 
@@ -25,7 +25,7 @@ class CheckedService : public ros::ServiceCallbackHelper {
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
     typename Service::Request request;
     typename Service::Response response;
-    ReadRequest(params.request, request);
+    ReadMessage(params.request, request);
     const bool is_done = handler_(request, response, (*params.connection_header)["callerid"]);
     params.response = ros::serialization::serializeServiceResponse(is_done, response);
     return is_done;

@@ -29,7 +29,7 @@ class ReusingService : public ros::ServiceCallbackHelper {
   bool call(ros::ServiceCallbackHelperCallParams& params) override {
     const aquafarm::MutexLock lock(mutex_);
     if (params.request.num_bytes > kMostKeptBytes) request_ = Request();
-    ReadRequest(params.request, request_);
+    ReadMessage(params.request, request_);
     params.response = ros::serialization::serializeServiceResponse(
         true, handler_(request_, (*params.connection_header)["callerid"]));
     if (params.request.num_bytes > kMostKeptBytes) request_ = Request();

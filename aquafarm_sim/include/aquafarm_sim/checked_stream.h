@@ -11,9 +11,9 @@
 
 namespace aquafarm_sim {
 
-/// Reads messages of clients. roscpp allocates as many entries as an array states before it looks
-/// for them, so that a request of a few bytes could take all memory. This stream first requires
-/// that so many bytes follow.
+/// Reads messages of other nodes. roscpp allocates as many entries as an array states before it
+/// looks for them, so that a message of a few bytes could take all memory. This stream first
+/// requires that so many bytes follow.
 struct CheckedStream : ros::serialization::IStream {
   using IStream::IStream;
 
@@ -34,13 +34,13 @@ struct CheckedStream : ros::serialization::IStream {
   }
 };
 
-/// Reads a request. @throws ros::serialization::StreamOverrunException if it is cut off
-template <typename Request>
-void ReadRequest(const ros::SerializedMessage& message, Request& request) {
+/// Reads a request or response. @throws ros::serialization::StreamOverrunException if it is cut off
+template <typename Content>
+void ReadMessage(const ros::SerializedMessage& message, Content& content) {
   const auto header = static_cast<std::size_t>(message.message_start - message.buf.get());
   CheckedStream stream(message.message_start,
                        static_cast<std::uint32_t>(message.num_bytes - header));
-  ros::serialization::deserialize(stream, request);
+  ros::serialization::deserialize(stream, content);
 }
 
 }  // namespace aquafarm_sim

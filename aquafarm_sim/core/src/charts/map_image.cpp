@@ -117,11 +117,13 @@ MapImage ParsePgm(const std::string& bytes, ParseContext& place) {
 }
 
 // Refuses a PNG with a chunk longer than the file: stb allocates the stated length before it reads.
+// Refuses one whose first pixels are empty: stb would copy them to a null pointer.
 void CheckPngChunks(const std::string& bytes, const ParseContext& place) {
   constexpr std::size_t kSignature = 8;
   constexpr std::size_t kAround = 12;  // length and name before a chunk's data, checksum after it
   if (bytes.compare(0, kSignature, "\x89PNG\r\n\x1a\n") != 0) return;
   std::size_t at = kSignature;
+  bool has_pixels = false;
   while (bytes.size() - at >= kAround) {
     std::size_t length = 0;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -133,6 +135,10 @@ void CheckPngChunks(const std::string& bytes, const ParseContext& place) {
                  std::to_string(left) + " that the file still has; is it cut off?");
     }
     if (bytes.compare(at + 4, 4, "IEND") == 0) return;
+    if (bytes.compare(at + 4, 4, "IDAT") == 0) {
+      if (length == 0 && !has_pixels) place.Fail("got an empty first chunk of pixels (IDAT)");
+      has_pixels = true;
+    }
     at += length + kAround;
   }
 }

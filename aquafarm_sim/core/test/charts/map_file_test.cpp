@@ -27,6 +27,11 @@ class MapFiles : public testing::Test {
   void Write(const char* name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
   }
+  static std::string Sample(const std::string& name) {
+    std::ifstream file(fs::path(AQUAFARM_CORE_DIR) / "test/data" / name, std::ios::binary);
+    EXPECT_TRUE(file.is_open()) << name;
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
   std::string Path(const char* name) const { return (folder_ / name).string(); }
   /// Writes m.yaml with additional lines and reads it.
   MapFile Load(const std::string& more = "") const {
@@ -162,14 +167,14 @@ TEST_F(MapFiles, RefusePicturesThatAreNot) {
   EXPECT_EQ(Refused(), "m.pgm:2: greatest value: got '', expected a whole number in [1, 65535]");
   Write("m.pgm", "GIF89a");
   EXPECT_EQ(Refused().substr(0, 40), "m.pgm:1: got an unreadable image (unknow");
-  // A chunk that states 1.9 GB in a file of 75 bytes; the fuzz test found that it was allocated.
-  std::ifstream found(fs::path(AQUAFARM_CORE_DIR) / "test/data/found_length_of_chunk.png",
-                      std::ios::binary);
-  ASSERT_TRUE(found.is_open());
-  Write("m.pgm", {std::istreambuf_iterator<char>(found), {}});
+  // The fuzz test found these: a chunk that states 1.9 GB in a file of 75 bytes, and one without
+  // pixels.
+  Write("m.pgm", Sample("found_length_of_chunk.png"));
   EXPECT_EQ(Refused(),
             "m.pgm:1: got a chunk of 1929379858 bytes, expected at most the 30 that the "
             "file still has; is it cut off?");
+  Write("m.pgm", Sample("found_empty_pixels.png"));
+  EXPECT_EQ(Refused(), "m.pgm:1: got an empty first chunk of pixels (IDAT)");
   fs::remove(folder_ / "m.pgm");
   EXPECT_EQ(Refused(), "m.pgm: cannot read: No such file or directory");
   ASSERT_EQ(mkfifo(Path("m.pgm").c_str(), 0600), 0);

@@ -17,6 +17,12 @@ TEST(DidYouMean, NamesTheNearest) {
   EXPECT_EQ(DidYouMean(std::string(200, 'x'), {std::string(200, 'x')}), "");
 }
 
+TEST(DidYouMean, PrefersANameThatDiffersOnlyInSeparators) {
+  EXPECT_EQ(DidYouMean("INFA", {"LINFA", "IN-FA", "INFRA"}), " (did you mean 'IN-FA'?)");
+  EXPECT_EQ(DidYouMean("learningrate", {"learning_rates", "learning_rate"}),
+            " (did you mean 'learning_rate'?)");
+}
+
 // Kitten to sitting: two letters replaced and one inserted.
 TEST(EditDistance, CountsInsertedRemovedAndReplacedLetters) {
   EXPECT_EQ(EditDistance("kitten", "sitting"), 3U);

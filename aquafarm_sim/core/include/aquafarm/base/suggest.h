@@ -29,15 +29,24 @@ inline std::size_t EditDistance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
+/// Returns a name without hyphens, underscores and blanks.
+inline std::string WithoutSeparators(std::string name) {
+  const auto is_separator = [](char c) { return c == '-' || c == '_' || c == ' '; };
+  name.erase(std::remove_if(name.begin(), name.end(), is_separator), name.end());
+  return name;
+}
+
 /// Returns " (did you mean 'NAME'?)" with the first of the names that need the fewest edits; empty
-/// if each needs three or more, or more than half of the letters of `text`.
+/// if each needs three or more, or more than half of the letters of `text`. A name that differs
+/// only in separators comes first: INFA is the storm IN-FA, not LINFA.
 inline std::string DidYouMean(const std::string& text, const std::vector<std::string>& names) {
   constexpr std::size_t kLongest = 100;
   std::size_t limit = std::min<std::size_t>(3, text.size() / 2 + 1);
   std::string words;
   if (text.size() > kLongest) return words;
   for (const std::string& name : names) {
-    const std::size_t distance = EditDistance(text, name);
+    const bool is_same = WithoutSeparators(text) == WithoutSeparators(name);
+    const std::size_t distance = is_same ? 0 : EditDistance(text, name);
     if (name.empty() || distance >= limit) continue;
     limit = distance;
     words = " (did you mean '" + name + "'?)";

@@ -49,8 +49,10 @@ set(AQUAFARM_PLAIN_SOURCES
   src/rescue/trip_search.cpp
   src/rescue/what_if.cpp)
 
-# They need BLAS.
+# They need BLAS, for processors without AVX2.
 set(AQUAFARM_PPO_POLICY_SOURCES
+  src/networks/gemm.cpp
+  src/networks/lstm_cell.cpp
   src/networks/repetition_penalty.cpp
   src/ppo/actor.cpp
   src/ppo/central_actor_critic.cpp

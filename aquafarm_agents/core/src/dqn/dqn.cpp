@@ -4,14 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
-#include <type_traits>
 #include <utility>
 
 #include "aquafarm/agents/networks/torch_runtime.h"
-#include "aquafarm/base/check.h"
 #include "dqn/q_learner.h"
-#include "networks/row_network.h"
+#include "networks/value_network.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -26,16 +23,12 @@ class GreedyDqnPolicy final : public Policy {
  public:
   GreedyDqnPolicy(const EnvironmentSpec& spec, const DeepOptions& options,
                   const std::vector<float>& weights)
-      : device_(FindDevice(options.device)),
-        shape_(ObservationTraits<Scalar>::Shape(spec)),
-        size_(ElementCount(shape_)),
+      : size_(ElementCount(ObservationTraits<Scalar>::Shape(spec))),
         options_(options),
         network_(MakeNetwork(spec, options, 0)),
-        parameters_(*network_, device_) {
+        parameters_(*network_, FindDevice(options.device)),
+        computed_(MakeValueNetwork<Scalar>(spec, options, network_, parameters_, Learns::kNo)) {
     parameters_.FromVector(weights);
-    if (options.network == NetworkKind::kMlp && device_.is_cpu()) {
-      row_network_.emplace(size_, options, weights);
-    }
   }
   std::uint8_t encodings() const override { return EncodingOf(options_.network); }
   void Begin(std::uint64_t, std::int32_t) override {}
@@ -52,7 +45,7 @@ class GreedyDqnPolicy final : public Policy {
     values_.assign(results.legal.size(), 0.0F);
     if (first >= end) return;
     const Scalar* seen = ObservationTraits<Scalar>::Of(results) + first * size_;
-    const float* row = Values(seen, end - first);
+    const float* row = computed_->Forward(end - first, seen);
     for (std::size_t i = first; i < end; ++i, row += kActionCount, seen += size_) {
       if (flags[i] == 0) continue;
       const Best best = BestOf(row, LegalMask(results.legal[i], seen, options_));
@@ -62,55 +55,45 @@ class GreedyDqnPolicy final : public Policy {
   }
 
  private:
-  /// @returns [count, kActionCount], valid until the next call
-  const float* Values(const Scalar* seen, std::size_t count) {
-    if constexpr (std::is_same_v<Scalar, float>) {
-      if (count == 1 && row_network_) return row_network_->Forward(seen);
-    }
-    const torch::InferenceMode inference;
-    computed_ =
-        network_
-            ->Forward(ObservationTraits<Scalar>::ToInput(seen, WithCount(count, shape_), device_))
-            .cpu();
-    return computed_.template data_ptr<float>();
-  }
-
-  torch::Device device_;
-  std::vector<std::int64_t> shape_;
   std::size_t size_;  // size of one observation
   DeepOptions options_;
   std::shared_ptr<QNetwork> network_;
   FlatParameters parameters_;
-  torch::Tensor computed_;
-  std::optional<RowNetwork> row_network_;  // for feature observations on the CPU
+  std::unique_ptr<ValueNetwork<Scalar>> computed_;
 };
 
 /// A minibatch of B samples for the network. A sample contains the transition of one agent, or of
 /// all agents of a farm: R rows in total.
 template <typename Scalar>
 struct Batch {
-  std::vector<Scalar> from;
-  std::vector<Scalar> to;
-  std::vector<std::int64_t> actions;
-  std::vector<float> present;        // [R] 1 if the agent is active, 0 if it finished before
-  std::vector<float> rewards;        // [B]
-  std::vector<float> discounts;      // [R] of the value of `to`
-  std::vector<float> forbidden;      // [R, kActionCount] by MaskLogits, for the next actions
-  std::vector<float> forbidden_now;  // [R, kActionCount] by MaskLogits, for the actions of `from`
-  std::vector<float> weights;        // [B]
-  std::vector<std::size_t> drawn;    // [B] row in the replay buffer
+  std::vector<Scalar> seen;  // [2, R, …] observations before and after the transition
+  std::vector<std::uint8_t> actions;
+  std::vector<float> present;           // [R] 1 if the agent is active, 0 if it finished before
+  std::vector<float> rewards;           // [B]
+  std::vector<float> discounts;         // [R] of the value after the transition
+  std::vector<ActionMask> allowed;      // [R] among the next actions
+  std::vector<ActionMask> allowed_now;  // [R] among the actions taken
+  std::vector<float> weights;           // [B]
+  std::vector<std::size_t> drawn;       // [B] row in the replay buffer
+  std::vector<float> predicted;         // [B]
+  std::vector<float> targets;           // [B]
+  std::vector<float> slopes;            // [B] d loss / d predicted
+  std::vector<float> row_slopes;        // [R] d loss / d value of the action taken
 
   Batch(std::size_t size, std::size_t rows, std::size_t observation_size)
-      : from(rows * observation_size),
-        to(rows * observation_size),
+      : seen(2 * rows * observation_size),
         actions(rows),
         present(rows, 1.0F),
         rewards(size),
         discounts(rows),
-        forbidden(rows * kActionCount),
-        forbidden_now(rows * kActionCount),
+        allowed(rows),
+        allowed_now(rows),
         weights(size, 1.0F / static_cast<float>(size)),
-        drawn(size) {}
+        drawn(size),
+        predicted(size),
+        targets(size),
+        slopes(size),
+        row_slopes(rows) {}
 };
 
 template <typename Scalar>
@@ -127,8 +110,7 @@ class DqnLearner final : public QLearner<Scalar, QNetwork> {
 
  private:
   using Base = QLearner<Scalar, QNetwork>;
-  using Base::device_;
-  using Base::online_;
+  using Base::observation_size_;
   using Base::optimizer_;
   using Base::options_;
   using Base::progress_;
@@ -137,27 +119,24 @@ class DqnLearner final : public QLearner<Scalar, QNetwork> {
   using Base::sampler_;
   using Base::seed_;
   using Base::spec_;
-  using Base::target_;
-  using Base::ToDevice;
 
   std::size_t size() const { return static_cast<std::size_t>(options_.batch_size); }
   std::size_t group() const { return options_.joint ? static_cast<std::size_t>(spec_.agents) : 1; }
   std::size_t rows() const { return size() * group(); }
-  torch::Tensor ToInput(const Scalar* rows, std::size_t count) const {
-    return ObservationTraits<Scalar>::ToInput(rows, WithCount(count, shape_), device_);
+  const float* ActingValues(const StepResults& results) override {
+    auto& network = average_values_ ? *average_values_ : *online_values_;
+    return network.Forward(results.legal.size(), ObservationTraits<Scalar>::Of(results));
   }
-  torch::Tensor ActingValues(const StepResults& results) override;
   void Update() override;
   void Draw();
   void DrawAlone(std::size_t i, const TransitionIndex& moment);
   void DrawJoint(std::size_t i, const TransitionIndex& moment);
   void Fill(std::size_t k, std::size_t from, std::size_t to, float discount);
-  torch::Tensor SumOfGroups(const torch::Tensor& values) const;
-  torch::Tensor Targets(const torch::Tensor& from, const torch::Tensor& actions);
-  void Reprioritise(const torch::Tensor& errors);
+  void Evaluate();
 
-  const std::vector<std::int64_t> shape_;
-  const std::size_t observation_size_;
+  const std::unique_ptr<ValueNetwork<Scalar>> online_values_;
+  const std::unique_ptr<ValueNetwork<Scalar>> target_values_;
+  const std::unique_ptr<ValueNetwork<Scalar>> average_values_;  // null without a moving average
   Batch<Scalar> batch_;
   std::vector<float> team_rewards_;  // scratch [agents]
 };
@@ -170,18 +149,16 @@ DqnLearner<Scalar>::DqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
            {ElementCount(ObservationTraits<Scalar>::Shape(spec)), 0,
             static_cast<std::size_t>(options.n_step),
             options.joint ? static_cast<std::size_t>(spec.agents) : 1}),
-      shape_(ObservationTraits<Scalar>::Shape(spec)),
-      observation_size_(ElementCount(shape_)),
+      online_values_(MakeValueNetwork<Scalar>(spec, options, Base::online_, optimizer_.online(),
+                                              Learns::kYes)),
+      target_values_(
+          MakeValueNetwork<Scalar>(spec, options, Base::target_, optimizer_.target(), Learns::kNo)),
+      average_values_(optimizer_.average() == nullptr
+                          ? nullptr
+                          : MakeValueNetwork<Scalar>(spec, options, Base::average_,
+                                                     *optimizer_.average(), Learns::kNo)),
       batch_(size(), rows(), observation_size_),
       team_rewards_(static_cast<std::size_t>(spec.agents)) {}
-
-template <typename Scalar>
-torch::Tensor DqnLearner<Scalar>::ActingValues(const StepResults& results) {
-  const torch::InferenceMode inference;
-  return this->acting_
-      ->Forward(ToInput(ObservationTraits<Scalar>::Of(results), results.legal.size()))
-      .cpu();
-}
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Draw() {
@@ -231,68 +208,62 @@ void DqnLearner<Scalar>::DrawJoint(std::size_t i, const TransitionIndex& moment)
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Fill(std::size_t k, std::size_t from, std::size_t to, float discount) {
-  std::copy_n(replay_.observation(from), observation_size_,
-              batch_.from.data() + k * observation_size_);
-  std::copy_n(replay_.observation(to), observation_size_, batch_.to.data() + k * observation_size_);
+  Scalar* const seen = batch_.seen.data();
+  std::copy_n(replay_.observation(from), observation_size_, seen + k * observation_size_);
+  std::copy_n(replay_.observation(to), observation_size_, seen + (rows() + k) * observation_size_);
   batch_.actions[k] = replay_.action(from);
   batch_.discounts[k] = discount;
-  MaskLogits(LegalMask(replay_.legal(to), replay_.observation(to), options_),
-             batch_.forbidden.data() + k * kActionCount);
-  if (options_.action_gap == 0.0) return;
-  MaskLogits(LegalMask(replay_.legal(from), replay_.observation(from), options_),
-             batch_.forbidden_now.data() + k * kActionCount);
+  batch_.allowed[k] = LegalMask(replay_.legal(to), replay_.observation(to), options_);
+  batch_.allowed_now[k] = LegalMask(replay_.legal(from), replay_.observation(from), options_);
 }
 
-// [R] → [B]: sums the values of a team (value decomposition, Sunehag et al. 2018).
+// Predictions and targets (Eq. 15). Those of a team are the sums of its agents' values (value
+// decomposition, Sunehag et al. 2018).
 template <typename Scalar>
-torch::Tensor DqnLearner<Scalar>::SumOfGroups(const torch::Tensor& values) const {
-  if (!options_.joint) return values;
-  return values.view({static_cast<std::int64_t>(size()), static_cast<std::int64_t>(group())})
-      .sum(1);
-}
-
-template <typename Scalar>
-torch::Tensor DqnLearner<Scalar>::Targets(const torch::Tensor& from, const torch::Tensor& actions) {
-  const torch::NoGradGuard no_grad;
-  const auto count = static_cast<std::int64_t>(rows());
-  const torch::Tensor to = ToInput(batch_.to.data(), rows());
-  const torch::Tensor forbidden = ToDevice(batch_.forbidden, {count, kActionCount});
-  torch::Tensor next = target_->Forward(to);
-  if (options_.double_dqn) {
-    const torch::Tensor best = online_->Forward(to).add_(forbidden).argmax(1, /*keepdim=*/true);
-    next = next.gather(1, best).squeeze(1);
-  } else {
-    next = next.add_(forbidden).amax(1);
+void DqnLearner<Scalar>::Evaluate() {
+  const Scalar* const to = batch_.seen.data() + rows() * observation_size_;
+  const bool has_gap = options_.action_gap > 0.0;
+  const float* const online =
+      online_values_->Forward((options_.double_dqn ? 2 : 1) * rows(), batch_.seen.data());
+  const float* const target = has_gap ? target_values_->Forward(2 * rows(), batch_.seen.data())
+                                      : target_values_->Forward(rows(), to);
+  const float* const next = target + (has_gap ? rows() * kActionCount : 0);
+  const float* const choosing = options_.double_dqn ? online + rows() * kActionCount : next;
+  batch_.targets = batch_.rewards;
+  std::fill(batch_.predicted.begin(), batch_.predicted.end(), 0.0F);
+  for (std::size_t k = 0; k < rows(); ++k) {
+    const std::size_t i = k / group();
+    const std::size_t row = k * kActionCount;
+    batch_.predicted[i] += batch_.present[k] * online[row + batch_.actions[k]];
+    // An agent that is done may have no allowed action.
+    if (batch_.discounts[k] > 0.0F) {
+      const Best best = BestOf(choosing + row, batch_.allowed[k]);
+      batch_.targets[i] += batch_.discounts[k] * next[row + best.action];
+    }
+    if (has_gap && batch_.present[k] > 0.0F) {
+      batch_.targets[i] -= static_cast<float>(options_.action_gap) *
+                           AdvantageGap(target + row, batch_.allowed_now[k], batch_.actions[k]);
+    }
   }
-  torch::Tensor values = ToDevice(batch_.discounts, {count}) * next;
-  if (options_.action_gap > 0.0) {
-    const torch::Tensor forbidden_now = ToDevice(batch_.forbidden_now, {count, kActionCount});
-    const torch::Tensor gap = AdvantageGap(target_->Forward(from), forbidden_now, actions);
-    values -= options_.action_gap * gap * ToDevice(batch_.present, {count});
-  }
-  return ToDevice(batch_.rewards, {static_cast<std::int64_t>(size())}) + SumOfGroups(values);
 }
 
 template <typename Scalar>
 void DqnLearner<Scalar>::Update() {
   const BatchOrigin origin{seed_, rng_.position()};
   Draw();
-  const auto count = static_cast<std::int64_t>(rows());
-  const torch::Tensor actions = ToDevice(batch_.actions, {count, 1});
-  const torch::Tensor from = ToInput(batch_.from.data(), rows());
-  const torch::Tensor targets = Targets(from, actions);
-  torch::Tensor predicted = online_->Forward(from).gather(1, actions).squeeze(1);
-  if (options_.joint) predicted = SumOfGroups(predicted * ToDevice(batch_.present, {count}));
-  optimizer_.Update(predicted, targets,
-                    ToDevice(batch_.weights, {static_cast<std::int64_t>(size())}), origin);
-  if (options_.priority_exponent > 0.0) Reprioritise((predicted.detach() - targets).abs());
-}
-
-template <typename Scalar>
-void DqnLearner<Scalar>::Reprioritise(const torch::Tensor& errors) {
-  const torch::Tensor values = errors.cpu();
-  const float* error = values.template data_ptr<float>();
-  for (std::size_t i = 0; i < size(); ++i) sampler_.UpdatePriority(batch_.drawn[i], error[i]);
+  Evaluate();
+  optimizer_.Differentiate(size(), batch_.predicted.data(), batch_.targets.data(),
+                           batch_.weights.data(), batch_.slopes.data(), origin);
+  for (std::size_t k = 0; k < rows(); ++k) {
+    batch_.row_slopes[k] = batch_.slopes[k / group()] * batch_.present[k];
+  }
+  this->SpreadSlopes(batch_.row_slopes, batch_.actions);
+  online_values_->Backward(rows(), this->value_slopes_.data());
+  optimizer_.Learn(origin);
+  if (options_.priority_exponent == 0.0) return;
+  for (std::size_t i = 0; i < size(); ++i) {
+    sampler_.UpdatePriority(batch_.drawn[i], std::abs(batch_.predicted[i] - batch_.targets[i]));
+  }
 }
 
 DeepOptions Parse(const std::string& text, std::string& resolved) {

@@ -47,24 +47,25 @@ class QLearner : public ReplayLearner<Scalar> {
                                sample.steps,
                                sample.group}),
         options_(options),
+        observation_size_(sample.observation_size),
         online_(make()),
         target_(make()),
-        acting_(options.ema_rate > 0.0 ? make() : online_),
-        optimizer_(options, *online_, *target_, *acting_, this->device_),
+        average_(options.ema_rate > 0.0 ? make() : online_),
+        optimizer_(options, *online_, *target_, *average_, this->device_),
         repetitions_(spec, options.repetition_penalty * options.reward_scale) {}
 
-  /// Values by which the agents act: [entries, kActionCount] on the CPU.
-  virtual torch::Tensor ActingValues(const StepResults& results) = 0;
+  /// Values by which the agents act: [entries, kActionCount].
+  virtual const float* ActingValues(const StepResults& results) = 0;
 
   void CountSteps(std::uint64_t farm_steps) final { optimizer_.Count(farm_steps, this->progress_); }
   bool TakeDue() final { return optimizer_.TakeDue(); }
   void Choose(const StepResults& results, std::vector<std::uint8_t>& actions) final {
     repetitions_.Begin(results);
-    const torch::Tensor values = ActingValues(results);
-    const float* row = values.template data_ptr<float>();
+    const torch::NoGradGuard no_grad;
+    const float* row = ActingValues(results);
     const Scalar* seen = ObservationTraits<Scalar>::Of(results);
-    const std::size_t size = ElementCount(ObservationTraits<Scalar>::Shape(this->spec_));
-    for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += size) {
+    for (std::size_t i = 0; i < actions.size();
+         ++i, row += kActionCount, seen += observation_size_) {
       const ActionMask allowed = LegalMask(results.legal[i], seen, options_);
       const float* const penalized = repetitions_.Penalize(row, seen, i);
       actions[i] = this->explorer_.Choose(penalized, allowed, BestOf(penalized, allowed), i);
@@ -76,6 +77,13 @@ class QLearner : public ReplayLearner<Scalar> {
     repetitions_.Save(checkpoint);
     checkpoint.SetArray("chance", std::vector<std::uint64_t>{this->rng_.position()});
   }
+  /// Fills the slopes of all values [count, kActionCount] from those of the taken actions.
+  void SpreadSlopes(const std::vector<float>& slopes, const std::vector<std::uint8_t>& actions) {
+    value_slopes_.assign(slopes.size() * kActionCount, 0.0F);
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+      value_slopes_[i * kActionCount + actions[i]] = slopes[i];
+    }
+  }
   void LoadOwn(const Checkpoint& checkpoint) override {
     std::vector<std::uint64_t> position;
     checkpoint.GetArray("chance", 1, position);
@@ -85,10 +93,12 @@ class QLearner : public ReplayLearner<Scalar> {
   }
 
   const DeepOptions options_;
+  const std::size_t observation_size_;
   std::shared_ptr<Network> online_;
   std::shared_ptr<Network> target_;
-  std::shared_ptr<Network> acting_;  // online_, or a moving average of its weights
+  std::shared_ptr<Network> average_;  // of its weights; online_ without
   ValueOptimizer optimizer_;
+  std::vector<float> value_slopes_;  // d loss / d Q
   RepetitionPenalty repetitions_;
 };
 

@@ -5,9 +5,9 @@
 
 #include "aquafarm/agents/dqn/dqn.h"
 #include "aquafarm/agents/networks/torch_runtime.h"
-#include "aquafarm/base/check.h"
 #include "dqn/q_learner.h"
 #include "networks/sequence_batch.h"
+#include "networks/value_network.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -39,52 +39,21 @@ class RecurrentState {
     }
   }
 
-  RecurrentNetwork::State ToState(torch::Device device) {
-    return StateOf(values_.data(), static_cast<std::int64_t>(values_.size() / size_of_one()),
-                   hidden_, device);
-  }
-  void Take(const RecurrentNetwork::State& state) {
-    const torch::Tensor both =
-        torch::stack({state.first.squeeze(0), state.second.squeeze(0)}, 1).cpu();
-    std::copy_n(both.data_ptr<float>(), values_.size(), values_.data());
-  }
-
-  /// Returns h and c of rows [count, 2, hidden].
-  static RecurrentNetwork::State StateOf(float* rows, std::int64_t count, std::int64_t hidden,
-                                         torch::Device device) {
-    const torch::Tensor both = torch::from_blob(rows, {count, 2, hidden}).to(device);
-    return {both.select(1, 0).unsqueeze(0).contiguous(),
-            both.select(1, 1).unsqueeze(0).contiguous()};
-  }
-
  private:
   std::int64_t hidden_;
   std::vector<float> values_;
 };
 
-/// Steps all agents: returns values [slots, kActionCount] and updates the recurrent states.
-torch::Tensor StepNetwork(RecurrentNetwork& network, const StepResults& results,
-                          std::int64_t features, RecurrentState& recurrent_state,
-                          torch::Device device) {
-  const auto entries = static_cast<std::int64_t>(results.legal.size());
-  RecurrentNetwork::State state = recurrent_state.ToState(device);
-  const torch::Tensor values = network.Forward(
-      ObservationTraits<float>::ToInput(results.features.data(), {1, entries, features}, device),
-      state);
-  recurrent_state.Take(state);
-  return values.squeeze(0).cpu().contiguous();
-}
-
 class RecurrentPolicy final : public Policy {
  public:
   RecurrentPolicy(const EnvironmentSpec& spec, const DeepOptions& options,
                   const std::vector<float>& weights)
-      : device_(FindDevice(options.device)),
-        agents_(spec.agents),
+      : agents_(spec.agents),
         features_(spec.feature_count),
         options_(options),
         network_(MakeRecurrent(spec, options, 0)),
-        parameters_(*network_, device_),
+        parameters_(*network_, FindDevice(options.device)),
+        computed_(MakeRecurrentValueNetwork(spec, options, network_, parameters_, Learns::kNo)),
         recurrent_state_(0, options.hidden_size) {
     parameters_.FromVector(weights);
   }
@@ -94,13 +63,11 @@ class RecurrentPolicy final : public Policy {
         static_cast<std::size_t>(farms) * static_cast<std::size_t>(agents_), options_.hidden_size);
   }
   void Act(const StepResults& results, std::vector<std::uint8_t>& actions) override {
-    const torch::NoGradGuard no_grad;
     recurrent_state_.ClearStarted(results, agents_);
-    const torch::Tensor values =
-        StepNetwork(*network_, results, features_, recurrent_state_, device_);
     actions.resize(results.legal.size());
     values_.resize(actions.size());
-    const float* row = values.data_ptr<float>();
+    const float* row = computed_->Forward(1, actions.size(), results.features.data(),
+                                          recurrent_state_.values().data());
     const float* seen = results.features.data();
     for (std::size_t i = 0; i < actions.size(); ++i, row += kActionCount, seen += features_) {
       const Best best = BestOf(row, LegalMask(results.legal[i], seen, options_));
@@ -110,12 +77,12 @@ class RecurrentPolicy final : public Policy {
   }
 
  private:
-  torch::Device device_;
   std::int32_t agents_;
   std::int64_t features_;
   DeepOptions options_;
   std::shared_ptr<RecurrentNetwork> network_;
   FlatParameters parameters_;
+  std::unique_ptr<RecurrentValueNetwork> computed_;
   RecurrentState recurrent_state_;
 };
 
@@ -133,19 +100,28 @@ class RecurrentDqnLearner final : public QLearner<float, RecurrentNetwork> {
   std::size_t features() const { return static_cast<std::size_t>(spec_.feature_count); }
   const float* RecurrentStates(const StepResults& results) override;
   bool CanSample() const override;
-  torch::Tensor ActingValues(const StepResults& results) override;
+  const float* ActingValues(const StepResults& results) override {
+    auto& network = average_values_ ? *average_values_ : *online_values_;
+    return network.Forward(1, results.legal.size(), results.features.data(),
+                           recurrent_state_.values().data());
+  }
   void SaveOwn(Checkpoint& checkpoint) const override;
   void LoadOwn(const Checkpoint& checkpoint) override;
   void Update() override;
   void Draw();
-  RecurrentNetwork::State WarmState(RecurrentNetwork& network);
-  torch::Tensor ValuesAlong(RecurrentNetwork& network, const torch::Tensor& observations);
-  torch::Tensor Targets(const torch::Tensor& observations, const torch::Tensor& actions,
-                        const torch::Tensor& values);
-  void Reprioritise(const torch::Tensor& errors);
+  const float* ValuesAlong(RecurrentValueNetwork& network);
+  void SetTargets(const float* values);
+  void Reprioritise();
 
   RecurrentState recurrent_state_;
+  const std::unique_ptr<RecurrentValueNetwork> online_values_;
+  const std::unique_ptr<RecurrentValueNetwork> target_values_;
+  const std::unique_ptr<RecurrentValueNetwork> average_values_;  // null without a moving average
   SequenceBatch batch_;
+  std::vector<float> state_;      // [B, 2, hidden] along the sequences; [2, B, 2, hidden] of tuples
+  std::vector<float> predicted_;  // [T, B]
+  std::vector<float> targets_;    // [T, B]
+  std::vector<float> slopes_;     // [T, B] d loss / d predicted
 };
 
 RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint64_t seed,
@@ -155,16 +131,22 @@ RecurrentDqnLearner::RecurrentDqnLearner(const EnvironmentSpec& spec, std::uint6
                {static_cast<std::size_t>(spec.feature_count),
                 2 * static_cast<std::size_t>(options.hidden_size), 1, 1}),
       recurrent_state_(EntryCount(spec), options.hidden_size),
-      batch_(options, features(), recurrent_state_.size_of_one()) {}
+      online_values_(
+          MakeRecurrentValueNetwork(spec, options, online_, optimizer_.online(), Learns::kYes)),
+      target_values_(
+          MakeRecurrentValueNetwork(spec, options, target_, optimizer_.target(), Learns::kNo)),
+      average_values_(optimizer_.average() == nullptr
+                          ? nullptr
+                          : MakeRecurrentValueNetwork(spec, options, average_,
+                                                      *optimizer_.average(), Learns::kNo)),
+      batch_(options, features(), recurrent_state_.size_of_one()),
+      predicted_(batch_.weights.size()),
+      targets_(batch_.weights.size()),
+      slopes_(batch_.weights.size()) {}
 
 const float* RecurrentDqnLearner::RecurrentStates(const StepResults& results) {
   recurrent_state_.ClearStarted(results, spec_.agents);
   return recurrent_state_.values().data();
-}
-
-torch::Tensor RecurrentDqnLearner::ActingValues(const StepResults& results) {
-  const torch::NoGradGuard no_grad;
-  return StepNetwork(*acting_, results, spec_.feature_count, recurrent_state_, device_);
 }
 
 bool RecurrentDqnLearner::CanSample() const {
@@ -185,76 +167,69 @@ void RecurrentDqnLearner::Draw() {
   for (float& weight : batch_.weights) weight /= sum;
 }
 
-RecurrentNetwork::State RecurrentDqnLearner::WarmState(RecurrentNetwork& network) {
-  const torch::NoGradGuard no_grad;
-  const auto count = static_cast<std::int64_t>(batch_.size());
-  RecurrentNetwork::State state =
-      RecurrentState::StateOf(batch_.recurrent_state.data(), count, options_.hidden_size, device_);
-  if (options_.burn_in == 0) return state;
-  const RecurrentNetwork::State stored = state;
-  network.WarmUp(ToDevice(batch_.warm_up, {options_.burn_in, count, spec_.feature_count}), state);
-  const torch::Tensor warms_up = ToDevice(batch_.warms_up, {1, count, 1}) > 0.0F;
-  return {torch::where(warms_up, state.first, stored.first),
-          torch::where(warms_up, state.second, stored.second)};
-}
-
 // Returns [T + 1, B, kActionCount]. Algorithm 2 evaluates both ends of a tuple with the state
-// stored there. A sequence is evaluated from the state at its beginning.
-torch::Tensor RecurrentDqnLearner::ValuesAlong(RecurrentNetwork& network,
-                                               const torch::Tensor& observations) {
-  RecurrentNetwork::State state = WarmState(network);
-  if (!options_.paper_tuple) return network.Forward(observations, state);
-  const torch::Tensor before = network.Forward(observations.narrow(0, 0, 1), state);
-  RecurrentNetwork::State after = RecurrentState::StateOf(batch_.recurrent_state_after.data(),
-                                                          static_cast<std::int64_t>(batch_.size()),
-                                                          options_.hidden_size, device_);
-  return torch::cat({before, network.Forward(observations.narrow(0, 1, 1), after)});
+// stored there: as rows of one step. A sequence is evaluated from the state at its beginning.
+const float* RecurrentDqnLearner::ValuesAlong(RecurrentValueNetwork& network) {
+  state_ = batch_.recurrent_state;
+  if (options_.paper_tuple) {
+    state_.insert(state_.end(), batch_.recurrent_state_after.begin(),
+                  batch_.recurrent_state_after.end());
+    return network.Forward(1, 2 * batch_.size(), batch_.observations.data(), state_.data());
+  }
+  if (options_.burn_in > 0) {
+    network.WarmUp(static_cast<std::size_t>(options_.burn_in), batch_.size(), batch_.warm_up.data(),
+                   state_.data());
+    const std::size_t of_one = recurrent_state_.size_of_one();
+    for (std::size_t b = 0; b < batch_.size(); ++b) {
+      if (batch_.warms_up[b] > 0.0F) continue;
+      std::copy_n(batch_.recurrent_state.data() + b * of_one, of_one, state_.data() + b * of_one);
+    }
+  }
+  return network.Forward(static_cast<std::size_t>(options_.sequence_length) + 1, batch_.size(),
+                         batch_.observations.data(), state_.data());
 }
 
-// Returns [T, B] of Algorithm 2, line 20. `values` are those of the online network.
-torch::Tensor RecurrentDqnLearner::Targets(const torch::Tensor& observations,
-                                           const torch::Tensor& actions,
-                                           const torch::Tensor& values) {
-  const torch::NoGradGuard no_grad;
-  const auto count = static_cast<std::int64_t>(batch_.size());
-  const std::int64_t steps = options_.sequence_length;
-  const torch::Tensor told = ValuesAlong(*target_, observations);
-  const torch::Tensor forbidden = ToDevice(batch_.forbidden, {steps + 1, count, kActionCount});
-  torch::Tensor next =
-      options_.double_dqn
-          ? told.gather(2, (values.detach() + forbidden).argmax(2, /*keepdim=*/true)).squeeze(2)
-          : (told + forbidden).amax(2);
-  next = next.gather(0, ToDevice(batch_.next, {steps, count}));
-  torch::Tensor targets =
-      ToDevice(batch_.rewards, {steps, count}) + ToDevice(batch_.discounts, {steps, count}) * next;
-  if (options_.action_gap > 0.0) {
-    targets -= options_.action_gap *
-               AdvantageGap(told.narrow(0, 0, steps), forbidden.narrow(0, 0, steps), actions);
+// Line 20 of Algorithm 2. @param values of the online network
+void RecurrentDqnLearner::SetTargets(const float* values) {
+  const float* const told = ValuesAlong(*target_values_);
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    targets_[i] = batch_.rewards[i];
+    if (batch_.weights[i] == 0.0F) continue;  // after the end of its episode
+    if (batch_.discounts[i] > 0.0F) {
+      const std::size_t next =
+          static_cast<std::size_t>(batch_.next[i]) * batch_.size() + i % batch_.size();
+      const float* const chooses = (options_.double_dqn ? values : told) + next * kActionCount;
+      const Best best = BestOf(chooses, batch_.allowed[next]);
+      targets_[i] += batch_.discounts[i] * told[next * kActionCount + best.action];
+    }
+    if (options_.action_gap > 0.0) {
+      targets_[i] -= static_cast<float>(options_.action_gap) *
+                     AdvantageGap(told + i * kActionCount, batch_.allowed[i], batch_.actions[i]);
+    }
   }
-  return targets;
 }
 
 void RecurrentDqnLearner::Update() {
   const BatchOrigin origin{seed_, rng_.position()};
   Draw();
-  const auto count = static_cast<std::int64_t>(batch_.size());
-  const std::int64_t steps = options_.sequence_length;
-  const torch::Tensor observations =
-      ToDevice(batch_.observations, {steps + 1, count, spec_.feature_count});
-  const torch::Tensor actions = ToDevice(batch_.actions, {steps, count, 1});
-  const torch::Tensor values = ValuesAlong(*online_, observations);
-  const torch::Tensor targets = Targets(observations, actions, values);
-  const torch::Tensor predicted = values.narrow(0, 0, steps).gather(2, actions).squeeze(2);
-  optimizer_.Update(predicted, targets, ToDevice(batch_.weights, {steps, count}), origin);
-  if (options_.priority_exponent > 0.0) Reprioritise((predicted.detach() - targets).abs());
+  const float* const values = ValuesAlong(*online_values_);
+  for (std::size_t i = 0; i < predicted_.size(); ++i) {
+    predicted_[i] = values[i * kActionCount + batch_.actions[i]];
+  }
+  SetTargets(values);
+  optimizer_.Differentiate(predicted_.size(), predicted_.data(), targets_.data(),
+                           batch_.weights.data(), slopes_.data(), origin);
+  SpreadSlopes(slopes_, batch_.actions);
+  online_values_->Backward(slopes_.size(), value_slopes_.data());
+  optimizer_.Learn(origin);
+  if (options_.priority_exponent > 0.0) Reprioritise();
 }
 
 // Each step of a sequence gets its own priority. (R2D2 has one priority per sequence.)
-void RecurrentDqnLearner::Reprioritise(const torch::Tensor& errors) {
-  const torch::Tensor values = errors.cpu().contiguous();
-  const float* const error = values.data_ptr<float>();
+void RecurrentDqnLearner::Reprioritise() {
   for (std::size_t i = 0; i < batch_.rows.size(); ++i) {
-    if (batch_.weights[i] > 0.0F) sampler_.UpdatePriority(batch_.rows[i], error[i]);
+    if (batch_.weights[i] == 0.0F) continue;
+    sampler_.UpdatePriority(batch_.rows[i], std::abs(predicted_[i] - targets_[i]));
   }
 }
 

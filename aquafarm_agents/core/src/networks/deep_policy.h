@@ -33,15 +33,10 @@ inline void MaskLogits(ActionMask allowed, float* out) {
   }
 }
 
-/// Advantage gap max_a Q − Q(s, a) of the taken actions over the allowed ones, for advantage
-/// learning.
-/// @param values [..., kActionCount]
-/// @param forbidden [..., kActionCount] by MaskLogits
-/// @param actions [..., 1]
-/// @returns [...]
-inline torch::Tensor AdvantageGap(const torch::Tensor& values, const torch::Tensor& forbidden,
-                                  const torch::Tensor& actions) {
-  return (values + forbidden).amax(-1) - values.gather(-1, actions).squeeze(-1);
+/// Advantage gap max_a Q − Q(s, a) of an action over the allowed ones, for advantage learning.
+/// @param values [kActionCount]
+inline float AdvantageGap(const float* values, ActionMask allowed, std::size_t action) {
+  return BestOf(values, allowed).value - values[action];
 }
 
 /// Observation traits of a network: float features, or bytes of planes (255 represents 1).

@@ -15,26 +15,30 @@ constexpr float kEpsilon = 1e-8F;  // as in libtorch
 }  // namespace
 
 FlatAdam::FlatAdam(torch::nn::Module& module, torch::Device device)
-    : parameters_(module, device), adam_({parameters_.values()}, torch::optim::AdamOptions(1e-3)) {
-  State();
-}
+    : parameters_(module, device),
+      adam_({parameters_.values()}, torch::optim::AdamOptions(1e-3)),
+      state_(MakeState()) {}
 
 bool FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double max_grad_norm) {
-  torch::Tensor gradient = parameters_.values().grad();
-  gradient.zero_();
+  parameters_.values().mutable_grad().zero_();
   loss.backward();
+  return Step(learning_rate, max_grad_norm);
+}
+
+bool FlatAdam::Step(double learning_rate, double max_grad_norm) {
+  torch::Tensor& gradient = parameters_.values().mutable_grad();
   const auto size = static_cast<std::size_t>(parameters_.size());
   const bool is_plain = gradient.is_cpu() && gradient.scalar_type() == torch::kFloat;
   const double norm =
       is_plain ? GradientNorm(gradient.data_ptr<float>(), size) : gradient.norm().item<double>();
   if (!std::isfinite(norm)) return false;
   if (is_plain) {
-    auto& state = State();
-    state.step(state.step() + 1);
+    state_.step(state_.step() + 1);
     const double scale = max_grad_norm > 0.0 && norm > max_grad_norm ? max_grad_norm / norm : 1.0;
     AdamStep(size, gradient.data_ptr<float>(), scale, learning_rate,
-             static_cast<std::uint64_t>(state.step()), kEpsilon, state.exp_avg().data_ptr<float>(),
-             state.exp_avg_sq().data_ptr<float>(), parameters_.values().data_ptr<float>());
+             static_cast<std::uint64_t>(state_.step()), kEpsilon,
+             state_.exp_avg().data_ptr<float>(), state_.exp_avg_sq().data_ptr<float>(),
+             parameters_.values().data_ptr<float>());
     return true;
   }
   if (max_grad_norm > 0.0 && norm > max_grad_norm) gradient.mul_(max_grad_norm / norm);
@@ -45,7 +49,7 @@ bool FlatAdam::Step(const torch::Tensor& loss, double learning_rate, double max_
 
 // The library creates the state at its first step. It is created here earlier, so that it can be
 // saved and loaded at any time.
-torch::optim::AdamParamState& FlatAdam::State() {
+torch::optim::AdamParamState& FlatAdam::MakeState() {
   auto& states = adam_.state();
 #if TORCH_VERSION_MAJOR >= 2
   void* const key = parameters_.values().unsafeGetTensorImpl();
@@ -64,15 +68,14 @@ torch::optim::AdamParamState& FlatAdam::State() {
 }
 
 void FlatAdam::Save(Checkpoint& checkpoint, const std::string& prefix) const {
-  auto& state = const_cast<FlatAdam*>(this)->State();
   const auto to_vector = [](const torch::Tensor& tensor) {
     const torch::Tensor values = tensor.detach().cpu();
     return std::vector<float>(values.data_ptr<float>(), values.data_ptr<float>() + values.numel());
   };
   checkpoint.SetArray(prefix + "weights", parameters_.ToVector());
-  checkpoint.SetArray(prefix + "adam.mean", to_vector(state.exp_avg()));
-  checkpoint.SetArray(prefix + "adam.square", to_vector(state.exp_avg_sq()));
-  checkpoint.SetArray(prefix + "adam", std::vector<std::int64_t>{state.step()});
+  checkpoint.SetArray(prefix + "adam.mean", to_vector(state_.exp_avg()));
+  checkpoint.SetArray(prefix + "adam.square", to_vector(state_.exp_avg_sq()));
+  checkpoint.SetArray(prefix + "adam", std::vector<std::int64_t>{state_.step()});
 }
 
 void FlatAdam::Load(const Checkpoint& checkpoint, const std::string& prefix) {
@@ -86,11 +89,10 @@ void FlatAdam::Load(const Checkpoint& checkpoint, const std::string& prefix) {
   checkpoint.GetArray(prefix + "adam.square", size, square);
   checkpoint.GetArray(prefix + "adam", 1, step);
   parameters_.FromVector(weights);
-  auto& state = State();
   const auto shape = static_cast<std::int64_t>(size);
-  state.exp_avg().copy_(torch::from_blob(mean.data(), {shape}));
-  state.exp_avg_sq().copy_(torch::from_blob(square.data(), {shape}));
-  state.step(step[0]);
+  state_.exp_avg().copy_(torch::from_blob(mean.data(), {shape}));
+  state_.exp_avg_sq().copy_(torch::from_blob(square.data(), {shape}));
+  state_.step(step[0]);
 }
 
 }  // namespace aquafarm::agents

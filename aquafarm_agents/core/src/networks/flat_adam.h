@@ -17,10 +17,12 @@ class FlatAdam {
   /// Moves the module's parameters to the device.
   FlatAdam(torch::nn::Module& module, torch::Device device);
 
-  /// Takes one optimizer step on `loss`.
+  /// Takes one optimizer step on `loss`; see below.
+  [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double max_grad_norm);
+  /// Takes one optimizer step against the gradient of the parameters.
   /// @param max_grad_norm max norm of the gradient; 0: no limit
   /// @returns false if the gradient is not finite; the parameters are then unchanged
-  [[nodiscard]] bool Step(const torch::Tensor& loss, double learning_rate, double max_grad_norm);
+  [[nodiscard]] bool Step(double learning_rate, double max_grad_norm);
 
   FlatParameters& parameters() { return parameters_; }
   const FlatParameters& parameters() const { return parameters_; }
@@ -31,10 +33,11 @@ class FlatAdam {
   void Load(const Checkpoint& checkpoint, const std::string& prefix = "");
 
  private:
-  torch::optim::AdamParamState& State();
+  torch::optim::AdamParamState& MakeState();
 
   FlatParameters parameters_;
   torch::optim::Adam adam_;
+  torch::optim::AdamParamState& state_;
 };
 
 }  // namespace aquafarm::agents

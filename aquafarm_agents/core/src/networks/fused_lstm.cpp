@@ -4,8 +4,7 @@
 
 #include "aquafarm/base/check.h"
 #include "networks/fused.h"
-#include "networks/fused_parts.h"
-#include "networks/lstm_cell.h"
+#include "networks/lstm_sequence.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -28,19 +27,10 @@ enum Saved {
 
 const float* Data(const Tensor& tensor) { return tensor.data_ptr<float>(); }
 
-struct Shape {
-  std::size_t steps;
-  std::size_t rows;  // in one step
-  std::size_t features;
-  std::size_t hidden;
-
-  Shape(const Tensor& input, const Tensor& hidden_weight)
-      : steps(static_cast<std::size_t>(input.size(0))),
-        rows(static_cast<std::size_t>(input.size(1))),
-        features(static_cast<std::size_t>(input.size(2))),
-        hidden(static_cast<std::size_t>(hidden_weight.size(1))) {}
-  std::size_t gates() const { return 4 * hidden; }
-};
+LstmShape ShapeOf(const Tensor& input, const Tensor& hidden_weight) {
+  return {static_cast<std::size_t>(input.size(0)), static_cast<std::size_t>(input.size(1)),
+          static_cast<std::size_t>(input.size(2)), static_cast<std::size_t>(hidden_weight.size(1))};
+}
 
 struct Sequence {
   Tensor gates;      // [T, B, 4H] after the nonlinearity
@@ -49,10 +39,16 @@ struct Sequence {
   Tensor output;     // [T, B, H]
 };
 
+LstmTrace TraceOf(const Tensor& gates, const Tensor& cells, const Tensor& cell_tanh,
+                  const Tensor& output) {
+  return {gates.data_ptr<float>(), cells.data_ptr<float>(), cell_tanh.data_ptr<float>(),
+          output.data_ptr<float>()};
+}
+
 Sequence Evaluate(const Tensor& input, const Tensor& hidden, const Tensor& cell,
                   const Tensor& input_weight, const Tensor& hidden_weight, const Tensor& input_bias,
                   const Tensor& hidden_bias) {
-  const Shape shape(input, hidden_weight);
+  const LstmShape shape = ShapeOf(input, hidden_weight);
   const auto options = input.options().requires_grad(false);
   const std::int64_t steps = input.size(0);
   const std::int64_t rows = input.size(1);
@@ -63,24 +59,11 @@ Sequence Evaluate(const Tensor& input, const Tensor& hidden, const Tensor& cell,
                 torch::empty({steps, rows, size}, options)};
   std::vector<float> bias(Data(input_bias), Data(input_bias) + shape.gates());
   for (std::size_t i = 0; i < bias.size(); ++i) bias[i] += Data(hidden_bias)[i];
-  LinearForward(shape.steps * shape.rows, shape.features, shape.gates(), Data(input),
-                Data(input_weight), bias.data(), made.gates.data_ptr<float>());
-  const std::size_t of_step = shape.rows * shape.hidden;
-  std::copy_n(Data(cell), of_step, made.cells.data_ptr<float>());
-  const float* before = Data(hidden);
-  for (std::size_t step = 0; step < shape.steps; ++step) {
-    float* const gates = made.gates.data_ptr<float>() + step * 4 * of_step;
-    MultiplyByTransposed(shape.rows, shape.gates(), shape.hidden, before, Data(hidden_weight), 1.0F,
-                         gates);
-    float* const output = made.output.data_ptr<float>() + step * of_step;
-    float* const cells = made.cells.data_ptr<float>() + step * of_step;
-    float* const tanh = made.cell_tanh.data_ptr<float>() + step * of_step;
-    for (std::size_t at = 0; at < of_step; at += shape.hidden) {
-      LstmCellForward(shape.hidden, gates + 4 * at, cells + at, cells + of_step + at, tanh + at,
-                      output + at);
-    }
-    before = output;
-  }
+  std::copy_n(Data(cell), shape.step_size(), made.cells.data_ptr<float>());
+  std::vector<float> transposed(shape.hidden * shape.gates());
+  LstmForward(shape, Data(input), Data(hidden),
+              {Data(input_weight), Data(hidden_weight), bias.data()}, transposed.data(),
+              TraceOf(made.gates, made.cells, made.cell_tanh, made.output));
   return made;
 }
 
@@ -116,51 +99,24 @@ struct LstmFunction : torch::autograd::Function<LstmFunction> {
 
   static variable_list backward(AutogradContext* context, const variable_list& slopes) {
     const variable_list saved = context->get_saved_variables();
-    const Shape shape(saved[kInput], saved[kHiddenWeight]);
-    const std::size_t of_step = shape.rows * shape.hidden;
+    const LstmShape shape = ShapeOf(saved[kInput], saved[kHiddenWeight]);
+    const std::size_t of_step = shape.step_size();
     const Tensor of_output = slopes[0].defined() ? slopes[0].contiguous() : Tensor();
     std::vector<float> hidden_slopes = EndSlopes(slopes[1], of_step);
     std::vector<float> cell_slopes = EndSlopes(slopes[2], of_step);
     std::vector<float> gate_slopes(shape.steps * of_step * 4);
-    for (std::size_t step = shape.steps; step-- > 0;) {
-      const std::size_t first = step * of_step;
-      if (of_output.defined()) {
-        AsRow(hidden_slopes.data(), of_step) += AsRow(Data(of_output) + first, of_step);
-      }
-      for (std::size_t at = 0; at < of_step; at += shape.hidden) {
-        LstmCellBackward(shape.hidden, Data(saved[kGates]) + 4 * (first + at),
-                         Data(saved[kCells]) + first + at, Data(saved[kCellTanh]) + first + at,
-                         hidden_slopes.data() + at, cell_slopes.data() + at,
-                         gate_slopes.data() + 4 * (first + at));
-      }
-      LinearInputSlopes(shape.rows, shape.hidden, shape.gates(), gate_slopes.data() + 4 * first,
-                        Data(saved[kHiddenWeight]), 0.0F, hidden_slopes.data());
-    }
-    return Gradients(saved, shape, gate_slopes, hidden_slopes, cell_slopes);
-  }
-
-  static variable_list Gradients(const variable_list& saved, const Shape& shape,
-                                 const std::vector<float>& gate_slopes,
-                                 const std::vector<float>& hidden_slopes,
-                                 const std::vector<float>& cell_slopes) {
-    const std::size_t rows = shape.steps * shape.rows;
-    const std::size_t of_step = shape.rows * shape.hidden;
     Tensor of_input = torch::empty_like(saved[kInput]);
     Tensor input_weight = torch::empty_like(saved[kInputWeight]);
     Tensor hidden_weight = torch::empty_like(saved[kHiddenWeight]);
     Tensor bias = torch::empty({saved[kHiddenWeight].size(0)}, saved[kHiddenWeight].options());
-    LinearInputSlopes(rows, shape.features, shape.gates(), gate_slopes.data(),
-                      Data(saved[kInputWeight]), 0.0F, of_input.data_ptr<float>());
-    LinearGradient(rows, shape.features, shape.gates(), Data(saved[kInput]), gate_slopes.data(),
-                   input_weight.data_ptr<float>(), bias.data_ptr<float>());
-    // h before the first step is the state, before the others the output of the one before.
-    float* const weight = hidden_weight.data_ptr<float>();
-    MultiplyTransposed(shape.gates(), shape.hidden, shape.rows, gate_slopes.data(),
-                       Data(saved[kHidden]), 0.0F, weight);
-    if (shape.steps > 1) {
-      MultiplyTransposed(shape.gates(), shape.hidden, rows - shape.rows,
-                         gate_slopes.data() + 4 * of_step, Data(saved[kOutput]), 1.0F, weight);
-    }
+    LstmBackward(
+        shape, Data(saved[kInput]), Data(saved[kHidden]),
+        {Data(saved[kInputWeight]), Data(saved[kHiddenWeight]), nullptr},
+        TraceOf(saved[kGates], saved[kCells], saved[kCellTanh], saved[kOutput]),
+        of_output.defined() ? Data(of_output) : nullptr, hidden_slopes.data(), cell_slopes.data(),
+        gate_slopes.data(),
+        {input_weight.data_ptr<float>(), hidden_weight.data_ptr<float>(), bias.data_ptr<float>()},
+        of_input.data_ptr<float>());
     const auto to_state = [&](const std::vector<float>& values) {
       return torch::tensor(values).view(saved[kHidden].sizes());
     };

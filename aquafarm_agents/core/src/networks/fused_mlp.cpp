@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <numeric>
 #include <vector>
 
 #include "aquafarm/base/check.h"
@@ -54,29 +53,6 @@ struct Layer {
   }
 };
 
-// q [R, A] = V + A − mean A, in place.
-void AddValue(const Tensor& value, Tensor& advantage) {
-  const std::size_t count = Size(advantage, 1);
-  float* row = advantage.data_ptr<float>();
-  const float* const values = Data(value);
-  for (std::size_t r = 0; r < Size(advantage, 0); ++r, row += count) {
-    const float mean = std::accumulate(row, row + count, 0.0F) / static_cast<float>(count);
-    for (std::size_t a = 0; a < count; ++a) row[a] += values[r] - mean;
-  }
-}
-
-// Slopes of V from those of q, [R, A]; the slopes become those of the advantages.
-std::vector<float> SplitValue(std::size_t count, std::vector<float>& slopes) {
-  std::vector<float> values(slopes.size() / count);
-  float* row = slopes.data();
-  for (float& value : values) {
-    value = std::accumulate(row, row + count, 0.0F);
-    for (std::size_t a = 0; a < count; ++a) row[a] -= value / static_cast<float>(count);
-    row += count;
-  }
-  return values;
-}
-
 struct MlpOutputs {
   Tensor first;
   Tensor second;
@@ -92,7 +68,9 @@ MlpOutputs Evaluate(const Tensor& input, const Tensor& first_weight, const Tenso
   outputs.second = Layer{second_weight}.ForwardRelu(outputs.first, second_bias);
   outputs.q = Layer{advantage_weight}.Forward(outputs.second, advantage_bias);
   if (value_weight.numel() > 0) {
-    AddValue(Layer{value_weight}.Forward(outputs.second, value_bias), outputs.q);
+    const Tensor values = Layer{value_weight}.Forward(outputs.second, value_bias);
+    AddStateValue(Size(outputs.q, 0), Size(outputs.q, 1), Data(values),
+                  outputs.q.data_ptr<float>());
   }
   return outputs;
 }
@@ -125,7 +103,8 @@ struct MlpFunction : torch::autograd::Function<MlpFunction> {
     std::vector<float> below;
     const Layer advantage{saved[kAdvantage]};
     if (saved[kValue].numel() > 0) {
-      const std::vector<float> value_slopes = SplitValue(advantage.outputs(), slopes);
+      std::vector<float> value_slopes(slopes.size() / advantage.outputs());
+      SplitStateValue(value_slopes.size(), advantage.outputs(), slopes.data(), value_slopes.data());
       Layer{saved[kValue]}.Gradient(saved[kSecondOut], value_slopes, &gradients[7]);
       Layer{saved[kValue]}.AddInputSlopes(value_slopes, 0.0F, below);
       advantage.AddInputSlopes(slopes, 1.0F, below);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 
 #include "networks/gemm.h"
 
@@ -41,6 +42,22 @@ inline void LinearInputSlopes(std::size_t rows, std::size_t inputs, std::size_t 
 /// Sets slopes to 0 where the output of the ReLU is 0.
 inline void BackwardRelu(std::size_t size, const float* out, float* slopes) {
   for (std::size_t i = 0; i < size; ++i) slopes[i] = out[i] > 0.0F ? slopes[i] : 0.0F;
+}
+
+/// q [rows, count] = V + A − mean A, in place of A. @param values [rows] V
+inline void AddStateValue(std::size_t rows, std::size_t count, const float* values, float* q) {
+  for (std::size_t row = 0; row < rows; ++row, q += count) {
+    const float mean = std::accumulate(q, q + count, 0.0F) / static_cast<float>(count);
+    for (std::size_t a = 0; a < count; ++a) q[a] += values[row] - mean;
+  }
+}
+
+/// The slopes of q [rows, count] become those of A. @param values [rows] receives those of V
+inline void SplitStateValue(std::size_t rows, std::size_t count, float* slopes, float* values) {
+  for (std::size_t row = 0; row < rows; ++row, slopes += count) {
+    values[row] = std::accumulate(slopes, slopes + count, 0.0F);
+    for (std::size_t a = 0; a < count; ++a) slopes[a] -= values[row] / static_cast<float>(count);
+  }
 }
 
 }  // namespace aquafarm::agents

@@ -1,82 +1,35 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Products of row-major float matrices by BLAS (cblas_sgemm), which selects its kernels for the
-/// processor at run time. docs/decisions/ppo.md has the measurements. With AQUAFARM_GEMM_BY_EIGEN,
-/// for a Python package that must not depend on BLAS, Eigen computes them; the last bits then
-/// differ.
+/// Products of row-major float matrices. Code for AVX-512 or AVX2, which give the same bits, is
+/// selected at run time; a processor without them uses BLAS. The environment variable
+/// AQUAFARM_PRODUCTS (avx512, avx2 or blas) selects another one. docs/decisions/fused_updates.md
+/// has the measurements. With AQUAFARM_GEMM_BY_EIGEN, for a Python package that must not depend on
+/// BLAS, Eigen replaces BLAS.
+///
+/// In each product, c = product + beta · c; with beta = 0 the old values of c are not read.
 
 #include <cstddef>
 
-#ifdef AQUAFARM_GEMM_BY_EIGEN
-#include <Eigen/Core>
-
 namespace aquafarm::agents {
 
-using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+/// c [m, n] = a [m, k] · b [k, n]
+void Multiply(std::size_t m, std::size_t n, std::size_t k, const float* a, const float* b,
+              float beta, float* c);
 
-/// Views a row-major matrix [rows, columns].
-inline auto AsMatrix(const float* values, std::size_t rows, std::size_t columns) {
-  return Eigen::Map<const RowMajor>(values, static_cast<Eigen::Index>(rows),
-                                    static_cast<Eigen::Index>(columns));
-}
+/// c [m, n] = a [m, k] · bᵀ with b [n, k]. Where few rows are multiplied by the same b several
+/// times, Transpose and Multiply are faster.
+void MultiplyByTransposed(std::size_t m, std::size_t n, std::size_t k, const float* a,
+                          const float* b, float beta, float* c);
 
-/// c [m, n] = product + beta · c. With beta = 0 the old values of c are not read.
-template <typename Product>
-void AddProduct(const Product& product, float beta, float* c) {
-  Eigen::Map<RowMajor> sum(c, product.rows(), product.cols());
-  if (beta == 0.0F) {
-    sum.noalias() = product;
-    return;
-  }
-  if (beta != 1.0F) sum *= beta;
-  sum.noalias() += product;
-}
+/// c [m, n] = aᵀ · b with a [k, m], b [k, n]
+void MultiplyTransposed(std::size_t m, std::size_t n, std::size_t k, const float* a, const float* b,
+                        float beta, float* c);
 
-inline void Multiply(std::size_t m, std::size_t n, std::size_t k, const float* a, const float* b,
-                     float beta, float* c) {
-  AddProduct(AsMatrix(a, m, k) * AsMatrix(b, k, n), beta, c);
-}
+/// out [columns, rows] = inᵀ with in [rows, columns]
+void Transpose(std::size_t rows, std::size_t columns, const float* in, float* out);
 
-inline void MultiplyByTransposed(std::size_t m, std::size_t n, std::size_t k, const float* a,
-                                 const float* b, float beta, float* c) {
-  AddProduct(AsMatrix(a, m, k) * AsMatrix(b, n, k).transpose(), beta, c);
-}
-
-inline void MultiplyTransposed(std::size_t m, std::size_t n, std::size_t k, const float* a,
-                               const float* b, float beta, float* c) {
-  AddProduct(AsMatrix(a, k, m).transpose() * AsMatrix(b, k, n), beta, c);
-}
+/// Name of the code that computes the products: "avx512", "avx2", "blas" or "eigen".
+const char* ProductsBy();
 
 }  // namespace aquafarm::agents
-#else
-#include <cblas.h>
-
-namespace aquafarm::agents {
-
-/// c [m, n] = a [m, k] · b [k, n] + beta · c
-inline void Multiply(std::size_t m, std::size_t n, std::size_t k, const float* a, const float* b,
-                     float beta, float* c) {
-  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, static_cast<int>(m), static_cast<int>(n),
-              static_cast<int>(k), 1.0F, a, static_cast<int>(k), b, static_cast<int>(n), beta, c,
-              static_cast<int>(n));
-}
-
-/// c [m, n] = a [m, k] · bᵀ + beta · c with b [n, k]
-inline void MultiplyByTransposed(std::size_t m, std::size_t n, std::size_t k, const float* a,
-                                 const float* b, float beta, float* c) {
-  cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasTrans, static_cast<int>(m), static_cast<int>(n),
-              static_cast<int>(k), 1.0F, a, static_cast<int>(k), b, static_cast<int>(k), beta, c,
-              static_cast<int>(n));
-}
-
-/// c [m, n] = aᵀ · b + beta · c with a [k, m], b [k, n]
-inline void MultiplyTransposed(std::size_t m, std::size_t n, std::size_t k, const float* a,
-                               const float* b, float beta, float* c) {
-  cblas_sgemm(CblasRowMajor, CblasTrans, CblasNoTrans, static_cast<int>(m), static_cast<int>(n),
-              static_cast<int>(k), 1.0F, a, static_cast<int>(m), b, static_cast<int>(n), beta, c,
-              static_cast<int>(n));
-}
-
-}  // namespace aquafarm::agents
-#endif

@@ -6,6 +6,7 @@
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/rng.h"
+#include "networks/adam_step.h"
 #include "networks/fused.h"
 
 namespace aquafarm::agents {
@@ -159,6 +160,17 @@ void FlatParameters::FromVector(const std::vector<float>& values) {
   }
   const torch::NoGradGuard no_grad;
   values_.copy_(torch::from_blob(const_cast<float*>(values.data()), {size()}));
+}
+
+void FlatParameters::MoveTowards(const FlatParameters& other, double rate) {
+  if (CanFuse(values_, other.values_)) {
+    const auto count = static_cast<std::size_t>(size());
+    AdvanceTowards(count, other.values_.data_ptr<float>(), static_cast<float>(rate),
+                   values_.data_ptr<float>());
+    return;
+  }
+  const torch::NoGradGuard no_grad;
+  values_.lerp_(other.values_, rate);
 }
 
 void DrawWeights(nn::Module& module, std::uint64_t seed, std::uint32_t stream) {

@@ -63,6 +63,7 @@ class RecurrentNetwork : public torch::nn::Module {
   torch::Tensor Forward(const torch::Tensor& input, State& state);
   /// Advances only the state.
   void WarmUp(const torch::Tensor& input, State& state);
+  std::int64_t hidden() const { return lstm_weights_[1].size(1); }
 
  private:
   torch::Tensor Step(const torch::Tensor& seen, State& state);
@@ -91,6 +92,9 @@ class FlatParameters {
   std::vector<float> ToVector() const;
   /// @throws InputError unless `values` has size() values
   void FromVector(const std::vector<float>& values);
+  /// Moves each parameter by `rate` of its distance towards those of a module of the same
+  /// architecture; 1 copies them.
+  void MoveTowards(const FlatParameters& other, double rate);
 
  private:
   torch::Tensor values_;

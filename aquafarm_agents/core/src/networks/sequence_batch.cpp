@@ -23,7 +23,7 @@ SequenceBatch::SequenceBatch(const DeepOptions& options, std::size_t features,
   rewards.resize(steps_ * count);
   discounts.resize(steps_ * count);
   next.resize(steps_ * count);
-  forbidden.resize((steps_ + 1) * count * kActionCount);
+  allowed.resize((steps_ + 1) * count);
   weights.resize(steps_ * count);
   rows.resize(steps_ * count);
 }
@@ -60,8 +60,7 @@ void SequenceBatch::FillRun(std::size_t b, const Replay<float>& replay,
     const std::size_t row = replay.Row(age + std::min(t, last), entry);
     std::copy_n(replay.observation(row), features_,
                 observations.data() + (t * size() + b) * features_);
-    const ActionMask allowed = LegalMask(replay.legal(row), replay.observation(row), options);
-    MaskLogits(allowed, forbidden.data() + (t * size() + b) * kActionCount);
+    allowed[t * size() + b] = LegalMask(replay.legal(row), replay.observation(row), options);
   }
   for (std::size_t t = 0; t < steps_; ++t) {
     const std::size_t i = t * size() + b;

@@ -23,11 +23,11 @@ struct SequenceBatch {
       recurrent_state_after;  ///< [B, 2, hidden] stored at time step 1; paper_tuple only
   std::vector<float>
       warms_up;  ///< [B] 0 if recurrent_state is already the state before time step 0
-  std::vector<std::int64_t> actions;  ///< [T, B]
+  std::vector<std::uint8_t> actions;  ///< [T, B]
   std::vector<float> rewards;         ///< [T, B] summed over the steps to `next`
   std::vector<float> discounts;       ///< [T, B] factor of the value at `next`
   std::vector<std::int64_t> next;     ///< [T, B] time step of the bootstrap value
-  std::vector<float> forbidden;       ///< [T + 1, B, kActionCount]
+  std::vector<ActionMask> allowed;    ///< [T + 1, B]
   std::vector<float> weights;         ///< [T, B] 1 if trained on, else 0
   std::vector<std::size_t> rows;      ///< [T, B] rows of the replay
 

@@ -9,6 +9,8 @@
 #include <mutex>
 #include <utility>
 
+#include "networks/gemm.h"
+
 namespace aquafarm::agents {
 namespace {
 
@@ -40,6 +42,7 @@ void PrepareTorch(std::int32_t threads) {
     using Config = const char* (*)();
     const auto openblas = reinterpret_cast<Config>(dlsym(RTLD_DEFAULT, "openblas_get_config"));
     if (openblas != nullptr) network_libraries += std::string(", ") + openblas();
+    network_libraries += std::string(", products by ") + ProductsBy();
     if (HasFastBlas()) return;
     network_libraries += ", reference BLAS";
     torch_warning =

@@ -48,28 +48,43 @@ bool ValueOptimizer::TakeDue() {
   return true;
 }
 
-void ValueOptimizer::Update(const torch::Tensor& predicted, const torch::Tensor& targets,
-                            const torch::Tensor& weights, const BatchOrigin& origin) {
-  const torch::Tensor each = options_.loss == LossKind::kMse
-                                 ? torch::mse_loss(predicted, targets, at::Reduction::None)
-                                 : torch::smooth_l1_loss(predicted, targets, at::Reduction::None);
-  const torch::Tensor loss = (each * weights).sum();
-  const float value = loss.item<float>();
-  if (!std::isfinite(value)) Fail("loss: got " + std::to_string(value), origin);
-  if (updates_ % kUpdatesPerLook == 0) Measure(predicted, targets, weights);
-  if (!online_.Step(loss, learning_rate_, options_.max_grad_norm)) {
-    Fail("gradient: not finite, with a loss of " + std::to_string(value), origin);
+void ValueOptimizer::Differentiate(std::size_t count, const float* predicted, const float* targets,
+                                   const float* weights, float* slopes, const BatchOrigin& origin) {
+  double loss = 0.0;
+  double square = 0.0;
+  double weight_sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float error = predicted[i] - targets[i];
+    const bool is_square = options_.loss == LossKind::kMse;
+    const bool is_linear = !is_square && !(std::abs(error) < 1.0F);  // Huber 1964
+    const float slope = is_linear ? std::copysign(1.0F, error) : error;
+    const auto weight = static_cast<double>(weights[i]);
+    const auto wide = static_cast<double>(error);
+    weight_sum += weight;
+    square += weight * wide * wide;
+    loss += weight * (is_square   ? wide * wide
+                      : is_linear ? std::abs(wide) - 0.5
+                                  : 0.5 * wide * wide);
+    slopes[i] = (is_square ? 2.0F : 1.0F) * slope * weights[i];
+  }
+  if (!std::isfinite(loss)) Fail("loss: got " + std::to_string(loss), origin);
+  if (updates_ % kUpdatesPerLook == 0) Measure(square / weight_sum);
+  evaluated_ = loss;
+}
+
+void ValueOptimizer::Learn(const BatchOrigin& origin) {
+  if (!online_.Step(learning_rate_, options_.max_grad_norm)) {
+    Fail("gradient: not finite, with a loss of " + std::to_string(evaluated_), origin);
   }
   ++updates_;
-  const torch::NoGradGuard no_grad;
   if (average_) {  // arithmetic mean at first, then an exponential moving average
-    const double share = std::max(options_.ema_rate, 1.0 / static_cast<double>(updates_));
-    average_->values().lerp_(online().values(), share);
+    average_->MoveTowards(online(),
+                          std::max(options_.ema_rate, 1.0 / static_cast<double>(updates_)));
   }
   if (options_.tau > 0.0) {
-    target_.values().lerp_(online().values(), options_.tau);
+    target_.MoveTowards(online(), options_.tau);
   } else if (updates_ % options_.target_update_interval == 0) {
-    target_.values().copy_(online().values());
+    target_.MoveTowards(online(), 1.0);
   }
 }
 
@@ -81,12 +96,9 @@ void ValueOptimizer::Fail(const std::string& what, const BatchOrigin& origin) co
                       "; expected a number: try a smaller learning_rate or reward_scale");
 }
 
-void ValueOptimizer::Measure(const torch::Tensor& predicted, const torch::Tensor& targets,
-                             const torch::Tensor& weights) {
-  const torch::NoGradGuard no_grad;
-  const torch::Tensor mean = ((predicted - targets).square_() * weights).sum() / weights.sum();
-  const double scale = options_.reward_scale * options_.reward_scale;
-  const auto value = static_cast<float>(mean.item<double>() / scale);
+void ValueOptimizer::Measure(double mean_square) {
+  const auto value =
+      static_cast<float>(mean_square / (options_.reward_scale * options_.reward_scale));
   loss_ = std::isnan(loss_) ? value : loss_ + kErrorShare * (value - loss_);
 }
 

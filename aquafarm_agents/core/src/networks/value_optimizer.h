@@ -40,18 +40,23 @@ class ValueOptimizer {
   /// Consumes one due update. @returns false if no update is due
   bool TakeDue();
 
-  /// Computes the weighted mean loss of predictions [n] against targets [n] with weights [n], takes
-  /// one step of Adam and updates the target network.
-  /// @throws LearnerFailed if the loss or its gradient is not finite; the parameters are then
-  ///         unchanged
-  void Update(const torch::Tensor& predicted, const torch::Tensor& targets,
-              const torch::Tensor& weights, const BatchOrigin& origin);
+  /// Computes the weighted sum of the losses of n predictions. @param slopes receives d loss /
+  /// d prediction [n]; may be `predicted` or `targets`
+  /// @throws LearnerFailed if the loss is not finite
+  void Differentiate(std::size_t count, const float* predicted, const float* targets,
+                     const float* weights, float* slopes, const BatchOrigin& origin);
+  /// Takes one step of Adam against the gradient of online(), and updates the target network.
+  /// @throws LearnerFailed if the gradient is not finite; the parameters are then unchanged
+  void Learn(const BatchOrigin& origin);
 
   /// Statistics of the learner. The loss is the mean squared TD error with the weights of the
   /// updates, in squared units of the unscaled reward, for every loss function (Fig. 12).
   LearnerStatus status(double exploration) const;
   /// Parameters by which agents act: the online parameters, or their moving average.
-  const FlatParameters& acting() const { return average_ ? *average_ : online(); }
+  const FlatParameters& acting() const { return average_ ? *average_ : online_.parameters(); }
+  FlatParameters& online() { return online_.parameters(); }
+  FlatParameters& target() { return target_; }
+  FlatParameters* average() { return average_ ? &*average_ : nullptr; }  ///< null without
   std::uint64_t updates() const { return updates_; }
 
   void Save(Checkpoint& checkpoint) const;
@@ -59,12 +64,10 @@ class ValueOptimizer {
   void Load(const Checkpoint& checkpoint);
 
  private:
-  const FlatParameters& online() const { return online_.parameters(); }
   template <typename Self, typename Visit>
   static void VisitNumbers(Self& self, const Visit& visit);  // the saved numbers, by name
   [[noreturn]] void Fail(const std::string& what, const BatchOrigin& origin) const;
-  void Measure(const torch::Tensor& predicted, const torch::Tensor& targets,
-               const torch::Tensor& weights);
+  void Measure(double mean_square);
 
   const DeepOptions options_;
   FlatAdam online_;
@@ -74,6 +77,7 @@ class ValueOptimizer {
   std::uint64_t steps_{};
   double due_{};
   std::uint64_t updates_{};
+  double evaluated_{};  // the loss of the last Differentiate
   float loss_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ppo/lstm_actor_critic.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 
 #include "networks/lstm_cell.h"
@@ -13,8 +14,8 @@ constexpr std::size_t kGates = 4;  // in the order i, f, g, o
 constexpr auto kOutputs = static_cast<std::size_t>(kActorCriticOutputs);
 constexpr float kForgetBias = 1.0F;  // of the initial weights: the cell state persists at first
 
-LstmRow At(std::vector<float>& values, std::size_t begin, std::size_t size) {
-  return AsRow(values.data() + begin, size);
+Eigen::Map<Eigen::ArrayXf> At(std::vector<float>& values, std::size_t begin, std::size_t size) {
+  return {values.data() + begin, static_cast<Eigen::Index>(size)};
 }
 
 }  // namespace
@@ -33,6 +34,7 @@ LstmActorCritic::LstmActorCritic(std::size_t features, std::size_t hidden,
   drawer.DrawHead(head_, weights_);
   for (std::size_t i = 0; i < hidden; ++i) weights_[gates_.bias() + hidden + i] += kForgetBias;
   gradient_.resize(weights_.size());
+  recurrent_transposed_.resize(kGates * hidden * hidden);
 }
 
 void LstmActorCritic::Reserve(const SequenceRows& rows) {
@@ -108,9 +110,9 @@ void LstmActorCritic::StepBackward(const SequenceRows& rows, std::size_t step) {
                      hidden_slopes_.data() + s * hidden_, cell_slopes_.data() + s * hidden_,
                      gate_slopes_.data() + row * kGates * hidden_);
   }
-  MultiplyByTransposed(rows.sequences, hidden_, kGates * hidden_,
-                       gate_slopes_.data() + first * kGates * hidden_,
-                       weights_.data() + recurrent_.begin, 0.0F, hidden_slopes_.data());
+  Multiply(rows.sequences, hidden_, kGates * hidden_,
+           gate_slopes_.data() + first * kGates * hidden_, recurrent_transposed_.data(), 0.0F,
+           hidden_slopes_.data());
   for (std::size_t s = 0; s < rows.sequences; ++s) {
     if (rows.started[first + s] == 0) continue;
     At(hidden_slopes_, s * hidden_, hidden_) = 0.0F;
@@ -124,6 +126,8 @@ void LstmActorCritic::Backward(const SequenceRows& rows, const float* slopes) {
   head_.BackwardInput(weights_, count, slopes, joined_slopes_.data());
   std::fill(hidden_slopes_.begin(), hidden_slopes_.end(), 0.0F);
   std::fill(cell_slopes_.begin(), cell_slopes_.end(), 0.0F);
+  Transpose(hidden_, kGates * hidden_, weights_.data() + recurrent_.begin,
+            recurrent_transposed_.data());
   for (std::size_t step = rows.steps; step-- > 0;) StepBackward(rows, step);
   MultiplyTransposed(hidden_, kGates * hidden_, count, hidden_before_.data(), gate_slopes_.data(),
                      1.0F, gradient_.data() + recurrent_.begin);

@@ -40,6 +40,8 @@ class LstmActorCritic final : public ActorCritic {
   const Linear recurrent_;  // of h; without a bias
   const Linear head_;       // of [h, x]
 
+  std::vector<float> recurrent_transposed_;  // weights of `recurrent_`, [4 hidden, hidden]
+
   // [steps, sequences, …]
   std::vector<float> seen_;           // [hidden] x
   std::vector<float> gate_values_;    // [4 hidden] after the nonlinearity

@@ -14,7 +14,6 @@
 #include "aquafarm/base/rng.h"
 #include "networks/deep_policy.h"
 #include "networks/flat_adam.h"
-#include "networks/row_network.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -56,29 +55,6 @@ void ExpectGradientsAreDifferences(torch::nn::Module& network, Loss loss) {
       weights[i] = weight;
       EXPECT_NEAR(gradient[i], (above - below) / (2.0 * kStep), 1e-6) << item.key() << ' ' << i;
     }
-  }
-}
-
-TEST(Networks, OneRowAloneHasTheValuesOfLibtorch) {
-  const torch::NoGradGuard no_grad;
-  const EnvironmentSpec spec = SmallSpec();
-  for (const bool dueling : {false, true}) {
-    DeepOptions options;
-    options.network = NetworkKind::kMlp;
-    options.hidden_size = 11;  // not a multiple of the SIMD width
-    options.dueling = dueling;
-    const auto network = MakeNetwork(spec, options, 3);
-    const std::vector<float> weights = FlatParameters(*network, torch::kCPU).ToVector();
-    RowNetwork row(static_cast<std::size_t>(spec.feature_count), options, weights);
-    for (std::uint32_t i = 0; i < 20; ++i) {
-      const torch::Tensor seen = Noise({1, spec.feature_count}, i);
-      const torch::Tensor expected = network->Forward(seen);
-      const float* const values = row.Forward(seen.data_ptr<float>());
-      for (std::int64_t a = 0; a < expected.numel(); ++a) {
-        EXPECT_NEAR(expected.data_ptr<float>()[a], values[a], 1e-6F) << dueling << ' ' << i;
-      }
-    }
-    EXPECT_THROW(RowNetwork(4, options, weights), LogicError);
   }
 }
 
@@ -350,18 +326,10 @@ TEST(Allowed, LeavesMovesIntoOpenWaterOrAllWhereThereIsNone) {
 }
 
 TEST(AdvantageGap, IsOfTheBestActionThatIsAllowed) {
-  std::vector<float> values{1, 2, 9, 3, 0, 0, 0, 0, 0, 0, 5, 4, -7, 0, 0, 0, 0, 0, 0, 6};
-  std::vector<float> forbidden(2 * kActionCount);
-  MaskLogits(kAllActions & ~(1U << 2U), forbidden.data());  // the 9
-  MaskLogits(kAllActions, forbidden.data() + kActionCount);
-  std::vector<std::int64_t> taken{1, 2};
-  const torch::Tensor shortfall =
-      AdvantageGap(torch::from_blob(values.data(), {2, kActionCount}),
-                   torch::from_blob(forbidden.data(), {2, kActionCount}),
-                   torch::from_blob(taken.data(), {2, 1}, torch::kLong));
-  ASSERT_EQ(shortfall.sizes(), torch::IntArrayRef({2}));
-  EXPECT_EQ(shortfall[0].item<float>(), 3.0F - 2.0F);
-  EXPECT_EQ(shortfall[1].item<float>(), 6.0F + 7.0F);
+  const std::vector<float> first{1, 2, 9, 3, 0, 0, 0, 0, 0, 0};
+  EXPECT_EQ(AdvantageGap(first.data(), kAllActions & ~(1U << 2U), 1), 3.0F - 2.0F);
+  const std::vector<float> second{5, 4, -7, 0, 0, 0, 0, 0, 0, 6};
+  EXPECT_EQ(AdvantageGap(second.data(), kAllActions, 2), 6.0F + 7.0F);
 }
 
 TEST(FindDevice, RefusesCudaWhereThereIsNone) {

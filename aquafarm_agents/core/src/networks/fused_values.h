@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+/// Networks of features on the CPU, with their gradients written out. Parameters have the order of
+/// the modules of networks.h, each weight [outputs, inputs]. Buffers grow to the largest number of
+/// rows; then no call allocates.
+
+#include <cstddef>
+#include <vector>
+
+#include "networks/lstm_sequence.h"
+#include "networks/value_network.h"
+
+namespace aquafarm::agents {
+
+/// Memory of a network's parameters and of their gradient.
+struct ParameterMemory {
+  const float* values{};
+  float* gradient{};
+};
+
+/// Linear - ReLU - head: the second half of both networks.
+class HiddenAndHead {
+ public:
+  HiddenAndHead(std::size_t inputs, std::size_t hidden, bool dueling)
+      : inputs_(inputs), hidden_(hidden), dueling_(dueling) {}
+
+  /// @param in [rows, inputs] @returns Q [rows, kActionCount]
+  const float* Forward(std::size_t rows, const float* in, const float* parameters);
+  /// @param slopes [rows, kActionCount] of Q @param in of the last Forward
+  /// @returns slopes of `in`, [rows, inputs]
+  float* Backward(std::size_t rows, const float* slopes, const float* in,
+                  const ParameterMemory& parameters);
+
+ private:
+  std::size_t head() const { return (inputs_ + 1) * hidden_; }  // index of its first parameter
+
+  const std::size_t inputs_;
+  const std::size_t hidden_;
+  const bool dueling_;
+  std::vector<float> out_;
+  std::vector<float> values_;
+  std::vector<float> state_values_;
+  std::vector<float> value_slopes_;
+  std::vector<float> state_value_slopes_;
+  std::vector<float> out_slopes_;
+  std::vector<float> in_slopes_;
+};
+
+class FusedMlpValues final : public ValueNetwork<float> {
+ public:
+  FusedMlpValues(std::size_t features, std::size_t hidden, bool dueling,
+                 const ParameterMemory& parameters)
+      : features_(features),
+        hidden_(hidden),
+        parameters_(parameters),
+        rest_(hidden, hidden, dueling) {}
+
+  const float* Forward(std::size_t rows, const float* observations) override;
+  void Backward(std::size_t rows, const float* slopes) override;
+
+ private:
+  std::size_t rest() const { return (features_ + 1) * hidden_; }
+
+  const std::size_t features_;
+  const std::size_t hidden_;
+  const ParameterMemory parameters_;
+  HiddenAndHead rest_;
+  const float* seen_{};
+  std::vector<float> first_;
+};
+
+class FusedLstmValues final : public RecurrentValueNetwork {
+ public:
+  FusedLstmValues(std::size_t features, std::size_t hidden, bool skip_connection, bool dueling,
+                  const ParameterMemory& parameters);
+
+  const float* Forward(std::size_t steps, std::size_t rows, const float* features,
+                       float* state) override;
+  void WarmUp(std::size_t steps, std::size_t rows, const float* features, float* state) override;
+  void Backward(std::size_t count, const float* slopes) override;
+
+ private:
+  std::size_t lstm() const { return (features_ + 1) * hidden_; }
+  std::size_t rest() const { return lstm() + 8 * hidden_ * (hidden_ + 1); }
+  std::size_t width() const { return skip_connection_ ? 2 * hidden_ : hidden_; }
+  LstmWeights<const float> weights() const;
+  LstmTrace trace() { return {gates_.data(), cells_.data(), cell_tanh_.data(), output_.data()}; }
+  void Reserve(const LstmShape& shape);
+
+  const std::size_t features_;
+  const std::size_t hidden_;
+  const bool skip_connection_;
+  const ParameterMemory parameters_;
+  HiddenAndHead rest_;
+  LstmShape shape_;  // of the last Forward
+  const float* seen_{};
+  std::vector<float> bias_;        // sum of both
+  std::vector<float> transposed_;  // scratch
+  std::vector<float> hidden_before_;
+  std::vector<float> input_;  // x
+  std::vector<float> gates_;
+  std::vector<float> cells_;
+  std::vector<float> cell_tanh_;
+  std::vector<float> output_;  // h
+  std::vector<float> joined_;  // [h, x] with the skip connection
+  std::vector<float> hidden_slopes_;
+  std::vector<float> cell_slopes_;
+  std::vector<float> gate_slopes_;
+  std::vector<float> output_slopes_;
+  std::vector<float> input_slopes_;
+};
+
+}  // namespace aquafarm::agents

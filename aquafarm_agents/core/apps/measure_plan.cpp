@@ -17,6 +17,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kGale_mps = 17.2;
+
 struct Arguments {
   std::string ranch{"zhoushan_storms"};
   std::string archive;
@@ -28,6 +30,7 @@ struct Arguments {
   std::int32_t first_year{2010};
   double within_km{300.0};
   double lead_h{24.0};
+  bool reacts{true};
   double error_scale{1.0};
   double position_errors{1.0};
   double wind_errors{1.0};
@@ -147,13 +150,16 @@ Json RunStorms(Arguments& arguments) {
   std::vector<TrialResult> results;
   std::vector<std::vector<Promise>> home;
   std::vector<std::vector<Promise>> gales;
+  std::vector<std::vector<Promise>> weak;  // as gales, of bulletins without winds of a gale
   Groups groups;
   for (std::int32_t i = 0; i < arguments.storms; ++i) {
     const TrialStorm storm =
         DrawTrial(tracks, trials.place(), arguments.trial, static_cast<std::uint64_t>(i));
-    results.push_back(trials.Run(storm));
+    results.push_back(trials.Run(storm, arguments.reacts));
     home.push_back(results.back().home);
     gales.push_back(results.back().gales);
+    const bool is_weak = results.back().bulletin_mps < kGale_mps;
+    weak.push_back(is_weak ? results.back().gales : std::vector<Promise>{});
     groups.push_back(results.back().track);
   }
   std::printf("%d storms, errors x %g, %d members\n", arguments.storms, arguments.error_scale,
@@ -166,6 +172,11 @@ Json RunStorms(Arguments& arguments) {
             {"intervals", "95 %, between tracks"}};
   data["home"] = Calibration("the device comes home", home, groups);
   data["gales"] = Calibration("gales reach the device", gales, groups);
+  const PromiseBin of_weak = BinOf(weak, 0.05, 0.55, groups);
+  std::printf("gales reach the device, bulletin below a gale\n");
+  Print("5-55 %", of_weak);
+  data["gales_of_weak_bulletins"] = Of(of_weak);
+  data["winds_about_bulletin"] = arguments.trial.winds_about_bulletin;
   data["value"] = Value(results, groups);
   return data;
 }
@@ -280,6 +291,10 @@ void AddOptions(CLI::App& app, Arguments& arguments) {
       ->check(CLI::Range(1, 10000));
   app.add_option("--since", arguments.first_year, "back_test: first year");
   app.add_option("--within", arguments.within_km, "back_test: distance [km]");
+  app.add_flag("--winds-about-bulletin", arguments.trial.winds_about_bulletin,
+               "storms: the true winds are the bulletin's with an error, instead of the reverse");
+  app.add_flag("!--no-reacting", arguments.reacts,
+               "storms: leave out the policies that plan again at each bulletin");
   app.add_option("--judges", arguments.judges, "averse: members that compare the plans")
       ->check(CLI::Range(100, 20000));
   app.add_option("-o,--output", arguments.output, "write the results as JSON");

@@ -11,6 +11,7 @@
 #include "aquafarm/agents/base/text.h"
 #include "aquafarm/agents/rescue/plan_report.h"
 #include "aquafarm/ranch/ranch_builder.h"
+#include "rescue/case_parts.h"
 
 namespace aquafarm::agents {
 namespace {
@@ -69,18 +70,29 @@ std::shared_ptr<const Scenario> LoadRanch(Arguments& arguments) {
   ranch.width = ranch.height = arguments.size;
   ranch.cell_size_m = arguments.cell_m;
   ranch.devices = 1;
+  ranch.exact_ports = true;
   for (const std::string& port : arguments.ports) ranch.port_places.push_back(Place("port", port));
   const BuiltRanch built = BuildRanch(ranch);
   for (const std::string& warning : built.warnings) {
     arguments.warnings.push_back(
         {"ranch_changed", "warning", warning, "Check the places of the ranch."});
   }
-  if (arguments.ports.empty()) {
-    arguments.warnings.push_back({"ports_chosen", "note",
-                                  "No port was given: the ports are chosen on the shore.",
-                                  "Give your own with --ports LATITUDE,LONGITUDE."});
-  }
   return std::make_shared<const Scenario>(built.scenario);
+}
+
+// Notes the ports that were not given.
+void NoteChosenPorts(const Arguments& arguments, RescueCase& rescue) {
+  if (arguments.coast.empty() || !arguments.ports.empty()) return;
+  std::string places;
+  for (const RescuePort& port : rescue.problem.ports) {
+    const GeoPoint place = rescue.frame.ToGeo(port.cell.x, port.cell.y);
+    places += (places.empty() ? "" : "; ") + port.name + " at " + Short(place.latitude, 4) + "," +
+              Short(place.longitude, 4);
+  }
+  rescue.warnings.push_back(
+      {"ports_chosen", "note",
+       "No port was given: the ports are chosen on the shore, " + places + ".",
+       "Give your own, each as --ports LATITUDE,LONGITUDE."});
 }
 
 std::vector<std::pair<std::string, std::string>> Inputs(const Arguments& arguments) {
@@ -108,6 +120,7 @@ int Run(Arguments& arguments) {
   RescueCase rescue = MakeRescueCase(LoadRanch(arguments), request);
   rescue.warnings.insert(rescue.warnings.end(), arguments.warnings.begin(),
                          arguments.warnings.end());
+  NoteChosenPorts(arguments, rescue);
   const Ensemble ensemble(rescue.forecast, rescue.ensemble, rescue.Sites());
   const PlanReport report = MakeReport(rescue, ensemble);
   std::fputs(ToText(rescue, report).c_str(), stdout);
@@ -120,7 +133,7 @@ int Run(Arguments& arguments) {
     WriteFileAtomically(arguments.json, ToJson(rescue, ensemble, report, provenance));
     std::printf("written: %s\n", arguments.json.c_str());
   }
-  return static_cast<int>(report.result);
+  return static_cast<int>(report.ExitCode());
 }
 
 void AddOptions(CLI::App& app, Arguments& arguments) {
@@ -173,7 +186,7 @@ int Main(int argc, char** argv) {
       "exit codes: 0 ships leave, 2 bad argument or file, 3 cannot write, 10 nothing can be "
       "saved,\n"
       "11 the storm reaches no device in the known time, 12 unknown whether it does,\n"
-      "13 ships leave but the bulletin is older than 12 hours");
+      "13 the bulletin is older than 12 hours");
   AddOptions(app, arguments);
   return RunWithExitCodes(app, [&] {
     app.parse(argc, argv);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "aquafarm/base/check.h"
 #include "aquafarm/farm/cell_bits.h"
@@ -19,6 +20,22 @@ constexpr double kHour_s = 3600.0;
 
 std::string Where(GeoPoint place) {
   return Short(place.latitude, 4) + " N " + Short(place.longitude, 4) + " E";
+}
+
+// Returns the water cell nearest to a cell.
+Cell NearestWater(const Grid<std::uint8_t>& water, Cell from) {
+  Cell nearest = from;
+  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+  for (std::int32_t y = 0; y < water.rows(); ++y) {
+    for (std::int32_t x = 0; x < water.cols(); ++x) {
+      const std::int64_t dx = x - from.x;
+      const std::int64_t dy = y - from.y;
+      if (water(y, x) == 0 || dx * dx + dy * dy >= least) continue;
+      least = dx * dx + dy * dy;
+      nearest = {x, y};
+    }
+  }
+  return nearest;
 }
 
 // Returns the water cell of a place in a row.
@@ -40,8 +57,10 @@ Cell WaterCell(const CsvRow& row, const std::string& name, const RescueCase& res
          "; correct the place, or move the chart: --place is its middle");
   }
   if (water(cell.y, cell.x) == 0) {
+    const Cell nearest = NearestWater(water, cell);
     fail("which is land or rock in cell (" + std::to_string(cell.x) + ", " +
-         std::to_string(cell.y) + "), expected water");
+         std::to_string(cell.y) + "), expected water; the nearest water is at " +
+         Where(rescue.frame.ToGeo(nearest.x, nearest.y)));
   }
   return cell;
 }

@@ -7,6 +7,9 @@
 
 namespace aquafarm::agents {
 
+/// Age from which a bulletin is old [h].
+inline constexpr double kOldBulletin_h = 12.0;
+
 /// Reads the storm: sets storm, start, the time that is known, and the central forecast.
 void ReadStorm(const RescueRequest& request, RescueCase& rescue);
 /// Sets name, rings, passage and central forecast from the whole track, and the steps of the

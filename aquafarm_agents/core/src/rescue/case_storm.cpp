@@ -76,7 +76,8 @@ StormTrack FromBulletin(const RescueRequest& request, RescueCase& rescue) {
   StormTrack track = TrackOf(request, request.bulletin, rescue);
   AQUAFARM_CHECK_LT(std::size_t{0}, track.fixes.size());
   const std::int64_t last = track.fixes.back().time;
-  const bool is_current = request.now && *request.now >= last && *request.now - last < 12 * kHour_s;
+  const bool is_current = request.now && *request.now >= last &&
+                          *request.now - last < static_cast<std::int64_t>(kOldBulletin_h) * kHour_s;
   rescue.start = request.at.value_or(is_current ? *request.now : last);
   const std::string agency = AgencyOf(track);
   track = KnownAt(std::move(track), rescue.start, request.bulletin);
@@ -132,14 +133,14 @@ void WarnOfStorm(RescueCase& rescue) {
                             FormatUtc(storm.recorded_until) + ".",
                         "Give a bulletin with forecast points."});
   }
-  if (storm.age_h >= 12.0) {
+  if (storm.age_h >= kOldBulletin_h) {
+    const bool in_days = storm.age_h >= 72.0;
     warnings.push_back(
         {"bulletin_old", "stop",
-         "The bulletin is " + Short(storm.age_h, 0) +
-             " hours old: its last report "
-             "is of " +
+         "The bulletin is " + Short(in_days ? storm.age_h / 24.0 : storm.age_h, 0) +
+             (in_days ? " days" : " hours") + " old: its last report is of " +
              FormatUtc(storm.recorded_until) + ".",
-         "Get a newer bulletin before any ship leaves; for a past storm give --at."});
+         "Get a newer bulletin before any ship leaves. For a past storm give --storm and --at."});
   }
   if (storm.rings.silent > 0) {
     warnings.push_back({"radii_unknown", "warning",

@@ -20,6 +20,19 @@ std::int32_t AbortRing(const StormPath& path, double limit_kt) {
   return static_cast<std::int32_t>(path.rings) - 1;
 }
 
+// Returns the lowest and the highest speed of the ships, and whether they are given.
+std::pair<std::string, bool> SpeedsOf(const RescueRequest& request, const RescueCase& rescue) {
+  const auto& ships = rescue.problem.ships;
+  if (ships.empty()) return {"no ship", false};
+  const auto [slowest, fastest] =
+      std::minmax_element(ships.begin(), ships.end(),
+                          [](const auto& a, const auto& b) { return a.speed_kn < b.speed_kn; });
+  const std::string low = Short(slowest->speed_kn, 1);
+  const std::string high = Short(fastest->speed_kn, 1);
+  return {low + (low == high ? "" : " to " + high) + " kn",
+          request.speed_kn || !request.ships_file.empty()};
+}
+
 void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
   const auto add = [&](const std::string& what, const std::string& value, const std::string& basis,
                        const std::string& source) {
@@ -28,7 +41,8 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
   const StormPath& path = rescue.forecast.path;
   const auto ring = static_cast<std::size_t>(rescue.problem.abort_ring);
   add("A ship stops work for good when winds of this force have reached its cell",
-      std::to_string(path.wind_kt[ring]) + " kt", "given",
+      std::to_string(path.wind_kt[ring]) + " kt",
+      request.abort_wind_kt == RescueRequest{}.abort_wind_kt ? "assumed" : "given",
       "--abort-wind " + Short(request.abort_wind_kt, 0) + "; the ring at or below it is used");
   add("Mean position error of the forecast after 24, 48, 72, 96 and 120 h",
       "66.2, 119.5, 176.3, 244.3, 328.5 km", "published",
@@ -61,9 +75,8 @@ void ListAssumptions(const RescueRequest& request, RescueCase& rescue) {
           : "damage.exposure_damage of the ranch");
   add("A device that is not delivered", "takes the damage of the whole storm at its site",
       "assumed", "Also if it is aboard a ship that stopped");
-  add("Speed of the ships",
-      Short(rescue.problem.ships.empty() ? 0.0 : rescue.problem.ships[0].speed_kn, 1) + " kn",
-      request.speed_kn || !request.ships_file.empty() ? "given" : "assumed",
+  const auto [speed, is_given] = SpeedsOf(request, rescue);
+  add("Speed of the ships", speed, is_given ? "given" : "assumed",
       "with and without a device in tow; one cell per step of the ranch unless given");
   add("Time for a pickup or a drop-off", Short(rescue.problem.handling_s / 60.0, 0) + " min",
       "assumed", "one step of the ranch");

@@ -93,7 +93,7 @@ class JsonReport {
         break;
     }
     return {{"kind", kind},
-            {"exit_code", static_cast<int>(report_.result)},
+            {"exit_code", static_cast<int>(report_.ExitCode())},
             {"text", report_.text},
             {"unknown", AreWindsUnknown() ? Json(WhyUnknown(case_)) : Json(nullptr)}};
   }

@@ -70,6 +70,24 @@ void Warn(const char* code, const char* severity, const std::string& advice, Pla
   rescue.warnings.push_back({code, severity, report.text, advice});
 }
 
+// Returns whether all that the bulletin states ended before the present time.
+bool HasEnded(const RescueCase& rescue) {
+  const StormRecord& storm = rescue.storm;
+  const double present_s = static_cast<double>(storm.recorded_until) + storm.age_h * 3600.0;
+  return !storm.is_hindcast && storm.age_h >= kOldBulletin_h &&
+         present_s > static_cast<double>(*storm.known_until);
+}
+
+void JudgeEnded(RescueCase& rescue, PlanReport& report) {
+  report.result = PlanResult::kStormUnknown;
+  report.text =
+      "It is unknown whether the storm reaches the devices: the bulletin's forecast "
+      "ended at " +
+      FormatUtc(*rescue.storm.known_until) + ", before the present time.";
+  Warn("forecast_ended", "stop", "Get a newer bulletin. For a past storm give --storm and --at.",
+       report, rescue);
+}
+
 void JudgeUnknown(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
   report.result = PlanResult::kStormUnknown;
   report.text = std::string("It is unknown ") +
@@ -103,9 +121,9 @@ void JudgeNothingSaved(RescueCase& rescue, const Ensemble& ensemble, PlanReport&
 }
 
 void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
-  const StormRecord& storm = rescue.storm;
   if (AreWindsUnknown(rescue, ensemble)) return JudgeUnknown(rescue, ensemble, report);
   if (!IsReached(rescue, ensemble, report.plan)) {
+    if (HasEnded(rescue)) return JudgeEnded(rescue, report);
     const std::string until =
         FormatUtc(rescue.start +
                   static_cast<std::int64_t>((ensemble.steps() - 1) * ensemble.options().step_s));
@@ -116,7 +134,7 @@ void Judge(RescueCase& rescue, const Ensemble& ensemble, PlanReport& report) {
     return Warn("storm_stays_away", "warning", "Get the next bulletin.", report, rescue);
   }
   if (report.plan.saved <= 0.0) return JudgeNothingSaved(rescue, ensemble, report);
-  report.result = storm.age_h >= 12.0 ? PlanResult::kBulletinOld : PlanResult::kPlan;
+  report.result = PlanResult::kPlan;
   report.text = std::to_string(report.plan.routes.size()) + " of " +
                 std::to_string(rescue.problem.ships.size()) + " ships leave and save " +
                 Money(rescue, report.plan.saved) + " of " +
@@ -241,6 +259,7 @@ PlanReport MakeReport(RescueCase& rescue, const Ensemble& ensemble) {
   report.deadlines = Deadlines(problem, ensemble, {kDeadlineShares.begin(), kDeadlineShares.end()});
   report.what_if = CompareChanges(problem, ensemble, report.plan);
   Judge(rescue, ensemble, report);
+  report.is_old = rescue.storm.age_h >= kOldBulletin_h;
   if (report.result != PlanResult::kStormUnknown) WarnOfWaysHome(rescue, report);
   const auto rank = [](const RescueWarning& one) {
     return one.severity == "stop" ? 0 : one.severity == "warning" ? 1 : 2;
@@ -277,11 +296,12 @@ std::string ToText(const RescueCase& rescue, const PlanReport& report) {
   }
   text += "\nwhat if: mean loss, change\n";
   for (const WhatIf& row : report.what_if) {
-    text += "  " + row.text +
-            (row.is_possible ? ": " + Money(rescue, row.loss.mean) + ", " +
-                                   (row.difference > 0.0 ? "+" : "") + Money(rescue, row.difference)
-                             : "") +
-            "\n";
+    text +=
+        "  " + row.text +
+        (row.is_possible ? ": " + Money(rescue, row.loss.mean) + ", " +
+                               (row.difference >= 0.05 ? "+" : "") + Money(rescue, row.difference)
+                         : "") +
+        "\n";
   }
   text += "times: local (UTC); chances: shares of " + std::to_string(report.plan.loss.size()) +
           " possible storms\n";

@@ -91,6 +91,11 @@ TrialResult PlanTrials::Run(const TrialStorm& storm, bool reacts) const {
   result.track = storm.track;
   result.lead_h = storm.lead_h;
   result.nearest_km = storm.nearest_km;
+  for (const StormForecast& forecast : storm.known.forecasts) {
+    for (const StormFix& fix : forecast.fixes) {
+      result.bulletin_mps = std::max(result.bulletin_mps, fix.wind_mps.value_or(0.0));
+    }
+  }
   result.promised = plan.saved;
   result.at_risk = static_cast<double>(real.loss_idle[0]);
   const std::int32_t gale = ensemble.rings() - 1;

@@ -40,6 +40,7 @@ struct TrialResult {
   std::size_t track{};  ///< TrialStorm::track
   double lead_h{};
   double nearest_km{};
+  double bulletin_mps{};       ///< greatest wind of the bulletin after the start
   std::vector<Promise> home;   ///< of each device that the plan fetches: it came home
   std::vector<Promise> gales;  ///< of each device: the weakest ring reached its site
   double promised{};           ///< value that the plan saves on average over its members

@@ -59,8 +59,11 @@ Json UnknownLoss() {
 }
 
 std::string WhyUnknown(const RescueCase& rescue) {
-  return "The storm's winds are unknown from " + FormatUtc(rescue.storm.passage.unknown[0]) +
-         " on: no chance, arrival, loss, deadline or comparison is known, and none of them is 0.";
+  const std::int64_t from = rescue.storm.passage.unknown[0];
+  const bool has_ended = from == 0 && rescue.storm.age_h >= kOldBulletin_h;
+  return (has_ended ? "The bulletin's forecast ended at " + FormatUtc(*rescue.storm.known_until)
+                    : "The storm's winds are unknown from " + FormatUtc(from) + " on") +
+         ": no chance, arrival, loss, deadline or comparison is known, and none of them is 0.";
 }
 
 std::string ObjectiveOf(const RescueProblem& problem) {

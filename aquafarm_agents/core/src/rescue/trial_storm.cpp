@@ -70,17 +70,27 @@ StormFix At(const StormTrack& track, std::int64_t time) {
   return fix;
 }
 
-// Gives every fix of a true storm its wind, grade and radii. The logarithm of its size, in units of
-// the spread of recorded radii, is a stationary process.
-void AddRadii(const TrialOptions& options, RandomStream& rng, StormTrack& track) {
+// Draws the logarithm of a storm's size at each fix, in units of the spread of recorded radii: a
+// stationary process.
+std::vector<double> DrawSizes(const TrialOptions& options, RandomStream& rng,
+                              const StormTrack& track) {
+  std::vector<double> sizes;
   double unit = Normal(rng);
   for (std::size_t i = 0; i < track.fixes.size(); ++i) {
-    StormFix& fix = track.fixes[i];
     if (i > 0) {
-      const double hours = HoursBetween(track.fixes[i - 1].time, fix.time);
+      const double hours = HoursBetween(track.fixes[i - 1].time, track.fixes[i].time);
       const double kept = std::exp(-hours / options.errors.size_memory_h);
       unit = kept * unit + std::sqrt(1.0 - kept * kept) * Normal(rng);
     }
+    sizes.push_back(unit);
+  }
+  return sizes;
+}
+
+// Gives every fix of a true storm the grade and the radii of its wind and size.
+void SetRadii(const TrialOptions& options, const std::vector<double>& sizes, StormTrack& track) {
+  for (std::size_t i = 0; i < track.fixes.size(); ++i) {
+    StormFix& fix = track.fixes[i];
     fix.grade = GradeOfWind(*fix.wind_mps);
     fix.rings.clear();
     const double spread =
@@ -92,7 +102,7 @@ void AddRadii(const TrialOptions& options, RandomStream& rng, StormTrack& track)
           EstimateRadius(kWinds_kt[0], *fix.wind_mps, fix.position.latitude, fix.averaging_min);
       WindRing ring;
       ring.wind_kt = wind_kt;
-      ring.radius_km.fill(estimate.median_km * std::exp(spread * widest.log_sigma * unit));
+      ring.radius_km.fill(estimate.median_km * std::exp(spread * widest.log_sigma * sizes[i]));
       fix.rings.push_back(ring);
     }
   }
@@ -117,6 +127,10 @@ class BulletinErrors {
   void Apply(StormFix& fix) const {
     const ForecastSpread spread = SpreadAt(errors_, lead_h_);
     Move(fix.position, unit_[0] * spread.position_km, unit_[1] * spread.position_km);
+    ApplyWind(fix);
+  }
+  void ApplyWind(StormFix& fix) const {
+    const ForecastSpread spread = SpreadAt(errors_, lead_h_);
     fix.wind_mps = std::max(0.0, WindOf(fix) + unit_[2] * spread.wind_mps);
     fix.grade = GradeOfWind(*fix.wind_mps);
   }
@@ -163,6 +177,24 @@ StormTrack KnownOf(const StormTrack& truth, std::int64_t start, const TrialOptio
   return known;
 }
 
+// Draws the true winds after the start about those of the bulletin, until the bulletin ends.
+void DrawWinds(const StormTrack& known, const TrialOptions& options, RandomStream rng,
+               StormTrack& truth) {
+  StormTrack bulletin;
+  bulletin.fixes = {known.fixes.back()};
+  for (const StormForecast& forecast : known.forecasts) {
+    bulletin.fixes.insert(bulletin.fixes.end(), forecast.fixes.begin(), forecast.fixes.end());
+  }
+  BulletinErrors errors(options.errors, rng);
+  for (StormFix& fix : truth.fixes) {
+    if (fix.time <= bulletin.fixes.front().time) continue;
+    if (fix.time > bulletin.fixes.back().time) break;
+    fix.wind_mps = At(bulletin, fix.time).wind_mps;
+    errors.GoTo(HoursBetween(bulletin.fixes.front().time, fix.time));
+    errors.ApplyWind(fix);
+  }
+}
+
 TrialStorm MakeTrial(StormTrack truth, std::int64_t at, const TrialOptions& options, GeoPoint place,
                      RandomStream& rng) {
   TrialStorm trial;
@@ -175,12 +207,18 @@ TrialStorm MakeTrial(StormTrack truth, std::int64_t at, const TrialOptions& opti
     fix.wind_below_mps.reset();
   }
   truth = FineTrack(truth, truth.fixes.front().time);
-  AddRadii(options, rng, truth);
+  const std::vector<double> sizes = DrawSizes(options, rng, truth);
+  SetRadii(options, sizes, truth);
   trial.known = KnownOf(truth, trial.start, options, rng);
   const auto [nearest, km] = NearestTime(truth, place);
   trial.lead_h = HoursBetween(trial.start, nearest);
   trial.nearest_km = km;
   trial.seed = std::uint64_t{rng.Below(1U << 31)} << 31 | rng.Below(1U << 31);
+  if (options.winds_about_bulletin) {
+    DrawWinds(trial.known, options, RandomStream({options.seed, trial.seed, RngStream::kStorm, 9}),
+              truth);
+    SetRadii(options, sizes, truth);
+  }
   TrialOptions again = options;
   again.report_share = trial.known.fixes.back().rings.empty() ? 0.0 : 1.0;
   for (std::int64_t time = trial.start + BulletinPeriod(options); time < truth.fixes.back().time;

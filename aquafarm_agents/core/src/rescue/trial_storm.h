@@ -28,6 +28,11 @@ struct TrialOptions {
   /// Radii are drawn about EstimateRadius with its spread times errors.scale; else they are exact.
   bool draws_size{true};
   double bulletin_h{6.0};  ///< time between two bulletins
+  /// True winds after the start are those of the bulletin with an error that does not depend on
+  /// them. Else they are the track's, and the bulletin's are these with an error: then a bulletin
+  /// of weak winds is more often too low than too high, because the tracks of the archive have
+  /// gales near the ranch.
+  bool winds_about_bulletin{};
 };
 
 /// Returns the time between two bulletins [s].

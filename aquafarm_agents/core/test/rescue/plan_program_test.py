@@ -241,7 +241,7 @@ class PlanProgram(unittest.TestCase):
         self.assertEqual(13, code, words)  # it is of 2021
         self.check_file(plan, 13)
         self.check_warned(plan, words, "bulletin_old", "stop")
-        self.assertRegex(words, r"\nstop: The bulletin is \d+ hours old: its last report is of "
+        self.assertRegex(words, r"\nstop: The bulletin is \d+ days old: its last report is of "
                                 r"2021-07-24T00:00:00Z. Get a newer bulletin before any ship")
         code, words, plan = self.plan_of(bulletin(), "--ships", 2, "--speed", 12,
                                          at="2021-07-24T12:30:00Z")
@@ -249,6 +249,39 @@ class PlanProgram(unittest.TestCase):
         code, words, plan = self.plan_of(bulletin(), "--ships", 2, "--speed", 12,
                                          at="2021-07-24T11:30:00Z")
         self.assertEqual(0, code, words)
+
+    def test_thirteen_if_the_bulletin_is_old_and_its_storm_stays_away(self):
+        code, words, plan = self.plan_of(bulletin(8.0, -2.0), "--ships", 2,
+                                         at="2021-07-24T13:00:00Z")
+        self.assertEqual(13, code, words)
+        self.check_file(plan, 13)
+        self.assertEqual("storm_stays_away", plan["outcome"]["kind"])
+        self.check_warned(plan, words, "bulletin_old", "stop")
+
+    def test_twelve_if_the_forecast_has_ended(self):
+        code, words, plan = self.plan_of(bulletin(8.0, -2.0), "--ships", 2, at=None)
+        self.assertEqual(12, code, words)  # it is of 2021
+        self.check_file(plan, 12)
+        self.assertTrue(words.startswith(
+            "It is unknown whether the storm reaches the devices: the bulletin's forecast ended at "
+            "2021-07-26T00:00:00Z, before the present time.\n"), words)
+        self.check_warned(plan, words, "forecast_ended", "stop")
+        self.check_warned(plan, words, "bulletin_old", "stop")
+        self.assertIn("forecast ended at 2021-07-26T00:00:00Z: no", plan["outcome"]["unknown"])
+        self.assertEqual({None}, {one["odds"]["home"] for one in plan["devices"]})
+        self.assertEqual({None, 0}, {plan["loss"]["idle"]["mean"], len(plan["plan"]["routes"])})
+
+    def test_assumptions_tell_what_is_given(self):
+        place = self.plan_of(bulletin())[2]["ports"][0]["position"]
+        at = f"{place['latitude']},{place['longitude']}"
+        ships = self.write("ships.csv", "name,latitude,longitude,speed_kn\n"
+                                        f"Hai,{at},6\nDong,{at},5\n")
+        _, words, plan = self.plan_of(bulletin(), "--ships-file", ships)
+        rows = {one["what"]: one for one in plan["assumptions"]}
+        speed = rows["Speed of the ships"]
+        self.assertEqual(("5.0 to 6.0 kn", "given"), (speed["value"], speed["basis"]), words)
+        limit = rows["A ship stops work for good when winds of this force have reached its cell"]
+        self.assertEqual("assumed", limit["basis"])
 
     def test_three_if_the_file_cannot_be_written(self):
         path = self.write("bulletin.json", bulletin())
@@ -279,26 +312,31 @@ class PlanProgram(unittest.TestCase):
         given = ("--coast", coast, "--place", "30.2,122.7", "--bulletin", path, "--at", START,
                  "--speed", 12, "--ships", 1)
         ports = ("--ports", "30.15,122.65")  # in the middle of the island
-        code, words, plan = self.run_plan(*given, *ports, "--devices", devices, ranch=())
+        said = self.refused(*given, *ports, "--devices", devices, ranch=())
+        found = re.fullmatch(
+            r"port: got 30.1500,122.6500, which is land, expected water; the nearest shore of the "
+            r"ranch is at ([\d.]+,[\d.]+): give that place, or another one", said)
+        self.assertTrue(found, said)
+        code, words, plan = self.run_plan(*given, "--ports", found[1], "--devices", devices,
+                                          ranch=())
         self.assertEqual(0, code, words)
         self.check_file(plan, 0)
-        moved = [one for one in plan["warnings"] if "which is land" in one["text"]]
-        self.assertEqual(1, len(moved), plan["warnings"])
-        self.assertEqual(("ranch_changed", "warning"), (moved[0]["code"], moved[0]["severity"]))
-        self.assertIn("port: got 30.1500,122.6500, which is land, expected water; it is put on the "
-                      "nearest shore", moved[0]["text"])
-        self.assertIn(f"warning: {moved[0]['text']} {moved[0]['advice']}\n", words)
-        cell = plan["ports"][0]["cell"]
-        self.assertNotIn(cell, plan["ranch"]["land"])
-        code, words, _ = self.run_plan(*given, "--ports", "31.5,122.65", "--devices", devices,
-                                       ranch=())
-        self.assertRegex(words, r"\nwarning: port: got 31.5000,122.6500, expected a place in the "
-                                r"ranch at .*; it is put on the nearest shore of the ranch Check ")
+        self.assertNotIn(plan["ports"][0]["cell"], plan["ranch"]["land"])
+        said = self.refused(*given, "--ports", "31.5,122.65", "--devices", devices, ranch=())
+        self.assertRegex(said, r"^port: got 31.5000,122.6500, expected a place in the ranch at .*; "
+                               r"the nearest shore of the ranch is at [\d.]+,[\d.]+: give that")
         _, words, plan = self.run_plan(*given, "--devices", devices, ranch=())
         self.check_warned(plan, words, "ports_chosen", "note")
+        place = plan["ports"][0]["position"]
+        self.assertIn(f"port A at {place['latitude']:.4f},{place['longitude']:.4f};", words)
         inland = self.write("inland.csv", head + "F2,30.15,122.65,monitoring,5\n")
-        said = self.refused(*given, *ports, "--devices", inland, ranch=())
+        said = self.refused(*given, "--devices", inland, ranch=())
         self.assertIn(f"{inland}:2: F2: got 30.1500 N 122.6500 E, which is land or rock", said)
+        water = re.search(r"the nearest water is at ([\d.]+) N ([\d.]+) E$", said)
+        self.assertTrue(water, said)
+        moved = self.write("moved.csv", head + f"F2,{water[1]},{water[2]},monitoring,5\n")
+        code, words, _ = self.run_plan(*given, "--devices", moved, ranch=())
+        self.assertEqual(0, code, words)
 
     def test_bad_arguments_are_refused_in_one_line(self):
         path = self.write("bulletin.json", bulletin())

@@ -221,11 +221,11 @@ class Builder {
     } else {
       const GeoFrame frame = Frame();
       for (const GeoPoint& place : request_.port_places) {
-        KeepOne(internal::CheckPort(place, Area(), plan_.terrain));
         const std::array<double, 2> wanted = frame.ToGrid(place);
         const Cell cell{static_cast<std::int32_t>(std::lround(wanted[0])),
                         static_cast<std::int32_t>(std::lround(wanted[1]))};
         ports.push_back(NearestShore(plan_.terrain, cell, ports));
+        KeepOne(internal::CheckPort(place, ports.back(), request_, Area(), plan_.terrain));
         Say(Text("port: asked for at (%d, %d), put at the shore at (%d, %d)", cell.x, cell.y,
                  ports.back().x, ports.back().y));
       }

@@ -123,7 +123,8 @@ std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
          " days of " + FormatTime(*start) + Text("; it is %.0f days off: check --start", days);
 }
 
-std::string CheckPort(GeoPoint wanted, const RanchArea& ranch, const Terrain& terrain) {
+std::string CheckPort(GeoPoint wanted, Cell shore, const RanchRequest& request,
+                      const RanchArea& ranch, const Terrain& terrain) {
   const std::array<double, 2> at = ranch.frame.ToGrid(wanted);
   const bool inside =
       at[0] >= -0.5 && at[1] >= -0.5 && at[0] <= ranch.width - 0.5 && at[1] <= ranch.height - 0.5;
@@ -134,11 +135,16 @@ std::string CheckPort(GeoPoint wanted, const RanchArea& ranch, const Terrain& te
       inside && terrain.land(nearest(at[1], ranch.height), nearest(at[0], ranch.width)) != 0;
   if (inside && !is_land) return "";
   const std::string got = Text("port: got %.4f,%.4f, ", wanted.latitude, wanted.longitude);
-  return got +
-         (is_land ? std::string("which is land, expected water")
-                  : "expected a place in the ranch at " +
-                        Degrees(ExtentOf(ranch), MiddleOf(ranch).longitude)) +
-         "; it is put on the nearest shore of the ranch";
+  const std::string fault =
+      got + (is_land ? std::string("which is land, expected water")
+                     : "expected a place in the ranch at " +
+                           Degrees(ExtentOf(ranch), MiddleOf(ranch).longitude));
+  if (!request.exact_ports) return fault + "; it is put on the nearest shore of the ranch";
+  const GeoPoint place = ranch.frame.ToGeo(shore.x, shore.y);
+  throw InputError(fault +
+                   Text("; the nearest shore of the ranch is at %.4f,%.4f: give that place, "
+                        "or another one",
+                        place.latitude, place.longitude));
 }
 
 }  // namespace aquafarm::internal

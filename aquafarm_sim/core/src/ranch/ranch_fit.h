@@ -10,6 +10,7 @@
 #include "aquafarm/charts/chart.h"
 #include "aquafarm/charts/coast.h"
 #include "aquafarm/grid/geo_frame.h"
+#include "aquafarm/ranch/ranch_request.h"
 #include "aquafarm/sea/sea_field.h"
 
 namespace aquafarm::internal {
@@ -32,7 +33,10 @@ void NeedValues(const SeaField& field, const Layer& layer, const RanchArea& ranc
 /// Returns a warning if the time of a field differs from the start of the ranch, else "".
 std::string CheckTime(const SeaField& field, std::optional<std::int64_t> start,
                       const std::string& path);
-/// Returns a warning if a requested port is outside the ranch or on land, else "".
-std::string CheckPort(GeoPoint wanted, const RanchArea& ranch, const Terrain& terrain);
+/// Returns a warning if a requested port is outside the ranch or on land, else "". Refuses such a
+/// port if the request has exact ports.
+/// @param shore cell of the nearest shore
+std::string CheckPort(GeoPoint wanted, Cell shore, const RanchRequest& request,
+                      const RanchArea& ranch, const Terrain& terrain);
 
 }  // namespace aquafarm::internal

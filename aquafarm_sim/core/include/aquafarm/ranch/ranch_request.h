@@ -51,7 +51,8 @@ struct RanchRequest {
 
   std::int32_t ports{4};
   std::vector<GeoPoint>
-      port_places;  ///< each is moved to the nearest shore water; replaces `ports`
+      port_places;     ///< each is moved to the nearest shore water; replaces `ports`
+  bool exact_ports{};  ///< a place of `port_places` on land or outside of the ranch is refused
   std::int32_t devices{4};
   DevicePlacement placement{DevicePlacement::kRandom};
   std::int32_t ships{1};

@@ -17,8 +17,9 @@ enum class PlanResult : std::uint8_t {
   kPlan = 0,             ///< ships leave
   kNothingSaved = 10,    ///< winds come, and no ship can save anything worth its cost
   kStormStaysAway = 11,  ///< no member of the ensemble reaches a device in the known time
-  kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near
-  kBulletinOld = 13,     ///< ships leave by the plan, but the bulletin is older than 12 hours
+  kStormUnknown = 12,    ///< wind and radii are unknown while the storm is near, or the forecast
+                         ///< ended before the present time
+  kBulletinOld = 13,     ///< the bulletin is older than 12 hours, whatever it states
 };
 
 /// How and from which files a plan was made.
@@ -31,11 +32,17 @@ struct PlanProvenance {
 
 /// A case with its plan.
 struct PlanReport {
-  PlanResult result{};
-  std::string text;  ///< the result in one sentence
+  PlanResult result{};  ///< what the bulletin states, whatever its age
+  bool is_old{};        ///< the bulletin is older than 12 hours
+  std::string text;     ///< the result in one sentence
   RescuePlan plan;
   std::vector<std::vector<Deadline>> deadlines;  ///< by device, for kDeadlineShares
   std::vector<WhatIf> what_if;
+
+  /// Returns the result, or kBulletinOld if the bulletin is old and the result is known.
+  PlanResult ExitCode() const {
+    return is_old && result != PlanResult::kStormUnknown ? PlanResult::kBulletinOld : result;
+  }
 };
 /// Chances for which deadlines are given.
 inline constexpr std::array<double, 3> kDeadlineShares{0.95, 0.8, 0.5};

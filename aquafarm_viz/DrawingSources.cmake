@@ -15,6 +15,7 @@ set(AQUAFARM_DRAWING_SOURCES
   src/draw/free_space.cpp
   src/draw/image.cpp
   src/draw/layout.cpp
+  src/draw/legend.cpp
   src/draw/map_labels.cpp
   src/draw/panel_text.cpp
   src/draw/policy_layers.cpp

@@ -176,6 +176,12 @@ TEST(DangerMarkers, FollowTheTrackOfTheScenario) {
   scene.SetTrackTo(2);
   EXPECT_EQ(scene.Draw().at({"alarm", 0}).text,
             "typhoon over F0: risk -5 now, risk -20 in 10 steps");
+  scene.spec.scenario_yaml.replace(scene.spec.scenario_yaml.find("    track:"), 0,
+                                   "    ring_winds_kt: [64, 34]\n");
+  const auto named = scene.Draw();
+  EXPECT_EQ(named.at({"alarm", 0}).text,
+            "typhoon over F0: gale (risk -5) now, hurricane force (risk -20) in 10 steps");
+  EXPECT_EQ(named.at({"danger_label", 0}).text, "F0: gale now, hurricane force in 10 steps");
 }
 
 }  // namespace

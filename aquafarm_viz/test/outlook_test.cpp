@@ -8,6 +8,7 @@
 
 #include "aquafarm_viz/draw/image.h"
 #include "draw/free_space.h"
+#include "draw/legend.h"
 #include "draw/map_labels.h"
 #include "draw/symbols.h"
 #include "fixture.h"
@@ -71,6 +72,55 @@ TEST(Outlook, FollowsTheRecordedTrackAndItsShrinkingRings) {
   scene.spec.has_start_time = true;
   scene.spec.step_duration_s = 1800.0;
   EXPECT_EQ(OutlookText(scene.spec, scene.state, outlook), "typhoon, risk -5, reaches F3 in 5.0 h");
+}
+
+// The track of kRecorded with the winds of its rings.
+std::string WithWinds(const std::string& winds) {
+  return std::string(kRecorded).replace(std::string(kRecorded).find("    track:"), 0,
+                                        "    ring_winds_kt: " + winds + "\n");
+}
+
+TEST(Outlook, NamesTheWindsOfRingsThatTheScenarioGives) {
+  Scene scene;
+  scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
+            "typhoon, gale (risk -5), reaches F3 in 10 steps");
+  EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "gale in 10 steps");
+  EXPECT_EQ(RiskText(scene.spec, scene.outlook().devices[0]), "-5 in 10 steps");
+  scene.state.step = 8;
+  scene.state.disasters[0].x = 24.0F;
+  scene.state.devices[0].x = 17;
+  EXPECT_EQ(OutlookText(scene.spec, scene.state, scene.outlook()),
+            "typhoon over F3: gale (risk -5) now, storm (risk -20) in 1 step");
+  EXPECT_EQ(ShortOutlookText(scene.spec, scene.outlook()), "F3: gale now, storm in 1 step");
+  scene.state.devices[0].x = 22;
+  EXPECT_EQ(DangerText(scene.spec, scene.outlook().devices[0]), "storm now");
+}
+
+TEST(Outlook, NamesNoWindThatIsNotGiven) {
+  Scene scene;
+  scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
+  scene.state.disasters[0].radii = {2.0F, 5.0F, 10.0F};  // of a bulletin with other rings
+  scene.state.disasters[0].risks = {-20.0F, -10.0F, -5.0F};
+  EXPECT_TRUE(scene.course().ring_winds_kt.empty());
+  scene.state.disasters[0].radii = {5.0F, 10.0F};
+  scene.state.disasters[0].risks = {-20.0F, -5.0F};
+  EXPECT_EQ(scene.course().ring_winds_kt.size(), 2U);
+  scene.state.disasters[0].y = 20.0F;  // not where its track has it
+  EXPECT_TRUE(scene.course().ring_winds_kt.empty());
+}
+
+TEST(RiskKey, NamesRingsOnlyIfAllAreGiven) {
+  Scene scene;
+  scene.storms = ReadStormTracks(WithWinds("[50, 34]"), 1000.0);
+  const RiskKey key = MakeRiskKey(scene.state, {scene.course()});
+  ASSERT_EQ(key.size(), 2U);
+  EXPECT_EQ(key[0].wind_kt, 34);
+  EXPECT_EQ(key[0].risk, -5.0);
+  EXPECT_EQ(key[1].wind_kt, 50);
+  const Course named = scene.course();
+  scene.state.disasters.push_back(test::MakeDisaster(1, 5.0F, 5.0F));
+  EXPECT_TRUE(MakeRiskKey(scene.state, {named, CourseOf(scene.spec, scene.state, 1, {})}).empty());
 }
 
 TEST(Outlook, OfADeviceInARingIsNow) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "aquafarm_viz/base/checks.h"
+#include "draw/legend.h"
 #include "draw/symbols.h"
 
 namespace aquafarm_viz {
@@ -68,17 +69,6 @@ void DrawGrid(cv::Mat& map, const Layout& layout) {
     const int row = cvRound(view.ToPixel(0, y - 0.5).y);
     Tint(map, {0, row, map.cols, 1}, Bgr(layout.style->grid), 0.08);
   }
-}
-
-void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px) {
-  static const std::vector<cv::Point2f> kBody{{-0.95F, -0.55F}, {-0.6F, 0.25F}, {-0.1F, 0.8F},
-                                              {0.4F, 0.55F},    {0.9F, -0.1F},  {0.8F, -0.6F}};
-  static const std::vector<cv::Point2f> kShade{{-0.1F, 0.8F}, {0.4F, 0.55F},  {0.9F, -0.1F},
-                                               {0.8F, -0.6F}, {0.1F, -0.55F}, {0.15F, 0.1F}};
-  const Pose2 placing{at, radius_px, 0.0};
-  FillShape(image, kBody, placing, Bgr(kRock));
-  FillShape(image, kShade, placing, Bgr(Mix(kRock, kRockDark, 0.55)));
-  if (radius_px >= 4.0) StrokeShape(image, kBody, placing, Bgr(kRockDark), 1);
 }
 
 // Writes a label below the map, centred on a column of it.
@@ -166,44 +156,18 @@ void DrawAxes(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const 
   }
 }
 
-// Draws a scale bar with a round length that fits into `room_px`.
-void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_m,
-                  const Layout& layout, const Fonts& fonts) {
-  const double px_per_m = layout.view.cell_px() / cell_size_m;
-  double length_m = std::pow(10.0, std::floor(std::log10(room_px / px_per_m)));
-  for (const double factor : {5.0, 2.0}) {
-    if (factor * length_m * px_per_m <= room_px) {
-      length_m *= factor;
-      break;
-    }
-  }
-  const int length = std::max(2, cvRound(length_m * px_per_m));
-  const int half = length / 2;
-  const int tall = layout.Px(4);
-  const cv::Rect bar(left.x, left.y, length, tall);
-  cv::rectangle(image, bar, Bgr(layout.style->words), cv::FILLED);
-  cv::rectangle(
-      image,
-      cv::Rect(left.x + half, left.y + 1, std::max(1, length - half - 1), std::max(1, tall - 2)),
-      Bgr(layout.style->panel), cv::FILLED);
-  constexpr double kNauticalMile_m = 1852.0;
-  std::string text = length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
-                                        : Number(length_m, length_m < 1.0 ? 3 : 0) + " m";
-  if (length_m >= 100.0) text += " = " + Number(length_m / kNauticalMile_m, 2) + " nmi";
-  fonts.small.Draw(image, text, {left.x, left.y - layout.Px(4)}, Bgr(layout.style->words));
-}
-
-void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fonts& fonts) {
-  static const std::vector<cv::Point2f> kWest{{0.0F, 1.0F}, {0.0F, -0.45F}, {-0.55F, -0.85F}};
-  static const std::vector<cv::Point2f> kEast{{0.0F, 1.0F}, {0.55F, -0.85F}, {0.0F, -0.45F}};
-  const Pose2 placing{at, 11.0 * layout.unit, 0.0};
-  FillShape(image, kWest, placing, Bgr(layout.style->words));
-  FillShape(image, kEast, placing, Bgr(layout.style->faint));
-  fonts.bold.Draw(image, "N", {at.x - fonts.bold.Width("N") / 2, at.y - layout.Px(14)},
-                  Bgr(layout.style->words));
-}
-
 }  // namespace
+
+void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px) {
+  static const std::vector<cv::Point2f> kBody{{-0.95F, -0.55F}, {-0.6F, 0.25F}, {-0.1F, 0.8F},
+                                              {0.4F, 0.55F},    {0.9F, -0.1F},  {0.8F, -0.6F}};
+  static const std::vector<cv::Point2f> kShade{{-0.1F, 0.8F}, {0.4F, 0.55F},  {0.9F, -0.1F},
+                                               {0.8F, -0.6F}, {0.1F, -0.55F}, {0.15F, 0.1F}};
+  const Pose2 placing{at, radius_px, 0.0};
+  FillShape(image, kBody, placing, Bgr(kRock));
+  FillShape(image, kShade, placing, Bgr(Mix(kRock, kRockDark, 0.55)));
+  if (radius_px >= 4.0) StrokeShape(image, kBody, placing, Bgr(kRockDark), 1);
+}
 
 cv::Mat1b IslandCoverage(const FarmSpec& spec, const Layout& layout) {
   cv::Mat1b land(layout.map.size(), std::uint8_t{0});
@@ -223,54 +187,6 @@ cv::Mat1b IslandCoverage(const FarmSpec& spec, const Layout& layout) {
   const double steepness = std::max(1.0, 1.7 * sigma);
   land.convertTo(land, -1, steepness, 127.5 * (1.0 - steepness));
   return land;
-}
-
-void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
-  if (layout.panel.empty()) return;
-  const int left = layout.panel.x + layout.Px(10);
-  const int row_px = layout.Px(17);
-  const int bottom = layout.panel.y + layout.panel.height;
-  const int middle = left + layout.Px(7);
-  const int words = left + layout.Px(22);
-  int y = bottom - layout.Px(26) - 5 * row_px;
-
-  DrawRock(image, cv::Point2d(middle, y), 5.5 * layout.unit);
-  fonts.small.Draw(image, "rock", {words, y + fonts.small.cap_height() / 2},
-                   Bgr(layout.style->words));
-  const int second = left + layout.panel.width / 2 - layout.Px(8);
-  FillCircle(image, cv::Point2d(second, y), 5.5 * layout.unit, Bgr(kPort));
-  StrokeCircle(image, cv::Point2d(second, y), 5.5 * layout.unit, Bgr(kInk), layout.Px(1.2));
-  fonts.small.Draw(image, "port", {second + layout.Px(11), y + fonts.small.cap_height() / 2},
-                   Bgr(layout.style->words));
-  y += row_px;
-
-  const int bar_left = left + layout.panel.width / 2 - layout.Px(15);
-  const cv::Rect health(bar_left, y - layout.Px(2),
-                        layout.panel.x + layout.panel.width - layout.Px(10) - bar_left,
-                        layout.Px(5));
-  for (int i = 0; i < health.width; ++i) {
-    cv::rectangle(image, cv::Rect(health.x + i, health.y, 1, health.height),
-                  Bgr(HealthColor(double(i) / health.width)), cv::FILLED);
-  }
-  fonts.small.Draw(image, "health", {left, y + fonts.small.cap_height() / 2},
-                   Bgr(layout.style->words));
-  y += row_px;
-
-  const cv::Rect scale(left, y - layout.Px(1), layout.panel.width - layout.Px(20), layout.Px(7));
-  for (int i = 0; i < scale.width; ++i) {
-    cv::rectangle(image, cv::Rect(scale.x + i, scale.y, 1, scale.height),
-                  Bgr(layout.style->Risk(double(i) / scale.width)), cv::FILLED);
-  }
-  y += layout.Px(9) + fonts.small.cap_height();
-  const std::string worst = "-20 worst";
-  fonts.small.Draw(image, "risk -5", {left, y}, Bgr(layout.style->faint));
-  fonts.small.Draw(image, worst, {scale.x + scale.width - fonts.small.Width(worst), y},
-                   Bgr(layout.style->faint));
-
-  const int foot = bottom - layout.Px(18);
-  DrawNorthArrow(image, {left + layout.Px(8), foot - layout.Px(6)}, layout, fonts);
-  DrawScaleBar(image, {left + layout.Px(30), foot}, layout.panel.width - layout.Px(46),
-               spec.cell_size_m, layout, fonts);
 }
 
 cv::Mat DrawBackground(const FarmSpec& spec, const Layout& layout, const Fonts& fonts,

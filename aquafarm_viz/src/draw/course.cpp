@@ -136,7 +136,11 @@ void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace&
     for (const std::string& text : {mark.longer, mark.text}) {
       if (text.empty()) continue;
       const cv::Size size(fonts.small.Width(text), fonts.small.cap_height());
-      const auto place = space.Take(size, mark.at, 36.0 * layout.unit + size.width / 2.0);
+      // Next to the mark rather than above or below it, where the course continues.
+      const cv::Point2d aside(size.width / 2.0 + 9.0 * layout.unit, 0.0);
+      auto place = space.Take(size, mark.at + aside, 6.0 * layout.unit);
+      if (!place) place = space.Take(size, mark.at - aside, 6.0 * layout.unit);
+      if (!place) place = space.Take(size, mark.at, 36.0 * layout.unit + size.width / 2.0);
       if (!place) continue;
       DrawLabel(image, fonts.small, text, place->tl(), layout);
       break;

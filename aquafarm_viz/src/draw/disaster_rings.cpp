@@ -47,8 +47,8 @@ ShadeTable MakeShadeTable(const Style& style) {
     const double severity = SeverityOf(i);
     const double cover = std::min(1.0, double(i) / kFaintest);
     table[i].color = Bgr(style.Risk(severity));
-    table[i].tint =
-        static_cast<float>(cover * (kTintFaintest + (kTintWorst - kTintFaintest) * severity));
+    table[i].tint = static_cast<float>(style.ring_tint * cover *
+                                       (kTintFaintest + (kTintWorst - kTintFaintest) * severity));
     table[i].half_width = static_cast<float>(cover * (0.35 + 1.15 * severity));
   }
   return table;

@@ -121,12 +121,12 @@ struct FarmPainter::Parts {
 
   /// Writes the labels of the map, the most important first.
   void Label(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layers& layers,
-             const Outlook& outlook, const std::vector<CourseMark>& marks, FreeSpace& space) {
+             const Forecasts& forecasts, const std::vector<CourseMark>& marks, FreeSpace& space) {
     LabelShips(map, spec, state, space, layout, fonts);
-    if (layers.risk) LabelDanger(map, spec, state, outlook, space, layout, fonts);
+    if (layers.risk) LabelDanger(map, spec, state, forecasts.outlook, space, layout, fonts);
     LabelPointers(map, spec, state, space, layout, fonts);
     if (layers.labels) LabelDevices(map, spec, state, space, layout, fonts);
-    if (layers.risk) LabelRings(map, state, space, layout, fonts);
+    if (layers.risk) LabelRings(map, state, forecasts.courses, space, layout, fonts);
     LabelMarks(map, marks, space, layout, fonts);
   }
 };
@@ -182,7 +182,7 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   if (!DrawPanel(p.image, spec, state, overlays, values, forecasts, p.layout, p.fonts)) {
     p.DrawPolicyKey(map, state, overlays, values, space);
   }
-  p.Label(map, spec, state, layers, forecasts.outlook, marks, space);
+  p.Label(map, spec, state, layers, forecasts, marks, space);
   DrawWords(p.image, spec, state, overlays, forecasts.outlook, p.layout, p.fonts);
   return p.image;
 }

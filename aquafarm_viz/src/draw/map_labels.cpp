@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <set>
 #include <utility>
 
+#include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/labels.h"
@@ -141,35 +143,54 @@ void LabelDanger(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
   }
 }
 
-void LabelRings(cv::Mat& map, const FarmState& state, FreeSpace& space, const Layout& layout,
-                const Fonts& fonts) {
+namespace {
+
+// Returns the point of a ring that is inside the map and nearest to its middle.
+std::optional<cv::Point2d> NearestOnMap(const DisasterState& disaster, std::size_t ring,
+                                        cv::Size map, const Layout& layout) {
   constexpr int kBearings = 144;
-  const cv::Point2d middle(map.cols / 2.0, map.rows / 2.0);
+  const cv::Point2d middle(map.width / 2.0, map.height / 2.0);
   const double margin = 14.0 * layout.unit;
-  for (const auto& disaster : state.disasters) {
+  const auto radii = RingQuadrants(disaster, ring);
+  const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
+  const cv::Point2d towards = middle - centre;
+  const double half_map = cv::norm(middle);
+  // From a centre far outside, the map is a narrow range of bearings.
+  const bool is_far = cv::norm(towards) > half_map;
+  const double half = is_far ? std::asin(half_map / cv::norm(towards)) : CV_PI;
+  const double first = std::atan2(towards.x, -towards.y) - half;
+  std::optional<cv::Point2d> best;
+  for (int i = 0; i < kBearings; ++i) {
+    double bearing = std::fmod(first + 2.0 * half * i / (kBearings - 1), 2.0 * CV_PI);
+    if (bearing < 0.0) bearing += 2.0 * CV_PI;
+    const double radius = radii[std::min<std::size_t>(3, std::size_t(bearing / (CV_PI / 2.0)))];
+    if (!(radius > 0.0)) continue;
+    const cv::Point2d at = layout.view.ToPixel(double(disaster.x) + radius * std::sin(bearing),
+                                               double(disaster.y) + radius * std::cos(bearing));
+    const bool is_inside =
+        at.x > margin && at.y > margin && at.x < map.width - margin && at.y < map.height - margin;
+    if (!is_inside || (best && cv::norm(at - middle) >= cv::norm(*best - middle))) continue;
+    best = at;
+  }
+  return best;
+}
+
+}  // namespace
+
+void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>& courses,
+                FreeSpace& space, const Layout& layout, const Fonts& fonts) {
+  for (std::size_t index = 0; index < state.disasters.size(); ++index) {
+    const DisasterState& disaster = state.disasters[index];
+    const std::vector<std::int32_t>& winds = courses[index].ring_winds_kt;
     if (!IsDrawn(disaster)) continue;
     for (std::size_t ring = 0; ring < std::min(disaster.radii.size(), disaster.risks.size());
          ++ring) {
-      const auto radii = RingQuadrants(disaster, ring);
-      cv::Point2d best;
-      double least = 1.0e9;
-      for (int i = 0; i < kBearings; ++i) {
-        const double bearing = 2.0 * CV_PI * i / kBearings;
-        const double radius = radii[std::size_t(i * 4 / kBearings)];
-        if (!(radius > 0.0)) continue;
-        const cv::Point2d at = layout.view.ToPixel(double(disaster.x) + radius * std::sin(bearing),
-                                                   double(disaster.y) + radius * std::cos(bearing));
-        const bool inside =
-            at.x > margin && at.y > margin && at.x < map.cols - margin && at.y < map.rows - margin;
-        const double away = cv::norm(at - middle);
-        if (!inside || away >= least) continue;
-        least = away;
-        best = at;
-      }
-      if (least > 1.0e8) continue;
-      const std::string text = "risk " + Number(double(disaster.risks[ring]), 0);
+      const auto at = NearestOnMap(disaster, ring, map.size(), layout);
+      if (!at) continue;
+      const std::string name = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
+      const std::string text = name + "risk " + Number(double(disaster.risks[ring]), 0);
       const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
-      const auto place = space.Take(size, best, 40.0 * layout.unit);
+      const auto place = space.Take(size, *at, 40.0 * layout.unit + size.width / 2.0);
       if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
     }
   }

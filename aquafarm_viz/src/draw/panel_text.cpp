@@ -9,14 +9,13 @@
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/scene/labels.h"
+#include "draw/legend.h"
 #include "draw/region.h"
 #include "draw/symbols.h"
 #include "scene/nautical.h"
 
 namespace aquafarm_viz {
 namespace {
-
-constexpr double kLegendHeight = 124.0;  // [design units]
 
 using aquafarm_msgs::DeviceState;
 using aquafarm_msgs::FarmSpec;
@@ -138,14 +137,15 @@ void DrawTrainingLine(cv::Mat& image, const TrainingStatus& training, const Layo
 // Draws the panel's lists from the top down to the legend.
 class Panel {
  public:
-  Panel(cv::Mat& image, const Layout& layout, const Fonts& fonts)
+  /// @param legend_px  height of the legend below the lists
+  Panel(cv::Mat& image, int legend_px, const Layout& layout, const Fonts& fonts)
       : image_(image),
         layout_(layout),
         fonts_(fonts),
         left_(layout.panel.x + layout.Px(10)),
         right_(layout.panel.x + layout.panel.width - layout.Px(8)),
         y_(layout.panel.y + layout.Px(8)),
-        end_(layout.panel.y + layout.panel.height - layout.Px(kLegendHeight)) {}
+        end_(layout.panel.y + layout.panel.height - legend_px) {}
 
   int RowsLeft() const { return std::max(0, (end_ - y_) / RowPx()); }
   int RowPx() const { return layout_.Px(17); }
@@ -237,7 +237,8 @@ void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state,
       status = DangerText(spec, one);
       // The symbol shows the kind too.
       if (!panel.Fits(name, status)) name = label;
-      if (!panel.Fits(name, status)) status = DangerText(spec, one, ", ");
+      if (!panel.Fits(name, status)) status = RiskText(spec, one);
+      if (!panel.Fits(name, status)) status = RiskText(spec, one, ", ");
     }
     panel.Item(name, status, color);
   }
@@ -285,12 +286,12 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
     const bool over = disaster.steps_left <= 0;
     FillCircle(panel.image(), panel.SymbolAt(), 5.5 * layout.unit,
                Bgr(over ? layout.style->rule : GradeColor(disaster.grade)));
-    panel.Item(DisasterName(disaster.kind),
-               over                              ? "over"
-               : disaster.grade < kGrades.size() ? kGrades[disaster.grade]
-                                                 : "",
-               over ? layout.style->faint : layout.style->GradeText(disaster.grade));
-    panel.Detail(MotionText(spec, disaster.heading_deg, disaster.speed), "", layout.style->faint);
+    const std::string kind = DisasterName(disaster.kind);
+    const std::string grade = over                              ? "over"
+                              : disaster.grade < kGrades.size() ? kGrades[disaster.grade]
+                                                                : "";
+    const Rgb color = over ? layout.style->faint : layout.style->GradeText(disaster.grade);
+    const std::string motion = MotionText(spec, disaster.heading_deg, disaster.speed);
     const std::string left =
         over                  ? ""
         : spec.has_start_time ? "ends in " + HoursText(disaster.steps_left * spec.step_duration_s)
@@ -298,6 +299,14 @@ void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
     const std::string known =
         disaster.visible ? left : "seen " + std::to_string(disaster.age) + " ago";
     std::string wind = over ? "" : WindText(courses[i].ahead.front());
+    const std::string both = grade + (known.empty() ? "" : ", " + known);
+    if (panel.Fits(kind, both) && panel.Fits(motion, "wind " + wind)) {  // in two rows
+      panel.Item(kind, both, color);
+      panel.Detail(motion, wind.empty() ? "" : "wind " + wind, layout.style->words);
+      continue;
+    }
+    panel.Item(kind, grade, color);
+    panel.Detail(motion, "", layout.style->faint);
     if (!wind.empty() && panel.Fits(known, "wind " + wind)) wind = "wind " + wind;
     panel.Detail(known, wind, layout.style->words);
   }
@@ -325,16 +334,22 @@ void ListShips(Panel& panel, const FarmState& state, const Layout& layout) {
       FillShape(panel.image(), HullOutline(), {placing.at, 4.5 * layout.unit, 0.0},
                 Bgr(ShipColor(ship.id)));
     }
-    panel.Item((ship.own_device >= 0 ? "device " + std::to_string(ship.own_device)
-                                     : "ship " + std::to_string(ship.id)),
-               "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")",
-               layout.style->faint);
+    const std::string name = ship.own_device >= 0 ? "device " + std::to_string(ship.own_device)
+                                                  : "ship " + std::to_string(ship.id);
+    const std::string cell = "(" + std::to_string(ship.x) + ", " + std::to_string(ship.y) + ")";
     const std::string fault = OutcomeName(ship.outcome);
+    const std::string action = ActionName(ship.action) + (fault.empty() ? "" : ": " + fault);
     const std::string load = ship.own_device >= 0 ? ""
                                                   : std::to_string(ship.aboard.size()) + "/" +
                                                         std::to_string(ship.capacity) + " aboard";
-    panel.Detail(ActionName(ship.action) + (fault.empty() ? "" : ": " + fault), load,
-                 layout.style->faint);
+    const std::string where = cell + (load.empty() ? "" : ", " + load);
+    if (panel.Fits(name + ": " + action, where)) {
+      panel.Item(name + ": " + action, where, layout.style->faint);
+      ++rows;
+      continue;
+    }
+    panel.Item(name, cell, layout.style->faint);
+    panel.Detail(action, load, layout.style->faint);
   }
   if (left_out > 0 && rows > 0) {
     panel.Detail("and " + std::to_string(left_out) + " more", "", layout.style->faint);
@@ -426,7 +441,9 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                const Overlays& overlays, const Values* values, const Forecasts& forecasts,
                const Layout& layout, const Fonts& fonts) {
   if (layout.panel.empty()) return false;
-  Panel panel(image, layout, fonts);
+  const RiskKey key = MakeRiskKey(state, forecasts.courses);
+  DrawRiskKey(image, key, layout, fonts);
+  Panel panel(image, LegendPx(key, layout), layout, fonts);
   ListDevices(panel, spec, state, forecasts.outlook, layout);
   ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
   ListShips(panel, state, layout);

@@ -173,12 +173,11 @@ RegionWords RegionText(const FarmSpec& spec, const FarmState& state,
 
 namespace {
 
-// Draws the scale: a circle of half the reach with its radius.
-void DrawScale(Inset& inset, double reach_m, FreeSpace& space, const Layout& layout,
-               const Fonts& fonts) {
+// Writes the radius of the circle of half the reach.
+void LabelScale(Inset& inset, double reach_m, FreeSpace& space, const Layout& layout,
+                const Fonts& fonts) {
   const cv::Point2d middle(inset.image.cols / 2.0, inset.image.rows / 2.0);
   const double radius = inset.image.cols / 4.0;
-  StrokeCircle(inset.image, middle, radius, Bgr(layout.style->rule), 1);
   const std::string half = DistanceText(reach_m / 2.0);
   const cv::Size size(fonts.small.Width(half), fonts.small.cap_height());
   const auto place = space.Take(size, middle - cv::Point2d(0.0, radius), inset.image.cols);
@@ -215,6 +214,9 @@ void DrawInset(cv::Mat image, double reach_m, const FarmSpec& spec, const FarmSt
               {(spec.width - 1) / 2.0, (spec.height - 1) / 2.0},
               image.cols / 2.0 / reach_m * spec.cell_size_m};
   inset.image.setTo(Bgr(Mix(style.sea_south, style.panel, 0.4)));
+  // The scale: a circle of half the reach.
+  StrokeCircle(inset.image, cv::Point2d(image.cols / 2.0, image.rows / 2.0), image.cols / 4.0,
+               Bgr(style.rule), 1);
   FreeSpace space(image.size());
   std::vector<CourseMark> marks;
   for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -237,7 +239,7 @@ void DrawInset(cv::Mat image, double reach_m, const FarmSpec& spec, const FarmSt
   }
   DrawFarm(inset, spec, space, layout);
   LabelMarks(inset.image, marks, space, layout, fonts);
-  DrawScale(inset, reach_m, space, layout, fonts);
+  LabelScale(inset, reach_m, space, layout, fonts);
 }
 
 }  // namespace

@@ -67,10 +67,6 @@ int TickStep(double cell_px, double least_px);
 cv::Mat DrawBackground(const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                        const Fonts& fonts, ImageSize size);
 
-/// Draws the legend, the north arrow and the scale bar into the panel.
-void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
-                const Fonts& fonts);
-
 /// Draws a sea layer of the spec's scenario onto the map of a background.
 /// @throws std::invalid_argument "layers: got 'sea:salt', expected one of the scenario's: warmth"
 void DrawSea(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const std::string& name,
@@ -200,6 +196,9 @@ void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
 /// Draws ships with the devices aboard, and self-propelled devices.
 void DrawShips(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Trail* trail, const Layout& layout);
+
+/// Draws a rock.
+void DrawRock(cv::Mat& image, cv::Point2d at, double radius_px);
 
 /// Draws the symbol of a device with a dark rim.
 void DrawDeviceSymbol(cv::Mat& image, std::uint8_t kind, const Pose2& placing, double faded);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "aquafarm/tracks/wind_name.h"
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/base/palette.h"
@@ -31,16 +32,27 @@ double LargestRadius(const TrackPoint& storm) {
   return largest;
 }
 
-double RiskAt(const TrackPoint& storm, double x, double y) {
+// The risk at a position and the ring that causes it.
+struct RingRisk {
+  double risk{};  // 0 outside all rings
+  std::size_t ring{};
+};
+
+RingRisk RiskAt(const TrackPoint& storm, double x, double y) {
   const double east = x - storm.x;
   const double north = y - storm.y;
   const std::size_t quadrant = north >= 0.0 ? (east >= 0.0 ? 0U : 3U) : (east >= 0.0 ? 1U : 2U);
-  double risk = 0.0;
+  RingRisk worst;
   for (std::size_t ring = 0; ring < std::min(storm.radii.size(), storm.risks.size()); ++ring) {
     const double radius = storm.radii[ring][quadrant];
-    if (radius > 0.0 && std::hypot(east, north) <= radius) risk = std::min(risk, storm.risks[ring]);
+    if (!(radius > 0.0) || std::hypot(east, north) > radius) continue;
+    if (storm.risks[ring] < worst.risk) worst = {storm.risks[ring], ring};
   }
-  return risk;
+  return worst;
+}
+
+const char* NameOf(const Course& course, std::size_t ring) {
+  return ring < course.ring_winds_kt.size() ? aquafarm::WindName(course.ring_winds_kt[ring]) : "";
 }
 
 // Adds the arrivals of one step to the outlook of each device.
@@ -56,16 +68,19 @@ void AddStep(const FarmState& state, const std::vector<Course>& courses, int ste
       const double north = devices[d]->y - storm.y;
       if (east * east + north * north > reach * reach) continue;  // most devices in most steps
       DeviceOutlook& device = outlook.devices[d];
-      const double risk = RiskAt(storm, devices[d]->x, devices[d]->y);
+      const auto [risk, ring] = RiskAt(storm, devices[d]->x, devices[d]->y);
       if (step == 0) {
         if (risk < device.risk_now) {
           device.risk_now = risk;
           device.disaster_now = i;
+          device.name_now = NameOf(courses[i], ring);
         }
         continue;
       }
       const double worst = device.arrivals.empty() ? device.risk_now : device.arrivals.back().risk;
-      if (risk < worst - kWorse) device.arrivals.push_back({double(step), risk, i});
+      if (risk < worst - kWorse) {
+        device.arrivals.push_back({double(step), risk, NameOf(courses[i], ring), i});
+      }
     }
   }
 }
@@ -148,7 +163,7 @@ Outlook ComputeOutlook(const FarmSpec& spec, const FarmState& state,
   for (const DeviceState& device : state.devices) {
     if (device.status == DeviceState::DEPLOYED && InGrid(spec, device.x, device.y)) {
       devices.push_back(&device);
-      outlook.devices.push_back({device.id, 0.0, 0U, {}});
+      outlook.devices.push_back({device.id, 0.0, 0U, "", {}});
     }
   }
   outlook.is_known = devices.size() <= kMostDevices;
@@ -181,6 +196,12 @@ std::string AheadText(const FarmSpec& spec, double steps) {
 
 namespace {
 
+// Returns "risk -5", or "gale (risk -5)" where the wind is given.
+std::string NamedRisk(const char* name, double risk) {
+  const std::string text = "risk " + Number(risk, 0);
+  return *name == '\0' ? text : std::string(name) + " (" + text + ")";
+}
+
 std::string KnownText(const FarmSpec& spec, const Outlook& outlook) {
   if (!std::isfinite(outlook.known_until)) return "";
   return "disasters known until +" + AheadText(spec, outlook.known_until);
@@ -197,16 +218,17 @@ std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outl
   const DeviceOutlook& first = outlook.devices.front();
   const bool is_now = first.risk_now < 0.0;
   const std::string now = is_now ? DisasterName(state.disasters[first.disaster_now].kind) +
-                                       " over " + DeviceLabel(first.id) + ": risk " +
-                                       Number(first.risk_now, 0) + " now"
+                                       " over " + DeviceLabel(first.id) + ": " +
+                                       NamedRisk(first.name_now, first.risk_now) + " now"
                                  : "";
   if (first.arrivals.empty()) return is_now ? now : KnownText(spec, outlook);
   const RingArrival& next = first.arrivals.front();
   const std::string when =
       std::string(" in ") + (outlook.is_extrapolated ? "about " : "") + AheadText(spec, next.steps);
-  if (is_now) return now + ", risk " + Number(next.risk, 0) + when;
-  return DisasterName(state.disasters[next.disaster].kind) + ", risk " + Number(next.risk, 0) +
-         ", reaches " + DeviceLabel(first.id) + when;
+  const std::string risk = NamedRisk(next.name, next.risk);
+  if (is_now) return now + ", " + risk + when;
+  return DisasterName(state.disasters[next.disaster].kind) + ", " + risk + ", reaches " +
+         DeviceLabel(first.id) + when;
 }
 
 std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
@@ -216,7 +238,20 @@ std::string ShortOutlookText(const FarmSpec& spec, const Outlook& outlook) {
   return DeviceLabel(first.id) + ": " + DangerText(spec, first);
 }
 
-std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
+std::string DangerText(const FarmSpec& spec, const DeviceOutlook& device) {
+  const std::string before = device.risk_now < 0.0 ? device.name_now : "";
+  const std::string after = device.arrivals.empty() ? "" : device.arrivals.front().name;
+  // The same ring with a worse risk has no name of its own.
+  const bool has_names = (device.risk_now == 0.0 || !before.empty()) &&
+                         (device.arrivals.empty() || !after.empty()) && before != after;
+  if (!has_names) return RiskText(spec, device);
+  const std::string now = before.empty() ? "" : before + " now";
+  if (after.empty()) return now;
+  return now + (now.empty() ? "" : ", ") + after + " in " +
+         AheadText(spec, device.arrivals.front().steps);
+}
+
+std::string RiskText(const FarmSpec& spec, const DeviceOutlook& device, const char* between) {
   const std::string now = device.risk_now < 0.0 ? Number(device.risk_now, 0) + " now" : "";
   if (device.arrivals.empty()) return now;
   const RingArrival& next = device.arrivals.front();

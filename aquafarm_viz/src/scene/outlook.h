@@ -19,6 +19,7 @@ namespace aquafarm_viz {
 struct RingArrival {
   double steps{};          ///< from now, above 0
   double risk{};           ///< risk within the ring, below 0
+  const char* name{""};    ///< of the ring's wind, such as "gale"; empty: not given
   std::size_t disaster{};  ///< index in FarmState.disasters
 };
 
@@ -27,6 +28,7 @@ struct DeviceOutlook {
   std::int32_t id{};
   double risk_now{};                  ///< risk at its cell; 0 outside all rings
   std::size_t disaster_now{};         ///< index of the disaster with this risk; 0 outside all rings
+  const char* name_now{""};           ///< of the wind of that ring; empty: not given
   std::vector<RingArrival> arrivals;  ///< each worse than the one before and than risk_now
 };
 
@@ -55,9 +57,10 @@ double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 
 /// Returns the outlook in one sentence, such as "typhoon, risk -10, reaches F3 in 6.5 h" or
-/// "typhoon over F2: risk -5 now, risk -20 in 6.5 h"; without such a danger "disasters
-/// known until +12 h" if a course ends before its disaster; else empty, also if the outlook is not
-/// known.
+/// "typhoon over F2: risk -5 now, risk -20 in 6.5 h"; where the winds of the rings are given
+/// "typhoon over F2: gale (risk -5) now, storm (risk -10) in 6.5 h". Without such a danger
+/// "disasters known until +12 h" if a course ends before its disaster; else empty, also if the
+/// outlook is not known.
 std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
                         const Outlook& outlook);
 
@@ -68,11 +71,14 @@ bool IsInDanger(const Outlook& outlook);
 std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
 
 /// Returns the danger to a device in a few characters: "-10 in 6.5 h", "-5 now" if a ring covers
-/// it,
-/// "-5 now, -20 in 6.5 h" if a worse one follows; empty if no ring covers or reaches it.
+/// it, "-5 now, -20 in 6.5 h" if a worse one follows; empty if no ring covers or reaches it. Where
+/// the winds of the rings are given: "gale now, storm in 6.5 h".
+std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device);
+
+/// Returns DangerText without names of winds.
 /// @param between  text between risk and time
-std::string DangerText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
-                       const char* between = " in ");
+std::string RiskText(const aquafarm_msgs::FarmSpec& spec, const DeviceOutlook& device,
+                     const char* between = " in ");
 
 /// Returns the motion of a disaster and, where its course is given and comes nearer, its closest
 /// approach: "NW at 13 km/h, closest 29 km S in 11 h".

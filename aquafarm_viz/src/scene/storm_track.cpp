@@ -156,6 +156,10 @@ StormTracks ReadStormTracks(const std::string& scenario_yaml, double cell_size_m
         }
       }
       storms.growths.push_back(disaster["radius_growth"].as<double>(0.0));
+      storms.ring_winds_kt.emplace_back();
+      for (const YAML::Node& wind : disaster["ring_winds_kt"]) {
+        storms.ring_winds_kt.back().push_back(wind.as<std::int32_t>());
+      }
     }
     if (const YAML::Node view = scenario["view"]) {
       for (const YAML::Node& km : view["forecast_error_km"]) {
@@ -235,6 +239,9 @@ Course CourseOf(const FarmSpec& spec, const FarmState& state, std::size_t index,
                 {},
                 forecast != nullptr ? std::min(end, source.back().step) : end,
                 {}};
+  // A bulletin may have replaced the rings by those of other winds.
+  const std::vector<std::int32_t>& winds = tracks.ring_winds_kt[index];
+  if (winds.size() == present.radii.size()) course.ring_winds_kt = winds;
   for (const TrackPoint& point : source) {
     if (point.step > now) course.ahead.push_back(point);
   }

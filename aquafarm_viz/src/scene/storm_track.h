@@ -38,7 +38,9 @@ struct PublishedForecast {
 struct StormTracks {
   std::vector<Track> tracks;                              ///< one per disaster
   std::vector<std::vector<PublishedForecast>> forecasts;  ///< one list per disaster
-  std::vector<double> growths;      ///< of every radius [cells/step], one per disaster
+  std::vector<double> growths;  ///< of every radius [cells/step], one per disaster
+  /// Wind within each ring [kn], one list per disaster; empty: not given.
+  std::vector<std::vector<std::int32_t>> ring_winds_kt;
   std::vector<double> error_cells;  ///< mean error after 24, 48, … hours; empty: not given
 };
 
@@ -68,6 +70,7 @@ struct Course {
   Track past;                  ///< up to the present step; may be empty
   double known_until{};        ///< step until which it is recorded, published or extrapolated
   std::vector<double> errors;  ///< mean forecast error at each point of `ahead` [cells], or empty
+  std::vector<std::int32_t> ring_winds_kt{};  ///< wind within each ring [kn]; empty: not given
 };
 
 /// Returns the course of disaster `index`. An observation contains no track, so its course is

@@ -11,6 +11,7 @@
 #include "aquafarm/base/version.h"
 #include "aquafarm/farm/cell_bits.h"
 #include "aquafarm/tracks/track.h"
+#include "aquafarm/tracks/wind_name.h"
 #include "rescue/case_parts.h"
 #include "rescue/plan_values.h"
 
@@ -146,12 +147,10 @@ class JsonReport {
         case_.forecast.risks[static_cast<std::size_t>(DisasterGrade(first.grade) - 1)];
     for (std::size_t ring = 0; ring < path.rings; ++ring) {
       const std::int32_t wind = path.wind_kt[ring];
-      const char* word = wind >= 64 ? "hurricane force" : wind >= 48 ? "storm" : "gale";
       const std::size_t weaker = path.rings - 1 - ring;
       const float risk = weaker < row.size() ? row[row.size() - 1 - weaker] : row.front();
-      const std::string knots = std::to_string(wind);
-      list.push_back({{"id", knots + "kt"},
-                      {"name", std::string(word) + " (" + knots + " kt)"},
+      list.push_back({{"id", std::to_string(wind) + "kt"},
+                      {"name", RingName(wind)},
                       {"wind_kt", wind},
                       {"risk", risk}});
     }

@@ -174,8 +174,8 @@ class Writer {
   void WriteArchive() {
     const ArchiveRequest& archive = request_.archive;
     Line("  - kind: typhoon");
-    Line("    grade_risks: " + RiskTable(kMaxStormRings) +
-         "  # grades 1 to 4, rings of 64, 50, 34 kt");
+    Line("    grade_risks: " + RiskTable(kMaxStormRings) + "  # grades 1 to 4");
+    Line("    ring_winds_kt: [64, 50, 34]");
     Line(Text("    duration: %d\n    storms:", plan_.archive_steps));
     Line("      years: " + Value(archive.years));
     Line("      evaluation_years: " + Value(archive.evaluation_years.value_or(
@@ -203,12 +203,8 @@ class Writer {
 
   void WriteStorm() {
     Line("  - kind: typhoon");
-    std::string winds;
-    for (const std::int32_t wind_kt : plan_.storm.wind_kt) {
-      winds += (winds.empty() ? "" : ", ") + std::to_string(wind_kt);
-    }
-    Line("    grade_risks: " + RiskTable(plan_.storm.wind_kt.size()) +
-         "  # grades 1 to 4, rings of " + winds + " kt");
+    Line("    grade_risks: " + RiskTable(plan_.storm.wind_kt.size()) + "  # grades 1 to 4");
+    Line("    ring_winds_kt: " + Value(plan_.storm.wind_kt));
     Line(Text("    duration: %d\n    track:", plan_.storm_steps));
     for (const StormWaypoint& waypoint : plan_.storm.waypoints) {
       std::string radii;

@@ -134,6 +134,7 @@ std::uint64_t HashScenario(const Scenario& scenario) {
   rules.name.clear();
   rules.description.clear();
   for (DisasterSpec& disaster : rules.disasters) {
+    disaster.ring_winds_kt.clear();
     for (Waypoint& point : disaster.track) point.wind_mps.reset();
     for (IssuedForecast& forecast : disaster.forecasts) {
       for (Waypoint& point : forecast.points) point.wind_mps.reset();

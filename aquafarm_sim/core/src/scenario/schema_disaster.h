@@ -215,6 +215,10 @@ void VisitDisaster(Archive& a, D& disaster, const WorldFrame* frame) {
           ListOf<ListOf<Interval<float>>>{risks, graded ? 4U : 0U, 4});
   VisitGradeFactors(a, disaster, !graded && !drawn,
                     graded ? "there are no grade_risks" : "there are no storms");
+  a.When(Archive::kReads || !disaster.ring_winds_kt.empty(), "");
+  a.Field("ring_winds_kt", disaster.ring_winds_kt,
+          ListOf<Interval<std::int32_t>>{{1, 200}, 0, kMaxRings});
+  a.Always();
   a.Field("duration", disaster.duration, Interval<std::int32_t>{1, kMaxSteps});
   a.When(!tracked, "there is no track");
   a.Field("grade", disaster.grade, kGrade);

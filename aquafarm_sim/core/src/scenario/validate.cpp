@@ -115,6 +115,18 @@ void CheckDisaster(const std::string& path, const DisasterSpec& disaster) {
                      "got " + Format(waypoint.step) + ", expected more than that of " +
                          At("track", i - 1) + ", " + Format(disaster.track[i - 1].step));
   }
+  const std::vector<std::int32_t>& winds = disaster.ring_winds_kt;
+  const std::string winds_path = internal::Join(path, "ring_winds_kt");
+  if (!winds.empty() && winds.size() != rings) {
+    throw FieldError(winds_path, "got " + std::to_string(winds.size()) +
+                                     " entries, expected one per ring: " + std::to_string(rings));
+  }
+  for (std::size_t i = 1; i < winds.size(); ++i) {
+    if (winds[i] < winds[i - 1]) continue;
+    throw FieldError(At(winds_path, i), "got " + std::to_string(winds[i]) +
+                                            ", expected less than " + At("ring_winds_kt", i - 1) +
+                                            " = " + std::to_string(winds[i - 1]));
+  }
   const std::string forecasts = internal::Join(path, "forecasts");
   if (disaster.track.empty() && !disaster.forecasts.empty()) {
     throw FieldError(forecasts, "is used only where there is a track");

@@ -156,6 +156,17 @@ TEST(Reader, KeepsWindsOfTracksAndForecastsWithoutEffect) {
   EXPECT_THROW(ranch(", wind_mps: 151"), InputError);
 }
 
+TEST(Reader, KeepsWindsOfRingsWithoutEffect) {
+  const auto ranch = [](const std::string& winds) {
+    return ParseScenario("name: x\ndisasters:\n  - kind: typhoon\n" + winds, "ranch.yaml");
+  };
+  const Scenario named = ranch("    ring_winds_kt: [64, 50, 34]\n");
+  const Scenario back = ParseScenario(ToYaml(named), "again");
+  EXPECT_EQ(back.disasters[0].ring_winds_kt, (std::vector<std::int32_t>{64, 50, 34}));
+  EXPECT_EQ(named.hash, ranch("").hash) << "policies and bags of the scenario stay valid";
+  EXPECT_EQ(ToYaml(ranch("")).find("ring_winds_kt"), std::string::npos);
+}
+
 // A scenario that sets every key of a file to a value other than the default.
 Scenario UnusualScenario() {
   Scenario s = test::CrowdedScenario(2);
@@ -266,7 +277,7 @@ TEST(Documentation, NamesEveryKey) {
   const std::string docs((std::istreambuf_iterator<char>(file)), {});
   std::istringstream keys(ToYaml(UnusualScenario()) + ToYaml(test::TinyScenario()) +
                           "time:\nlatitude:\nlongitude:\nradii_km:\npressure_hpa:\nwind_mps:\n"
-                          "grade_risks:\ngrade_factors:\nmonitoring_radius:\n");
+                          "grade_risks:\ngrade_factors:\nring_winds_kt:\nmonitoring_radius:\n");
   for (std::string line; std::getline(keys, line);) {
     const std::size_t first = line.find_first_not_of(" -");
     const std::string key = line.substr(first, line.find(':') - first);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "aquafarm/tracks/wind_name.h"
 #include "aquafarm/tracks/wind_radii.h"
 #include "storm_samples.h"
 
@@ -16,6 +17,15 @@ TEST(Motion, IsComputedWhereTheSourceHasNone) {
   EXPECT_NEAR(*storm.fixes[0].speed_kmh, 12.2, 0.1);
   EXPECT_TRUE(storm.fixes[0].motion_computed);
   EXPECT_EQ(storm.fixes[2].heading_deg, storm.fixes[1].heading_deg) << "the last keeps its course";
+}
+
+TEST(Winds, HaveTheNamesOfMarineWarnings) {
+  EXPECT_EQ(RingName(64), "hurricane force (64 kt)");
+  EXPECT_EQ(RingName(63), "storm (63 kt)");
+  EXPECT_EQ(RingName(50), "storm (50 kt)");
+  EXPECT_EQ(RingName(34), "gale (34 kt)");
+  EXPECT_EQ(RingName(30), "near gale (30 kt)");
+  EXPECT_EQ(RingName(20), "wind (20 kt)");
 }
 
 TEST(Grades, AreThoseOfTheStandard) {

@@ -32,6 +32,7 @@ struct Style {
   Rgb halo;                   ///< outline of `label`
   std::array<Rgb, 4> risks;   ///< at -5, -10, -15 and -20; each darker in the light style
   std::array<Rgb, 4> grades;  ///< of text: blue, yellow, orange, red
+  double ring_tint{1.0};      ///< strength of the tint of rings between their lines, [0, 1]
 
   /// The colour of a severity in [0, 1], interpolated between `risks`.
   Rgb Risk(double severity) const;

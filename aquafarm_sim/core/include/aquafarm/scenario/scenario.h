@@ -136,6 +136,9 @@ struct DisasterSpec {
   /// If set, every episode draws a storm and follows it instead of `track`, which then holds the
   /// first storm as recorded.
   std::optional<StormsSpec> storms{};
+  /// Wind within each ring [kn], strongest first, as many as risks; empty: not given. Informative
+  /// only: pictures name the rings by it.
+  std::vector<std::int32_t> ring_winds_kt{};
 };
 
 /// Returns the risks of the rings for grades 1 to 4: grade_risks, or risks times grade_factors,

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "draw/legend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "aquafarm/tracks/wind_name.h"
+#include "draw/symbols.h"
+
+namespace aquafarm_viz {
+namespace {
+
+using aquafarm_msgs::FarmSpec;
+using aquafarm_msgs::FarmState;
+
+// Heights in design units, from the bottom of the panel up.
+constexpr double kSymbolRow = 58.0;  // of the middle of the lowest row of symbols
+constexpr double kRow = 17.0;
+constexpr double kKeyRow = 15.0;    // of a ring with its name
+constexpr double kKeyScale = 24.0;  // of the scale of risks with its words
+constexpr double kWide = 230.0;     // a panel this wide has all symbols in one row
+
+bool IsWide(const Layout& layout) { return layout.panel.width >= layout.Px(kWide); }
+
+// Distance from the bottom of the panel to the lower end of the key of risks.
+int FootPx(const Layout& layout) {
+  return layout.Px(kSymbolRow + (IsWide(layout) ? 0.0 : kRow) + 11.0);
+}
+
+int KeyPx(const RiskKey& key, const Layout& layout) {
+  return key.empty() ? layout.Px(kKeyScale) : static_cast<int>(key.size()) * layout.Px(kKeyRow);
+}
+
+// Draws a scale bar with a round length that fits into `room_px`.
+void DrawScaleBar(cv::Mat& image, cv::Point left, int room_px, double cell_size_m,
+                  const Layout& layout, const Fonts& fonts) {
+  const double px_per_m = layout.view.cell_px() / cell_size_m;
+  double length_m = std::pow(10.0, std::floor(std::log10(room_px / px_per_m)));
+  for (const double factor : {5.0, 2.0}) {
+    if (factor * length_m * px_per_m <= room_px) {
+      length_m *= factor;
+      break;
+    }
+  }
+  const int length = std::max(2, cvRound(length_m * px_per_m));
+  const int half = length / 2;
+  const int tall = layout.Px(4);
+  const cv::Rect bar(left.x, left.y, length, tall);
+  cv::rectangle(image, bar, Bgr(layout.style->words), cv::FILLED);
+  cv::rectangle(
+      image,
+      cv::Rect(left.x + half, left.y + 1, std::max(1, length - half - 1), std::max(1, tall - 2)),
+      Bgr(layout.style->panel), cv::FILLED);
+  constexpr double kNauticalMile_m = 1852.0;
+  std::string text = length_m >= 1000.0 ? Number(length_m / 1000.0, 0) + " km"
+                                        : Number(length_m, length_m < 1.0 ? 3 : 0) + " m";
+  if (length_m >= 100.0) text += " = " + Number(length_m / kNauticalMile_m, 2) + " nmi";
+  fonts.small.Draw(image, text, {left.x, left.y - layout.Px(4)}, Bgr(layout.style->words));
+}
+
+void DrawNorthArrow(cv::Mat& image, cv::Point at, const Layout& layout, const Fonts& fonts) {
+  static const std::vector<cv::Point2f> kWest{{0.0F, 1.0F}, {0.0F, -0.45F}, {-0.55F, -0.85F}};
+  static const std::vector<cv::Point2f> kEast{{0.0F, 1.0F}, {0.55F, -0.85F}, {0.0F, -0.45F}};
+  const Pose2 placing{at, 11.0 * layout.unit, 0.0};
+  FillShape(image, kWest, placing, Bgr(layout.style->words));
+  FillShape(image, kEast, placing, Bgr(layout.style->faint));
+  fonts.bold.Draw(image, "N", {at.x - fonts.bold.Width("N") / 2, at.y - layout.Px(14)},
+                  Bgr(layout.style->words));
+}
+
+void DrawHealth(cv::Mat& image, int left, int bar_left, int y, const Layout& layout,
+                const Fonts& fonts) {
+  const cv::Rect health(bar_left, y - layout.Px(2),
+                        layout.panel.x + layout.panel.width - layout.Px(10) - bar_left,
+                        layout.Px(5));
+  for (int i = 0; i < health.width; ++i) {
+    cv::rectangle(image, cv::Rect(health.x + i, health.y, 1, health.height),
+                  Bgr(HealthColor(double(i) / health.width)), cv::FILLED);
+  }
+  fonts.small.Draw(image, "health", {left, y + fonts.small.cap_height() / 2},
+                   Bgr(layout.style->words));
+}
+
+}  // namespace
+
+void DrawLegend(cv::Mat& image, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
+  if (layout.panel.empty()) return;
+  const bool is_wide = IsWide(layout);
+  const int left = layout.panel.x + layout.Px(10);
+  const int bottom = layout.panel.y + layout.panel.height;
+  const int last = bottom - layout.Px(kSymbolRow);
+  const int first = is_wide ? last : last - layout.Px(kRow);
+  const int port = is_wide ? left + layout.Px(72) : left + layout.panel.width / 2 - layout.Px(8);
+  const auto write = [&](const char* word, int x) {
+    fonts.small.Draw(image, word, {x, first + fonts.small.cap_height() / 2},
+                     Bgr(layout.style->words));
+  };
+  DrawRock(image, cv::Point2d(left + layout.Px(7), first), 5.5 * layout.unit);
+  write("rock", left + layout.Px(22));
+  FillCircle(image, cv::Point2d(port, first), 5.5 * layout.unit, Bgr(kPort));
+  StrokeCircle(image, cv::Point2d(port, first), 5.5 * layout.unit, Bgr(kInk), layout.Px(1.2));
+  write("port", port + layout.Px(11));
+  if (is_wide) {
+    DrawHealth(image, left + layout.Px(128), left + layout.Px(172), last, layout, fonts);
+  } else {
+    DrawHealth(image, left, left + layout.panel.width / 2 - layout.Px(15), last, layout, fonts);
+  }
+  const int foot = bottom - layout.Px(18);
+  DrawNorthArrow(image, {left + layout.Px(8), foot - layout.Px(6)}, layout, fonts);
+  DrawScaleBar(image, {left + layout.Px(30), foot}, layout.panel.width - layout.Px(46),
+               spec.cell_size_m, layout, fonts);
+}
+
+RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) {
+  constexpr std::size_t kMostRings = 4;
+  RiskKey key;
+  for (std::size_t i = 0; i < courses.size(); ++i) {
+    if (!IsDrawn(state.disasters[i])) continue;
+    const std::vector<std::int32_t>& winds = courses[i].ring_winds_kt;
+    if (winds.empty()) return {};  // its risks have no name
+    for (std::size_t ring = winds.size(); ring-- > 0;) {
+      const NamedRing one{winds[ring], std::round(courses[i].ahead.front().risks[ring])};
+      const auto is_same = [&one](const NamedRing& other) {
+        return other.wind_kt == one.wind_kt && other.risk == one.risk;
+      };
+      if (std::none_of(key.begin(), key.end(), is_same)) key.push_back(one);
+    }
+  }
+  return key.size() > kMostRings ? RiskKey() : key;
+}
+
+int LegendPx(const RiskKey& key, const Layout& layout) {
+  return FootPx(layout) + KeyPx(key, layout) + layout.Px(4);
+}
+
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, const Layout& layout, const Fonts& fonts) {
+  const int left = layout.panel.x + layout.Px(10);
+  const int right = layout.panel.x + layout.panel.width - layout.Px(10);
+  int y = layout.panel.y + layout.panel.height - FootPx(layout) - KeyPx(key, layout);
+  const auto at_right = [&](const std::string& text, int base, Rgb color) {
+    fonts.small.Draw(image, text, {right - fonts.small.Width(text), base}, Bgr(color));
+  };
+  for (const NamedRing& ring : key) {
+    const int base = y + (layout.Px(kKeyRow) + fonts.small.cap_height()) / 2;
+    const cv::Rect bar(left, y + layout.Px(kKeyRow / 2) - layout.Px(3), layout.Px(14),
+                       layout.Px(6));
+    cv::rectangle(image, bar, Bgr(layout.style->Risk(Severity(ring.risk))), cv::FILLED);
+    const std::string risk = "risk " + Number(ring.risk, 0);
+    const int words = left + layout.Px(22);
+    const int space = right - fonts.small.Width(risk) - layout.Px(4) - words;
+    std::string name = aquafarm::RingName(ring.wind_kt);
+    if (fonts.small.Width(name) > space) name = aquafarm::WindName(ring.wind_kt);
+    fonts.small.Draw(image, fonts.small.Fit(name, space), {words, base}, Bgr(layout.style->words));
+    at_right(risk, base, layout.style->faint);
+    y += layout.Px(kKeyRow);
+  }
+  if (!key.empty()) return;
+  const cv::Rect scale(left, y, right - left, layout.Px(7));
+  for (int i = 0; i < scale.width; ++i) {
+    cv::rectangle(image, cv::Rect(scale.x + i, scale.y, 1, scale.height),
+                  Bgr(layout.style->Risk(double(i) / scale.width)), cv::FILLED);
+  }
+  const int base = y + layout.Px(10) + fonts.small.cap_height();
+  fonts.small.Draw(image, "risk -5", {left, base}, Bgr(layout.style->faint));
+  at_right("-20 worst", base, layout.style->faint);
+}
+
+}  // namespace aquafarm_viz

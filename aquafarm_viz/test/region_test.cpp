@@ -208,6 +208,26 @@ TEST(RegionWords, GiveTheTimeOfTheClosestApproachInsideARing) {
   EXPECT_EQ(storms.words().heading, "OVER THE RANCH NOW");
   EXPECT_EQ(storms.words().lines[0].substr(0, 8), "closest ");
   EXPECT_EQ(storms.words().lines[1], "24 Jul 23:00 UTC, 40 m/s");
+  storms.spec.has_origin = true;
+  storms.spec.origin_longitude_deg = 122.3;
+  EXPECT_EQ(storms.words().lines[1], "25 Jul 07:00 UTC+8, 40 m/s");
+  storms.spec.origin_longitude_deg = -75.0;
+  EXPECT_EQ(storms.words().lines[1], "24 Jul 18:00 UTC-5, 40 m/s");
+}
+
+TEST(RegionWords, NameTheStrongestWindOverTheFarm) {
+  constexpr const char* kRings =
+      "{step: 0, x: 50, y: 12, radii: [5, 20, 60]}, {step: 20, x: 12, y: 12, radii: [5, 20, 60]}";
+  Storms storms;
+  storms.Add(kRings, 50.0F, 12.0F, "    ring_winds_kt: [64, 50, 34]\n");
+  storms.state.disasters[0].radii = {5.0F, 20.0F, 60.0F};
+  storms.state.disasters[0].risks = {-20.0F, -10.0F, -5.0F};
+  EXPECT_EQ(storms.words().heading, "GALE OVER THE RANCH NOW");
+  storms = Storms();
+  storms.Add(kRings, 50.0F, 12.0F);
+  storms.state.disasters[0].radii = {5.0F, 20.0F, 60.0F};
+  storms.state.disasters[0].risks = {-20.0F, -10.0F, -5.0F};
+  EXPECT_EQ(storms.words().heading, "OVER THE RANCH NOW") << "the winds are not given";
 }
 
 TEST(Region, MarksHaveTheWindAhead) {

@@ -126,12 +126,16 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
   return marks;
 }
 
-void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
-                const Layout& layout, const Fonts& fonts) {
+void BlockMarks(const std::vector<CourseMark>& marks, FreeSpace& space, const Layout& layout) {
   const int half = layout.Px(4);
   for (const CourseMark& mark : marks) {
     space.Block({cvRound(mark.at.x) - half, cvRound(mark.at.y) - half, 2 * half, 2 * half});
   }
+}
+
+void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
+                const Layout& layout, const Fonts& fonts) {
+  BlockMarks(marks, space, layout);
   for (const CourseMark& mark : marks) {
     for (const std::string& text : {mark.longer, mark.text}) {
       if (text.empty()) continue;

@@ -35,6 +35,9 @@ std::vector<CourseMark> DrawCourse(cv::Mat& image, const aquafarm_msgs::FarmSpec
                                    const Course& course, const ToPixel& to_pixel,
                                    const Layout& layout);
 
+/// Keeps the places of marks free of labels.
+void BlockMarks(const std::vector<CourseMark>& marks, FreeSpace& space, const Layout& layout);
+
 /// Labels marks of a course where there is free space.
 void LabelMarks(cv::Mat& image, const std::vector<CourseMark>& marks, FreeSpace& space,
                 const Layout& layout, const Fonts& fonts);

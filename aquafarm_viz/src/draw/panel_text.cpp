@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
 #include <opencv2/imgproc.hpp>
 
@@ -26,12 +25,8 @@ using aquafarm_msgs::TrainingStatus;
 std::string WorldTime(const FarmSpec& spec, const FarmState& state) {
   std::string text = ClockText(spec, state);
   if (!spec.has_start_time) return text;
-  const std::time_t utc = state.world_time.sec;
-  if (!spec.has_origin) return text;
-  const int zone = NauticalZone(spec.origin_longitude_deg);
-  if (zone == 0) return text;
-  return text + TimeText(utc + zone * 3600, " (%H:%M UTC") + (zone > 0 ? "+" : "-") +
-         std::to_string(std::abs(zone)) + ")";
+  if (!spec.has_origin || NauticalZone(spec.origin_longitude_deg) == 0) return text;
+  return text + " (" + LocalTimeText(spec, state.world_time.sec, "%H:%M") + ")";
 }
 
 // Draws pieces of text one after another until the width is used up.

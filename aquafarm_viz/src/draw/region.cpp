@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -114,24 +115,31 @@ std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, cons
   return course.errors.empty() ? "dashed: course ahead" : "shaded: mean forecast error";
 }
 
+// Says that a ring covers a part of the farm. The centre may be far away.
+std::string OverText(std::string wind) {
+  std::transform(wind.begin(), wind.end(), wind.begin(),
+                 [](unsigned char letter) { return std::toupper(letter); });
+  return wind + (wind.empty() ? "" : " ") + "OVER THE RANCH NOW";
+}
+
 // Says when a storm whose course is given is nearest, or that its rings cover or reach the farm.
 RegionWords CourseWords(const FarmSpec& spec, const FarmState& state, const Subject& subject,
                         const Course& course) {
   constexpr double kMoved_m = 1.0;
-  constexpr const char* kOver = "OVER THE RANCH NOW";
   const TrackPoint& now = course.ahead.front();
   const std::string centre = "centre " + PlaceText(spec, now.x, now.y);
   const double ahead_s = (subject.nearest.step - now.step) * spec.step_duration_s;
   const bool is_over = subject.danger == 0.0;
+  const std::string over = OverText(WindOverFarm(spec, course));
   if (ahead_s > 0.0) {
     const std::string nearest = PlaceText(spec, subject.nearest.x, subject.nearest.y);
     const std::string when = "in " + HoursText(ahead_s);
     const auto then = static_cast<std::time_t>(state.world_time.sec + ahead_s);
-    const std::string time = spec.has_start_time ? TimeText(then, "%d %b %H:%M UTC") : "";
-    if (is_over) return {kOver, {"closest " + nearest + " " + when, time}};
+    const std::string time = spec.has_start_time ? LocalTimeText(spec, then, "%d %b %H:%M") : "";
+    if (is_over) return {over, {"closest " + nearest + " " + when, time}};
     return {"CLOSEST " + nearest, {when + (time.empty() ? "" : ", " + time), ""}};
   }
-  if (is_over) return {kOver, {centre, ""}};
+  if (is_over) return {over, {centre, ""}};
   if (std::isfinite(subject.danger)) {
     return {"REACHES THE RANCH", {"in " + AheadText(spec, subject.danger) + ", " + centre, ""}};
   }
@@ -187,13 +195,25 @@ void LabelScale(Inset& inset, double reach_m, FreeSpace& space, const Layout& la
   }
 }
 
-void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout& layout) {
-  const double wide = std::max(5.0 * layout.unit, spec.width * inset.px_per_cell);
-  const double tall = std::max(5.0 * layout.unit, spec.height * inset.px_per_cell);
+// Draws a square, also where the course crosses the farm, and the word "ranch" next to it.
+void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout& layout,
+              const Fonts& fonts) {
+  constexpr double kLeastSide = 9.0;  // [design units]
+  const double wide = std::max(kLeastSide * layout.unit, spec.width * inset.px_per_cell);
+  const double tall = std::max(kLeastSide * layout.unit, spec.height * inset.px_per_cell);
   const cv::Rect farm(cvRound((inset.image.cols - wide) / 2.0),
                       cvRound((inset.image.rows - tall) / 2.0), cvRound(wide), cvRound(tall));
-  cv::rectangle(inset.image, farm, Bgr(layout.style->label), layout.Px(1.2));
+  cv::rectangle(inset.image, farm, Bgr(layout.style->halo), layout.Px(4.0));
+  cv::rectangle(inset.image, farm, Bgr(layout.style->label), layout.Px(1.6));
   space.Block(farm);
+  const std::string word = "ranch";
+  const cv::Size size(fonts.small.Width(word), fonts.small.cap_height());
+  const cv::Point2d aside(size.width / 2.0 + wide / 2.0 + 5.0 * layout.unit, 0.0);
+  const cv::Point2d middle(inset.image.cols / 2.0, inset.image.rows / 2.0);
+  const double farthest = 12.0 * layout.unit;
+  auto place = space.Take(size, middle - aside, farthest);
+  if (!place) place = space.Take(size, middle + aside, farthest);
+  if (place) DrawLabel(inset.image, fonts.small, word, place->tl(), layout);
 }
 
 // Blocks squares along a line inside the inset.
@@ -216,7 +236,7 @@ void DrawInset(cv::Mat image, double reach_m, const FarmSpec& spec, const FarmSt
   inset.image.setTo(Bgr(Mix(style.sea_south, style.panel, 0.4)));
   // The scale: a circle of half the reach.
   StrokeCircle(inset.image, cv::Point2d(image.cols / 2.0, image.rows / 2.0), image.cols / 4.0,
-               Bgr(style.rule), 1);
+               Bgr(style.faint), 1);
   FreeSpace space(image.size());
   std::vector<CourseMark> marks;
   for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -237,7 +257,8 @@ void DrawInset(cv::Mat image, double reach_m, const FarmSpec& spec, const FarmSt
     space.Block(
         {cvRound(at.x) - layout.Px(6), cvRound(at.y) - layout.Px(6), layout.Px(12), layout.Px(12)});
   }
-  DrawFarm(inset, spec, space, layout);
+  BlockMarks(marks, space, layout);
+  DrawFarm(inset, spec, space, layout, fonts);
   LabelMarks(inset.image, marks, space, layout, fonts);
   LabelScale(inset, reach_m, space, layout, fonts);
 }

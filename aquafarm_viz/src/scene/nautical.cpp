@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
@@ -41,6 +42,14 @@ std::string TimeText(std::time_t utc, const char* format) {
   std::array<char, 48> text{};
   std::strftime(text.data(), text.size(), format, &parts);
   return text.data();
+}
+
+std::string LocalTimeText(const aquafarm_msgs::FarmSpec& spec, std::time_t utc,
+                          const char* format) {
+  constexpr int kHour = 3600;
+  const int zone = spec.has_origin ? NauticalZone(spec.origin_longitude_deg) : 0;
+  const std::string name = zone == 0 ? "" : (zone > 0 ? "+" : "") + std::to_string(zone);
+  return TimeText(utc + zone * kHour, format) + " UTC" + name;
 }
 
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step) {

@@ -28,6 +28,10 @@ int NauticalZone(double longitude_deg);
 /// Returns a time in UTC by a format of strftime.
 std::string TimeText(std::time_t utc, const char* format);
 
+/// Returns a time in the farm's nautical time zone by a format of strftime, and the zone, such as
+/// "19 Jul 13:58 UTC+8"; in UTC for a farm without a geographic position.
+std::string LocalTimeText(const aquafarm_msgs::FarmSpec& spec, std::time_t utc, const char* format);
+
 /// Returns the compass bearing and the speed of a moving centre, such as "NW at 18 km/h"; in cells
 /// per step on a farm without a geographic position; "stands still" at speed 0.
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step);

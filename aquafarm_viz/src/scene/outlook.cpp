@@ -108,35 +108,39 @@ bool IsMoreUrgent(const DeviceOutlook& a, const DeviceOutlook& b) {
 }
 
 // Returns whether a ring covers a part of the farm. Quadrants run NE, SE, SW, NW.
-bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
+bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm, const std::array<double, 4>& ring) {
   constexpr double kEdge = 0.5;  // of a cell around its centre
   const double east = spec.width - kEdge;
   const double north = spec.height - kEdge;
-  for (const auto& ring : storm.radii) {
-    for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
-      const bool to_east = quadrant < 2;
-      const bool to_north = quadrant == 0 || quadrant == 3;
-      if (!(ring[quadrant] > 0.0)) continue;
-      if (to_east ? storm.x > east : storm.x < -kEdge) continue;
-      if (to_north ? storm.y > north : storm.y < -kEdge) continue;
-      const double away = std::hypot(std::clamp(storm.x, -kEdge, east) - storm.x,
-                                     std::clamp(storm.y, -kEdge, north) - storm.y);
-      if (away <= ring[quadrant]) return true;
-    }
+  for (std::size_t quadrant = 0; quadrant < 4; ++quadrant) {
+    const bool to_east = quadrant < 2;
+    const bool to_north = quadrant == 0 || quadrant == 3;
+    if (!(ring[quadrant] > 0.0)) continue;
+    if (to_east ? storm.x > east : storm.x < -kEdge) continue;
+    if (to_north ? storm.y > north : storm.y < -kEdge) continue;
+    const double away = std::hypot(std::clamp(storm.x, -kEdge, east) - storm.x,
+                                   std::clamp(storm.y, -kEdge, north) - storm.y);
+    if (away <= ring[quadrant]) return true;
   }
   return false;
 }
 
-// Returns whether a leg is so far from the farm that no ring can cover a part of it.
-bool IsFar(const FarmSpec& spec, const TrackPoint& from, const TrackPoint& to) {
-  const TrackPoint nearest = ClosestApproach(spec, {from, to}, from.step);
-  const double away =
-      std::hypot(nearest.x - (spec.width - 1) / 2.0, nearest.y - (spec.height - 1) / 2.0);
-  return away > std::max(LargestRadius(from), LargestRadius(to)) +
-                    std::hypot(spec.width, spec.height) / 2.0;
+bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
+  return std::any_of(storm.radii.begin(), storm.radii.end(),
+                     [&](const auto& ring) { return IsOverFarm(spec, storm, ring); });
 }
 
 }  // namespace
+
+const char* WindOverFarm(const FarmSpec& spec, const Course& course) {
+  const TrackPoint& now = course.ahead.front();
+  std::int32_t strongest_kt = 0;
+  for (std::size_t i = 0; i < std::min(now.radii.size(), course.ring_winds_kt.size()); ++i) {
+    if (!IsOverFarm(spec, now, now.radii[i])) continue;
+    strongest_kt = std::max(strongest_kt, course.ring_winds_kt[i]);
+  }
+  return strongest_kt > 0 ? aquafarm::WindName(strongest_kt) : "";
+}
 
 double StepsToFarm(const FarmSpec& spec, const aquafarm_msgs::DisasterState& disaster,
                    const Course& course) {

@@ -53,6 +53,10 @@ Outlook ComputeOutlook(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs:
 double StepsToFarm(const aquafarm_msgs::FarmSpec& spec,
                    const aquafarm_msgs::DisasterState& disaster, const Course& course);
 
+/// Returns the name of the strongest wind that a disaster has over a part of the farm now, such as
+/// "gale"; empty if no ring covers a part of it, or if the winds of the rings are not given.
+const char* WindOverFarm(const aquafarm_msgs::FarmSpec& spec, const Course& course);
+
 /// Returns a time ahead: "6.5 h" in a farm with a start time, else "12 steps".
 std::string AheadText(const aquafarm_msgs::FarmSpec& spec, double steps);
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the commands of the start pages as they stand there; commands that take long or need a
-screen have a reason, and their launch arguments are checked instead."""
+"""Runs the printed commands of all pages as they stand there. Commands that take long, need a
+screen or download have a reason; their launch arguments and options are checked instead."""
 import json
 import os
 import pathlib
@@ -23,6 +23,7 @@ REPOSITORY = SCRIPT.parent
 DOCS = REPOSITORY / "docs"
 PAGES = [DOCS / "operators.md", DOCS / "researchers.md", DOCS / "ros_engineers.md",
          REPOSITORY / "README.md"]
+OTHER_PAGES = sorted(set(DOCS.rglob("*.md")) - set(PAGES))
 DATA = REPOSITORY / "aquafarm_sim" / "core" / "test" / "data"
 
 # Commands that are not run, by their first words, with the reason.
@@ -39,8 +40,40 @@ NOT_RUN = {
     "rosservice call": "needs the ranch of ./aquafarm sim; the server tests move ships",
     "roslaunch aquafarm_bringup": "runs until Ctrl-C; its arguments are checked",
 }
+# The same for the pages that are not start pages.
+NOT_RUN_ELSEWHERE = {
+    "aquafarm_train": "a training of minutes to hours; its options are checked",
+    "rosrun aquafarm_agents aquafarm_train": "a training of minutes; its options are checked",
+    "aquafarm_evaluate": "1,000 episodes; its options are checked",
+    "rosrun aquafarm_agents aquafarm_evaluate RUN_FOLDER": "an optimum of 500 episodes; its "
+                                                           "options are checked",
+    "aquafarm_benchmark": "a benchmark takes hours; its options are checked",
+    "./aquafarm play": "needs a keyboard; play_launch_test steers a ship",
+    "./aquafarm record": "its arguments are checked; launch_files_test records",
+    "./aquafarm replay": "runs until Ctrl-C, in rviz; its arguments are checked",
+    "./aquafarm sweep": "many trainings; its options are checked",
+    "./aquafarm many evaluate": "many evaluations; its options are checked",
+    "./aquafarm values": "needs the master of a running ranch; its options are checked",
+    "source": "an empty environment; the tests have it",
+    "cp -r aquafarm_agents/examples/expected_sarsa": "benchmark_test builds this example",
+    "cmake -S aquafarm_sim/core -B fuzz": "needs clang; tools/campaign fuzzes",
+    "cmake --build fuzz": "needs clang; tools/campaign fuzzes",
+    "cmake -S tsan": "a build with ThreadSanitizer takes long",
+    "make -C tsan": "a build with ThreadSanitizer takes long",
+    "rostest tsan": "needs the build with ThreadSanitizer",
+    "pip install": "PyPI; tools/check_python installs the package",
+    "python -m aquafarm_gym": "needs packages from PyPI; tools/check_python runs them",
+    "python aquafarm_gym/examples": "needs packages from PyPI; its options are checked",
+    "sudo apt-get": "changes the machine",
+    "python3 -m venv": "tools/check_python makes one",
+    "tools/energy_curve.py": "1,000 episodes of a planner",
+    "tools/make_image": "needs a container engine",
+    "podman": "needs a container engine",
+    "rosservice call": "needs the ranch of ./aquafarm sim; the server tests call it",
+}
 PLAN_CODES = (0, 10, 11, 12, 13)  # outcomes of a plan (docs/plan.md)
-LAUNCHES = re.compile(r"^\./aquafarm (train|sim|evaluate|benchmark|play|record|replay)\b(.*)")
+LAUNCHES = re.compile(r"^(?:\w+=\S+ )?\./aquafarm (train|sim|evaluate|benchmark|play|record|replay)"
+                      r"\b(.*)")
 ROSLAUNCH = re.compile(r"^roslaunch aquafarm_bringup (\w+)\.launch\b(.*)")
 
 COAST = """{"type": "Feature", "properties": {}, "geometry": {"type": "Polygon", "coordinates":
@@ -60,13 +93,40 @@ def commands_of(page):
     return found
 
 
-def reason_not_to_run(command):
-    return next((reason for words, reason in NOT_RUN.items()
-                 if command == words or command.startswith(words + " ")), "")
+def reason_not_to_run(command, reasons=None):
+    bare = re.sub(r"^(\w+=\S+ )+", "", command)  # without variables
+    return next((reason for words, reason in (reasons or NOT_RUN).items()
+                 if bare == words or bare.startswith((words + " ", words + "/", words + "."))), "")
+
+
+def options_of(command):
+    """Options of a program, such as -e and --episodes, without the values."""
+    words = [word.partition("=")[0] for word in shlex.split(command.partition(" -- ")[0])]
+    return [word for word in words if re.match(r"^--?[a-z]", word)]
+
+
+def help_of(command, place, environment):
+    """The words in which a program explains its options; an empty text if it is not one of ours."""
+    words = shlex.split(re.sub(r"^(\w+=\S+ )+", "", command))
+    if words[0].startswith("aquafarm_"):
+        words = ["rosrun", "aquafarm_agents", *words]
+    if words[0] == "python" and words[1].startswith("aquafarm_gym/examples/"):
+        return (REPOSITORY / words[1]).read_text(encoding="utf-8")
+    if words[0] == "rosrun":
+        asked = [*words[:3], "--help"]
+    elif words[0] == "./aquafarm" and words[1] in ("sweep", "many", "values"):
+        mode = words[2:3] if words[1] == "many" else []
+        asked = [*words[:2], *mode, "--help"]
+    else:
+        return ""
+    return subprocess.run(asked, cwd=place, env=environment, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          timeout=LIMIT_S, check=True).stdout
 
 
 @unittest.skipUnless(DOCS.exists(), f"no pages at {DOCS}: the package stands alone")
 class DocCommandsTest(unittest.TestCase):
+    maxDiff = None
 
     @classmethod
     def setUpClass(cls):
@@ -92,6 +152,29 @@ class DocCommandsTest(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         shutil.rmtree(cls.folder, ignore_errors=True)
+
+    def prepare_runs(self):
+        """Makes what the other pages assume: two runs, a bag of one, and a folder of ranches."""
+        train = roslib.packages.find_node("aquafarm_agents", "aquafarm_train")[0]
+        runs = self.place / "runs"
+        for day in ("20260101-120000", "20260102-120000"):
+            subprocess.run([train, "paper", "--algorithm", "q_learning", "--episodes", "300",
+                            "--max-steps", "400", "--run-dir", runs / day, "--evaluate", "10",
+                            "--random", "0"], env=self.environment, stdin=subprocess.DEVNULL,
+                           stdout=subprocess.DEVNULL, timeout=LIMIT_S, check=True)
+        for name in ("RUN", "RUN_FOLDER", "runs/…"):  # as the pages write them
+            (self.place / name).symlink_to(runs / "20260101-120000")
+        for command in ("rosrun aquafarm_agents aquafarm_evaluate do_nothing paper -e 1 "
+                        "--route x.json",
+                        "rosrun aquafarm_sim episode_bag "
+                        "aquafarm_sim/scenarios/paper.yaml x.json -o x.bag"):
+            self.assertEqual("", self.run_as_printed(command))
+        episodes = runs / "20260101-120000" / "episodes"
+        episodes.mkdir(exist_ok=True)
+        shutil.copy(self.place / "x.bag", episodes / "episode_00000042_seed_1_return_+187.0.bag")
+        (self.place / "ranches").mkdir()
+        shutil.copy(self.place / "my_ranch.yaml", self.place / "ranches" / "one.yaml")
+        shutil.copy(DATA / "bulletin.json", self.place / "202106.json")
 
     def run_as_printed(self, command):
         """Runs a command; returns its output if it fails, else an empty text."""
@@ -129,6 +212,32 @@ class DocCommandsTest(unittest.TestCase):
         ran = [one for one in done if not reason_not_to_run(one)]
         self.assertGreater(len(ran), 3, ran)
         self.assertTrue((self.place / "plan.html").exists())
+
+    def test_every_command_of_the_other_pages_runs_or_is_checked(self):
+        self.prepare_runs()
+        helps, ran, faults = {}, [], []
+        commands = dict.fromkeys(one for page in OTHER_PAGES for one in commands_of(page))
+        for command in commands:
+            launch = LAUNCHES.match(command) or ROSLAUNCH.match(command)
+            if launch:
+                faults.append(self.check_launch(*launch.groups()))
+            elif not reason_not_to_run(command, NOT_RUN_ELSEWHERE):
+                faults.append(self.run_as_printed(command))
+                ran.append(command)
+            elif options_of(command):
+                program = tuple(shlex.split(command)[:3])
+                if program not in helps:
+                    helps[program] = help_of(command, self.place, self.environment)
+                faults += [f"{command}\nthere is no option {option}"
+                           for option in options_of(command)
+                           if helps[program] and not re.search(
+                               rf"(?<![\w-]){re.escape(option)}(?![\w-])", helps[program])]
+        self.assertEqual([], [fault for fault in faults if fault])
+        self.assertGreater(len(ran), 12, ran)
+        self.assertGreater(len([text for text in helps.values() if text]), 8)
+        for words in NOT_RUN_ELSEWHERE:
+            self.assertTrue([one for one in commands
+                             if reason_not_to_run(one, {words: "needed"})], words)
 
     def test_every_reason_is_needed(self):
         commands = [one for page in PAGES for one in commands_of(page)]

@@ -130,6 +130,15 @@ bool IsOverFarm(const FarmSpec& spec, const TrackPoint& storm) {
                      [&](const auto& ring) { return IsOverFarm(spec, storm, ring); });
 }
 
+// Returns whether a leg is so far from the farm that no ring can cover a part of it.
+bool IsFar(const FarmSpec& spec, const TrackPoint& from, const TrackPoint& to) {
+  const TrackPoint nearest = ClosestApproach(spec, {from, to}, from.step);
+  const double away =
+      std::hypot(nearest.x - (spec.width - 1) / 2.0, nearest.y - (spec.height - 1) / 2.0);
+  return away > std::max(LargestRadius(from), LargestRadius(to)) +
+                    std::hypot(spec.width, spec.height) / 2.0;
+}
+
 }  // namespace
 
 const char* WindOverFarm(const FarmSpec& spec, const Course& course) {

@@ -161,9 +161,12 @@ double StepsToFarm(const FarmSpec& spec, const aquafarm_msgs::DisasterState& dis
   for (std::size_t i = 1; i < ahead.size(); ++i) {
     if (IsFar(spec, ahead[i - 1], ahead[i])) continue;
     const Track leg{ahead[i - 1], ahead[i]};
-    for (double step = std::ceil(ahead[i - 1].step); step <= ahead[i].step; step += 1.0) {
-      if (step - now >= disaster.steps_left) return kNever;
-      if (IsOverFarm(spec, TrackAt(leg, step))) return step - now;
+    const auto last = static_cast<std::int64_t>(std::floor(ahead[i].step));
+    for (auto step = static_cast<std::int64_t>(std::ceil(ahead[i - 1].step)); step <= last;
+         ++step) {
+      const auto at = static_cast<double>(step);
+      if (at - now >= disaster.steps_left) return kNever;
+      if (IsOverFarm(spec, TrackAt(leg, at))) return at - now;
     }
   }
   return kNever;

@@ -222,7 +222,7 @@ TEST(RegionWords, NameTheStrongestWindOverTheFarm) {
   storms.Add(kRings, 50.0F, 12.0F, "    ring_winds_kt: [64, 50, 34]\n");
   storms.state.disasters[0].radii = {5.0F, 20.0F, 60.0F};
   storms.state.disasters[0].risks = {-20.0F, -10.0F, -5.0F};
-  EXPECT_EQ(storms.words().heading, "GALE OVER THE RANCH NOW");
+  EXPECT_EQ(storms.words().heading, "GALE OVER THE RANCH");
   storms = Storms();
   storms.Add(kRings, 50.0F, 12.0F);
   storms.state.disasters[0].radii = {5.0F, 20.0F, 60.0F};

@@ -119,7 +119,7 @@ std::string SourceText(const FarmSpec& spec, const DisasterState& disaster, cons
 std::string OverText(std::string wind) {
   std::transform(wind.begin(), wind.end(), wind.begin(),
                  [](unsigned char letter) { return std::toupper(letter); });
-  return wind + (wind.empty() ? "" : " ") + "OVER THE RANCH NOW";
+  return wind.empty() ? "OVER THE RANCH NOW" : wind + " OVER THE RANCH";
 }
 
 // Says when a storm whose course is given is nearest, or that its rings cover or reach the farm.

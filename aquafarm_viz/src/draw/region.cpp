@@ -227,7 +227,7 @@ void BlockLine(FreeSpace& space, cv::Point2d from, cv::Point2d to, int side) {
   }
 }
 
-void DrawInset(cv::Mat image, double reach_m, const FarmSpec& spec, const FarmState& state,
+void DrawInset(const cv::Mat& image, double reach_m, const FarmSpec& spec, const FarmState& state,
                const std::vector<Course>& courses, const Layout& layout, const Fonts& fonts) {
   const Style& style = *layout.style;
   Inset inset{image,

@@ -10,14 +10,13 @@
 #include "aquafarm/agents/base/exit_code.h"
 #include "aquafarm/agents/base/storage.h"
 #include "aquafarm/tracks/reader.h"
+#include "aquafarm/tracks/track.h"
 #include "rescue/plan_trials.h"
 
 namespace aquafarm::agents {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kGale_mps = 17.2;
 
 struct Arguments {
   std::string ranch{"zhoushan_storms"};
@@ -158,7 +157,7 @@ Json RunStorms(Arguments& arguments) {
     results.push_back(trials.Run(storm, arguments.reacts));
     home.push_back(results.back().home);
     gales.push_back(results.back().gales);
-    const bool is_weak = results.back().bulletin_mps < kGale_mps;
+    const bool is_weak = results.back().bulletin_mps < LowestWindOf(StormGrade::kTropicalStorm);
     weak.push_back(is_weak ? results.back().gales : std::vector<Promise>{});
     groups.push_back(results.back().track);
   }

@@ -111,18 +111,21 @@ TEST_F(MetricsFileTest, HasTheColumnsThatOtherProgramsRead) {
   EXPECT_EQ(AddedColumns(), ",energy_kwh,distance_km");
 }
 
+// Makes a file of an older version, which has only these columns, and appends an episode.
+void Continue(const std::string& path, const std::string& header) {
+  std::ofstream(path) << header;
+  EpisodeSummary result;
+  result.energy = 2.5;
+  MetricsFile metrics(path, header.size());
+  metrics.Append(1, 10, result, {0.5F, 0.25F, 0.125F});
+  metrics.Sync();
+}
+
 TEST_F(MetricsFileTest, OfVersion010ContinuesWithItsOwnColumns) {
   const std::string path = folder_ + "/metrics.csv";
   const std::string header =
       "number,total_steps," + EpisodeColumns() + ",exploration,learning_rate,loss\n";
-  std::ofstream(path) << header;
-  EpisodeSummary result;
-  result.energy = 2.5;
-  {
-    MetricsFile metrics(path, header.size());
-    metrics.Append(1, 10, result, {0.5F, 0.25F, 0.125F});
-    metrics.Sync();
-  }
+  Continue(path, header);
   EXPECT_EQ(ReadFile(path), header + "1,10,0,0,0,0,0,0,0,0,0,0,0,none,0,0.25,0.125,0.5\n");
 }
 
@@ -131,14 +134,7 @@ TEST_F(MetricsFileTest, WithSomeOfTheAddedColumnsContinuesWithThese) {
   { MetricsFile(path).Flush(); }
   std::string header = ReadFile(path);
   header.replace(header.find(",distance_km"), std::string::npos, "\n");
-  std::ofstream(path) << header;
-  EpisodeSummary result;
-  result.energy = 2.5;
-  {
-    MetricsFile metrics(path, header.size());
-    metrics.Append(1, 10, result, {0.5F, 0.25F, 0.125F});
-    metrics.Sync();
-  }
+  Continue(path, header);
   EXPECT_EQ(ReadFile(path), header + "1,10,0,0,0,0,0,0,0,0,0,0,0,none,0,0.25,0.125,0.5,2.5\n");
 }
 

@@ -18,6 +18,8 @@ constexpr std::uint32_t kQueue = 10;
 constexpr std::uint32_t kRecordQueue = 10000;
 // rosbag record queues 100 messages per topic while it writes a chunk and drops further ones.
 constexpr std::chrono::milliseconds kRecordPeriod{2};
+// After it, a new subscriber gets the current state with all others.
+constexpr std::chrono::milliseconds kSendLimit{1000};
 constexpr std::size_t kMaxSummaries = 1000;
 // A recorder connects to its topics one after the other. It is ready if no connection is added for
 // this time.
@@ -25,15 +27,17 @@ const ros::WallDuration kRecorderGrace(0.5);
 
 }  // namespace
 
-// A late subscriber gets the last message immediately. The topic is not latched: a latched message
-// is marked in bags, and a slice of such a bag without its start would show an outdated state.
+// A late subscriber gets the last message immediately, but after those that are still being sent,
+// so that the time of a recording does not go back. The topic is not latched: a latched message may
+// come before those, and it is marked in bags, where a slice without its start would show an
+// outdated state.
 template <typename Message>
 void FarmPublisher::Advertise(ros::NodeHandle& node, const std::string& name,
                               Topic<Message>& topic) {
   const ros::SubscriberStatusCallback greet =
       [this, &topic](const ros::SingleSubscriberPublisher& subscriber) {
         const MutexLock lock(message_mutex_);
-        if (topic.valid) {
+        if (topic.valid && sent_.Wait(kSendLimit)) {
           subscriber.publish(topic.message);
         } else {
           Wake();
@@ -47,20 +51,7 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
     : params_(params), ranch_(ranch) {
   ros::NodeHandle node(node_handle);
   const std::uint32_t queue = params_.record ? kRecordQueue : kQueue;
-  if (params_.publish_clock) {
-    // Not latched: a latched message is sent to a late subscriber by another thread, which may be
-    // after newer ones, so the clock of a recording would go back.
-    const ros::SubscriberStatusCallback greet =
-        [this](const ros::SingleSubscriberPublisher& subscriber) {
-          const MutexLock lock(message_mutex_);
-          if (clock_message_.clock.isZero()) {
-            Wake();
-          } else {
-            subscriber.publish(clock_message_);
-          }
-        };
-    clock_ = node.advertise<rosgraph_msgs::Clock>(names::kClock, queue, greet);
-  }
+  if (params_.publish_clock) Advertise(node, names::kClock, clock_);
   spec_ = node.advertise<aquafarm_msgs::FarmSpec>(names::kSpec, queue, true);
   chart_ = node.advertise<nav_msgs::OccupancyGrid>(names::kChart, queue, true);
   if (const auto& seas = ranch_.scenario().seas) {
@@ -79,6 +70,7 @@ FarmPublisher::FarmPublisher(const ros::NodeHandle& node_handle, const SimParams
         [this, ship](const ros::SingleSubscriberPublisher& subscriber) {
           ranch_.Inspect([&](const ServerView& view) {
             const MutexLock lock(observation_mutex_);
+            sent_.Wait(kSendLimit);  // drivers skip observations of earlier steps
             subscriber.publish(ObservationOf(view, ship));
           });
         };
@@ -261,8 +253,9 @@ void FarmPublisher::FillFrames(const ServerView& view) {
 
 void FarmPublisher::Send() {
   if (params_.publish_clock) {
-    clock_message_.clock = context_.stamp;
-    clock_.publish(clock_message_);
+    clock_.message.clock = context_.stamp;
+    clock_.publisher.publish(clock_.message);
+    clock_.valid = true;
   }
   const aquafarm::Scenario& scenario = ranch_.scenario();
   if (episode_is_new_) {

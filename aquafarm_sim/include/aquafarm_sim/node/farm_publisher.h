@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "aquafarm/base/mutex.h"
+#include "aquafarm_sim/node/sent_messages.h"
 #include "aquafarm_sim/node/sim_params.h"
 #include "aquafarm_sim/server/farm_server.h"
 
@@ -76,9 +77,10 @@ class FarmPublisher : public FarmListener {
 
   const SimParams params_;
   FarmServer& ranch_;
+  SentMessages sent_;
   tf2_ros::TransformBroadcaster frames_;
   tf2_ros::StaticTransformBroadcaster static_frames_;
-  ros::Publisher clock_;
+  Topic<rosgraph_msgs::Clock> clock_;
   ros::Publisher spec_;
   ros::Publisher chart_;
   struct Sea {
@@ -96,7 +98,6 @@ class FarmPublisher : public FarmListener {
   // Limits recording to the rate of rosbag.
   std::chrono::steady_clock::time_point next_record_ AQUAFARM_GUARDED_BY(message_mutex_);
   MessageContext context_ AQUAFARM_GUARDED_BY(message_mutex_);
-  rosgraph_msgs::Clock clock_message_ AQUAFARM_GUARDED_BY(message_mutex_);  // the last one sent
   aquafarm_msgs::FarmSpec spec_message_ AQUAFARM_GUARDED_BY(message_mutex_);
   nav_msgs::OccupancyGrid chart_message_ AQUAFARM_GUARDED_BY(message_mutex_);
   std::vector<aquafarm::Disaster> disasters_ AQUAFARM_GUARDED_BY(message_mutex_);

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <dlfcn.h>
+#include <gloo/rendezvous/context.h>
+#include <gloo/transport/buffer.h>
+#include <gloo/transport/pair.h>
 #include <netdb.h>
+#include <sched.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <future>
 #include <numeric>
 #include <thread>
@@ -23,7 +29,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 using Store = c10d::TCPStore;
-using Tensors = std::vector<at::Tensor>;
 
 // Rank 0 holds the store. It keeps it open for this time after a failure, so that the other ranks
 // can read which rank was lost.
@@ -32,6 +37,7 @@ constexpr std::chrono::seconds kReportLimit{3};  // if the host of rank 0 does n
 constexpr int kNameTries = 5;                    // if the name server has a temporary failure
 constexpr std::chrono::seconds kNamePause{1};
 constexpr const char* kLost = "lost";  // key of the store: the first rank that was found lost
+constexpr int kSlot = 0;               // of messages in a pair, which arrive in order
 
 std::chrono::milliseconds Milliseconds(double seconds) {
   return std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * seconds));
@@ -113,10 +119,19 @@ void RequireKnownName(const std::string& host, double limit_s) {
                    "); expected the address or name of the host of rank 0, as all ranks know it");
 }
 
-template <typename T>
-at::Tensor Bytes(T* data, std::size_t size) {
-  return at::from_blob(const_cast<char*>(reinterpret_cast<const char*>(data)),
-                       {static_cast<std::int64_t>(size)}, at::kByte);
+// Names of the processors on which this process may run, each unique among all hosts.
+std::vector<std::string> AllowedProcessors() {
+  std::string boot;
+  std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
+  cpu_set_t allowed;
+  if (sched_getaffinity(0, sizeof(allowed), &allowed) != 0) return {};
+  std::vector<std::string> names;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(cpu, &allowed)) {
+      names.push_back("processor/" + boot + "/" + std::to_string(cpu));
+    }
+  }
+  return names;
 }
 
 class GlooGroup final : public ProcessGroup {
@@ -129,22 +144,22 @@ class GlooGroup final : public ProcessGroup {
 
  private:
   void OpenStore(const RankVariables& variables, const GroupTimes& times);
+  void ClaimProcessors();
+  bool OwnsProcessors();
   void WaitForAll(const std::string& place, std::chrono::milliseconds left);
   void Connect(const RankVariables& variables, const GroupTimes& times);
   void Send(int peer, const void* data, std::size_t size) {
-    Tensors tensors{Bytes(data, size)};
-    gloo_->send(tensors, peer, 0)->wait();
+    gloo_->getPair(peer)->createSendBuffer(kSlot, const_cast<void*>(data), size)->send();
   }
   void Receive(int peer, void* data, std::size_t size) {
-    Tensors tensors{Bytes(data, size)};
-    gloo_->recv(tensors, peer, 0)->wait();
+    gloo_->getPair(peer)->createRecvBuffer(kSlot, data, size)->waitRecv();
   }
   template <typename Exchange>
   void WithPeer(int peer, const Exchange& exchange);
   [[noreturn]] void Lose(int peer, const std::string& reason);
 
   c10::intrusive_ptr<Store> store_;
-  c10::intrusive_ptr<c10d::ProcessGroupGloo> gloo_;
+  std::shared_ptr<gloo::rendezvous::Context> gloo_;
   std::vector<char> own_;  // scratch of Sum
   std::vector<char> other_;
 };
@@ -174,6 +189,7 @@ void GlooGroup::OpenStore(const RankVariables& variables, const GroupTimes& time
   options.timeout = Milliseconds(times.start_s);
   try {
     store_ = c10::make_intrusive<Store>(variables.master_addr, options);
+    ClaimProcessors();
     store_->set(Here(rank_), std::vector<std::uint8_t>{1});
   } catch (const std::exception& error) {
     if (rank_ == 0) {
@@ -187,6 +203,19 @@ void GlooGroup::OpenStore(const RankVariables& variables, const GroupTimes& time
                    std::to_string(static_cast<int>(times.start_s)) +
                    " s: check that rank 0 runs there and that no firewall closes the port");
   }
+}
+
+// Counts in the store, for each processor of this host, the ranks that may run on it.
+void GlooGroup::ClaimProcessors() {
+  for (const std::string& processor : AllowedProcessors()) store_->add(processor, 1);
+}
+
+// Whether no other rank may run on the processors of this one. Then it polls while it waits, which
+// saves waking up. Ranks that share processors would keep each other from working by that.
+bool GlooGroup::OwnsProcessors() {
+  const std::vector<std::string> processors = AllowedProcessors();
+  return !processors.empty() && std::all_of(processors.begin(), processors.end(),
+                                            [&](const auto& p) { return store_->add(p, 0) == 1; });
 }
 
 void GlooGroup::WaitForAll(const std::string& place, std::chrono::milliseconds left) {
@@ -219,14 +248,21 @@ void GlooGroup::WaitForAll(const std::string& place, std::chrono::milliseconds l
 void GlooGroup::Connect(const RankVariables& variables, const GroupTimes& times) {
   try {
     store_->setTimeout(Milliseconds(times.start_s));
-    const auto options = c10d::ProcessGroupGloo::Options::create();
-    options->timeout = Milliseconds(times.answer_s);
     const char* const interface = std::getenv("GLOO_SOCKET_IFNAME");
-    options->devices.push_back(
+    std::shared_ptr<gloo::transport::Device> device =
         interface != nullptr
             ? c10d::ProcessGroupGloo::createDeviceForInterface(interface)
-            : c10d::ProcessGroupGloo::createDeviceForHostname(LocalAddress(variables.master_addr)));
-    gloo_ = c10::make_intrusive<c10d::ProcessGroupGloo>(store_, rank_, size_, options);
+            : c10d::ProcessGroupGloo::createDeviceForHostname(LocalAddress(variables.master_addr));
+    gloo_ = std::make_shared<gloo::rendezvous::Context>(rank_, size_);
+    gloo_->setTimeout(Milliseconds(times.answer_s));
+    c10d::ProcessGroupGloo::GlooStore store(store_);
+    gloo_->connectFullMesh(store, device);
+    // The calling thread reads and writes by itself. Otherwise the thread of the device does, and
+    // each message waits until it wakes up (docs/decisions/ranks.md).
+    const bool polls = OwnsProcessors();
+    for (int peer = 0; peer < size_; ++peer) {
+      if (peer != rank_) gloo_->getPair(peer)->setSync(true, polls);
+    }
   } catch (const std::exception& error) {
     if (rank_ == 0) std::this_thread::sleep_for(kStoreKept);
     throw RankLost("ranks: " + RankOf(rank_, size_) +
@@ -284,12 +320,11 @@ void GlooGroup::Sum(std::vector<float>& values, std::vector<double>& numbers) {
     const int peer = rank_ ^ step;
     std::memcpy(own_.data(), values.data(), value_bytes);
     std::memcpy(own_.data() + value_bytes, numbers.data(), bytes - value_bytes);
+    // One after the other: two that both send more than the sockets hold would wait forever.
     WithPeer(peer, [&] {
-      Tensors out{Bytes(own_.data(), bytes)};
-      Tensors in{Bytes(other_.data(), bytes)};
-      const auto sent = gloo_->send(out, peer, 0);
-      gloo_->recv(in, peer, 0)->wait();
-      sent->wait();
+      if (rank_ < peer) Send(peer, own_.data(), bytes);
+      Receive(peer, other_.data(), bytes);
+      if (rank_ > peer) Send(peer, own_.data(), bytes);
     });
     const char* from = other_.data();
     for (float& value : values) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The processes of one training, possibly on several hosts. They exchange sums and bytes with
-/// c10d, the communication library of PyTorch, over Gloo (docs/decisions/ranks.md). Every function
-/// of ProcessGroup is collective: all ranks call the same functions in the same order.
+/// The processes of one training, possibly on several hosts. They find each other by the store of
+/// c10d, the communication library of PyTorch, and exchange sums and bytes over its transport, Gloo
+/// (docs/decisions/ranks.md). Every function of ProcessGroup is collective: all ranks call the same
+/// functions in the same order.
 
 #include <memory>
 #include <stdexcept>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Processors of the ranks of one host. A rank that moves between processors meets the thread of
-/// its peer's transport there and waits for it (docs/decisions/ranks.md).
+/// Processors of the ranks of one host. A rank with processors of its own polls while it waits for
+/// another (docs/decisions/ranks.md).
 
 #include <sched.h>
 

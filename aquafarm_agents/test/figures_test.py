@@ -7,6 +7,7 @@ import unittest.mock
 
 import numpy as np
 import rosunit
+from matplotlib.text import Text
 
 from aquafarm_benchmark import figures
 from aquafarm_benchmark.protocol import CONTESTANTS
@@ -101,6 +102,48 @@ class FiguresTest(unittest.TestCase):
             self.assertGreaterEqual(upper - lower, 0.06)
         self.assertLessEqual(places[-1], 1.0001)
         self.assertEqual(names["clairvoyant"], places[-1], "the highest line has the highest name")
+
+    def test_lines_to_names_cross_no_name_and_all_names_are_in_reach_of_the_axes(self):
+        ends = [(100.0, value, "black", f"learner {i}")
+                for i, value in enumerate((-3000.0, 120.0, 125.0, 131.0, 132.0, 133.0))]
+        self.axes.set_xlim(0.0, 100.0)
+        self.axes.set_ylim(-3500.0, 140.0)
+        figures._name_ends(self.axes, ends)
+        figure = self.axes.figure
+        figure.canvas.draw()
+        renderer = figure.canvas.get_renderer()
+        boxes = {text: Text.get_window_extent(text, renderer)  # without the line
+                 for text in self.axes.texts}
+        around = self.axes.get_window_extent(renderer)
+        for text, box in boxes.items():
+            self.assertGreaterEqual(text.get_fontsize(), 10)
+            self.assertGreater(box.y0, around.y0 - box.height)
+            self.assertLess(box.y1, around.y1 + box.height)
+            line = text.arrow_patch.get_path().transformed(text.arrow_patch.get_transform())
+            for points in line.to_polygons(closed_only=False):
+                for (x0, y0), (x1, y1) in zip(points, points[1:]):
+                    for share in np.linspace(0.0, 1.0, 60):
+                        at = (x0 + share * (x1 - x0), y0 + share * (y1 - y0))
+                        for other, name in boxes.items():
+                            inner = name.padded(-1.0)
+                            self.assertFalse(inner.contains(*at),
+                                             f"{text.get_text()} through {other.get_text()}")
+        for one in boxes.values():
+            self.assertEqual(1, sum(one.overlaps(other) for other in boxes.values()))
+
+    def test_places_are_spread_within_the_axes(self):
+        spread = figures.spread([0.5, 0.95, 0.96, 0.97, 0.98], 0.06)
+        self.assertEqual(0.5, spread[0])
+        self.assertLessEqual(spread[-1], 1.0)
+        for lower, upper in zip(spread, spread[1:]):
+            self.assertGreaterEqual(upper - lower, 0.0599)
+
+    def test_the_axis_of_returns_states_its_scale_and_has_ticks_on_both_sides(self):
+        figures.plot_repeated(self.axes, self.contestants, self.runs, 90.0)
+        self.assertIn("linear to ±100, then logarithmic", self.axes.get_ylabel())
+        low, high = self.axes.get_ylim()
+        shown = [tick for tick in self.axes.get_yticks() if low <= tick <= high]
+        self.assertGreaterEqual(len(shown), 3)
 
     def test_fig_13_shows_the_return_per_step(self):
         figures.plot_mean_score(self.axes, self.contestants, self.runs)

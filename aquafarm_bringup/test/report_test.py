@@ -22,7 +22,8 @@ import roslib.packages
 import rostest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from aquafarm_report import videos, intervals, outcomes, report  # noqa: E402
+from aquafarm_report import (curves, intervals, outcomes, references, report,  # noqa: E402
+                             videos)
 from aquafarm_report.page import page as make_page, tiles  # noqa: E402
 from ranch import Ranch  # noqa: E402
 
@@ -227,13 +228,29 @@ class ReportTest(unittest.TestCase):
         self.assertEqual("", outcomes.summary_table({}), "an evaluation of version 0.1.0")
 
     def test_the_interval_of_the_return_is_of_distinct_starts(self):
-        rows = [{"return": value} for value in ("90", "110", "90", "110")]
-        summary = {"return_per_episode": 100.0, "distinct_episodes": 4}
-        self.assertEqual("100.0 [88.7, 111.3]", report.interval_text(summary, rows))
-        summary["distinct_episodes"] = 2  # the other two are repetitions
-        self.assertEqual("100.0 [84.0, 116.0]", report.interval_text(summary, rows))
-        summary["distinct_episodes"] = 1
-        self.assertEqual("100.0", report.interval_text(summary, rows))
+        player = references.Player("dqn", [{"return": value} for value in
+                                           ("90", "110", "90", "110")], distinct=4)
+        self.assertEqual("100.0 [88.7, 111.3]", references.return_text(player))
+        player.distinct = 2  # the other two are repetitions
+        self.assertEqual("100.0 [84.0, 116.0]", references.return_text(player))
+        player.distinct = 1
+        self.assertEqual("100.0", references.return_text(player))
+
+    def test_a_run_that_plays_otherwise_than_it_trained_has_a_sentence(self):
+        columns = {"return": np.full(120, 150.0), "success": np.ones(120)}
+
+        def note(*returns):
+            rows = [{"return": value, "success": "0" if value < 0.0 else "1"} for value in returns]
+            return curves.gap_note("a", columns, references.Player("a", rows, len(rows)))
+
+        self.assertEqual(
+            "a: 150.0 at the end of the training (success 100%), -160.0 in greedy play (success "
+            "50%): without the random moves of training it gets stuck or does worse; train longer.",
+            note(-420.0, 100.0, -420.0, 100.0))
+        self.assertIn("240.0 in greedy play (success 100%): without the random moves of training "
+                      "it does better.", note(239.0, 241.0))
+        self.assertEqual("", note(140.0, 160.0), "no difference beyond the interval")
+        self.assertEqual("", note(-160.0), "one start has no interval")
 
     def test_it_holds_curves_of_return_success_and_loss(self):
         data = re.search(r"const CURVES=(.*?);\n", self.page.text).group(1)

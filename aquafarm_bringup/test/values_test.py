@@ -21,7 +21,10 @@ from sensor_msgs.msg import PointCloud2
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "python"))
 
 from aquafarm_report import values_topics  # noqa: E402
-from aquafarm_report.values import ValuesError, compare, make, read, strength  # noqa: E402
+from matplotlib import pyplot  # noqa: E402
+
+from aquafarm_report.values import (ValuesError, compare, draw_key, draw_relation, make,  # noqa: E402
+                                    read, strength)
 
 
 def slope(height=12, width=14):
@@ -89,8 +92,8 @@ class ValuesTest(unittest.TestCase):
         path = written(self.folder.name, values, {"warmth": slope(), "salt": -slope()})
         output = os.path.join(self.folder.name, "out")
         lines = make(path, output)
-        self.assertIn("warmth: Spearman +1.00", lines[0])
-        self.assertIn("salt: Spearman -1.00", lines[1])
+        self.assertIn("warmth: rank correlation (Spearman) +1.00", lines[0])
+        self.assertIn("salt: rank correlation (Spearman) −1.00", lines[1])
         report = json.loads(pathlib.Path(output + ".json").read_text(encoding="utf-8"))
         self.assertEqual(167, report["seas"][0]["cells"])
         self.assertIn("not that one causes the other", report["note"])
@@ -103,10 +106,24 @@ class ValuesTest(unittest.TestCase):
         self.assertEqual(b"\x89PNG", pathlib.Path(output + ".png").read_bytes()[:4])
 
     def test_a_correlation_has_words(self):
-        self.assertEqual("strong: the return falls with the sea's value", strength(-0.9))
-        self.assertEqual("weak: the return rises with the sea's value", strength(0.2))
-        self.assertEqual("no relation", strength(0.05))
-        self.assertEqual("not comparable", strength(None))
+        self.assertEqual("falls strongly", strength(-0.9))
+        self.assertEqual("rises weakly", strength(0.2))
+        self.assertEqual("hardly changes", strength(0.05))
+        self.assertEqual("", strength(None))
+
+    def test_the_figure_uses_words_and_units_that_people_know(self):
+        values = slope()
+        layer = ("warmth", "degC", slope())
+        _, axis = pyplot.subplots()
+        self.addCleanup(pyplot.close, "all")
+        draw_relation(axis, values, layer, compare(values, layer[2]))
+        self.assertIn("The return rises strongly with warmth\nrank correlation +1.00",
+                      axis.get_title())
+        self.assertEqual("warmth [°C]", axis.get_xlabel())
+        draw_key(axis, {"policy": "planner"})
+        for words in (axis.get_title(), *(text.get_text() for text in axis.texts)):
+            for jargon in ("SSIM", "Spearman", "rho", "turned over", "degC"):
+                self.assertNotIn(jargon, words)
 
     def test_another_file_is_refused(self):
         path = pathlib.Path(self.folder.name) / "x.json"

@@ -11,6 +11,7 @@ matplotlib.use("Agg")  # needs no display
 import numpy as np  # noqa: E402
 from matplotlib import pyplot as plt  # noqa: E402
 from matplotlib.patches import Polygon  # noqa: E402
+from matplotlib.ticker import Locator, MaxNLocator, NullLocator  # noqa: E402
 
 from aquafarm_benchmark import losses, measures  # noqa: E402
 
@@ -62,17 +63,54 @@ def _show_returns(axes, curves, optimum=None):
         curves = [*curves, np.array([optimum])]
     top = max(curve.max() for curve in curves)
     low = min(np.quantile(curve, 0.02) for curve in curves)
-    axes.set_yscale("symlog", linthresh=100.0)
+    _scale_returns(axes)
     axes.set_ylim(low - 0.2 * abs(low), top + 0.5 * abs(top))
-    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
     axes.axhline(0.0, color="black", linewidth=0.5)
 
 
+class _ReturnTicks(Locator):
+    """Round returns on both parts of the scale; more of them where few are in view."""
+    ROUND = (50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0)
+
+    def __call__(self):
+        return self.tick_values(*self.axis.get_view_interval())
+
+    def tick_values(self, vmin, vmax):
+        ticks = sorted([0.0, *self.ROUND, *(-value for value in self.ROUND)])
+        seen = [tick for tick in ticks if vmin <= tick <= vmax]
+        return seen if len(seen) >= 4 else MaxNLocator(5).tick_values(vmin, vmax)
+
+
+def _scale_returns(axes):
+    """A linear scale up to ±100 and a logarithmic one beyond, which the axis states."""
+    axes.set_yscale("symlog", linthresh=_LINEAR)
+    axes.yaxis.set_major_locator(_ReturnTicks())
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
+    axes.set_ylabel(f"{axes.get_ylabel()}\n(scale: linear to ±{_LINEAR:.0f}, then logarithmic)")
+
+
+_LINEAR = 100.0  # returns up to this one have a linear scale
 _NAME_GAP = 0.062  # height of a name, as a share of the axes
 
 
+def spread(places, gap, low=0.0, high=1.0):
+    """Returns ascending places moved apart to at least a gap, each as little as possible (least
+    squares), within [low, high] if they fit."""
+    groups = []  # (mean of the place of the first one, count) of places that touch each other
+    for i, place in enumerate(places):
+        groups.append((place - i * gap, 1))
+        while len(groups) > 1 and groups[-2][0] >= groups[-1][0]:
+            (first, n), (second, m) = groups[-2:]
+            groups[-2:] = [((n * first + m * second) / (n + m), n + m)]
+    moved = [start for start, count in groups for _ in range(count)]
+    room = high - gap * (len(places) - 1)
+    return [min(max(start, low), max(room, low)) + i * gap for i, start in enumerate(moved)]
+
+
 def _name_ends(axes, ends):
-    """Writes a name next to the end of each line, at the right edge and apart from each other.
+    """Writes a name next to the end of each line, at the right edge and apart from each other, with
+    a line to it that ends before the name.
 
     ends: (x, y, colour, name) of each line
     """
@@ -80,15 +118,12 @@ def _name_ends(axes, ends):
     axes.set_ylim(axes.get_ylim())  # stays as it is
     to_axes = axes.transData + axes.transAxes.inverted()
     ends = sorted(ends, key=lambda end: end[1])
-    places = []
-    for x, y, _, _ in ends:
-        place = float(to_axes.transform((x, y))[1])
-        places.append(max(place, places[-1] + _NAME_GAP) if places else place)
-    over = max(0.0, places[-1] - 1.0) if places else 0.0
+    places = spread([float(to_axes.transform((x, y))[1]) for x, y, _, _ in ends], _NAME_GAP)
     for (x, y, colour, name), place in zip(ends, places):
-        axes.annotate(name, (x, y), xytext=(1.02, place - over), textcoords=axes.transAxes,
-                      color=colour, va="center", fontsize=9, annotation_clip=False,
-                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.6})
+        axes.annotate(name, (x, y), xytext=(1.05, place), textcoords=axes.transAxes,
+                      color=colour, va="center", fontsize=10, annotation_clip=False,
+                      arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.8,
+                                  "relpos": (0.0, 0.5), "shrinkA": 1.0, "shrinkB": 0.0})
 
 
 def _optimum_end(ends, optimum):
@@ -139,7 +174,7 @@ def draw_rewards(path, contestants, runs, optimum):
     """Fig. 12a by time steps, above the same data by episodes."""
     figure, (upper, lower) = plt.subplots(2, 1, figsize=(9, 8), layout="constrained")
     _label(upper, "Return by time steps, first run (Fig. 12a)", "50-episode mean return",
-           "time steps so far")
+           "time steps so far (logarithmic scale)")
     plot_rewards_by_steps(upper, contestants, runs, optimum)
     _label(lower, "Return by episode, first run: each (thin) and 50-episode mean",
            "return of an episode")
@@ -171,7 +206,7 @@ def plot_average_rewards(axes, contestants, runs):
 def draw_square_error(path, contestants, runs):
     """Fig. 12c: mean square error of the learners' value estimates, over all runs."""
     figure, axes = _axes("Mean square error of the value estimates (Fig. 12c)",
-                         f"{measures.WINDOW}-episode mean [reward²]")
+                         f"{measures.WINDOW}-episode mean [reward²]\n(logarithmic scale)")
     plot_square_error(axes, contestants, runs)
     axes.text(0.0, -0.17, "Lower: the value of a step agrees better with its reward and the next "
               "value. Thick: median of the runs,\nshaded: their middle half, thin: each run.",
@@ -217,7 +252,8 @@ def draw_mean_score(path, contestants, runs):
     places = [[letter for letter, _ in panels], ["c"] * len(panels)] if panels else [["c"]]
     all_axes = figure.subplot_mosaic(places, height_ratios=[3, 4] if panels else None)
     for letter, panel in [*panels, ("c", contestants)]:
-        _label(all_axes[letter], f"Return per step (Fig. 13{letter})", "mean score")
+        _label(all_axes[letter], f"Return per step (Fig. 13{letter})",
+               f"{measures.WINDOW}-episode mean ± std. deviation")
         plot_mean_score(all_axes[letter], panel, runs)
     _save(figure, path)
 
@@ -256,7 +292,7 @@ def plot_evaluation(axes, contestants, rows):
         axes.annotate(f"{value:.0f}", (place, max(value, 0.0)), xytext=(0, 8),
                       textcoords="offset points", ha="center")
     axes.axhline(0.0, color="black", linewidth=0.5)
-    axes.set_yscale("symlog", linthresh=100.0)
+    _scale_returns(axes)
     axes.margins(y=0.15)
     axes.set_xticks(range(len(contestants)), [one.label for one in contestants], rotation=15)
 

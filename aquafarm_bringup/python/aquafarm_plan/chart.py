@@ -14,7 +14,6 @@ WIDTH, MAX_HEIGHT = 760.0, 860.0  # of the drawing [px]
 LEVELS = (10, 50, 90)  # isolines [%]
 NICE = (1, 2, 5)
 LABEL_SIZE = 18.0
-MANY_DEVICES = 10  # with more of them, labels have one line
 MANY_DEVICES = 10  # with more, labels have one line
 
 
@@ -131,12 +130,13 @@ def _arrow(line):
 
 
 def _badges(plan):
-    """Letter of the ship and place in its order of fetching, such as A2, by device."""
+    """Number of the ship and the letter of its order of fetching, such as 1b, by device. Ports have
+    capital letters."""
     badges = {}
     for route in plan["plan"]["routes"]:
         fetched = [one["device"] for one in route["orders"] if one["action"] == "fetch"]
         badges.update(
-            {device: f"{letter(route['ship'])}{i}" for i, device in enumerate(fetched, 1)})
+            {device: f"{route['ship'] + 1}{letter(i).lower()}" for i, device in enumerate(fetched)})
     return badges
 
 

@@ -6,7 +6,7 @@ import math
 from .chart import nice, samples, svg_path
 from .document import Clock, amount, parse_time
 from .labels import Label, place, shorten
-from .words import is_unknown, letter, order_text
+from .words import is_unknown, letter, numbered_name, order_text
 
 REGION = 430.0  # side of the region's drawing [px]
 LINE = (1100.0, 104.0)  # width and left margin of the timeline [px]
@@ -172,7 +172,7 @@ def timeline(plan):
     return {
         "width": width, "height": height, "left": left, "right": width - 26, "top": 8,
         "base": HAZARD_HEIGHT + 8, "axis": height - AXIS, "curves": curves, "rows": rows,
-        "ticks": _time_ticks(clock, end, x_of), "end_s": end,
+        "ticks": _time_ticks(clock, end, x_of), "dates": _dates(clock, end, x_of), "end_s": end,
         "last": {"x": x_of(clock.seconds(last)), "text": clock.time(last)} if last else None
     }
 
@@ -193,12 +193,12 @@ def _row(plan, route, clock, x_of, y):
         })
     return {
         "y": y, "ship": route["ship"], "bars": bars,
-        "name": shorten(plan["ships"][route["ship"]]["name"], LINE[1] - 34, 14)
+        "name": shorten(numbered_name(plan, route["ship"]), LINE[1] - 14, 14)
     }
 
 
 def _time_ticks(clock, end, x_of):
-    """Ticks at round local hours, with the date at midnight and at the first one."""
+    """Ticks at round local hours."""
     step = next((h for h in (1, 2, 3, 6, 12, 24, 48) if end / 3600 / h <= 13), 96)
     local = clock.local(clock.at(0)).replace(minute=0, second=0)
     ticks = []
@@ -206,12 +206,27 @@ def _time_ticks(clock, end, x_of):
         moment = local + datetime.timedelta(hours=hour)
         seconds = (moment - clock.start).total_seconds()
         if 0 <= seconds <= end and moment.hour % min(step, 24) == 0:
-            text = f"{moment:%a} {moment.day} {moment:%b}" if moment.hour == 0 or not ticks else ""
             utc = moment.astimezone(datetime.timezone.utc)
-            ticks.append({
-                "x": x_of(seconds), "time": f"{moment:%H:%M}", "utc": f"{utc:%H:%M}", "date": text
-            })
+            ticks.append({"x": x_of(seconds), "time": f"{moment:%H:%M}", "utc": f"{utc:%H:%M}"})
     return ticks
+
+
+DATE_WIDTH = 84.0  # of a date below the axis [px]
+
+
+def _dates(clock, end, x_of):
+    """The local dates, each from where its day begins on the axis."""
+    first = clock.local(clock.at(0))
+    days = [first]
+    while (days[-1] - clock.start).total_seconds() <= end:
+        days.append(days[-1].replace(hour=0, minute=0, second=0) + datetime.timedelta(days=1))
+    dates = []
+    for day in reversed(days[:-1]):  # the later one stays where two are close
+        x = x_of((day - clock.start).total_seconds())
+        if not dates or dates[0]["x"] - x >= DATE_WIDTH:
+            dates.insert(0, {"x": x, "text": f"{day:%a} {day.day} {day:%b}",
+                             "is_midnight": day is not first})
+    return dates
 
 
 def curve(plan):

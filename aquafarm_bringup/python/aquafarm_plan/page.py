@@ -33,7 +33,6 @@ def render(plan):
                                dt=clock.day_time,
                                utc=clock.utc,
                                utc_full=clock.utc_full,
-                               letter=words.letter,
                                kind=words.kind_name)
     drawing, line = chart.chart(plan), figures.timeline(plan)
     departures = _departures(plan)
@@ -50,7 +49,7 @@ def render(plan):
         answers=words.answers(plan),
         basis=BASIS,
         order_text=lambda order: words.order_text(plan, order),
-        ship_name=lambda i: plan["ships"][i]["name"],
+        numbered=lambda i: words.numbered_name(plan, i),
         chance=lambda share: words.chance(plan, share),
         fate=lambda i: words.left_word(plan, i),
         left_reason=lambda left: words.left_reason(plan, left),

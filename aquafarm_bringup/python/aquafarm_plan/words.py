@@ -15,8 +15,14 @@ def kind_name(kind):
     return KINDS.get(kind, kind.replace("_", " "))
 
 
+def numbered_name(plan, ship):
+    """The name of a ship with its number, which the map shows: "ship 1", "2: Haixing"."""
+    name = plan["ships"][ship]["name"]
+    return name if name == f"ship {ship + 1}" else f"{ship + 1}: {name}"
+
+
 def letter(number):
-    """A, B, … Z, AA of a port or ship."""
+    """A, B, … Z, AA of a port."""
     text = ""
     while number >= 0:
         text = chr(ord("A") + number % 26) + text

@@ -7,7 +7,7 @@ import pathlib
 import numpy as np
 from aquafarm_benchmark.measures import WINDOW, known_moving_mean
 
-from aquafarm_report import page
+from aquafarm_report import page, references
 from aquafarm_report.videos import ReportError
 
 LIBRARY = pathlib.Path("/usr/share/javascript/dygraphs")  # Debian's libjs-dygraphs
@@ -43,6 +43,20 @@ def rows_of(columns, name):
     return rows
 
 
+def gap_note(label, columns, player):
+    """A sentence for a run whose greedy play differs from the end of its training; else empty."""
+    mean, low, high = references.mean_interval(references.column(player, "return"), player.distinct)
+    means = smooth(columns["return"])[1]
+    if not len(means) or math.isnan(low) or low <= means[-1] <= high:
+        return ""
+    trained = smooth(columns["success"])[1][-1]
+    success = float(np.mean(references.column(player, "success")))
+    cause = ("without the random moves of training it does better" if mean > means[-1] else
+             "without the random moves of training it gets stuck or does worse; train longer")
+    return (f"{label}: {means[-1]:.1f} at the end of the training (success {trained:.0%}), "
+            f"{mean:.1f} in greedy play (success {success:.0%}): {cause}.")
+
+
 def _library(name):
     try:
         return (LIBRARY / name).read_text(encoding="utf-8")
@@ -51,8 +65,11 @@ def _library(name):
                           "libjs-dygraphs; run ./aquafarm setup") from None
 
 
-def show(labels, columns):
-    """Section with one chart for each measure, with a curve for each run; empty without curves."""
+def show(labels, columns, notes=()):
+    """Section with one chart for each measure, with a curve for each run; empty without curves.
+
+    notes: sentences below the introduction
+    """
     charts = []
     for name, title in CURVES:
         rows = rows_of(columns, name)
@@ -68,5 +85,6 @@ def show(labels, columns):
     # Source maps would be other files.
     library = _library("dygraph.min.js").replace("//# sourceMappingURL=dygraph.min.js.map", "")
     style = _library("dygraph.min.css").partition("/*#")[0]
-    return page.section("Training curves", page.curves(
-        WINDOW, charts, style, [library, f'"use strict";const CURVES={data};\n{script}']))
+    scripts = [library, f'"use strict";const CURVES={data};\n{script}']
+    return page.section("Training curves", page.curves(WINDOW, charts, style, scripts,
+                                                       [note for note in notes if note]))

@@ -46,9 +46,10 @@ def players(shown):
     return _render("players", shown)
 
 
-def curves(window, charts, style, scripts):
-    """Charts for scripts, which must be trusted; each chart has the keys id and title."""
-    return _render("curves", window, charts, style, scripts)
+def curves(window, charts, style, scripts, notes=()):
+    """Charts for scripts, which must be trusted; each chart has the keys id and title. Notes are
+    sentences above them."""
+    return _render("curves", window, charts, style, scripts, list(notes))
 
 
 def table(head, rows):

@@ -28,13 +28,6 @@ def count_text(summary, episodes):
     return f"{episodes} episodes" + (f", {distinct} distinct" if distinct is not None else "")
 
 
-def interval_text(summary, rows):
-    """Returns "160.2 [157.0, 163.4]": the mean return and its 95 % interval, if there is one."""
-    returns = [float(row["return"]) for row in rows]
-    return references.text(references.mean_interval(returns,
-                                                    summary.get("distinct_episodes") or 0))
-
-
 def video_episodes(run, folder, rows):
     """Sections of the best, median and worst episode: map, videos and the fate of each device."""
     if videos.is_family(run):
@@ -83,17 +76,15 @@ def report_run(run, folder, episodes):
     settings = json.loads((run / "run.json").read_text(encoding="utf-8"))
     columns = read_metrics(run / "metrics.csv") if (run / "metrics.csv").is_file() else {}
     summary, rows, sections = show_episodes(run, folder, episodes)
-    training = curves.show([settings["algorithm"]], [columns])
     tiles = page.tiles([
-        (interval_text(summary, rows),
-         f"return, 95 % interval, {count_text(summary, summary['episodes'])}"),
-        (f"{summary['success_rate']:.0%}", "success"),
         (f"{len(columns.get('return', [])):,}", "episodes trained"),
         (settings["seed"], "seed of the training"), (videos.SEED, "seed of the episodes and videos"),
         (settings["version"], "version")])
     players = references.play_references(run / "scenario.yaml", folder, episodes)
     players.insert(1, references.read_player(settings["algorithm"], folder / "evaluation",
                                              is_run=True))
+    notes = [curves.gap_note(players[1].label, columns, players[1])] if columns else []
+    training = curves.show([settings["algorithm"]], [columns], notes)
     return page.page(
         f"{settings['algorithm']} on {settings['scenario']}",
         page.section("Next to the references", references.show_tiles(players)), tiles, training,

@@ -19,7 +19,7 @@ _COLUMN = 3.8  # width of a map in the figure [inch]
 NOTE = ("Spearman's rho is of the ranks over the cells where both are known; neighbouring cells "
         "are alike, so no significance is given. SSIM is the mean structural similarity (Wang et "
         "al. 2004) of both maps scaled to [0, 1], over those cells, the others filled with the "
-        "nearest known value; the second one is of the map turned over, for a sea that falls "
+        "nearest known value; the second one is of the inverted map, for a sea that falls "
         "where V_π rises. Both say how alike two maps are, not that one causes the other.")
 
 
@@ -74,17 +74,22 @@ def compare(values, field):
 
 
 def said(number):
-    return "-" if number is None else f"{number:+.2f}"
+    return "-" if number is None else f"{number:+.2f}".replace("-", "−")
 
 
 def strength(rho):
-    """A rank correlation in words."""
+    """What the return does where the sea's value is larger, in words; empty if not known."""
     if rho is None:
-        return "not comparable"
+        return ""
     if abs(rho) < 0.1:
-        return "no relation"
-    size = "weak" if abs(rho) < 0.4 else "clear" if abs(rho) < 0.7 else "strong"
-    return f"{size}: the return {'rises' if rho > 0 else 'falls'} with the sea's value"
+        return "hardly changes"
+    size = "weakly" if abs(rho) < 0.4 else "clearly" if abs(rho) < 0.7 else "strongly"
+    return f"{'rises' if rho > 0 else 'falls'} {size}"
+
+
+def unit_text(units):
+    """A unit as people write it."""
+    return {"degC": "°C", "degF": "°F"}.get(units, units)
 
 
 def draw_map(axis, field, km, colours, label):
@@ -107,12 +112,14 @@ def draw_relation(axis, values, layer, result):
         parts = np.array_split(np.argsort(x, kind="stable"), 10)
         axis.plot([np.median(x[part]) for part in parts], [np.median(y[part]) for part in parts],
                   color="#d55e00", linewidth=2, marker="o", markersize=4,
-                  label="medians of tenths of the cells")
-    axis.set_xlabel(f"{name.replace('_', ' ')} [{units}]")
-    axis.set_title(f"{strength(result['spearman_rho'])}\nSpearman's rho "
-                   f"{said(result['spearman_rho'])}, {result['cells']} cells\n"
-                   f"SSIM {said(result['ssim'])}, turned over {said(result['ssim_turned'])}",
-                   fontsize=10)
+                  label="median of 1/10 of the cells")
+    words = name.replace("_", " ")
+    axis.set_xlabel(f"{words} [{unit_text(units)}]")
+    change = strength(result["spearman_rho"])
+    axis.set_title((f"The return {change} with {words}\n" if change else "") +
+                   (f"rank correlation {said(result['spearman_rho'])}, {result['cells']} cells"
+                    if change else f"{result['cells']} cells: too few or too alike to compare"),
+                   fontsize=11)
     axis.grid(alpha=0.3)
 
 
@@ -127,17 +134,18 @@ def draw(text, values, layers, results, path):
                                             0.84 * _COLUMN * tall + (3.8 if layers else 1.2)),
                                    height_ratios=[0.84 * _COLUMN * tall, 2.6][:rows])
     draw_map(axes[0][0], values, km, "viridis", "return [points]")
-    axes[0][0].set_title("return of a start in this cell")
+    axes[0][0].set_title("return by the start's cell")
     axes[0][0].set_ylabel("north [km]")
     for column, (layer, result) in enumerate(zip(layers, results), start=1):
         name, units, field = layer
-        draw_map(axes[0][column], field, km, "cividis", f"[{units}]")
+        draw_map(axes[0][column], field, km, "cividis", f"[{unit_text(units)}]")
         axes[0][column].set_title(name.replace("_", " "))
         draw_relation(axes[1][column], values, layer, result)
     if layers:
         axes[1][1].set_ylabel("return of a start in the cell")
         draw_key(axes[1][0], text)
-        axes[1][0].legend(*axes[1][1].get_legend_handles_labels(), loc="lower left", frameon=False)
+        axes[1][0].legend(*axes[1][1].get_legend_handles_labels(), loc="upper left", frameon=False,
+                          bbox_to_anchor=(-0.05, 0.09)).set_in_layout(False)
     episodes = (f"episode {text['episode']}" if text["episodes"] == 1
                 else f"mean of {text['episodes']} episodes")
     figure.suptitle(f"{text['policy']} on {text['scenario']}: where a start pays, and the sea "
@@ -152,11 +160,11 @@ def draw_key(axis, text):
     """What the figure shows, in words."""
     axis.axis("off")
     axis.text(0.0, 1.0, "\n".join((
-        "Upper left: the return if the ship", f"starts in a cell and {text['policy']} steers.",
-        "Next to it: the sea. Hatched: land,", "rocks or unknown.", "",
-        "Below each sea: the return of each cell", "against the sea's value there. Rho",
-        "compares ranks (1: same order, −1:", "opposite); SSIM compares the shapes of",
-        "the maps. Neither says that one causes", "the other.")), va="top", fontsize=10)
+        "Upper left: the return if the", "ship starts in this cell and", f"{text['policy']} steers.",
+        "Next to it: the sea. Hatched:", "land, rocks or unknown.", "",
+        "Rank correlation: +1 if the", "return is always larger where", "the sea's value is larger,",
+        "−1 if always smaller, 0 without", "a relation. It does not say", "that one causes the other.")),
+              va="top", fontsize=11).set_in_layout(False)
 
 
 def make(values_file, output):
@@ -172,6 +180,7 @@ def make(values_file, output):
     temporary = f"{output}.json.part"
     pathlib.Path(temporary).write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
     os.replace(temporary, f"{output}.json")
-    return [f"{name}: Spearman {said(result['spearman_rho'])}, SSIM {said(result['ssim'])}, "
-            f"turned over {said(result['ssim_turned'])}, over {result['cells']} cells"
+    return [f"{name}: rank correlation (Spearman) {said(result['spearman_rho'])}, similarity of the "
+            f"maps (SSIM) {said(result['ssim'])}, of the inverted map {said(result['ssim_turned'])}, "
+            f"over {result['cells']} cells"
             for (name, _, _), result in zip(layers, results)]

@@ -16,6 +16,7 @@ for (const chart of CURVES.charts) {
     labelsSeparateLines: false,
     connectSeparatedPoints: true,
     strokeWidth: 2,
+    xlabel: "episode",
     gridLineColor: "rgba(128, 128, 128, 0.3)",
     axisLabelColor: "currentColor",
     axisLabelWidth: 60,

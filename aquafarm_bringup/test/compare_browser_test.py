@@ -119,7 +119,7 @@ class CompareBrowserTest(unittest.TestCase):
                 one.getBoundingClientRect().bottom < innerHeight).map(one => one.textContent)
                 .join(" | ");""")
             self.assertIn(words, seen, page.name)
-            self.assertRegex(seen, r"-?[\d.]+ \[-?[\d.]+, -?[\d.]+\]", page.name)
+            self.assertRegex(seen, r"-?[\d.]+( \| | )\[-?[\d.]+, -?[\d.]+\]", page.name)
 
     def test_tiles_show_both_runs_between_the_references(self):
         self.show()

@@ -47,6 +47,7 @@ struct Request {
   std::string ns;                    // empty if the bag contains only one ranch
   std::vector<std::uint64_t> steps;  // empty: step 0, or all steps for a video
   bool at_end{};
+  bool is_stacked{};  // several steps below each other
   double rate_hz{10.0};
   std::uint64_t every{1};
   aquafarm_viz::Layers layers;
@@ -267,7 +268,7 @@ void RenderPicture(const Request& request) {
   if (missing > 0) throw std::runtime_error(Missing(request, found, gaps));
   WarnOfMissing(request, found);
   cv::Mat picture;
-  cv::hconcat(pictures, picture);
+  request.is_stacked ? cv::vconcat(pictures, picture) : cv::hconcat(pictures, picture);
   const std::filesystem::path output(request.output);
   std::vector<std::uint8_t> bytes;
   cv::imencode(output.extension().string(), picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
@@ -326,6 +327,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   auto* step = app.add_option("--step", request.steps, "step of the episode (default 0)");
   app.add_flag("--end", request.at_end, "the episode's last step")->excludes(step);
+  app.add_flag("--stacked", request.is_stacked,
+               "several steps below each other, so that they stay readable in a narrow page");
   app.add_option("--layers", layers,
                  "some of " + aquafarm_viz::LayerNames() + ", with commas; or none")
       ->capture_default_str();

@@ -163,6 +163,99 @@ TEST(DangerMarkers, PutNoLabelOnARockWhereAnotherPlaceIsFree) {
   EXPECT_GT(std::abs(scene.Draw().at({"danger_label", 0}).pose.position.y - first), 500.0);
 }
 
+// A storm in the south-east whose pointer lies next to the device that it reaches first.
+struct SceneNextToAPointer : Scene {
+  SceneNextToAPointer() {
+    spec.width = 20;
+    spec.height = 14;
+    spec.rocks.clear();
+    state.devices = {test::MakeDevice(0, 0, 12, 1, 1.0F), test::MakeDevice(1, 2, 18, 11, 1.0F)};
+    state.disasters[0].x = 110.0F;
+    state.disasters[0].y = -110.0F;
+    state.disasters[0].radii = {2.0F, 400.0F};
+    state.disasters[0].speed = 0.5F;
+    state.disasters[0].heading_deg = 315;
+  }
+};
+
+bool Covers(const Marker& plate, double x, double y) {
+  return std::abs(x - plate.pose.position.x) < 0.5 * plate.scale.x &&
+         std::abs(y - plate.pose.position.y) < 0.5 * plate.scale.y;
+}
+
+TEST(DangerMarkers, PutNothingBetweenTheFirstDeviceAndItsLabel) {
+  SceneNextToAPointer scene;
+  for (int x = 3; x < 18; ++x) {
+    scene.state.devices[0].x = x;
+    const auto markers = scene.Draw();
+    const Marker& label = markers.at({"danger_label_plate", 0});
+    const Marker& other = markers.at({"pointer_label_plate", 0});
+    for (double share = 0.0; share <= 1.0; share += 0.02) {
+      EXPECT_FALSE(Covers(other, 1000.0 * x + share * (label.pose.position.x - 1000.0 * x),
+                          1000.0 + share * (label.pose.position.y - 1000.0)))
+          << "device at " << x;
+    }
+  }
+}
+
+TEST(DangerMarkers, PutThePointerAndItsMotionOnNoDevice) {
+  SceneNextToAPointer scene;
+  for (int x = 3; x < 20; ++x) {
+    for (const int y : {0, 1, 2, 3}) {
+      scene.state.devices[0].x = x;
+      scene.state.devices[0].y = y;
+      const auto markers = scene.Draw();
+      const auto& pointer = markers.at({"pointer", 0}).pose.position;
+      EXPECT_GT(std::hypot(pointer.x - 1000.0 * x, pointer.y - 1000.0 * y), 900.0)
+          << "device at " << x << ", " << y;
+      for (const auto& point : markers.at({"pointer_heading", 0}).points) {
+        EXPECT_GT(std::hypot(point.x - 1000.0 * x, point.y - 1000.0 * y), 400.0)
+            << "device at " << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(DangerMarkers, ShowTheMotionOfACentreOutsideTheFarm) {
+  SceneNextToAPointer scene;
+  const Marker arrow = scene.Draw().at({"pointer_heading", 0});
+  ASSERT_EQ(arrow.points.size(), 9U);
+  EXPECT_LT(arrow.points[8].x, arrow.points[0].x) << "the tip is north-west of the shaft";
+  EXPECT_GT(arrow.points[8].y, arrow.points[0].y);
+  for (const auto& point : arrow.points) {
+    EXPECT_TRUE(point.x > -500.0 && point.x < 19500.0 && point.y > -500.0 && point.y < 13500.0);
+  }
+  scene.state.disasters[0].speed = 0.0F;
+  EXPECT_EQ(scene.Draw().at({"pointer_heading", 0}).action, Marker::DELETE);
+}
+
+TEST(DangerMarkers, HaveALineFromADistantLabelThatCrossesNoOther) {
+  Scene scene;
+  scene.state.disasters[0].radii = {30.0F, 60.0F};
+  scene.state.devices.clear();
+  for (int i = 0; i < 16; ++i) {
+    scene.state.devices.push_back(test::MakeDevice(i, 0, 10 + i % 4, 10 + i / 4, 1.0F));
+  }
+  const auto markers = scene.Draw();
+  int lines = 0;
+  for (const auto& [key, marker] : markers) {
+    if (key.first != "danger_label_leader" || marker.action != Marker::ADD) continue;
+    ++lines;
+    const auto& from = marker.points[0];
+    const auto& to = marker.points[1];
+    for (const auto& [other, plate] : markers) {
+      if (other.first != "danger_label_plate" || other.second == key.second) continue;
+      if (plate.action != Marker::ADD) continue;
+      for (double share = 0.0; share <= 1.0; share += 0.02) {
+        EXPECT_FALSE(
+            Covers(plate, from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)))
+            << key.second << " through " << other.second;
+      }
+    }
+  }
+  EXPECT_GT(lines, 2);
+}
+
 TEST(DangerMarkers, SayWhenAStormOutsideIsClosest) {
   Scene scene;
   scene.SetTrackTo(-3);

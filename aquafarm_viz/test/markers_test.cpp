@@ -49,17 +49,13 @@ TEST(SpecMarkers, ShowEveryThingThatStandsStill) {
   const auto markers = ByKey(SpecMarkers(spec, false));
   EXPECT_EQ(markers.at({"island", 0}).points.size(), 6 * spec.islands.size());
   EXPECT_EQ(markers.at({"rocks", 0}).points.size(), 12 * spec.rocks.size());
-  for (int port = 0; port < 4; ++port) {
-    EXPECT_EQ(markers.count({"port", port}), 1U);
-    EXPECT_EQ(markers.at({"port_letter", port}).text, std::string(1, char('A' + port)));
-  }
   EXPECT_DOUBLE_EQ(markers.at({"sea", 0}).scale.x, 25000.0);
 }
 
 TEST(SpecMarkers, AreInMetresOfFrameMap) {
   auto spec = test::MakeSpec();
   spec.cell_size_m = 250.0;
-  const auto port = ByKey(SpecMarkers(spec, false)).at({"port", 1});
+  const auto port = ByKey(StateMarkers(spec, test::MakeState())).at({"port", 1});
   EXPECT_EQ(port.header.frame_id, "map");
   EXPECT_DOUBLE_EQ(port.pose.position.x, spec.ports[1].cell.x * 250.0);
   EXPECT_DOUBLE_EQ(port.pose.position.y, spec.ports[1].cell.y * 250.0);
@@ -92,6 +88,31 @@ TEST(StateMarkers, ShowEveryShipDeviceAndDisaster) {
   }
   EXPECT_EQ(markers.at({"disaster", 0}).action, Marker::ADD);
   EXPECT_EQ(markers.at({"heading", 0}).type, Marker::ARROW);
+}
+
+TEST(StateMarkers, ShowEachPortNextToAShipInItsCell) {
+  const auto spec = test::MakeSpec();
+  auto state = test::MakeState();
+  for (int port = 0; port < 4; ++port) {
+    const auto& cell = spec.ports[std::size_t(port)].cell;
+    for (const bool has_ship : {false, true}) {
+      state.ships[0].x = has_ship ? cell.x : 12;
+      state.ships[0].y = has_ship ? cell.y : 20;
+      const auto markers = ByKey(StateMarkers(spec, state));
+      const Marker& disc = markers.at({"port", port});
+      const Marker& letter = markers.at({"port_letter", port});
+      EXPECT_EQ(letter.text, std::string(1, char('A' + port)));
+      EXPECT_EQ(letter.pose.position.x, disc.pose.position.x);
+      const double away = std::hypot(disc.pose.position.x / spec.cell_size_m - cell.x,
+                                     disc.pose.position.y / spec.cell_size_m - cell.y);
+      if (has_ship) {
+        EXPECT_GT(away, 1.0) << "port " << port << " is covered";
+        EXPECT_LT(away, 1.5);
+      } else {
+        EXPECT_EQ(away, 0.0);
+      }
+    }
+  }
 }
 
 TEST(StateMarkers, KeepTheirIdsWhateverHappens) {
@@ -336,7 +357,8 @@ TEST(ValueLegend, HasTheRangeTheColoursAndTheSymbolsWithinTheViewOfTheFarm) {
   for (const auto& marker : draw().markers) {
     words += marker.text + "|";
     const double side_m = 25.0 * spec.cell_size_m;
-    EXPECT_GT(marker.pose.position.y - 0.5 * marker.scale.z, -0.1 * side_m - 500.0) << marker.text;
+    EXPECT_GT(marker.pose.position.y - 0.5 * marker.scale.z, -0.125 * side_m - 500.0)
+        << marker.text;
     EXPECT_LT(marker.pose.position.x + 0.3 * marker.scale.z * double(marker.text.size()), side_m);
     if (marker.colors.empty()) continue;
     EXPECT_LT(marker.colors.front().g, 0.15F) << "viridis begins with dark violet";
@@ -351,9 +373,31 @@ TEST(ValueLegend, HasTheRangeTheColoursAndTheSymbolsWithinTheViewOfTheFarm) {
   EXPECT_EQ(deleted, 3);
 }
 
+TEST(StateMarkers, SayTheLocalTimeOfAFarmWithAPlace) {
+  auto spec = test::MakeSpec();
+  spec.has_start_time = spec.has_origin = true;
+  spec.origin_longitude_deg = 122.7;
+  auto state = test::MakeState();
+  state.world_time = ros::Time(1627143360, 0);
+  EXPECT_EQ(ByKey(StateMarkers(spec, state)).at({"status", 0}).text,
+            "2021-07-24 16:16 UTC (00:16 UTC+8)  episode 12  step 17  return -42.5");
+}
+
+TEST(SpecMarkers, HaveOneLineOfTheKeyForEachSymbolOfDanger) {
+  const auto spec = test::MakeSpec();
+  std::string words;
+  for (const auto& marker : SpecMarkers(spec, false).markers) {
+    if (marker.ns == "sign_legend_text") words += marker.text + "|";
+  }
+  EXPECT_EQ(words, "device in danger|to the centre|its heading|");
+  for (const auto& marker : SpecMarkers(spec, false, ParseLayers("none")).markers) {
+    EXPECT_NE(marker.ns, "sign_legend_text") << "without risks there are no such symbols";
+  }
+}
+
 TEST(StateMarkers, SayEpisodeStepAndReturn) {
   const auto status = ByKey(StateMarkers(test::MakeSpec(), test::MakeState())).at({"status", 0});
-  EXPECT_EQ(status.text, "0 h 51 min   episode 12   step 17   return -42.5");
+  EXPECT_EQ(status.text, "0 h 51 min  episode 12  step 17  return -42.5");
 }
 
 }  // namespace

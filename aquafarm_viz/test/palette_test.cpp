@@ -75,6 +75,16 @@ TEST_P(Colours, OfRisksDifferForColourBlindPeople) {
   }
 }
 
+TEST_P(Colours, OfAChoiceDifferFromThoseOfRisksValuesAndTheSea) {
+  for (std::size_t i = 0; i < style_.risks.size(); ++i) {
+    EXPECT_GT(Difference(style_.risks[i], kChoiceColor), 15.0) << "risk " << i;
+  }
+  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    EXPECT_GT(Difference(ValueColor(share), kChoiceColor), 15.0) << "value " << share;
+  }
+  EXPECT_GT(Difference(kChoiceColor, kInk), 40.0) << "its outline";
+}
+
 TEST(LightStyle, HasRisksThatGetDarkerInGreyPrint) {
   const auto& risks = LightStyle().risks;
   for (std::size_t i = 1; i < risks.size(); ++i) {

@@ -401,10 +401,13 @@ TEST(CurveWidget, HasRoundTicksInsideTheRange) {
   EXPECT_EQ(RoundTicks({-233.0, 150.0}, 4), (std::vector<double>{-200.0, -100.0, 0.0, 100.0}));
   EXPECT_EQ(RoundTicks({0.3, 3.2}, 3), (std::vector<double>{1.0, 2.0, 3.0}));
   EXPECT_EQ(RoundTicks({1.0, 2000.0}, 5), (std::vector<double>{500.0, 1000.0, 1500.0, 2000.0}));
+  EXPECT_EQ(RoundTicks({-3300.0, 60.0}, 3), (std::vector<double>{-3000.0, -2000.0, -1000.0, 0.0}));
   for (const double span : {1e-6, 0.7, 42.0, 1e9}) {
-    const auto ticks = RoundTicks({5.0, 5.0 + span}, 4);
-    EXPECT_LE(ticks.size(), 5U) << span;
-    EXPECT_GE(ticks.size(), 1U) << span;
+    for (const double low : {-0.97, -0.5, 0.03, 5.0}) {
+      const auto ticks = RoundTicks({low * span, (low + 1.0) * span}, 3);
+      EXPECT_LE(ticks.size(), 6U) << span;
+      EXPECT_GE(ticks.size(), 3U) << span << " from " << low;
+    }
   }
 }
 

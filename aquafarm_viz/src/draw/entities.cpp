@@ -8,6 +8,7 @@
 #include "aquafarm_viz/base/checks.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "draw/symbols.h"
+#include "scene/port_shift.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -140,20 +141,37 @@ void DrawTrails(cv::Mat& map, const FarmState& state, const Trail& trail, const 
   }
 }
 
-void DrawRoutes(cv::Mat& map, const FarmState& state, const Trail& route, const Layout& layout) {
+namespace {
+
+// The colour of a part of a ship's route: of its age, or of the ship where there are several.
+Rgb RouteColor(const FarmState& state, std::int32_t ship, double share) {
   constexpr Rgb kFirst{0x5c, 0x2d, 0x91};
   constexpr Rgb kMiddle{0xe6, 0x4a, 0x6b};
   constexpr Rgb kLast{0xff, 0xe0, 0x66};
+  if (state.ships.size() > 1) return Mix(kPaper, ShipColor(ship), 0.25 + 0.75 * share);
+  return share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share) : Mix(kMiddle, kLast, 2.0 * share - 1.0);
+}
+
+}  // namespace
+
+void DrawRouteSample(cv::Mat& image, cv::Point2d from, cv::Point2d to, const FarmState& state,
+                     const Layout& layout) {
+  constexpr int kParts = 12;
+  for (int i = 0; i < kParts; ++i) {
+    const auto at = [&](int part) { return from + (to - from) * (double(part) / kParts); };
+    DrawLine(image, at(i), at(i + 1), Bgr(RouteColor(state, 0, (i + 0.5) / kParts)),
+             layout.Px(2.5));
+  }
+}
+
+void DrawRoutes(cv::Mat& map, const FarmState& state, const Trail& route, const Layout& layout) {
   for (const auto& ship : state.ships) {
     const ShipTrail* way = ship.visible ? route.Find(ship.id) : nullptr;
     if (way == nullptr) continue;
     for (std::size_t i = 1; i < way->places.size(); ++i) {
       if (Trail::IsGap(way->places[i - 1], way->places[i])) continue;
       const double share = double(i) / double(way->places.size());
-      const Rgb color = state.ships.size() > 1
-                            ? Mix(kPaper, ShipColor(ship.id), 0.25 + 0.75 * share)
-                        : share < 0.5 ? Mix(kFirst, kMiddle, 2.0 * share)
-                                      : Mix(kMiddle, kLast, 2.0 * share - 1.0);
+      const Rgb color = RouteColor(state, ship.id, share);
       DrawLine(map, layout.view.ToPixel(way->places[i - 1].x, way->places[i - 1].y),
                layout.view.ToPixel(way->places[i].x, way->places[i].y), Bgr(color), layout.Px(2.5));
     }
@@ -170,10 +188,19 @@ void DrawSight(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const
   }
 }
 
-void DrawPorts(cv::Mat& map, const FarmSpec& spec, const Layout& layout, const Fonts& fonts) {
+cv::Point2d PortPlace(const FarmSpec& spec, const FarmState& state,
+                      const aquafarm_msgs::PortInfo& port, const Layout& layout) {
+  const cv::Point shift = PortShift(spec, state, port);
+  const double side = 0.72 * (layout.ship_radius_px() + layout.port_radius_px());
+  return layout.view.ToPixel(port.cell.x, port.cell.y) +
+         cv::Point2d(side * shift.x, -side * shift.y);
+}
+
+void DrawPorts(cv::Mat& map, const FarmSpec& spec, const FarmState& state, const Layout& layout,
+               const Fonts& fonts) {
   for (const auto& port : spec.ports) {
     if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
-    DrawPort(map, layout.view.ToPixel(port.cell.x, port.cell.y), port.id, layout, fonts);
+    DrawPort(map, PortPlace(spec, state, port, layout), port.id, layout, fonts);
   }
 }
 
@@ -201,8 +228,8 @@ void DrawDevices(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
       // in a row on the quay next to the port
       const int index = delivered[{device.x, device.y}]++;
       const double step = 9.0 * layout.unit;
-      const double inwards = at.y > map.rows / 2.0 ? -1.0 : 1.0;
-      at += cv::Point2d(step * (index % 4 - 1.0), inwards * step * (1.9 + index / 4));
+      const double down = -DeliveredSide(spec, device.y);
+      at += cv::Point2d(step * (index % 4 - 1.0), down * step * (1.9 + index / 4));
       DrawDeviceSymbol(map, device.kind, {at, 4.5 * layout.unit, 0.0}, 0.35);
     } else if (device.status == DeviceState::DEPLOYED && !device.self_propelled) {
       DrawDeviceSymbol(map, device.kind, {at, radius, 0.0}, device.health_known ? 0.0 : 0.6);

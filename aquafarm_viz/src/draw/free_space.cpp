@@ -12,13 +12,39 @@ FreeSpace::FreeSpace(cv::Size size)
     : used_(std::max(1, size.height / kBlock), std::max(1, size.width / kBlock), std::uint8_t{0}),
       size_(size) {}
 
-void FreeSpace::Block(cv::Rect part) {
-  part &= cv::Rect({0, 0}, size_);
-  if (part.empty()) return;
+cv::Rect FreeSpace::Blocks(cv::Rect part) const {
   const cv::Point low(part.x / kBlock, part.y / kBlock);
   const cv::Point high((part.x + part.width - 1) / kBlock + 1,
                        (part.y + part.height - 1) / kBlock + 1);
-  used_(cv::Rect(low, high) & cv::Rect({0, 0}, used_.size())) = 1;
+  return cv::Rect(low, high) & cv::Rect({0, 0}, used_.size());
+}
+
+void FreeSpace::Block(cv::Rect part) {
+  part &= cv::Rect({0, 0}, size_);
+  if (!part.empty()) used_(Blocks(part)) = 1;
+}
+
+void FreeSpace::BlockLine(cv::Point2d from, cv::Point2d to, int width) {
+  constexpr int kMostSquares = 500;
+  const int count = std::clamp(static_cast<int>(cv::norm(to - from) / width), 1, kMostSquares);
+  for (int i = 0; i <= count; ++i) {
+    const cv::Point2d at = from + (to - from) * (double(i) / count);
+    if (std::abs(at.x) > 1e5 || std::abs(at.y) > 1e5) continue;
+    Block({cvRound(at.x) - width / 2, cvRound(at.y) - width / 2, width, width});
+  }
+}
+
+bool FreeSpace::IsFree(cv::Rect part) const {
+  if ((part & cv::Rect({0, 0}, size_)) != part) return false;
+  return cv::countNonZero(used_(Blocks(part))) == 0;
+}
+
+bool FreeSpace::CrossesLabel(cv::Point2d from, cv::Point2d to, cv::Rect own) const {
+  return std::any_of(labels_.begin(), labels_.end(), [&](const cv::Rect& label) {
+    cv::Point a(from);
+    cv::Point b(to);
+    return label != own && cv::clipLine(label, a, b);
+  });
 }
 
 std::optional<cv::Rect> FreeSpace::Take(cv::Size size, cv::Point2d near, double farthest) {
@@ -56,6 +82,7 @@ std::optional<cv::Rect> FreeSpace::Take(cv::Size size, cv::Point2d near, double 
   const cv::Rect place(best->x * kBlock + kBlock / 2, best->y * kBlock + kBlock / 2, size.width,
                        size.height);
   Block(place + cv::Size(2 * kBlock, 2 * kBlock) - cv::Point(kBlock, kBlock));
+  labels_.push_back(place);
   return place;
 }
 

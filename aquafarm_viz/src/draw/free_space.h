@@ -5,6 +5,7 @@
 
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 namespace aquafarm_viz {
 
@@ -17,6 +18,15 @@ class FreeSpace {
   /// Marks a part of the map as used. Parts outside the map are ignored.
   void Block(cv::Rect part);
 
+  /// Marks the pixels of a line as used, `width` wide.
+  void BlockLine(cv::Point2d from, cv::Point2d to, int width);
+
+  /// Returns whether nothing uses a part of the map. Parts outside the map are not free.
+  bool IsFree(cv::Rect part) const;
+
+  /// Returns whether a line crosses a rectangle that Take has returned, except `own`.
+  bool CrossesLabel(cv::Point2d from, cv::Point2d to, cv::Rect own) const;
+
   /// Finds the free rectangle of a size that is nearest to a point, and blocks it.
   /// @param near       the middle of the result is as near as possible to it [pixels]
   /// @param farthest   max distance of the middles [pixels]
@@ -24,8 +34,12 @@ class FreeSpace {
   std::optional<cv::Rect> Take(cv::Size size, cv::Point2d near, double farthest);
 
  private:
+  // Returns the cells of `used_` that a part of the map touches.
+  cv::Rect Blocks(cv::Rect part) const;
+
   static constexpr int kBlock = 3;  // pixels of a side of a cell of `used_`
   cv::Mat1b used_;                  // 1: used, one entry per kBlock x kBlock pixels
+  std::vector<cv::Rect> labels_;    // returned by Take
   cv::Size size_;
 };
 

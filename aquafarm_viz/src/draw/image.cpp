@@ -126,7 +126,7 @@ struct FarmPainter::Parts {
     if (layers.risk) LabelDanger(map, spec, state, forecasts.outlook, space, layout, fonts);
     LabelPointers(map, spec, state, space, layout, fonts);
     if (layers.labels) LabelDevices(map, spec, state, space, layout, fonts);
-    if (layers.risk) LabelRings(map, state, forecasts.courses, space, layout, fonts);
+    if (layers.risk) LabelRings(map, spec, state, forecasts.courses, space, layout, fonts);
     LabelMarks(map, marks, space, layout, fonts);
   }
 };
@@ -167,15 +167,11 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
   const auto marks = p.DrawDisasters(map, spec, state, forecasts, layers.risk);
   if (layers.route && overlays.route != nullptr) DrawRoutes(map, state, *overlays.route, p.layout);
   if (layers.sight) DrawSight(map, spec, state, p.layout);
-  if (layers.moves && values != nullptr) {
-    if (!p.moves) p.moves.emplace(p.layout);
-    p.moves->Draw(map, *values);
-  }
   if (layers.directions) {
     if (!p.directions) p.directions = LegalDirections(spec);
     DrawDirections(map, *p.directions, p.layout);
   }
-  DrawPorts(map, spec, p.layout, p.fonts);
+  DrawPorts(map, spec, state, p.layout, p.fonts);
   DrawDevices(map, spec, state, p.layout);
   DrawShips(map, spec, state, overlays.trail, p.layout);
   if (overlays.choice != nullptr) DrawChoice(map, state, *overlays.choice, p.layout);
@@ -183,6 +179,10 @@ const cv::Mat& FarmPainter::Draw(const FarmSpec& spec, const FarmState& state,
     p.DrawPolicyKey(map, state, overlays, values, space);
   }
   p.Label(map, spec, state, layers, forecasts, marks, space);
+  if (layers.moves && values != nullptr) {  // where the map is free, so that they cover nothing
+    if (!p.moves) p.moves.emplace(p.layout);
+    p.moves->Draw(map, *values, &space);
+  }
   DrawWords(p.image, spec, state, overlays, forecasts.outlook, p.layout, p.fonts);
   return p.image;
 }

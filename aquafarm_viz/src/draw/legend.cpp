@@ -15,7 +15,7 @@ using aquafarm_msgs::FarmSpec;
 using aquafarm_msgs::FarmState;
 
 // Heights in design units, from the bottom of the panel up.
-constexpr double kSymbolRow = 58.0;  // of the middle of the lowest row of symbols
+constexpr double kSymbolRow = 57.0;  // of the middle of the lowest row of symbols
 constexpr double kRow = 17.0;
 constexpr double kKeyRow = 15.0;    // of a ring with its name
 constexpr double kKeyScale = 24.0;  // of the scale of risks with its words
@@ -25,11 +25,19 @@ bool IsWide(const Layout& layout) { return layout.panel.width >= layout.Px(kWide
 
 // Distance from the bottom of the panel to the lower end of the key of risks.
 int FootPx(const Layout& layout) {
-  return layout.Px(kSymbolRow + (IsWide(layout) ? 0.0 : kRow) + 11.0);
+  return layout.Px(kSymbolRow + (IsWide(layout) ? 0.0 : kRow) + 9.0);
 }
 
 int KeyPx(const RiskKey& key, const Layout& layout) {
   return key.empty() ? layout.Px(kKeyScale) : static_cast<int>(key.size()) * layout.Px(kKeyRow);
+}
+
+int SignColumns(const Layout& layout) { return layout.panel.width >= layout.Px(245.0) ? 3 : 2; }
+
+int SignsPx(const std::vector<Sign>& signs, const Layout& layout) {
+  const int columns = SignColumns(layout);
+  const int rows = (static_cast<int>(signs.size()) + columns - 1) / columns;
+  return rows * layout.Px(kKeyRow) + (rows > 0 ? layout.Px(3) : 0);
 }
 
 // Draws a scale bar with a round length that fits into `room_px`.
@@ -130,14 +138,153 @@ RiskKey MakeRiskKey(const FarmState& state, const std::vector<Course>& courses) 
   return key.size() > kMostRings ? RiskKey() : key;
 }
 
-int LegendPx(const RiskKey& key, const Layout& layout) {
-  return FootPx(layout) + KeyPx(key, layout) + layout.Px(4);
+std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font) {
+  const std::string full = aquafarm::RingName(wind_kt);
+  if (font.Width(full) <= width_px) return full;
+  // The wind in knots is needed more than the second word of "hurricane force (64 kt)".
+  const std::size_t space = full.find(' ');
+  const std::size_t knots = full.find(" (");
+  if (knots == std::string::npos || space == knots) return full;
+  return full.substr(0, space) + full.substr(knots);
 }
 
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, const Layout& layout, const Fonts& fonts) {
+std::vector<Sign> SignsOf(const FarmSpec& spec, const FarmState& state, const Overlays& overlays,
+                          const Outlook& outlook, const Layout& layout) {
+  std::vector<Sign> signs;
+  const auto add = [&signs](bool is_shown, Sign sign) {
+    if (is_shown) signs.push_back(sign);
+  };
+  const Layers& layers = overlays.layers;
+  const auto in_danger = layers.risk ? CountInDanger(outlook) : 0;
+  add(in_danger > 0, Sign::kFirstReached);
+  add(in_danger > 1, Sign::kInDanger);
+  add(std::any_of(state.devices.begin(), state.devices.end(),
+                  [](const auto& device) {
+                    return device.status == aquafarm_msgs::DeviceState::DELIVERED;
+                  }),
+      Sign::kDelivered);
+  const auto has_way = [&state](const Trail* trail) {
+    return trail != nullptr &&
+           std::any_of(state.ships.begin(), state.ships.end(), [trail](const auto& ship) {
+             const ShipTrail* way = ship.visible ? trail->Find(ship.id) : nullptr;
+             return way != nullptr && way->places.size() > 1;
+           });
+  };
+  const bool has_route = layers.route && has_way(overlays.route);
+  add(has_route, Sign::kRoute);
+  add(!has_route && layers.trail && has_way(overlays.trail), Sign::kTrail);
+  bool has_heading = false;
+  bool has_pointer = false;
+  for (const auto& disaster : state.disasters) {
+    if (!IsDrawn(disaster)) continue;
+    has_heading = has_heading || disaster.speed > 0.0F;
+    has_pointer = has_pointer || !PlaceSign(disaster, layout).is_inside;
+  }
+  add(has_pointer, Sign::kPointer);
+  add(has_heading, Sign::kHeading);
+  add(layers.directions, Sign::kDirection);
+  add(layers.sight && spec.view_mode == FarmSpec::PARTIAL, Sign::kSight);
+  return signs;
+}
+
+const char* SignWords(Sign sign) {
+  switch (sign) {
+    case Sign::kFirstReached:
+      return "first hit";
+    case Sign::kInDanger:
+      return "in danger";
+    case Sign::kDelivered:
+      return "in port";
+    case Sign::kTrail:
+    case Sign::kRoute:
+      return "ship path";
+    case Sign::kPointer:
+      return "to centre";
+    case Sign::kHeading:
+      return "heading";
+    case Sign::kDirection:
+      return "legal move";
+    case Sign::kSight:
+      return "sensors";
+  }
+  return "";
+}
+
+namespace {
+
+void DrawSign(cv::Mat& image, Sign sign, cv::Point2d at, const FarmState& state,
+              const Layout& layout) {
+  const double unit = layout.unit;
+  const Style& style = *layout.style;
+  const cv::Point2d half(7.0 * unit, 0.0);
+  static const std::vector<cv::Point2f> kPointer{{0.0F, 1.0F}, {0.75F, -0.7F}, {-0.75F, -0.7F}};
+  switch (sign) {
+    case Sign::kFirstReached:
+      StrokeCircle(image, at, 3.0 * unit, Bgr(style.Risk(0.0)), layout.Px(1.4));
+      [[fallthrough]];
+    case Sign::kInDanger:
+      StrokeCircle(image, at, 6.0 * unit, Bgr(style.Risk(0.0)), layout.Px(1.4));
+      break;
+    case Sign::kDelivered:
+      DrawDeviceSymbol(image, 0, {at, 4.5 * unit, 0.0}, 0.35);
+      break;
+    case Sign::kTrail:
+      DrawLine(image, at - half, at + half, Bgr(Mix(style.label, style.sea_south, 0.15)),
+               layout.Px(2));
+      break;
+    case Sign::kRoute:
+      DrawRouteSample(image, at - half, at + half, state, layout);
+      break;
+    case Sign::kPointer: {
+      const Pose2 placing{at, 6.0 * unit, 225.0};
+      StrokeShape(image, kPointer, placing, Bgr(kInk), layout.Px(3));
+      StrokeShape(image, kPointer, placing, Bgr(style.words), layout.Px(1.5));
+      break;
+    }
+    case Sign::kHeading:
+      DrawArrow(image, at, 45, 17.0 * unit, Bgr(kInk), layout.Px(4));
+      DrawArrow(image, at, 45, 17.0 * unit, Bgr(kPaper), layout.Px(2.4));
+      break;
+    case Sign::kDirection:
+      DrawArrow(image, at, 90, 15.0 * unit, Bgr(kInk), layout.Px(4));
+      DrawArrow(image, at, 90, 15.0 * unit, Bgr(kDirectionColor), layout.Px(2));
+      break;
+    case Sign::kSight:
+      StrokeCircle(image, at, 6.0 * unit, Bgr(kInk), layout.Px(2.5));
+      StrokeCircle(image, at, 6.0 * unit, Bgr(kPaper), layout.Px(1.5));
+      break;
+  }
+}
+
+}  // namespace
+
+int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout) {
+  return FootPx(layout) + SignsPx(signs, layout) + KeyPx(key, layout) + layout.Px(4);
+}
+
+void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs, const FarmState& state,
+               const Layout& layout, const Fonts& fonts) {
+  const int columns = SignColumns(layout);
+  const int left = layout.panel.x + layout.Px(10);
+  const int top = layout.panel.y + layout.panel.height - FootPx(layout) - SignsPx(signs, layout);
+  const int width = (layout.panel.width - layout.Px(16)) / columns;
+  for (int i = 0; i < static_cast<int>(signs.size()); ++i) {
+    const int x = left + i % columns * width;
+    const int y = top + i / columns * layout.Px(kKeyRow) + layout.Px(kKeyRow / 2);
+    const Sign sign = signs[static_cast<std::size_t>(i)];
+    DrawSign(image, sign, cv::Point2d(x + layout.Px(7), y), state, layout);
+    fonts.small.Draw(image, fonts.small.Fit(SignWords(sign), width - layout.Px(22)),
+                     {x + layout.Px(20), y + fonts.small.cap_height() / 2},
+                     Bgr(layout.style->words));
+  }
+}
+
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
+                 const Layout& layout, const Fonts& fonts) {
   const int left = layout.panel.x + layout.Px(10);
   const int right = layout.panel.x + layout.panel.width - layout.Px(10);
-  int y = layout.panel.y + layout.panel.height - FootPx(layout) - KeyPx(key, layout);
+  int y = layout.panel.y + layout.panel.height - FootPx(layout) - SignsPx(signs, layout) -
+          KeyPx(key, layout);
   const auto at_right = [&](const std::string& text, int base, Rgb color) {
     fonts.small.Draw(image, text, {right - fonts.small.Width(text), base}, Bgr(color));
   };
@@ -149,8 +296,7 @@ void DrawRiskKey(cv::Mat& image, const RiskKey& key, const Layout& layout, const
     const std::string risk = "risk " + Number(ring.risk, 0);
     const int words = left + layout.Px(22);
     const int space = right - fonts.small.Width(risk) - layout.Px(4) - words;
-    std::string name = aquafarm::RingName(ring.wind_kt);
-    if (fonts.small.Width(name) > space) name = aquafarm::WindName(ring.wind_kt);
+    const std::string name = FittingRingName(ring.wind_kt, space, fonts.small);
     fonts.small.Draw(image, fonts.small.Fit(name, space), {words, base}, Bgr(layout.style->words));
     at_right(risk, base, layout.style->faint);
     y += layout.Px(kKeyRow);

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// The legend below the lists of the panel: the key of risks, symbols, north and scale; private to
-/// this package.
+/// The legend below the lists of the panel: the keys of risks and signs, symbols, north and scale;
+/// private to this package.
 
 #include <aquafarm_msgs/FarmSpec.h>
 #include <aquafarm_msgs/FarmState.h>
 
 #include <cstdint>
 #include <opencv2/core.hpp>
+#include <string>
 #include <vector>
 
+#include "scene/outlook.h"
 #include "scene/storm_track.h"
 
 namespace aquafarm_viz {
 
+class Font;
 struct Fonts;
 struct Layout;
+struct Overlays;
 
 /// A ring of a storm whose wind is given.
 struct NamedRing {
@@ -31,14 +35,44 @@ using RiskKey = std::vector<NamedRing>;
 /// there are too many.
 RiskKey MakeRiskKey(const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses);
 
+/// Returns the name of a ring and its wind, without the name's further words if they do not fit:
+/// "hurricane force (64 kt)" or "hurricane (64 kt)".
+std::string FittingRingName(std::int32_t wind_kt, int width_px, const Font& font);
+
+/// A symbol of the map that the lists of the panel do not explain.
+enum class Sign {
+  kInDanger,      ///< ring around a device
+  kFirstReached,  ///< two rings around a device
+  kDelivered,     ///< small device at a port
+  kTrail,
+  kRoute,
+  kHeading,    ///< arrow of a disaster
+  kPointer,    ///< triangle towards a centre outside the map
+  kDirection,  ///< arrow at a port
+  kSight
+};
+
+/// Returns the signs that a picture shows, each once.
+std::vector<Sign> SignsOf(const aquafarm_msgs::FarmSpec& spec,
+                          const aquafarm_msgs::FarmState& state, const Overlays& overlays,
+                          const Outlook& outlook, const Layout& layout);
+
+/// Returns the words of a sign in the key.
+const char* SignWords(Sign sign);
+
 /// Returns the height of the whole legend [pixels].
-int LegendPx(const RiskKey& key, const Layout& layout);
+int LegendPx(const RiskKey& key, const std::vector<Sign>& signs, const Layout& layout);
 
 /// Draws the constant part: symbols, north arrow and scale bar.
 void DrawLegend(cv::Mat& image, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
                 const Fonts& fonts);
 
-/// Draws the key of risks above the constant part.
-void DrawRiskKey(cv::Mat& image, const RiskKey& key, const Layout& layout, const Fonts& fonts);
+/// Draws the key of signs above the constant part.
+void DrawSigns(cv::Mat& image, const std::vector<Sign>& signs,
+               const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
+
+/// Draws the key of risks above the key of signs.
+void DrawRiskKey(cv::Mat& image, const RiskKey& key, const std::vector<Sign>& signs,
+                 const Layout& layout, const Fonts& fonts);
 
 }  // namespace aquafarm_viz

@@ -49,6 +49,20 @@ double NextRisk(const DeviceOutlook& device) {
   return device.arrivals.empty() ? device.risk_now : device.arrivals.front().risk;
 }
 
+// Connects a symbol with a label that is not next to it, unless the line would cross another label.
+void DrawLeader(cv::Mat& map, cv::Point2d symbol, double radius, cv::Rect label, FreeSpace& space,
+                const Layout& layout) {
+  const cv::Point2d to(std::clamp(symbol.x, double(label.x), double(label.x + label.width)),
+                       std::clamp(symbol.y, double(label.y), double(label.y + label.height)));
+  const double length = cv::norm(to - symbol);
+  if (length < 2.0 * radius + 6.0 * layout.unit) return;
+  const cv::Point2d from = symbol + (to - symbol) * (radius / length);
+  if (space.CrossesLabel(from, to, label)) return;
+  DrawLine(map, from, to, Bgr(layout.style->halo), layout.Px(3));
+  DrawLine(map, from, to, Bgr(layout.style->label), layout.Px(1));
+  space.BlockLine(from, to, layout.Px(3));
+}
+
 // Draws a text on a plate with a bar in the colour of a risk.
 void DrawPlate(cv::Mat& map, cv::Rect plate, const std::string& text, double risk,
                const Layout& layout, const Fonts& fonts) {
@@ -71,8 +85,7 @@ FreeSpace BlockSymbols(const FarmSpec& spec, const FarmState& state, const Layou
   const double gap = 2.0 * layout.unit;
   for (const auto& port : spec.ports) {
     if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
-    const cv::Point2d at = layout.view.ToPixel(port.cell.x, port.cell.y);
-    space.Block(Around(at, layout.port_radius_px() + gap));
+    space.Block(Around(PortPlace(spec, state, port, layout), layout.port_radius_px() + gap));
   }
   std::set<std::pair<int, int>> quays;
   for (const auto& device : state.devices) {
@@ -135,22 +148,25 @@ void LabelDanger(cv::Mat& map, const FarmSpec& spec, const FarmState& state, con
     const cv::Size size(fonts.bold.Width(text) + layout.Px(13), layout.Px(18));
     const auto plate = space.Take(size, at, 140.0 * layout.unit);
     if (!plate) continue;
-    const cv::Point2d middle(plate->x + plate->width / 2.0, plate->y + plate->height / 2.0);
-    if (std::abs(middle.y - at.y) > 3.2 * layout.device_radius_px() + plate->height) {
-      DrawLine(map, at, middle, Bgr(layout.style->label), layout.Px(1));
-    }
+    DrawLeader(map, at, kDangerRing * layout.device_radius_px(), *plate, space, layout);
     DrawPlate(map, *plate, text, NextRisk(one), layout, fonts);
   }
 }
 
 namespace {
 
-// Returns the point of a ring that is inside the map and nearest to its middle.
-std::optional<cv::Point2d> NearestOnMap(const DisasterState& disaster, std::size_t ring,
-                                        cv::Size map, const Layout& layout) {
-  constexpr int kBearings = 144;
+// A point of a ring on the map, and the direction away from the centre.
+struct RingPoint {
+  cv::Point2d at;
+  cv::Point2d outwards;
+};
+
+// Returns points of a ring that are inside the map, those nearest to its middle first.
+std::vector<RingPoint> PointsOnMap(const DisasterState& disaster, std::size_t ring, cv::Size map,
+                                   const Layout& layout) {
+  constexpr int kBearings = 72;
   const cv::Point2d middle(map.width / 2.0, map.height / 2.0);
-  const double margin = 14.0 * layout.unit;
+  const cv::Rect2d inside(0.0, 0.0, map.width, map.height);
   const auto radii = RingQuadrants(disaster, ring);
   const cv::Point2d centre = layout.view.ToPixel(disaster.x, disaster.y);
   const cv::Point2d towards = middle - centre;
@@ -159,39 +175,71 @@ std::optional<cv::Point2d> NearestOnMap(const DisasterState& disaster, std::size
   const bool is_far = cv::norm(towards) > half_map;
   const double half = is_far ? std::asin(half_map / cv::norm(towards)) : CV_PI;
   const double first = std::atan2(towards.x, -towards.y) - half;
-  std::optional<cv::Point2d> best;
+  std::vector<RingPoint> points;
   for (int i = 0; i < kBearings; ++i) {
     double bearing = std::fmod(first + 2.0 * half * i / (kBearings - 1), 2.0 * CV_PI);
     if (bearing < 0.0) bearing += 2.0 * CV_PI;
     const double radius = radii[std::min<std::size_t>(3, std::size_t(bearing / (CV_PI / 2.0)))];
-    if (!(radius > 0.0)) continue;
     const cv::Point2d at = layout.view.ToPixel(double(disaster.x) + radius * std::sin(bearing),
                                                double(disaster.y) + radius * std::cos(bearing));
-    const bool is_inside =
-        at.x > margin && at.y > margin && at.x < map.width - margin && at.y < map.height - margin;
-    if (!is_inside || (best && cv::norm(at - middle) >= cv::norm(*best - middle))) continue;
-    best = at;
+    if (!(radius > 0.0) || !inside.contains(at)) continue;
+    points.push_back({at, {std::sin(bearing), -std::cos(bearing)}});
   }
-  return best;
+  std::sort(points.begin(), points.end(), [&middle](const auto& a, const auto& b) {
+    return cv::norm(a.at - middle) < cv::norm(b.at - middle);
+  });
+  return points;
+}
+
+// Finds a place for the label of a ring next to its line: outside it, else inside it.
+std::optional<cv::Rect> PlaceBesideRing(const std::vector<RingPoint>& points, cv::Size size,
+                                        FreeSpace& space, const Layout& layout) {
+  for (const double side : {1.0, -1.0}) {
+    for (const RingPoint& point : points) {
+      const double away = std::abs(point.outwards.x) * size.width / 2.0 +
+                          std::abs(point.outwards.y) * size.height / 2.0 + 6.0 * layout.unit;
+      const auto place =
+          space.Take(size, point.at + point.outwards * (side * away), 5.0 * layout.unit);
+      if (place) return place;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-void LabelRings(cv::Mat& map, const FarmState& state, const std::vector<Course>& courses,
-                FreeSpace& space, const Layout& layout, const Fonts& fonts) {
+void LabelRings(cv::Mat& map, const FarmSpec& spec, const FarmState& state,
+                const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
+                const Fonts& fonts) {
+  FreeSpace water = space;
+  const double half_cell = 0.5 * layout.view.cell_px();
+  for (const auto& cell : spec.islands) {
+    water.Block(Around(layout.view.ToPixel(cell.x, cell.y), half_cell));
+  }
+  for (const auto& rock : spec.rocks) {
+    water.Block(Around(layout.view.ToPixel(rock.cell.x, rock.cell.y), 0.8 * half_cell));
+  }
+  for (const DisasterState& disaster : state.disasters) {  // no label on the line of a ring
+    if (!IsDrawn(disaster)) continue;
+    for (std::size_t ring = 0; ring < disaster.radii.size(); ++ring) {
+      const auto points = PointsOnMap(disaster, ring, map.size(), layout);
+      for (const RingPoint& point : points) water.Block(Around(point.at, 2.0 * layout.unit));
+    }
+  }
   for (std::size_t index = 0; index < state.disasters.size(); ++index) {
     const DisasterState& disaster = state.disasters[index];
     const std::vector<std::int32_t>& winds = courses[index].ring_winds_kt;
     if (!IsDrawn(disaster)) continue;
     for (std::size_t ring = 0; ring < std::min(disaster.radii.size(), disaster.risks.size());
          ++ring) {
-      const auto at = NearestOnMap(disaster, ring, map.size(), layout);
-      if (!at) continue;
       const std::string name = ring < winds.size() ? aquafarm::RingName(winds[ring]) + ", " : "";
       const std::string text = name + "risk " + Number(double(disaster.risks[ring]), 0);
-      const cv::Size size(fonts.bold.Width(text), fonts.bold.cap_height());
-      const auto place = space.Take(size, *at, 40.0 * layout.unit + size.width / 2.0);
-      if (place) DrawLabel(map, fonts.bold, text, place->tl(), layout);
+      const cv::Size size(fonts.bold.Width(text) + layout.Px(13), layout.Px(16));
+      const auto points = PointsOnMap(disaster, ring, map.size(), layout);
+      const auto place = PlaceBesideRing(points, size, water, layout);
+      if (!place) continue;  // the key of risks has to do
+      DrawPlate(map, *place, text, double(disaster.risks[ring]), layout, fonts);
+      space.Block(*place);
     }
   }
 }

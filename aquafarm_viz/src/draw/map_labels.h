@@ -32,12 +32,12 @@ void LabelDanger(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                  const aquafarm_msgs::FarmState& state, const Outlook& outlook, FreeSpace& space,
                  const Layout& layout, const Fonts& fonts);
 
-/// Labels each ring of a disaster that crosses the map: "risk -5", or "gale (34 kt), risk -5" where
-/// the wind is given.
+/// Labels each ring of a disaster that crosses the map, next to its line and on water: "risk -5",
+/// or "gale (34 kt), risk -5" where the wind is given. A ring without a free place has none.
 /// @param courses  one per disaster of the state
-void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmState& state,
-                const std::vector<Course>& courses, FreeSpace& space, const Layout& layout,
-                const Fonts& fonts);
+void LabelRings(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+                const aquafarm_msgs::FarmState& state, const std::vector<Course>& courses,
+                FreeSpace& space, const Layout& layout, const Fonts& fonts);
 
 /// Labels the pointers to disasters outside the map: "typhoon, centre 89 km SE".
 void LabelPointers(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,

@@ -22,13 +22,6 @@ using aquafarm_msgs::FarmState;
 using aquafarm_msgs::ShipState;
 using aquafarm_msgs::TrainingStatus;
 
-std::string WorldTime(const FarmSpec& spec, const FarmState& state) {
-  std::string text = ClockText(spec, state);
-  if (!spec.has_start_time) return text;
-  if (!spec.has_origin || NauticalZone(spec.origin_longitude_deg) == 0) return text;
-  return text + " (" + LocalTimeText(spec, state.world_time.sec, "%H:%M") + ")";
-}
-
 // Draws pieces of text one after another until the width is used up.
 class Line {
  public:
@@ -54,7 +47,7 @@ void DrawTop(cv::Mat& image, const FarmSpec& spec, const FarmState& state, const
   const int left = layout.Px(10);
   const int right = layout.top.width - layout.Px(10);
   const int first = layout.Px(18);
-  const std::string time = WorldTime(spec, state);
+  const std::string time = WorldTimeText(spec, state);
   const int time_left = right - fonts.small.Width(time);
   fonts.small.Draw(image, time, {time_left, first}, Bgr(layout.style->words));
   const std::string name = spec.scenario_name.empty() ? "aquafarm" : spec.scenario_name;
@@ -215,19 +208,29 @@ class Panel {
   int end_;
 };
 
+// The time at which a device was fetched: local, or since the start of the farm's world.
+std::string TimeOfDay(const FarmSpec& spec, std::int64_t at_s) {
+  if (spec.has_start_time) return LocalTimeText(spec, at_s, "%H:%M").substr(0, 5);
+  const std::string minutes = std::to_string(at_s / 60 % 60);
+  return std::to_string(at_s / 3600) + ":" + (minutes.size() < 2 ? "0" : "") + minutes;
+}
+
 // One row for each device: its symbol, kind, and danger or status.
-void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state,
+void ListEachDevice(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
                     const Outlook& outlook, const Layout& layout) {
   for (const auto& device : state.devices) {
     const bool done = device.status == DeviceState::DELIVERED;
     DrawDeviceSymbol(panel.image(), device.kind, {panel.SymbolAt(), 6.0 * layout.unit, 0.0},
                      done ? 0.5 : 0.0);
     std::string status = done ? "safe" : StatusName(device.status);
+    if (const auto at = trail == nullptr ? std::nullopt : trail->ChangedAt(device.id)) {
+      status += " " + TimeOfDay(spec, *at);
+    }
     Rgb color = done ? layout.style->good : layout.style->faint;
     const std::string label = DeviceLabel(device.id);
     std::string name = label + " " + DeviceName(device.kind);
     for (const DeviceOutlook& one : outlook.devices) {
-      if (one.id != device.id) continue;
+      if (one.id != device.id || DangerText(spec, one).empty()) continue;
       color = layout.style->alarm;
       status = DangerText(spec, one);
       // The symbol shows the kind too.
@@ -257,16 +260,17 @@ void ListKinds(Panel& panel, const FarmState& state, const Layout& layout) {
   }
 }
 
-void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, const Outlook& outlook,
-                 const Layout& layout) {
+void ListDevices(Panel& panel, const FarmSpec& spec, const FarmState& state, const Trail* trail,
+                 const Outlook& outlook, const Layout& layout) {
   constexpr std::size_t kMostRows = 6;
   const auto delivered = std::count_if(
       state.devices.begin(), state.devices.end(),
       [](const DeviceState& device) { return device.status == DeviceState::DELIVERED; });
-  panel.Heading("DEVICES",
+  const std::string zone = spec.has_start_time && trail != nullptr ? ", " + ZoneText(spec) : "";
+  panel.Heading("DEVICES" + zone,
                 std::to_string(delivered) + " / " + std::to_string(state.devices.size()) + " safe");
   if (state.devices.size() > kMostRows) return ListKinds(panel, state, layout);
-  ListEachDevice(panel, spec, state, outlook, layout);
+  ListEachDevice(panel, spec, state, trail, outlook, layout);
 }
 
 void ListDisasters(Panel& panel, const FarmSpec& spec, const FarmState& state,
@@ -437,9 +441,12 @@ bool DrawPanel(cv::Mat& image, const FarmSpec& spec, const FarmState& state,
                const Layout& layout, const Fonts& fonts) {
   if (layout.panel.empty()) return false;
   const RiskKey key = MakeRiskKey(state, forecasts.courses);
-  DrawRiskKey(image, key, layout, fonts);
-  Panel panel(image, LegendPx(key, layout), layout, fonts);
-  ListDevices(panel, spec, state, forecasts.outlook, layout);
+  const std::vector<Sign> signs = SignsOf(spec, state, overlays, forecasts.outlook, layout);
+  DrawSigns(image, signs, state, layout, fonts);
+  DrawRiskKey(image, key, signs, layout, fonts);
+  Panel panel(image, LegendPx(key, signs, layout), layout, fonts);
+  const Trail* trail = overlays.trail != nullptr ? overlays.trail : overlays.route;
+  ListDevices(panel, spec, state, trail, forecasts.outlook, layout);
   ListDisasters(panel, spec, state, forecasts.courses, layout, std::max(3, panel.RowsLeft() - 7));
   ListShips(panel, state, layout);
   const bool has_policy = ListPolicy(panel, state, overlays, values, layout);

@@ -11,8 +11,9 @@
 namespace aquafarm_viz {
 namespace {
 
-constexpr double kValueShare = 0.62;     // opacity of V_π over the sea
-constexpr double kLeastArrow_px = 11.0;  // min distance of two arrows
+constexpr double kValueShare = 0.62;    // opacity of V_π over the sea
+constexpr double kArrowSpacing = 34.0;  // min distance of two arrows [design units]
+constexpr double kLargestArrow = 19.0;  // [design units]
 
 cv::Mat Colors(const cv::Mat& shares) {
   cv::Mat colors;
@@ -92,8 +93,8 @@ void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
 
 MoveSigns::MoveSigns(const Layout& layout)
     : view_(layout.view),
-      every_(std::max(1, int(std::ceil(kLeastArrow_px * layout.unit / view_.cell_px())))),
-      size_px_(0.8 * every_ * view_.cell_px()) {
+      every_(std::max(1, int(std::ceil(kArrowSpacing * layout.unit / view_.cell_px())))),
+      size_px_(std::min(0.8 * every_ * view_.cell_px(), kLargestArrow * layout.unit)) {
   // Same sub-pixel position as the cell centres if cells have whole pixels.
   const int half = cvCeil(0.5 * size_px_) + 3;
   const cv::Point2d middle = view_.ToPixel(0, view_.height() - 1);
@@ -106,14 +107,15 @@ MoveSigns::MoveSigns(const Layout& layout)
   }
 }
 
-void MoveSigns::Draw(cv::Mat& map, const Values& values) const {
-  for (int y = every_ / 2; y < values.height; y += every_) {
-    for (int x = every_ / 2; x < values.width; x += every_) {
-      const std::uint8_t action = values.actions[values.Index(x, y)];
-      if (action >= kSigns) continue;
-      const cv::Point2d at = view_.ToPixel(x, y) - phase_;
-      signs_[action].LayOver(map, {cvRound(at.x), cvRound(at.y)});
-    }
+void MoveSigns::Draw(cv::Mat& map, const Values& values, const FreeSpace* space) const {
+  const int half = cvCeil(0.4 * size_px_);
+  for (const cv::Point cell : ShownActions(values, every_)) {
+    const std::uint8_t action = values.actions[values.Index(cell.x, cell.y)];
+    const cv::Point2d at = view_.ToPixel(cell.x, cell.y) - phase_;
+    const cv::Point middle(cvRound(at.x), cvRound(at.y));
+    const cv::Rect part(middle - cv::Point(half, half), cv::Size(2 * half + 1, 2 * half + 1));
+    const cv::Rect seen = part & cv::Rect({0, 0}, map.size());
+    if (space == nullptr || space->IsFree(seen)) signs_[action].LayOver(map, middle);
   }
 }
 
@@ -181,7 +183,7 @@ void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
   Tint(map, plate, Bgr(layout.style->panel), 0.85);
   fonts.bold.Draw(map, words,
                   {plate.x + layout.Px(6), plate.y + (plate.height + fonts.bold.cap_height()) / 2},
-                  Bgr(kChoiceColor));
+                  Bgr(layout.style->words));
 }
 
 }  // namespace aquafarm_viz

@@ -185,7 +185,7 @@ namespace {
 void LabelScale(Inset& inset, double reach_m, FreeSpace& space, const Layout& layout,
                 const Fonts& fonts) {
   const cv::Point2d middle(inset.image.cols / 2.0, inset.image.rows / 2.0);
-  const double radius = inset.image.cols / 4.0;
+  const double radius = std::min(inset.image.cols, inset.image.rows) / 4.0;
   const std::string half = DistanceText(reach_m / 2.0);
   const cv::Size size(fonts.small.Width(half), fonts.small.cap_height());
   const auto place = space.Take(size, middle - cv::Point2d(0.0, radius), inset.image.cols);
@@ -216,27 +216,16 @@ void DrawFarm(Inset& inset, const FarmSpec& spec, FreeSpace& space, const Layout
   if (place) DrawLabel(inset.image, fonts.small, word, place->tl(), layout);
 }
 
-// Blocks squares along a line inside the inset.
-void BlockLine(FreeSpace& space, cv::Point2d from, cv::Point2d to, int side) {
-  constexpr int kMostSquares = 500;
-  const int count = std::clamp(static_cast<int>(cv::norm(to - from) / side), 1, kMostSquares);
-  for (int i = 0; i <= count; ++i) {
-    const cv::Point2d at = from + (to - from) * (double(i) / count);
-    if (std::abs(at.x) > 1e5 || std::abs(at.y) > 1e5) continue;
-    space.Block({cvRound(at.x) - side / 2, cvRound(at.y) - side / 2, side, side});
-  }
-}
-
 void DrawInset(const cv::Mat& image, double reach_m, const FarmSpec& spec, const FarmState& state,
                const std::vector<Course>& courses, const Layout& layout, const Fonts& fonts) {
   const Style& style = *layout.style;
   Inset inset{image,
               {(spec.width - 1) / 2.0, (spec.height - 1) / 2.0},
-              image.cols / 2.0 / reach_m * spec.cell_size_m};
+              std::min(image.cols, image.rows) / 2.0 / reach_m * spec.cell_size_m};
   inset.image.setTo(Bgr(Mix(style.sea_south, style.panel, 0.4)));
   // The scale: a circle of half the reach.
-  StrokeCircle(inset.image, cv::Point2d(image.cols / 2.0, image.rows / 2.0), image.cols / 4.0,
-               Bgr(style.faint), 1);
+  StrokeCircle(inset.image, cv::Point2d(image.cols / 2.0, image.rows / 2.0),
+               std::min(image.cols, image.rows) / 4.0, Bgr(style.faint), 1);
   FreeSpace space(image.size());
   std::vector<CourseMark> marks;
   for (std::size_t i = 0; i < courses.size(); ++i) {
@@ -252,7 +241,7 @@ void DrawInset(const cv::Mat& image, double reach_m, const FarmSpec& spec, const
     for (std::size_t j = 1; j < courses[i].ahead.size(); ++j) {
       const TrackPoint& from = courses[i].ahead[j - 1];
       const TrackPoint& to = courses[i].ahead[j];
-      BlockLine(space, inset.At(from.x, from.y), inset.At(to.x, to.y), layout.Px(4));
+      space.BlockLine(inset.At(from.x, from.y), inset.At(to.x, to.y), layout.Px(4));
     }
     space.Block(
         {cvRound(at.x) - layout.Px(6), cvRound(at.y) - layout.Px(6), layout.Px(12), layout.Px(12)});
@@ -286,7 +275,8 @@ void DrawRegion(cv::Mat& image, cv::Rect room, const FarmSpec& spec, const FarmS
                   Bgr(has_course ? layout.style->words : layout.style->faint));
   int y = room.y + row_px;
   if (is_drawn) {
-    const cv::Rect place = cv::Rect(room.x, y, side, side) & cv::Rect({0, 0}, image.size());
+    // As wide as the room, so that labels have space next to the course.
+    const cv::Rect place = cv::Rect(room.x, y, room.width, side) & cv::Rect({0, 0}, image.size());
     DrawInset(image(place), Reach(1.12 * farthest_m), spec, state, courses, layout, fonts);
     cv::rectangle(image, place, Bgr(layout.style->rule), 1);
     y += place.height;

@@ -113,6 +113,10 @@ void DrawTrails(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail
 void DrawRoutes(cv::Mat& map, const aquafarm_msgs::FarmState& state, const Trail& route,
                 const Layout& layout);
 
+/// Draws the colours of routes along a short line, the start on the left.
+void DrawRouteSample(cv::Mat& image, cv::Point2d from, cv::Point2d to,
+                     const aquafarm_msgs::FarmState& state, const Layout& layout);
+
 /// Blends the colours of V_π over the map.
 void DrawValues(cv::Mat& map, const Values& values);
 
@@ -152,12 +156,13 @@ void DrawDirections(cv::Mat& map, const std::vector<PortDirections>& ports, cons
 void DrawMove(cv::Mat& map, cv::Point2d at, std::uint8_t action, double size_px,
               const Layout& layout);
 
-/// Draws the greedy action of each cell with symbols that are drawn once and then copied to the
+/// Draws the greedy actions of ShownActions with symbols that are drawn once and then copied to the
 /// nearest pixel.
 class MoveSigns {
  public:
   explicit MoveSigns(const Layout& layout);
-  void Draw(cv::Mat& map, const Values& values) const;
+  /// @param space  symbols are left out where it is used; null draws all
+  void Draw(cv::Mat& map, const Values& values, const FreeSpace* space = nullptr) const;
   /// Distance of two symbols along each axis [cells].
   int every() const { return every_; }
   double size_px() const { return size_px_; }
@@ -185,9 +190,13 @@ void DrawChoiceWords(cv::Mat& map, const aquafarm_msgs::FarmState& state,
 void DrawSight(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
                const aquafarm_msgs::FarmState& state, const Layout& layout);
 
+/// Returns the middle of a port's disc: its cell, or next to a ship in this cell.
+cv::Point2d PortPlace(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs::FarmState& state,
+                      const aquafarm_msgs::PortInfo& port, const Layout& layout);
+
 /// Draws ports with their letters.
-void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec, const Layout& layout,
-               const Fonts& fonts);
+void DrawPorts(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,
+               const aquafarm_msgs::FarmState& state, const Layout& layout, const Fonts& fonts);
 
 /// Draws devices that are deployed or delivered.
 void DrawDevices(cv::Mat& map, const aquafarm_msgs::FarmSpec& spec,

@@ -11,8 +11,10 @@
 #include "aquafarm_viz/base/disaster_kinds.h"
 #include "aquafarm_viz/scene/labels.h"
 #include "markers/maker.h"
+#include "scene/arrow.h"
 #include "scene/nautical.h"
 #include "scene/outlook.h"
+#include "scene/port_shift.h"
 #include "scene/storm_track.h"
 
 namespace aquafarm_viz {
@@ -51,12 +53,50 @@ class Labels {
     const double half = 0.75 * maker.thing_m() / maker.cell_m();  // with circle and bar
     for (const auto& device : state.devices) Block(device.x, device.y, half);
     for (const auto& ship : state.ships) Block(ship.x, ship.y, half);
-    for (const auto& port : spec.ports) Block(port.cell.x, port.cell.y, half);
+    for (const auto& port : spec.ports) {
+      const cv::Point shift = PortShift(spec, state, port);
+      Block(port.cell.x + shift.x, port.cell.y + shift.y, half);
+    }
     for (const auto& rock : spec.rocks)
       rocks_.push_back({rock.cell.x * 1.0, rock.cell.y * 1.0, 0.42, 0.42});
   }
 
   void Block(double x, double y, double half) { used_.push_back({x, y, half, half}); }
+
+  // Returns the first of some places that is free and inside the farm for a symbol, else the first.
+  cv::Point2d FirstFree(const std::vector<cv::Point2d>& places, double half) const {
+    const auto found = std::find_if(places.begin(), places.end(), [&](const cv::Point2d& place) {
+      const bool is_inside = place.x - half >= -0.8 && place.x + half <= spec_.width - 0.2 &&
+                             place.y - half >= -0.8 && place.y + half <= spec_.height - 0.2;
+      return is_inside && !Covers({place.x, place.y, half, half}, used_);
+    });
+    return found == places.end() ? places.front() : *found;
+  }
+
+  // Returns the line from a symbol to its label, empty if the label is next to the symbol or if the
+  // line would cross another label. Later labels avoid the line.
+  std::vector<cv::Point2d> Leader(cv::Point2d symbol, double radius, const Plate& label) {
+    constexpr double kSample = 0.2;  // [cells]
+    const cv::Point2d to(
+        std::clamp(symbol.x, label.x - label.half_width, label.x + label.half_width),
+        std::clamp(symbol.y, label.y - label.half_height, label.y + label.half_height));
+    const double length = cv::norm(to - symbol);
+    if (length < 2.5 * radius) return {};
+    const cv::Point2d from = symbol + (to - symbol) * (radius / length);
+    const int samples = std::max(1, int(cv::norm(to - from) / kSample));
+    std::vector<Plate> line;
+    for (int i = 0; i <= samples; ++i) {
+      const cv::Point2d at = from + (to - from) * (double(i) / samples);
+      line.push_back({at.x, at.y, 0.05, 0.05});
+      const bool crosses = std::any_of(labels_.begin(), labels_.end(), [&](const Plate& other) {
+        const bool is_own = other.x == label.x && other.y == label.y;
+        return !is_own && other.Covers(line.back());
+      });
+      if (crosses) return {};
+    }
+    used_.insert(used_.end(), line.begin(), line.end());
+    return {from, to};
+  }
 
   // Returns the place of a text: below, above or next to a point, or as near to it as possible.
   // Returns nullopt if there is none, or the last place tried if the text must be shown.
@@ -79,11 +119,13 @@ class Labels {
         plate.y = std::clamp(y + offset.y, half_height - 0.5, spec_.height - 0.5 - half_height);
         if (Covers(plate, used_) || (avoids_rocks && Covers(plate, rocks_))) continue;
         used_.push_back(plate);
+        labels_.push_back(plate);
         return plate;
       }
     }
     if (!must_show) return std::nullopt;
     used_.push_back(plate);
+    labels_.push_back(plate);
     return plate;
   }
 
@@ -119,6 +161,7 @@ class Labels {
   const FarmSpec& spec_;
   double word_;  // height of a text [cells]
   std::vector<Plate> used_;
+  std::vector<Plate> labels_;
   std::vector<Plate> rocks_;
 };
 
@@ -139,7 +182,24 @@ void AddText(MarkerArray& array, const Maker& maker, const std::string& space, s
 
 void DeleteText(MarkerArray& array, const Maker& maker, const std::string& space, std::int32_t id) {
   array.markers.push_back(maker.Delete((space + "_plate").c_str(), id));
+  array.markers.push_back(maker.Delete((space + "_leader").c_str(), id));
   array.markers.push_back(maker.Delete(space.c_str(), id));
+}
+
+// Adds or deletes the line from a symbol to its label.
+void AddLeader(MarkerArray& array, const Maker& maker, const std::string& space, std::int32_t id,
+               const std::vector<cv::Point2d>& line) {
+  const std::string name = space + "_leader";
+  if (line.empty()) return array.markers.push_back(maker.Delete(name.c_str(), id));
+  Marker marker = maker.Make(name.c_str(), id, Marker::TRIANGLE_LIST, kSignLayer, 0.0, 0.0);
+  marker.color = Color(kPaper);
+  const cv::Point2d along = line[1] - line[0];
+  const cv::Point2d aside = cv::Point2d(-along.y, along.x) * (0.04 / cv::norm(along));
+  for (const cv::Point2d& corner : {line[0] - aside, line[1] - aside, line[1] + aside,
+                                    line[0] - aside, line[1] + aside, line[0] + aside}) {
+    marker.points.push_back(Point(corner.x * maker.cell_m(), corner.y * maker.cell_m()));
+  }
+  array.markers.push_back(marker);
 }
 
 double NextRisk(const DeviceOutlook& device) {
@@ -156,40 +216,106 @@ void AddCircle(MarkerArray& array, const Maker& maker, const DeviceState& device
   array.markers.push_back(circle);
 }
 
-void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
-                const FarmState& state, const Outlook& outlook, Labels& labels) {
-  std::vector<std::int32_t> shown;
-  std::vector<std::int32_t> labelled;
-  for (const DeviceOutlook& one : outlook.devices) {
-    if (!(NextRisk(one) < 0.0)) continue;
-    const auto device =
-        std::find_if(state.devices.begin(), state.devices.end(),
-                     [&one](const DeviceState& other) { return other.id == one.id; });
-    AddCircle(array, maker, *device, NextRisk(one));
-    shown.push_back(one.id);
-    if (labelled.size() == kMostLabels) continue;
-    const std::string text = DeviceLabel(one.id) + ": " + DangerText(spec, one);
-    const auto plate = labels.Place(text, device->x, device->y, /*must_show=*/labelled.empty());
-    if (!plate) continue;
-    AddText(array, maker, "danger_label", one.id, *plate, text);
-    labelled.push_back(one.id);
+// The labels of the devices in danger: that of the first one, then, if called again, of the others.
+class DeviceLabels {
+ public:
+  DeviceLabels(const Maker& maker, const FarmSpec& spec, const FarmState& state,
+               const Outlook& outlook)
+      : maker_(maker), spec_(spec), state_(state) {
+    for (const DeviceOutlook& one : outlook.devices) {
+      if (NextRisk(one) < 0.0) devices_.push_back(&one);
+    }
   }
-  const auto is_in = [](const std::vector<std::int32_t>& ids, std::int32_t id) {
-    return std::find(ids.begin(), ids.end(), id) != ids.end();
-  };
-  for (const auto& device : state.devices) {
-    if (!is_in(shown, device.id)) array.markers.push_back(maker.Delete("danger", device.id));
-    if (!is_in(labelled, device.id)) DeleteText(array, maker, "danger_label", device.id);
+
+  // Labels the next devices, up to a number of labels in all.
+  void Add(MarkerArray& array, Labels& labels, std::size_t most) {
+    const double radius = 0.86 * maker_.thing_m() / maker_.cell_m();
+    for (; next_ < devices_.size() && labelled_.size() < most; ++next_) {
+      const DeviceOutlook& one = *devices_[next_];
+      const DeviceState& device = Find(one.id);
+      const std::string text = DeviceLabel(one.id) + ": " + DangerText(spec_, one);
+      const auto plate = labels.Place(text, device.x, device.y, /*must_show=*/labelled_.empty());
+      if (!plate) continue;
+      AddText(array, maker_, "danger_label", one.id, *plate, text);
+      AddLeader(array, maker_, "danger_label", one.id,
+                labels.Leader(cv::Point2d(device.x, device.y), radius, *plate));
+      labelled_.push_back(one.id);
+    }
   }
+
+  // Adds the circles, and deletes those and the labels of all other devices.
+  void Finish(MarkerArray& array) {
+    std::vector<std::int32_t> shown;
+    for (const DeviceOutlook* one : devices_) {
+      AddCircle(array, maker_, Find(one->id), NextRisk(*one));
+      shown.push_back(one->id);
+    }
+    const auto is_in = [](const std::vector<std::int32_t>& ids, std::int32_t id) {
+      return std::find(ids.begin(), ids.end(), id) != ids.end();
+    };
+    for (const auto& device : state_.devices) {
+      if (!is_in(shown, device.id)) array.markers.push_back(maker_.Delete("danger", device.id));
+      if (!is_in(labelled_, device.id)) DeleteText(array, maker_, "danger_label", device.id);
+    }
+  }
+
+ private:
+  const DeviceState& Find(std::int32_t id) const {
+    return *std::find_if(state_.devices.begin(), state_.devices.end(),
+                         [id](const DeviceState& other) { return other.id == id; });
+  }
+
+  const Maker& maker_;
+  const FarmSpec& spec_;
+  const FarmState& state_;
+  std::vector<const DeviceOutlook*> devices_;
+  std::vector<std::int32_t> labelled_;
+  std::size_t next_{};
+};
+
+// A pointer at the edge of the farm towards the centre of a disaster outside it.
+struct EdgePointer {
+  std::size_t disaster{};
+  cv::Point2d at;  // [cells]
+};
+
+// Draws the arrow of a motion next to a pointer, towards the middle of the farm.
+void AddHeading(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+                const DisasterState& disaster, cv::Point2d at, Labels& labels) {
+  if (!(disaster.speed > 0.0F)) {
+    array.markers.push_back(maker.Delete("pointer_heading", disaster.id));
+    return;
+  }
+  const double thing = maker.thing_m() / maker.cell_m();
+  constexpr int kDirections = 12;
+  std::vector<cv::Point2d> places;
+  for (const double away : {1.9, 2.4, 3.0}) {
+    for (int i = 0; i < kDirections; ++i) {
+      const double angle = 2.0 * CV_PI * i / kDirections;
+      places.push_back(at + away * thing * cv::Point2d(std::cos(angle), std::sin(angle)));
+    }
+  }
+  const cv::Point2d middle((spec.width - 1) / 2.0, (spec.height - 1) / 2.0);
+  std::stable_sort(places.begin(), places.begin() + kDirections,
+                   [&middle](const auto& a, const auto& b) {
+                     return cv::norm(a - middle) < cv::norm(b - middle);
+                   });
+  const cv::Point2d place = labels.FirstFree(places, 0.8 * thing);
+  Marker arrow =
+      maker.Make("pointer_heading", disaster.id, Marker::TRIANGLE_LIST, kSignLayer, 0.0, 0.0);
+  arrow.color = Color(kPaper);
+  AddArrow(arrow, place.x, place.y, disaster.heading_deg, maker.cell_m(), 3.0 * thing);
+  array.markers.push_back(arrow);
+  labels.Block(place.x, place.y, 0.9 * thing);
 }
 
-// Points at the edge of the farm towards the centre of each disaster outside it. The labels of the
-// pointers are placed before those of devices, which have more places to go.
-void AddPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
-                 const FarmState& state, const std::vector<Course>& courses, Labels& labels) {
+// Adds the pointers with their motion, without labels.
+std::vector<EdgePointer> AddPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+                                     const FarmState& state, Labels& labels) {
   static const std::vector<cv::Point2f> kPointer{{0.0F, 0.7F}, {-0.5F, -0.5F}, {0.5F, -0.5F}};
   const double middle_x = (spec.width - 1) / 2.0;
   const double middle_y = (spec.height - 1) / 2.0;
+  std::vector<EdgePointer> pointers;
   for (std::size_t i = 0; i < state.disasters.size(); ++i) {
     const auto& disaster = state.disasters[i];
     const double east = disaster.x - middle_x;
@@ -198,23 +324,44 @@ void AddPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
                                    std::abs(north) / (spec.height / 2.0 - 0.8));
     if (!disaster.known || disaster.steps_left <= 0 || IsCentreInFarm(spec, disaster)) {
       array.markers.push_back(maker.Delete("pointer", disaster.id));
+      array.markers.push_back(maker.Delete("pointer_heading", disaster.id));
       DeleteText(array, maker, "pointer_label", disaster.id);
       continue;
     }
-    const double x = middle_x + east / beyond;
-    const double y = middle_y + north / beyond;
+    const cv::Point2d edge(middle_x + east / beyond, middle_y + north / beyond);
+    const bool is_beside = std::abs(east) * spec.height > std::abs(north) * spec.width;
+    std::vector<cv::Point2d> places{edge};  // along the edge
+    for (const double aside : {1.0, -1.0, 1.6, -1.6, 2.2, -2.2}) {
+      const double cells = aside * maker.thing_m() / maker.cell_m();
+      places.push_back(edge + (is_beside ? cv::Point2d(0.0, cells) : cv::Point2d(cells, 0.0)));
+    }
+    const cv::Point2d at = labels.FirstFree(places, 0.55 * maker.thing_m() / maker.cell_m());
     const double bearing = std::atan2(east, north) * 180.0 / CV_PI;
-    Marker pointer = maker.Shape("pointer", disaster.id, kSignLayer, x, y, kPointer,
+    Marker pointer = maker.Shape("pointer", disaster.id, kSignLayer, at.x, at.y, kPointer,
                                  1.2 * maker.thing_m(), GradeColor(disaster.grade));
     pointer.pose.orientation = Turned(bearing, 0.0);
     array.markers.push_back(pointer);
-    labels.Block(x, y, 0.8 * maker.thing_m() / maker.cell_m());
+    labels.Block(at.x, at.y, 0.8 * maker.thing_m() / maker.cell_m());
+    AddHeading(array, maker, spec, disaster, at, labels);
+    pointers.push_back({i, at});
+  }
+  return pointers;
+}
+
+void LabelPointers(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+                   const FarmState& state, const std::vector<Course>& courses,
+                   const std::vector<EdgePointer>& pointers, Labels& labels) {
+  const double radius = 0.8 * maker.thing_m() / maker.cell_m();
+  for (const EdgePointer& pointer : pointers) {
+    const DisasterState& disaster = state.disasters[pointer.disaster];
     const std::string text = DisasterName(disaster.kind) + ", centre " +
                              DistanceText(MetresFromFarm(spec, disaster.x, disaster.y)) + " " +
                              PointFromFarm(spec, disaster.x, disaster.y) + "\n" +
-                             ApproachText(spec, disaster, courses[i]);
-    const auto plate = labels.Place(text, x, y, /*must_show=*/true);
+                             ApproachText(spec, disaster, courses[pointer.disaster]);
+    const auto plate = labels.Place(text, pointer.at.x, pointer.at.y, /*must_show=*/true);
     AddText(array, maker, "pointer_label", disaster.id, *plate, text);
+    AddLeader(array, maker, "pointer_label", disaster.id,
+              labels.Leader(pointer.at, radius, *plate));
   }
 }
 
@@ -241,8 +388,14 @@ MarkerArray DangerMarkers::Of(const FarmSpec& spec, const FarmState& state) {
   const Maker maker(spec, state.header);
   MarkerArray array;
   Labels labels(maker, spec, state);
-  AddPointers(array, maker, spec, state, courses, labels);
-  AddDevices(array, maker, spec, state, outlook, labels);
+  const auto pointers = AddPointers(array, maker, spec, state, labels);
+  // The device that is reached first has its label next to it; the others have more places to go
+  // than a pointer at the edge.
+  DeviceLabels devices(maker, spec, state, outlook);
+  devices.Add(array, labels, 1);
+  LabelPointers(array, maker, spec, state, courses, pointers, labels);
+  devices.Add(array, labels, kMostLabels);
+  devices.Finish(array);
   const std::string alarm = OutlookText(spec, state, outlook);
   if (alarm.empty() || state.terminated || state.truncated) {
     array.markers.push_back(maker.Delete("alarm", 0));

@@ -10,6 +10,8 @@
 #include "aquafarm_viz/base/text.h"
 #include "aquafarm_viz/names.h"
 #include "base/marker_color.h"
+#include "markers/maker.h"
+#include "scene/arrow.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -73,6 +75,34 @@ class Row {
     x_m_ += width_m + 0.4 * size_m_;
   }
 
+  // The circle around a device in danger.
+  void Ring() {
+    Marker ring = MakeList();
+    const double outer_m = 0.45 * size_m_;
+    const double inner_m = 0.32 * size_m_;
+    AddBand(ring, {inner_m, inner_m, inner_m, inner_m}, {outer_m, outer_m, outer_m, outer_m});
+    ring.color = Color(SeverityColor(0.0));
+    Put(ring);
+  }
+
+  // The pointer towards a centre outside the farm.
+  void Pointer() {
+    Marker pointer = MakeList();
+    for (const auto& [x, y] : {std::pair(0.0, 0.5), {-0.4, -0.4}, {0.4, -0.4}}) {
+      pointer.points.push_back(Point(x * size_m_, y * size_m_));
+    }
+    pointer.color = Color(GradeColor(3));
+    Put(pointer);
+  }
+
+  // The arrow along the motion of a disaster.
+  void Arrow() {
+    Marker arrow = MakeList();
+    AddArrow(arrow, 0.0, 0.0, 45, size_m_, 1.6);
+    arrow.color = Color(kPaper);
+    Put(arrow);
+  }
+
   // Deletes the marker that would be next.
   void Remove(const std::string& space) {
     Marker marker = Make(space, Marker::CUBE, x_m_);
@@ -91,6 +121,17 @@ class Row {
   }
 
  private:
+  Marker MakeList() {
+    Marker list = Make(space_, Marker::TRIANGLE_LIST, x_m_ + 0.5 * size_m_);
+    list.scale.x = list.scale.y = list.scale.z = 1.0;
+    return list;
+  }
+
+  void Put(const Marker& symbol) {
+    array_.markers.push_back(symbol);
+    x_m_ += 1.4 * size_m_;
+  }
+
   Marker Make(const std::string& space, int type, double x_m) {
     Marker marker;
     marker.header = header_;
@@ -139,8 +180,18 @@ void AddLegend(MarkerArray& array, const FarmSpec& spec) {
   row.Text("north is up");
 }
 
+void AddSignLegend(MarkerArray& array, const FarmSpec& spec) {
+  Row row(array, spec, 1, "sign_legend");
+  row.Ring();
+  row.Text("device in danger");
+  row.Pointer();
+  row.Text("to the centre");
+  row.Arrow();
+  row.Text("its heading");
+}
+
 void AddValueLegend(MarkerArray& array, const FarmSpec& spec, const Values& values) {
-  Row row(array, spec, 1, "value_legend");
+  Row row(array, spec, 2, "value_legend");
   if (values.highest > values.lowest) {
     row.Text("value " + Number(double(values.lowest), 1));
     row.ValueBar(3.0 * row.size_m());

@@ -13,8 +13,12 @@ namespace aquafarm_viz {
 /// Adds a scale bar, the colours of risks and north, in the namespaces `legend` and `legend_text`.
 void AddLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
 
-/// Adds the range and colours of values and the symbols of best moves, a line below the legend, in
-/// the namespaces `value_legend` and `value_legend_text`.
+/// Adds the symbols of danger: of a device, and of a disaster's centre and motion, a line below the
+/// legend, in the namespaces `sign_legend` and `sign_legend_text`.
+void AddSignLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec);
+
+/// Adds the range and colours of values and the symbols of best moves, two lines below the legend,
+/// in the namespaces `value_legend` and `value_legend_text`.
 void AddValueLegend(visualization_msgs::MarkerArray& array, const aquafarm_msgs::FarmSpec& spec,
                     const Values& values);
 

@@ -18,6 +18,8 @@
 #include "markers/maker.h"
 #include "markers/rings.h"
 #include "scene/arrow.h"
+#include "scene/nautical.h"
+#include "scene/port_shift.h"
 
 namespace aquafarm_viz {
 namespace {
@@ -81,18 +83,22 @@ Marker Rocks(const Maker& maker, const FarmSpec& spec) {
   return rocks;
 }
 
-void AddPorts(MarkerArray& array, const Maker& maker, const FarmSpec& spec) {
+// A port's disc gives way to a ship in its cell.
+void AddPorts(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
+              const FarmState& state) {
+  const double side = 0.8 * maker.thing_m() / maker.cell_m();
   for (const auto& port : spec.ports) {
     if (!InGrid(spec, port.cell.x, port.cell.y)) continue;
-    Marker disc =
-        maker.Make("port", port.id, Marker::CYLINDER, kPortLayer, port.cell.x, port.cell.y);
+    const cv::Point shift = PortShift(spec, state, port);
+    const double x = port.cell.x + side * shift.x;
+    const double y = port.cell.y + side * shift.y;
+    Marker disc = maker.Make("port", port.id, Marker::CYLINDER, kPortLayer, x, y);
     disc.scale.x = disc.scale.y = 0.95 * maker.thing_m();
     disc.scale.z = 0.5 * maker.layer_m();
     disc.color = Color(kPort);
     array.markers.push_back(disc);
-    Marker letter =
-        maker.Text("port_letter", port.id, port.cell.x, port.cell.y, PortLetter(port.id),
-                   std::max(0.8 * maker.thing_m(), maker.word_m()), kInk);
+    Marker letter = maker.Text("port_letter", port.id, x, y, PortLetter(port.id),
+                               std::max(0.8 * maker.thing_m(), maker.word_m()), kInk);
     letter.pose.position.z = kDeviceLayer * maker.layer_m();  // below ships in the port
     array.markers.push_back(letter);
   }
@@ -170,7 +176,7 @@ void AddDevices(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
     if (done) {
       const int index = delivered[{device.x, device.y}]++;
       x += thing * (0.35 * (index % 4) - 0.5);
-      y -= thing * (0.75 + 0.35 * (index / 4));
+      y += DeliveredSide(spec, device.y) * thing * (0.75 + 0.35 * (index / 4));
       size = 0.18;
       color = Mix(DeviceColor(device.kind), kUnknown, 0.35);
     } else if (device.status == DeviceState::ABOARD) {
@@ -263,8 +269,8 @@ void AddDisasters(MarkerArray& array, const Maker& maker, const FarmSpec& spec,
 }
 
 Marker Status(const Maker& maker, const FarmSpec& spec, const FarmState& state) {
-  const std::string text = ClockText(spec, state) + "   episode " + Count(state.episode) +
-                           "   step " + Count(state.step) + "   return " +
+  const std::string text = WorldTimeText(spec, state) + "  episode " + Count(state.episode) +
+                           "  step " + Count(state.step) + "  return " +
                            Number(state.joint_return, 1);
   return maker.Text("status", 0, (spec.width - 1) / 2.0, maker.LineAbove(1), text, maker.line_m(),
                     kPaper);
@@ -285,9 +291,9 @@ MarkerArray SpecMarkers(const FarmSpec& spec, bool clear, const Layers& layers) 
   for (auto& list : {Island(maker, spec), Rocks(maker, spec)}) {
     if (!list.points.empty()) array.markers.push_back(list);
   }
-  AddPorts(array, maker, spec);
   if (layers.directions) AddDirections(array, maker, spec);
   AddLegend(array, spec);
+  if (layers.risk) AddSignLegend(array, spec);
   return array;
 }
 
@@ -296,6 +302,7 @@ MarkerArray StateMarkers(const FarmSpec& spec, const FarmState& state, const Tra
   const Maker maker(spec, state.header);
   MarkerArray array;
   AddDisasters(array, maker, spec, state, layers.risk);
+  AddPorts(array, maker, spec, state);
   AddDevices(array, maker, spec, state);
   AddShips(array, maker, spec, state, trail);
   if (layers.labels) AddLabels(array, maker, spec, state);

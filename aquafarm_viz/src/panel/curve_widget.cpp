@@ -56,16 +56,19 @@ CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve) {
 }
 
 std::vector<double> RoundTicks(const CurveRange& range, int most) {
+  constexpr std::size_t kFewest = 3;
   const double span = range.high - range.low;
-  double step = std::pow(10.0, std::floor(std::log10(span / std::max(1, most))));
-  for (const double factor : {1.0, 2.0, 5.0, 10.0}) {
-    if (span / (factor * step) > most) continue;
-    step *= factor;
-    break;
-  }
+  const double power = std::pow(10.0, std::ceil(std::log10(span / std::max(1, most))));
+  // From coarse to fine, until there are enough ticks.
   std::vector<double> ticks;
-  for (double i = std::ceil(range.low / step); i * step <= range.high; i += 1.0) {
-    ticks.push_back(i == 0.0 ? 0.0 : i * step);
+  for (const double factor : {1.0, 0.5, 0.2, 0.1, 0.05, 0.02}) {
+    const double step = factor * power;
+    std::vector<double> finer;
+    for (double i = std::ceil(range.low / step); i * step <= range.high; i += 1.0) {
+      finer.push_back(i == 0.0 ? 0.0 : i * step);
+    }
+    if (ticks.size() >= kFewest && int(finer.size()) > most) break;
+    ticks = finer;
   }
   return ticks;
 }

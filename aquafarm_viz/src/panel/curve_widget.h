@@ -19,8 +19,8 @@ struct CurveRange {
 /// a training are far below the rest.
 CurveRange RangeOfReturns(const std::vector<CurvePoint>& curve);
 
-/// Returns the multiples of 1, 2 or 5 times a power of ten within a range: the smallest for which
-/// at most `most` intervals fit.
+/// Returns the multiples of 1, 2 or 5 times a power of ten within a range: as many as fit into
+/// `most`, but at least three.
 std::vector<double> RoundTicks(const CurveRange& range, int most);
 
 /// Plots the mean return over episodes as a line and the success rate (0 … 100 %, on the right) as

@@ -11,7 +11,7 @@
 namespace aquafarm_viz {
 
 constexpr double kMargin =
-    0.1;  // fraction of the farm on each side, for two lines of text above and below it
+    0.125;  // fraction of the farm on each side, for three lines of text below it
 
 rviz::ViewController* WholeView::FromAbove(rviz::VisualizationManager& rviz) {
   rviz::ViewController* view = rviz.getViewManager()->getCurrent();

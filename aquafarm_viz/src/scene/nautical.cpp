@@ -8,11 +8,16 @@
 
 #include "aquafarm_viz/base/palette.h"
 #include "aquafarm_viz/base/text.h"
+#include "aquafarm_viz/scene/labels.h"
 
 namespace aquafarm_viz {
 namespace {
 
 constexpr double kHour_s = 3600.0;
+
+int ZoneOf(const aquafarm_msgs::FarmSpec& spec) {
+  return spec.has_origin ? NauticalZone(spec.origin_longitude_deg) : 0;
+}
 
 }  // namespace
 
@@ -47,9 +52,20 @@ std::string TimeText(std::time_t utc, const char* format) {
 std::string LocalTimeText(const aquafarm_msgs::FarmSpec& spec, std::time_t utc,
                           const char* format) {
   constexpr int kHour = 3600;
-  const int zone = spec.has_origin ? NauticalZone(spec.origin_longitude_deg) : 0;
-  const std::string name = zone == 0 ? "" : (zone > 0 ? "+" : "") + std::to_string(zone);
-  return TimeText(utc + zone * kHour, format) + " UTC" + name;
+  return TimeText(utc + ZoneOf(spec) * kHour, format) + " " + ZoneText(spec);
+}
+
+std::string ZoneText(const aquafarm_msgs::FarmSpec& spec) {
+  const int zone = ZoneOf(spec);
+  return "UTC" + (zone == 0 ? "" : (zone > 0 ? "+" : "") + std::to_string(zone));
+}
+
+std::string WorldTimeText(const aquafarm_msgs::FarmSpec& spec,
+                          const aquafarm_msgs::FarmState& state) {
+  std::string text = ClockText(spec, state);
+  if (!spec.has_start_time) return text;
+  if (!spec.has_origin || NauticalZone(spec.origin_longitude_deg) == 0) return text;
+  return text + " (" + LocalTimeText(spec, state.world_time.sec, "%H:%M") + ")";
 }
 
 std::string MotionText(const aquafarm_msgs::FarmSpec& spec, int heading_deg, double cells_a_step) {

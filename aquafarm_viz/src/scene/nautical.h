@@ -42,4 +42,12 @@ std::string WindText(const TrackPoint& point);
 /// Returns a duration such as "31 h" or "4.5 h".
 std::string HoursText(double seconds);
 
+/// Returns the name of the time zone of LocalTimeText: "UTC+8", or "UTC".
+std::string ZoneText(const aquafarm_msgs::FarmSpec& spec);
+
+/// Returns the time of a state: ClockText, and the local time of a farm with a place and a start
+/// time: "2019-09-30 16:03 UTC (00:03 UTC+8)".
+std::string WorldTimeText(const aquafarm_msgs::FarmSpec& spec,
+                          const aquafarm_msgs::FarmState& state);
+
 }  // namespace aquafarm_viz

@@ -229,6 +229,12 @@ bool IsInDanger(const Outlook& outlook) {
   return !outlook.devices.empty() && std::isfinite(FirstStep(outlook.devices.front()));
 }
 
+std::size_t CountInDanger(const Outlook& outlook) {
+  return static_cast<std::size_t>(
+      std::count_if(outlook.devices.begin(), outlook.devices.end(),
+                    [](const DeviceOutlook& one) { return std::isfinite(FirstStep(one)); }));
+}
+
 std::string OutlookText(const FarmSpec& spec, const FarmState& state, const Outlook& outlook) {
   if (outlook.devices.empty()) return "";
   const DeviceOutlook& first = outlook.devices.front();

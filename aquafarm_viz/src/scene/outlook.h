@@ -71,6 +71,9 @@ std::string OutlookText(const aquafarm_msgs::FarmSpec& spec, const aquafarm_msgs
 /// Returns whether a ring covers or reaches a device.
 bool IsInDanger(const Outlook& outlook);
 
+/// Returns the number of devices that a ring covers or reaches.
+std::size_t CountInDanger(const Outlook& outlook);
+
 /// Returns OutlookText in a few characters, such as "F2: -20 now".
 std::string ShortOutlookText(const aquafarm_msgs::FarmSpec& spec, const Outlook& outlook);
 

@@ -8,10 +8,20 @@
 namespace aquafarm_viz {
 
 void Trail::Update(const aquafarm_msgs::FarmState& state) {
-  if (state.seed != seed_ || state.episode != episode_ || state.step < step_) ships_.clear();
+  if (state.seed != seed_ || state.episode != episode_ || state.step < step_) {
+    ships_.clear();
+    statuses_.clear();
+    changed_at_.clear();
+  }
   seed_ = state.seed;
   episode_ = state.episode;
   step_ = state.step;
+  for (const auto& device : state.devices) {
+    const auto [known, is_new] = statuses_.emplace(device.id, device.status);
+    if (is_new || known->second == device.status) continue;
+    known->second = device.status;
+    changed_at_[device.id] = state.world_time.sec;
+  }
   for (const auto& ship : state.ships) {
     if (!ship.visible) {
       ships_.erase(ship.id);
@@ -38,6 +48,11 @@ std::size_t ShipTrail::UnbrokenFrom() const {
   std::size_t first = places.empty() ? 0 : places.size() - 1;
   while (first > 0 && !Trail::IsGap(places[first - 1], places[first])) --first;
   return first;
+}
+
+std::optional<std::int64_t> Trail::ChangedAt(std::int32_t device) const {
+  const auto found = changed_at_.find(device);
+  return found == changed_at_.end() ? std::nullopt : std::optional(found->second);
 }
 
 const ShipTrail* Trail::Find(std::int32_t ship) const {

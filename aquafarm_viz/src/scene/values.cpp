@@ -148,24 +148,45 @@ Values ReadValues(const PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec)
   return read;
 }
 
+std::vector<cv::Point> ShownActions(const Values& values, int every) {
+  constexpr std::size_t kFew = 12;
+  std::vector<cv::Point> rare;
+  std::vector<cv::Point> shown;
+  for (int y = 0; y < values.height; ++y) {
+    for (int x = 0; x < values.width; ++x) {
+      const std::uint8_t action = values.actions[values.Index(x, y)];
+      if (action > 9) continue;
+      const bool is_sample = x % every == every / 2 && y % every == every / 2;
+      if (is_sample) {
+        shown.emplace_back(x, y);
+      } else if (action >= 8 && rare.size() <= kFew) {
+        rare.emplace_back(x, y);
+      }
+    }
+  }
+  if (rare.size() <= kFew) shown.insert(shown.end(), rare.begin(), rare.end());
+  return shown;
+}
+
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec) {
+  constexpr double kMostAcross = 13.0;
+  const int every = std::max(1, int(std::ceil(std::max(spec.width, spec.height) / kMostAcross)));
+  const double size = every == 1 ? 1.0 : 0.75 * every;
   Marker arrows = MakeMarker("moves", 0, Marker::TRIANGLE_LIST, kPaper);
   arrows.scale.x = arrows.scale.y = arrows.scale.z = 1.0;
   Marker pickups = MakeMarker("moves", 1, Marker::POINTS, kPickupColor);
   Marker drop_offs = MakeMarker("moves", 2, Marker::POINTS, kDropOffColor);
   for (Marker* dots : {&pickups, &drop_offs}) {
-    dots->scale.x = dots->scale.y = 0.3 * spec.cell_size_m;
+    dots->scale.x = dots->scale.y = 0.4 * size * spec.cell_size_m;
   }
-  for (int y = 0; y < values.height; ++y) {
-    for (int x = 0; x < values.width; ++x) {
-      const std::uint8_t action = values.actions[values.Index(x, y)];
-      if (const int bearing = MoveBearingDeg(action); bearing >= 0) {
-        AddArrow(arrows, x, y, bearing, spec.cell_size_m);
-      } else if (action == 8 || action == 9) {
-        (action == 8 ? pickups : drop_offs)
-            .points.push_back(At(x * spec.cell_size_m, y * spec.cell_size_m));
-      }
+  for (const cv::Point cell : ShownActions(values, every)) {
+    const std::uint8_t action = values.actions[values.Index(cell.x, cell.y)];
+    if (const int bearing = MoveBearingDeg(action); bearing >= 0) {
+      AddArrow(arrows, cell.x, cell.y, bearing, spec.cell_size_m, size);
+    } else {
+      (action == 8 ? pickups : drop_offs)
+          .points.push_back(At(cell.x * spec.cell_size_m, cell.y * spec.cell_size_m));
     }
   }
   visualization_msgs::MarkerArray array;

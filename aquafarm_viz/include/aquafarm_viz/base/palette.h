@@ -34,7 +34,8 @@ inline constexpr Rgb kPort{0xff, 0xff, 0xff};
 inline constexpr Rgb kInk{0x12, 0x20, 0x2e};
 inline constexpr Rgb kPaper{0xf4, 0xf7, 0xf9};
 inline constexpr Rgb kUnknown{0xb4, 0xbd, 0xc4};
-inline constexpr Rgb kChoiceColor{0xff, 0x4f, 0xd8};  ///< choice of a compared policy
+/// Choice of a compared policy: cyan, which neither risks nor values have.
+inline constexpr Rgb kChoiceColor{0x4d, 0xe3, 0xff};
 
 inline constexpr Rgb kDirectionColor{0xff, 0xd1, 0x66};  ///< legal moves at ports, device labels
 

@@ -9,8 +9,10 @@
 ///     | danger_label (1)       | device   | risk and time of arrival                         |
 ///     | pointer, pointer_label | disaster | where a centre outside the farm lies, its motion |
 ///     |                        |          | and closest approach                             |
+///     | pointer_heading        | disaster | arrow of this motion, next to the pointer        |
 ///
-/// A label has a plate below it, in the namespace of the label with _plate.
+/// A label has a plate below it, in the namespace of the label with _plate, and a line to its
+/// symbol where it is not next to it, with _leader.
 ///
 /// (1) of as many devices as have a free place nearby, up to 40, those that are reached first
 /// before others.

@@ -32,13 +32,13 @@
 
 namespace aquafarm_viz {
 
-/// Returns the markers that are constant during an episode. If `clear`, the first one deletes all
-/// markers; use it at the start of an episode.
+/// Returns the sea, islands, rocks and the legend, which are constant during an episode. If
+/// `clear`, the first one deletes all markers; use it at the start of an episode.
 visualization_msgs::MarkerArray SpecMarkers(const aquafarm_msgs::FarmSpec& spec, bool clear,
                                             const Layers& layers = {});
 
-/// Returns the markers of ships, devices and disasters, and of the line with episode, step and
-/// return.
+/// Returns the markers of ports, ships, devices and disasters, and of the line with time, episode,
+/// step and return. A port is drawn next to a ship in its cell.
 /// The spec must pass CheckSpec and the state CheckState.
 visualization_msgs::MarkerArray StateMarkers(const aquafarm_msgs::FarmSpec& spec,
                                              const aquafarm_msgs::FarmState& state,

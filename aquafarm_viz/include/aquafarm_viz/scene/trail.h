@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-/// Tracks the past positions and headings of ships, which a single state does not contain.
+/// Tracks the past positions and headings of ships and the times at which devices were fetched,
+/// which a single state does not contain.
 
 #include <aquafarm_msgs/FarmState.h>
 
@@ -9,6 +10,7 @@
 #include <deque>
 #include <map>
 #include <opencv2/core/types.hpp>
+#include <optional>
 
 namespace aquafarm_viz {
 
@@ -37,6 +39,10 @@ class Trail {
   /// continues, and the gap is not drawn.
   static bool IsGap(cv::Point from, cv::Point to);
 
+  /// Returns when a device was last picked up or delivered [s of the world time]; nullopt if that
+  /// was before the first state.
+  std::optional<std::int64_t> ChangedAt(std::int32_t device) const;
+
   /// Returns the trail of a ship; nullptr for an unknown ship.
   const ShipTrail* Find(std::int32_t ship) const;
 
@@ -46,6 +52,8 @@ class Trail {
   std::uint64_t episode_{};
   std::uint64_t step_{};
   std::map<std::int32_t, ShipTrail> ships_;
+  std::map<std::int32_t, std::uint8_t> statuses_;    // of devices
+  std::map<std::int32_t, std::int64_t> changed_at_;  // last change of a status [s]
 };
 
 /// Returns the bearing to draw a ship at: that of its move in this state, else of its trail, or 0.

@@ -10,6 +10,7 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <cstdint>
+#include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +44,12 @@ struct Values {
 /// @throws std::invalid_argument "values/points: got no field value …"
 Values ReadValues(const sensor_msgs::PointCloud2& cloud, const aquafarm_msgs::FarmSpec& spec);
 
-/// Returns the greedy actions as markers: `moves` 0 are arrows, 1 pickups, 2 drop-offs.
+/// Returns the cells whose greedy action is shown: every `every`-th cell along each axis, so that
+/// the map stays readable, and up to 12 pickups and drop-offs wherever they are.
+std::vector<cv::Point> ShownActions(const Values& values, int every);
+
+/// Returns the greedy actions as markers: `moves` 0 are arrows, 1 pickups, 2 drop-offs. Along the
+/// longer side of a farm there are at most 13.
 visualization_msgs::MarkerArray MoveMarkers(const Values& values,
                                             const aquafarm_msgs::FarmSpec& spec);
 

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The key of a picture, its list of devices, and ports next to ships.
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "aquafarm_viz/draw/image.h"
+#include "draw/legend.h"
+#include "draw/map_labels.h"
+#include "draw/symbols.h"
+#include "fixture.h"
+
+namespace aquafarm_viz {
+namespace {
+
+constexpr ImageSize kSize{640, 640};
+
+TEST(Signs, HaveOneLineOfTheKeyEach) {
+  auto spec = test::MakeSpec();
+  spec.view_mode = aquafarm_msgs::FarmSpec::PARTIAL;
+  auto state = test::MakeState();
+  state.disasters.push_back(test::MakeDisaster(1, 60.0F, 12.0F));
+  Trail trail;
+  for (int x = 3; x < 9; ++x) {
+    state.ships.front().x = x;
+    trail.Update(state);
+  }
+  Overlays overlays;
+  overlays.trail = &trail;
+  overlays.layers = ParseLayers("trail,risk,directions,sight");
+  std::vector<Course> courses;
+  for (std::size_t i = 0; i < 2; ++i) courses.push_back(CourseOf(spec, state, i, {}));
+  const Outlook outlook = ComputeOutlook(spec, state, courses);
+  const Layout layout = MakeLayout(25, 25, kSize);
+  const auto signs = SignsOf(spec, state, overlays, outlook, layout);
+  std::set<std::string> words;
+  const Fonts fonts(layout.unit);
+  for (const Sign sign : signs) {
+    EXPECT_TRUE(words.insert(SignWords(sign)).second) << SignWords(sign);
+    EXPECT_LE(fonts.small.Width(SignWords(sign)), (layout.panel.width - 16) / 2 - 20)
+        << SignWords(sign) << " fits";
+  }
+  EXPECT_EQ(words, (std::set<std::string>{"first hit", "in danger", "in port", "ship path",
+                                          "to centre", "heading", "legal move", "sensors"}));
+  overlays.layers = ParseLayers("none");
+  state.disasters.clear();
+  state.devices.clear();
+  EXPECT_TRUE(SignsOf(spec, state, overlays, {}, layout).empty());
+}
+
+TEST(Signs, OfAPortStandNextToAShipInIt) {
+  auto spec = test::MakeSpec();
+  spec.ports[2].cell = test::MakeCell(12, 15);  // next to each other
+  spec.ports[3].cell = test::MakeCell(11, 15);
+  const Layout layout = MakeLayout(spec.width, spec.height, kSize);
+  auto state = test::MakeState();
+  for (const auto& port : spec.ports) {
+    state.ships.front().x = port.cell.x;
+    state.ships.front().y = port.cell.y;
+    const cv::Point2d at = PortPlace(spec, state, port, layout);
+    const cv::Point2d ship = layout.view.ToPixel(port.cell.x, port.cell.y);
+    EXPECT_GE(cv::norm(at - ship), layout.ship_radius_px() + layout.port_radius_px());
+    for (const auto& other : spec.ports) {
+      if (other.id == port.id) continue;
+      const cv::Point2d there = PortPlace(spec, state, other, layout);
+      EXPECT_EQ(there, layout.view.ToPixel(other.cell.x, other.cell.y)) << "without a ship";
+      EXPECT_GE(cv::norm(at - there), 2.0 * layout.port_radius_px()) << PortLetter(port.id);
+    }
+    EXPECT_FALSE(BlockSymbols(spec, state, layout).IsFree({cv::Point(at), cv::Size(1, 1)}))
+        << "labels keep off";
+  }
+}
+
+// Returns the right end of the first row below the heading DEVICES.
+cv::Mat FirstState(const aquafarm_msgs::FarmState& state, const Trail* trail = nullptr) {
+  Overlays overlays;
+  overlays.trail = trail;
+  return DrawFarm(test::MakeSpec(), state, kSize, overlays)(cv::Rect(570, 74, 65, 16)).clone();
+}
+
+TEST(Signs, OfADeviceThatNothingThreatensHaveItsState) {
+  auto state = test::MakeState();
+  state.disasters.clear();
+  const cv::Mat deployed = FirstState(state);
+  EXPECT_GT(cv::norm(deployed - cv::Mat(deployed.size(), CV_8UC3, Bgr(DarkStyle().panel))), 500.0);
+  state.devices.front().status = aquafarm_msgs::DeviceState::ABOARD;
+  EXPECT_GT(cv::norm(deployed - FirstState(state)), 100.0);
+}
+
+TEST(Signs, OfAFetchedDeviceHaveItsTime) {
+  auto state = test::MakeState();
+  state.disasters.clear();
+  Trail trail;
+  trail.Update(state);
+  EXPECT_FALSE(trail.ChangedAt(0));
+  ++state.step;
+  state.world_time.sec += 180;
+  state.devices.front().status = aquafarm_msgs::DeviceState::DELIVERED;
+  trail.Update(state);
+  EXPECT_EQ(trail.ChangedAt(0), std::optional<std::int64_t>(18 * 180));
+  EXPECT_FALSE(trail.ChangedAt(2));
+  EXPECT_GT(cv::norm(FirstState(state, &trail) - FirstState(state)), 100.0);
+  ++state.episode;
+  trail.Update(state);
+  EXPECT_FALSE(trail.ChangedAt(0)) << "of another episode";
+}
+
+TEST(Signs, OfRingsHaveTheirKnotsInANarrowPanelToo) {
+  const Layout layout = MakeLayout(25, 25, kSize);
+  const Fonts fonts(layout.unit);
+  EXPECT_EQ(FittingRingName(64, 500, fonts.small), "hurricane force (64 kt)");
+  const int room = layout.panel.width - fonts.small.Width("risk -20") - 46;
+  for (const std::int32_t wind_kt : {30, 34, 50, 64}) {
+    const std::string name = FittingRingName(wind_kt, room, fonts.small);
+    EXPECT_NE(name.find("(" + std::to_string(wind_kt) + " kt)"), std::string::npos) << name;
+    EXPECT_LE(fonts.small.Width(name), room) << name;
+  }
+}
+
+// A label that lies on a ring would be struck through by its line.
+TEST(Signs, OfRingsAreLabelledNextToTheirLineAndOffTheLand) {
+  const auto spec = test::MakeSpec();
+  const Layout layout = MakeLayout(spec.width, spec.height, kSize);
+  auto state = test::MakeState();
+  const Fonts fonts(layout.unit);
+  for (const float x : {3.0F, 8.0F, 12.0F, -2.0F}) {
+    state.disasters.front().x = x;
+    state.disasters.front().y = 8.0F;
+    std::vector<Course> courses{CourseOf(spec, state, 0, {})};
+    FreeSpace space = BlockSymbols(spec, state, layout);
+    cv::Mat map(layout.map.size(), CV_8UC3, cv::Scalar::all(90));
+    LabelRings(map, spec, state, courses, space, layout, fonts);
+    const cv::Point2d centre = layout.view.ToPixel(double(x), 8.0);
+    cv::Mat1b written;
+    cv::inRange(map, Bgr(layout.style->words), Bgr(layout.style->words), written);
+    std::vector<cv::Point> pixels;
+    cv::findNonZero(written, pixels);
+    EXPECT_GT(pixels.size(), 20U) << x;
+    for (const cv::Point pixel : pixels) {
+      for (const float radius : state.disasters.front().radii) {
+        const double away = cv::norm(cv::Point2d(pixel) - centre);
+        EXPECT_GT(std::abs(away - double(radius) * layout.view.cell_px()), 1.5) << x;
+      }
+      for (const auto& cell : spec.islands) {
+        const cv::Point2d off = cv::Point2d(pixel) - layout.view.ToPixel(cell.x, cell.y);
+        EXPECT_GT(std::max(std::abs(off.x), std::abs(off.y)), 0.45 * layout.view.cell_px()) << x;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace aquafarm_viz

@@ -32,16 +32,16 @@ class KeyboardTest(unittest.TestCase):
     def test_a_step_is_told_with_its_terms_and_what_is_legal(self):
         result = CommandResult(ok=True, code=Outcome.CRASH, step=7, reward=-2.5,
                                terms=RewardTerms(crash=-2.5), legal_actions=0x1FF)
-        self.assertEqual("step 7: CRASH, reward -2.5 (crash -2.5); legal: moves, pickup",
+        self.assertEqual("step 7: crash, reward -2.5 (crash -2.5); legal: moves, pickup",
                          keyboard.describe(result))
 
     def test_the_end_is_told_with_its_reason(self):
         result = CommandResult(ok=True, terminated=True, reason=FarmState.ALL_RETRIEVED)
-        self.assertIn("the episode is over: ALL_RETRIEVED", keyboard.describe(result))
+        self.assertIn("the episode is over: all retrieved", keyboard.describe(result))
 
     def test_a_refusal_is_told_with_its_code(self):
         result = CommandResult(code=Outcome.EPISODE_OVER, message="reset first")
-        self.assertEqual("EPISODE_OVER: reset first", keyboard.describe(result))
+        self.assertEqual("episode over: reset first", keyboard.describe(result))
 
     def test_the_map_has_north_at_the_top(self):
         spec = FarmSpec(width=3, height=2, islands=[Cell(0, 0)], ports=[PortInfo(0, Cell(1, 0))],

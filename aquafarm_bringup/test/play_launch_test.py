@@ -46,7 +46,7 @@ class PlayLaunchTest(unittest.TestCase):
         with self.play() as ranch:
             ranch.wait_for(lambda: "driving ship 0" in ranch.words(), START_LIMIT_S)
             self.press(ranch, b"\x1b[A", "N        step 1: ")
-            self.press(ranch, b"p", "pickup   step 2: ILLEGAL_PICKUP, reward -10")
+            self.press(ranch, b"p", "pickup   step 2: illegal pickup, reward -10")
             self.press(ranch, b"m", "disaster 0 at (")
             self.press(ranch, b"r", "episode 1 of seed 1")
             self.press(ranch, b"7", "got ship 7, expected one of 0 to 0")
@@ -66,7 +66,7 @@ class PlayLaunchTest(unittest.TestCase):
             ranch.wait_for(lambda: "driving ship 0" in ranch.words(), START_LIMIT_S)
             self.assertIn(f"episode 0 of seed {1000 | 1 << 63}", ranch.words())
             self.press(ranch, b"k", "N        step 1: ")
-            self.press(ranch, b"p", "the episode is over: STEP_LIMIT")
+            self.press(ranch, b"p", "the episode is over: step limit")
             self.press(ranch, b"r", "episode 1 of seed")
             self.press(ranch, b"k", "N        step 1: ")  # abandoned
             os.write(self._keys, b"q")

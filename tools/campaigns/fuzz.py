@@ -33,7 +33,8 @@ def corpus(name):
     """Folders with samples for a target, as in the CMakeLists.txt of its core."""
     if name == "checkpoint":
         old = common.ROOT / "aquafarm_agents" / "core" / "test" / "data" / "version_0_1_0"
-        return [old / run for run in ("dqn", "lstm_dqn", "maddpg", "q_learning", "sarsa")]
+        return [*(old / run for run in ("dqn", "lstm_dqn", "maddpg", "q_learning", "sarsa")),
+                old.parents[1] / "fuzz_checkpoint"]
     if name == "fleet":
         return [common.ROOT / "aquafarm_agents" / "core" / "test" / "fuzz_fleet"]
     if name in ("bag", "request"):

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "aquafarm/agents/environment/local_environment.h"
+#include "aquafarm/base/cbor.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/grid/step_buffers.h"
 #include "aquafarm/observation/for_each_farm.h"
@@ -135,8 +136,7 @@ std::string FamilyEnvironment::Save() {
 const StepResults& FamilyEnvironment::Load(const std::string& bytes) {
   std::vector<std::optional<Farm>> loaded;
   try {
-    const nlohmann::json states =
-        nlohmann::json::from_cbor(TakeSavedFarms(bytes, share_, spec_.farms));
+    const nlohmann::json states = ParseCbor(TakeSavedFarms(bytes, share_, spec_.farms));
     if (!states.is_array() || states.size() != static_cast<std::size_t>(spec_.farms)) {
       throw InputError("state: got " + std::to_string(states.size()) + " farms, expected " +
                        std::to_string(spec_.farms));

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "aquafarm/base/cbor.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/version.h"
 #include "aquafarm/grid/step_buffers.h"
@@ -16,7 +17,7 @@ namespace {
 
 // Environments save a CBOR array with one item per farm.
 nlohmann::json SavedFarms(const std::string& bytes) {
-  const nlohmann::json farms = nlohmann::json::from_cbor(bytes, true, false);
+  const nlohmann::json farms = ParseCbor(bytes);
   if (!farms.is_array()) throw InputError("state: damaged bytes: expected a list of farms");
   return farms;
 }

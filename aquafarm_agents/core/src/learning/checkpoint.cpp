@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "aquafarm/agents/base/options.h"
+#include "aquafarm/base/cbor.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
 #include "aquafarm/base/version.h"
@@ -150,7 +151,7 @@ Checkpoint Parse(std::string_view bytes) {
     throw InputError("damaged: the checksum is " + Hex(HashBytes(bytes)) + ", expected " +
                      Hex(header.checksum));
   }
-  const auto index = nlohmann::json::from_cbor(bytes.substr(0, header.index_bytes));
+  const auto index = ParseCbor(bytes.substr(0, header.index_bytes), "index");
   Checkpoint checkpoint = FromIndex(index);
   ReadSections(index, bytes.substr(header.index_bytes), checkpoint);
   return checkpoint;
@@ -174,7 +175,12 @@ void Checkpoint::SetNumbers(const std::string& name, const std::map<std::string,
 }
 
 std::map<std::string, Checkpoint::Number> Checkpoint::GetNumbers(const std::string& name) const {
-  const nlohmann::json fields = nlohmann::json::from_cbor(Section(name), true, false);
+  const std::string_view section = Section(name);
+  nlohmann::json fields;
+  try {
+    fields = ParseCbor(section);
+  } catch (const InputError&) {  // stays null, which is not an object
+  }
   std::map<std::string, Number> numbers;
   bool is_valid = fields.is_object();
   for (auto field = fields.begin(); is_valid && field != fields.end(); ++field) {

@@ -7,6 +7,7 @@
 
 #include "aquafarm/agents/evaluation/evaluation.h"
 #include "aquafarm/agents/learning/sharded_learner.h"
+#include "aquafarm/base/cbor.h"
 #include "aquafarm/base/check.h"
 #include "training/pending_steps.h"
 
@@ -63,7 +64,7 @@ void Trainer::Resume(const Checkpoint& checkpoint, const std::string& path) {
   CheckContinues(checkpoint, path, options_.algorithm, learner_.options(), options_.seed,
                  WholeSpec(environment_.spec(), options_.group));
   try {
-    const auto state = nlohmann::json::from_cbor(checkpoint.Section("trainer"));
+    const auto state = ParseCbor(checkpoint.Section("trainer"), "section 'trainer'");
     learner_.Load(checkpoint);
     checkpoint.GetArray("returns", returns_.size(), returns_);
     checkpoint.GetArray("successes", successes_.size(), successes_);

@@ -9,6 +9,7 @@
 #include "aquafarm/agents/training/algorithms.h"
 #include "aquafarm/agents/training/run.h"
 #include "aquafarm/agents/training/trainer.h"
+#include "aquafarm/base/cbor.h"
 #include "aquafarm/base/check.h"
 #include "training/pending_steps.h"
 
@@ -101,7 +102,7 @@ bool Trainer::CollectSections(Checkpoint& checkpoint) const {
   if (parts.empty()) return false;
   std::vector<std::string> farms;
   for (const std::string& part : parts) {
-    const nlohmann::json sections = nlohmann::json::from_cbor(part);
+    const nlohmann::json sections = ParseCbor(part, "rank");
     for (const auto& [name, value] : sections.items()) {
       const auto& binary = value.get_binary();
       std::string bytes(binary.begin(), binary.end());

@@ -4,11 +4,14 @@
 #include <sys/resource.h>
 
 #include <csignal>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "agents_fixture.h"
 #include "aquafarm/agents/learning/tabular.h"
 #include "aquafarm/agents/training/saved_policy.h"
+#include "aquafarm/base/hash.h"
 #include "learning/saved_numbers.h"
 
 namespace aquafarm::agents::test {
@@ -178,6 +181,8 @@ TEST(SavedNumbers, AreReadByNameOrInTheOrderOfOlderVersions) {
   EXPECT_CONTAINS(MessageOf<InputError>(load), "section 'learnt': has no number 'loss'");
   checkpoint.sections["learnt"] = "\xff";
   EXPECT_CONTAINS(MessageOf<InputError>(load), "section 'learnt': is damaged");
+  checkpoint.sections["learnt"] = std::string(1'000'000, '\x81');  // lists in lists
+  EXPECT_CONTAINS(MessageOf<InputError>(load), "section 'learnt': is damaged");
 }
 
 TEST(SavedNumbers, OfARandomStreamAreItsDraws) {
@@ -191,6 +196,18 @@ TEST(SavedNumbers, OfARandomStreamAreItsDraws) {
                              [&](const auto& visit) { visit("rng", loaded); });
   EXPECT_EQ(loaded.position(), 5U);
   EXPECT_EQ(loaded.Next(), saved.Next());
+}
+
+// A stranger's file with a correct checksum; the parser must not use up the stack.
+TEST_F(CheckpointFile, AnIndexThatNestsAMillionDeepIsRefused) {
+  const std::string path = folder_ + "/deep.ckpt";
+  WriteCheckpoint(path, Example());
+  std::string bytes = ReadFile(path).substr(0, 40) + std::string(1'000'000, '\x81');
+  const std::uint64_t sizes[3] = {1'000'000, 0, HashBytes(std::string_view(bytes).substr(40))};
+  std::memcpy(bytes.data() + 16, sizes, sizeof(sizes));
+  std::ofstream(path) << bytes;
+  EXPECT_EQ(MessageOf<InputError>([&] { ReadCheckpoint(path); }),
+            path + ": index: damaged bytes: nested too deeply");
 }
 
 TEST_F(CheckpointFile, AnUnwritablePlaceIsSaid) {

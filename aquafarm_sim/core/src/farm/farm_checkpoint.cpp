@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "aquafarm/base/cbor.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/base/hash.h"
 #include "aquafarm/base/version.h"
@@ -13,7 +14,6 @@
 #include "aquafarm/grid/action.h"
 #include "aquafarm/scenario/validate.h"
 #include "aquafarm/storms/draw_storm.h"
-#include "base/cbor.h"
 #include "farm/farm_records.h"
 
 namespace aquafarm {

@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "aquafarm/base/cbor.h"
 #include "aquafarm/base/check.h"
 #include "aquafarm/observation/for_each_farm.h"
-#include "base/cbor.h"
 
 namespace aquafarm {
 namespace {

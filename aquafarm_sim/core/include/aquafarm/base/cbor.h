@@ -3,15 +3,19 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "aquafarm/base/check.h"
 
 namespace aquafarm {
 
-/// Rejects bytes that are nested deeper than any saved state. Otherwise the parser would recurse as
-/// deep as the bytes specify.
+/// Rejects bytes that are nested deeper than any saved state or checkpoint. Otherwise the parser
+/// would recurse as deep as the bytes specify.
 class CborDepth final : public nlohmann::json_sax<nlohmann::json> {
  public:
+  explicit CborDepth(std::string what) : what_(std::move(what)) {}
+
   bool null() override { return true; }
   bool boolean(bool) override { return true; }
   bool number_integer(number_integer_t) override { return true; }
@@ -26,19 +30,21 @@ class CborDepth final : public nlohmann::json_sax<nlohmann::json> {
   bool end_array() override { return depth_-- > 0; }
   bool parse_error(std::size_t, const std::string&,
                    const nlohmann::detail::exception& error) override {
-    throw InputError(std::string("state: damaged bytes: ") + error.what());
+    throw InputError(what_ + ": damaged bytes: " + error.what());
   }
 
  private:
   static constexpr int kDeepest = 16;
+  const std::string what_;
   int depth_{};
 };
 
-/// Parses CBOR bytes. @throws InputError if the bytes are not CBOR or are nested too deeply
-inline nlohmann::json ParseCbor(const std::string& bytes) {
-  CborDepth depth;
+/// Parses CBOR bytes. @param what the bytes are, for messages
+/// @throws InputError if the bytes are not CBOR or are nested too deeply
+inline nlohmann::json ParseCbor(std::string_view bytes, const std::string& what = "state") {
+  CborDepth depth(what);
   if (!nlohmann::json::sax_parse(bytes, &depth, nlohmann::json::input_format_t::cbor)) {
-    throw InputError("state: damaged bytes: nested too deeply");
+    throw InputError(what + ": damaged bytes: nested too deeply");
   }
   return nlohmann::json::from_cbor(bytes);
 }

@@ -216,6 +216,24 @@ TEST(DangerMarkers, PutThePointerAndItsMotionOnNoDevice) {
   }
 }
 
+TEST(DangerMarkers, CoverARockRatherThanGoFarAway) {
+  Scene scene;
+  scene.state.devices.clear();
+  scene.state.disasters[0].y = -8.0F;  // south-west
+  scene.spec.rocks.clear();
+  for (int x = 0; x < 25; ++x) {
+    for (int y = 0; y < 17; ++y) {
+      aquafarm_msgs::RockInfo rock;
+      rock.cell = test::MakeCell(x, y);
+      scene.spec.rocks.push_back(rock);
+    }
+  }
+  const auto markers = scene.Draw();
+  const auto& pointer = markers.at({"pointer", 0}).pose.position;
+  const auto& label = markers.at({"pointer_label", 0}).pose.position;
+  EXPECT_LT(std::hypot(label.x - pointer.x, label.y - pointer.y), 10000.0);
+}
+
 TEST(DangerMarkers, ShowTheMotionOfACentreOutsideTheFarm) {
   SceneNextToAPointer scene;
   const Marker arrow = scene.Draw().at({"pointer_heading", 0});

@@ -2,9 +2,11 @@
 #include "aquafarm_viz/markers/danger.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "aquafarm_viz/base/checks.h"
@@ -113,8 +115,13 @@ class Labels {
     const double half_height = (0.1 + 0.5 * double(lines)) * word_;
     const double row = std::max(1.5, 1.5 * word_) + half_height - 0.6 * word_;
     Plate plate{x, y, half_width, half_height};
-    for (const bool avoids_rocks : {true, false}) {
+    // A rock may be covered rather than that the label is far away.
+    const double near = half_width + 4.0 * row;
+    constexpr std::array<std::pair<bool, bool>, 4> kTries{
+        {{true, true}, {true, false}, {false, true}, {false, false}}};
+    for (const auto& [is_near, avoids_rocks] : kTries) {
       for (const cv::Point2d& offset : OffsetsOf(half_width, row, must_show)) {
+        if ((cv::norm(offset) <= near) != is_near) continue;
         plate.x = std::clamp(x + offset.x, half_width - 0.5, spec_.width - 0.5 - half_width);
         plate.y = std::clamp(y + offset.y, half_height - 0.5, spec_.height - 0.5 - half_height);
         if (Covers(plate, used_) || (avoids_rocks && Covers(plate, rocks_))) continue;
